@@ -1,0 +1,555 @@
+//! Results of a bench: what `results.json` holds.
+//!
+//! JSON has no NaN and no infinity. A figure that may be missing is an `Option`; every other
+//! number must be finite, and [`BenchResults::to_json`] refuses one that is not.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+mod label;
+mod pareto;
+
+pub use pareto::mark_pareto;
+
+/// Version of the format this crate writes and reads.
+pub const SCHEMA: u32 = 1;
+
+/// Largest relative error that is called accurate.
+pub const ACCURATE: f64 = 0.05;
+
+/// A whole bench.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BenchResults {
+    /// Version of the format, [`SCHEMA`].
+    pub schema: u32,
+    /// Revision of the source that ran.
+    pub revision: String,
+    /// When it ran, as the caller wishes to write it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub date: Option<String>,
+    /// Where it ran.
+    pub machine: Machine,
+    /// The cases, in the order of the report.
+    pub cases: Vec<CaseInfo>,
+    /// One row per run.
+    pub rows: Vec<Row>,
+    /// Runs that were asked for and not made.
+    #[serde(default)]
+    pub skipped: Vec<Skipped>,
+}
+
+/// The machine a bench ran on.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Machine {
+    /// Model of the processor.
+    pub cpu: String,
+    /// Threads the runs could use.
+    pub threads: usize,
+    /// Operating system.
+    pub os: String,
+    /// Architecture, as in `x86_64`.
+    #[serde(default)]
+    pub arch: String,
+    /// Version of the compiler.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compiler: Option<String>,
+}
+
+/// A case and the reference its runs are measured against.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CaseInfo {
+    /// Id, as in `paper-cube`.
+    pub id: String,
+    /// Title for people.
+    pub title: String,
+    /// Free degrees of freedom.
+    pub dofs: usize,
+    /// Simulated time [s].
+    pub duration_s: f64,
+    /// How the reference was made.
+    pub reference: String,
+    /// The reference's own estimated relative error (fraction).
+    pub reference_error: f64,
+    /// Largest |component| of the displacement in the reference [m].
+    pub max_u_m: f64,
+    /// Half the range of the reference's worst dof over the last fifth of the run [m].
+    pub late_amplitude_m: f64,
+    /// Critical step `2 / omega_max` of the undamped system [s]; none where there is no omega_max.
+    #[serde(default)]
+    pub critical_step_s: Option<f64>,
+}
+
+/// One run: a case, an integrator with its options, a step.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Id of the case.
+    pub case: String,
+    /// Id of the integrator.
+    pub integrator: String,
+    /// Options that differ from the integrator's defaults.
+    #[serde(default)]
+    pub options: BTreeMap<String, Value>,
+    /// Step [s].
+    pub dt: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Sweeps per simulated second [1/s].
+    pub sweeps_per_s: f64,
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// Simulated time at which the run was given up [s]; only when diverged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diverged_at_s: Option<f64>,
+    /// All finite, and never larger than ten times the reference.
+    pub bounded: bool,
+    /// The motion dies out as the reference's does.
+    pub settles: bool,
+    /// Relative L2 error of the displacement (fraction, 1 = as wrong as returning zero); none only
+    /// when diverged.
+    pub error: Option<f64>,
+    /// Largest |component| of the displacement over the run [m]; none where not finite.
+    pub max_u: Option<f64>,
+    /// Half the range of the worst dof over the last fifth of the steps [m]; none where not finite.
+    pub late_amplitude: Option<f64>,
+    /// Share of the (dof, step) pairs that were saturated (fraction).
+    pub saturated: f64,
+    /// Some cells were saturated: bounded by the guard, not by the physics.
+    #[serde(default)]
+    pub guarded: bool,
+    /// Inverted elements in the last state.
+    pub inverted: u64,
+    /// Work counts over the run; they reproduce, seconds do not.
+    pub work: Work,
+    /// CPU seconds per simulated second (thread CPU time, median of the repeats).
+    pub cpu_s_per_s: f64,
+    /// CPU time per step [microseconds].
+    pub us_per_step: f64,
+    /// CPU time of the set-up [s], in none of the other times.
+    #[serde(default)]
+    pub setup_cpu_s: f64,
+    /// No other run of the case is both as cheap and as accurate; see [`mark_pareto`].
+    #[serde(default)]
+    pub pareto: bool,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// Took all its steps.
+    #[default]
+    Finished,
+    /// Given up early: not finite, or far beyond the size of the body.
+    Diverged,
+}
+
+/// Work counts of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Work {
+    /// Sweeps over the network (each the cost of one sparse product).
+    #[serde(default)]
+    pub sweeps: u64,
+    /// Evaluations of the force.
+    #[serde(default)]
+    pub force_evaluations: u64,
+    /// Solves with a factorised matrix.
+    #[serde(default)]
+    pub solves: u64,
+    /// Factorisations.
+    #[serde(default)]
+    pub factorizations: u64,
+    /// Newton iterations.
+    #[serde(default)]
+    pub newton_iterations: u64,
+}
+
+/// A run that was asked for and not made.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Skipped {
+    /// Id of the case.
+    pub case: String,
+    /// Id of the integrator, or its label with options.
+    pub integrator: String,
+    /// Step [s].
+    pub dt: f64,
+    /// Why.
+    pub reason: String,
+}
+
+/// The verdict on a run in one word. Stability and accuracy are separate questions; see the
+/// fields of [`Row`] for all the answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Verdict {
+    /// Finished, bounded, nothing saturated, error at most [`ACCURATE`].
+    Accurate,
+    /// Finished, bounded, nothing saturated, error above [`ACCURATE`].
+    Wrong,
+    /// Finished and bounded with saturated cells, whatever the error.
+    Guarded,
+    /// Finished, but passed the bound.
+    Unbounded,
+    /// Given up early.
+    Diverged,
+}
+
+impl Row {
+    /// The integrator and its non-default options, as in `cnn Q=4`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        label::label(&self.integrator, &self.options)
+    }
+
+    /// The verdict in one word.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        match self.outcome {
+            Outcome::Diverged => Verdict::Diverged,
+            Outcome::Finished if !self.bounded => Verdict::Unbounded,
+            Outcome::Finished if self.guarded || self.saturated > 0.0 => Verdict::Guarded,
+            Outcome::Finished if self.error.is_some_and(|e| e <= ACCURATE) => Verdict::Accurate,
+            Outcome::Finished => Verdict::Wrong,
+        }
+    }
+
+    fn required_numbers(&self) -> [(&'static str, f64); 6] {
+        [
+            ("dt", self.dt),
+            ("sweeps_per_s", self.sweeps_per_s),
+            ("saturated", self.saturated),
+            ("cpu_s_per_s", self.cpu_s_per_s),
+            ("us_per_step", self.us_per_step),
+            ("setup_cpu_s", self.setup_cpu_s),
+        ]
+    }
+
+    fn optional_numbers(&self) -> [(&'static str, Option<f64>); 4] {
+        [
+            ("error", self.error),
+            ("max_u", self.max_u),
+            ("late_amplitude", self.late_amplitude),
+            ("diverged_at_s", self.diverged_at_s),
+        ]
+    }
+}
+
+impl CaseInfo {
+    fn numbers(&self) -> [(&'static str, Option<f64>); 5] {
+        [
+            ("duration_s", Some(self.duration_s)),
+            ("reference_error", Some(self.reference_error)),
+            ("max_u_m", Some(self.max_u_m)),
+            ("late_amplitude_m", Some(self.late_amplitude_m)),
+            ("critical_step_s", self.critical_step_s),
+        ]
+    }
+}
+
+/// `Some` where the value is finite, for the fields that JSON must be able to hold.
+#[must_use]
+pub fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+/// Why results cannot be written as, or read from, JSON.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ResultsError {
+    /// A number that JSON cannot hold.
+    #[error("{of}: {field} is {value}, which JSON cannot hold")]
+    NotFinite {
+        /// The case or the run.
+        of: String,
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A run that finished must have an error.
+    #[error("{of}: finished without an error")]
+    FinishedWithoutError {
+        /// The run.
+        of: String,
+    },
+    /// Another version of the format.
+    #[error("results have schema {found}, this program knows {SCHEMA}")]
+    Schema {
+        /// The version found.
+        found: u32,
+    },
+    /// Not the JSON of a bench.
+    #[error("not the results of a bench: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+impl BenchResults {
+    /// Results without rows.
+    #[must_use]
+    pub fn new(revision: impl Into<String>, machine: Machine) -> Self {
+        Self {
+            schema: SCHEMA,
+            revision: revision.into(),
+            date: None,
+            machine,
+            cases: Vec::new(),
+            rows: Vec::new(),
+            skipped: Vec::new(),
+        }
+    }
+
+    /// The rows of a case, in their order.
+    pub fn rows_of<'a>(&'a self, case: &'a str) -> impl Iterator<Item = &'a Row> {
+        self.rows.iter().filter(move |row| row.case == case)
+    }
+
+    /// Ids of the cases: those described, then those that only rows name.
+    #[must_use]
+    pub fn case_ids(&self) -> Vec<&str> {
+        let described = self.cases.iter().map(|case| case.id.as_str());
+        let named = self.rows.iter().map(|row| row.case.as_str());
+        let mut ids = Vec::new();
+        for id in described.chain(named) {
+            if !ids.contains(&id) {
+                ids.push(id);
+            }
+        }
+        ids
+    }
+
+    /// What is known of a case.
+    #[must_use]
+    pub fn case(&self, id: &str) -> Option<&CaseInfo> {
+        self.cases.iter().find(|case| case.id == id)
+    }
+
+    /// Pretty JSON with a final newline.
+    ///
+    /// # Errors
+    /// [`ResultsError`] when a number is not finite or a finished run has no error.
+    pub fn to_json(&self) -> Result<String, ResultsError> {
+        self.check()?;
+        let mut json = serde_json::to_string_pretty(self)?;
+        json.push('\n');
+        Ok(json)
+    }
+
+    /// Reads what [`Self::to_json`] wrote.
+    ///
+    /// # Errors
+    /// [`ResultsError`] when it is not JSON, not a bench, or of another schema.
+    pub fn from_json(json: &str) -> Result<Self, ResultsError> {
+        #[derive(Deserialize)]
+        struct Version {
+            schema: u32,
+        }
+        let Version { schema: found } = serde_json::from_str(json)?;
+        if found != SCHEMA {
+            return Err(ResultsError::Schema { found });
+        }
+        Ok(serde_json::from_str(json)?)
+    }
+
+    fn check(&self) -> Result<(), ResultsError> {
+        for case in &self.cases {
+            check_finite(case.numbers(), || format!("case {}", case.id))?;
+        }
+        for row in &self.rows {
+            let name = || format!("{}, {}, dt = {} s", row.case, row.label(), row.dt);
+            check_finite(
+                row.required_numbers().map(|(field, x)| (field, Some(x))),
+                name,
+            )?;
+            check_finite(row.optional_numbers(), name)?;
+            if row.outcome == Outcome::Finished && row.error.is_none() {
+                return Err(ResultsError::FinishedWithoutError { of: name() });
+            }
+        }
+        for run in &self.skipped {
+            check_finite([("dt", Some(run.dt))], || {
+                format!("skipped {}, {}", run.case, run.integrator)
+            })?;
+        }
+        Ok(())
+    }
+}
+
+fn check_finite<const N: usize>(
+    numbers: [(&'static str, Option<f64>); N],
+    of: impl Fn() -> String,
+) -> Result<(), ResultsError> {
+    for (field, value) in numbers {
+        if let Some(value) = value.filter(|x| !x.is_finite()) {
+            return Err(ResultsError::NotFinite {
+                of: of(),
+                field,
+                value,
+            });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn row() -> Row {
+        Row {
+            case: "paper-cube".into(),
+            integrator: "cnn".into(),
+            options: BTreeMap::from([("saturation".into(), json!(4.0))]),
+            dt: 0.02,
+            steps: 50,
+            sweeps_per_s: 50.0,
+            bounded: true,
+            error: Some(25.2),
+            max_u: Some(0.160),
+            late_amplitude: Some(0.080),
+            saturated: 0.766,
+            guarded: true,
+            inverted: 1676,
+            work: Work {
+                sweeps: 50,
+                ..Work::default()
+            },
+            cpu_s_per_s: 0.0009,
+            us_per_step: 18.9,
+            ..Row::default()
+        }
+    }
+
+    fn results(rows: Vec<Row>) -> BenchResults {
+        let mut results = BenchResults::new("abc", Machine::default());
+        results.rows = rows;
+        results
+    }
+
+    #[test]
+    fn json_round_trip() {
+        let mut written = results(vec![
+            row(),
+            Row {
+                outcome: Outcome::Diverged,
+                diverged_at_s: Some(0.34),
+                error: None,
+                max_u: None,
+                late_amplitude: None,
+                ..row()
+            },
+        ]);
+        written.date = Some("2026-11-20".into());
+        written.cases.push(CaseInfo {
+            id: "paper-cube".into(),
+            critical_step_s: Some(7.9e-3),
+            ..CaseInfo::default()
+        });
+        written.skipped.push(Skipped {
+            case: "paper-cube".into(),
+            integrator: "modal".into(),
+            dt: 0.02,
+            reason: "no modes".into(),
+        });
+        let json = written.to_json().unwrap();
+        assert_eq!(BenchResults::from_json(&json).unwrap(), written);
+    }
+
+    #[test]
+    fn a_row_reads_as_documented() {
+        let json = r#"{ "case": "paper-cube", "integrator": "cnn", "options": { "saturation": 4.0 },
+            "dt": 0.02, "steps": 50, "sweeps_per_s": 50.0, "outcome": "finished", "bounded": true,
+            "settles": false, "error": 25.2, "max_u": 0.160, "late_amplitude": 0.080,
+            "saturated": 0.766, "inverted": 1676,
+            "work": { "sweeps": 50, "solves": 0, "factorizations": 0 },
+            "cpu_s_per_s": 0.0009, "us_per_step": 18.9, "pareto": false }"#;
+        let read: Row = serde_json::from_str(json).unwrap();
+        let expected = Row {
+            guarded: false,
+            ..row()
+        };
+        assert_eq!(read, expected);
+        assert_eq!(read.verdict(), Verdict::Guarded);
+    }
+
+    #[test]
+    fn numbers_that_are_missing_are_null_and_none_is_nan() {
+        let diverged = Row {
+            outcome: Outcome::Diverged,
+            error: None,
+            max_u: finite(f64::INFINITY),
+            late_amplitude: finite(f64::NAN),
+            ..row()
+        };
+        let json = results(vec![diverged]).to_json().unwrap();
+        let value: Value = serde_json::from_str(&json).unwrap();
+        for field in ["error", "max_u", "late_amplitude"] {
+            assert_eq!(value["rows"][0][field], Value::Null, "{field}");
+        }
+        assert!(!json.contains("NaN") && !json.contains("inf"));
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_refused_by_name() {
+        let bad = Row {
+            cpu_s_per_s: f64::NAN,
+            ..row()
+        };
+        let message = results(vec![bad]).to_json().unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "paper-cube, cnn Q=4, dt = 0.02 s: cpu_s_per_s is NaN, which JSON cannot hold"
+        );
+        let bad = Row {
+            max_u: Some(f64::INFINITY),
+            ..row()
+        };
+        assert!(results(vec![bad]).to_json().is_err());
+    }
+
+    #[test]
+    fn a_finished_run_has_an_error() {
+        let bad = Row {
+            error: None,
+            ..row()
+        };
+        assert!(matches!(
+            results(vec![bad]).to_json(),
+            Err(ResultsError::FinishedWithoutError { .. })
+        ));
+    }
+
+    #[test]
+    fn another_schema_is_refused() {
+        let json = results(vec![])
+            .to_json()
+            .unwrap()
+            .replace("\"schema\": 1", "\"schema\": 2");
+        assert!(matches!(
+            BenchResults::from_json(&json),
+            Err(ResultsError::Schema { found: 2 })
+        ));
+    }
+
+    #[test]
+    fn verdicts() {
+        let clean = Row {
+            saturated: 0.0,
+            guarded: false,
+            error: Some(ACCURATE),
+            ..row()
+        };
+        assert_eq!(clean.verdict(), Verdict::Accurate);
+        let with = |change: fn(&mut Row)| {
+            let mut row = clean.clone();
+            change(&mut row);
+            row.verdict()
+        };
+        assert_eq!(with(|r| r.error = Some(0.051)), Verdict::Wrong);
+        assert_eq!(with(|r| r.guarded = true), Verdict::Guarded);
+        assert_eq!(with(|r| r.saturated = 1e-6), Verdict::Guarded);
+        assert_eq!(with(|r| r.bounded = false), Verdict::Unbounded);
+        assert_eq!(with(|r| r.outcome = Outcome::Diverged), Verdict::Diverged);
+    }
+}

@@ -1,0 +1,90 @@
+//! Short names of runs.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+/// The integrator's id and its options, abbreviated where the field has a symbol or a usual phrase:
+/// `cnn Q=4`, `central-difference substeps=3`, `cnn-stabilised chebyshev 4`.
+pub(super) fn label(integrator: &str, options: &BTreeMap<String, Value>) -> String {
+    let mut label = integrator.to_owned();
+    for (key, value) in options {
+        label.push(' ');
+        label.push_str(&option(key, value));
+    }
+    label
+}
+
+fn option(key: &str, value: &Value) -> String {
+    match (key, value) {
+        ("saturation", value) => format!("Q={}", plain(value)),
+        // A method of iteration and its count speak for themselves.
+        ("inner", Value::Object(inner)) => match (inner.get("kind"), inner.get("sweeps")) {
+            (Some(kind), Some(sweeps)) => format!("{} {}", plain(kind), plain(sweeps)),
+            (Some(kind), None) => plain(kind),
+            _ => format!("{key}={}", plain(value)),
+        },
+        _ => format!("{key}={}", plain(value)),
+    }
+}
+
+fn plain(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        // `Display` of f64 drops the ".0" that JSON prints.
+        Value::Number(number) => number
+            .as_f64()
+            .map_or_else(|| number.to_string(), |x| x.to_string()),
+        Value::Object(entries) => {
+            let entries: Vec<String> = entries
+                .iter()
+                .map(|(key, value)| format!("{key}={}", plain(value)))
+                .collect();
+            format!("{{{}}}", entries.join(" "))
+        }
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn of(integrator: &str, options: Value) -> String {
+        let options = serde_json::from_value(options).unwrap();
+        label(integrator, &options)
+    }
+
+    #[test]
+    fn labels() {
+        assert_eq!(of("rk4", json!({})), "rk4");
+        assert_eq!(of("cnn", json!({ "saturation": 4.0 })), "cnn Q=4");
+        assert_eq!(of("cnn", json!({ "saturation": 3.2 })), "cnn Q=3.2");
+        assert_eq!(of("cnn", json!({ "saturation": "off" })), "cnn Q=off");
+        assert_eq!(
+            of("newmark", json!({ "gamma": 0.6, "beta": 0.3025 })),
+            "newmark beta=0.3025 gamma=0.6"
+        );
+        assert_eq!(
+            of(
+                "cnn-stabilised",
+                json!({ "inner": { "kind": "chebyshev", "sweeps": 4 } })
+            ),
+            "cnn-stabilised chebyshev 4"
+        );
+        assert_eq!(
+            of("cnn-stabilised", json!({ "inner": { "kind": "block" } })),
+            "cnn-stabilised block"
+        );
+    }
+
+    #[test]
+    fn an_unknown_shape_is_still_readable() {
+        assert_eq!(
+            of("x", json!({ "inner": { "a": 1 }, "flag": true })),
+            "x flag=true inner={a=1}"
+        );
+    }
+}

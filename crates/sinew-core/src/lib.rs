@@ -1,0 +1,46 @@
+//! The seams of sinew: what a solver is given, what it changes and what it says about its work.
+//!
+//! * [`State`] is a plain value: a clone is a checkpoint.
+//! * [`System`] is `M a + f_int(u, v) = f_ext(t)`; a [`LinearSystem`] also shows its matrices.
+//! * [`Integrator`] takes a state one step further and counts its work.
+//! * [`Recorder`] says when it wants to see a state.
+//! * [`simulate()`] runs an integrator; divergence is a result, not a panic.
+//!
+//! All quantities are SI, all vectors hold free degrees of freedom only, node-major (x y z).
+//!
+//! ```
+//! use sinew_core::{LinearOperators, LinearModel, Damping, Layers, System, Trial};
+//!
+//! // One mass of 0.1 kg on a spring of 100 N/m.
+//! let operators = LinearOperators::oscillator(0.1, 100.0, 1.0)?;
+//! let model = LinearModel::new(operators);
+//! let mut force = [0.0];
+//! model.net_force(&Trial { t: 0.0, dt: 0.0, u: &[0.01], v: &[-5.0] }, &mut force)?;
+//! assert_eq!(force, [-100.0 * 0.01 - 1.0 * -5.0]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod closed_form;
+pub mod conformance;
+mod integrator;
+mod linear;
+mod options;
+mod ramp;
+mod recorder;
+mod simulate;
+pub mod spectrum;
+mod state;
+mod system;
+
+pub use integrator::{
+    EnergyBehaviour, Integrator, Needs, Prepared, Properties, SetupError, StableStep, StepError,
+    StepReport,
+};
+pub use linear::{Damping, LinearModel, LinearOperators, LinearSystem, Load, OperatorError};
+pub use options::{OptionError, OptionValue, Options};
+pub use ramp::{Ramp, RampError};
+pub use recorder::{RecordError, Recorder, Recorders, Verdict};
+pub use simulate::{Outcome, Run, RunReport, SimulateError, simulate};
+pub use sinew_sparse::{BlockMatrix, Layers, Pattern};
+pub use state::State;
+pub use system::{Energy, EvaluationError, Revision, System, Trial};

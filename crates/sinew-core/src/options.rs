@@ -1,0 +1,199 @@
+//! Options of an integrator by name, as a scene writes them.
+
+use std::collections::BTreeMap;
+
+/// A value of an option.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OptionValue {
+    /// A number.
+    Number(f64),
+    /// A word.
+    Text(String),
+    /// Named values.
+    Table(BTreeMap<String, OptionValue>),
+}
+
+impl std::fmt::Display for OptionValue {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(value) => write!(f, "{value}"),
+            Self::Text(text) => write!(f, "\"{text}\""),
+            Self::Table(entries) => {
+                let entries: Vec<String> = entries
+                    .iter()
+                    .map(|(key, value)| format!("{key} = {value}"))
+                    .collect();
+                write!(f, "{{ {} }}", entries.join(", "))
+            }
+        }
+    }
+}
+
+/// Why an option was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OptionError {
+    /// The integrator has no such option.
+    #[error("`{integrator}` has no option `{key}`; it takes {}", list(.known))]
+    Unknown {
+        /// Integrator id.
+        integrator: String,
+        /// The key given.
+        key: String,
+        /// The keys it takes.
+        known: Vec<&'static str>,
+    },
+    /// The value does not fit.
+    #[error("`{integrator}`: {key} = {found}: expected {expected}")]
+    Value {
+        /// Integrator id.
+        integrator: String,
+        /// The key.
+        key: String,
+        /// The value given.
+        found: OptionValue,
+        /// What fits.
+        expected: &'static str,
+    },
+    /// No such integrator.
+    #[error("unknown integrator `{id}`; there are {}", list(.known))]
+    UnknownIntegrator {
+        /// The id given.
+        id: String,
+        /// The ids there are.
+        known: Vec<&'static str>,
+    },
+}
+
+impl OptionError {
+    /// The option at fault, where the error is about one.
+    #[must_use]
+    pub fn key(&self) -> Option<&str> {
+        match self {
+            Self::Unknown { key, .. } | Self::Value { key, .. } => Some(key),
+            Self::UnknownIntegrator { .. } => None,
+        }
+    }
+}
+
+fn list(names: &[&'static str]) -> String {
+    if names.is_empty() {
+        return "none".into();
+    }
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    quoted.join(", ")
+}
+
+/// Options by name.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Options(BTreeMap<String, OptionValue>);
+
+impl Options {
+    /// No options: every default.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds or replaces one option.
+    #[must_use]
+    pub fn with(mut self, key: impl Into<String>, value: OptionValue) -> Self {
+        self.insert(key, value);
+        self
+    }
+
+    /// Adds or replaces a number.
+    #[must_use]
+    pub fn with_number(self, key: impl Into<String>, value: f64) -> Self {
+        self.with(key, OptionValue::Number(value))
+    }
+
+    /// Adds or replaces one option.
+    pub fn insert(&mut self, key: impl Into<String>, value: OptionValue) {
+        self.0.insert(key.into(), value);
+    }
+
+    /// Takes an option out.
+    pub fn remove(&mut self, key: &str) -> Option<OptionValue> {
+        self.0.remove(key)
+    }
+
+    /// The value of one option.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<&OptionValue> {
+        self.0.get(key)
+    }
+
+    /// All options in the order of their names.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &OptionValue)> {
+        self.0.iter().map(|(key, value)| (key.as_str(), value))
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// A number that satisfies `fits`, or `default` where the option is absent.
+    ///
+    /// # Errors
+    /// [`OptionError::Value`] with `expected` when it is no number or does not fit.
+    pub fn number(
+        &self,
+        integrator: &str,
+        key: &str,
+        default: f64,
+        expected: &'static str,
+        fits: impl Fn(f64) -> bool,
+    ) -> Result<f64, OptionError> {
+        match self.get(key) {
+            None => Ok(default),
+            Some(OptionValue::Number(value)) if value.is_finite() && fits(*value) => Ok(*value),
+            Some(found) => Err(OptionError::Value {
+                integrator: integrator.into(),
+                key: key.into(),
+                found: found.clone(),
+                expected,
+            }),
+        }
+    }
+
+    /// Refuses any option not among `known`.
+    ///
+    /// # Errors
+    /// [`OptionError::Unknown`] for the first of them.
+    pub fn only(&self, integrator: &str, known: &[&'static str]) -> Result<(), OptionError> {
+        match self.0.keys().find(|key| !known.contains(&key.as_str())) {
+            None => Ok(()),
+            Some(key) => Err(OptionError::Unknown {
+                integrator: integrator.into(),
+                key: key.clone(),
+                known: known.to_vec(),
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refusals_name_the_integrator_the_key_and_what_fits() {
+        let options = Options::new().with_number("beta", -1.0);
+        let error = options
+            .number("newmark", "beta", 0.25, "a number from 0 to 0.5", |b| {
+                b >= 0.0
+            })
+            .unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "`newmark`: beta = -1: expected a number from 0 to 0.5"
+        );
+        assert_eq!(
+            options.only("rk4", &["substeps"]).unwrap_err().to_string(),
+            "`rk4` has no option `beta`; it takes `substeps`"
+        );
+    }
+}

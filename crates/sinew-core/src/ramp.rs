@@ -1,0 +1,219 @@
+//! How a load grows in time.
+
+use std::f64::consts::PI;
+
+/// A dimensionless factor over time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ramp {
+    /// 1 from t = 0 on.
+    Step,
+    /// sin^2(pi t / (2 rise)) until `rise` [s], 1 afterwards.
+    Sin2 {
+        /// Time of the rise [s].
+        rise: f64,
+    },
+    /// 1 for `from <= t < to` [s], 0 elsewhere.
+    Pulse {
+        /// First instant [s].
+        from: f64,
+        /// First instant after it [s].
+        to: f64,
+    },
+    /// Linear between points, constant before the first and after the last.
+    Table {
+        /// Increasing times [s].
+        times: Vec<f64>,
+        /// A value for each time.
+        values: Vec<f64>,
+    },
+}
+
+/// Why a ramp makes no sense.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RampError {
+    /// A rise that is not a positive time.
+    #[error("rise = {0} s: expected a finite time above 0")]
+    Rise(f64),
+    /// A pulse that ends before it starts.
+    #[error("pulse from {from} s to {to} s: expected finite times with from < to")]
+    Pulse {
+        /// Start [s].
+        from: f64,
+        /// End [s].
+        to: f64,
+    },
+    /// Lists of different lengths, or empty ones.
+    #[error("{times} times and {values} values: expected as many of each, at least one")]
+    TableLengths {
+        /// Number of times.
+        times: usize,
+        /// Number of values.
+        values: usize,
+    },
+    /// Times out of order, or a number that is not finite.
+    #[error("entry {index} of the table: expected finite numbers and increasing times")]
+    TableEntry {
+        /// 0-based position in the table.
+        index: usize,
+    },
+}
+
+impl Ramp {
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// [`RampError`] with the parameter at fault.
+    pub fn check(&self) -> Result<(), RampError> {
+        match self {
+            Self::Step => Ok(()),
+            Self::Sin2 { rise } if rise.is_finite() && *rise > 0.0 => Ok(()),
+            Self::Sin2 { rise } => Err(RampError::Rise(*rise)),
+            Self::Pulse { from, to } if from.is_finite() && to.is_finite() && from < to => Ok(()),
+            Self::Pulse { from, to } => Err(RampError::Pulse {
+                from: *from,
+                to: *to,
+            }),
+            Self::Table { times, values } => {
+                if times.len() != values.len() || times.is_empty() {
+                    return Err(RampError::TableLengths {
+                        times: times.len(),
+                        values: values.len(),
+                    });
+                }
+                let bad = (0..times.len()).find(|&i| {
+                    !times[i].is_finite()
+                        || !values[i].is_finite()
+                        || (i > 0 && times[i] <= times[i - 1])
+                });
+                bad.map_or(Ok(()), |index| Err(RampError::TableEntry { index }))
+            }
+        }
+    }
+
+    /// The factor at time `t` [s].
+    #[must_use]
+    pub fn value(&self, t: f64) -> f64 {
+        match self {
+            Self::Step => f64::from(t >= 0.0),
+            Self::Sin2 { rise } => {
+                let angle = PI / 2.0 * (t / rise).clamp(0.0, 1.0);
+                angle.sin().powi(2)
+            }
+            Self::Pulse { from, to } => f64::from(*from <= t && t < *to),
+            Self::Table { times, values } => match times.partition_point(|&time| time <= t) {
+                0 => values[0],
+                next if next == times.len() => values[next - 1],
+                next => {
+                    let (t0, t1) = (times[next - 1], times[next]);
+                    let share = (t - t0) / (t1 - t0);
+                    values[next - 1] + share * (values[next] - values[next - 1])
+                }
+            },
+        }
+    }
+
+    /// The instants [s] at which the ramp or one of its derivatives jumps, in increasing order.
+    #[must_use]
+    pub fn breakpoints(&self) -> Vec<f64> {
+        match self {
+            Self::Step => vec![0.0],
+            Self::Sin2 { rise } => vec![0.0, *rise],
+            Self::Pulse { from, to } => vec![*from, *to],
+            Self::Table { times, .. } => times.clone(),
+        }
+    }
+
+    /// Writes the derivatives of order 0, 1, 2, .. just after time `t`, as many as `out` holds
+    /// [1, 1/s, 1/s^2, ..]. They hold up to the next breakpoint.
+    pub fn derivatives_after(&self, t: f64, out: &mut [f64]) {
+        out.fill(0.0);
+        let Some((value, higher)) = out.split_first_mut() else {
+            return;
+        };
+        *value = self.value(t);
+        match self {
+            Self::Step | Self::Pulse { .. } => {}
+            Self::Sin2 { rise } => {
+                if (0.0..*rise).contains(&t) {
+                    // sin^2(x) = (1 - cos 2x)/2 with 2x = rate t.
+                    let rate = PI / rise;
+                    let mut power = 0.5;
+                    for (k, derivative) in (1_u8..).zip(higher) {
+                        power *= rate;
+                        *derivative = -power * (rate * t + f64::from(k % 4) * PI / 2.0).cos();
+                    }
+                }
+            }
+            Self::Table { times, values } => {
+                let next = times.partition_point(|&time| time <= t);
+                if next > 0
+                    && next < times.len()
+                    && let Some(slope) = higher.first_mut()
+                {
+                    *slope = (values[next] - values[next - 1]) / (times[next] - times[next - 1]);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ramps() -> Vec<Ramp> {
+        vec![
+            Ramp::Step,
+            Ramp::Sin2 { rise: 0.4 },
+            Ramp::Pulse { from: 0.1, to: 0.3 },
+            Ramp::Table {
+                times: vec![0.1, 0.2, 0.5],
+                values: vec![1.0, 3.0, -1.0],
+            },
+        ]
+    }
+
+    #[test]
+    fn values_at_chosen_instants() {
+        let at = |t: f64| -> Vec<f64> { ramps().iter().map(|ramp| ramp.value(t)).collect() };
+        assert_eq!(at(-1.0), [0.0, 0.0, 0.0, 1.0]);
+        assert_eq!(at(0.0), [1.0, 0.0, 0.0, 1.0]);
+        assert!((at(0.2)[1] - 0.5).abs() < 1e-15);
+        assert!((at(0.15)[3] - 2.0).abs() < 1e-12);
+        assert_eq!(at(0.3)[2], 0.0, "a pulse ends just before its last instant");
+        assert_eq!(at(9.0), [1.0, 1.0, 0.0, -1.0]);
+    }
+
+    #[test]
+    fn the_taylor_series_of_each_ramp_gives_its_values_up_to_the_next_breakpoint() {
+        for ramp in ramps() {
+            for (t, h) in [(0.0, 0.05), (0.1, 0.07), (0.2, 0.08), (0.45, 0.04)] {
+                let mut derivatives = [0.0; 14];
+                ramp.derivatives_after(t, &mut derivatives);
+                let mut sum = 0.0;
+                for (k, derivative) in derivatives.iter().enumerate().rev() {
+                    sum = derivative + sum * h / (k as f64 + 1.0);
+                }
+                assert!((sum - ramp.value(t + h)).abs() < 1e-12, "{ramp:?} at {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn impossible_parameters_are_named() {
+        assert_eq!(
+            Ramp::Sin2 { rise: -1.0 }.check().unwrap_err().to_string(),
+            "rise = -1 s: expected a finite time above 0"
+        );
+        assert!(Ramp::Pulse { from: 2.0, to: 1.0 }.check().is_err());
+        let table = |times: &[f64], values: &[f64]| Ramp::Table {
+            times: times.to_vec(),
+            values: values.to_vec(),
+        };
+        assert!(table(&[0.0, 1.0], &[1.0]).check().is_err());
+        assert!(table(&[0.0, 0.0], &[1.0, 2.0]).check().is_err());
+        assert!(table(&[0.0, f64::NAN], &[1.0, 2.0]).check().is_err());
+        assert!(table(&[0.0, 1.0], &[1.0, 2.0]).check().is_ok());
+    }
+}

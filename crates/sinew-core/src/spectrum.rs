@@ -1,0 +1,229 @@
+//! Extreme eigenvalues, from which stable steps follow.
+
+use crate::{LinearOperators, Needs, SetupError, System};
+
+/// Lanczos steps after which the estimate is taken as it is.
+const MAX_STEPS: usize = 600;
+
+/// The largest eigenvalue of `M^-1 S` for a symmetric positive semidefinite S, by the Lanczos
+/// iteration on `M^-1/2 S M^-1/2` (Golub and Van Loan, Matrix Computations, section 10.1), to
+/// about nine digits.
+///
+/// `multiply(x, out)` writes `out = S x`. The start vector is fixed, so the result reproduces.
+#[must_use]
+pub fn largest_eigenvalue(mass: &[f64], mut multiply: impl FnMut(&[f64], &mut [f64])) -> f64 {
+    let n = mass.len();
+    if n == 0 {
+        return 0.0;
+    }
+    let root: Vec<f64> = mass.iter().map(|mass| mass.sqrt()).collect();
+    let mut current = start_vector(n);
+    let mut previous = vec![0.0; n];
+    let mut scaled = vec![0.0; n];
+    let mut next = vec![0.0; n];
+    let (mut diagonal, mut off_diagonal) = (Vec::new(), Vec::new());
+    let mut estimate = 0.0;
+    for step in 1..=MAX_STEPS {
+        for ((scaled, value), root) in scaled.iter_mut().zip(&current).zip(&root) {
+            *scaled = value / root;
+        }
+        multiply(&scaled, &mut next);
+        for (value, root) in next.iter_mut().zip(&root) {
+            *value /= root;
+        }
+        let alpha = dot(&next, &current);
+        let beta_before = off_diagonal.last().copied().unwrap_or(0.0);
+        for ((value, current), previous) in next.iter_mut().zip(&current).zip(&previous) {
+            *value -= alpha * current + beta_before * previous;
+        }
+        diagonal.push(alpha);
+        let beta = dot(&next, &next).sqrt();
+        let exhausted = step >= n || beta <= 1e-14 * estimate;
+        if exhausted || step % 10 == 0 || step == MAX_STEPS {
+            let better = largest_of_tridiagonal(&diagonal, &off_diagonal);
+            let settled = better - estimate <= 1e-11 * better;
+            estimate = better;
+            if exhausted || settled {
+                break;
+            }
+        }
+        off_diagonal.push(beta);
+        for value in &mut next {
+            *value /= beta;
+        }
+        std::mem::swap(&mut previous, &mut current);
+        std::mem::swap(&mut current, &mut next);
+    }
+    estimate
+}
+
+/// A fixed vector of length one with parts in every direction.
+fn start_vector(n: usize) -> Vec<f64> {
+    let mut seed = 0x9E37_79B9_7F4A_7C15_u64;
+    let mut vector: Vec<f64> = (0..n)
+        .map(|_| {
+            // xorshift64: Marsaglia, J. Stat. Softw. 8(14), 2003.
+            seed ^= seed << 13;
+            seed ^= seed >> 7;
+            seed ^= seed << 17;
+            (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        })
+        .collect();
+    let length = dot(&vector, &vector).sqrt();
+    vector.iter_mut().for_each(|value| *value /= length);
+    vector
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Bisection on the Sturm sequence of a symmetric tridiagonal matrix.
+fn largest_of_tridiagonal(diagonal: &[f64], off_diagonal: &[f64]) -> f64 {
+    let off = |i: usize| off_diagonal.get(i).copied().unwrap_or(0.0).abs();
+    let radius = |i: usize| off(i) + if i == 0 { 0.0 } else { off(i - 1) };
+    let discs = diagonal.iter().enumerate().map(|(i, d)| d + radius(i));
+    let mut high = discs.fold(f64::NEG_INFINITY, f64::max);
+    let mut low = diagonal.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let above = |x: f64| {
+        // All pivots of T - x negative: every eigenvalue lies below x.
+        let mut pivot = 1.0_f64;
+        for (i, d) in diagonal.iter().enumerate() {
+            let coupling = if i == 0 {
+                0.0
+            } else {
+                off(i - 1).powi(2) / pivot
+            };
+            pivot = d - x - coupling;
+            if pivot >= 0.0 {
+                return false;
+            }
+        }
+        true
+    };
+    while high - low > 1e-13 * high.abs().max(f64::MIN_POSITIVE) {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if above(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    high
+}
+
+/// The fastest motions of a linear system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spectrum {
+    /// Largest undamped angular frequency [rad/s].
+    pub omega_max: f64,
+    /// Largest eigenvalue of M^-1 (D - alpha M) [1/s].
+    pub damping_max: f64,
+    /// alpha [1/s].
+    pub mass_damping: f64,
+    /// beta [s] where damping is proportional, 0 where a damping matrix stands beside it.
+    pub stiffness_damping: f64,
+    /// Whether D is alpha M + beta K and nothing else.
+    pub proportional: bool,
+}
+
+impl Spectrum {
+    /// Of these matrices.
+    #[must_use]
+    pub fn of(operators: &LinearOperators) -> Self {
+        let stiffness = operators.stiffness();
+        let damping = operators.damping();
+        let mass = operators.mass();
+        let eigenvalue = largest_eigenvalue(mass, |x, out| stiffness.multiply(x, out));
+        let damping_max = match &damping.extra {
+            None => damping.stiffness * eigenvalue,
+            Some(extra) => largest_eigenvalue(mass, |x, out| {
+                out.fill(0.0);
+                extra.subtract_product(x, out);
+                stiffness.subtract_scaled_product(damping.stiffness, x, out);
+                out.iter_mut().for_each(|value| *value = -*value);
+            }),
+        };
+        Self {
+            omega_max: eigenvalue.max(0.0).sqrt(),
+            damping_max,
+            mass_damping: damping.mass,
+            stiffness_damping: damping.stiffness,
+            proportional: damping.extra.is_none(),
+        }
+    }
+
+    /// Of a system that shows its matrices.
+    ///
+    /// # Errors
+    /// [`SetupError::Lacks`] in the name of `integrator` when it shows none.
+    pub fn of_system(system: &dyn System, integrator: &'static str) -> Result<Self, SetupError> {
+        system
+            .as_linear()
+            .map(|linear| Self::of(linear.operators()))
+            .ok_or(SetupError::Lacks {
+                integrator,
+                needs: Needs::Matrices.describe(),
+            })
+    }
+
+    /// 2/omega_max [s], the limit of undamped leapfrog; infinite where nothing vibrates.
+    #[must_use]
+    pub fn critical_step(&self) -> f64 {
+        2.0 / self.omega_max
+    }
+}
+
+impl Needs {
+    /// In words.
+    #[must_use]
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Forces => "forces",
+            Self::Matrices => "the matrices M, D and K of a linear system",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chain_between_walls_has_its_textbook_frequency() {
+        // Eigenvalues of tridiag(-1, 2, -1): 2 - 2 cos(j pi/(n + 1)).
+        for n in [1_usize, 2, 5, 40, 1500] {
+            let mass = vec![2.0; n];
+            let largest = largest_eigenvalue(&mass, |x, out| {
+                for i in 0..n {
+                    let left = if i > 0 { x[i - 1] } else { 0.0 };
+                    let right = x.get(i + 1).copied().unwrap_or(0.0);
+                    out[i] = 2.0 * x[i] - left - right;
+                }
+            });
+            let angle = n as f64 * std::f64::consts::PI / (n as f64 + 1.0);
+            let expected = (2.0 - 2.0 * angle.cos()) / 2.0;
+            assert!(
+                (largest / expected - 1.0).abs() < 2e-5,
+                "{n}: {largest} {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn unequal_masses_count() {
+        let largest = largest_eigenvalue(&[1.0, 4.0], |x, out| {
+            out[0] = 3.0 * x[0];
+            out[1] = 20.0 * x[1];
+        });
+        assert!((largest - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn nothing_vibrates_without_stiffness() {
+        assert_eq!(largest_eigenvalue(&[1.0; 4], |_, out| out.fill(0.0)), 0.0);
+    }
+}

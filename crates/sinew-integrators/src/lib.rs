@@ -1,0 +1,1 @@
+//! Time integrators for soft tissue: explicit, implicit and cellular neural network

@@ -1,0 +1,1 @@
+//! Tetrahedral meshes with named groups: gmsh .msh in and out, structured generators

@@ -1,0 +1,227 @@
+//! A mesh as a file holds it: all cell types, tags, groups and data, in meshio's arrangement.
+
+use std::collections::BTreeMap;
+
+use crate::cell_type::CellType;
+use crate::physical_tags::PhysicalTags;
+use crate::warning::Warning;
+
+/// Everything read from a mesh file.
+///
+/// The arrangement is that of meshio's `Mesh`: points in file order, cells in blocks of one type with 0-based, VTK-ordered
+/// connectivity. What meshio drops is kept beside it: node and element tags, every physical group of a cell, and a
+/// name table keyed by dimension *and* tag.
+///
+/// To build one by hand, start from [`Mesh::default`] and fill the fields in.
+#[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Mesh {
+    /// Coordinates of the nodes in file order, in the file's length unit. Nodes that no cell uses are kept.
+    pub points: Vec<[f64; 3]>,
+    /// The tag of each point in the file: at least 1, in any order, with gaps. Empty stands for `1..=points.len()`.
+    pub node_tags: Vec<u64>,
+    /// The geometrical entity each point is classified on (meshio's `gmsh:dim_tags`). Empty if the file has none (2.2).
+    pub node_entities: Vec<Entity>,
+    /// The cells. Version 4: one block per element block of the file. Version 2: one per run of equal types.
+    pub cells: Vec<CellBlock>,
+    /// The names of physical groups, keyed by dimension (0..=3) and tag. A named group may have no cells.
+    pub physical_names: BTreeMap<(u8, i32), String>,
+    /// Values at points (`$NodeData`).
+    pub point_data: Vec<PointData>,
+    /// Values in cells (`$ElementData`).
+    pub cell_data: Vec<CellData>,
+    /// Values at the nodes of each cell (`$ElementNodeData`).
+    pub cell_node_data: Vec<CellNodeData>,
+    /// Pairs of corresponding nodes (`$Periodic`).
+    pub periodic: Vec<PeriodicLink>,
+    /// The sections of the file that were skipped, in file order.
+    pub skipped_sections: Vec<String>,
+    /// What the reader accepted but a user should know.
+    pub warnings: Vec<Warning>,
+}
+
+/// A geometrical entity of the model that a mesh was made from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Entity {
+    /// 0 point, 1 curve, 2 surface, 3 volume.
+    pub dim: u8,
+    /// Number of the entity, unique among those of its dimension.
+    pub tag: i32,
+}
+
+/// Cells of one type.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellBlock {
+    /// The type of every cell in the block.
+    pub kind: CellType,
+    /// Indices into [`Mesh::points`], in VTK node order, `kind.node_count()` for each cell in turn.
+    pub connectivity: Vec<u32>,
+    /// The tag of each cell in the file. Empty if the cells have none.
+    pub element_tags: Vec<u64>,
+    /// The physical groups of each cell. Empty if no cell has any.
+    pub physical: PhysicalTags,
+    /// The geometrical entity of each cell, of dimension `kind.dim()`; 0 for none. Empty if no cell has one.
+    pub geometrical: Vec<i32>,
+}
+
+impl CellBlock {
+    /// A block of cells with neither tags nor groups.
+    #[must_use]
+    pub fn new(kind: CellType, connectivity: Vec<u32>) -> CellBlock {
+        CellBlock {
+            kind,
+            connectivity,
+            element_tags: Vec::new(),
+            physical: PhysicalTags::new(),
+            geometrical: Vec::new(),
+        }
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.connectivity.len() / self.kind.node_count()
+    }
+
+    /// Whether the block has no cells.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The nodes of each cell in turn.
+    pub fn cells(&self) -> impl ExactSizeIterator<Item = &[u32]> {
+        self.connectivity.chunks_exact(self.kind.node_count())
+    }
+}
+
+/// Values at points, from one `$NodeData` section.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointData {
+    /// Name of the field.
+    pub name: String,
+    /// Number of the time step.
+    pub step: i32,
+    /// Time, in the file's unit.
+    pub time: f64,
+    /// Values per point.
+    pub components: usize,
+    /// `components` values for each point in turn; NaN where the file gives none.
+    pub values: Vec<f64>,
+}
+
+/// Values in cells, from one `$ElementData` section.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellData {
+    /// Name of the field.
+    pub name: String,
+    /// Number of the time step.
+    pub step: i32,
+    /// Time, in the file's unit.
+    pub time: f64,
+    /// Values per cell.
+    pub components: usize,
+    /// For each block of [`Mesh::cells`]: `components` values for each cell in turn; NaN where the file gives none.
+    pub blocks: Vec<Vec<f64>>,
+}
+
+/// Values at the nodes of each cell, from one `$ElementNodeData` section.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellNodeData {
+    /// Name of the field.
+    pub name: String,
+    /// Number of the time step.
+    pub step: i32,
+    /// Time, in the file's unit.
+    pub time: f64,
+    /// Values per node of a cell.
+    pub components: usize,
+    /// For each block of [`Mesh::cells`]: `components` values for each node (VTK order) of each cell in turn; NaN where the
+    /// file gives none.
+    pub blocks: Vec<Vec<f64>>,
+}
+
+/// Nodes of one entity that correspond to nodes of another.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PeriodicLink {
+    /// Dimension of both entities.
+    pub dim: u8,
+    /// Tag of the dependent entity.
+    pub entity: i32,
+    /// Tag of the entity it is a copy of.
+    pub master: i32,
+    /// The 4 x 4 transformation in row-major order that takes the master onto the dependent entity, or nothing.
+    pub affine: Vec<f64>,
+    /// Pairs of node tags: dependent, master.
+    pub node_tags: Vec<[u64; 2]>,
+}
+
+/// The cells of one named physical group, as meshio's `cell_sets` gives them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CellSet {
+    /// Name of the group.
+    pub name: String,
+    /// For each block of [`Mesh::cells`]: the indices, within the block, of the cells in the group.
+    pub blocks: Vec<Vec<u32>>,
+}
+
+impl Mesh {
+    /// The tag of a point: its tag in the file, or its index plus one where the mesh has no tags.
+    #[must_use]
+    pub fn node_tag(&self, point: u32) -> u64 {
+        let ordinal = u64::from(point) + 1;
+        self.node_tags.get(point as usize).copied().unwrap_or(ordinal)
+    }
+
+    /// Dimension and tag of every physical group, named or not, in ascending order.
+    #[must_use]
+    pub fn physical_groups(&self) -> Vec<(u8, i32)> {
+        let mut groups: std::collections::BTreeSet<(u8, i32)> =
+            self.physical_names.keys().copied().collect();
+        for block in &self.cells {
+            for cell in 0..block.physical.len() {
+                for &tag in block.physical.of(cell) {
+                    groups.insert((block.kind.dim(), tag.saturating_abs()));
+                }
+            }
+        }
+        groups.into_iter().collect()
+    }
+
+    /// meshio's `field_data`: name, tag and dimension of each named group.
+    ///
+    /// Two groups of different dimension may share a name; unlike in meshio, both are listed.
+    #[must_use]
+    pub fn field_data(&self) -> Vec<(&str, i32, u8)> {
+        self.physical_names
+            .iter()
+            .map(|(&(dim, tag), name)| (name.as_str(), tag, dim))
+            .collect()
+    }
+
+    /// meshio's `cell_sets`: the cells of each named group, in the order of [`Mesh::physical_names`].
+    ///
+    /// A cell in several groups is in several sets, and a tag counts whatever its sign.
+    #[must_use]
+    pub fn cell_sets(&self) -> Vec<CellSet> {
+        let members_in = |block: &CellBlock, dim: u8, tag: i32| -> Vec<u32> {
+            if block.kind.dim() != dim {
+                return Vec::new();
+            }
+            (0u32..)
+                .take(block.len())
+                .filter(|&cell| {
+                    let tags = block.physical.of(cell as usize);
+                    tags.iter().any(|t| t.saturating_abs() == tag.saturating_abs())
+                })
+                .collect()
+        };
+        self.physical_names
+            .iter()
+            .map(|(&(dim, tag), name)| CellSet {
+                name: name.clone(),
+                blocks: self.cells.iter().map(|b| members_in(b, dim, tag)).collect(),
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,1 @@
+//! Scenes of soft tissue in TOML: read, check, plan, build

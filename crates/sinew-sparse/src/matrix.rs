@@ -1,0 +1,286 @@
+//! Blocks on a pattern.
+
+use std::sync::Arc;
+
+use crate::Pattern;
+
+/// Degrees of freedom of a cell, that is, layers of the network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Layers {
+    /// One degree of freedom a cell.
+    One,
+    /// Three coupled layers: the x, y and z components of a displacement.
+    Three,
+}
+
+impl Layers {
+    /// The number of layers, 1 or 3.
+    #[must_use]
+    pub const fn count(self) -> usize {
+        match self {
+            Self::One => 1,
+            Self::Three => 3,
+        }
+    }
+
+    /// Entries of one block, 1 or 9.
+    #[must_use]
+    pub const fn block_len(self) -> usize {
+        self.count() * self.count()
+    }
+}
+
+/// Why an element could not be assembled.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AssemblyError {
+    /// An element names a cell that does not exist.
+    #[error("cell {cell} does not exist: there are {cells} cells (0-based)")]
+    CellOutOfRange {
+        /// The cell named.
+        cell: u32,
+        /// How many cells there are.
+        cells: usize,
+    },
+    /// Two cells of an element are not neighbours in the pattern.
+    #[error("cells {row} and {column} are not neighbours in the pattern")]
+    NotNeighbours {
+        /// Row cell.
+        row: u32,
+        /// Column cell.
+        column: u32,
+    },
+    /// The element matrix has the wrong number of entries.
+    #[error("the element matrix has {found} entries, expected {expected} (row-major)")]
+    ElementSize {
+        /// Entries given.
+        found: usize,
+        /// Entries needed: (cells of the element x layers) squared.
+        expected: usize,
+    },
+}
+
+/// A square matrix of dense blocks on a [`Pattern`].
+///
+/// Rows and columns are cells; each stored block has `layers` x `layers` entries, row-major.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlockMatrix {
+    pattern: Arc<Pattern>,
+    layers: Layers,
+    values: Vec<f64>,
+}
+
+impl BlockMatrix {
+    /// The zero matrix on `pattern`.
+    #[must_use]
+    pub fn zeros(pattern: Arc<Pattern>, layers: Layers) -> Self {
+        let values = vec![0.0; pattern.blocks() * layers.block_len()];
+        Self {
+            pattern,
+            layers,
+            values,
+        }
+    }
+
+    /// Adds a dense element matrix, row-major, `nodes.len() * layers` on a side, node-major.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] when a cell or a neighbour pair is unknown to the pattern or the size
+    /// does not fit; nothing is added then.
+    pub fn add_element(&mut self, nodes: &[u32], element: &[f64]) -> Result<(), AssemblyError> {
+        let layers = self.layers.count();
+        let side = nodes.len() * layers;
+        if element.len() != side * side {
+            return Err(AssemblyError::ElementSize {
+                found: element.len(),
+                expected: side * side,
+            });
+        }
+        for &row in nodes {
+            for &column in nodes {
+                self.position(row, column)?;
+            }
+        }
+        for (a, &row) in nodes.iter().enumerate() {
+            for (b, &column) in nodes.iter().enumerate() {
+                let start = self.position(row, column)? * self.layers.block_len();
+                for i in 0..layers {
+                    for j in 0..layers {
+                        self.values[start + i * layers + j] +=
+                            element[(a * layers + i) * side + b * layers + j];
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds `block` (row-major, `layers` x `layers`) at (`row`, `column`).
+    ///
+    /// # Errors
+    /// As [`BlockMatrix::add_element`].
+    pub fn add_block(&mut self, row: u32, column: u32, block: &[f64]) -> Result<(), AssemblyError> {
+        let len = self.layers.block_len();
+        if block.len() != len {
+            return Err(AssemblyError::ElementSize {
+                found: block.len(),
+                expected: len,
+            });
+        }
+        let start = self.position(row, column)? * len;
+        for (value, added) in self.values[start..start + len].iter_mut().zip(block) {
+            *value += added;
+        }
+        Ok(())
+    }
+
+    fn position(&self, row: u32, column: u32) -> Result<usize, AssemblyError> {
+        let cells = self.pattern.cells();
+        for cell in [row, column] {
+            if cell as usize >= cells {
+                return Err(AssemblyError::CellOutOfRange { cell, cells });
+            }
+        }
+        self.pattern
+            .find(row as usize, column as usize)
+            .ok_or(AssemblyError::NotNeighbours { row, column })
+    }
+
+    /// The pattern the blocks stand on.
+    #[must_use]
+    pub fn pattern(&self) -> &Arc<Pattern> {
+        &self.pattern
+    }
+
+    /// Degrees of freedom of a cell.
+    #[must_use]
+    pub fn layers(&self) -> Layers {
+        self.layers
+    }
+
+    /// Rows of the matrix as scalars: cells x layers.
+    #[must_use]
+    pub fn dofs(&self) -> usize {
+        self.pattern.cells() * self.layers.count()
+    }
+
+    /// The block at (`row`, `column`), row-major; `None` where the two cells are not neighbours.
+    #[must_use]
+    pub fn block(&self, row: usize, column: usize) -> Option<&[f64]> {
+        let len = self.layers.block_len();
+        let start = self.pattern.find(row, column)? * len;
+        self.values.get(start..start + len)
+    }
+
+    /// The blocks of one row with their columns, in increasing column order.
+    pub fn row_blocks(&self, row: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        let len = self.layers.block_len();
+        let range = self.pattern.row(row);
+        self.pattern
+            .neighbours(row)
+            .iter()
+            .map(|&column| column as usize)
+            .zip(self.values[range.start * len..range.end * len].chunks_exact(len))
+    }
+
+    /// Multiplies every scalar row by its entry of `scale` (length [`BlockMatrix::dofs`]);
+    /// rows beyond the end of `scale` stay as they are.
+    pub fn scale_rows(&mut self, scale: &[f64]) {
+        let layers = self.layers.count();
+        let len = self.layers.block_len();
+        for cell in 0..self.pattern.cells() {
+            for position in self.pattern.row(cell) {
+                let block = &mut self.values[position * len..(position + 1) * len];
+                for (row, entries) in block.chunks_exact_mut(layers).enumerate() {
+                    if let Some(factor) = scale.get(cell * layers + row) {
+                        entries.iter_mut().for_each(|entry| *entry *= factor);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Sets the scalar rows and columns of the marked degrees of freedom to zero.
+    ///
+    /// `pinned` has length [`BlockMatrix::dofs`]. A component held fixed at a cell whose other
+    /// components move keeps its place in the vectors and simply never feels a force.
+    pub fn clear_pinned(&mut self, pinned: &[bool]) {
+        let layers = self.layers.count();
+        let len = self.layers.block_len();
+        for cell in 0..self.pattern.cells() {
+            for position in self.pattern.row(cell) {
+                let column = self.pattern.columns_at(position);
+                for i in 0..layers {
+                    for j in 0..layers {
+                        let held = |dof: usize| pinned.get(dof).copied().unwrap_or(false);
+                        if held(cell * layers + i) || held(column * layers + j) {
+                            self.values[position * len + i * layers + j] = 0.0;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_cells() -> BlockMatrix {
+        let pattern = Arc::new(Pattern::from_elements(3, [[0, 1], [1, 2]]).unwrap());
+        BlockMatrix::zeros(pattern, Layers::Three)
+    }
+
+    #[test]
+    fn elements_add_up() {
+        let mut matrix = two_cells();
+        let element: Vec<f64> = (0..36).map(f64::from).collect();
+        matrix.add_element(&[1, 0], &element).unwrap();
+        matrix.add_element(&[1, 0], &element).unwrap();
+        // Local node 0 is cell 1, local node 1 is cell 0: block (1, 0) starts at entry (0, 3).
+        assert_eq!(
+            matrix.block(1, 0).unwrap(),
+            [6.0, 8.0, 10.0, 18.0, 20.0, 22.0, 30.0, 32.0, 34.0]
+        );
+    }
+
+    #[test]
+    fn a_refused_element_adds_nothing() {
+        let mut matrix = two_cells();
+        let before = matrix.clone();
+        assert_eq!(
+            matrix.add_element(&[0, 2], &[1.0; 36]),
+            Err(AssemblyError::NotNeighbours { row: 0, column: 2 })
+        );
+        assert!(matches!(
+            matrix.add_element(&[0, 1], &[1.0; 35]),
+            Err(AssemblyError::ElementSize {
+                found: 35,
+                expected: 36
+            })
+        ));
+        assert_eq!(matrix, before);
+    }
+
+    #[test]
+    fn pinned_components_lose_row_and_column() {
+        let mut matrix = two_cells();
+        matrix.add_element(&[0, 1], &[1.0; 36]).unwrap();
+        let mut pinned = vec![false; 9];
+        pinned[1] = true;
+        matrix.clear_pinned(&pinned);
+        assert_eq!(
+            matrix.block(0, 0).unwrap(),
+            [1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0]
+        );
+        assert_eq!(
+            matrix.block(1, 0).unwrap(),
+            [1.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0]
+        );
+    }
+}
