@@ -1,1 +1,28 @@
-//! Cellular neural networks of linear structural systems: templates A, B, C and the saturated output
+//! Soft tissue as a cellular neural network (Zhang, Zhong, Smith and Gu, Technology and Health
+//! Care 25, 2017, S337-S344): every mesh node is a cell that knows only its neighbours.
+//!
+//! `M a + D v + K u = F` becomes `dy/dt = f(x)`, `dx/dt = A y - C x + B F` with the templates
+//! `A = -M^-1 K`, `C = M^-1 D`, `B = M^-1`, the state x being the velocity, the output y the
+//! displacement, and f a clamp at the saturation voltage Q. With three degrees of freedom a node
+//! is one cell of a three-layer network whose layers are coupled: a template entry is a 3x3 block.
+//!
+//! ```
+//! use sinew_cnn::{Saturation, Templates};
+//! use sinew_core::{LinearModel, LinearOperators};
+//!
+//! let model = LinearModel::new(LinearOperators::oscillator(0.1, 100.0, 1.0)?);
+//! let templates = Templates::new(&model)?;
+//! assert_eq!(templates.feedback().block(0, 0), Some(&[-1000.0][..])); // -k/m
+//! assert_eq!(templates.damping().block(0, 0), Some(&[10.0][..])); // d/m
+//! assert_eq!(templates.control(), [10.0]); // 1/m
+//!
+//! let saturation = Saturation::at(4.0)?; // m/s
+//! assert_eq!(saturation.output(-5.0), -4.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod saturation;
+mod templates;
+
+pub use saturation::{Saturation, SaturationError};
+pub use templates::{TemplateError, Templates};

@@ -1,1 +1,27 @@
-//! Time integrators for soft tissue: explicit, implicit and cellular neural network
+//! Time integrators for soft tissue: explicit, implicit and cellular neural network.
+//!
+//! ```
+//! use sinew_core::{LinearModel, LinearOperators, Options, Run, State, simulate};
+//!
+//! // The paper's oscillator: m = .1 kg, k = 100 N/m, d = 1 N s/m, v(0) = -5 m/s.
+//! let model = LinearModel::new(LinearOperators::oscillator(0.1, 100.0, 1.0)?);
+//! let mut state = State::new(vec![0.0], vec![-5.0]);
+//! let mut integrator = sinew_integrators::build("central-difference", &Options::new())?;
+//! simulate(&model, &mut *integrator, &mut state, &Run::covering(1.0, 0.001), &mut ())?;
+//! assert!((state.t - 1.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod cnn;
+mod evaluate;
+pub mod explicit;
+#[cfg(feature = "implicit")]
+pub mod implicit;
+mod limits;
+mod method;
+mod registry;
+
+#[cfg(feature = "implicit")]
+pub use implicit::{StaticError, static_solution};
+pub use method::{Method, OptionHelp};
+pub use registry::{Entry, build, entries, ids};

@@ -1,0 +1,54 @@
+//! The nonlinear current source of a cell.
+
+/// `f(x) = (|x + Q| - |x - Q|)/2`: the identity inside -Q..Q and constant outside (paper, Eq. 5).
+///
+/// Each component is clamped by itself, as in the paper; the result therefore depends on the
+/// axes' directions once something saturates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Saturation {
+    voltage: f64,
+}
+
+/// Why a saturation voltage makes no sense.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("saturation voltage Q = {0} m/s: expected a number above 0")]
+pub struct SaturationError(f64);
+
+impl Saturation {
+    /// Never saturates.
+    pub const OFF: Self = Self {
+        voltage: f64::INFINITY,
+    };
+
+    /// Saturates at Q = `voltage` [m/s].
+    ///
+    /// # Errors
+    /// [`SaturationError`] when it is not above 0.
+    pub fn at(voltage: f64) -> Result<Self, SaturationError> {
+        if voltage > 0.0 {
+            Ok(Self { voltage })
+        } else {
+            Err(SaturationError(voltage))
+        }
+    }
+
+    /// Q [m/s]; infinite when it never saturates.
+    #[must_use]
+    pub fn voltage(self) -> f64 {
+        self.voltage
+    }
+
+    /// f(x) [m/s].
+    #[must_use]
+    #[inline]
+    pub fn output(self, x: f64) -> f64 {
+        x.clamp(-self.voltage, self.voltage)
+    }
+
+    /// Whether df/dx is 0 at x.
+    #[must_use]
+    #[inline]
+    pub fn saturates(self, x: f64) -> bool {
+        x.abs() >= self.voltage
+    }
+}

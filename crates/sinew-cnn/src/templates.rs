@@ -1,0 +1,126 @@
+//! The templates of a network.
+
+use sinew_core::{BlockMatrix, Layers, LinearOperators, LinearSystem};
+
+/// Why a system has no templates.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TemplateError {
+    /// A cell without mass has no control template.
+    #[error("{cell} has a mass of {mass} kg: expected a finite mass above 0")]
+    Mass {
+        /// The cell, in the system's words.
+        cell: String,
+        /// Its mass [kg].
+        mass: f64,
+    },
+}
+
+/// A = -M^-1 K, C = M^-1 D and B = M^-1 of a linear system (paper, Eq. 7).
+///
+/// They are kept in factored form: the symmetric matrices M, D and K, shared with the system, so
+/// that a network costs no memory beside it, proportional damping needs no template C, and a
+/// sweep gives the same bits as the system's own force divided by the mass.
+#[derive(Clone, Debug)]
+pub struct Templates {
+    operators: LinearOperators,
+}
+
+impl Templates {
+    /// The templates of a system.
+    ///
+    /// # Errors
+    /// [`TemplateError::Mass`] when some mass is not positive.
+    pub fn new(system: &dyn LinearSystem) -> Result<Self, TemplateError> {
+        let operators = system.operators().clone();
+        let unsound = |mass: &f64| !(mass.is_finite() && *mass > 0.0);
+        match operators.mass().iter().position(unsound) {
+            None => Ok(Self { operators }),
+            Some(dof) => Err(TemplateError::Mass {
+                cell: system.cell_name(dof),
+                mass: operators.mass()[dof],
+            }),
+        }
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn cells(&self) -> usize {
+        self.operators.stiffness().pattern().cells()
+    }
+
+    /// Layers of the network.
+    #[must_use]
+    pub fn layers(&self) -> Layers {
+        self.operators.stiffness().layers()
+    }
+
+    /// The cells a cell knows, itself included, increasing.
+    #[must_use]
+    pub fn neighbourhood(&self, cell: usize) -> &[u32] {
+        self.operators.stiffness().pattern().neighbours(cell)
+    }
+
+    /// The feedback template A [1/s^2], made anew for those who want to see it.
+    #[must_use]
+    pub fn feedback(&self) -> BlockMatrix {
+        let mut feedback = BlockMatrix::clone(self.operators.stiffness());
+        let factors: Vec<f64> = self
+            .operators
+            .mass()
+            .iter()
+            .map(|mass| -1.0 / mass)
+            .collect();
+        feedback.scale_rows(&factors);
+        feedback
+    }
+
+    /// The template C [1/s] of the damping, made anew.
+    #[must_use]
+    pub fn damping(&self) -> BlockMatrix {
+        let (mass, stiffness) = (self.operators.mass(), self.operators.stiffness());
+        let damping = self.operators.damping();
+        let mut template = BlockMatrix::clone(stiffness);
+        template.scale_rows(&vec![damping.stiffness; mass.len()]);
+        let layers = stiffness.layers().count();
+        for cell in 0..self.cells() {
+            let mut diagonal = vec![0.0; layers * layers];
+            for layer in 0..layers {
+                diagonal[layer * (layers + 1)] = damping.mass * mass[cell * layers + layer];
+            }
+            add(&mut template, cell, cell, &diagonal);
+            if let Some(extra) = &damping.extra {
+                for (column, block) in extra.row_blocks(cell) {
+                    add(&mut template, cell, column, block);
+                }
+            }
+        }
+        template.scale_rows(&self.control());
+        template
+    }
+
+    /// The control template B [1/kg], one entry for each degree of freedom, made anew.
+    #[must_use]
+    pub fn control(&self) -> Vec<f64> {
+        self.operators
+            .mass()
+            .iter()
+            .map(|mass| 1.0 / mass)
+            .collect()
+    }
+
+    /// `out = A y - C x + B F(t)` [m/s^2] for every cell: one sweep of the network. `y` is the
+    /// output (displacement [m]), `x` the state (velocity [m/s]).
+    pub fn sweep(&self, t: f64, y: &[f64], x: &[f64], out: &mut [f64]) {
+        self.operators.net_force(t, y, x, out);
+        for (value, mass) in out.iter_mut().zip(self.operators.mass()) {
+            *value /= mass;
+        }
+    }
+}
+
+/// Adds a block at a place both matrices have, as they share the pattern.
+fn add(template: &mut BlockMatrix, row: usize, column: usize, block: &[f64]) {
+    let added = template.add_block(row as u32, column as u32, block);
+    debug_assert_eq!(added, Ok(()));
+}

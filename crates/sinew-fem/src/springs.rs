@@ -1,0 +1,137 @@
+//! Networks of springs along the edges of tetrahedra.
+//!
+//! The cited source of the cellular network's matrices (Duan, Huang, Chang et al., IEEE JBHI
+//! 20(1), 268-280) could not be obtained; this is a reconstruction from the two stiffness rules of
+//! the literature and pairwise dashpots.
+
+use nalgebra::{Matrix6, Vector3, Vector6};
+
+use crate::SpringRule;
+use crate::tetra;
+
+/// A spring between two nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// Nodes, the smaller first.
+    pub nodes: [u32; 2],
+    /// k [N/m].
+    pub stiffness: f64,
+}
+
+/// The vertex pairs of a tetrahedron's six edges.
+pub const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+
+/// The springs of some tetrahedra, one for each edge, in increasing order of their nodes.
+///
+/// Each tetrahedron adds to its edges: Lloyd et al. 2007 `k = (2 sqrt 2 / 25) E l_eq` with
+/// `l_eq = (12 V / sqrt 2)^(1/3)`; van Gelder 1998 `k = E V / l^2`.
+#[must_use]
+pub fn springs<'a>(
+    points: &[[f64; 3]],
+    tets: impl Iterator<Item = &'a [u32; 4]>,
+    youngs_modulus: f64,
+    rule: SpringRule,
+) -> Vec<Spring> {
+    let mut parts = Vec::new();
+    for tet in tets {
+        let vertices = tet.map(|node| points[node as usize]);
+        let volume = tetra::signed_volume(&vertices).abs();
+        for [a, b] in EDGES {
+            let stiffness = match rule {
+                SpringRule::Lloyd => {
+                    let equivalent = (12.0 * volume / 2.0_f64.sqrt()).cbrt();
+                    2.0 * 2.0_f64.sqrt() / 25.0 * youngs_modulus * equivalent
+                }
+                SpringRule::VanGelder => {
+                    let length = Vector3::from(vertices[b]) - Vector3::from(vertices[a]);
+                    youngs_modulus * volume / length.norm_squared()
+                }
+            };
+            let nodes = [tet[a].min(tet[b]), tet[a].max(tet[b])];
+            parts.push(Spring { nodes, stiffness });
+        }
+    }
+    // Stable, so that contributions add up in the order of the tetrahedra.
+    parts.sort_by_key(|spring| spring.nodes);
+    let mut springs: Vec<Spring> = Vec::new();
+    for part in parts {
+        match springs.last_mut() {
+            Some(last) if last.nodes == part.nodes => last.stiffness += part.stiffness,
+            _ => springs.push(part),
+        }
+    }
+    springs
+}
+
+/// Direction (unit) and length [m] of a spring.
+#[must_use]
+pub fn direction(points: &[[f64; 3]], nodes: [u32; 2]) -> (Vector3<f64>, f64) {
+    let [a, b] = nodes.map(|node| Vector3::from(points[node as usize]));
+    let edge = b - a;
+    let length = edge.norm();
+    (edge / length, length)
+}
+
+/// What a network of springs is as a material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NetworkModulus {
+    /// Young's modulus [Pa] of the isotropic material with the same Voigt average; its Poisson's
+    /// ratio is 1/4, as for every network of central springs.
+    pub voigt: f64,
+    /// Smallest Young's modulus [Pa] over all directions.
+    pub softest: f64,
+    /// Largest Young's modulus [Pa] over all directions.
+    pub stiffest: f64,
+}
+
+/// The moduli of the affine tensor `C = (1/V) sum k l^2 n n n n` of springs that fill `volume`
+/// [m^3]. A tensor that resists not every strain has `softest` 0.
+#[must_use]
+pub fn network_modulus(points: &[[f64; 3]], springs: &[Spring], volume: f64) -> NetworkModulus {
+    let mut tensor = Matrix6::zeros();
+    for spring in springs {
+        let (n, length) = direction(points, spring.nodes);
+        let dyad = mandel(&n);
+        tensor += dyad * dyad.transpose() * (spring.stiffness * length * length / volume);
+    }
+    // C_iijj = 15 mu for lambda = mu, and E = 5/2 mu.
+    let voigt = tensor.fixed_view::<3, 3>(0, 0).sum() / 6.0;
+    let (mut softest, mut stiffest) = (0.0, f64::INFINITY);
+    if let Some(compliance) = tensor.try_inverse() {
+        (softest, stiffest) = (f64::INFINITY, 0.0);
+        for n in sphere_directions() {
+            let dyad = mandel(&n);
+            let modulus = 1.0 / dyad.dot(&(compliance * dyad));
+            softest = modulus.min(softest);
+            stiffest = modulus.max(stiffest);
+        }
+    }
+    NetworkModulus {
+        voigt,
+        softest,
+        stiffest,
+    }
+}
+
+/// n n in Mandel's notation.
+fn mandel(n: &Vector3<f64>) -> Vector6<f64> {
+    let root = 2.0_f64.sqrt();
+    Vector6::new(
+        n.x * n.x,
+        n.y * n.y,
+        n.z * n.z,
+        root * n.y * n.z,
+        root * n.x * n.z,
+        root * n.x * n.y,
+    )
+}
+
+/// A dense set of directions that contains the axes, face and body diagonals.
+fn sphere_directions() -> impl Iterator<Item = Vector3<f64>> {
+    const N: i32 = 16;
+    let side = move || -N..=N;
+    side()
+        .flat_map(move |i| side().flat_map(move |j| side().map(move |k| (i, j, k))))
+        .filter(|(i, j, k)| i.abs().max(j.abs()).max(k.abs()) == N)
+        .map(|(i, j, k)| Vector3::new(f64::from(i), f64::from(j), f64::from(k)).normalize())
+}

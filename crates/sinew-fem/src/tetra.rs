@@ -1,0 +1,116 @@
+//! The 4-node tetrahedron with linear displacement (P1).
+
+use nalgebra::{Matrix3, Matrix4x3, Vector3};
+
+/// Lame's constants (lambda, mu) [Pa] of Young's modulus [Pa] and Poisson's ratio.
+#[must_use]
+pub fn lame(youngs_modulus: f64, poissons_ratio: f64) -> (f64, f64) {
+    let mu = youngs_modulus / (2.0 * (1.0 + poissons_ratio));
+    let lambda = 2.0 * mu * poissons_ratio / (1.0 - 2.0 * poissons_ratio);
+    (lambda, mu)
+}
+
+/// Signed volume [m^3]; positive when the fourth vertex sees the first three anticlockwise.
+#[must_use]
+pub fn signed_volume(vertices: &[[f64; 3]; 4]) -> f64 {
+    edge_matrix(vertices).determinant() / 6.0
+}
+
+/// Columns: edges from the first vertex to the others.
+fn edge_matrix(vertices: &[[f64; 3]; 4]) -> Matrix3<f64> {
+    let [first, second, third, fourth] = vertices.map(Vector3::from);
+    Matrix3::from_columns(&[second - first, third - first, fourth - first])
+}
+
+/// Stiffness matrix [N/m], 12 x 12, row-major and node-major, of an isotropic linear elastic
+/// tetrahedron (Bathe, Finite Element Procedures, section 5.3, with one constant strain):
+/// the 3x3 block of vertices a, b is `V (lambda g_a g_b' + mu g_b g_a' + mu g_a.g_b I)`, g being
+/// the gradients of the shape functions.
+///
+/// `None` when the vertices lie in one plane.
+#[must_use]
+pub fn stiffness(vertices: &[[f64; 3]; 4], lambda: f64, mu: f64) -> Option<[f64; 144]> {
+    let edges = edge_matrix(vertices);
+    let volume = edges.determinant().abs() / 6.0;
+    let inverse = edges.try_inverse()?;
+    let mut gradients = Matrix4x3::zeros();
+    for row in 0..3 {
+        gradients.set_row(row + 1, &inverse.row(row));
+    }
+    gradients.set_row(0, &-(inverse.row(0) + inverse.row(1) + inverse.row(2)));
+    let mut matrix = [0.0; 144];
+    for a in 0..4 {
+        for b in 0..4 {
+            let (ga, gb) = (gradients.row(a), gradients.row(b));
+            let dot = ga.dot(&gb);
+            for i in 0..3 {
+                for j in 0..3 {
+                    let isotropic = if i == j { mu * dot } else { 0.0 };
+                    matrix[(3 * a + i) * 12 + 3 * b + j] =
+                        volume * (lambda * ga[i] * gb[j] + mu * ga[j] * gb[i] + isotropic);
+                }
+            }
+        }
+    }
+    Some(matrix)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SKEW: [[f64; 3]; 4] = [
+        [0.1, 0.0, 0.2],
+        [1.3, 0.2, 0.0],
+        [0.0, 0.9, 0.3],
+        [0.2, 0.1, 1.1],
+    ];
+
+    fn energy(matrix: &[f64; 144], u: &[f64; 12]) -> f64 {
+        let product = |i: usize| -> f64 { (0..12).map(|j| matrix[i * 12 + j] * u[j]).sum() };
+        0.5 * (0..12).map(|i| u[i] * product(i)).sum::<f64>()
+    }
+
+    fn linear_field(gradient: [[f64; 3]; 3]) -> [f64; 12] {
+        std::array::from_fn(|dof| {
+            let (vertex, i) = (dof / 3, dof % 3);
+            (0..3).map(|j| gradient[i][j] * SKEW[vertex][j]).sum()
+        })
+    }
+
+    #[test]
+    fn uniaxial_strain_stores_half_p_wave_modulus_times_strain_squared() {
+        let (lambda, mu) = lame(3500.0, 0.45);
+        let matrix = stiffness(&SKEW, lambda, mu).unwrap();
+        let strain = 0.01;
+        let u = linear_field([[strain, 0.0, 0.0], [0.0; 3], [0.0; 3]]);
+        let expected = 0.5 * (lambda + 2.0 * mu) * strain * strain * signed_volume(&SKEW);
+        assert!((energy(&matrix, &u) / expected - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn simple_shear_stores_half_mu_gamma_squared() {
+        let (lambda, mu) = lame(3500.0, 0.3);
+        let matrix = stiffness(&SKEW, lambda, mu).unwrap();
+        let gamma = 0.02;
+        let u = linear_field([[0.0, gamma, 0.0], [0.0; 3], [0.0; 3]]);
+        let expected = 0.5 * mu * gamma * gamma * signed_volume(&SKEW);
+        assert!((energy(&matrix, &u) / expected - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn even_permutations_change_nothing_and_flat_ones_have_no_matrix() {
+        let (lambda, mu) = lame(1.0, 0.2);
+        let matrix = stiffness(&SKEW, lambda, mu).unwrap();
+        let order = [1, 2, 0, 3];
+        let permuted = stiffness(&order.map(|vertex| SKEW[vertex]), lambda, mu).unwrap();
+        for a in 0..12 {
+            for b in 0..12 {
+                let original = matrix[(order[a / 3] * 3 + a % 3) * 12 + order[b / 3] * 3 + b % 3];
+                assert!((permuted[a * 12 + b] - original).abs() < 1e-13);
+            }
+        }
+        let flat = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        assert_eq!(stiffness(&flat, lambda, mu), None);
+    }
+}

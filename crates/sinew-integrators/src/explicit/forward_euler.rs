@@ -1,0 +1,69 @@
+//! `forward-euler`: both halves from the old state.
+
+use sinew_core::{
+    EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties, SetupError,
+    StableStep, State, StepError, StepReport, System,
+};
+
+use crate::Method;
+use crate::evaluate::{acceleration, begin, prepare_buffers};
+use crate::limits;
+
+/// `u += dt v`, `v += dt M^-1 (F(t) - K u - D v)`, both from the old u and v (Euler 1768).
+///
+/// The "explicit integration" that the cellular network is compared with. Unstable at any step
+/// without damping.
+#[derive(Debug, Default)]
+pub struct ForwardEuler {
+    prepared: Prepared,
+    a: Vec<f64>,
+}
+
+impl Method for ForwardEuler {
+    const ID: &'static str = "forward-euler";
+    const SUMMARY: &'static str = "explicit, order 1; what the paper calls explicit integration";
+    const SUBSTEPS: bool = true;
+
+    fn from_options(_options: &Options) -> Result<Self, OptionError> {
+        Ok(Self::default())
+    }
+}
+
+impl Integrator for ForwardEuler {
+    fn id(&self) -> &'static str {
+        Self::ID
+    }
+
+    fn properties(&self) -> Properties {
+        Properties {
+            order: 1,
+            needs: Needs::Forces,
+            energy: EnergyBehaviour::Grows,
+        }
+    }
+
+    fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
+        prepare_buffers(&mut self.prepared, Self::ID, system, dt, &mut [&mut self.a])
+    }
+
+    fn stable_step(&self, system: &dyn System) -> Result<StableStep, SetupError> {
+        limits::forward_euler(Self::ID, system)
+    }
+
+    fn step(
+        &mut self,
+        system: &dyn System,
+        state: &mut State,
+        dt: f64,
+    ) -> Result<StepReport, StepError> {
+        let mut work = begin(self, system, state, dt)?;
+        work += acceleration(system, state, state.t, &mut self.a)?;
+        for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&self.a) {
+            *u += dt * *v;
+            *v += dt * a;
+        }
+        state.advance_to(state.t + dt);
+        system.accept(state);
+        Ok(work)
+    }
+}

@@ -1,0 +1,13 @@
+//! Methods whose step needs forces only.
+
+mod central_difference;
+mod forward_euler;
+mod rk4;
+mod substeps;
+mod symplectic_euler;
+
+pub use central_difference::CentralDifference;
+pub use forward_euler::ForwardEuler;
+pub use rk4::Rk4;
+pub use substeps::{Substepped, Substeps};
+pub use symplectic_euler::SymplecticEuler;

@@ -1,0 +1,11 @@
+//! Methods that solve a linear system in each step, by a sparse factor that is kept.
+
+mod engine;
+mod factor;
+mod implicit_euler;
+mod newmark;
+mod static_solution;
+
+pub use implicit_euler::ImplicitEuler;
+pub use newmark::Newmark;
+pub use static_solution::{StaticError, static_solution};

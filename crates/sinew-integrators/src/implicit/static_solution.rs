@@ -1,0 +1,45 @@
+//! The equilibrium under a load.
+
+use sinew_core::LinearSystem;
+
+use super::factor::{Combination, Factor};
+
+/// Why there is no static solution.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StaticError {
+    /// The stiffness matrix has no inverse.
+    #[error(
+        "the stiffness matrix could not be factorised ({0}); is the body held against all rigid motions?"
+    )]
+    Singular(String),
+    /// A load of another size than the system.
+    #[error("the load has {load} degrees of freedom, the system has {system}")]
+    Size {
+        /// Length of the load.
+        load: usize,
+        /// Degrees of freedom of the system.
+        system: usize,
+    },
+}
+
+/// Solves `K u = force` [N] for the displacement [m]. Held components of cells stay zero.
+///
+/// # Errors
+/// [`StaticError`] when K is singular or the load has the wrong size.
+pub fn static_solution(system: &dyn LinearSystem, force: &[f64]) -> Result<Vec<f64>, StaticError> {
+    let operators = system.operators();
+    if force.len() != operators.dofs() {
+        return Err(StaticError::Size {
+            load: force.len(),
+            system: operators.dofs(),
+        });
+    }
+    let mut factor = Factor::analyse(operators).map_err(StaticError::Singular)?;
+    factor
+        .factorise(operators, Combination::STATIC)
+        .map_err(StaticError::Singular)?;
+    let mut solution = force.to_vec();
+    factor.solve(&mut solution);
+    Ok(solution)
+}

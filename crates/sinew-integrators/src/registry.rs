@@ -1,0 +1,154 @@
+//! Integrators by name.
+
+use sinew_core::{Integrator, OptionError, Options};
+
+use crate::explicit::{Substepped, Substeps};
+use crate::{Method, OptionHelp};
+
+/// Calls `$then! { name: Type, .. }` with every integrator there is: the one list that the
+/// registry and the conformance tests are made from. A new integrator is one line here.
+#[macro_export]
+macro_rules! for_each_integrator {
+    ($then:ident) => {
+        $then! {
+            forward_euler: $crate::explicit::ForwardEuler,
+            symplectic_euler: $crate::explicit::SymplecticEuler,
+            central_difference: $crate::explicit::CentralDifference,
+            rk4: $crate::explicit::Rk4,
+            #[cfg(feature = "implicit")]
+            implicit_euler: $crate::implicit::ImplicitEuler,
+            #[cfg(feature = "implicit")]
+            newmark: $crate::implicit::Newmark,
+            cnn: $crate::cnn::Cnn,
+            cnn_symplectic: $crate::cnn::CnnSymplectic,
+        }
+    };
+}
+
+/// An integrator that can be built by name.
+#[derive(Clone, Copy)]
+pub struct Entry {
+    /// The name users type.
+    pub id: &'static str,
+    /// One line about it.
+    pub summary: &'static str,
+    /// The options it takes, beside `substeps`.
+    pub options: &'static [OptionHelp],
+    /// Whether it takes `substeps`.
+    pub substeps: bool,
+    build: fn(&Options) -> Result<Box<dyn Integrator>, OptionError>,
+}
+
+impl std::fmt::Debug for Entry {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Entry")
+            .field("id", &self.id)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Entry {
+    fn of<M: Method>() -> Self {
+        Self {
+            id: M::ID,
+            summary: M::SUMMARY,
+            options: M::OPTIONS,
+            substeps: M::SUBSTEPS,
+            build: |options| Ok(Box::new(M::from_options(options)?)),
+        }
+    }
+
+    /// Builds the integrator.
+    ///
+    /// # Errors
+    /// [`OptionError`] for an option it does not take or a value that does not fit.
+    pub fn build(&self, options: &Options) -> Result<Box<dyn Integrator>, OptionError> {
+        let mut known: Vec<&'static str> = self.options.iter().map(|help| help.key).collect();
+        if self.substeps {
+            known.push(Substeps::KEY);
+        }
+        options.only(self.id, &known)?;
+        let mut options = options.clone();
+        let substeps = Substeps::take_from(&mut options, self.id)?;
+        let integrator = (self.build)(&options)?;
+        Ok(match substeps {
+            None => integrator,
+            Some(substeps) => Box::new(Substepped::new(integrator, substeps)),
+        })
+    }
+}
+
+/// Every integrator, explicit ones first.
+#[must_use]
+pub fn entries() -> Vec<Entry> {
+    macro_rules! list {
+        ($($(#[$attribute:meta])* $name:ident: $method:ty,)*) => {
+            vec![$($(#[$attribute])* Entry::of::<$method>()),*]
+        };
+    }
+    for_each_integrator!(list)
+}
+
+/// The names of all integrators.
+#[must_use]
+pub fn ids() -> Vec<&'static str> {
+    entries().iter().map(|entry| entry.id).collect()
+}
+
+/// Builds an integrator by name.
+///
+/// # Errors
+/// [`OptionError`] for an unknown name or option, or a value that does not fit.
+pub fn build(id: &str, options: &Options) -> Result<Box<dyn Integrator>, OptionError> {
+    match entries().iter().find(|entry| entry.id == id) {
+        Some(entry) => entry.build(options),
+        None => Err(OptionError::UnknownIntegrator {
+            id: id.into(),
+            known: ids(),
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sinew_core::OptionValue;
+
+    use super::*;
+
+    fn refusal(id: &str, options: Options) -> String {
+        build(id, &options)
+            .err()
+            .map_or_else(String::new, |error| error.to_string())
+    }
+
+    #[test]
+    fn names_are_unique_and_each_builds_what_it_names() {
+        let ids = ids();
+        for (index, id) in ids.iter().enumerate() {
+            assert!(!ids[..index].contains(id), "{id} twice");
+            assert_eq!(build(id, &Options::new()).unwrap().id(), *id);
+        }
+    }
+
+    #[test]
+    fn what_is_not_known_is_refused_by_name() {
+        assert!(refusal("euler", Options::new()).starts_with("unknown integrator `euler`"));
+        assert_eq!(
+            refusal("rk4", Options::new().with_number("saturation", 4.0)),
+            "`rk4` has no option `saturation`; it takes `substeps`"
+        );
+        let cases = [
+            ("cnn", "saturation", OptionValue::Number(-4.0)),
+            ("cnn", "saturation", OptionValue::Number(f64::NAN)),
+            ("cnn", "saturation", OptionValue::Text("of".into())),
+            ("rk4", "substeps", OptionValue::Number(0.0)),
+            ("rk4", "substeps", OptionValue::Number(1.5)),
+            #[cfg(feature = "implicit")]
+            ("newmark", "beta", OptionValue::Number(1.5)),
+        ];
+        for (id, key, value) in cases {
+            let message = refusal(id, Options::new().with(key, value.clone()));
+            assert!(message.starts_with(&format!("`{id}`: {key} = {value}: expected")));
+        }
+    }
+}

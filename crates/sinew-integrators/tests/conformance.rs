@@ -1,0 +1,16 @@
+//! Every integrator keeps the laws of the core's conformance suite.
+
+macro_rules! suites {
+    ($($(#[$attribute:meta])* $name:ident: $method:ty,)*) => {
+        $(
+            $(#[$attribute])*
+            sinew_core::conformance!($name, || {
+                use sinew_integrators::Method;
+                let options = <$method>::conformance_options();
+                Box::new(<$method>::from_options(&options).unwrap()) as Box<dyn sinew_core::Integrator>
+            });
+        )*
+    };
+}
+
+sinew_integrators::for_each_integrator!(suites);
