@@ -229,35 +229,40 @@ pub fn energy_behaves_as_declared(make: &dyn Fn() -> Boxed) {
 pub fn stable_step_is_as_declared(make: &dyn Fn() -> Boxed) {
     for damping in [0.0, 2.0] {
         let system = chain(damping, 0.0, [MASS; 2]);
-        let growth = |dt: f64| {
+        // The largest displacement within so many steps; beyond 1e3 m nothing more is learned.
+        let growth = |dt: f64, steps: usize| {
             let (mut integrator, mut state) = (make(), moving());
-            advance(&mut *integrator, &system, &mut state, 4000, dt);
-            let farther = |size: f64, u: &f64| {
-                if u.is_nan() {
-                    f64::INFINITY
-                } else {
-                    size.max(u.abs())
+            let mut size = 0.0;
+            for _ in 0..steps / 1000 {
+                advance(&mut *integrator, &system, &mut state, 1000, dt);
+                let finite = state.u.iter().all(|u| u.is_finite());
+                size = state.u.iter().fold(size, |size: f64, u| size.max(u.abs()));
+                if !finite || size > 1e3 {
+                    return f64::INFINITY;
                 }
-            };
-            state.u.iter().fold(0.0, farther)
+            }
+            size
         };
         match make().stable_step(&system) {
             Ok(StableStep::UpTo(limit)) => {
                 if limit > 0.0 {
-                    let below = growth(0.99 * limit);
+                    let below = growth(0.99 * limit, 4000);
                     assert!(below < 1.0, "c = {damping}: {below} at .99 of {limit}");
                 }
                 let step = if limit > 0.0 {
-                    1.01 * limit
+                    1.02 * limit
                 } else {
                     0.1 / OMEGA_MAX
                 };
-                let above = growth(step);
-                assert!(above > 1e3, "c = {damping}: only {above} above {limit}");
+                let above = growth(step, 1_000_000);
+                assert!(
+                    above.is_infinite(),
+                    "c = {damping}: only {above} at {step} above {limit}"
+                );
             }
             Ok(StableStep::Any) => {
                 for factor in [3.0, 1e3] {
-                    let size = growth(factor * 2.0 / OMEGA_MAX);
+                    let size = growth(factor * 2.0 / OMEGA_MAX, 4000);
                     assert!(size < 10.0, "c = {damping}: {size} at {factor} x critical");
                 }
             }
