@@ -65,7 +65,7 @@ pub fn springs<'a>(
 
 /// Direction (unit) and length [m] of a spring.
 #[must_use]
-pub fn direction(points: &[[f64; 3]], nodes: [u32; 2]) -> (Vector3<f64>, f64) {
+pub(crate) fn direction(points: &[[f64; 3]], nodes: [u32; 2]) -> (Vector3<f64>, f64) {
     let [a, b] = nodes.map(|node| Vector3::from(points[node as usize]));
     let edge = b - a;
     let length = edge.norm();

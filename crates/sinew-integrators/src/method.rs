@@ -27,10 +27,12 @@ pub trait Method: Integrator + Sized + 'static {
 }
 
 /// An option in words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OptionHelp {
     /// Its key.
     pub key: &'static str,
     /// What it does, what fits and the default.
     pub help: &'static str,
+    /// A default that results name beside the integrator, because it changes what the run means.
+    pub shown_default: Option<f64>,
 }

@@ -121,7 +121,10 @@ impl CellType {
     /// The kind with this meshio name, e.g. `"tetra"`.
     #[must_use]
     pub fn from_name(name: &str) -> Option<CellType> {
-        CellType::ALL.iter().copied().find(|kind| kind.name() == name)
+        CellType::ALL
+            .iter()
+            .copied()
+            .find(|kind| kind.name() == name)
     }
 
     /// Where gmsh and VTK number the nodes of a cell differently: `vtk_row[i] = gmsh_row[order[i]]`.
@@ -172,7 +175,7 @@ mod tests {
 
     #[test]
     fn names_and_ids_lead_back_to_the_kind() {
-        assert_eq!(CellType::ALL.len(), 60);
+        assert_eq!(CellType::ALL.len(), 65);
         for &kind in CellType::ALL {
             assert_eq!(CellType::from_gmsh_id(kind.gmsh_id()), Some(kind));
             assert_eq!(CellType::from_name(kind.name()), Some(kind));
@@ -208,11 +211,16 @@ mod tests {
     fn tetra10_edges_move_from_gmsh_to_vtk_order() {
         let gmsh_edges = [(0, 1), (1, 2), (2, 0), (3, 0), (3, 2), (3, 1)];
         let vtk_edges = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)];
-        let order = CellType::Tetra10.vtk_order_in_gmsh_row().expect("tetra10 is permuted");
+        let order = CellType::Tetra10
+            .vtk_order_in_gmsh_row()
+            .expect("tetra10 is permuted");
         for (i, vtk_edge) in vtk_edges.iter().enumerate() {
             let gmsh_edge = gmsh_edges[order[4 + i] as usize - 4];
             let swapped = (gmsh_edge.1, gmsh_edge.0);
-            assert!(gmsh_edge == *vtk_edge || swapped == *vtk_edge, "mid-edge node {i}");
+            assert!(
+                gmsh_edge == *vtk_edge || swapped == *vtk_edge,
+                "mid-edge node {i}"
+            );
         }
     }
 }

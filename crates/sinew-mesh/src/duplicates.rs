@@ -8,7 +8,10 @@ use std::collections::HashMap;
 pub(crate) fn duplicate_cells(connectivity: &[u32], nodes_per_cell: usize) -> Vec<(usize, usize)> {
     // Most meshes have no duplicates, so a cheap key that ignores the order comes first. Equal keys prove nothing;
     // the cells behind them are compared exactly.
-    let keys: Vec<u64> = connectivity.chunks_exact(nodes_per_cell).map(order_free_key).collect();
+    let keys: Vec<u64> = connectivity
+        .chunks_exact(nodes_per_cell)
+        .map(order_free_key)
+        .collect();
     let mut sorted = keys.clone();
     sorted.sort_unstable();
     let mut shared: Vec<u64> = sorted
@@ -25,7 +28,11 @@ pub(crate) fn duplicate_cells(connectivity: &[u32], nodes_per_cell: usize) -> Ve
 
     let mut first_with: HashMap<Vec<u32>, usize> = HashMap::new();
     let mut pairs = Vec::new();
-    for (cell, (nodes, key)) in connectivity.chunks_exact(nodes_per_cell).zip(&keys).enumerate() {
+    for (cell, (nodes, key)) in connectivity
+        .chunks_exact(nodes_per_cell)
+        .zip(&keys)
+        .enumerate()
+    {
         if shared.binary_search(key).is_err() {
             continue;
         }
@@ -40,7 +47,9 @@ pub(crate) fn duplicate_cells(connectivity: &[u32], nodes_per_cell: usize) -> Ve
 }
 
 fn order_free_key(nodes: &[u32]) -> u64 {
-    nodes.iter().fold(0, |sum: u64, &node| sum.wrapping_add(mixed(node)))
+    nodes
+        .iter()
+        .fold(0, |sum: u64, &node| sum.wrapping_add(mixed(node)))
 }
 
 /// The finaliser of SplitMix64 (Steele, Lea, Flood 2014).

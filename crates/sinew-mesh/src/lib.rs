@@ -1,1 +1,48 @@
-//! Tetrahedral meshes with named groups: gmsh .msh in and out, structured generators
+//! Tetrahedral meshes with named groups: gmsh .msh in and out, structured generators.
+//!
+//! A file is read into a [`Mesh`]: all its cells, tags, groups and warnings, arranged as meshio arranges them.
+//! [`Mesh::to_tet_mesh`] makes of it the [`TetMesh`] that a simulation needs. Nothing here knows mechanics.
+//!
+//! ```
+//! use sinew_mesh::{GroupMembers, read_msh, structured, write_msh41_ascii};
+//!
+//! // A cube of 2 x 2 x 2 hexahedra, each cut into six tetrahedra, with its groups.
+//! let cube = structured::cube(2, 0.1, structured::Split::Mirrored)?;
+//! let mut file = Vec::new();
+//! write_msh41_ascii(&cube.to_mesh(), &mut file)?;
+//!
+//! // Reading takes bytes; `read_msh_file` takes a path.
+//! let mesh = read_msh(&file)?;
+//! for warning in &mesh.warnings {
+//!     eprintln!("{warning}");
+//! }
+//! for set in mesh.cell_sets() {
+//!     eprintln!("{}: {} cells", set.name, set.blocks.iter().map(Vec::len).sum::<usize>());
+//! }
+//!
+//! // What a simulation needs: tetrahedra, groups by name, outward surfaces.
+//! let tissue = mesh.to_tet_mesh()?;
+//! assert_eq!(tissue, cube);
+//! let top = tissue.group("top")?;
+//! assert_eq!(tissue.group_nodes(top).len(), 9);
+//! if let GroupMembers::Triangles(triangles) = &top.members {
+//!     assert_eq!(tissue.outward_triangles(triangles)?.len(), 8);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod cell_type;
+mod duplicates;
+mod mesh;
+mod msh;
+mod physical_tags;
+pub mod structured;
+mod tet_mesh;
+mod warning;
+
+pub use cell_type::CellType;
+pub use mesh::{CellBlock, CellData, CellNodeData, CellSet, Entity, Mesh, PeriodicLink, PointData};
+pub use msh::{MshError, MshFileError, WriteMshError, read_msh, read_msh_file, write_msh41_ascii};
+pub use physical_tags::PhysicalTags;
+pub use tet_mesh::{Group, GroupMembers, SurfaceError, TetMesh, TetMeshError, UnknownGroup};
+pub use warning::{Position, Warning};

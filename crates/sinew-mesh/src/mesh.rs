@@ -1,6 +1,6 @@
 //! A mesh as a file holds it: all cell types, tags, groups and data, in meshio's arrangement.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::cell_type::CellType;
 use crate::physical_tags::PhysicalTags;
@@ -24,7 +24,7 @@ pub struct Mesh {
     pub node_entities: Vec<Entity>,
     /// The cells. Version 4: one block per element block of the file. Version 2: one per run of equal types.
     pub cells: Vec<CellBlock>,
-    /// The names of physical groups, keyed by dimension (0..=3) and tag. A named group may have no cells.
+    /// The names of physical groups, keyed by dimension (0..=3) and tag (positive). A named group may have no cells.
     pub physical_names: BTreeMap<(u8, i32), String>,
     /// Values at points (`$NodeData`).
     pub point_data: Vec<PointData>,
@@ -170,19 +170,19 @@ impl Mesh {
     #[must_use]
     pub fn node_tag(&self, point: u32) -> u64 {
         let ordinal = u64::from(point) + 1;
-        self.node_tags.get(point as usize).copied().unwrap_or(ordinal)
+        self.node_tags
+            .get(point as usize)
+            .copied()
+            .unwrap_or(ordinal)
     }
 
     /// Dimension and tag of every physical group, named or not, in ascending order.
     #[must_use]
     pub fn physical_groups(&self) -> Vec<(u8, i32)> {
-        let mut groups: std::collections::BTreeSet<(u8, i32)> =
-            self.physical_names.keys().copied().collect();
+        let mut groups: BTreeSet<(u8, i32)> = self.physical_names.keys().copied().collect();
         for block in &self.cells {
-            for cell in 0..block.physical.len() {
-                for &tag in block.physical.of(cell) {
-                    groups.insert((block.kind.dim(), tag.saturating_abs()));
-                }
+            for &tag in block.physical.lists().flatten() {
+                groups.insert((block.kind.dim(), tag.saturating_abs()));
             }
         }
         groups.into_iter().collect()
@@ -204,24 +204,29 @@ impl Mesh {
     /// A cell in several groups is in several sets, and a tag counts whatever its sign.
     #[must_use]
     pub fn cell_sets(&self) -> Vec<CellSet> {
-        let members_in = |block: &CellBlock, dim: u8, tag: i32| -> Vec<u32> {
-            if block.kind.dim() != dim {
-                return Vec::new();
-            }
-            (0u32..)
-                .take(block.len())
-                .filter(|&cell| {
-                    let tags = block.physical.of(cell as usize);
-                    tags.iter().any(|t| t.saturating_abs() == tag.saturating_abs())
-                })
-                .collect()
-        };
-        self.physical_names
-            .iter()
-            .map(|(&(dim, tag), name)| CellSet {
+        let mut sets: Vec<CellSet> = self
+            .physical_names
+            .values()
+            .map(|name| CellSet {
                 name: name.clone(),
-                blocks: self.cells.iter().map(|b| members_in(b, dim, tag)).collect(),
+                blocks: vec![Vec::new(); self.cells.len()],
             })
-            .collect()
+            .collect();
+        let index: HashMap<(u8, i32), usize> =
+            self.physical_names.keys().copied().zip(0..).collect();
+        for (number, block) in self.cells.iter().enumerate() {
+            for (cell, i) in (0u32..).zip(0..block.len()) {
+                for tag in block.physical.of(i) {
+                    let Some(&set) = index.get(&(block.kind.dim(), tag.saturating_abs())) else {
+                        continue;
+                    };
+                    let members = &mut sets[set].blocks[number];
+                    if members.last() != Some(&cell) {
+                        members.push(cell);
+                    }
+                }
+            }
+        }
+        sets
     }
 }

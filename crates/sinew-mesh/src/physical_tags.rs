@@ -20,6 +20,9 @@ impl PhysicalTags {
     /// The same tags for each of `cells` cells.
     #[must_use]
     pub fn uniform(tags: &[i32], cells: usize) -> PhysicalTags {
+        if cells == 0 {
+            return PhysicalTags::new();
+        }
         PhysicalTags {
             lists: vec![without_zeros(tags)],
             list_of_cell: vec![0; cells],
@@ -42,7 +45,8 @@ impl PhysicalTags {
             }
         };
         // A block has at most u32::MAX cells, so it has at most that many lists.
-        self.list_of_cell.push(u32::try_from(index).unwrap_or(u32::MAX));
+        self.list_of_cell
+            .push(u32::try_from(index).unwrap_or(u32::MAX));
     }
 
     /// The tags of a cell, as signed in the file; empty for a cell in no group or past the end.
@@ -58,6 +62,11 @@ impl PhysicalTags {
     #[must_use]
     pub fn first_of(&self, cell: usize) -> i32 {
         self.of(cell).first().copied().unwrap_or(0)
+    }
+
+    /// Every list of tags that some cell has, at least once.
+    pub(crate) fn lists(&self) -> impl Iterator<Item = &[i32]> {
+        self.lists.iter().map(Vec::as_slice)
     }
 
     /// Number of cells.

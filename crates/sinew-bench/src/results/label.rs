@@ -8,7 +8,9 @@ use serde_json::Value;
 /// `cnn Q=4`, `central-difference substeps=3`, `cnn-stabilised chebyshev 4`.
 pub(super) fn label(integrator: &str, options: &BTreeMap<String, Value>) -> String {
     let mut label = integrator.to_owned();
-    for (key, value) in options {
+    // The kind of a method comes before its figures.
+    let (kinds, others): (Vec<_>, Vec<_>) = options.iter().partition(|(key, _)| *key == "kind");
+    for (key, value) in kinds.into_iter().chain(others) {
         label.push(' ');
         label.push_str(&option(key, value));
     }
@@ -17,6 +19,7 @@ pub(super) fn label(integrator: &str, options: &BTreeMap<String, Value>) -> Stri
 
 fn option(key: &str, value: &Value) -> String {
     match (key, value) {
+        ("kind", value) => plain(value),
         ("saturation", value) => format!("Q={}", plain(value)),
         // A method of iteration and its count speak for themselves.
         ("inner", Value::Object(inner)) => match (inner.get("kind"), inner.get("sweeps")) {
@@ -66,6 +69,10 @@ mod tests {
         assert_eq!(
             of("newmark", json!({ "gamma": 0.6, "beta": 0.3025 })),
             "newmark beta=0.3025 gamma=0.6"
+        );
+        assert_eq!(
+            of("propagator", json!({ "degree": 8, "kind": "chebyshev" })),
+            "propagator chebyshev degree=8"
         );
         assert_eq!(
             of(

@@ -13,6 +13,7 @@ const PAPER_Q: f64 = 4.0;
 pub(super) const SATURATION: OptionHelp = OptionHelp {
     key: "saturation",
     help: "saturation voltage Q [m/s] above 0, or \"off\"; default 4, the paper's",
+    shown_default: Some(PAPER_Q),
 };
 
 /// The option `saturation`.

@@ -49,10 +49,12 @@ impl Method for Newmark {
         OptionHelp {
             key: "beta",
             help: "0 to 1; default 0.25",
+            shown_default: None,
         },
         OptionHelp {
             key: "gamma",
             help: "0 to 1; default 0.5, above it motion is damped and the order is 1",
+            shown_default: None,
         },
     ];
 

@@ -1,0 +1,192 @@
+//! All combinations of cases, integrators and steps.
+
+use std::path::PathBuf;
+
+use sinew_core::OptionError;
+
+use crate::case::{Case, CaseError};
+use crate::measure::{Effort, Method, measure};
+use crate::results::{BenchResults, Machine, Skipped, mark_pareto};
+
+/// What to measure.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bench {
+    /// Scene files.
+    pub scenes: Vec<PathBuf>,
+    /// Integrator ids; empty for all.
+    pub integrators: Vec<String>,
+    /// Steps [s]; empty for [`default_steps`] of each scene.
+    pub steps: Vec<f64>,
+    /// Fewer steps and repeats.
+    pub quick: bool,
+}
+
+/// Why a bench could not start.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BenchError {
+    /// An integrator that does not exist.
+    #[error(transparent)]
+    Integrator(#[from] OptionError),
+    /// A step that is no time.
+    #[error("--dt {0}: expected a finite step above 0 s")]
+    Step(f64),
+    /// A scene.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// No thread to measure on.
+    #[error("the measuring thread could not be started: {0}")]
+    Thread(String),
+}
+
+/// How far a bench has come.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Progress {
+    /// A scene is read and its reference solved.
+    Reference {
+        /// The scene's file.
+        scene: PathBuf,
+    },
+    /// A run begins.
+    Run {
+        /// Runs done before.
+        done: usize,
+        /// Runs in all.
+        of: usize,
+        /// What runs now.
+        what: String,
+    },
+}
+
+/// Steps [s] at which a scene is measured unless others are asked for: its own and fractions of
+/// it, most of which meet the instants at which errors are taken.
+#[must_use]
+pub fn default_steps(dt: f64, quick: bool) -> Vec<f64> {
+    let divisors: &[f64] = if quick {
+        &[1.0, 3.0, 20.0]
+    } else {
+        &[1.0, 4.0 / 3.0, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0]
+    };
+    divisors.iter().map(|divisor| dt / divisor).collect()
+}
+
+impl Bench {
+    /// Measures everything on one thread. A run that diverges is a row like any other; one that
+    /// cannot be made is listed with its reason.
+    ///
+    /// # Errors
+    /// [`BenchError`] for mistakes in what was asked for, before anything is measured.
+    pub fn run(
+        &self,
+        revision: String,
+        machine: Machine,
+        mut progress: impl FnMut(Progress) + Send,
+    ) -> Result<BenchResults, BenchError> {
+        let methods = self.methods()?;
+        if let Some(&step) = self.steps.iter().find(|dt| !(dt.is_finite() && **dt > 0.0)) {
+            return Err(BenchError::Step(step));
+        }
+        // Products may use a thread pool; one thread keeps times and counts comparable.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let pool = pool.map_err(|error| BenchError::Thread(error.to_string()))?;
+        pool.install(|| self.run_here(&methods, revision, machine, &mut progress))
+    }
+
+    fn run_here(
+        &self,
+        methods: &[String],
+        revision: String,
+        machine: Machine,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<BenchResults, BenchError> {
+        let mut cases = Vec::new();
+        for scene in &self.scenes {
+            progress(Progress::Reference {
+                scene: scene.clone(),
+            });
+            cases.push(Case::load(scene)?);
+        }
+        let plan: Vec<(usize, &str, f64)> = cases
+            .iter()
+            .enumerate()
+            .flat_map(|(index, case)| {
+                let steps = self.steps_of(case);
+                methods.iter().flat_map(move |method| {
+                    let steps = steps.clone().into_iter();
+                    steps.map(move |dt| (index, method.as_str(), dt))
+                })
+            })
+            .collect();
+        let mut results = BenchResults::new(revision, machine);
+        results.cases = cases.iter().map(Case::info).collect();
+        let effort = if self.quick {
+            Effort::QUICK
+        } else {
+            Effort::FULL
+        };
+        for (done, &(index, integrator, dt)) in plan.iter().enumerate() {
+            let case = &mut cases[index];
+            progress(Progress::Run {
+                done,
+                of: plan.len(),
+                what: format!("{}: {integrator}, {} ms", case.id(), round(dt * 1e3)),
+            });
+            let method = method_on(case, integrator);
+            match measure(case, &method, dt, effort) {
+                Ok(row) => results.rows.push(row),
+                Err(reason) => results.skipped.push(Skipped {
+                    case: case.id().to_owned(),
+                    integrator: integrator.to_owned(),
+                    dt,
+                    reason,
+                }),
+            }
+        }
+        mark_pareto(&mut results.rows);
+        Ok(results)
+    }
+
+    fn methods(&self) -> Result<Vec<String>, BenchError> {
+        let known = sinew_integrators::ids();
+        if self.integrators.is_empty() {
+            return Ok(known.into_iter().map(str::to_owned).collect());
+        }
+        for id in &self.integrators {
+            if !known.contains(&id.as_str()) {
+                let id = id.clone();
+                return Err(OptionError::UnknownIntegrator { id, known }.into());
+            }
+        }
+        Ok(self.integrators.clone())
+    }
+
+    fn steps_of(&self, case: &Case) -> Vec<f64> {
+        if self.steps.is_empty() {
+            default_steps(case.simulation().settings().dt, self.quick)
+        } else {
+            self.steps.clone()
+        }
+    }
+}
+
+/// The scene's own integrator runs with the scene's options, every other with its defaults. Those
+/// that saturate say at which voltage.
+fn method_on(case: &Case, integrator: &str) -> Method {
+    let mut method = Method::new(integrator);
+    let settings = case.simulation().settings();
+    if settings.integrator == integrator {
+        method.options = settings.options.clone();
+    }
+    let entries = sinew_integrators::entries();
+    let options = entries.iter().filter(|entry| entry.id == integrator);
+    for help in options.flat_map(|entry| entry.options) {
+        if let (Some(default), None) = (help.shown_default, method.options.get(help.key)) {
+            method.options = method.options.with_number(help.key, default);
+        }
+    }
+    method
+}
+
+fn round(value: f64) -> f64 {
+    (value * 1000.0).round() / 1000.0
+}

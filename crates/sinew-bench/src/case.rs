@@ -1,0 +1,165 @@
+//! A scene with its reference.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use sinew_core::Run;
+use sinew_core::spectrum::Spectrum;
+use sinew_scene::{Scene, SceneError, SceneModel, Simulation};
+
+use crate::reference::{ReferenceError, Track, follow};
+use crate::results::CaseInfo;
+
+/// Displacement over the reference's largest at which an oscillator counts as diverged; a body
+/// counts as diverged at a hundred times its size.
+const OSCILLATOR_LIMIT: f64 = 1e6;
+
+/// A scene with its reference solution.
+#[derive(Debug)]
+pub struct Case {
+    id: String,
+    simulation: Simulation,
+    critical_step: Option<f64>,
+    samples: Arc<Track>,
+    /// References at every step, for steps that do not meet the scene's instants.
+    every_step: BTreeMap<(u64, usize), Arc<Track>>,
+}
+
+/// Why a scene is no case.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CaseError {
+    /// The scene.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The reference.
+    #[error("{case}: {source}")]
+    Reference {
+        /// Id of the case.
+        case: String,
+        /// What is wrong.
+        source: ReferenceError,
+    },
+}
+
+impl Case {
+    /// Reads a scene, builds its model and solves its reference. The id is the file's stem.
+    ///
+    /// # Errors
+    /// [`CaseError`].
+    pub fn load(path: &Path) -> Result<Self, CaseError> {
+        let simulation = Scene::load(path)?.build()?;
+        let stem = path.file_stem().unwrap_or(path.as_os_str());
+        Self::new(stem.to_string_lossy(), simulation)
+    }
+
+    /// A case from a built scene.
+    ///
+    /// # Errors
+    /// [`CaseError::Reference`].
+    pub fn new(id: impl Into<String>, simulation: Simulation) -> Result<Self, CaseError> {
+        let id = id.into();
+        let times: Vec<f64> = simulation.sample_times().collect();
+        let samples = follow(simulation.system(), simulation.initial_state(), &times);
+        let samples = samples.map_err(|source| CaseError::Reference {
+            case: id.clone(),
+            source,
+        })?;
+        let linear = simulation.system().as_linear();
+        let critical_step = linear
+            .map(|linear| Spectrum::of(linear.operators()).critical_step())
+            .filter(|step| step.is_finite());
+        Ok(Self {
+            id,
+            critical_step,
+            samples: Arc::new(samples),
+            every_step: BTreeMap::new(),
+            simulation,
+        })
+    }
+
+    /// Id of the case.
+    #[must_use]
+    pub fn id(&self) -> &str {
+        &self.id
+    }
+
+    /// The scene, built.
+    #[must_use]
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// 2/omega_max [s], where something vibrates.
+    #[must_use]
+    pub fn critical_step(&self) -> Option<f64> {
+        self.critical_step
+    }
+
+    /// The reference at the scene's instants.
+    #[must_use]
+    pub fn samples(&self) -> &Arc<Track> {
+        &self.samples
+    }
+
+    /// The run that covers the scene's duration in steps of `dt` [s].
+    #[must_use]
+    pub fn run(&self, dt: f64) -> Run {
+        let run = Run::covering(self.simulation.settings().duration, dt);
+        run.with_divergence_limit(match self.simulation.system().extent() {
+            Some(extent) => 100.0 * extent,
+            None => OSCILLATOR_LIMIT * self.samples.max_u,
+        })
+    }
+
+    /// What a run in steps of `dt` [s] is compared with: the reference at the scene's instants and
+    /// the number of steps between them where dt meets them all, otherwise the reference after
+    /// every step.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] when the reference after every step fails its check.
+    pub fn reference_for(&mut self, dt: f64) -> Result<(Arc<Track>, usize), ReferenceError> {
+        let settings = self.simulation.settings();
+        let per_instant = settings.duration / settings.samples as f64 / dt;
+        let whole = per_instant.round();
+        if whole >= 1.0 && (per_instant - whole).abs() < 1e-9 * whole {
+            return Ok((Arc::clone(&self.samples), whole as usize));
+        }
+        let steps = self.run(dt).steps;
+        let key = (dt.to_bits(), steps);
+        if let Some(track) = self.every_step.get(&key) {
+            return Ok((Arc::clone(track), 1));
+        }
+        let times: Vec<f64> = (0..=steps).map(|step| step as f64 * dt).collect();
+        let simulation = &self.simulation;
+        let track = follow(simulation.system(), simulation.initial_state(), &times)?;
+        let track = Arc::new(track);
+        self.every_step.insert(key, Arc::clone(&track));
+        Ok((track, 1))
+    }
+
+    /// The case in words.
+    #[must_use]
+    pub fn info(&self) -> CaseInfo {
+        let track = &self.samples;
+        let kind = match self.simulation.model() {
+            SceneModel::Body(_) => "body",
+            SceneModel::Oscillator(_) => "oscillator",
+        };
+        CaseInfo {
+            id: self.id.clone(),
+            title: self.simulation.scene().title().to_owned(),
+            dofs: self.simulation.system().dofs(),
+            duration_s: self.simulation.settings().duration,
+            reference: format!(
+                "Taylor series of the {kind}'s motion in time, to rounding; checked against the same with other steps ({} sweeps in all)",
+                track.sweeps
+            ),
+            reference_error: track.error,
+            max_u_m: track.max_u,
+            late_amplitude_m: track.late_amplitude,
+            critical_step_s: self.critical_step,
+        }
+    }
+}

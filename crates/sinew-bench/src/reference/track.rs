@@ -1,0 +1,169 @@
+//! A reference at the instants a comparison needs.
+
+use sinew_core::{LinearOperators, State, System};
+
+use super::Taylor;
+
+/// A reference solution at some instants, with what the verdicts need of the whole run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Track {
+    /// Instants [s].
+    pub times: Vec<f64>,
+    /// Displacement [m] at each instant.
+    pub displacements: Vec<Vec<f64>>,
+    /// Largest |component| [m] over the run.
+    pub max_u: f64,
+    /// Half the range [m] of the worst degree of freedom over the last fifth of the run.
+    pub late_amplitude: f64,
+    /// Relative L2 difference from the same solution with steps of two thirds the length: the
+    /// reference's own estimate of its error.
+    pub error: f64,
+    /// Products with the matrices it took, the check included.
+    pub sweeps: u64,
+}
+
+/// Why there is no reference.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReferenceError {
+    /// The system is not linear.
+    #[error("a reference solution needs the matrices of a linear system")]
+    NotLinear,
+    /// Its own check failed.
+    #[error(
+        "the reference solution differs from its check by {error:.1e}, more than {allowed:.0e}; the scene moves too fast for its duration"
+    )]
+    Inaccurate {
+        /// Relative L2 difference.
+        error: f64,
+        /// What is allowed.
+        allowed: f64,
+    },
+}
+
+/// Largest error of a reference that is still called one.
+const ALLOWED: f64 = 1e-6;
+
+/// Follows a system from `start` through `times` [s], increasing, and checks the result against a
+/// second solution with other steps.
+///
+/// # Errors
+/// [`ReferenceError`] when the system is not linear or the two solutions differ by more than 1e-6.
+pub fn follow(system: &dyn System, start: &State, times: &[f64]) -> Result<Track, ReferenceError> {
+    let linear = system.as_linear().ok_or(ReferenceError::NotLinear)?;
+    let mut track = solve(linear.operators(), start, times, 1.0);
+    let check = solve(linear.operators(), start, times, 1.5);
+    track.error = relative_difference(&check.displacements, &track.displacements);
+    track.sweeps += check.sweeps;
+    if track.error <= ALLOWED {
+        return Ok(track);
+    }
+    Err(ReferenceError::Inaccurate {
+        error: track.error,
+        allowed: ALLOWED,
+    })
+}
+
+fn solve(operators: &LinearOperators, start: &State, times: &[f64], refinement: f64) -> Track {
+    let mut taylor = Taylor::new(operators, refinement);
+    let mut state = start.clone();
+    let mut late = LateRange::new(start.u.len());
+    let duration = times.last().copied().unwrap_or(0.0);
+    let mut max_u = largest(&start.u);
+    let mut displacements = Vec::with_capacity(times.len());
+    for &time in times {
+        taylor.advance(&mut state, time, |state| {
+            max_u = max_u.max(largest(&state.u));
+            if state.t > 0.8 * duration {
+                late.include(&state.u);
+            }
+        });
+        displacements.push(state.u.clone());
+    }
+    Track {
+        times: times.to_vec(),
+        displacements,
+        max_u,
+        late_amplitude: late.amplitude(),
+        error: 0.0,
+        sweeps: taylor.sweeps,
+    }
+}
+
+/// Largest |component|; infinite where one is not a number.
+pub(crate) fn largest(u: &[f64]) -> f64 {
+    let larger = |max: f64, u: &f64| {
+        if u.is_nan() {
+            f64::INFINITY
+        } else {
+            max.max(u.abs())
+        }
+    };
+    u.iter().fold(0.0, larger)
+}
+
+/// `||a - b|| / ||b||` over all instants; 0 where both are at rest throughout.
+fn relative_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    let mut norms = ErrorNorm::default();
+    for (a, b) in a.iter().zip(b) {
+        norms.include(a, b);
+    }
+    norms.relative()
+}
+
+/// Sums for a relative L2 error.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ErrorNorm {
+    difference: f64,
+    reference: f64,
+}
+
+impl ErrorNorm {
+    pub(crate) fn include(&mut self, u: &[f64], reference: &[f64]) {
+        for (u, reference) in u.iter().zip(reference) {
+            self.difference += (u - reference).powi(2);
+            self.reference += reference * reference;
+        }
+    }
+
+    /// The relative error; where the reference never moves, 0 or infinite.
+    pub(crate) fn relative(self) -> f64 {
+        if self.difference == 0.0 {
+            return 0.0;
+        }
+        (self.difference / self.reference).sqrt()
+    }
+}
+
+/// Range of each degree of freedom over some states.
+#[derive(Clone, Debug)]
+pub(crate) struct LateRange {
+    low: Vec<f64>,
+    high: Vec<f64>,
+}
+
+impl LateRange {
+    pub(crate) fn new(dofs: usize) -> Self {
+        Self {
+            low: vec![f64::INFINITY; dofs],
+            high: vec![f64::NEG_INFINITY; dofs],
+        }
+    }
+
+    pub(crate) fn include(&mut self, u: &[f64]) {
+        for ((low, high), u) in self.low.iter_mut().zip(&mut self.high).zip(u) {
+            *low = low.min(*u);
+            *high = high.max(*u);
+        }
+    }
+
+    /// Half the range [m] of the worst degree of freedom; 0 before any state.
+    pub(crate) fn amplitude(&self) -> f64 {
+        let ranges = self
+            .low
+            .iter()
+            .zip(&self.high)
+            .map(|(low, high)| high - low);
+        ranges.fold(0.0, f64::max) / 2.0
+    }
+}

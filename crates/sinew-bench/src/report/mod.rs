@@ -1,0 +1,32 @@
+//! What people see of a bench: tables, plots, a page. No speed stands without its error beside it.
+//!
+//! The pictures are SVG, written here rather than by a plotting library: the cells of a strip, a
+//! shaded surface, marks with hover texts and colours that follow the page's dark mode are not what
+//! such libraries draw, and axes are little work beside them.
+
+mod axis;
+mod colour_map;
+mod columns;
+mod html;
+mod markup;
+mod number;
+mod plot;
+mod strip;
+mod style;
+mod summary;
+mod surface;
+mod svg;
+mod table;
+mod verdict;
+mod work_precision;
+mod write;
+
+pub use axis::{Axis, Scale};
+pub use html::html;
+pub use plot::{Plot, Point, Rule, Series};
+pub use strip::strip;
+pub use style::{Colour, Dash, Marker, Style};
+pub use surface::Surface;
+pub use table::{markdown, markdown_rows, terminal, terminal_rows};
+pub use work_precision::work_precision;
+pub use write::{WriteError, Written, write_all, write_atomically};

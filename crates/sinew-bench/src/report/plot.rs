@@ -1,0 +1,197 @@
+//! Plots of series on two axes.
+
+mod draw;
+mod follow;
+
+use super::{axis::Axis, style::Style};
+
+/// A plot: series on two axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plot {
+    /// Title above the frame.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// What is drawn, the first lowest.
+    pub series: Vec<Series>,
+    /// Lines at fixed `x`, labelled above the frame.
+    pub vertical_rules: Vec<Rule>,
+    /// Lines at fixed `y`, labelled to the right of the frame.
+    pub horizontal_rules: Vec<Rule>,
+    /// Name of a lane above the frame for points beyond the range of `y`. Without one, series are
+    /// cut off at the frame and an arrow shows where each leaves first.
+    pub lane: Option<String>,
+    /// Width of the whole picture (px).
+    pub width: f64,
+    /// Height of the frame (px).
+    pub height: f64,
+}
+
+/// Points that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Its name in the legend.
+    pub name: String,
+    /// Its points in the order of the line. NaN breaks the line, infinity leaves the frame.
+    pub points: Vec<Point>,
+    /// How it is drawn.
+    pub style: Style,
+}
+
+/// A point of a series.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Point {
+    /// Place on the horizontal axis.
+    pub x: f64,
+    /// Place on the vertical axis.
+    pub y: f64,
+    /// Text that shows on hovering over its marker.
+    pub note: String,
+    /// Ringed.
+    pub ringed: bool,
+}
+
+/// A line across the frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rule {
+    /// Where, on the axis it crosses.
+    pub at: f64,
+    /// What it means.
+    pub label: String,
+}
+
+impl Plot {
+    /// A plot without series.
+    #[must_use]
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
+        Self {
+            title: title.into(),
+            x,
+            y,
+            series: Vec::new(),
+            vertical_rules: Vec::new(),
+            horizontal_rules: Vec::new(),
+            lane: None,
+            width: 760.0,
+            height: 360.0,
+        }
+    }
+
+    /// Adds a series.
+    #[must_use]
+    pub fn with(mut self, series: Series) -> Self {
+        self.series.push(series);
+        self
+    }
+
+    /// Adds a line at a fixed `x`.
+    #[must_use]
+    pub fn with_vertical_rule(mut self, at: f64, label: impl Into<String>) -> Self {
+        let label = label.into();
+        self.vertical_rules.push(Rule { at, label });
+        self
+    }
+
+    /// Adds a line at a fixed `y`.
+    #[must_use]
+    pub fn with_horizontal_rule(mut self, at: f64, label: impl Into<String>) -> Self {
+        let label = label.into();
+        self.horizontal_rules.push(Rule { at, label });
+        self
+    }
+
+    /// The picture as a file of its own or for a page.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        draw::draw(self)
+    }
+}
+
+impl Series {
+    /// A series over its points.
+    #[must_use]
+    pub fn new(name: impl Into<String>, style: Style, points: Vec<Point>) -> Self {
+        Self {
+            name: name.into(),
+            points,
+            style,
+        }
+    }
+
+    /// A line without markers, as of a displacement over time.
+    #[must_use]
+    pub fn line(
+        name: impl Into<String>,
+        style: Style,
+        points: impl IntoIterator<Item = (f64, f64)>,
+    ) -> Self {
+        let points = points.into_iter().map(Point::from).collect();
+        Self::new(name, style.line_only(), points)
+    }
+}
+
+impl From<(f64, f64)> for Point {
+    fn from((x, y): (f64, f64)) -> Self {
+        Self {
+            x,
+            y,
+            ..Self::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plot(points: &[(f64, f64)]) -> Plot {
+        Plot::new(
+            "<title>",
+            Axis::linear("t [s]"),
+            Axis::linear("u [m]").range(-1.0, 1.0),
+        )
+        .with(Series::line("a & b", Style::nth(0), points.iter().copied()))
+    }
+
+    #[test]
+    fn texts_are_escaped() {
+        let svg = plot(&[(0.0, 0.0), (1.0, 0.5)]).svg();
+        assert!(svg.contains("&lt;title&gt;") && svg.contains("a &amp; b"));
+        assert!(!svg.contains("<title>"));
+    }
+
+    #[test]
+    fn a_diverging_series_leaves_the_frame_and_nothing_is_nan() {
+        let arrows = |svg: &str| svg.matches("leaves the frame").count();
+        let quiet = plot(&[(0.0, 0.0), (1.0, 0.5)]).svg();
+        assert_eq!(arrows(&quiet), 0);
+        let wild = plot(&[
+            (0.0, 0.0),
+            (0.5, 4e30),
+            (0.6, -1e300),
+            (0.7, f64::INFINITY),
+            (0.8, f64::NAN),
+        ]);
+        let svg = wild.svg();
+        assert_eq!(arrows(&svg), 1);
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+    }
+
+    #[test]
+    fn points_beyond_the_range_have_their_lane() {
+        let mut lane = plot(&[(0.0, 0.0), (0.5, f64::INFINITY)]);
+        lane.lane = Some("diverged".into());
+        lane.series[0].style = Style::nth(0);
+        let svg = lane.svg();
+        assert!(svg.contains("diverged"));
+        assert!(!svg.contains("leaves the frame") && !svg.contains("NaN"));
+    }
+
+    #[test]
+    fn an_empty_plot_is_a_picture() {
+        let svg = Plot::new("", Axis::log("x"), Axis::log("y")).svg();
+        assert!(svg.starts_with("<svg") && !svg.contains("NaN"));
+    }
+}

@@ -1,0 +1,38 @@
+//! What to take home from a case.
+
+use crate::results::{Row, Verdict};
+
+/// The accurate run that costs least among those with at most the given error (fraction).
+pub(super) fn cheapest<'a>(
+    rows: impl IntoIterator<Item = &'a Row>,
+    largest_error: f64,
+) -> Option<&'a Row> {
+    rows.into_iter()
+        .filter(|row| row.verdict() == Verdict::Accurate)
+        .filter(|row| row.error.is_some_and(|error| error <= largest_error))
+        .min_by(|a, b| a.cpu_s_per_s.total_cmp(&b.cpu_s_per_s))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_guarded_run_is_never_the_cheapest() {
+        let row = |cpu_s_per_s, error, saturated| Row {
+            cpu_s_per_s,
+            error: Some(error),
+            saturated,
+            bounded: true,
+            ..Row::default()
+        };
+        let rows = [
+            row(1.0, 0.01, 0.5),
+            row(2.0, 0.04, 0.0),
+            row(3.0, 0.01, 0.0),
+        ];
+        assert_eq!(cheapest(&rows, 0.05), Some(&rows[1]));
+        assert_eq!(cheapest(&rows, 0.01), Some(&rows[2]));
+        assert_eq!(cheapest(&rows, 0.001), None);
+    }
+}

@@ -1,0 +1,67 @@
+//! Colours and lines.
+//!
+//! Neutral colours name themselves beside their value, so that a page can restyle them: attributes
+//! give way to its CSS, and a file alone still looks right.
+
+use crate::report::style::{Colour, Dash};
+
+/// A colour: of the data, or one that follows the page.
+#[derive(Clone, Copy)]
+pub(in crate::report) enum Paint {
+    Data(Colour),
+    Paper,
+    Ink,
+    Muted,
+    Grid,
+    /// Text on a tint, which stays light on a dark page.
+    OnTint,
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy)]
+pub(in crate::report) struct Stroke {
+    pub(in crate::report) paint: Paint,
+    pub(in crate::report) width: f64,
+    pub(in crate::report) dash: Dash,
+}
+
+impl Stroke {
+    pub(in crate::report) fn new(paint: Paint, width: f64) -> Self {
+        Self {
+            paint,
+            width,
+            dash: Dash::Solid,
+        }
+    }
+}
+
+impl Paint {
+    fn class_and_colour(self) -> (&'static str, Colour) {
+        match self {
+            Self::Data(colour) => ("", colour),
+            Self::Paper => ("paper", Colour(0xff, 0xff, 0xff)),
+            Self::Ink => ("ink", Colour(0x22, 0x22, 0x22)),
+            Self::Muted => ("muted", Colour(0x66, 0x66, 0x66)),
+            Self::Grid => ("grid", Colour(0xe3, 0xe3, 0xe3)),
+            Self::OnTint => ("", Colour(0x11, 0x11, 0x11)),
+        }
+    }
+
+    pub(super) fn as_fill(self) -> String {
+        self.attribute("fill", "f")
+    }
+
+    pub(super) fn as_stroke(self) -> String {
+        self.attribute("stroke", "s")
+    }
+
+    fn attribute(self, attribute: &str, prefix: &str) -> String {
+        match self.class_and_colour() {
+            ("", colour) => format!("{attribute}=\"{colour}\""),
+            // Not classes: fill and stroke of one element would need the attribute twice.
+            (class, colour) => {
+                format!("{attribute}=\"{colour}\" data-{prefix}=\"{class}\"")
+            }
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Tables for the terminal and for Markdown.
+
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle, presets};
+
+use super::{
+    columns::{COLUMNS, Column},
+    number,
+};
+use crate::results::{BenchResults, Row};
+
+/// Lines cost width, which a terminal lacks.
+const RULED_HEAD: TableStyle =
+    TableStyle::new().header_separator(LineStyle::new('─', '─', '─', '─'));
+
+/// All rows for a terminal, by case, then the runs that were skipped.
+#[must_use]
+pub fn terminal(results: &BenchResults) -> String {
+    by_case(results, "", terminal_rows)
+}
+
+/// All rows as Markdown, by case, then the runs that were skipped.
+#[must_use]
+pub fn markdown(results: &BenchResults) -> String {
+    by_case(results, "### ", markdown_rows)
+}
+
+/// Some rows for a terminal.
+#[must_use]
+pub fn terminal_rows<'a>(rows: impl IntoIterator<Item = &'a Row>) -> String {
+    let mut table = table(rows, RULED_HEAD, |column| column.title("\n"), |cell| cell);
+    for column in table.column_iter_mut() {
+        column.set_padding((0, 1));
+    }
+    let lines = table.lines().map(|line| line.trim_end().to_owned());
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Some rows as a Markdown table.
+#[must_use]
+pub fn markdown_rows<'a>(rows: impl IntoIterator<Item = &'a Row>) -> String {
+    let escape = |cell: String| cell.replace('|', "\\|").replace('\n', " ");
+    let style = presets::ASCII_MARKDOWN;
+    let table = table(rows, style, |column| column.title(" "), escape);
+    align_right(&table.to_string())
+}
+
+fn by_case<'a>(
+    results: &'a BenchResults,
+    heading: &str,
+    table: impl Fn(Vec<&'a Row>) -> String,
+) -> String {
+    let mut out = String::new();
+    for id in results.case_ids() {
+        out.push_str(&format!("{heading}{id}"));
+        if let Some(case) = results.case(id) {
+            let error = number::percent(case.reference_error);
+            out.push_str(&format!(
+                ": {} (free dofs: {}, time: {} s; reference: {}, itself within {error} %)",
+                case.title,
+                case.dofs,
+                number::short(case.duration_s),
+                case.reference,
+            ));
+        }
+        let rows = results.rows.iter().filter(|row| row.case == id).collect();
+        out.push_str(&format!("\n\n{}\n\n", table(rows)));
+    }
+    if !results.skipped.is_empty() {
+        out.push_str(&format!("{heading}not run\n\n"));
+    }
+    for run in &results.skipped {
+        out.push_str(&format!(
+            "- {}, {}, dt = {} ms: {}\n",
+            run.case,
+            run.integrator,
+            number::milliseconds(run.dt),
+            run.reason
+        ));
+    }
+    out
+}
+
+fn table<'a>(
+    rows: impl IntoIterator<Item = &'a Row>,
+    style: TableStyle,
+    title: fn(&Column) -> String,
+    escape: fn(String) -> String,
+) -> Table {
+    let mut table = Table::new();
+    table
+        .load_style(style)
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_header(COLUMNS.iter().map(title));
+    for row in rows {
+        table.add_row(COLUMNS.iter().map(|column| escape((column.cell)(row))));
+    }
+    for (column, described) in table.column_iter_mut().zip(&COLUMNS) {
+        if described.key.is_some() {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+/// Gives the rule under a Markdown head its colons.
+fn align_right(table: &str) -> String {
+    let mut lines: Vec<String> = table.lines().map(str::to_owned).collect();
+    if let Some(rule) = lines.get_mut(1) {
+        let cells: Vec<String> = rule
+            .trim_matches('|')
+            .split('|')
+            .zip(&COLUMNS)
+            .map(|(dashes, column)| match column.key {
+                Some(_) => format!("{}:", dashes.get(1..).unwrap_or("--")),
+                None => dashes.to_owned(),
+            })
+            .collect();
+        *rule = format!("|{}|", cells.join("|"));
+    }
+    lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{Machine, Outcome, Skipped};
+
+    fn results() -> BenchResults {
+        let mut results = BenchResults::new("r", Machine::default());
+        let row = Row {
+            case: "cube".into(),
+            integrator: "a|b".into(),
+            dt: 0.02,
+            steps: 50,
+            bounded: true,
+            settles: true,
+            error: Some(0.0123),
+            cpu_s_per_s: 0.004,
+            us_per_step: 80.0,
+            pareto: true,
+            ..Row::default()
+        };
+        results.rows = vec![
+            row.clone(),
+            Row {
+                outcome: Outcome::Diverged,
+                diverged_at_s: Some(0.34),
+                error: None,
+                bounded: false,
+                pareto: false,
+                ..row
+            },
+        ];
+        results.skipped.push(Skipped {
+            case: "cube".into(),
+            integrator: "modal".into(),
+            dt: 0.02,
+            reason: "needs modes".into(),
+        });
+        results
+    }
+
+    #[test]
+    fn terminal_shows_error_beside_speed() {
+        let text = terminal(&results());
+        let run = text.lines().find(|line| line.contains("a|b")).unwrap();
+        let cells: Vec<&str> = run.split_whitespace().collect();
+        let error = cells.iter().position(|&cell| cell == "1.23").unwrap();
+        assert_eq!(cells[error + 1], "0.00400");
+        assert!(text.contains("diverged at t=0.34 s"));
+        assert!(text.contains("- cube, modal, dt = 20 ms: needs modes"));
+    }
+
+    #[test]
+    fn markdown_is_a_table() {
+        let text = markdown(&results());
+        let lines: Vec<&str> = text.lines().filter(|line| line.starts_with('|')).collect();
+        assert_eq!(lines.len(), 4);
+        let bars = |line: &str| line.replace("\\|", "").matches('|').count();
+        assert!(lines.iter().all(|l| bars(l) == COLUMNS.len() + 1), "{text}");
+        assert!(lines[1].contains("-:|"));
+        assert!(lines[2].contains("a\\|b"));
+    }
+}

@@ -1,0 +1,107 @@
+//! How verdicts look: a symbol and a word beside every colour.
+
+use super::{number, style::Colour};
+use crate::results::{Outcome, Row, Verdict};
+
+impl Verdict {
+    /// All verdicts, the best first.
+    pub const ALL: [Self; 5] = [
+        Self::Accurate,
+        Self::Wrong,
+        Self::Guarded,
+        Self::Unbounded,
+        Self::Diverged,
+    ];
+
+    /// A symbol that tells the verdict without colour.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Accurate => "✓",
+            Self::Wrong => "✗",
+            Self::Guarded => "G",
+            Self::Unbounded => "∞",
+            Self::Diverged => "D",
+        }
+    }
+
+    /// The verdict in one word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Accurate => "accurate",
+            Self::Wrong => "wrong",
+            Self::Guarded => "guarded",
+            Self::Unbounded => "unbounded",
+            Self::Diverged => "diverged",
+        }
+    }
+
+    pub(super) fn meaning(self) -> &'static str {
+        match self {
+            Self::Accurate => "error ≤ 5 %",
+            Self::Wrong => "bounded, error > 5 %",
+            Self::Guarded => "cells saturated",
+            Self::Unbounded => "|u| > 10× the reference's",
+            Self::Diverged => "given up early",
+        }
+    }
+
+    /// Light enough for black text: tints of the Okabe-Ito colours.
+    pub(super) fn tint(self) -> Colour {
+        match self {
+            Self::Accurate => Colour(0xb8, 0xe6, 0xd4),
+            Self::Wrong => Colour(0xfb, 0xe3, 0xad),
+            Self::Guarded => Colour(0xec, 0xcf, 0xe0),
+            Self::Unbounded => Colour(0xf6, 0xb9, 0x8d),
+            Self::Diverged => Colour(0xd9, 0xd9, 0xd9),
+        }
+    }
+}
+
+/// The error in per cent without the sign, or what stands in its place.
+pub(super) fn error(row: &Row) -> String {
+    match (row.outcome, row.error) {
+        (Outcome::Diverged, _) => match row.diverged_at_s {
+            Some(t) => format!("diverged at t={} s", number::short(t)),
+            None => "diverged".to_owned(),
+        },
+        (Outcome::Finished, Some(error)) if row.bounded => number::percent(error),
+        (Outcome::Finished, Some(error)) => format!("unbounded ({})", number::percent(error)),
+        (Outcome::Finished, None) => "unknown".to_owned(),
+    }
+}
+
+/// The error with its unit where it is a number.
+pub(super) fn error_with_unit(row: &Row) -> String {
+    match (row.outcome, row.bounded) {
+        (Outcome::Finished, true) => format!("{} %", error(row)),
+        (Outcome::Finished, false) => error(row).replace(')', " %)"),
+        (Outcome::Diverged, _) => error(row),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_and_what_stands_for_them() {
+        let row = |outcome, bounded, error, diverged_at_s| Row {
+            outcome,
+            bounded,
+            error,
+            diverged_at_s,
+            ..Row::default()
+        };
+        let fine = row(Outcome::Finished, true, Some(25.2), None);
+        assert_eq!(error(&fine), "2520");
+        assert_eq!(error_with_unit(&fine), "2520 %");
+        let unbounded = row(Outcome::Finished, false, Some(4e30), None);
+        assert_eq!(error(&unbounded), "unbounded (4.00e32)");
+        assert_eq!(error_with_unit(&unbounded), "unbounded (4.00e32 %)");
+        let diverged = row(Outcome::Diverged, false, None, Some(0.34));
+        assert_eq!(error(&diverged), "diverged at t=0.34 s");
+        assert_eq!(error_with_unit(&diverged), "diverged at t=0.34 s");
+    }
+}

@@ -1,0 +1,92 @@
+//! The reproduction scene of the paper's second example, section 4.2: a cube of edge 0.2 m held at
+//! its four lateral faces, of uncalibrated springs under mass damping, with 500 Pa on its top from
+//! t = 0 on.
+
+use std::sync::OnceLock;
+
+use sinew_core::{Integrator, Options, Ramp, Run, RunReport, State, System};
+use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule};
+use sinew_mesh::structured::{self, Split};
+
+use super::{build, relative_error, watch};
+
+/// The time between two instants at which errors are taken [s].
+pub(crate) const INSTANT: f64 = 0.02;
+/// Instants after t = 0.
+const INSTANTS: usize = 50;
+
+/// The cube with `cells` grid cells along each edge.
+pub(crate) fn cube(cells: usize) -> Model {
+    let mesh = structured::cube(cells, 0.2, Split::Kuhn).unwrap();
+    let problem = Problem {
+        regions: vec![Region {
+            group: None,
+            density: 1060.0,
+            law: Law::Springs {
+                youngs_modulus: 3500.0,
+                rule: SpringRule::Lloyd,
+                calibrate: false,
+                damping_ratio: 0.0,
+            },
+        }],
+        damping: Rayleigh {
+            mass: 80.0,
+            stiffness: 0.0,
+        },
+        fixed: vec![Fixed {
+            group: "sides".into(),
+            axes: [true; 3],
+        }],
+        loads: vec![LoadSpec {
+            group: "top".into(),
+            kind: LoadKind::Traction([0.0, 0.0, -500.0]),
+            ramp: Ramp::Step,
+        }],
+        gravity: None,
+    };
+    Model::build(&mesh, &problem).unwrap()
+}
+
+/// The paper's cube of ten cells.
+pub(crate) fn paper_cube() -> &'static Model {
+    static MODEL: OnceLock<Model> = OnceLock::new();
+    MODEL.get_or_init(|| cube(10))
+}
+
+/// Displacements at 51 instants of the first second, and how the run went.
+pub(crate) fn run(
+    model: &Model,
+    integrator: &mut dyn Integrator,
+    steps_per_instant: usize,
+) -> (Vec<Vec<f64>>, State, RunReport) {
+    let run = Run {
+        steps: INSTANTS * steps_per_instant,
+        ..Run::covering(1.0, INSTANT / steps_per_instant as f64)
+    };
+    let mut step = 0;
+    let mut instants = Vec::new();
+    let start = State::at_rest(model.dofs());
+    let (state, report) = watch(model, integrator, start, &run, |state| {
+        if step % steps_per_instant == 0 {
+            instants.push(state.u.clone());
+        }
+        step += 1;
+    });
+    (instants, state, report)
+}
+
+/// The displacements of the classical Runge-Kutta method.
+pub(crate) fn rk4(steps_per_instant: usize) -> Vec<Vec<f64>> {
+    run(paper_cube(), &mut *build("rk4", &Options::new()), steps_per_instant).0
+}
+
+/// The reference: its error is below 1e-6.
+pub(crate) fn reference() -> &'static [Vec<f64>] {
+    static REFERENCE: OnceLock<Vec<Vec<f64>>> = OnceLock::new();
+    REFERENCE.get_or_init(|| rk4(20))
+}
+
+/// Error against the reference.
+pub(crate) fn error(instants: &[Vec<f64>]) -> f64 {
+    relative_error(instants, reference())
+}

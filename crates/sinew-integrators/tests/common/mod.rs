@@ -1,0 +1,91 @@
+//! What the tests of the integrators share.
+
+#![allow(dead_code, reason = "each test file uses some of these")]
+
+#[path = "../../../sinew-cnn/tests/common/body.rs"]
+pub(crate) mod body;
+#[path = "../../../sinew-cnn/tests/common/dense.rs"]
+pub(crate) mod dense;
+pub(crate) mod cube;
+
+use sinew_core::{
+    Integrator, Options, Outcome, Run, RunReport, State, System, Verdict, simulate,
+};
+
+/// An integrator by name, under these options.
+pub(crate) fn build(id: &str, options: &Options) -> Box<dyn Integrator> {
+    sinew_integrators::build(id, options).unwrap()
+}
+
+/// No options.
+pub(crate) fn plain() -> Options {
+    Options::new()
+}
+
+/// The option `saturation`.
+pub(crate) fn saturation(q: f64) -> Options {
+    Options::new().with_number("saturation", q)
+}
+
+/// Takes so many steps.
+pub(crate) fn advance(
+    integrator: &mut dyn Integrator,
+    system: &dyn System,
+    state: &mut State,
+    steps: usize,
+    dt: f64,
+) {
+    for _ in 0..steps {
+        integrator.step(system, state, dt).unwrap();
+    }
+}
+
+/// Runs an integrator and shows every state, the first included.
+pub(crate) fn watch(
+    system: &dyn System,
+    integrator: &mut dyn Integrator,
+    start: State,
+    run: &Run,
+    mut see: impl FnMut(&State),
+) -> (State, RunReport) {
+    let mut state = start;
+    let mut recorder = |_: &dyn System, state: &State| {
+        see(state);
+        Ok(Verdict::Continue)
+    };
+    let report = simulate(system, integrator, &mut state, run, &mut recorder).unwrap();
+    (state, report)
+}
+
+/// Whether a run ended because displacements grew without bound.
+pub(crate) fn diverged(report: &RunReport) -> bool {
+    matches!(report.outcome, Outcome::Diverged { .. })
+}
+
+/// Checks a figure against its digits as printed.
+#[track_caller]
+pub(crate) fn assert_prints(value: f64, printed: &str) {
+    let mantissa = printed.split('e').next().unwrap();
+    let decimals = mantissa.split_once('.').map_or(0, |(_, digits)| digits.len());
+    let found = if printed.contains('e') {
+        format!("{value:.decimals$e}")
+    } else {
+        format!("{value:.decimals$}")
+    };
+    assert_eq!(found, printed, "{value:e}");
+}
+
+/// `||a - b|| / ||b||` over all entries.
+pub(crate) fn relative_error(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    let (mut difference, mut size) = (0.0, 0.0);
+    for (a, b) in a.iter().flatten().zip(b.iter().flatten()) {
+        difference += (a - b).powi(2);
+        size += b.powi(2);
+    }
+    f64::sqrt(difference / size)
+}
+
+/// The largest size of a component.
+pub(crate) fn largest(u: &[f64]) -> f64 {
+    u.iter().fold(0.0, |largest, u| u.abs().max(largest))
+}

@@ -1,0 +1,64 @@
+//! What can be wrong with the bytes of a .msh file.
+
+use crate::warning::Position;
+
+/// The bytes are not a .msh file that can be read.
+///
+/// The message is `place in the file: section, block, row: what is wrong; expected ...`.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MshError {
+    /// The contents break the format or contradict themselves.
+    #[error("{at}: {}{problem}; expected {expected}", before_problem(place))]
+    Malformed {
+        /// Where.
+        at: Position,
+        /// Section, block and row, e.g. `$Elements, block 2, element 17`; empty outside sections.
+        place: String,
+        /// What is wrong.
+        problem: String,
+        /// What should stand there.
+        expected: String,
+    },
+    /// The file may be valid, but uses what this reader does not read.
+    #[error("{at}: {}{problem}; {advice}", before_problem(place))]
+    Unsupported {
+        /// Where.
+        at: Position,
+        /// Section, block and row; empty outside sections.
+        place: String,
+        /// What is not supported.
+        problem: String,
+        /// What to do about it.
+        advice: String,
+    },
+}
+
+impl MshError {
+    /// Where in the file the error is.
+    #[must_use]
+    pub fn position(&self) -> Position {
+        match self {
+            MshError::Malformed { at, .. } | MshError::Unsupported { at, .. } => *at,
+        }
+    }
+
+    /// The message for a named file: `file.msh:57 (byte 2310): ...`.
+    pub(super) fn message_for(&self, file: &str) -> String {
+        let at = self.position();
+        let message = self.to_string();
+        let without_position = message.strip_prefix(&at.to_string()).unwrap_or(&message);
+        match at.line {
+            Some(line) => format!("{file}:{line} (byte {}){without_position}", at.byte),
+            None => format!("{file} (byte {}){without_position}", at.byte),
+        }
+    }
+}
+
+fn before_problem(place: &str) -> String {
+    if place.is_empty() {
+        String::new()
+    } else {
+        format!("{place}: ")
+    }
+}

@@ -1,0 +1,105 @@
+//! An error on its way up: every level it passes adds where it is.
+
+use super::error::MshError;
+use crate::warning::Position;
+
+/// What is wrong, as the decoders report it. Boxed, because it is returned from the innermost loops.
+#[derive(Debug)]
+pub(super) struct Fault(Box<Details>);
+
+#[derive(Debug)]
+struct Details {
+    offset: usize,
+    /// Innermost first.
+    places: Vec<String>,
+    problem: String,
+    expected: String,
+    is_shortage: bool,
+    is_unsupported: bool,
+}
+
+impl Fault {
+    pub(super) fn new(
+        offset: usize,
+        problem: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Fault {
+        Fault(Box::new(Details {
+            offset,
+            places: Vec::new(),
+            problem: problem.into(),
+            expected: expected.into(),
+            is_shortage: false,
+            is_unsupported: false,
+        }))
+    }
+
+    /// The data end before they should; the place of the record will say of how many.
+    pub(super) fn shortage(
+        offset: usize,
+        problem: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Fault {
+        let mut fault = Fault::new(offset, problem, expected);
+        fault.0.is_shortage = true;
+        fault
+    }
+
+    /// The file may well be valid, but this reader does not know how to read it.
+    pub(super) fn unsupported(
+        offset: usize,
+        problem: impl Into<String>,
+        advice: impl Into<String>,
+    ) -> Fault {
+        let mut fault = Fault::new(offset, problem, advice);
+        fault.0.is_unsupported = true;
+        fault
+    }
+
+    pub(super) fn inside(mut self, place: impl Into<String>) -> Fault {
+        self.0.places.push(place.into());
+        self
+    }
+
+    /// `number` counts from 1.
+    pub(super) fn in_record(self, record: &str, number: u64, of: u64) -> Fault {
+        if self.0.is_shortage {
+            self.inside(format!("{record} {number} of {of}"))
+        } else {
+            self.inside(format!("{record} {number}"))
+        }
+    }
+
+    pub(super) fn into_error(self, bytes: &[u8]) -> MshError {
+        let details = *self.0;
+        let at = position(bytes, details.offset);
+        let mut places = details.places;
+        places.reverse();
+        let place = places.join(", ");
+        if details.is_unsupported {
+            MshError::Unsupported {
+                at,
+                place,
+                problem: details.problem,
+                advice: details.expected,
+            }
+        } else {
+            MshError::Malformed {
+                at,
+                place,
+                problem: details.problem,
+                expected: details.expected,
+            }
+        }
+    }
+}
+
+/// Line and byte of an offset.
+pub(super) fn position(bytes: &[u8], offset: usize) -> Position {
+    let before = bytes.get(..offset).unwrap_or(bytes);
+    let line_breaks = before.iter().filter(|&&byte| byte == b'\n').count();
+    Position {
+        line: Some(line_breaks as u64 + 1),
+        byte: offset as u64,
+    }
+}

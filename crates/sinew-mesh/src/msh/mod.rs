@@ -1,0 +1,89 @@
+//! gmsh's .msh format: reading versions 2.2 and 4.1, writing 4.1, all as text.
+//!
+//! The reader walks over the bytes once. [`cursor`] knows offsets, [`source`] turns bytes into numbers, `section` finds
+//! sections, and one module for each section decodes its rows per format version into raw tables that still hold the
+//! file's tags. [`assemble`] then turns tags into indices, when all sections are known, in whatever order they came.
+//!
+//! Where the format leaves a question open, the answer is:
+//!
+//! | case | what the reader does |
+//! |---|---|
+//! | totals or tag ranges in a 4.1 header disagree with the blocks | believes the blocks, warns |
+//! | a node row occurs twice | the same coordinates: warns, keeps one; others: refuses |
+//! | `$Nodes` or `$Elements` occurs again | rows seen before merge if identical, else refuses; new rows are added |
+//! | an element tag occurs twice in one section | keeps both, warns |
+//! | the same volume cell is written once per physical group | keeps all, warns with the count |
+//! | an element repeats a node, is flat or inverted | accepts; such cells are a matter of geometry, not of format |
+//! | a block on an entity that `$Entities` does not list | no physical group, warns |
+//! | `$Elements` before `$Nodes` | accepts |
+//! | the last `$End...` is missing | accepts with a warning if the last row ends with a line break, else refuses |
+//! | a row of version 2.2 that ends, or begins, in the middle of a line and crosses a line break | refuses |
+//! | an unknown section | skips it, warns |
+//! | Fortran exponents (`1D-3`), `nan`, `inf`, `1e999` | refuses |
+//! | a name that is not UTF-8 | replaces the bad bytes, warns |
+//! | a name with quotes inside | takes the text between the first and the last quote |
+//! | a UTF-8 byte order mark | skips it |
+
+#![deny(
+    clippy::indexing_slicing,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic
+)]
+
+mod assemble;
+mod cursor;
+mod elements;
+mod entities;
+mod error;
+mod fault;
+mod file;
+mod header;
+mod nodes;
+mod number;
+mod physical_names;
+mod remarks;
+mod rows_of_lines;
+mod section;
+mod source;
+mod write;
+
+pub use error::MshError;
+pub use file::{MshFileError, read_msh_file};
+pub use write::{WriteMshError, write_msh41_ascii};
+
+use crate::mesh::Mesh;
+use cursor::Cursor;
+use remarks::Remarks;
+
+/// Reads the bytes of a .msh file: version 2.2 or 4.1, as text.
+///
+/// What was tolerated stands in [`Mesh::warnings`].
+///
+/// # Errors
+///
+/// If the bytes are no such file, or are inconsistent; the error names the place and what was expected there.
+///
+/// ```
+/// let file = b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n7 0 0 zero\n$EndNodes\n";
+/// let error = sinew_mesh::read_msh(file).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "line 6 (byte 50): $Nodes, node 1: the z coordinate is \"zero\"; expected a number"
+/// );
+/// ```
+pub fn read_msh(bytes: &[u8]) -> Result<Mesh, MshError> {
+    let mut remarks = Remarks::default();
+    read_sections(bytes, &mut remarks)
+        .and_then(|contents| assemble::mesh(contents, &mut remarks))
+        .map(|mesh| Mesh {
+            warnings: remarks.into_warnings(bytes),
+            ..mesh
+        })
+        .map_err(|fault| fault.into_error(bytes))
+}
+
+fn read_sections(bytes: &[u8], remarks: &mut Remarks) -> Result<section::Contents, fault::Fault> {
+    header::refuse_other_formats(bytes)?;
+    section::read_all(&mut Cursor::new(bytes), remarks)
+}

@@ -1,0 +1,114 @@
+//! Numbers as .msh files spell them.
+
+use super::cursor::{Token, quoted};
+use super::fault::Fault;
+
+/// A count or tag: decimal digits only, so that `-1`, `3.5` and what exceeds 64 bits are named, not misread.
+pub(super) fn unsigned(token: Token<'_>, what: &str) -> Result<u64, Fault> {
+    let digits = token.text;
+    let value = digits.iter().try_fold(0u64, |value, byte| {
+        let digit = byte.is_ascii_digit().then(|| u64::from(byte - b'0'))?;
+        value.checked_mul(10)?.checked_add(digit)
+    });
+    value.filter(|_| !digits.is_empty()).ok_or_else(|| {
+        let expected = if !digits.is_empty() && digits.iter().all(u8::is_ascii_digit) {
+            "a number below 2^64"
+        } else {
+            "a non-negative whole number"
+        };
+        wrong(token, what, expected)
+    })
+}
+
+/// A signed number of 32 bits.
+pub(super) fn signed(token: Token<'_>, what: &str) -> Result<i32, Fault> {
+    std::str::from_utf8(token.text)
+        .ok()
+        .and_then(|text| text.parse().ok())
+        .ok_or_else(|| wrong(token, what, "a whole number of at most 32 bits"))
+}
+
+/// A floating-point number; may be infinite or not a number.
+pub(super) fn double(token: Token<'_>, what: &str) -> Result<f64, Fault> {
+    std::str::from_utf8(token.text)
+        .ok()
+        .and_then(|text| text.parse().ok())
+        .ok_or_else(|| {
+            let is_fortran = token.text.iter().any(|byte| matches!(byte, b'd' | b'D'))
+                && token
+                    .text
+                    .iter()
+                    .all(|byte| b"+-.dD0123456789".contains(byte));
+            let expected = if is_fortran {
+                "a number with exponent E (Fortran's D is not accepted)"
+            } else {
+                "a number"
+            };
+            wrong(token, what, expected)
+        })
+}
+
+fn wrong(token: Token<'_>, what: &str, expected: &str) -> Fault {
+    let problem = format!("{what} is {}", quoted(token.text));
+    if token.text.starts_with(b"$") {
+        Fault::shortage(
+            token.offset,
+            format!("the section ends early: {problem}"),
+            expected,
+        )
+    } else {
+        Fault::new(token.offset, problem, expected)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn token(text: &str) -> Token<'_> {
+        Token {
+            text: text.as_bytes(),
+            offset: 0,
+        }
+    }
+
+    #[test]
+    fn every_usual_spelling_of_a_double_is_read() {
+        let spellings = [
+            ("0", 0.0),
+            ("1.", 1.0),
+            (".5", 0.5),
+            ("+0", 0.0),
+            ("0.E0", 0.0),
+            ("1E+00", 1.0),
+            ("-9.999999994736442e-08", -9.999999994736442e-8),
+            ("4.9406564584124654e-324", 5e-324),
+        ];
+        for (spelling, value) in spellings {
+            assert_eq!(double(token(spelling), "x").ok(), Some(value), "{spelling}");
+        }
+        assert!(double(token("-0"), "x").is_ok_and(f64::is_sign_negative));
+        for spelling in ["", ".", "1D-3", "1,5", "0x10", "1e", "--1", "1_000", "1f"] {
+            assert!(double(token(spelling), "x").is_err(), "{spelling}");
+        }
+    }
+
+    #[test]
+    fn counts_are_plain_digits_of_64_bits() {
+        assert_eq!(
+            unsigned(token("18446744073709551615"), "n").ok(),
+            Some(u64::MAX)
+        );
+        for spelling in ["18446744073709551616", "-1", "+1", "1.0", "1e3", "", "١"] {
+            assert!(unsigned(token(spelling), "n").is_err(), "{spelling}");
+        }
+    }
+
+    #[test]
+    fn signed_numbers_have_32_bits() {
+        assert_eq!(signed(token("-2147483648"), "n").ok(), Some(i32::MIN));
+        for spelling in ["2147483648", "1.0", "", "-"] {
+            assert!(signed(token(spelling), "n").is_err(), "{spelling}");
+        }
+    }
+}

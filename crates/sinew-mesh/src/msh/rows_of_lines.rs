@@ -1,0 +1,29 @@
+//! Version 2 text: one row per line by custom, a stream of numbers by gmsh's reading.
+
+use super::cursor::Cursor;
+use super::fault::Fault;
+
+/// Reads row `number` (from 1) of `total`.
+///
+/// Several rows on a line and a row over several lines are both fine. But a row that crosses a line break without
+/// beginning and ending with a line took a number from the row after it, or was left one by the row before: it is refused,
+/// because what follows can look valid and mean something else.
+pub(super) fn read_row<'a>(
+    cursor: &mut Cursor<'a>,
+    (record, number, total): (&str, u64, u64),
+    row: impl FnOnce(&mut Cursor<'a>) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    let begins_line = cursor.skip_blanks();
+    let offset = cursor.offset();
+    row(cursor)
+        .and_then(|()| {
+            let crosses_lines = cursor.since(offset).contains(&b'\n');
+            if !crosses_lines || (begins_line && cursor.is_at_line_end()) {
+                return Ok(());
+            }
+            let problem = "this row goes on in the middle of the next line";
+            let expected = "neither fewer nor more numbers on a line than its row needs";
+            Err(Fault::new(offset, problem, expected))
+        })
+        .map_err(|fault| fault.in_record(record, number, total))
+}

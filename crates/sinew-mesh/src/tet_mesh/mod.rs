@@ -1,0 +1,217 @@
+//! The mesh a simulation needs: points, 4-node tetrahedra and groups.
+
+mod collect_groups;
+mod from_mesh;
+mod group;
+mod surface;
+mod to_mesh;
+
+pub use from_mesh::TetMeshError;
+pub use group::{Group, GroupMembers, UnknownGroup};
+pub(crate) use surface::OUTWARD_FACES;
+pub use surface::SurfaceError;
+
+/// Points, tetrahedra and groups, every point being a corner of some tetrahedron.
+///
+/// The fields are open so that a mesh can be built by hand. The methods expect every index to be in range, as
+/// [`Mesh::to_tet_mesh`](crate::Mesh::to_tet_mesh), [`TetMesh::new`] and the
+/// [`structured`](crate::structured) generators guarantee, and panic otherwise. Flat and inverted tetrahedra are
+/// allowed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TetMesh {
+    /// Coordinates of the nodes, in the file's length unit (metres in a scene).
+    pub points: Vec<[f64; 3]>,
+    /// The four nodes of each tetrahedron: with positive orientation, the fourth node lies on the side of the first three
+    /// from which they run counter-clockwise.
+    pub tets: Vec<[u32; 4]>,
+    /// The tag of each tetrahedron in the file, for messages.
+    pub tet_tags: Vec<u64>,
+    /// The tag of each node in the file, for messages.
+    pub node_tags: Vec<u64>,
+    /// The groups, highest dimension first, then by tag.
+    pub groups: Vec<Group>,
+    /// What was merged or dropped on the way from the file, in sentences for the user.
+    pub notes: Vec<String>,
+}
+
+impl TetMesh {
+    /// A mesh without groups; tags count from 1.
+    ///
+    /// # Errors
+    ///
+    /// If there are no tetrahedra, or one names a node that does not exist.
+    ///
+    /// ```
+    /// use sinew_mesh::TetMesh;
+    /// let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    /// let mesh = TetMesh::new(corners, vec![[0, 1, 2, 3]])?;
+    /// assert_eq!(mesh.volume(0), 1.0 / 6.0);
+    /// # Ok::<(), sinew_mesh::TetMeshError>(())
+    /// ```
+    pub fn new(points: Vec<[f64; 3]>, tets: Vec<[u32; 4]>) -> Result<TetMesh, TetMeshError> {
+        if tets.is_empty() {
+            return Err(TetMeshError::NoTetrahedra {
+                found: "no cells".to_owned(),
+            });
+        }
+        for (tag, tet) in (1..).zip(&tets) {
+            if let Some(&node) = tet.iter().find(|&&node| node as usize >= points.len()) {
+                return Err(TetMeshError::NodeOutOfRange {
+                    kind: crate::CellType::Tetra,
+                    element_tag: tag,
+                    node,
+                    nodes: points.len(),
+                });
+            }
+        }
+        Ok(TetMesh {
+            tet_tags: (1..).take(tets.len()).collect(),
+            node_tags: (1..).take(points.len()).collect(),
+            points,
+            tets,
+            groups: Vec::new(),
+            notes: Vec::new(),
+        })
+    }
+
+    /// Signed volume of tetrahedron `t`: positive if it is positively oriented, zero if flat.
+    #[must_use]
+    pub fn volume(&self, t: usize) -> f64 {
+        let [a, b, c, d] = self.tets[t].map(|node| self.points[node as usize]);
+        dot(cross(sub(b, a), sub(c, a)), sub(d, a)) / 6.0
+    }
+
+    /// Signed volume of every tetrahedron.
+    #[must_use]
+    pub fn signed_volumes(&self) -> Vec<f64> {
+        (0..self.tets.len()).map(|t| self.volume(t)).collect()
+    }
+
+    /// The least and greatest coordinates; (+infinity, -infinity) for a mesh without points.
+    #[must_use]
+    pub fn bounding_box(&self) -> ([f64; 3], [f64; 3]) {
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        for point in &self.points {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(point[axis]);
+                high[axis] = high[axis].max(point[axis]);
+            }
+        }
+        (low, high)
+    }
+
+    /// Each edge of the tetrahedra once, lower node first, in ascending order.
+    #[must_use]
+    pub fn edges(&self) -> Vec<[u32; 2]> {
+        const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+        let mut edges = Vec::with_capacity(6 * self.tets.len());
+        for tet in &self.tets {
+            for (i, j) in PAIRS {
+                let (a, b) = (tet[i].min(tet[j]), tet[i].max(tet[j]));
+                // A collapsed tetrahedron may name a node twice.
+                if a != b {
+                    edges.push([a, b]);
+                }
+            }
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    /// The node nearest to a point, and its distance; of equally near nodes, the lowest.
+    ///
+    /// Looks at every node. In a mesh without nodes, or for a point that is not finite, the answer is node 0 at infinity.
+    #[must_use]
+    pub fn nearest_node(&self, point: [f64; 3]) -> (u32, f64) {
+        let mut nearest = (0, f64::INFINITY);
+        for (node, &candidate) in (0u32..).zip(&self.points) {
+            let offset = sub(candidate, point);
+            let distance_squared = dot(offset, offset);
+            if distance_squared < nearest.1 {
+                nearest = (node, distance_squared);
+            }
+        }
+        (nearest.0, nearest.1.sqrt())
+    }
+}
+
+fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_tets() -> TetMesh {
+        let points = vec![
+            [0.0, 0.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [0.0, 3.0, 0.0],
+            [0.0, 0.0, 4.0],
+            [0.0, 0.0, -1.0],
+        ];
+        TetMesh::new(points, vec![[0, 1, 2, 3], [0, 1, 2, 4]]).expect("valid indices")
+    }
+
+    #[test]
+    fn volumes_carry_the_orientation() {
+        assert_eq!(two_tets().signed_volumes(), [4.0, -1.0]);
+    }
+
+    #[test]
+    fn edges_are_unique_and_sorted() {
+        let edges = two_tets().edges();
+        assert_eq!(
+            edges,
+            [
+                [0, 1],
+                [0, 2],
+                [0, 3],
+                [0, 4],
+                [1, 2],
+                [1, 3],
+                [1, 4],
+                [2, 3],
+                [2, 4]
+            ]
+        );
+    }
+
+    #[test]
+    fn box_and_nearest_node() {
+        let mesh = two_tets();
+        assert_eq!(mesh.bounding_box(), ([0.0, 0.0, -1.0], [2.0, 3.0, 4.0]));
+        assert_eq!(mesh.nearest_node([0.0, 0.0, 6.0]), (3, 2.0));
+        assert_eq!(
+            mesh.nearest_node([1.0, 0.0, 0.0]).0,
+            0,
+            "a tie goes to the lowest node"
+        );
+        assert_eq!(mesh.nearest_node([f64::NAN; 3]), (0, f64::INFINITY));
+    }
+
+    #[test]
+    fn a_node_that_does_not_exist_is_refused() {
+        let error = TetMesh::new(vec![[0.0; 3]; 4], vec![[0, 1, 2, 3], [0, 1, 2, 4]]);
+        let message = error.expect_err("node 4 of 4").to_string();
+        assert_eq!(
+            message,
+            "tetra with tag 2 has node index 4, but there are 4 nodes (0..=3)"
+        );
+    }
+}

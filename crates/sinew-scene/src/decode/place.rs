@@ -1,0 +1,81 @@
+//! Where a table and its keys stand in the text.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::error::{Fault, SceneError};
+use crate::source::SceneSource;
+
+/// A table of a scene: its name and where it and its keys stand.
+#[derive(Debug, Clone)]
+pub(crate) struct Place {
+    scene: Arc<SceneSource>,
+    name: String,
+    header: Option<Range<usize>>,
+    keys: BTreeMap<String, KeyPlace>,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct KeyPlace {
+    pub(super) key: Range<usize>,
+    pub(super) value: Range<usize>,
+}
+
+impl Place {
+    pub(super) fn new(
+        scene: &Arc<SceneSource>,
+        name: String,
+        header: Option<Range<usize>>,
+        keys: BTreeMap<String, KeyPlace>,
+    ) -> Self {
+        Self {
+            scene: Arc::clone(scene),
+            name,
+            header,
+            keys,
+        }
+    }
+
+    pub(crate) fn scene(&self) -> &Arc<SceneSource> {
+        &self.scene
+    }
+
+    /// The table as the user wrote it, e.g. `[[load]] 2`.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// A fault of the whole table.
+    pub(crate) fn fault(&self, fault: Fault) -> SceneError {
+        self.error(self.header.clone(), fault)
+    }
+
+    /// A fault of a key's presence or name.
+    pub(crate) fn key_fault(&self, key: &str, fault: Fault) -> SceneError {
+        self.error(self.keys.get(key).map(|place| place.key.clone()), fault)
+    }
+
+    /// A fault of a key's value; of the whole table where the key is not given.
+    pub(crate) fn value_fault(&self, key: &str, fault: Fault) -> SceneError {
+        self.error(self.keys.get(key).map(|place| place.value.clone()), fault)
+    }
+
+    /// Line of a key, or of the table where the key is not given; counted from 1.
+    pub(crate) fn line(&self, key: &str) -> Option<usize> {
+        let span = self
+            .keys
+            .get(key)
+            .map(|place| &place.key)
+            .or(self.header.as_ref())?;
+        Some(self.scene.position(span.start).0)
+    }
+
+    fn error(&self, span: Option<Range<usize>>, fault: Fault) -> SceneError {
+        let error = SceneError::new(&self.scene, fault).in_table(&self.name);
+        match span.or_else(|| self.header.clone()) {
+            Some(span) => error.at(span),
+            None => error,
+        }
+    }
+}

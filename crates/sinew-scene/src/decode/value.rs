@@ -1,0 +1,144 @@
+//! What a single value may be.
+
+use toml::de::{DeArray, DeValue};
+
+/// How a value does not fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Misfit {
+    /// It is of the wrong type.
+    Type,
+    /// It is of the right type, and still wrong.
+    Value,
+}
+
+/// The type of a value in words.
+pub(crate) fn kind(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a string",
+        DeValue::Integer(_) => "a whole number",
+        DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+fn satisfying<T>(value: T, fits: impl FnOnce(&T) -> bool) -> Result<T, Misfit> {
+    if fits(&value) {
+        Ok(value)
+    } else {
+        Err(Misfit::Value)
+    }
+}
+
+/// A number that is neither infinite nor NaN.
+pub(crate) fn finite(value: &DeValue<'_>) -> Result<f64, Misfit> {
+    let number = match value {
+        DeValue::Float(float) => float.as_str().parse().map_err(|_| Misfit::Value)?,
+        DeValue::Integer(_) => integer(value)? as f64,
+        _ => return Err(Misfit::Type),
+    };
+    satisfying(number, |number: &f64| number.is_finite())
+}
+
+pub(crate) fn above_zero(value: &DeValue<'_>) -> Result<f64, Misfit> {
+    satisfying(finite(value)?, |number| *number > 0.0)
+}
+
+pub(crate) fn zero_or_above(value: &DeValue<'_>) -> Result<f64, Misfit> {
+    satisfying(finite(value)?, |number| *number >= 0.0)
+}
+
+fn integer(value: &DeValue<'_>) -> Result<i64, Misfit> {
+    let DeValue::Integer(integer) = value else {
+        return Err(Misfit::Type);
+    };
+    i64::from_str_radix(integer.as_str(), integer.radix()).map_err(|_| Misfit::Value)
+}
+
+/// A whole number from 1 to `most`.
+pub(crate) fn count_up_to(most: usize) -> impl FnOnce(&DeValue<'_>) -> Result<usize, Misfit> {
+    move |value| {
+        let count = usize::try_from(integer(value)?).map_err(|_| Misfit::Value)?;
+        satisfying(count, |count| (1..=most).contains(count))
+    }
+}
+
+pub(crate) fn boolean(value: &DeValue<'_>) -> Result<bool, Misfit> {
+    value.as_bool().ok_or(Misfit::Type)
+}
+
+/// A string with something in it.
+pub(crate) fn text(value: &DeValue<'_>) -> Result<String, Misfit> {
+    let text = value.as_str().ok_or(Misfit::Type)?;
+    satisfying(text.to_owned(), |text| !text.trim().is_empty())
+}
+
+/// A list in which every item can be read.
+pub(crate) fn list<T>(
+    value: &DeValue<'_>,
+    item: impl Fn(&DeValue<'_>) -> Result<T, Misfit>,
+) -> Result<Vec<T>, Misfit> {
+    let items: &DeArray<'_> = value.as_array().ok_or(Misfit::Type)?;
+    let items = items.iter().map(|value| item(value.get_ref()));
+    items.collect::<Result<_, _>>().map_err(|_| Misfit::Value)
+}
+
+/// Any number of finite numbers.
+pub(crate) fn numbers(value: &DeValue<'_>) -> Result<Vec<f64>, Misfit> {
+    list(value, finite)
+}
+
+/// Three finite numbers.
+pub(crate) fn vector(value: &DeValue<'_>) -> Result<[f64; 3], Misfit> {
+    <[f64; 3]>::try_from(numbers(value)?).map_err(|_| Misfit::Value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read<T>(
+        text: &str,
+        read: impl FnOnce(&DeValue<'_>) -> Result<T, Misfit>,
+    ) -> Result<T, Misfit> {
+        read(DeValue::parse(text).unwrap().get_ref())
+    }
+
+    #[test]
+    fn numbers_are_finite_whatever_their_notation() {
+        assert_eq!(read("1_000", finite), Ok(1000.0));
+        assert_eq!(read("0x10", finite), Ok(16.0));
+        assert_eq!(read("-1.5e-3", finite), Ok(-1.5e-3));
+        for not_finite in ["nan", "-inf", "1e400", "99999999999999999999"] {
+            assert_eq!(read(not_finite, finite), Err(Misfit::Value), "{not_finite}");
+        }
+        assert_eq!(read("\"1\"", finite), Err(Misfit::Type));
+    }
+
+    #[test]
+    fn signs_are_told_apart() {
+        assert_eq!(read("0", above_zero), Err(Misfit::Value));
+        assert_eq!(read("0", zero_or_above), Ok(0.0));
+        assert_eq!(read("-1e-300", zero_or_above), Err(Misfit::Value));
+    }
+
+    #[test]
+    fn counts_are_whole_and_bounded() {
+        assert_eq!(read("3", count_up_to(3)), Ok(3));
+        assert_eq!(read("4", count_up_to(3)), Err(Misfit::Value));
+        assert_eq!(read("0", count_up_to(3)), Err(Misfit::Value));
+        assert_eq!(read("-1", count_up_to(3)), Err(Misfit::Value));
+        assert_eq!(read("2.0", count_up_to(3)), Err(Misfit::Type));
+    }
+
+    #[test]
+    fn a_vector_has_three_numbers() {
+        assert_eq!(read("[1, 2.5, -3]", vector), Ok([1.0, 2.5, -3.0]));
+        for wrong in ["[1, 2]", "[1, 2, 3, 4]", "[1, 2, \"z\"]", "[1, 2, inf]"] {
+            assert_eq!(read(wrong, vector), Err(Misfit::Value), "{wrong}");
+        }
+        assert_eq!(read("1.0", vector), Err(Misfit::Type));
+    }
+}

@@ -1,0 +1,31 @@
+//! Which name a misspelt one was meant to be.
+
+/// The most similar of `known`, if one is similar enough to be meant.
+pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    const SIMILAR_ENOUGH: f64 = 0.75;
+    let lower = name.to_lowercase();
+    known
+        .into_iter()
+        .map(|candidate| {
+            (
+                strsim::jaro_winkler(&lower, &candidate.to_lowercase()),
+                candidate,
+            )
+        })
+        .filter(|(similarity, _)| *similarity > SIMILAR_ENOUGH)
+        .max_by(|(a, _), (b, _)| a.total_cmp(b))
+        .map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::nearest;
+
+    #[test]
+    fn a_slip_is_understood_and_nonsense_is_not() {
+        let known = ["density", "damping", "group"];
+        assert_eq!(nearest("densty", known), Some("density"));
+        assert_eq!(nearest("Group", known), Some("group"));
+        assert_eq!(nearest("xyzzy", known), None);
+    }
+}

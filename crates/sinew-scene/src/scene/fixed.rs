@@ -1,0 +1,34 @@
+//! `[[fixed]]`: supports.
+
+use sinew_fem::Fixed;
+use toml::de::DeValue;
+
+use crate::decode::value::{Misfit, text};
+use crate::decode::{Place, Table};
+use crate::error::SceneError;
+
+pub(super) fn read_all(document: &Table<'_>) -> Result<(Vec<Fixed>, Vec<Place>), SceneError> {
+    let tables = document.tables("fixed", &["group", "axes"])?;
+    let fixed = tables.iter().map(read).collect::<Result<_, _>>()?;
+    Ok((fixed, tables.into_iter().map(Table::into_place).collect()))
+}
+
+fn read(table: &Table<'_>) -> Result<Fixed, SceneError> {
+    let expected = "some of the letters x, y and z, each once";
+    Ok(Fixed {
+        group: table.required("group", "the name of a group", text)?,
+        axes: table.optional("axes", expected, axes)?.unwrap_or([true; 3]),
+    })
+}
+
+fn axes(value: &DeValue<'_>) -> Result<[bool; 3], Misfit> {
+    let mut held = [false; 3];
+    for letter in text(value)?.chars() {
+        let axis = ['x', 'y', 'z'].iter().position(|&axis| axis == letter);
+        let axis = axis.ok_or(Misfit::Value)?;
+        if std::mem::replace(&mut held[axis], true) {
+            return Err(Misfit::Value);
+        }
+    }
+    Ok(held)
+}

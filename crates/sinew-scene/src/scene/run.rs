@@ -1,0 +1,95 @@
+//! `[run]`: how long, by which integrator and in which steps.
+
+use std::collections::BTreeMap;
+
+use sinew_core::{OptionError, OptionValue, Options};
+use toml::Spanned;
+use toml::de::DeValue;
+
+use super::GRAVITY;
+use crate::decode::value::{Misfit, above_zero, count_up_to, finite, text};
+use crate::decode::{Place, Table};
+use crate::error::{Fault, SceneError};
+
+/// How long, by which integrator and in which steps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunSettings {
+    /// Simulated time [s].
+    pub duration: f64,
+    /// The error is taken at t = j duration/samples, j = 0..=samples.
+    pub samples: usize,
+    /// Id of the integrator.
+    pub integrator: String,
+    /// Step [s].
+    pub dt: f64,
+    /// The integrator's own options.
+    pub options: Options,
+}
+
+pub(super) const KEYS: &[&str] = &["duration", "samples", "integrator", "dt"];
+
+const MOST_SAMPLES: usize = 1_000_000;
+
+impl RunSettings {
+    pub(super) fn read(table: &Table<'_>) -> Result<Self, SceneError> {
+        let samples = format!("a whole number from 1 to {MOST_SAMPLES}");
+        let samples = table.optional("samples", &samples, count_up_to(MOST_SAMPLES))?;
+        let settings = Self {
+            duration: table.required("duration", "a finite time above 0 s", above_zero)?,
+            samples: samples.unwrap_or(50),
+            integrator: table.required("integrator", "the id of an integrator", text)?,
+            dt: step(table)?,
+            options: options(table)?,
+        };
+        sinew_integrators::build(&settings.integrator, &settings.options)
+            .map_err(|error| refused(error, table.place()))?;
+        Ok(settings)
+    }
+}
+
+fn step(run: &Table<'_>) -> Result<f64, SceneError> {
+    run.required("dt", "a finite step above 0 s", above_zero)
+        .map_err(|error| match error.fault() {
+            Fault::Type { .. } => error.with_help(
+                "a scene always gives dt; with substeps = \"auto\" an explicit integrator cuts it \
+                 into stable parts",
+            ),
+            _ => error,
+        })
+}
+
+fn refused(error: OptionError, run: &Place) -> SceneError {
+    let key = error.key().unwrap_or("integrator").to_owned();
+    run.value_fault(&key, Fault::Integrator(error))
+}
+
+/// The integrator's own options: whatever stands in `[run]` beside its keys.
+fn options(run: &Table<'_>) -> Result<Options, SceneError> {
+    let mut options = Options::new();
+    for (key, value) in run.others() {
+        if ["title", GRAVITY].contains(&key.get_ref().as_ref()) {
+            return Err(run.unknown(key));
+        }
+        let expected = "a finite number, a string, or a table of these";
+        let option = option(value.get_ref())
+            .map_err(|misfit| run.misfit(key.get_ref(), value, expected.into(), misfit))?;
+        options.insert(key.get_ref().as_ref(), option);
+    }
+    Ok(options)
+}
+
+fn option(value: &DeValue<'_>) -> Result<OptionValue, Misfit> {
+    match value {
+        DeValue::Float(_) | DeValue::Integer(_) => finite(value).map(OptionValue::Number),
+        DeValue::String(text) => Ok(OptionValue::Text(text.clone().into_owned())),
+        DeValue::Table(entries) => {
+            let entry =
+                |(key, value): (&Spanned<toml::de::DeString<'_>>, &Spanned<DeValue<'_>>)| {
+                    Ok((key.get_ref().clone().into_owned(), option(value.get_ref())?))
+                };
+            let entries: Result<BTreeMap<_, _>, Misfit> = entries.iter().map(entry).collect();
+            entries.map(OptionValue::Table)
+        }
+        DeValue::Boolean(_) | DeValue::Datetime(_) | DeValue::Array(_) => Err(Misfit::Type),
+    }
+}

@@ -1,0 +1,91 @@
+//! The text of a scene and where it came from.
+
+use std::path::{Path, PathBuf};
+
+/// The text of a scene file, kept so that messages can point at a line of it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SceneSource {
+    path: PathBuf,
+    text: String,
+}
+
+impl SceneSource {
+    /// A text and the path by which its user knows it; other paths in the text are relative to
+    /// that path's folder.
+    #[must_use]
+    pub fn new(path: impl Into<PathBuf>, text: impl Into<String>) -> Self {
+        Self {
+            path: path.into(),
+            text: text.into(),
+        }
+    }
+
+    /// The path as the user gave it.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The whole text; empty if the file could not be read.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// A path written in the scene, seen from where the scene's own path is seen from.
+    #[must_use]
+    pub fn resolve(&self, written: &Path) -> PathBuf {
+        match self.path.parent() {
+            Some(folder) => folder.join(written),
+            None => written.to_owned(),
+        }
+    }
+
+    /// Line and column of a byte, both counted from 1, the column in characters.
+    #[must_use]
+    pub fn position(&self, byte: usize) -> (usize, usize) {
+        let before = self
+            .text
+            .as_bytes()
+            .get(..byte)
+            .unwrap_or(self.text.as_bytes());
+        let line_start = before
+            .iter()
+            .rposition(|&b| b == b'\n')
+            .map_or(0, |at| at + 1);
+        let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
+        let column = 1 + String::from_utf8_lossy(&before[line_start..])
+            .chars()
+            .count();
+        (line, column)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_count_lines_and_characters_from_one() {
+        let source = SceneSource::new("a/b.toml", "x = 1\né = 2\n");
+        assert_eq!(source.position(0), (1, 1));
+        assert_eq!(source.position(4), (1, 5));
+        assert_eq!(source.position(6), (2, 1));
+        assert_eq!(
+            source.position(9),
+            (2, 3),
+            "é is two bytes and one character"
+        );
+        assert_eq!(source.position(999), (3, 1), "past the end is the end");
+    }
+
+    #[test]
+    fn paths_are_relative_to_the_scene() {
+        let source = SceneSource::new("a/b.toml", "");
+        assert_eq!(
+            source.resolve(Path::new("../m.msh")),
+            Path::new("a/../m.msh")
+        );
+        assert_eq!(source.resolve(Path::new("/m.msh")), Path::new("/m.msh"));
+    }
+}

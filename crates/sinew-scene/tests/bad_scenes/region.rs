@@ -1,0 +1,269 @@
+//! What is wrong with `[[region]]`.
+
+use crate::refusal;
+use crate::scenes::BODY;
+
+const SPRINGS: &str = r#"model = "springs"
+youngs_modulus = 3500.0
+springs = { rule = "lloyd" }"#;
+
+const REGION: &str = r#"[[region]]
+density = 1060.0
+model = "springs"
+youngs_modulus = 3500.0
+springs = { rule = "lloyd" }
+"#;
+
+const NAMED_REGION: &str = r#"[[region]]
+group = "tissue"
+density = 1060.0
+model = "springs"
+youngs_modulus = 3500.0
+springs = { rule = "lloyd" }
+"#;
+
+#[test]
+fn no_region() {
+    insta::assert_snapshot!(
+        refusal(BODY, REGION, ""),
+        @"scene.toml: `region` is missing: expected a table [[region]] for each material"
+    );
+}
+
+#[test]
+fn single_brackets() {
+    insta::assert_snapshot!(
+        refusal(BODY, "[[region]]", "[region]"),
+        @"scene.toml:4: `region` is one table: write [[region]], as there may be several"
+    );
+}
+
+#[test]
+fn negative_density() {
+    insta::assert_snapshot!(
+        refusal(BODY, "density = 1060.0", "density = -3"),
+        @"scene.toml:5: [[region]] 1: density = -3: expected a finite density above 0 kg/m3"
+    );
+}
+
+#[test]
+fn zero_density() {
+    insta::assert_snapshot!(
+        refusal(BODY, "density = 1060.0", "density = 0.0"),
+        @"scene.toml:5: [[region]] 1: density = 0.0: expected a finite density above 0 kg/m3"
+    );
+}
+
+#[test]
+fn density_that_is_not_a_number() {
+    insta::assert_snapshot!(
+        refusal(BODY, "density = 1060.0", "density = nan"),
+        @"scene.toml:5: [[region]] 1: density = nan: expected a finite density above 0 kg/m3"
+    );
+}
+
+#[test]
+fn density_in_words() {
+    insta::assert_snapshot!(
+        refusal(BODY, "density = 1060.0", "density = \"like water\""),
+        @r#"scene.toml:5: [[region]] 1: density = "like water": expected a finite density above 0 kg/m3, found a string"#
+    );
+}
+
+#[test]
+fn density_beyond_all_numbers() {
+    insta::assert_snapshot!(
+        refusal(BODY, "density = 1060.0", "density = 1e999"),
+        @"scene.toml:5: [[region]] 1: density = 1e999: expected a finite density above 0 kg/m3"
+    );
+}
+
+#[test]
+fn misspelt_density() {
+    insta::assert_snapshot!(
+        refusal(BODY, "density = 1060.0", "densty = 1060.0"),
+        @"
+    scene.toml:5: [[region]] 1: unknown key `densty`; did you mean `density`?
+    help: the keys here are `group`, `density`, `model`, `youngs_modulus`, `poissons_ratio`, `springs`
+    "
+    );
+}
+
+#[test]
+fn no_density() {
+    insta::assert_snapshot!(
+        refusal(BODY, "density = 1060.0\n", ""),
+        @"scene.toml:4: [[region]] 1: `density` is missing: expected a finite density above 0 kg/m3"
+    );
+}
+
+#[test]
+fn zero_modulus() {
+    insta::assert_snapshot!(
+        refusal(BODY, "youngs_modulus = 3500.0", "youngs_modulus = 0"),
+        @"scene.toml:7: [[region]] 1: youngs_modulus = 0: expected a finite Young's modulus above 0 Pa"
+    );
+}
+
+#[test]
+fn infinite_modulus() {
+    insta::assert_snapshot!(
+        refusal(BODY, "youngs_modulus = 3500.0", "youngs_modulus = inf"),
+        @"scene.toml:7: [[region]] 1: youngs_modulus = inf: expected a finite Young's modulus above 0 Pa"
+    );
+}
+
+#[test]
+fn unknown_model() {
+    insta::assert_snapshot!(
+        refusal(BODY, "model = \"springs\"", "model = \"neo-hookean\""),
+        @r#"scene.toml:6: [[region]] 1: model = "neo-hookean": expected "springs" or "linear""#
+    );
+}
+
+#[test]
+fn no_model() {
+    insta::assert_snapshot!(
+        refusal(BODY, "model = \"springs\"\n", ""),
+        @r#"scene.toml:4: [[region]] 1: `model` is missing: expected "springs" or "linear""#
+    );
+}
+
+#[test]
+fn poissons_ratio_of_springs() {
+    insta::assert_snapshot!(
+        refusal(BODY, "springs = {", "poissons_ratio = 0.45\nsprings = {"),
+        @r#"
+    scene.toml:8: [[region]] 1: `poissons_ratio` does not go with springs: their Poisson's ratio is 1/4, whatever their stiffness
+    help: take the key out, or use model = "linear"
+    "#
+    );
+}
+
+#[test]
+fn no_springs() {
+    insta::assert_snapshot!(
+        refusal(BODY, "springs = { rule = \"lloyd\" }\n", ""),
+        @r#"scene.toml:4: [[region]] 1: `springs` is missing: expected a table such as { rule = "lloyd" }"#
+    );
+}
+
+#[test]
+fn unknown_rule() {
+    insta::assert_snapshot!(
+        refusal(BODY, "\"lloyd\"", "\"loyd\""),
+        @r#"scene.toml:8: [[region]] 1 springs: rule = "loyd": expected "lloyd" or "van-gelder""#
+    );
+}
+
+#[test]
+fn negative_damping_ratio() {
+    insta::assert_snapshot!(
+        refusal(BODY, "rule = \"lloyd\"", "rule = \"lloyd\", damping_ratio = -0.1"),
+        @"scene.toml:8: [[region]] 1 springs: damping_ratio = -0.1: expected a finite share of the critical damping, 0 or above"
+    );
+}
+
+#[test]
+fn calibration_in_words() {
+    insta::assert_snapshot!(
+        refusal(BODY, "rule = \"lloyd\"", "rule = \"lloyd\", calibrate = \"yes\""),
+        @r#"scene.toml:8: [[region]] 1 springs: calibrate = "yes": expected true or false, found a string"#
+    );
+}
+
+#[test]
+fn springs_of_a_continuum() {
+    insta::assert_snapshot!(
+        refusal(BODY, "model = \"springs\"", "model = \"linear\"\npoissons_ratio = 0.45"),
+        @r#"scene.toml:9: [[region]] 1: `springs` does not go with model = "linear""#
+    );
+}
+
+#[test]
+fn incompressible() {
+    insta::assert_snapshot!(
+        refusal(BODY, SPRINGS, "model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.5"),
+        @"
+    scene.toml:8: [[region]] 1: poissons_ratio = 0.5: expected a number above -1 and below 0.5
+    help: 0.5 is incompressible, which a displacement alone cannot describe; soft tissue is usually given 0.45 to 0.49, where 4-node tetrahedra are already stiffer than the material
+    "
+    );
+}
+
+#[test]
+fn poissons_ratio_too_low() {
+    insta::assert_snapshot!(
+        refusal(BODY, SPRINGS, "model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = -1"),
+        @"scene.toml:8: [[region]] 1: poissons_ratio = -1: expected a number above -1 and below 0.5"
+    );
+}
+
+#[test]
+fn no_poissons_ratio() {
+    insta::assert_snapshot!(
+        refusal(BODY, SPRINGS, "model = \"linear\"\nyoungs_modulus = 3500.0"),
+        @"scene.toml:4: [[region]] 1: `poissons_ratio` is missing: expected a number above -1 and below 0.5"
+    );
+}
+
+#[test]
+fn the_same_group_twice() {
+    insta::assert_snapshot!(
+        refusal(BODY, REGION, &format!("{NAMED_REGION}{NAMED_REGION}")),
+        @r#"scene.toml:11: [[region]] 2: group = "tissue" is taken by [[region]] 1 on line 5"#
+    );
+}
+
+#[test]
+fn two_regions_without_groups() {
+    insta::assert_snapshot!(
+        refusal(BODY, REGION, &format!("{REGION}{REGION}")),
+        @"scene.toml:4: [[region]] 1: `group` is missing: expected a group, as there are several regions"
+    );
+}
+
+#[test]
+fn unknown_group() {
+    insta::assert_snapshot!(
+        refusal(BODY, "density = 1060.0", "group = \"tisue\"\ndensity = 1060.0"),
+        @r#"scene.toml:5: [[region]] 1: no group is named "tisue", did you mean "tissue"?; the groups are "tissue" (dimension 3), "sides" (dimension 2), "top" (dimension 2), "bottom" (dimension 2)"#
+    );
+}
+
+#[test]
+fn a_surface_for_a_region() {
+    insta::assert_snapshot!(
+        refusal(BODY, "density = 1060.0", "group = \"top\"\ndensity = 1060.0"),
+        @"scene.toml:5: [[region]] 1: group `top` has cells of dimension 2, expected a group of tetrahedra"
+    );
+}
+
+#[test]
+fn negative_damping() {
+    insta::assert_snapshot!(
+        refusal(BODY, "mass = 80.0", "mass = -80.0"),
+        @"scene.toml:10: [damping]: mass = -80.0: expected a finite rate, 0 1/s or above"
+    );
+}
+
+#[test]
+fn damping_that_is_not_a_number() {
+    insta::assert_snapshot!(
+        refusal(BODY, "mass = 80.0", "stiffness = nan"),
+        @"scene.toml:10: [damping]: stiffness = nan: expected a finite time, 0 s or above"
+    );
+}
+
+#[test]
+fn of_two_unknown_keys_the_first_in_the_file_is_named() {
+    let message = refusal(
+        BODY,
+        "density = 1060.0",
+        "zeta = 1\ndensity = 1060.0\nalpha = 2",
+    );
+    assert!(
+        message.starts_with("scene.toml:5: [[region]] 1: unknown key `zeta`"),
+        "{message}"
+    );
+}

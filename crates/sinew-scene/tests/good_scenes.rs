@@ -1,0 +1,254 @@
+//! The scenes that come with the project, and other ways to write the same.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use sinew_core::{OptionValue, Options, Ramp};
+use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule};
+use sinew_scene::{
+    Body, Initial, MeshSource, Oscillator, ProbePoint, RunSettings, Scene, SceneSource, Subject,
+};
+
+fn scenes() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let entries = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let scenes = entries.filter(|path| path.extension().is_some_and(|end| end == "toml"));
+    let mut scenes: Vec<PathBuf> = scenes.collect();
+    scenes.sort();
+    scenes
+}
+
+fn scene(name: &str) -> Scene {
+    let path = scenes()
+        .into_iter()
+        .find(|path| path.ends_with(name))
+        .unwrap();
+    Scene::load(path).unwrap()
+}
+
+fn parse(text: &str) -> Scene {
+    Scene::parse(SceneSource::new("scene.toml", text)).unwrap()
+}
+
+#[test]
+fn a_scene_means_the_same_in_any_layout() {
+    for path in scenes() {
+        let scene = Scene::load(&path).unwrap();
+        let table: toml::Table = scene.source().text().parse().unwrap();
+        for text in [toml::to_string(&table), toml::to_string_pretty(&table)] {
+            let again = parse(&text.unwrap());
+            assert_eq!(again.title(), scene.title());
+            assert_eq!(again.subject(), scene.subject(), "{}", path.display());
+            assert_eq!(again.run(), scene.run());
+        }
+    }
+}
+
+#[test]
+fn the_papers_oscillator() {
+    let scene = scene("paper-oscillator.toml");
+    let expected = Oscillator {
+        mass: 0.1,
+        stiffness: 100.0,
+        damping: 1.0,
+        displacement: 0.0,
+        velocity: -5.0,
+        force: 0.0,
+    };
+    assert_eq!(scene.subject(), &Subject::Oscillator(expected));
+    assert_eq!(
+        scene.run(),
+        &RunSettings {
+            duration: 1.0,
+            samples: 50,
+            integrator: "cnn".into(),
+            dt: 0.02,
+            options: Options::new().with_number("saturation", 4.0),
+        }
+    );
+}
+
+#[test]
+fn the_papers_cube() {
+    let expected = Body {
+        mesh: MeshSource::File("../meshes/paper-cube.msh".into()),
+        problem: Problem {
+            regions: vec![Region {
+                group: Some("tissue".into()),
+                density: 1060.0,
+                law: Law::Springs {
+                    youngs_modulus: 3500.0,
+                    rule: SpringRule::Lloyd,
+                    calibrate: false,
+                    damping_ratio: 0.0,
+                },
+            }],
+            damping: Rayleigh {
+                mass: 80.0,
+                stiffness: 0.0,
+            },
+            fixed: vec![Fixed {
+                group: "sides".into(),
+                axes: [true; 3],
+            }],
+            loads: vec![LoadSpec {
+                group: "top".into(),
+                kind: LoadKind::Traction([0.0, 0.0, -500.0]),
+                ramp: Ramp::Step,
+            }],
+            gravity: None,
+        },
+        load_names: vec![None],
+        initial: Vec::new(),
+        probes: vec![ProbePoint {
+            name: "top-centre".into(),
+            point: [0.1, 0.1, 0.2],
+        }],
+    };
+    let scene = scene("paper-cube.toml");
+    assert_eq!(scene.title(), "The paper's cube, reproduction scene");
+    assert_eq!(scene.subject(), &Subject::Body(expected));
+    assert_eq!(scene.run().dt, 0.02);
+}
+
+/// Every key that the paper's scenes do not use.
+#[test]
+fn every_other_key() {
+    let scene = parse(
+        r#"
+gravity = [0, 0, -9.81]
+mesh.cube = { cells = 4, edge = 0.1, split = "mirrored" }
+
+[[region]]
+group = "a"
+density = 1000
+model = "linear"
+youngs_modulus = 1e4
+poissons_ratio = 0.45
+
+[[region]]
+group = "b"
+density = 1100
+model = "springs"
+youngs_modulus = 2e4
+[region.springs]
+rule = "van-gelder"
+calibrate = true
+damping_ratio = 0.5
+
+[damping]
+stiffness = 1e-3
+
+[[fixed]]
+group = "bottom"
+axes = "zx"
+
+[[load]]
+name = "press"
+group = "top"
+pressure = -20
+ramp = { kind = "sin2", rise = 0.2 }
+[[load]]
+group = "top"
+force = [1, 2, 3]
+ramp = { kind = "pulse", from = 0.1, to = 0.2 }
+[[load]]
+name = "table"
+group = "top"
+force = [1, 2, 3]
+ramp = { kind = "table", times = [0, 1], values = [0.0, 2.0] }
+[[load]]
+group = "top"
+force = [0, 0, 0]
+
+[[initial]]
+static = ["table", "gravity"]
+[[initial]]
+group = "top"
+displacement = [1, 0, 0]
+[[initial]]
+velocity = [0, 1, 0]
+[[initial]]
+stretch = [0.1, 0, 0]
+origin = [1, 0, 0]
+
+[run]
+duration = 2
+samples = 7
+integrator = "rk4"
+dt = 1e-3
+substeps = "auto"
+"#,
+    );
+    let Subject::Body(body) = scene.subject() else {
+        panic!("a body");
+    };
+    assert!(matches!(body.mesh, MeshSource::Cube { cells: 4, .. }));
+    let laws: Vec<Law> = body
+        .problem
+        .regions
+        .iter()
+        .map(|region| region.law)
+        .collect();
+    let springs = Law::Springs {
+        youngs_modulus: 2e4,
+        rule: SpringRule::VanGelder,
+        calibrate: true,
+        damping_ratio: 0.5,
+    };
+    let linear = Law::Linear {
+        youngs_modulus: 1e4,
+        poissons_ratio: 0.45,
+    };
+    assert_eq!(laws, [linear, springs]);
+    assert_eq!(body.problem.damping.stiffness, 1e-3);
+    assert_eq!(body.problem.fixed[0].axes, [true, false, true]);
+    assert_eq!(body.problem.gravity, Some([0.0, 0.0, -9.81]));
+    let ramps: Vec<&Ramp> = body.problem.loads.iter().map(|load| &load.ramp).collect();
+    let table = Ramp::Table {
+        times: vec![0.0, 1.0],
+        values: vec![0.0, 2.0],
+    };
+    let pulse = Ramp::Pulse { from: 0.1, to: 0.2 };
+    assert_eq!(
+        ramps,
+        [&Ramp::Sin2 { rise: 0.2 }, &pulse, &table, &Ramp::Step]
+    );
+    assert_eq!(body.problem.loads[0].kind, LoadKind::Pressure(-20.0));
+    assert_eq!(body.problem.loads[1].kind, LoadKind::Force([1.0, 2.0, 3.0]));
+    let names: Vec<Option<&str>> = body.load_names.iter().map(|name| name.as_deref()).collect();
+    assert_eq!(names, [Some("press"), None, Some("table"), None]);
+    assert_eq!(
+        body.initial,
+        [
+            Initial::Static {
+                loads: vec!["table".into(), "gravity".into()],
+            },
+            Initial::Displacement {
+                group: Some("top".into()),
+                value: [1.0, 0.0, 0.0],
+            },
+            Initial::Velocity {
+                group: None,
+                value: [0.0, 1.0, 0.0],
+            },
+            Initial::Stretch {
+                group: None,
+                strain: [0.1, 0.0, 0.0],
+                origin: [1.0, 0.0, 0.0],
+            },
+        ]
+    );
+    let options = Options::new().with("substeps", OptionValue::Text("auto".into()));
+    assert_eq!(scene.run().options, options);
+    assert_eq!(scene.run().samples, 7);
+}

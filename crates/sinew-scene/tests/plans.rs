@@ -1,0 +1,204 @@
+//! What plans tell.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
+use std::fs;
+
+use sinew_core::StableStep;
+use sinew_mesh::structured::{self, Split};
+use sinew_scene::{Plan, Scene, SceneSource};
+
+const PAPERS_CUBE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/paper-cube.toml");
+
+fn plan(text: &str) -> Plan {
+    Scene::parse(SceneSource::new("scene.toml", text))
+        .and_then(Scene::build)
+        .unwrap()
+        .plan()
+}
+
+/// The paper's cube from the generator, which makes the same mesh as the file holds.
+fn papers_cube() -> Plan {
+    let scene = fs::read_to_string(PAPERS_CUBE).unwrap();
+    let file = "file = \"../meshes/paper-cube.msh\"";
+    assert!(scene.contains(file));
+    plan(&scene.replace(file, "cube = { cells = 10, edge = 0.2 }"))
+}
+
+#[test]
+fn the_papers_cube() {
+    insta::assert_snapshot!(papers_cube(), @r#"
+    The paper's cube, reproduction scene
+    mesh        cube of 10 x 10 x 10 cells, edge 0.2 m, split "kuhn"
+                1331 nodes, 6000 tetrahedra, 7930 edges; 0.008 m3, 8.48 kg
+                groups `tissue` (6000 tetrahedra), `sides` (800 triangles), `top` (200 triangles), `bottom` (200 triangles)
+    regions     `tissue`: 6000 tetrahedra, 1060 kg/m3, springs "lloyd" not calibrated, E = 3500 Pa, nu = 1/4 by nature
+                its springs average to 1.27 E (Voigt), 0.3905 to 2.857 E by direction
+    damping     80 1/s times M, no matrix
+    fixed       `sides` in x, y, z
+                3993 -> 2673 degrees of freedom; 891 of 1331 nodes move, the others are removed
+    loads       traction [0, 0, -500] Pa on `top` from t = 0: 20 N asked, 16.2 N act, 3.8 N fall on fixed nodes
+    probes      `top-centre`: node 1271, 0 m from the point
+    matrices    linear: assembled once, no loop over elements afterwards
+                K with 11247 blocks of 3 x 3, lumped M: 883.3 kB
+                2/omega_max = 0.007915 s
+    run         `cnn`, dt = 0.02 s, saturation = 4
+                50 steps for 1 s, error taken at 51 instants
+                `cnn` is stable up to dt = 0.001253 s
+    warning     dt = 0.02 s is 15.96 times the stable step of `cnn`, 0.001253 s
+    "#);
+}
+
+#[test]
+fn the_papers_cube_from_a_mesh_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    fs::create_dir(file("meshes")).unwrap();
+    fs::create_dir(file("scenes")).unwrap();
+    let cube = structured::cube(10, 0.2, Split::Kuhn).unwrap();
+    let mut mesh = fs::File::create(file("meshes/paper-cube.msh")).unwrap();
+    sinew_mesh::write_msh41_ascii(&cube.to_mesh(), &mut mesh).unwrap();
+    fs::copy(PAPERS_CUBE, file("scenes/paper-cube.toml")).unwrap();
+
+    let scene = Scene::load(file("scenes/paper-cube.toml")).unwrap();
+    let from_file = scene.build().unwrap().plan();
+    let generated = papers_cube();
+    assert_eq!(from_file.sections[0].heading, "mesh");
+    assert_eq!(from_file.sections[0].lines[0], "../meshes/paper-cube.msh");
+    assert_eq!(
+        from_file.sections[0].lines[1..],
+        generated.sections[0].lines[1..]
+    );
+    assert_eq!(from_file.sections[1..], generated.sections[1..]);
+    assert_eq!(from_file.warnings, generated.warnings);
+}
+
+#[test]
+fn the_numbers_of_the_papers_cube() {
+    let plan = papers_cube();
+    assert!((plan.critical_step - 7.9e-3).abs() < 0.05e-3);
+    let StableStep::UpTo(limit) = plan.stable_step else {
+        panic!("{:?}", plan.stable_step);
+    };
+    assert!(limit < 0.02);
+    let [warning] = &plan.warnings[..] else {
+        panic!("{:?}", plan.warnings);
+    };
+    assert!(warning.starts_with("dt = 0.02 s is "), "{warning}");
+}
+
+#[test]
+fn the_papers_oscillator() {
+    insta::assert_snapshot!(plan(include_str!("../../../scenes/paper-oscillator.toml")), @"
+    The paper's oscillator
+    oscillator  0.1 kg on 100 N/m and 1 N s/m: one cell, one layer
+    initial     u = 0 m, v = -5 m/s
+    matrices    linear: assembled once, no loop over elements afterwards
+                K with 1 block of 1 x 1, lumped M: 36 B
+                2/omega_max = 0.06325 s
+    run         `cnn`, dt = 0.02 s, saturation = 4
+                50 steps for 1 s, error taken at 51 instants
+                `cnn` is stable up to dt = 0.01 s
+    warning     dt = 0.02 s is 2 times the stable step of `cnn`, 0.01 s
+    ");
+}
+
+/// Gravity, several materials' worth of damping, partial supports, a start and held probes.
+#[test]
+fn a_scene_with_everything() {
+    let text = r#"
+gravity = [0, 0, -9.81]
+[mesh]
+cube = { cells = 2, edge = 0.1, split = "mirrored" }
+[[region]]
+density = 1000
+model = "springs"
+youngs_modulus = 1e4
+springs = { rule = "van-gelder", calibrate = true, damping_ratio = 0.1 }
+[damping]
+mass = 1
+stiffness = 1e-4
+[[fixed]]
+group = "bottom"
+axes = "zy"
+[[fixed]]
+group = "sides"
+axes = "x"
+[[load]]
+name = "press"
+group = "top"
+pressure = 100
+ramp = { kind = "sin2", rise = 0.1 }
+[[initial]]
+static = ["press", "gravity"]
+[[initial]]
+group = "top"
+stretch = [0.1, 0, 0]
+[run]
+duration = 0.01
+integrator = "newmark"
+dt = 0.02
+[[probe]]
+name = "edge"
+point = [0, 0, 0]
+[[probe]]
+name = "centre"
+point = [0.05, 0.05, 0.06]
+"#;
+    insta::assert_snapshot!(plan(text), @r#"
+    mesh        cube of 2 x 2 x 2 cells, edge 0.1 m, split "mirrored"
+                27 nodes, 48 tetrahedra, 98 edges; 0.001 m3, 1 kg
+                groups `tissue` (48 tetrahedra), `sides` (32 triangles), `top` (8 triangles), `bottom` (8 triangles)
+    regions     whole mesh: 48 tetrahedra, 1000 kg/m3, springs "van-gelder" calibrated, E = 10000 Pa, nu = 1/4 by nature
+                its springs average to 1 E (Voigt), 0.7317 to 1.355 E by direction
+    damping     1 1/s times M, no matrix; 0.0001 s times K, in the product with K; dashpots along springs, a matrix of their own
+    fixed       `bottom` in y, z
+                `sides` in x
+                81 -> 39 degrees of freedom; 19 of 27 nodes move, the others are removed
+                18 held components stay beside moving ones of their node
+    loads       "press", pressure 100 Pa on `top` rising for 0.1 s: 1 N act
+                gravity [0, 0, -9.81] m/s2: 9.81 N asked, 7.358 N act, 2.453 N fall on fixed nodes
+    initial     at rest under press, gravity, solved once
+                stretch [0.1, 0, 0] about [0, 0, 0] m of `top`: 9 of 9 nodes move
+    probes      `edge`: node 1, 0 m from the point, held in x, y and z
+                `centre`: node 14, 0.01 m from the point
+    matrices    linear: assembled once, no loop over elements afterwards
+                K and D with 135 blocks of 3 x 3, lumped M: 20.6 kB
+                2/omega_max = 0.01273 s
+    run         `newmark`, dt = 0.02 s
+                1 step for 0.01 s, error taken at 51 instants
+                `newmark` is stable at any step
+    warning     dt = 0.02 s is longer than the duration, 0.01 s
+    "#);
+}
+
+#[test]
+fn an_undamped_scene_says_so() {
+    let text = r#"
+[mesh]
+cube = { cells = 2, edge = 0.1 }
+[[region]]
+density = 1000
+model = "linear"
+youngs_modulus = 1e4
+poissons_ratio = 0.3
+[run]
+duration = 1
+integrator = "forward-euler"
+dt = 0.001
+"#;
+    let plan = plan(text).to_string();
+    for line in [
+        "damping     none, left out of every step",
+        "fixed       nothing: all 81 degrees of freedom move",
+        "warning     `forward-euler` is unstable on this scene at any dt",
+    ] {
+        assert!(plan.contains(line), "{plan}");
+    }
+    assert!(!plan.contains("probes"), "{plan}");
+}

@@ -1,0 +1,66 @@
+//! `cargo xtask bench`.
+
+use std::path::PathBuf;
+
+use sinew_bench::report::{terminal, write_all};
+use sinew_bench::{Bench, machine, revision};
+
+use crate::failure::Failure;
+use crate::progress::Bar;
+use crate::root;
+
+/// What to measure and where to write it.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// A scene file; may be given several times [default: the paper's two scenes]
+    #[arg(long = "scene", value_name = "FILE")]
+    scenes: Vec<PathBuf>,
+    /// An integrator; may be given several times [default: all]
+    #[arg(long = "integrator", value_name = "ID")]
+    integrators: Vec<String>,
+    /// A step in seconds; may be given several times [default: the scene's and fractions of it]
+    #[arg(long = "dt", value_name = "S")]
+    steps: Vec<f64>,
+    /// Fewer steps and repeats: does everything run?
+    #[arg(long)]
+    quick: bool,
+    /// Where results.json, report.html and the plots go [default: target/bench]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let default = |name: &str| root().join("scenes").join(name);
+    let scenes = if arguments.scenes.is_empty() {
+        vec![default("paper-oscillator.toml"), default("paper-cube.toml")]
+    } else {
+        arguments.scenes.clone()
+    };
+    let bench = Bench {
+        scenes,
+        integrators: arguments.integrators.clone(),
+        steps: arguments.steps.clone(),
+        quick: arguments.quick,
+    };
+    let bar = Bar::new();
+    let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
+    bar.finish();
+    let results = results.map_err(Failure::input)?;
+    let out = arguments.out.clone();
+    let out = out.unwrap_or_else(|| root().join("target").join("bench"));
+    let written = write_all(&results, &out).map_err(Failure::input)?;
+    say(&terminal(&results));
+    say(&format!(
+        "results: {}\nreport:  {}\nplots:   {}",
+        written.results.display(),
+        written.report.display(),
+        out.display()
+    ));
+    Ok(())
+}
+
+/// Writes to standard output; a reader that went away is no failure.
+pub(crate) fn say(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stdout(), "{text}");
+}

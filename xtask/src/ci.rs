@@ -1,0 +1,92 @@
+//! `cargo xtask ci`.
+
+use std::process::Command;
+use std::time::Instant;
+
+use crate::bench::say;
+use crate::failure::Failure;
+use crate::{root, rules};
+
+/// Arguments of cargo and what they check.
+const STEPS: &[(&str, &[&str])] = &[
+    ("formatting", &["fmt", "--all", "--check"]),
+    (
+        "lints",
+        &[
+            "clippy",
+            "--workspace",
+            "--all-targets",
+            "--",
+            "-D",
+            "warnings",
+        ],
+    ),
+    (
+        "lints without default features",
+        &[
+            "clippy",
+            "--no-default-features",
+            "-psinew-sparse",
+            "-psinew-core",
+            "-psinew-fem",
+            "-psinew-cnn",
+            "-psinew-integrators",
+            "--",
+            "-D",
+            "warnings",
+        ],
+    ),
+    ("tests", &["test", "--workspace"]),
+    ("documentation", &["doc", "--workspace", "--no-deps"]),
+    (
+        "one crate used alone",
+        &[
+            "run",
+            "--quiet",
+            "--manifest-path",
+            "examples/mesh-alone/Cargo.toml",
+            "--target-dir",
+            "target/mesh-alone",
+        ],
+    ),
+    (
+        "packages",
+        &[
+            "package",
+            "--workspace",
+            "--exclude",
+            "xtask",
+            "--allow-dirty",
+            "--quiet",
+        ],
+    ),
+    (
+        "quick bench",
+        &["xtask", "bench", "--quick", "--out", "target/ci-bench"],
+    ),
+];
+
+pub(crate) fn run() -> Result<(), Failure> {
+    let start = Instant::now();
+    rules::check().map_err(Failure::chore)?;
+    say("rules: kept");
+    for (name, arguments) in STEPS {
+        say(&format!("\n== {name}: cargo {}", arguments.join(" ")));
+        let step = Instant::now();
+        let status = Command::new(env!("CARGO"))
+            .args(*arguments)
+            .current_dir(root())
+            .env("RUSTDOCFLAGS", "-D warnings")
+            .status()
+            .map_err(Failure::chore)?;
+        if !status.success() {
+            return Err(Failure::Chore(format!("{name}: {status}")));
+        }
+        say(&format!(
+            "== {name}: fine after {} s",
+            step.elapsed().as_secs()
+        ));
+    }
+    say(&format!("\nall fine after {} s", start.elapsed().as_secs()));
+    Ok(())
+}
