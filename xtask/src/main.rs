@@ -1,7 +1,8 @@
-//! Repository chores: `cargo xtask bench | reproduce | meshes | ci`.
+//! Repository chores: `cargo xtask bench | reproduce | meshes | docs | ci`.
 
 mod bench;
 mod ci;
+mod docs;
 mod failure;
 mod meshes;
 mod progress;
@@ -29,6 +30,8 @@ enum Chore {
     Reproduce(reproduce::Arguments),
     /// Write the meshes of the repository anew.
     Meshes,
+    /// Bring the README's table and picture up to the last bench.
+    Docs,
     /// Everything that must hold before a change lands.
     Ci,
 }
@@ -38,6 +41,7 @@ fn main() -> ExitCode {
         Chore::Bench(arguments) => bench::run(&arguments),
         Chore::Reproduce(arguments) => reproduce::run(&arguments),
         Chore::Meshes => meshes::run(),
+        Chore::Docs => docs::run(),
         Chore::Ci => ci::run(),
     };
     match outcome {

@@ -10,7 +10,7 @@ use crate::root;
 
 /// Cells a side of the paper's cube: 1331 nodes, 6000 tetrahedra.
 const PAPER_CELLS: usize = 10;
-/// Edge [m]. The paper gives none; at 0.2 m its three claims hold (see ARCHITECTURE.md).
+/// Edge (m). The paper gives none; at 0.2 m its three claims hold (see ARCHITECTURE.md).
 const PAPER_EDGE: f64 = 0.2;
 
 pub(crate) fn run() -> Result<(), Failure> {

@@ -15,7 +15,7 @@ pub struct Bench {
     pub scenes: Vec<PathBuf>,
     /// Integrator ids; empty for all.
     pub integrators: Vec<String>,
-    /// Steps [s]; empty for [`default_steps`] of each scene.
+    /// Steps (s); empty for [`default_steps`] of each scene.
     pub steps: Vec<f64>,
     /// Fewer steps and repeats.
     pub quick: bool,
@@ -58,7 +58,7 @@ pub enum Progress {
     },
 }
 
-/// Steps [s] at which a scene is measured unless others are asked for: its own and fractions of
+/// Steps (s) at which a scene is measured unless others are asked for: its own and fractions of
 /// it, most of which meet the instants at which errors are taken.
 #[must_use]
 pub fn default_steps(dt: f64, quick: bool) -> Vec<f64> {

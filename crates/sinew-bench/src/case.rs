@@ -91,7 +91,7 @@ impl Case {
         &self.simulation
     }
 
-    /// 2/omega_max [s], where something vibrates.
+    /// 2/omega_max (s), where something vibrates.
     #[must_use]
     pub fn critical_step(&self) -> Option<f64> {
         self.critical_step
@@ -103,7 +103,7 @@ impl Case {
         &self.samples
     }
 
-    /// The run that covers the scene's duration in steps of `dt` [s].
+    /// The run that covers the scene's duration in steps of `dt` (s).
     #[must_use]
     pub fn run(&self, dt: f64) -> Run {
         let run = Run::covering(self.simulation.settings().duration, dt);
@@ -113,12 +113,12 @@ impl Case {
         })
     }
 
-    /// What a run in steps of `dt` [s] is compared with: the reference at the scene's instants and
+    /// What a run in steps of `dt` (s) is compared with: the reference at the scene's instants and
     /// the number of steps between them where dt meets them all, otherwise the reference after
     /// every step.
     ///
     /// # Errors
-    /// [`ReferenceError`] when the reference after every step fails its check.
+    /// As [`Case::reference_at_every_step`].
     pub fn reference_for(&mut self, dt: f64) -> Result<(Arc<Track>, usize), ReferenceError> {
         let settings = self.simulation.settings();
         let per_instant = settings.duration / settings.samples as f64 / dt;
@@ -126,17 +126,25 @@ impl Case {
         if whole >= 1.0 && (per_instant - whole).abs() < 1e-9 * whole {
             return Ok((Arc::clone(&self.samples), whole as usize));
         }
+        Ok((self.reference_at_every_step(dt)?, 1))
+    }
+
+    /// The reference after every step of `dt` (s). Kept, as several methods take the same step.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] when it fails its check.
+    pub fn reference_at_every_step(&mut self, dt: f64) -> Result<Arc<Track>, ReferenceError> {
         let steps = self.run(dt).steps;
         let key = (dt.to_bits(), steps);
         if let Some(track) = self.every_step.get(&key) {
-            return Ok((Arc::clone(track), 1));
+            return Ok(Arc::clone(track));
         }
         let times: Vec<f64> = (0..=steps).map(|step| step as f64 * dt).collect();
         let simulation = &self.simulation;
         let track = follow(simulation.system(), simulation.initial_state(), &times)?;
         let track = Arc::new(track);
         self.every_step.insert(key, Arc::clone(&track));
-        Ok((track, 1))
+        Ok(track)
     }
 
     /// The case in words.

@@ -10,6 +10,7 @@ mod machine;
 mod measure;
 pub mod reference;
 pub mod report;
+pub mod reproduce;
 pub mod results;
 
 pub use bench::{Bench, BenchError, Progress, default_steps};

@@ -40,7 +40,7 @@ impl Method {
 pub struct Effort {
     /// Fewest repeats, of which the median counts.
     pub repeats: usize,
-    /// CPU time [s] after which no further repeat is made.
+    /// CPU time (s) after which no further repeat is made.
     pub budget: f64,
 }
 
@@ -57,7 +57,7 @@ impl Effort {
     };
 }
 
-/// Runs a method on a case in steps of `dt` [s].
+/// Runs a method on a case in steps of `dt` (s).
 ///
 /// Set-up, the run that is compared with the reference and the runs that are timed are separate,
 /// so that neither set-up nor comparison is in the times.
@@ -140,7 +140,7 @@ fn work(report: &RunReport, setup_factorizations: u64) -> Work {
     }
 }
 
-/// Median thread CPU time [s] of the run.
+/// Median thread CPU time (s) of the run.
 fn time_run(
     system: &dyn System,
     integrator: &mut dyn Integrator,

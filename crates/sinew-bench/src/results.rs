@@ -97,7 +97,7 @@ pub struct Row {
     pub dt: f64,
     /// Steps taken.
     pub steps: u64,
-    /// Sweeps per simulated second [1/s].
+    /// Sweeps per simulated second (1/s).
     pub sweeps_per_s: f64,
     /// How the run ended.
     pub outcome: Outcome,

@@ -20,7 +20,7 @@ impl Saturation {
         voltage: f64::INFINITY,
     };
 
-    /// Saturates at Q = `voltage` [m/s].
+    /// Saturates at Q = `voltage` (m/s).
     ///
     /// # Errors
     /// [`SaturationError`] when it is not above 0.
@@ -32,13 +32,13 @@ impl Saturation {
         }
     }
 
-    /// Q [m/s]; infinite when it never saturates.
+    /// Q (m/s); infinite when it never saturates.
     #[must_use]
     pub fn voltage(self) -> f64 {
         self.voltage
     }
 
-    /// f(x) [m/s].
+    /// f(x) (m/s).
     #[must_use]
     #[inline]
     pub fn output(self, x: f64) -> f64 {

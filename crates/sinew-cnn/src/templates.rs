@@ -11,7 +11,7 @@ pub enum TemplateError {
     Mass {
         /// The cell, in the system's words.
         cell: String,
-        /// Its mass [kg].
+        /// Its mass (kg).
         mass: f64,
     },
 }
@@ -61,7 +61,7 @@ impl Templates {
         self.operators.stiffness().pattern().neighbours(cell)
     }
 
-    /// The feedback template A [1/s^2], made anew for those who want to see it.
+    /// The feedback template A (1/s^2), made anew for those who want to see it.
     #[must_use]
     pub fn feedback(&self) -> BlockMatrix {
         let mut feedback = BlockMatrix::clone(self.operators.stiffness());
@@ -75,7 +75,7 @@ impl Templates {
         feedback
     }
 
-    /// The template C [1/s] of the damping, made anew.
+    /// The template C (1/s) of the damping, made anew.
     #[must_use]
     pub fn damping(&self) -> BlockMatrix {
         let (mass, stiffness) = (self.operators.mass(), self.operators.stiffness());
@@ -99,7 +99,7 @@ impl Templates {
         template
     }
 
-    /// The control template B [1/kg], one entry for each degree of freedom, made anew.
+    /// The control template B (1/kg), one entry for each degree of freedom, made anew.
     #[must_use]
     pub fn control(&self) -> Vec<f64> {
         self.operators
@@ -109,8 +109,8 @@ impl Templates {
             .collect()
     }
 
-    /// `out = A y - C x + B F(t)` [m/s^2] for every cell: one sweep of the network. `y` is the
-    /// output (displacement [m]), `x` the state (velocity [m/s]).
+    /// `out = A y - C x + B F(t)` (m/s^2) for every cell: one sweep of the network. `y` is the
+    /// output (displacement (m)), `x` the state (velocity (m/s)).
     pub fn sweep(&self, t: f64, y: &[f64], x: &[f64], out: &mut [f64]) {
         self.operators.net_force(t, y, x, out);
         for (value, mass) in out.iter_mut().zip(self.operators.mass()) {

@@ -1,6 +1,8 @@
 //! What must not matter, and what must by a known factor: units, numbering, the order of a
 //! tetrahedron's vertices, modulus and density.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod common;
 
 use common::body::{Body, bodies, fastest_time, orders, turned, turns};

@@ -1,5 +1,7 @@
 //! Laws of the templates A = -M^-1 K, C = M^-1 D and B = M^-1 of bodies at random.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 mod common;
 
 use std::sync::Arc;

@@ -4,20 +4,20 @@
 /// Penzien, Dynamics of Structures, chapter 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DampedOscillator {
-    /// Undamped angular frequency omega [rad/s], above 0.
+    /// Undamped angular frequency omega (rad/s), above 0.
     pub omega: f64,
-    /// Damping rate c [1/s].
+    /// Damping rate c (1/s).
     pub damping: f64,
-    /// Constant load g [m/s^2].
+    /// Constant load g (m/s^2).
     pub load: f64,
-    /// q(0) [m].
+    /// q(0) (m).
     pub displacement: f64,
-    /// q'(0) [m/s].
+    /// q'(0) (m/s).
     pub velocity: f64,
 }
 
 impl DampedOscillator {
-    /// (q [m], q' [m/s]) at time `t` [s].
+    /// (q (m), q' (m/s)) at time `t` (s).
     #[must_use]
     pub fn at(&self, t: f64) -> (f64, f64) {
         let rest = self.load / self.omega.powi(2);

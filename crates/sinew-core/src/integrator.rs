@@ -79,14 +79,14 @@ pub enum EnergyBehaviour {
 pub enum StableStep {
     /// Stable at any step.
     Any,
-    /// Stable up to this step [s]; 0 means never.
+    /// Stable up to this step (s); 0 means never.
     UpTo(f64),
     /// The method cannot say.
     Unknown,
 }
 
 impl StableStep {
-    /// Whether a step of `dt` [s] is known to be stable.
+    /// Whether a step of `dt` (s) is known to be stable.
     #[must_use]
     pub fn allows(self, dt: f64) -> Option<bool> {
         match self {
@@ -154,7 +154,7 @@ pub enum SetupError {
     Step {
         /// Integrator id.
         integrator: &'static str,
-        /// The step [s].
+        /// The step (s).
         dt: f64,
     },
     /// A mass that is not positive.
@@ -164,7 +164,7 @@ pub enum SetupError {
         integrator: &'static str,
         /// The cell, in the system's words.
         cell: String,
-        /// Its mass [kg].
+        /// Its mass (kg).
         mass: f64,
     },
     /// A state of another size than the system.
@@ -197,7 +197,7 @@ pub enum StepError {
     /// The system refused a trial state.
     #[error("at t = {t} s: {source}")]
     Refused {
-        /// Time of the trial [s].
+        /// Time of the trial (s).
         t: f64,
         /// What the system said.
         source: EvaluationError,

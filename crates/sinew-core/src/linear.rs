@@ -15,11 +15,11 @@ pub trait LinearSystem: System {
 /// D = alpha M + beta K + extra.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Damping {
-    /// alpha [1/s].
+    /// alpha (1/s).
     pub mass: f64,
-    /// beta [s].
+    /// beta (s).
     pub stiffness: f64,
-    /// Damping that is proportional to neither [N s/m], on the stiffness matrix's pattern.
+    /// Damping that is proportional to neither (N s/m), on the stiffness matrix's pattern.
     pub extra: Option<Arc<BlockMatrix>>,
 }
 
@@ -28,7 +28,7 @@ pub struct Damping {
 pub struct Load {
     /// The factor over time.
     pub ramp: Ramp,
-    /// (degree of freedom, force [N]) of each loaded degree of freedom.
+    /// (degree of freedom, force (N)) of each loaded degree of freedom.
     pub entries: Vec<(u32, f64)>,
 }
 
@@ -81,7 +81,7 @@ pub struct LinearOperators {
 }
 
 impl LinearOperators {
-    /// Puts matrices together. `mass` holds the lumped mass of each degree of freedom [kg];
+    /// Puts matrices together. `mass` holds the lumped mass of each degree of freedom (kg);
     /// whether it is positive is checked by the integrators, which divide by it.
     ///
     /// # Errors
@@ -133,7 +133,7 @@ impl LinearOperators {
         })
     }
 
-    /// One mass m [kg] on a spring k [N/m] and a dashpot d [N s/m]: one cell, one layer.
+    /// One mass m (kg) on a spring k (N/m) and a dashpot d [N s/m]: one cell, one layer.
     ///
     /// # Errors
     /// As [`LinearOperators::new`].
@@ -157,13 +157,13 @@ impl LinearOperators {
         Self::new(self.mass.to_vec(), stiffness, self.damping, loads)
     }
 
-    /// Lumped mass of each degree of freedom [kg].
+    /// Lumped mass of each degree of freedom (kg).
     #[must_use]
     pub fn mass(&self) -> &[f64] {
         &self.mass
     }
 
-    /// K [N/m].
+    /// K (N/m).
     #[must_use]
     pub fn stiffness(&self) -> &Arc<BlockMatrix> {
         &self.stiffness
@@ -193,7 +193,7 @@ impl LinearOperators {
         self.mass.len()
     }
 
-    /// `out = F(t)` [N].
+    /// `out = F(t)` (N).
     pub fn external_force(&self, t: f64, out: &mut [f64]) {
         out.fill(0.0);
         for Load { ramp, entries } in self.loads.iter() {
@@ -206,7 +206,7 @@ impl LinearOperators {
         }
     }
 
-    /// `out -= K u + D v` [N]: one sweep. Damping that a system does not have costs nothing, and
+    /// `out -= K u + D v` (N): one sweep. Damping that a system does not have costs nothing, and
     /// stiffness-proportional damping shares the product with K.
     pub fn subtract_internal_force(&self, u: &[f64], v: &[f64], out: &mut [f64]) {
         if self.damping.stiffness == 0.0 {
@@ -218,7 +218,7 @@ impl LinearOperators {
         self.subtract_damping_beyond_stiffness(v, out);
     }
 
-    /// `out -= D v` [N].
+    /// `out -= D v` (N).
     pub fn subtract_damping(&self, v: &[f64], out: &mut [f64]) {
         if self.damping.stiffness != 0.0 {
             self.stiffness
@@ -239,13 +239,13 @@ impl LinearOperators {
         }
     }
 
-    /// `out = F(t) - K u - D v` [N].
+    /// `out = F(t) - K u - D v` (N).
     pub fn net_force(&self, t: f64, u: &[f64], v: &[f64], out: &mut [f64]) {
         self.external_force(t, out);
         self.subtract_internal_force(u, v, out);
     }
 
-    /// Kinetic energy and energy stored in deformation [J].
+    /// Kinetic energy and energy stored in deformation (J).
     #[must_use]
     pub fn energy(&self, u: &[f64], v: &[f64]) -> Energy {
         let mut force = vec![0.0; u.len()];

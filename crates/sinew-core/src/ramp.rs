@@ -7,21 +7,21 @@ use std::f64::consts::PI;
 pub enum Ramp {
     /// 1 from t = 0 on.
     Step,
-    /// sin^2(pi t / (2 rise)) until `rise` [s], 1 afterwards.
+    /// sin^2(pi t / (2 rise)) until `rise` (s), 1 afterwards.
     Sin2 {
-        /// Time of the rise [s].
+        /// Time of the rise (s).
         rise: f64,
     },
-    /// 1 for `from <= t < to` [s], 0 elsewhere.
+    /// 1 for `from <= t < to` (s), 0 elsewhere.
     Pulse {
-        /// First instant [s].
+        /// First instant (s).
         from: f64,
-        /// First instant after it [s].
+        /// First instant after it (s).
         to: f64,
     },
     /// Linear between points, constant before the first and after the last.
     Table {
-        /// Increasing times [s].
+        /// Increasing times (s).
         times: Vec<f64>,
         /// A value for each time.
         values: Vec<f64>,
@@ -38,9 +38,9 @@ pub enum RampError {
     /// A pulse that ends before it starts.
     #[error("pulse from {from} s to {to} s: expected finite times with from < to")]
     Pulse {
-        /// Start [s].
+        /// Start (s).
         from: f64,
-        /// End [s].
+        /// End (s).
         to: f64,
     },
     /// Lists of different lengths, or empty ones.
@@ -91,7 +91,7 @@ impl Ramp {
         }
     }
 
-    /// The factor at time `t` [s].
+    /// The factor at time `t` (s).
     #[must_use]
     pub fn value(&self, t: f64) -> f64 {
         match self {
@@ -113,7 +113,7 @@ impl Ramp {
         }
     }
 
-    /// The instants [s] at which the ramp or one of its derivatives jumps, in increasing order.
+    /// The instants (s) at which the ramp or one of its derivatives jumps, in increasing order.
     #[must_use]
     pub fn breakpoints(&self) -> Vec<f64> {
         match self {
@@ -125,7 +125,7 @@ impl Ramp {
     }
 
     /// Writes the derivatives of order 0, 1, 2, .. just after time `t`, as many as `out` holds
-    /// [1, 1/s, 1/s^2, ..]. They hold up to the next breakpoint.
+    /// (1, 1/s, 1/s^2, ..). They hold up to the next breakpoint.
     pub fn derivatives_after(&self, t: f64, out: &mut [f64]) {
         out.fill(0.0);
         let Some((value, higher)) = out.split_first_mut() else {

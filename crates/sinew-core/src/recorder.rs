@@ -15,7 +15,7 @@ pub enum Verdict {
 #[derive(Debug, thiserror::Error)]
 #[error("recording at t = {t} s failed: {source}")]
 pub struct RecordError {
-    /// Time of the state [s].
+    /// Time of the state (s).
     pub t: f64,
     /// What went wrong.
     pub source: Box<dyn std::error::Error + Send + Sync>,
@@ -23,7 +23,7 @@ pub struct RecordError {
 
 /// Sees states of a running simulation; says beforehand which, so that nobody pays for copies.
 pub trait Recorder {
-    /// Whether it wants the state after `step` steps (0: the initial state), at time `t` [s].
+    /// Whether it wants the state after `step` steps (0: the initial state), at time `t` (s).
     fn wants(&mut self, step: usize, t: f64) -> bool;
 
     /// A state it wanted. `state.v` may be staggered: ask [`State::velocity_at_t`].

@@ -5,16 +5,16 @@ use crate::{Integrator, RecordError, Recorder, State, StepError, StepReport, Sys
 /// How far and in which steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run {
-    /// Step [s].
+    /// Step (s).
     pub dt: f64,
     /// Number of steps.
     pub steps: usize,
-    /// Largest displacement component [m] before the run counts as diverged.
+    /// Largest displacement component (m) before the run counts as diverged.
     pub divergence_limit: f64,
 }
 
 impl Run {
-    /// As many steps as cover `duration` [s]; a last step may pass it where dt does not divide it.
+    /// As many steps as cover `duration` (s); a last step may pass it where dt does not divide it.
     #[must_use]
     pub fn covering(duration: f64, dt: f64) -> Self {
         // The subtrahend keeps a quotient like 50.000000000000004 from costing one step more.
@@ -26,7 +26,7 @@ impl Run {
         }
     }
 
-    /// With a limit [m] on displacement components.
+    /// With a limit (m) on displacement components.
     #[must_use]
     pub fn with_divergence_limit(self, divergence_limit: f64) -> Self {
         Self {
@@ -43,7 +43,7 @@ pub enum Outcome {
     Finished,
     /// A displacement was not finite or passed the limit.
     Diverged {
-        /// Time of the state [s].
+        /// Time of the state (s).
         t: f64,
         /// The worst degree of freedom.
         cell: usize,

@@ -118,13 +118,13 @@ fn largest_of_tridiagonal(diagonal: &[f64], off_diagonal: &[f64]) -> f64 {
 /// The fastest motions of a linear system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spectrum {
-    /// Largest undamped angular frequency [rad/s].
+    /// Largest undamped angular frequency (rad/s).
     pub omega_max: f64,
-    /// Largest eigenvalue of M^-1 (D - alpha M) [1/s].
+    /// Largest eigenvalue of M^-1 (D - alpha M) (1/s).
     pub damping_max: f64,
-    /// alpha [1/s].
+    /// alpha (1/s).
     pub mass_damping: f64,
-    /// beta [s] where damping is proportional, 0 where a damping matrix stands beside it.
+    /// beta (s) where damping is proportional, 0 where a damping matrix stands beside it.
     pub stiffness_damping: f64,
     /// Whether D is alpha M + beta K and nothing else.
     pub proportional: bool,
@@ -170,7 +170,7 @@ impl Spectrum {
             })
     }
 
-    /// 2/omega_max [s], the limit of undamped leapfrog; infinite where nothing vibrates.
+    /// 2/omega_max (s), the limit of undamped leapfrog; infinite where nothing vibrates.
     #[must_use]
     pub fn critical_step(&self) -> f64 {
         2.0 / self.omega_max

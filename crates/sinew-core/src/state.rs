@@ -8,17 +8,17 @@ use crate::{EvaluationError, System, Trial};
 /// integrator is bit-identical. It therefore carries everything a method must remember.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Time of `u` [s].
+    /// Time of `u` (s).
     pub t: f64,
-    /// Displacement at `t` [m].
+    /// Displacement at `t` (m).
     pub u: Vec<f64>,
-    /// Velocity at `v_time` [m/s].
+    /// Velocity at `v_time` (m/s).
     pub v: Vec<f64>,
-    /// Time at which `v` holds [s]; staggered methods keep it half a step behind `t`.
+    /// Time at which `v` holds (s); staggered methods keep it half a step behind `t`.
     pub v_time: f64,
-    /// Acceleration at `a_time` [m/s^2], empty unless a method keeps one.
+    /// Acceleration at `a_time` (m/s^2), empty unless a method keeps one.
     pub a: Vec<f64>,
-    /// Time at which `a` holds [s]; minus infinity when none is kept. It is up to date only
+    /// Time at which `a` holds (s); minus infinity when none is kept. It is up to date only
     /// when it equals `t`.
     pub a_time: f64,
 }
@@ -30,7 +30,7 @@ impl State {
         Self::new(vec![0.0; dofs], vec![0.0; dofs])
     }
 
-    /// The given displacement [m] and velocity [m/s] at t = 0.
+    /// The given displacement (m) and velocity (m/s) at t = 0.
     #[must_use]
     pub fn new(u: Vec<f64>, v: Vec<f64>) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl State {
         }
     }
 
-    /// Writes the velocity at `t` [m/s] into `out` (length of `u`).
+    /// Writes the velocity at `t` (m/s) into `out` (length of `u`).
     ///
     /// A staggered velocity is brought to `t` with the acceleration there: one force
     /// evaluation, accurate to second order in the distance.

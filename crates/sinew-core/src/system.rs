@@ -24,17 +24,17 @@ impl Revision {
 /// A point at which a system is evaluated without being changed.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<'a> {
-    /// Time at which the load is taken [s].
+    /// Time at which the load is taken (s).
     pub t: f64,
-    /// Step that led here [s]; laws with memory need it.
+    /// Step that led here (s); laws with memory need it.
     pub dt: f64,
-    /// Displacement [m].
+    /// Displacement (m).
     pub u: &'a [f64],
-    /// Velocity [m/s].
+    /// Velocity (m/s).
     pub v: &'a [f64],
 }
 
-/// Energies of a state [J].
+/// Energies of a state (J).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Energy {
     /// Half v' M v.
@@ -44,7 +44,7 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// Kinetic and elastic together [J].
+    /// Kinetic and elastic together (J).
     #[must_use]
     pub fn total(self) -> f64 {
         self.kinetic + self.elastic
@@ -69,22 +69,22 @@ pub trait System: Send + Sync {
     /// Length of the displacement vector.
     fn dofs(&self) -> usize;
 
-    /// Lumped mass of each degree of freedom [kg], all positive.
+    /// Lumped mass of each degree of freedom (kg), all positive.
     fn mass(&self) -> &[f64];
 
     /// Identity of the matrices and laws.
     fn revision(&self) -> Revision;
 
-    /// `out = f_ext(t) - f_int(u, v)` [N]: one sweep over all cells.
+    /// `out = f_ext(t) - f_int(u, v)` (N): one sweep over all cells.
     ///
     /// # Errors
     /// [`EvaluationError`] when a law is outside its domain; `out` is then unspecified.
     fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError>;
 
-    /// `out = f_ext(t)` [N].
+    /// `out = f_ext(t)` (N).
     fn external_force(&self, t: f64, out: &mut [f64]);
 
-    /// The rate alpha [1/s] of that part of `f_int` which is `alpha M v`; central difference
+    /// The rate alpha (1/s) of that part of `f_int` which is `alpha M v`; central difference
     /// treats it implicitly at no cost.
     fn mass_damping(&self) -> f64 {
         0.0
@@ -104,7 +104,7 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// Size of the body [m], where it has one: the longest edge of its bounding box.
+    /// Size of the body (m), where it has one: the longest edge of its bounding box.
     fn extent(&self) -> Option<f64> {
         None
     }

@@ -11,7 +11,7 @@ use crate::{Problem, SpringRule, tetra};
 /// Tetrahedra whose matrices are held in memory at a time.
 const BATCH: usize = 4096;
 
-/// A quarter of each tetrahedron's mass on each of its nodes [kg].
+/// A quarter of each tetrahedron's mass on each of its nodes (kg).
 pub(crate) fn lumped_masses(
     mesh: &TetMesh,
     problem: &Problem,
@@ -111,16 +111,28 @@ pub(crate) fn region_springs<'a>(
     (springs, modulus)
 }
 
-/// d = gamma 2 sqrt(k (m_i + m_j)) [N s/m] of each spring; gamma = 1 damps the pair critically.
-pub(crate) fn dashpots(
-    springs: &[Spring],
-    masses: &[f64],
-    damping_ratio: f64,
-) -> impl Iterator<Item = f64> {
-    springs.iter().map(move |spring| {
+/// The edges of all networks, each given with its gamma, and d = gamma 2 sqrt(k (m_i + m_j)) (N s/m)
+/// of each; gamma = 1 damps the pair critically. An edge that networks share is one spring, whose
+/// gamma is the mean of theirs by stiffness: cutting a body into regions changes nothing.
+pub(crate) fn dashpots(networks: &[(f64, Vec<Spring>)], masses: &[f64]) -> (Vec<Spring>, Vec<f64>) {
+    let scaled = |by: fn(f64) -> f64| {
+        let parts = networks.iter().flat_map(|(gamma, springs)| {
+            let factor = by(*gamma);
+            springs.iter().map(move |spring| Spring {
+                stiffness: factor * spring.stiffness,
+                ..*spring
+            })
+        });
+        springs::summed(parts.collect())
+    };
+    let (springs, damped) = (scaled(|_| 1.0), scaled(|gamma| gamma));
+    let rates = springs.iter().zip(&damped).map(|(spring, damped)| {
         let [a, b] = spring.nodes.map(|node| masses[node as usize]);
-        damping_ratio * 2.0 * (spring.stiffness * (a + b)).sqrt()
-    })
+        let gamma = damped.stiffness / spring.stiffness;
+        gamma * 2.0 * (spring.stiffness * (a + b)).sqrt()
+    });
+    let rates = rates.collect();
+    (springs, rates)
 }
 
 /// Adds `rate n n'` to the diagonal blocks of each edge's nodes and subtracts it between them.
@@ -129,7 +141,7 @@ pub(crate) fn add_edges(
     mesh: &TetMesh,
     cells: &Cells,
     springs: &[Spring],
-    rates: impl Iterator<Item = f64>,
+    rates: impl IntoIterator<Item = f64>,
 ) -> Result<(), FemError> {
     for (spring, rate) in springs.iter().zip(rates) {
         let (n, _) = springs::direction(&mesh.points, spring.nodes);

@@ -62,13 +62,9 @@ pub(crate) fn numbers(problem: &Problem) -> Result<(), FemError> {
             LoadKind::Pressure(value) => finite(item, "pressure", &[value])?,
             LoadKind::Force(value) => finite(item, "force", &value)?,
         }
-        load.ramp.check().map_err(|source| {
-            let load = index;
-            FemError::new(
-                item,
-                sinew_core::OperatorError::Ramp { load, source }.into(),
-            )
-        })?;
+        load.ramp
+            .check()
+            .map_err(|error| FemError::new(item, error.into()))?;
     }
     problem
         .gravity
@@ -104,7 +100,7 @@ fn require(
     ))
 }
 
-/// Checks that every tetrahedron has a positive volume and returns the volumes [m^3].
+/// Checks that every tetrahedron has a positive volume and returns the volumes (m^3).
 pub(crate) fn volumes(mesh: &TetMesh) -> Result<Vec<f64>, FemError> {
     let volumes = mesh.signed_volumes();
     let flat = |index: usize| {

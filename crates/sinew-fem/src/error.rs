@@ -108,7 +108,7 @@ pub enum Cause {
     Inverted {
         /// Element tag of the first.
         tag: u64,
-        /// Its volume [m^3].
+        /// Its volume (m^3).
         volume: f64,
         /// How many.
         count: usize,
@@ -120,9 +120,9 @@ pub enum Cause {
     Flat {
         /// Element tag.
         tag: u64,
-        /// Its volume [m^3].
+        /// Its volume (m^3).
         volume: f64,
-        /// Its longest edge [m].
+        /// Its longest edge (m).
         edge: f64,
     },
     /// Supports that hold everything.
@@ -137,6 +137,9 @@ pub enum Cause {
         /// Name of the group.
         group: String,
     },
+    /// A ramp that makes no sense.
+    #[error("ramp: {0}")]
+    Ramp(#[from] sinew_core::RampError),
     /// Surface triangles that do not bound the body.
     #[error(transparent)]
     Surface(#[from] sinew_mesh::SurfaceError),

@@ -11,9 +11,9 @@ use crate::{LoadKind, LoadSpec, check};
 /// What a load asks for and what of it acts, at full value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadFacts {
-    /// Resultant of the load [N].
+    /// Resultant of the load (N).
     pub asked: [f64; 3],
-    /// Resultant of what falls on components that move [N]; the rest goes into the supports.
+    /// Resultant of what falls on components that move (N); the rest goes into the supports.
     pub acting: [f64; 3],
 }
 
@@ -24,7 +24,13 @@ pub(crate) fn assemble(
     load: &LoadSpec,
     item: Item,
 ) -> Result<(Load, LoadFacts), FemError> {
-    let group = check::group(mesh, &load.group, item)?;
+    let group = match load.kind {
+        LoadKind::Force(_) => check::group(mesh, &load.group, item)?,
+        // A volume and its surface may have one name.
+        LoadKind::Traction(_) | LoadKind::Pressure(_) => mesh
+            .group_of_dim(&load.group, 2)
+            .or_else(|_| check::group(mesh, &load.group, item))?,
+    };
     let mut nodal: Vec<(u32, Vector3<f64>)> = Vec::new();
     match load.kind {
         LoadKind::Traction(traction) => {
@@ -70,6 +76,7 @@ pub(crate) fn gravity(cells: &Cells, masses: &[f64], gravity: [f64; 3]) -> (Load
 fn gather(cells: &Cells, nodal: &[(u32, Vector3<f64>)], ramp: Ramp) -> (Load, LoadFacts) {
     let mut force = vec![0.0; cells.pinned.len()];
     let mut loaded = vec![false; cells.pinned.len()];
+    let nothing_asked = nodal.iter().all(|(_, share)| *share == Vector3::zeros());
     let mut asked = Vector3::zeros();
     for (node, share) in nodal {
         asked += share;
@@ -78,7 +85,7 @@ fn gather(cells: &Cells, nodal: &[(u32, Vector3<f64>)], ramp: Ramp) -> (Load, Lo
                 let dof = 3 * cell as usize + axis;
                 if !cells.pinned[dof] {
                     force[dof] += share[axis];
-                    loaded[dof] = true;
+                    loaded[dof] |= nothing_asked || share[axis] != 0.0;
                 }
             }
         }
@@ -119,7 +126,7 @@ fn triangles(group: &Group, item: Item) -> Result<&[[u32; 3]], FemError> {
     }
 }
 
-/// Area times normal [m^2].
+/// Area times normal (m^2).
 fn area_vector(mesh: &TetMesh, triangle: &[u32; 3]) -> Vector3<f64> {
     let [a, b, c] = triangle.map(|node| Vector3::from(mesh.points[node as usize]));
     (b - a).cross(&(c - a)) / 2.0

@@ -39,7 +39,7 @@ impl Model {
 
         let pattern = pattern(mesh, &cells)?;
         let mut stiffness = BlockMatrix::zeros(Arc::clone(&pattern), Layers::Three);
-        let mut dashpots = None;
+        let mut networks = Vec::new();
         let mut regions = Vec::with_capacity(problem.regions.len());
         for (index, region) in problem.regions.iter().enumerate() {
             let members = || (0..mesh.tets.len()).filter(|tet| region_of[*tet] == index);
@@ -71,13 +71,7 @@ impl Model {
                     );
                     let rates = springs.iter().map(|spring| spring.stiffness);
                     assembly::add_edges(&mut stiffness, mesh, &cells, &springs, rates)?;
-                    if damping_ratio > 0.0 {
-                        let matrix = dashpots.get_or_insert_with(|| {
-                            BlockMatrix::zeros(Arc::clone(&pattern), Layers::Three)
-                        });
-                        let rates = assembly::dashpots(&springs, &masses, damping_ratio);
-                        assembly::add_edges(matrix, mesh, &cells, &springs, rates)?;
-                    }
+                    networks.push((damping_ratio, springs));
                     Some(modulus)
                 }
             };
@@ -86,6 +80,12 @@ impl Model {
                 volume,
                 network,
             });
+        }
+        let mut dashpots = None;
+        if networks.iter().any(|(gamma, _)| *gamma > 0.0) {
+            let matrix = dashpots.insert(BlockMatrix::zeros(Arc::clone(&pattern), Layers::Three));
+            let (springs, rates) = assembly::dashpots(&networks, &masses);
+            assembly::add_edges(matrix, mesh, &cells, &springs, rates)?;
         }
         if cells.partly_held() {
             stiffness.clear_pinned(&cells.pinned);
@@ -172,7 +172,7 @@ impl Model {
         &self.report
     }
 
-    /// Displacement of a mesh node (0-based) in a state [m]; zero where it is held.
+    /// Displacement of a mesh node (0-based) in a state (m); zero where it is held.
     #[must_use]
     pub fn node_displacement(&self, u: &[f64], node: u32) -> [f64; 3] {
         self.cell_of_node(node).map_or([0.0; 3], |cell| {

@@ -13,7 +13,7 @@ pub struct Problem {
     pub fixed: Vec<Fixed>,
     /// Loads.
     pub loads: Vec<LoadSpec>,
-    /// Acceleration of free fall [m/s^2], acting from t = 0.
+    /// Acceleration of free fall (m/s^2), acting from t = 0.
     pub gravity: Option<[f64; 3]>,
 }
 
@@ -22,7 +22,7 @@ pub struct Problem {
 pub struct Region {
     /// A group of tetrahedra; `None` stands for the whole mesh.
     pub group: Option<String>,
-    /// Mass density [kg/m^3].
+    /// Mass density (kg/m^3).
     pub density: f64,
     /// How it resists deformation.
     pub law: Law,
@@ -33,14 +33,14 @@ pub struct Region {
 pub enum Law {
     /// Isotropic linear elasticity on 4-node tetrahedra.
     Linear {
-        /// Young's modulus [Pa].
+        /// Young's modulus (Pa).
         youngs_modulus: f64,
         /// Poisson's ratio, in (-1, 1/2).
         poissons_ratio: f64,
     },
     /// A network of springs along the edges. Its Poisson's ratio is 1/4, whatever the springs.
     Springs {
-        /// Young's modulus [Pa] the stiffnesses aim at.
+        /// Young's modulus (Pa) the stiffnesses aim at.
         youngs_modulus: f64,
         /// How stiffness follows from the modulus.
         rule: SpringRule,
@@ -64,9 +64,9 @@ pub enum SpringRule {
 /// D = alpha M + beta K.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rayleigh {
-    /// alpha [1/s].
+    /// alpha (1/s).
     pub mass: f64,
-    /// beta [s].
+    /// beta (s).
     pub stiffness: f64,
 }
 
@@ -93,10 +93,10 @@ pub struct LoadSpec {
 /// What acts on a group.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LoadKind {
-    /// Force per undeformed area [Pa] on a group of triangles; each vertex gets a third.
+    /// Force per undeformed area (Pa) on a group of triangles; each vertex gets a third.
     Traction([f64; 3]),
-    /// Pressure [Pa] against the outward normal of the undeformed surface.
+    /// Pressure (Pa) against the outward normal of the undeformed surface.
     Pressure(f64),
-    /// A total force [N] in equal parts on the group's nodes that are not fixed.
+    /// A total force (N) in equal parts on the group's nodes that are not fixed.
     Force([f64; 3]),
 }

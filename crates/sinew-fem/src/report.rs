@@ -18,9 +18,9 @@ pub struct ModelReport {
     pub held_components: usize,
     /// Degrees of freedom that move.
     pub free_dofs: usize,
-    /// Mass of the body [kg], held nodes included.
+    /// Mass of the body (kg), held nodes included.
     pub mass: f64,
-    /// Volume of the body [m^3].
+    /// Volume of the body (m^3).
     pub volume: f64,
     /// Facts of each region, in the order of the problem.
     pub regions: Vec<RegionFacts>,
@@ -41,7 +41,7 @@ pub struct ModelReport {
 pub struct RegionFacts {
     /// Tetrahedra.
     pub tets: usize,
-    /// Volume [m^3].
+    /// Volume (m^3).
     pub volume: f64,
     /// What its springs are as a material, calibration included; `None` for continua.
     pub network: Option<NetworkModulus>,

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Matrix4x3, Vector3};
 
-/// Lame's constants (lambda, mu) [Pa] of Young's modulus [Pa] and Poisson's ratio.
+/// Lame's constants (lambda, mu) (Pa) of Young's modulus (Pa) and Poisson's ratio.
 #[must_use]
 pub fn lame(youngs_modulus: f64, poissons_ratio: f64) -> (f64, f64) {
     let mu = youngs_modulus / (2.0 * (1.0 + poissons_ratio));
@@ -10,7 +10,7 @@ pub fn lame(youngs_modulus: f64, poissons_ratio: f64) -> (f64, f64) {
     (lambda, mu)
 }
 
-/// Signed volume [m^3]; positive when the fourth vertex sees the first three anticlockwise.
+/// Signed volume (m^3); positive when the fourth vertex sees the first three anticlockwise.
 #[must_use]
 pub fn signed_volume(vertices: &[[f64; 3]; 4]) -> f64 {
     edge_matrix(vertices).determinant() / 6.0
@@ -22,7 +22,7 @@ fn edge_matrix(vertices: &[[f64; 3]; 4]) -> Matrix3<f64> {
     Matrix3::from_columns(&[second - first, third - first, fourth - first])
 }
 
-/// Stiffness matrix [N/m], 12 x 12, row-major and node-major, of an isotropic linear elastic
+/// Stiffness matrix (N/m), 12 x 12, row-major and node-major, of an isotropic linear elastic
 /// tetrahedron (Bathe, Finite Element Procedures, section 5.3, with one constant strain):
 /// the 3x3 block of vertices a, b is `V (lambda g_a g_b' + mu g_b g_a' + mu g_a.g_b I)`, g being
 /// the gradients of the shape functions.

@@ -4,6 +4,8 @@
 //! Linear tetrahedra lock: they are far too stiff in bending, above all where the material is nearly
 //! incompressible. The expected ratios are the known price on exactly these meshes.
 
+#![cfg(test)]
+
 mod common;
 
 use common::{

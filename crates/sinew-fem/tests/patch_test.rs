@@ -1,11 +1,13 @@
 //! Patch test (Irons 1965; Zienkiewicz and Taylor, The Finite Element Method, chapter 9): distorted
 //! tetrahedra reproduce every uniform strain.
 
+#![cfg(test)]
+
 mod common;
 
 use common::{
-    at_most, body, build, held, is_inside, jitter, linear, max_abs, on_cells, relative_difference, solve,
-    stiffness_times,
+    at_most, body, build, held, is_inside, jitter, linear, max_abs, on_cells, relative_difference,
+    solve, stiffness_times,
 };
 use nalgebra::{Matrix3, Vector3};
 use sinew_fem::tetra::lame;

@@ -1,5 +1,7 @@
 //! A free body resists every motion except the six rigid ones.
 
+#![cfg(test)]
+
 mod common;
 
 use common::{at_most, body, build, jitter, linear, max_abs, on_cells, springs, stiffness_times};
@@ -79,8 +81,7 @@ fn translations_and_rotations_meet_no_force() {
 fn exactly_six_eigenvalues_are_zero_and_none_is_negative() {
     for (name, _, model) in bodies() {
         let stiffness = dense_stiffness(&model);
-        let mut eigenvalues: Vec<f64> =
-            stiffness.symmetric_eigenvalues().iter().copied().collect();
+        let mut eigenvalues: Vec<f64> = stiffness.symmetric_eigenvalues().iter().copied().collect();
         eigenvalues.sort_by(f64::total_cmp);
         let largest = eigenvalues[eigenvalues.len() - 1];
         let zeros = max_abs(&eigenvalues[..6]) / largest;

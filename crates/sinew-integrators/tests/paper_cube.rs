@@ -16,7 +16,6 @@ fn error_of(id: &str, options: &Options, steps_per_instant: usize) -> f64 {
 #[test]
 fn the_reference_is_its_own_limit() {
     let error = relative_error(reference(), &rk4(40));
-    println!("reference: {error:e}");
     assert!(error < 1e-6, "{error:e}");
 }
 
@@ -69,14 +68,16 @@ fn at_20_ms_the_network_is_bounded_and_wrong() {
     let model = paper_cube();
     let (instants, state, report) = run(model, &mut *build("cnn", &saturation(4.0)), 1);
     let error = error(&instants);
-    println!("error {error}");
     assert!((error / 25.2 - 1.0).abs() < 0.02, "{error}");
-    assert_prints(report.work.saturated as f64 / (50 * model.dofs()) as f64, "0.766");
+    assert_prints(
+        report.work.saturated as f64 / (50 * model.dofs()) as f64,
+        "0.766",
+    );
     let max_u = instants.iter().map(|u| largest(u)).fold(0.0, f64::max);
     assert_prints(max_u, "0.160");
     let inverted = |u: &Vec<f64>| model.inverted_elements(u).unwrap();
     assert_eq!(inverted(&state.u), 1676);
-    let late = instants[26..].iter().map(inverted);
+    let late = instants[22..].iter().map(inverted);
     assert_eq!((late.clone().min(), late.max()), (Some(1646), Some(2984)));
     // At the end everything is saturated: every jump is the voltage times the step.
     for (before, after) in instants[49].iter().zip(&instants[50]) {
@@ -106,11 +107,4 @@ fn central_difference_in_three_sub_steps() {
     assert_prints(error(&by_option), "0.00123");
     assert!(by_option == by_step);
     assert!(option_state == step_state);
-}
-
-#[test]
-fn symplectic_network() {
-    for n in [1, 20] {
-        println!("{}", error_of("cnn-symplectic", &plain(), n));
-    }
 }

@@ -250,15 +250,6 @@ pub enum Fault {
     /// A static state that cannot be solved for.
     #[error("no static state: {0}")]
     Static(#[from] sinew_integrators::StaticError),
-    /// A static state that balances its loads not even nearly: the stiffness matrix is singular
-    /// but for rounding.
-    #[error(
-        "no static state: {left_over:.1e} of the load stays unbalanced; is the body held against all rigid motions?"
-    )]
-    Unbalanced {
-        /// Norm of K u - F over that of F.
-        left_over: f64,
-    },
 }
 
 impl Fault {

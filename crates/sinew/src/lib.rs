@@ -1,1 +1,52 @@
-//! Soft-tissue dynamics that prints its error beside its speed: the face of the sinew crates
+//! Soft-tissue dynamics for surgical simulation: the face of the sinew crates.
+//!
+//! Each crate works alone; this one puts them under one name and brings the `sinew` command.
+//!
+//! ```
+//! use sinew::prelude::*;
+//!
+//! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
+//! let model = Model::build(&mesh, &Problem {
+//!     regions: vec![Region {
+//!         group: None,
+//!         density: 1060.0,
+//!         law: Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.45 },
+//!     }],
+//!     fixed: vec![Fixed { group: "bottom".into(), axes: [true; 3] }],
+//!     gravity: Some([0.0, 0.0, -9.81]),
+//!     ..Problem::default()
+//! })?;
+//! let mut integrator = sinew::integrators::build("central-difference", &Options::new())?;
+//! let StableStep::UpTo(limit) = integrator.stable_step(&model)? else { unreachable!() };
+//! let mut state = State::at_rest(model.dofs());
+//! let run = Run::covering(0.05, 0.9 * limit);
+//! let report = simulate(&model, &mut *integrator, &mut state, &run, &mut ())?;
+//! assert_eq!(report.outcome, Outcome::Finished);
+//! assert!(state.u.iter().skip(2).step_by(3).all(|u_z| *u_z < 0.0), "it sags");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub use {
+    sinew_cnn as cnn, sinew_core as core, sinew_fem as fem, sinew_integrators as integrators,
+    sinew_mesh as mesh, sinew_scene as scene, sinew_sparse as sparse,
+};
+
+/// What most programs need.
+pub mod prelude {
+    pub use sinew_cnn::{Saturation, Templates};
+    pub use sinew_core::{
+        Integrator, LinearSystem, Options, Outcome, Ramp, Recorder, Run, StableStep, State,
+        StepReport, System, simulate,
+    };
+    pub use sinew_fem::{
+        Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule,
+    };
+    pub use sinew_mesh::structured::{self, Split};
+    pub use sinew_mesh::{TetMesh, read_msh_file};
+    pub use sinew_scene::Scene;
+}
+
+/// The README's examples, compiled and run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+pub struct Readme;

@@ -3,12 +3,12 @@
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{LinearOperators, State};
 
-/// Largest |lambda| h, lambda being the fastest root of the motion: beyond a few, terms grow before
-/// they shrink and rounding is lost with them.
-const REACH: f64 = 2.0;
+/// Largest |lambda| h, lambda being the fastest root of the motion. The series would hold beyond a
+/// few; shorter steps show the peaks of the motion between them.
+const REACH: f64 = 0.5;
 
-/// Terms of the series. At |lambda| h = 2 the last is below 2^40/40!, far under rounding.
-const TERMS: usize = 40;
+/// Terms of the series. At |lambda| h = 1/2 the last is below 2^-24/24!, far under rounding.
+const TERMS: usize = 24;
 
 /// Steps a linear system by the Taylor series of its motion (Moler and Van Loan, SIAM Review 45,
 /// 2003, method 1 on steps in which it is safe), load derivatives included.
@@ -53,7 +53,7 @@ impl<'a> Taylor<'a> {
         }
     }
 
-    /// Moves `state`, whose velocity must hold at its time, to time `t` [s]. `each_step` sees the
+    /// Moves `state`, whose velocity must hold at its time, to time `t` (s). `each_step` sees the
     /// displacement after every internal step.
     pub fn advance(&mut self, state: &mut State, t: f64, mut each_step: impl FnMut(&State)) {
         while state.t < t {

@@ -2,7 +2,7 @@
 
 /// Escapes text for the content and the quoted attributes of HTML and SVG. Control characters,
 /// which XML cannot hold, become the replacement character.
-pub(super) fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

@@ -23,6 +23,8 @@ mod write;
 
 pub use axis::{Axis, Scale};
 pub use html::html;
+pub(crate) use markup::escape;
+pub(crate) use number::three;
 pub use plot::{Plot, Point, Rule, Series};
 pub use strip::strip;
 pub use style::{Colour, Dash, Marker, Style};

@@ -1,7 +1,7 @@
 //! Numbers as people read them.
 
 /// Three significant digits, trailing zeros kept: they are digits too.
-pub(super) fn three(x: f64) -> String {
+pub(crate) fn three(x: f64) -> String {
     significant(x, 3)
 }
 

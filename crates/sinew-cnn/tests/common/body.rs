@@ -13,7 +13,7 @@ use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
 /// A body, what acts on it and how it moves at first.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub(crate) struct Body {
     /// The tetrahedra.
     pub(crate) mesh: TetMesh,
@@ -22,6 +22,17 @@ pub(crate) struct Body {
     /// A direction for each node's first displacement and one for its first velocity, components
     /// between -1 and 1.
     pub(crate) motion: Vec<[[f64; 3]; 2]>,
+}
+
+/// Without the mesh's many numbers.
+impl std::fmt::Debug for Body {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Body")
+            .field("nodes", &self.mesh.points.len())
+            .field("tets", &self.mesh.tets.len())
+            .field("problem", &self.problem)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Body {

@@ -100,7 +100,7 @@ pub(crate) fn is_inside(mesh: &TetMesh, node: usize) -> bool {
     (0..3).all(|axis| low[axis] < point[axis] && point[axis] < high[axis])
 }
 
-/// Moves the inner nodes by up to `reach` [m] along each axis, the same way for the same seed.
+/// Moves the inner nodes by up to `reach` (m) along each axis, the same way for the same seed.
 pub(crate) fn jitter(mesh: &mut TetMesh, reach: f64, mut seed: u64) {
     for node in 0..mesh.points.len() {
         if is_inside(mesh, node) {
@@ -146,12 +146,12 @@ fn mass_times(model: &Model, u: &[f64]) -> Vec<f64> {
     model.mass().iter().zip(u).map(|(m, u)| m * u).collect()
 }
 
-/// sqrt(u'K u / u'M u) [rad/s].
+/// sqrt(u'K u / u'M u) (rad/s).
 pub(crate) fn rayleigh_frequency(model: &Model, u: &[f64]) -> f64 {
     (dot(u, &stiffness_times(model, u)) / dot(u, &mass_times(model, u))).sqrt()
 }
 
-/// The lowest angular frequency [rad/s] of the modes that `start` has a part of, to about six
+/// The lowest angular frequency (rad/s) of the modes that `start` has a part of, to about six
 /// digits, by inverse iteration (Bathe, Finite Element Procedures, section 11.2.1).
 pub(crate) fn lowest_frequency(model: &Model, start: Vec<f64>) -> f64 {
     let (mut shape, mut frequency) = (start, f64::INFINITY);

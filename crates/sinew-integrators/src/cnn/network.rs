@@ -7,7 +7,7 @@ use sinew_core::{
 
 use crate::OptionHelp;
 
-/// The paper's saturation voltage [m/s].
+/// The paper's saturation voltage (m/s).
 const PAPER_Q: f64 = 4.0;
 
 pub(super) const SATURATION: OptionHelp = OptionHelp {
@@ -38,7 +38,7 @@ pub(super) fn saturation(options: &Options, integrator: &str) -> Result<Saturati
 pub(super) struct Network {
     prepared: Prepared,
     templates: Option<Templates>,
-    /// dx/dt [m/s^2] after a sweep.
+    /// dx/dt (m/s^2) after a sweep.
     pub(super) rate: Vec<f64>,
 }
 

@@ -13,6 +13,14 @@ pub enum StaticError {
         "the stiffness matrix could not be factorised ({0}); is the body held against all rigid motions?"
     )]
     Singular(String),
+    /// The stiffness matrix is so nearly singular that its factor gives no equilibrium.
+    #[error(
+        "the solution leaves {residual:.1e} of the load unbalanced; is the body held against all rigid motions?"
+    )]
+    Unbalanced {
+        /// `||K u - F|| / ||F||`.
+        residual: f64,
+    },
     /// A load of another size than the system.
     #[error("the load has {load} degrees of freedom, the system has {system}")]
     Size {
@@ -23,10 +31,14 @@ pub enum StaticError {
     },
 }
 
-/// Solves `K u = force` [N] for the displacement [m]. Held components of cells stay zero.
+/// Largest `||K u - F|| / ||F||` that counts as equilibrium. A body that floats freely has a
+/// singular matrix whose factor rounding can let pass; its residual is near 1.
+const BALANCED: f64 = 1e-6;
+
+/// Solves `K u = force` (N) for the displacement (m). Held components of cells stay zero.
 ///
 /// # Errors
-/// [`StaticError`] when K is singular or the load has the wrong size.
+/// [`StaticError`] when K is singular or nearly so, or the load has the wrong size.
 pub fn static_solution(system: &dyn LinearSystem, force: &[f64]) -> Result<Vec<f64>, StaticError> {
     let operators = system.operators();
     if force.len() != operators.dofs() {
@@ -41,5 +53,18 @@ pub fn static_solution(system: &dyn LinearSystem, force: &[f64]) -> Result<Vec<f
         .map_err(StaticError::Singular)?;
     let mut solution = force.to_vec();
     factor.solve(&mut solution);
-    Ok(solution)
+    let mut unbalanced = force.to_vec();
+    operators
+        .stiffness()
+        .subtract_product(&solution, &mut unbalanced);
+    let norm = |vector: &[f64]| vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let residual = norm(&unbalanced);
+    // A comparison that is false for NaN too.
+    if residual <= BALANCED * norm(force) {
+        Ok(solution)
+    } else {
+        Err(StaticError::Unbalanced {
+            residual: residual / norm(force),
+        })
+    }
 }

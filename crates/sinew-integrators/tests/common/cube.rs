@@ -77,7 +77,12 @@ pub(crate) fn run(
 
 /// The displacements of the classical Runge-Kutta method.
 pub(crate) fn rk4(steps_per_instant: usize) -> Vec<Vec<f64>> {
-    run(paper_cube(), &mut *build("rk4", &Options::new()), steps_per_instant).0
+    run(
+        paper_cube(),
+        &mut *build("rk4", &Options::new()),
+        steps_per_instant,
+    )
+    .0
 }
 
 /// The reference: its error is below 1e-6.

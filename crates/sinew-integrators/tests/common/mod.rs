@@ -1,16 +1,20 @@
 //! What the tests of the integrators share.
 
 #![allow(dead_code, reason = "each test file uses some of these")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
 
 #[path = "../../../sinew-cnn/tests/common/body.rs"]
 pub(crate) mod body;
+pub(crate) mod cube;
 #[path = "../../../sinew-cnn/tests/common/dense.rs"]
 pub(crate) mod dense;
-pub(crate) mod cube;
+pub(crate) mod dense_methods;
 
-use sinew_core::{
-    Integrator, Options, Outcome, Run, RunReport, State, System, Verdict, simulate,
-};
+use sinew_core::{Integrator, Options, Outcome, Run, RunReport, State, System, Verdict, simulate};
 
 /// An integrator by name, under these options.
 pub(crate) fn build(id: &str, options: &Options) -> Box<dyn Integrator> {
@@ -66,7 +70,9 @@ pub(crate) fn diverged(report: &RunReport) -> bool {
 #[track_caller]
 pub(crate) fn assert_prints(value: f64, printed: &str) {
     let mantissa = printed.split('e').next().unwrap();
-    let decimals = mantissa.split_once('.').map_or(0, |(_, digits)| digits.len());
+    let decimals = mantissa
+        .split_once('.')
+        .map_or(0, |(_, digits)| digits.len());
     let found = if printed.contains('e') {
         format!("{value:.decimals$e}")
     } else {

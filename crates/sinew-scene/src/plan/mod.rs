@@ -23,11 +23,11 @@ pub struct Plan {
     pub sections: Vec<PlanSection>,
     /// What a user should know before running it.
     pub warnings: Vec<String>,
-    /// 2/omega_max [s], the limit of undamped leapfrog.
+    /// 2/omega_max (s), the limit of undamped leapfrog.
     pub critical_step: f64,
     /// The largest stable step of the scene's integrator; unknown where it cannot say.
     pub stable_step: StableStep,
-    /// Memory of the matrices [bytes].
+    /// Memory of the matrices (bytes).
     pub matrix_bytes: usize,
 }
 

@@ -8,18 +8,18 @@ use crate::error::{Fault, SceneError};
 /// A part of the state at t = 0. What several of them say about a node, the last one decides.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Initial {
-    /// The same displacement [m] for all nodes of a group.
+    /// The same displacement (m) for all nodes of a group.
     Displacement {
         /// The group; `None` stands for the whole body.
         group: Option<String>,
-        /// Displacement [m].
+        /// Displacement (m).
         value: [f64; 3],
     },
-    /// The same velocity [m/s] for all nodes of a group.
+    /// The same velocity (m/s) for all nodes of a group.
     Velocity {
         /// The group; `None` stands for the whole body.
         group: Option<String>,
-        /// Velocity [m/s].
+        /// Velocity (m/s).
         value: [f64; 3],
     },
     /// u_i = strain_i (x_i - origin_i) for all nodes of a group.
@@ -28,7 +28,7 @@ pub enum Initial {
         group: Option<String>,
         /// Strain along x, y, z.
         strain: [f64; 3],
-        /// The point that stays where it is [m].
+        /// The point that stays where it is (m).
         origin: [f64; 3],
     },
     /// The displacement of the whole body at rest under loads at their full value.

@@ -18,7 +18,7 @@ pub enum MeshSource {
     Cube {
         /// Hexahedra along each edge.
         cells: usize,
-        /// Length of an edge [m].
+        /// Length of an edge (m).
         edge: f64,
         /// How hexahedra are cut into tetrahedra.
         split: Split,

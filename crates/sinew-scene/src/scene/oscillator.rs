@@ -7,17 +7,17 @@ use crate::error::SceneError;
 /// m u'' + d u' + k u = f from u(0), u'(0).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Oscillator {
-    /// m [kg].
+    /// m (kg).
     pub mass: f64,
-    /// k [N/m].
+    /// k (N/m).
     pub stiffness: f64,
-    /// d [N s/m].
+    /// d (N s/m).
     pub damping: f64,
-    /// u(0) [m].
+    /// u(0) (m).
     pub displacement: f64,
-    /// u'(0) [m/s].
+    /// u'(0) (m/s).
     pub velocity: f64,
-    /// f [N] from t = 0 on.
+    /// f (N) from t = 0 on.
     pub force: f64,
 }
 

@@ -12,7 +12,7 @@ use crate::error::SceneError;
 pub struct ProbePoint {
     /// Its name, also in the heads of columns.
     pub name: String,
-    /// Where it is in the undeformed body [m].
+    /// Where it is in the undeformed body (m).
     pub point: [f64; 3],
 }
 

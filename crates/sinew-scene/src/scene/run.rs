@@ -14,13 +14,13 @@ use crate::error::{Fault, SceneError};
 /// How long, by which integrator and in which steps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunSettings {
-    /// Simulated time [s].
+    /// Simulated time (s).
     pub duration: f64,
     /// The error is taken at t = j duration/samples, j = 0..=samples.
     pub samples: usize,
     /// Id of the integrator.
     pub integrator: String,
-    /// Step [s].
+    /// Step (s).
     pub dt: f64,
     /// The integrator's own options.
     pub options: Options,

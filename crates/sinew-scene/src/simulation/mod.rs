@@ -178,7 +178,7 @@ impl Simulation {
         }
     }
 
-    /// The times [s] at which the error is taken, from 0 to the duration.
+    /// The times (s) at which the error is taken, from 0 to the duration.
     pub fn sample_times(&self) -> impl ExactSizeIterator<Item = f64> {
         let RunSettings {
             duration, samples, ..

@@ -22,12 +22,12 @@ pub struct NearestNode {
     pub index: u32,
     /// Tag in the mesh file.
     pub tag: u64,
-    /// Its distance from the probe's point [m].
+    /// Its distance from the probe's point (m).
     pub distance: f64,
 }
 
 impl Probe {
-    /// The displacement [m] of each of its degrees of freedom; 0 where it is held.
+    /// The displacement (m) of each of its degrees of freedom; 0 where it is held.
     pub fn displacement<'a>(&'a self, u: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let value = |dof: usize| u.get(dof).copied().unwrap_or(f64::NAN);
         self.dofs.iter().map(move |dof| dof.map_or(0.0, value))

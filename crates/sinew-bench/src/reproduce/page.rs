@@ -1,0 +1,96 @@
+//! The reproduction as files.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::{Claim, Reproduction};
+use crate::report::{WriteError, escape, write_atomically};
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrittenReproduction {
+    /// `reproduction.html`.
+    pub page: PathBuf,
+    /// `claims.md`.
+    pub claims: PathBuf,
+    /// `fig-<number>.svg` of every figure.
+    pub figures: Vec<PathBuf>,
+}
+
+pub(super) fn write(
+    reproduction: &Reproduction,
+    directory: &Path,
+) -> Result<WrittenReproduction, WriteError> {
+    fs::create_dir_all(directory).map_err(|source| WriteError::Directory {
+        path: directory.to_owned(),
+        source,
+    })?;
+    let mut figures = Vec::with_capacity(reproduction.figures.len());
+    for figure in &reproduction.figures {
+        let path = directory.join(format!("fig-{}.svg", figure.number));
+        write_atomically(&path, &figure.svg)?;
+        figures.push(path);
+    }
+    let claims = directory.join("claims.md");
+    write_atomically(&claims, &markdown(&reproduction.claims))?;
+    let page = directory.join("reproduction.html");
+    write_atomically(&page, &html(reproduction))?;
+    Ok(WrittenReproduction {
+        page,
+        claims,
+        figures,
+    })
+}
+
+fn markdown(claims: &[Claim]) -> String {
+    let mut table = String::from(
+        "| where | the paper says | measured | verdict |\n| --- | --- | --- | --- |\n",
+    );
+    for claim in claims {
+        let row = [claim.place, claim.says, &claim.measured, claim.holds.word()];
+        let row = row.map(|cell| cell.replace('|', "\\|"));
+        table.push_str(&format!("| {} |\n", row.join(" | ")));
+    }
+    table
+}
+
+fn html(reproduction: &Reproduction) -> String {
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>The paper, reproduced</title>\n<style>\n{}{}</style>\n</head>\n<body>\n\
+         <h1>The paper, reproduced</h1>\n\
+         <p>Zhang, Zhong, Smith and Gu, <cite>Cellular neural network modelling of soft tissue \
+         dynamics for surgical simulation</cite>, Technology and Health Care 25 (2017) S337-S344. \
+         An error is relative to the exact motion; returning zero scores 100 %.</p>\n",
+        include_str!("../report/report.css"),
+        include_str!("page.css"),
+    );
+    page.push_str(
+        "<h2>Claim by claim</h2>\n<div class=\"scroll\"><table class=\"claims\">\n<thead><tr>",
+    );
+    for heading in ["where", "the paper says", "measured", "verdict"] {
+        page.push_str(&format!("<th>{heading}</th>"));
+    }
+    page.push_str("</tr></thead>\n<tbody>\n");
+    for claim in &reproduction.claims {
+        let class = claim.holds.word().replace(' ', "-");
+        page.push_str(&format!(
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"{class}\">{}</td></tr>\n",
+            escape(claim.place),
+            escape(claim.says),
+            escape(&claim.measured),
+            claim.holds.word()
+        ));
+    }
+    page.push_str("</tbody>\n</table></div>\n<h2>Figures</h2>\n");
+    for figure in &reproduction.figures {
+        page.push_str(&format!(
+            "<figure>\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
+            figure.svg,
+            escape(&figure.caption)
+        ));
+    }
+    page.push_str("</body>\n</html>\n");
+    page
+}

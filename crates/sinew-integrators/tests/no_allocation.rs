@@ -1,0 +1,101 @@
+//! After set-up, a step allocates nothing.
+
+#![allow(
+    unsafe_code,
+    reason = "an allocator that counts is unsafe to implement"
+)]
+
+mod common;
+
+use std::alloc::{GlobalAlloc, Layout, System as SystemAllocator};
+use std::cell::Cell;
+use std::hint::black_box;
+
+use common::cube::cube;
+use common::{build, plain};
+use sinew_core::{OptionValue, Options, State, System};
+
+/// Counts what each thread allocates, so that the test harness does not disturb the count.
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+fn count() {
+    // A thread that ends has no counter any more.
+    let _ = ALLOCATIONS.try_with(|allocations| allocations.set(allocations.get() + 1));
+}
+
+// SAFETY: everything is left to the system's allocator; counting touches no memory of its own.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller's promise, passed on.
+        unsafe { SystemAllocator.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: as above.
+        unsafe { SystemAllocator.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        // SAFETY: as above.
+        unsafe { SystemAllocator.realloc(pointer, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { SystemAllocator.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn allocations(run: impl FnOnce()) -> u64 {
+    let before = ALLOCATIONS.get();
+    run();
+    ALLOCATIONS.get() - before
+}
+
+fn allocations_of_steps(system: &dyn System, id: &str, options: &Options, dt: f64) -> u64 {
+    let mut integrator = build(id, options);
+    let mut state = State::at_rest(system.dofs());
+    common::advance(&mut *integrator, system, &mut state, 2, dt);
+    allocations(|| common::advance(&mut *integrator, system, &mut state, 20, dt))
+}
+
+#[test]
+fn the_counter_counts() {
+    assert_eq!(allocations(|| drop(black_box(vec![0_u8; 100]))), 1);
+    assert_eq!(allocations(|| drop(black_box(Box::new(1)))), 1);
+    assert_eq!(allocations(|| ()), 0);
+}
+
+#[test]
+fn no_integrator_allocates_after_its_second_step() {
+    let model = cube(4);
+    for entry in sinew_integrators::entries() {
+        let mut variants = vec![plain()];
+        if entry.substeps {
+            variants.push(plain().with_number("substeps", 3.0));
+            variants.push(plain().with("substeps", OptionValue::Text("auto".into())));
+        }
+        if entry
+            .options
+            .iter()
+            .any(|option| option.key == "saturation")
+        {
+            // So low that it is reached.
+            variants.push(plain().with_number("saturation", 1e-6));
+        }
+        for options in variants {
+            let count = allocations_of_steps(&model, entry.id, &options, 1e-3);
+            assert_eq!(count, 0, "`{}` with {options:?}", entry.id);
+        }
+    }
+}

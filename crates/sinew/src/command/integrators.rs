@@ -1,0 +1,19 @@
+//! `sinew integrators`.
+
+use super::{Failure, say};
+
+pub(crate) fn run() -> Result<(), Failure> {
+    for entry in sinew_integrators::entries() {
+        say(&format!("{:20} {}", entry.id, entry.summary));
+        for option in entry.options {
+            say(&format!("{:20}   {}: {}", "", option.key, option.help));
+        }
+        if entry.substeps {
+            say(&format!(
+                "{:20}   substeps: parts each step is cut into, or \"auto\"; default 1",
+                ""
+            ));
+        }
+    }
+    Ok(())
+}

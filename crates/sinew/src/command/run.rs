@@ -1,0 +1,91 @@
+//! `sinew run`.
+
+use std::path::PathBuf;
+
+use sinew_core::{Outcome, RunReport, simulate};
+use sinew_scene::{ProbeCsv, Scene, Simulation};
+
+use super::{Failure, say};
+
+/// A scene and where its probes go.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The scene file.
+    scene: PathBuf,
+    /// Where the motion of the probes goes, as CSV [default: the scene's name with .csv, here]
+    #[arg(long, value_name = "FILE")]
+    probes: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let simulation = Scene::load(&arguments.scene)?.build()?;
+    let plan = simulation.plan();
+    for warning in &plan.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let stem = arguments.scene.file_stem().unwrap_or_default();
+    let default = PathBuf::from(stem).with_extension("csv");
+    let path = arguments.probes.clone().unwrap_or(default);
+    let cannot_write = |error| Failure::Input(format!("cannot write {}: {error}", path.display()));
+
+    let mut integrator = simulation
+        .integrator()
+        .map_err(|error| Failure::Input(error.to_string()))?;
+    let system = simulation.system();
+    integrator
+        .prepare(system, simulation.settings().dt)
+        .map_err(|error| Failure::Input(error.to_string()))?;
+    let mut csv = ProbeCsv::create(&path, simulation.probes()).map_err(cannot_write)?;
+    let mut state = simulation.initial_state().clone();
+    let settings = simulation.run();
+    let report = simulate(system, &mut *integrator, &mut state, &settings, &mut csv)
+        .map_err(|error| Failure::Run(error.to_string()))?;
+    let written = csv.finish().map_err(cannot_write)?;
+
+    say(&summary(&simulation, &report));
+    for probe in simulation.probes() {
+        let u: Vec<String> = probe
+            .displacement(&state.u)
+            .map(|u| format!("{u:.6e}"))
+            .collect();
+        say(&format!(
+            "{}: u = ({}) m at t = {:.6} s",
+            probe.name,
+            u.join(", "),
+            state.t
+        ));
+    }
+    say(&format!("probes: {}", written.display()));
+    match report.outcome {
+        Outcome::Diverged { t, cell } => Err(Failure::Run(format!(
+            "the run diverged at t = {t:.6} s, first at {}; `sinew plan` names the stable step",
+            system.cell_name(cell)
+        ))),
+        Outcome::Finished | Outcome::Stopped => Ok(()),
+    }
+}
+
+fn summary(simulation: &Simulation, report: &RunReport) -> String {
+    let settings = simulation.settings();
+    let pairs = report.steps as f64 * simulation.system().dofs() as f64;
+    let work = report.work;
+    let mut text = format!(
+        "{}: {} steps of {} s by `{}`: {} sweeps, {} solves",
+        simulation.scene().title(),
+        report.steps,
+        settings.dt,
+        settings.integrator,
+        work.sweeps,
+        work.solves
+    );
+    if work.saturated > 0 {
+        let share = 100.0 * work.saturated as f64 / pairs;
+        text.push_str(&format!(
+            "\nguarded: {share:.3} % of all velocities were saturated; the motion is bounded, not accurate"
+        ));
+    }
+    text.push_str(
+        "\nno error is known without a reference: `cargo xtask bench --scene` measures it",
+    );
+    text
+}

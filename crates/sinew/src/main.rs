@@ -1,0 +1,41 @@
+//! The `sinew` command.
+
+mod command;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Soft-tissue dynamics: scenes planned and run.
+#[derive(Parser)]
+#[command(version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Say what a scene will build, what it leaves out and which steps are stable.
+    Plan {
+        /// The scene file.
+        scene: PathBuf,
+    },
+    /// Run a scene and write the motion of its probes.
+    Run(command::run::Arguments),
+    /// List the integrators and their options.
+    Integrators,
+}
+
+fn main() -> ExitCode {
+    let outcome = match Arguments::parse().command {
+        Command::Plan { scene } => command::plan::run(&scene),
+        Command::Run(arguments) => command::run::run(&arguments),
+        Command::Integrators => command::integrators::run(),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}

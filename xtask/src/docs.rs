@@ -1,0 +1,52 @@
+//! `cargo xtask docs`.
+
+use sinew_bench::report::{markdown_rows, work_precision, write_atomically};
+use sinew_bench::results::{BenchResults, Row};
+
+use crate::bench::say;
+use crate::failure::Failure;
+use crate::root;
+
+/// The case that the README shows.
+const CASE: &str = "paper-cube";
+/// Steps (ms) of its table.
+const STEPS: [f64; 3] = [20.0, 20.0 / 3.0, 1.0];
+const BEGIN: &str = "<!-- bench -->\n";
+const END: &str = "<!-- end -->";
+
+/// Brings the README's table and picture up to the last bench.
+pub(crate) fn run() -> Result<(), Failure> {
+    let results = root().join("target/bench/results.json");
+    let text = std::fs::read_to_string(&results).map_err(|error| {
+        let path = results.display();
+        Failure::Input(format!("{path}: {error}; run `cargo xtask bench` first"))
+    })?;
+    let results = BenchResults::from_json(&text).map_err(Failure::input)?;
+    let shown = |row: &&Row| STEPS.iter().any(|ms| (row.dt * 1e3 - ms).abs() < 1e-6);
+    let table = markdown_rows(results.rows_of(CASE).filter(shown));
+
+    let readme = root().join("README.md");
+    let text = std::fs::read_to_string(&readme).map_err(Failure::chore)?;
+    let parts = text.split_once(BEGIN).and_then(|(before, rest)| {
+        let (_, after) = rest.split_once(END)?;
+        Some((before, after))
+    });
+    let Some((before, after)) = parts else {
+        return Err(Failure::Chore(
+            "README.md has lost the marks round its table".into(),
+        ));
+    };
+    let machine = &results.machine;
+    let text = format!(
+        "{before}{BEGIN}{}\n\n{} ({} {}), one thread.\n{END}{after}",
+        table.trim_end(),
+        machine.cpu,
+        machine.os,
+        machine.arch
+    );
+    write_atomically(&readme, &text).map_err(Failure::chore)?;
+    let picture = root().join(format!("docs/work-precision-{CASE}.svg"));
+    write_atomically(&picture, &work_precision(&results, CASE).svg()).map_err(Failure::chore)?;
+    say(&format!("{}\n{}", readme.display(), picture.display()));
+    Ok(())
+}
