@@ -77,6 +77,11 @@ pub(crate) fn run() -> Result<(), Failure> {
             .args(*arguments)
             .current_dir(root())
             .env("RUSTDOCFLAGS", "-D warnings")
+            // Packages are built once more, only to see that they build.
+            .env(
+                "CARGO_PROFILE_DEV_OPT_LEVEL",
+                if *name == "packages" { "0" } else { "2" },
+            )
             .status()
             .map_err(Failure::chore)?;
         if !status.success() {

@@ -9,7 +9,7 @@ use common::{advance, build, plain, relative_error};
 use sinew_core::{State, System};
 use sinew_fem::Model;
 
-const DURATION: f64 = 0.2; // s
+const DURATION: f64 = 0.04; // s
 
 /// Makes displacements as large as velocities.
 const RATE: f64 = 30.0; // rad/s
