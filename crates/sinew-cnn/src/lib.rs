@@ -21,8 +21,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod blocks;
+mod majorant;
 mod saturation;
+mod stabiliser;
 mod templates;
 
+pub use majorant::{Blend, GammaRule, Majorant};
 pub use saturation::{Saturation, SaturationError};
+pub use stabiliser::{Inner, Stabiliser};
 pub use templates::{TemplateError, Templates};

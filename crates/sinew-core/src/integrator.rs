@@ -39,6 +39,21 @@ pub trait Integrator: Send {
         state: &mut State,
         dt: f64,
     ) -> Result<StepReport, StepError>;
+
+    /// What set-up found out for the system and step at hand, for reports; may cost as much as
+    /// set-up did.
+    fn facts(&self) -> Vec<Fact> {
+        Vec::new()
+    }
+}
+
+/// A number that set-up found out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fact {
+    /// Its name, as results show it.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
 }
 
 /// What a method declares about itself.

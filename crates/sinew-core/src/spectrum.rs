@@ -5,39 +5,53 @@ use crate::{LinearOperators, Needs, SetupError, System};
 /// Lanczos steps after which the estimate is taken as it is.
 const MAX_STEPS: usize = 600;
 
-/// The largest eigenvalue of `M^-1 S` for a symmetric positive semidefinite S, by the Lanczos
-/// iteration on `M^-1/2 S M^-1/2` (Golub and Van Loan, Matrix Computations, section 10.1), to
-/// about nine digits.
-///
-/// `multiply(x, out)` writes `out = S x`. The start vector is fixed, so the result reproduces.
+/// The largest eigenvalue of `M^-1 S` for a symmetric positive semidefinite S and a diagonal M.
+/// `multiply(x, out)` writes `out = S x`. See [`largest_eigenvalue_of_pencil`].
 #[must_use]
-pub fn largest_eigenvalue(mass: &[f64], mut multiply: impl FnMut(&[f64], &mut [f64])) -> f64 {
-    let n = mass.len();
-    if n == 0 {
+pub fn largest_eigenvalue(mass: &[f64], multiply: impl FnMut(&[f64], &mut [f64])) -> f64 {
+    largest_eigenvalue_of_pencil(mass.len(), multiply, |x, out| {
+        for ((out, x), mass) in out.iter_mut().zip(x).zip(mass) {
+            *out = x / mass;
+        }
+    })
+}
+
+/// The largest eigenvalue of `P^-1 S` for a symmetric positive semidefinite S and a symmetric
+/// positive definite P of which only the inverse is at hand, by the Lanczos iteration in P's inner
+/// product (Parlett, The Symmetric Eigenvalue Problem, section 15.11), to about nine digits.
+///
+/// `multiply(x, out)` writes `out = S x`, `solve(x, out)` writes `out = P^-1 x`; both of length `n`.
+/// The start vector is fixed, so the result reproduces.
+#[must_use]
+pub fn largest_eigenvalue_of_pencil(
+    n: usize,
+    mut multiply: impl FnMut(&[f64], &mut [f64]),
+    mut solve: impl FnMut(&[f64], &mut [f64]),
+) -> f64 {
+    // Each basis vector is kept as q and as its image P q, called dual here.
+    let mut dual = start_vector(n);
+    let mut primal = vec![0.0; n];
+    solve(&dual, &mut primal);
+    let length = dot(&primal, &dual).max(0.0).sqrt();
+    if length == 0.0 {
         return 0.0;
     }
-    let root: Vec<f64> = mass.iter().map(|mass| mass.sqrt()).collect();
-    let mut current = start_vector(n);
-    let mut previous = vec![0.0; n];
-    let mut scaled = vec![0.0; n];
+    scale(&mut dual, 1.0 / length);
+    scale(&mut primal, 1.0 / length);
+    let mut previous_dual = vec![0.0; n];
     let mut next = vec![0.0; n];
     let (mut diagonal, mut off_diagonal) = (Vec::new(), Vec::new());
     let mut estimate = 0.0;
     for step in 1..=MAX_STEPS {
-        for ((scaled, value), root) in scaled.iter_mut().zip(&current).zip(&root) {
-            *scaled = value / root;
-        }
-        multiply(&scaled, &mut next);
-        for (value, root) in next.iter_mut().zip(&root) {
-            *value /= root;
-        }
-        let alpha = dot(&next, &current);
+        multiply(&primal, &mut next);
+        let alpha = dot(&next, &primal);
         let beta_before = off_diagonal.last().copied().unwrap_or(0.0);
-        for ((value, current), previous) in next.iter_mut().zip(&current).zip(&previous) {
-            *value -= alpha * current + beta_before * previous;
+        for ((next, dual), previous) in next.iter_mut().zip(&dual).zip(&previous_dual) {
+            *next -= alpha * dual + beta_before * previous;
         }
         diagonal.push(alpha);
-        let beta = dot(&next, &next).sqrt();
+        solve(&next, &mut primal);
+        let beta = dot(&next, &primal).max(0.0).sqrt();
         let exhausted = step >= n || beta <= 1e-14 * estimate;
         if exhausted || step % 10 == 0 || step == MAX_STEPS {
             let better = largest_of_tridiagonal(&diagonal, &off_diagonal);
@@ -48,13 +62,25 @@ pub fn largest_eigenvalue(mass: &[f64], mut multiply: impl FnMut(&[f64], &mut [f
             }
         }
         off_diagonal.push(beta);
-        for value in &mut next {
-            *value /= beta;
-        }
-        std::mem::swap(&mut previous, &mut current);
-        std::mem::swap(&mut current, &mut next);
+        scale(&mut next, 1.0 / beta);
+        scale(&mut primal, 1.0 / beta);
+        std::mem::swap(&mut previous_dual, &mut dual);
+        std::mem::swap(&mut dual, &mut next);
     }
     estimate
+}
+
+fn scale(vector: &mut [f64], factor: f64) {
+    vector.iter_mut().for_each(|value| *value *= factor);
+}
+
+/// 2/omega_max (s) of these matrices, the limit of undamped leapfrog; infinite where nothing
+/// vibrates.
+#[must_use]
+pub fn critical_step(operators: &LinearOperators) -> f64 {
+    let stiffness = operators.stiffness();
+    let eigenvalue = largest_eigenvalue(operators.mass(), |x, out| stiffness.multiply(x, out));
+    2.0 / eigenvalue.max(0.0).sqrt()
 }
 
 /// A fixed vector of length one with parts in every direction.
@@ -70,7 +96,7 @@ fn start_vector(n: usize) -> Vec<f64> {
         })
         .collect();
     let length = dot(&vector, &vector).sqrt();
-    vector.iter_mut().for_each(|value| *value /= length);
+    scale(&mut vector, 1.0 / length);
     vector
 }
 
@@ -124,7 +150,7 @@ pub struct Spectrum {
     pub damping_max: f64,
     /// alpha (1/s).
     pub mass_damping: f64,
-    /// beta (s) where damping is proportional, 0 where a damping matrix stands beside it.
+    /// beta (s).
     pub stiffness_damping: f64,
     /// Whether D is alpha M + beta K and nothing else.
     pub proportional: bool,

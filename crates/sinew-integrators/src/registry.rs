@@ -21,6 +21,7 @@ macro_rules! for_each_integrator {
             newmark: $crate::implicit::Newmark,
             cnn: $crate::cnn::Cnn,
             cnn_symplectic: $crate::cnn::CnnSymplectic,
+            cnn_stabilised: $crate::cnn::CnnStabilised,
         }
     };
 }

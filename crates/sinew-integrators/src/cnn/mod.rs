@@ -3,7 +3,9 @@
 
 mod network;
 mod paper;
+mod stabilised;
 mod symplectic;
 
 pub use paper::Cnn;
+pub use stabilised::CnnStabilised;
 pub use symplectic::CnnSymplectic;

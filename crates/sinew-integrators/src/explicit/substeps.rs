@@ -1,7 +1,7 @@
 //! `substeps`: a step cut into equal parts.
 
 use sinew_core::{
-    Integrator, OptionError, OptionValue, Options, Properties, SetupError, StableStep, State,
+    Fact, Integrator, OptionError, OptionValue, Options, Properties, SetupError, StableStep, State,
     StepError, StepReport, System,
 };
 
@@ -126,5 +126,16 @@ impl Integrator for Substepped {
             work += self.inner.step(system, state, dt / f64::from(parts))?;
         }
         Ok(work)
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let mut facts = self.inner.facts();
+        if let Some((_, _, parts)) = self.parts {
+            facts.push(Fact {
+                name: "substeps",
+                value: f64::from(parts),
+            });
+        }
+        facts
     }
 }
