@@ -59,12 +59,42 @@ pub struct Fact {
 /// What a method declares about itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Properties {
-    /// Order of accuracy in dt, with mass-proportional damping and nothing saturated.
-    pub order: u8,
+    /// How the error falls with dt, with mass-proportional damping and nothing saturated.
+    pub accuracy: Accuracy,
     /// What it needs of a system.
     pub needs: Needs,
     /// What happens to the energy of an undamped system within the stable step.
     pub energy: EnergyBehaviour,
+}
+
+/// How the error of a method falls with dt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Accuracy {
+    /// As this power of dt.
+    Order(u8),
+    /// As one power of dt without damping and as another with it.
+    OrderByDamping {
+        /// Without damping.
+        undamped: u8,
+        /// With mass-proportional damping.
+        damped: u8,
+    },
+    /// Exact to the method's own tolerance at any step while loads are constant.
+    Exact,
+}
+
+impl Accuracy {
+    /// The order without or with damping; `None` where the method is exact.
+    #[must_use]
+    pub fn order(self, damping: bool) -> Option<u8> {
+        match self {
+            Self::Order(order) => Some(order),
+            Self::OrderByDamping { undamped, damped } => {
+                Some(if damping { damped } else { undamped })
+            }
+            Self::Exact => None,
+        }
+    }
 }
 
 /// What a method needs of a system.

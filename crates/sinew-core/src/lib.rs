@@ -33,8 +33,8 @@ mod state;
 mod system;
 
 pub use integrator::{
-    EnergyBehaviour, Fact, Integrator, Needs, Prepared, Properties, SetupError, StableStep,
-    StepError, StepReport,
+    Accuracy, EnergyBehaviour, Fact, Integrator, Needs, Prepared, Properties, SetupError,
+    StableStep, StepError, StepReport,
 };
 pub use linear::{Damping, LinearModel, LinearOperators, LinearSystem, Load, OperatorError};
 pub use options::{OptionError, OptionValue, Options};

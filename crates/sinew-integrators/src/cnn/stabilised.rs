@@ -2,8 +2,9 @@
 
 use sinew_cnn::{Blend, GammaRule, Inner, Stabiliser};
 use sinew_core::{
-    EnergyBehaviour, Fact, Integrator, LinearSystem, Needs, OptionError, OptionValue, Options,
-    Prepared, Properties, SetupError, StableStep, State, StepError, StepReport, System, Trial,
+    Accuracy, EnergyBehaviour, Fact, Integrator, LinearSystem, Needs, OptionError, OptionValue,
+    Options, Prepared, Properties, SetupError, StableStep, State, StepError, StepReport, System,
+    Trial,
 };
 
 use crate::evaluate::{net_force, synchronise};
@@ -157,7 +158,7 @@ impl Integrator for CnnStabilised {
 
     fn properties(&self) -> Properties {
         Properties {
-            order: 2,
+            accuracy: Accuracy::Order(2),
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Bounded,
         }

@@ -2,8 +2,8 @@
 
 use sinew_cnn::Saturation;
 use sinew_core::{
-    EnergyBehaviour, Integrator, Needs, OptionError, OptionValue, Options, Properties, SetupError,
-    StableStep, State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, OptionValue, Options, Properties,
+    SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::network::{self, Network};
@@ -51,7 +51,7 @@ impl Integrator for CnnSymplectic {
 
     fn properties(&self) -> Properties {
         Properties {
-            order: 1,
+            accuracy: Accuracy::Order(1),
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Bounded,
         }

@@ -1,8 +1,8 @@
 //! `central-difference`: leapfrog with mass damping treated implicitly.
 
 use sinew_core::{
-    EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties, SetupError,
-    StableStep, State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties,
+    SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use crate::Method;
@@ -41,7 +41,7 @@ impl Integrator for CentralDifference {
 
     fn properties(&self) -> Properties {
         Properties {
-            order: 2,
+            accuracy: Accuracy::Order(2),
             needs: Needs::Forces,
             energy: EnergyBehaviour::Bounded,
         }

@@ -1,8 +1,8 @@
 //! `forward-euler`: both halves from the old state.
 
 use sinew_core::{
-    EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties, SetupError,
-    StableStep, State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties,
+    SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use crate::Method;
@@ -36,7 +36,7 @@ impl Integrator for ForwardEuler {
 
     fn properties(&self) -> Properties {
         Properties {
-            order: 1,
+            accuracy: Accuracy::Order(1),
             needs: Needs::Forces,
             energy: EnergyBehaviour::Grows,
         }

@@ -1,8 +1,8 @@
 //! `rk4`: the classical Runge-Kutta method.
 
 use sinew_core::{
-    EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties, SetupError,
-    StableStep, State, StepError, StepReport, System, Trial,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties,
+    SetupError, StableStep, State, StepError, StepReport, System, Trial,
 };
 
 use crate::Method;
@@ -45,7 +45,7 @@ impl Integrator for Rk4 {
 
     fn properties(&self) -> Properties {
         Properties {
-            order: 4,
+            accuracy: Accuracy::Order(4),
             needs: Needs::Forces,
             energy: EnergyBehaviour::Falls,
         }

@@ -1,8 +1,8 @@
 //! `symplectic-euler`: velocity first, then displacement from the new velocity.
 
 use sinew_core::{
-    EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties, SetupError,
-    StableStep, State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties,
+    SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use crate::Method;
@@ -34,7 +34,7 @@ impl Integrator for SymplecticEuler {
 
     fn properties(&self) -> Properties {
         Properties {
-            order: 1,
+            accuracy: Accuracy::Order(1),
             needs: Needs::Forces,
             energy: EnergyBehaviour::Bounded,
         }

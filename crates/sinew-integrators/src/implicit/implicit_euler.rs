@@ -1,8 +1,8 @@
 //! `implicit-euler`: both halves from the new state.
 
 use sinew_core::{
-    EnergyBehaviour, Integrator, Needs, OptionError, Options, Properties, SetupError, StableStep,
-    State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, Properties, SetupError,
+    StableStep, State, StepError, StepReport, System,
 };
 
 use super::engine::Engine;
@@ -33,7 +33,7 @@ impl Integrator for ImplicitEuler {
 
     fn properties(&self) -> Properties {
         Properties {
-            order: 1,
+            accuracy: Accuracy::Order(1),
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Falls,
         }

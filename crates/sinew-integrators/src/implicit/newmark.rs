@@ -2,8 +2,8 @@
 
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    EnergyBehaviour, Integrator, Needs, OptionError, Options, Properties, SetupError, StableStep,
-    State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, Properties, SetupError,
+    StableStep, State, StepError, StepReport, System,
 };
 
 use super::engine::Engine;
@@ -75,7 +75,7 @@ impl Integrator for Newmark {
 
     fn properties(&self) -> Properties {
         Properties {
-            order: if self.gamma == 0.5 { 2 } else { 1 },
+            accuracy: Accuracy::Order(if self.gamma == 0.5 { 2 } else { 1 }),
             needs: Needs::Matrices,
             energy: match (self.beta, self.gamma) {
                 (0.25, 0.5) => EnergyBehaviour::Conserved,
