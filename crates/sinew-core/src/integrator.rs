@@ -106,6 +106,26 @@ pub enum Needs {
     Matrices,
 }
 
+impl Needs {
+    /// In words.
+    #[must_use]
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Forces => "forces",
+            Self::Matrices => "the matrices M, D and K of a linear system",
+        }
+    }
+
+    /// The complaint about a system that does not offer it.
+    #[must_use]
+    pub fn lacking(self, integrator: &'static str) -> SetupError {
+        SetupError::Lacks {
+            integrator,
+            needs: self.describe(),
+        }
+    }
+}
+
 /// What happens to the energy of an undamped, unloaded linear system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnergyBehaviour {

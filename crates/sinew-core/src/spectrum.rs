@@ -190,27 +190,13 @@ impl Spectrum {
         system
             .as_linear()
             .map(|linear| Self::of(linear.operators()))
-            .ok_or(SetupError::Lacks {
-                integrator,
-                needs: Needs::Matrices.describe(),
-            })
+            .ok_or_else(|| Needs::Matrices.lacking(integrator))
     }
 
     /// 2/omega_max (s), the limit of undamped leapfrog; infinite where nothing vibrates.
     #[must_use]
     pub fn critical_step(&self) -> f64 {
         2.0 / self.omega_max
-    }
-}
-
-impl Needs {
-    /// In words.
-    #[must_use]
-    pub fn describe(self) -> &'static str {
-        match self {
-            Self::Forces => "forces",
-            Self::Matrices => "the matrices M, D and K of a linear system",
-        }
     }
 }
 

@@ -15,6 +15,7 @@ macro_rules! for_each_integrator {
             symplectic_euler: $crate::explicit::SymplecticEuler,
             central_difference: $crate::explicit::CentralDifference,
             rk4: $crate::explicit::Rk4,
+            modified_leapfrog: $crate::explicit::ModifiedLeapfrog,
             #[cfg(feature = "implicit")]
             implicit_euler: $crate::implicit::ImplicitEuler,
             #[cfg(feature = "implicit")]

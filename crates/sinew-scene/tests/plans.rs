@@ -38,7 +38,7 @@ fn the_papers_cube() {
                 1331 nodes, 6000 tetrahedra, 7930 edges; 0.008 m3, 8.48 kg
                 groups `tissue` (6000 tetrahedra), `sides` (800 triangles), `top` (200 triangles), `bottom` (200 triangles)
     regions     `tissue`: 6000 tetrahedra, 1060 kg/m3, springs "lloyd" not calibrated, E = 3500 Pa, nu = 1/4 by nature
-                its springs average to 1.27 E (Voigt), 0.3905 to 2.857 E by direction
+                its springs average to 1.27 E (Voigt), 0.3904 to 2.857 E by direction
     damping     80 1/s times M, no matrix
     fixed       `sides` in x, y, z
                 3993 -> 2673 degrees of freedom; 891 of 1331 nodes move, the others are removed

@@ -7,7 +7,7 @@ use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRu
 use sinew_integrators::static_solution;
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
-/// Density of soft tissue [kg/m^3].
+/// Density of soft tissue (kg/m^3).
 pub(crate) const DENSITY: f64 = 1060.0;
 
 /// Prints a figure beside its reference; fails where they differ by more than `tolerance`.

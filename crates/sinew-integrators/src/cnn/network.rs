@@ -52,10 +52,7 @@ impl Network {
         if self.prepared.is_for(system, dt) {
             return Ok(StepReport::default());
         }
-        let lacks = || SetupError::Lacks {
-            integrator,
-            needs: Needs::Matrices.describe(),
-        };
+        let lacks = || Needs::Matrices.lacking(integrator);
         let linear = system.as_linear().ok_or_else(lacks)?;
         let mut checked = Prepared::default();
         checked.check(integrator, system, dt)?;

@@ -2,12 +2,14 @@
 
 mod central_difference;
 mod forward_euler;
+mod modified_leapfrog;
 mod rk4;
 mod substeps;
 mod symplectic_euler;
 
 pub use central_difference::CentralDifference;
 pub use forward_euler::ForwardEuler;
+pub use modified_leapfrog::ModifiedLeapfrog;
 pub use rk4::Rk4;
 pub use substeps::{Substepped, Substeps};
 pub use symplectic_euler::SymplecticEuler;
