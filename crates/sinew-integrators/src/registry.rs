@@ -20,6 +20,8 @@ macro_rules! for_each_integrator {
             implicit_euler: $crate::implicit::ImplicitEuler,
             #[cfg(feature = "implicit")]
             newmark: $crate::implicit::Newmark,
+            #[cfg(feature = "implicit")]
+            generalized_alpha: $crate::implicit::GeneralizedAlpha,
             cnn: $crate::cnn::Cnn,
             cnn_symplectic: $crate::cnn::CnnSymplectic,
             cnn_stabilised: $crate::cnn::CnnStabilised,

@@ -5,7 +5,7 @@ use sinew_core::{
 };
 
 use super::factor::{Combination, Factor};
-use crate::evaluate::net_force;
+use crate::evaluate::{acceleration, net_force};
 
 /// Solves `(M + d D + k K) a = F(t) - K u* - D v*`, keeping the factor while the system and the
 /// coefficients stay.
@@ -64,8 +64,8 @@ impl Engine {
         })
     }
 
-    /// `a` from `u`, `v` and the load at time `t`.
-    pub(crate) fn solve(
+    /// The right-hand side, in `a`: the net force at the prediction under the load at time `t`.
+    pub(crate) fn evaluate(
         &mut self,
         system: &dyn System,
         t: f64,
@@ -77,20 +77,31 @@ impl Engine {
             u: &self.u,
             v: &self.v,
         };
-        let mut work = net_force(system, &trial, &mut self.a)?;
+        net_force(system, &trial, &mut self.a)
+    }
+
+    /// Replaces the right-hand side in `a` by the acceleration.
+    pub(crate) fn solve(&mut self) -> StepReport {
+        let mut work = StepReport::default();
         if let Some(factor) = &mut self.factor {
             factor.solve(&mut self.a);
             work.solves = 1;
         }
-        Ok(work)
+        work
     }
 
-    /// M^-1 of the net force in `state`, in `a`.
-    pub(crate) fn consistent_acceleration(
+    /// Gives the state the acceleration at its time, `M^-1` of the net force, unless it keeps one.
+    pub(crate) fn keep_acceleration(
         &mut self,
         system: &dyn System,
-        state: &State,
+        state: &mut State,
     ) -> Result<StepReport, StepError> {
-        crate::evaluate::acceleration(system, state, state.t, &mut self.a)
+        if state.a_time == state.t && state.a.len() == state.u.len() {
+            return Ok(StepReport::default());
+        }
+        let work = acceleration(system, state, state.t, &mut self.a)?;
+        state.a.clone_from(&self.a);
+        state.a_time = state.t;
+        Ok(work)
     }
 }

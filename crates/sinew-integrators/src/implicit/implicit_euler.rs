@@ -59,7 +59,8 @@ impl Integrator for ImplicitEuler {
         }
         self.engine.v.copy_from_slice(&state.v);
         let next = state.t + dt;
-        work += self.engine.solve(system, next, dt)?;
+        work += self.engine.evaluate(system, next, dt)?;
+        work += self.engine.solve();
         for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&self.engine.a) {
             *v += dt * a;
             *u += dt * *v;

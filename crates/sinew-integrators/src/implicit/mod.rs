@@ -2,10 +2,12 @@
 
 mod engine;
 mod factor;
+mod generalized_alpha;
 mod implicit_euler;
 mod newmark;
 mod static_solution;
 
+pub use generalized_alpha::GeneralizedAlpha;
 pub use implicit_euler::ImplicitEuler;
 pub use newmark::Newmark;
 pub use static_solution::{StaticError, static_solution};

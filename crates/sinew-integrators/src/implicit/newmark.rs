@@ -113,17 +113,15 @@ impl Integrator for Newmark {
     ) -> Result<StepReport, StepError> {
         let mut work = begin(self, system, state, dt)?;
         let (beta, gamma) = (self.beta, self.gamma);
-        if state.a_time != state.t || state.a.len() != state.u.len() {
-            work += self.engine.consistent_acceleration(system, state)?;
-            state.a.clone_from(&self.engine.a);
-        }
+        work += self.engine.keep_acceleration(system, state)?;
         for i in 0..state.u.len() {
             let (u, v, a) = (state.u[i], state.v[i], state.a[i]);
             self.engine.u[i] = u + dt * v + dt * dt * (0.5 - beta) * a;
             self.engine.v[i] = v + dt * (1.0 - gamma) * a;
         }
         let next = state.t + dt;
-        work += self.engine.solve(system, next, dt)?;
+        work += self.engine.evaluate(system, next, dt)?;
+        work += self.engine.solve();
         for (i, a) in self.engine.a.iter().enumerate() {
             state.u[i] = self.engine.u[i] + beta * dt * dt * a;
             state.v[i] = self.engine.v[i] + gamma * dt * a;
