@@ -1,5 +1,7 @@
 //! `cargo xtask bench` with input that cannot be used: one message, exit code 2, nothing written.
 
+#![cfg(test)]
+
 use std::path::Path;
 
 use assert_cmd::Command;

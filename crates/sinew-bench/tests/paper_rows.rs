@@ -1,5 +1,7 @@
 //! Rows of the bench on the paper's two scenes, against the figures known for them.
 
+#![cfg(test)]
+
 use std::path::PathBuf;
 use std::sync::OnceLock;
 

@@ -1,5 +1,7 @@
 //! The paper's figures and claims.
 
+#![cfg(test)]
+
 use std::path::PathBuf;
 
 use sinew_bench::Case;

@@ -1,6 +1,8 @@
 //! A bench that never ran, with figures of the size real ones have: every file is written, holds
 //! what it should, and can be looked at in the directory the test prints.
 
+#![cfg(test)]
+
 use std::{collections::BTreeMap, fs, path::Path};
 
 use serde_json::{Value, json};

@@ -1,6 +1,7 @@
 //! What must not matter, and what must by a known factor: units, numbering, the order of a
 //! tetrahedron's vertices, modulus and density.
 
+#![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod common;

@@ -1,5 +1,6 @@
 //! Laws of the saturation f(x) = (|x + Q| - |x - Q|)/2.
 
+#![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use proptest::num::f64::{ANY, INFINITE, NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};

@@ -1,5 +1,6 @@
 //! Laws of the templates A = -M^-1 K, C = M^-1 D and B = M^-1 of bodies at random.
 
+#![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod common;

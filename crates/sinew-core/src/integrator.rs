@@ -242,6 +242,14 @@ pub enum SetupError {
         /// Degrees of freedom of the system.
         system: usize,
     },
+    /// The method cannot be accurate at this step.
+    #[error("`{integrator}`: {reason}")]
+    Unresolved {
+        /// Integrator id.
+        integrator: &'static str,
+        /// Why, and what to do instead.
+        reason: String,
+    },
     /// The matrix of an implicit step could not be factorised.
     #[error("`{integrator}`: the matrix of the step could not be factorised: {reason}")]
     Factorization {
@@ -259,6 +267,16 @@ pub enum StepError {
     /// Set-up failed.
     #[error(transparent)]
     Setup(#[from] SetupError),
+    /// The method found that its step would be wrong.
+    #[error("`{integrator}` at t = {t} s: {reason}")]
+    Inaccurate {
+        /// Integrator id.
+        integrator: &'static str,
+        /// Time of the state (s).
+        t: f64,
+        /// Why, and what to do instead.
+        reason: String,
+    },
     /// The system refused a trial state.
     #[error("at t = {t} s: {source}")]
     Refused {

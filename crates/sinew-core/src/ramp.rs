@@ -124,6 +124,37 @@ impl Ramp {
         }
     }
 
+    /// The first breakpoint (s) for which `wanted` holds. Allocates nothing.
+    #[must_use]
+    pub fn kink_where(&self, wanted: impl Fn(f64) -> bool) -> Option<f64> {
+        let pair;
+        let points: &[f64] = match self {
+            Self::Step => &[0.0],
+            Self::Sin2 { rise } => {
+                pair = [0.0, *rise];
+                &pair
+            }
+            Self::Pulse { from, to } => {
+                pair = [*from, *to];
+                &pair
+            }
+            Self::Table { times, .. } => times,
+        };
+        points.iter().copied().find(|time| wanted(*time))
+    }
+
+    /// Whether the value stays the same from `t0` up to, but not at, `t1` (s), where no breakpoint
+    /// lies between them.
+    #[must_use]
+    pub fn is_constant_between(&self, t0: f64, t1: f64) -> bool {
+        let middle = 0.5 * (t0 + t1);
+        match self {
+            Self::Step | Self::Pulse { .. } => true,
+            Self::Sin2 { rise } => !(0.0..*rise).contains(&middle),
+            Self::Table { .. } => self.value(middle) == self.value(0.5 * (t0 + middle)),
+        }
+    }
+
     /// Writes the derivatives of order 0, 1, 2, .. just after time `t`, as many as `out` holds
     /// (1, 1/s, 1/s^2, ..). They hold up to the next breakpoint.
     pub fn derivatives_after(&self, t: f64, out: &mut [f64]) {

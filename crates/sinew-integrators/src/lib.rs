@@ -19,6 +19,7 @@ pub mod explicit;
 pub mod implicit;
 mod limits;
 mod method;
+pub mod propagator;
 mod registry;
 
 #[cfg(feature = "implicit")]

@@ -16,6 +16,7 @@ macro_rules! for_each_integrator {
             central_difference: $crate::explicit::CentralDifference,
             rk4: $crate::explicit::Rk4,
             modified_leapfrog: $crate::explicit::ModifiedLeapfrog,
+            propagator: $crate::propagator::Propagator,
             #[cfg(feature = "implicit")]
             implicit_euler: $crate::implicit::ImplicitEuler,
             #[cfg(feature = "implicit")]

@@ -1,5 +1,6 @@
 //! A network in which nothing saturates is the plain method, to the last bit.
 
+#![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod common;

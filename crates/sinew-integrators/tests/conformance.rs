@@ -1,5 +1,7 @@
 //! Every integrator keeps the laws of the core's conformance suite.
 
+#![cfg(test)]
+
 macro_rules! suites {
     ($($(#[$attribute:meta])* $name:ident: $method:ty,)*) => {
         $(

@@ -1,5 +1,7 @@
 //! The energy that central difference conserves.
 
+#![cfg(test)]
+
 mod common;
 
 use common::body::{Body, bodies_up_to};

@@ -1,5 +1,6 @@
 //! Implicit methods against dense arithmetic, what they keep between steps, and equilibria.
 
+#![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![cfg(feature = "implicit")]
 

@@ -1,5 +1,6 @@
 //! After set-up, a step allocates nothing.
 
+#![cfg(test)]
 #![allow(
     unsafe_code,
     reason = "an allocator that counts is unsafe to implement"

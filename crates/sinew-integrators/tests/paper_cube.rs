@@ -1,5 +1,7 @@
 //! The reproduction scene of the paper's second example, section 4.2, to the digits printed.
 
+#![cfg(test)]
+
 mod common;
 
 use common::cube::{INSTANT, error, paper_cube, reference, rk4, run};

@@ -1,5 +1,6 @@
 //! Steps cut into parts.
 
+#![cfg(test)]
 #![allow(
     clippy::unwrap_used,
     clippy::panic,

@@ -1,5 +1,6 @@
 //! Changing the integrator in the middle of a motion.
 
+#![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod common;

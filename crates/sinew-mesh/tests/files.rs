@@ -1,5 +1,6 @@
 //! Reading by path.
 
+#![cfg(test)]
 #![allow(
     clippy::expect_used,
     clippy::panic,

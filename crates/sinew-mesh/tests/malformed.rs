@@ -1,5 +1,6 @@
 //! Files that break the format: each is refused, with the place and what was expected.
 
+#![cfg(test)]
 #![allow(
     clippy::expect_used,
     clippy::panic,

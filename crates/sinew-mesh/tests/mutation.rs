@@ -1,5 +1,6 @@
 //! Damaged files: whatever happens to the bytes, reading ends with a mesh or an error, never with a panic.
 
+#![cfg(test)]
 #![allow(
     clippy::expect_used,
     clippy::panic,

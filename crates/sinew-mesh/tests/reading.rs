@@ -1,5 +1,6 @@
 //! Valid files: what is read, what is warned about.
 
+#![cfg(test)]
 #![allow(
     clippy::expect_used,
     clippy::panic,

@@ -1,5 +1,6 @@
 //! Writing and reading back.
 
+#![cfg(test)]
 #![allow(
     clippy::expect_used,
     clippy::panic,

@@ -1,5 +1,6 @@
 //! From a file's mesh to the one a simulation needs: merging, dropping, groups.
 
+#![cfg(test)]
 #![allow(
     clippy::expect_used,
     clippy::panic,

@@ -1,5 +1,6 @@
 //! Facts about the structured blocks.
 
+#![cfg(test)]
 #![allow(
     clippy::expect_used,
     clippy::panic,

@@ -1,5 +1,6 @@
 //! The scenes that come with the project, and other ways to write the same.
 
+#![cfg(test)]
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

@@ -1,5 +1,6 @@
 //! What plans tell.
 
+#![cfg(test)]
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

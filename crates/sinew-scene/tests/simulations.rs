@@ -1,5 +1,6 @@
 //! What scenes become: states, probes, samples and files.
 
+#![cfg(test)]
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

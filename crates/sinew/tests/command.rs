@@ -1,5 +1,7 @@
 //! The `sinew` command, as a user meets it.
 
+#![cfg(test)]
+
 use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;

@@ -1,0 +1,457 @@
+//! The propagator by Chebyshev polynomials.
+
+use sinew_core::spectrum::Spectrum;
+use sinew_core::{
+    Accuracy, EnergyBehaviour, Fact, Integrator, LinearOperators, LinearSystem, Needs, OptionError,
+    OptionValue, Options, Prepared, Properties, SetupError, StableStep, State, StepError,
+    StepReport, System,
+};
+
+use super::mode::{Mode, quadrature};
+use super::series::{interpolate, nodes, tails};
+use crate::evaluate::begin;
+use crate::{Method, OptionHelp};
+
+/// By how much the largest eigenvalue, which Lanczos finds from below, is raised.
+const MARGIN: f64 = 1e-3;
+/// Largest growth of a Chebyshev vector that rounding can explain. Outside the interval they grow
+/// like powers, so a wrong interval shows at once.
+const GROWTH: f64 = 1.05;
+/// Above this degree shorter steps cost less memory and no more sweeps.
+const HIGHEST_DEGREE: usize = 500;
+/// Error with a degree chosen by hand above which the result is called violently wrong.
+const LOOSE: f64 = 1e-2;
+
+/// The exact motion of a proportionally damped linear system over a step, its functions of
+/// `M^-1 K` expanded in Chebyshev polynomials (Tal-Ezer, Kosloff and Koren, Geophysical Prospecting
+/// 35, 1987; Moler and Van Loan, SIAM Review 45, 2003).
+///
+/// With r = M^-1 (F(t) - K u), `u+ = u + s v + g r` and `v+ = s' v + s r`, where s is a mode's impulse
+/// response and g its integral; what the loads change within the step is integrated too, for any
+/// ramp, as long as its kinks and jumps fall on steps. Two sweeps per degree and one for r; one more
+/// per degree for each load that changes. The degree, about omega_max dt/2 + 5, is the smallest that
+/// brings the part of the series left out below the tolerance.
+#[derive(Debug)]
+pub struct Propagator {
+    tolerance: f64,
+    degree: Option<usize>,
+    prepared: Prepared,
+    series: Series,
+    r: Vec<f64>,
+    current: Vec<f64>,
+    previous: Vec<f64>,
+    product: Vec<f64>,
+    sum_u: Vec<f64>,
+    sum_v: Vec<f64>,
+}
+
+/// Coefficients for a system and a step.
+#[derive(Clone, Debug, Default)]
+struct Series {
+    interval: f64,
+    estimate: f64,
+    s: Vec<f64>,
+    s_rate: Vec<f64>,
+    g: Vec<f64>,
+    /// Times of the quadrature over a step (s).
+    times: Vec<f64>,
+    /// For each node the weighted impulse response and its rate at each of these times.
+    kernels: Vec<Vec<(f64, f64)>>,
+    values: Vec<(f64, f64)>,
+    of_load: Vec<f64>,
+    of_load_rate: Vec<f64>,
+}
+
+const TOLERANCE: &str = "tolerance";
+const DEGREE: &str = "degree";
+const KIND: &str = "kind";
+
+impl Propagator {
+    /// With a degree that meets this tolerance on the error of a step, relative to the largest
+    /// motion it could bring.
+    #[must_use]
+    pub fn with_tolerance(tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            degree: None,
+            prepared: Prepared::default(),
+            series: Series::default(),
+            r: Vec::new(),
+            current: Vec::new(),
+            previous: Vec::new(),
+            product: Vec::new(),
+            sum_u: Vec::new(),
+            sum_v: Vec::new(),
+        }
+    }
+
+    /// With this degree; refused at set-up where it leaves out more than `tolerance`.
+    #[must_use]
+    pub fn with_degree(degree: usize, tolerance: f64) -> Self {
+        Self {
+            degree: Some(degree),
+            ..Self::with_tolerance(tolerance)
+        }
+    }
+}
+
+impl Method for Propagator {
+    const ID: &'static str = "propagator";
+    const SUMMARY: &'static str =
+        "the exact motion over a step as a polynomial: sweeps only, proportional damping, any ramp";
+    const OPTIONS: &'static [OptionHelp] = &[
+        OptionHelp {
+            key: KIND,
+            help: "\"chebyshev\" (default)",
+            shown_default: None,
+        },
+        OptionHelp {
+            key: TOLERANCE,
+            help: "largest relative error of a step; default 1e-10",
+            shown_default: None,
+        },
+        OptionHelp {
+            key: DEGREE,
+            help: "degree of the polynomial; default: the smallest that meets the tolerance",
+            shown_default: None,
+        },
+    ];
+
+    fn from_options(options: &Options) -> Result<Self, OptionError> {
+        match options.get(KIND) {
+            None => {}
+            Some(OptionValue::Text(word)) if word == "chebyshev" => {}
+            Some(found) => {
+                return Err(OptionError::Value {
+                    integrator: Self::ID.into(),
+                    key: KIND.into(),
+                    found: found.clone(),
+                    expected: "\"chebyshev\"",
+                });
+            }
+        }
+        let expected = "a number above 0 and below 1";
+        let share = |x: f64| x > 0.0 && x < 1.0;
+        let expected_degree = "a whole number from 1 to 500";
+        let whole = |x: f64| (1.0..=HIGHEST_DEGREE as f64).contains(&x) && x.fract() == 0.0;
+        let degree = options.number(Self::ID, DEGREE, 0.0, expected_degree, whole)?;
+        if degree == 0.0 {
+            let tolerance = options.number(Self::ID, TOLERANCE, 1e-10, expected, share)?;
+            return Ok(Self::with_tolerance(tolerance));
+        }
+        let tolerance = options.number(Self::ID, TOLERANCE, LOOSE, expected, share)?;
+        Ok(Self::with_degree(degree as usize, tolerance))
+    }
+}
+
+impl Series {
+    fn new(operators: &LinearOperators, dt: f64) -> Self {
+        let spectrum = Spectrum::of(operators);
+        let interval = spectrum.omega_max.powi(2) * (1.0 + MARGIN);
+        let (alpha, beta) = (spectrum.mass_damping, spectrum.stiffness_damping);
+        let fastest = spectrum.omega_max + alpha + beta * interval;
+        // Enough for coefficients that fall from degree omega dt/2 on; a strongly damped mode falls
+        // later.
+        let reach = fastest * dt;
+        let count = (48.0 + 1.5 * reach).min(4.0 * HIGHEST_DEGREE as f64) as usize;
+        let points = quadrature(dt, fastest);
+        let modes: Vec<Mode> = nodes(count, interval)
+            .into_iter()
+            .map(|lambda| Mode {
+                lambda,
+                damping: alpha + beta * lambda,
+            })
+            .collect();
+        let kernels: Vec<Vec<(f64, f64)>> = modes
+            .iter()
+            .map(|mode| {
+                let weighted = |(t, weight): &(f64, f64)| {
+                    let (s, rate) = mode.impulse(dt - t);
+                    (weight * s, weight * rate)
+                };
+                points.iter().map(weighted).collect()
+            })
+            .collect();
+        let coefficients = |values: Vec<f64>| {
+            let mut coefficients = vec![0.0; count];
+            interpolate(&values, &mut coefficients);
+            coefficients
+        };
+        let s = modes.iter().map(|mode| mode.impulse(dt).0);
+        let s_rate = modes.iter().map(|mode| mode.impulse(dt).1);
+        let g = kernels
+            .iter()
+            .map(|kernel| kernel.iter().map(|(s, _)| s).sum());
+        Self {
+            interval,
+            estimate: 0.0,
+            s: coefficients(s.collect()),
+            s_rate: coefficients(s_rate.collect()),
+            g: coefficients(g.collect()),
+            times: points.into_iter().map(|(t, _)| t).collect(),
+            kernels,
+            values: vec![(0.0, 0.0); count],
+            of_load: Vec::new(),
+            of_load_rate: Vec::new(),
+        }
+    }
+
+    /// What cutting at each degree leaves out, relative to the scales dt, 1 and dt^2/2 of the three
+    /// functions.
+    fn left_out(&self, dt: f64) -> Vec<f64> {
+        let (s, s_rate, g) = (tails(&self.s), tails(&self.s_rate), tails(&self.g));
+        let degrees = 0..self.s.len();
+        degrees
+            .map(|k| (s[k] / dt).max(s_rate[k]).max(2.0 * g[k] / (dt * dt)))
+            .collect()
+    }
+
+    fn cut(&mut self, degree: usize) {
+        for coefficients in [&mut self.s, &mut self.s_rate, &mut self.g] {
+            coefficients.truncate(degree + 1);
+        }
+        self.of_load.resize(degree + 1, 0.0);
+        self.of_load_rate.resize(degree + 1, 0.0);
+    }
+
+    fn degree(&self) -> usize {
+        self.s.len().saturating_sub(1)
+    }
+
+    /// Coefficients of what a ramp's change since `t` brings by t + dt.
+    fn follow(&mut self, ramp: &sinew_core::Ramp, t: f64) {
+        let start = ramp.value(t);
+        for (value, kernel) in self.values.iter_mut().zip(&self.kernels) {
+            *value = (0.0, 0.0);
+            for (time, (s, rate)) in self.times.iter().zip(kernel) {
+                let change = ramp.value(t + time) - start;
+                value.0 += s * change;
+                value.1 += rate * change;
+            }
+        }
+        let count = self.values.len() as f64;
+        for k in 0..self.of_load.len() {
+            let (mut u, mut v) = (0.0, 0.0);
+            for (j, value) in self.values.iter().enumerate() {
+                let angle = std::f64::consts::PI * k as f64 * (j as f64 + 0.5) / count;
+                u += value.0 * angle.cos();
+                v += value.1 * angle.cos();
+            }
+            let weight = if k == 0 { 1.0 } else { 2.0 } / count;
+            self.of_load[k] = weight * u;
+            self.of_load_rate[k] = weight * v;
+        }
+    }
+}
+
+impl Propagator {
+    /// Adds the two series of one vector, in `current`, to the sums: `sum_u += a(M^-1 K) x` and
+    /// `sum_v += b(M^-1 K) x`.
+    fn add_series(
+        &mut self,
+        operators: &LinearOperators,
+        pick: fn(&Series) -> (&[f64], &[f64]),
+    ) -> Result<u64, Growth> {
+        let (stiffness, mass) = (operators.stiffness(), operators.mass());
+        let scale = 2.0 / self.series.interval;
+        let degree = self.series.degree();
+        let start = m_norm(mass, &self.current);
+        let mut sweeps = 0;
+        for k in 0..=degree {
+            let (of_u, of_v) = pick(&self.series);
+            let (a, b) = (of_u[k], of_v[k]);
+            for (i, x) in self.current.iter().enumerate() {
+                self.sum_u[i] += a * x;
+                self.sum_v[i] += b * x;
+            }
+            if k == degree {
+                break;
+            }
+            // T_k+1 = 2 B T_k - T_k-1 with B = (2/Lambda) M^-1 K - 1, and T_1 = B T_0.
+            self.product.fill(0.0);
+            stiffness.subtract_scaled_product(-scale, &self.current, &mut self.product);
+            sweeps += 1;
+            for (i, mass) in mass.iter().enumerate() {
+                let shifted = self.product[i] / mass - self.current[i];
+                let next = if k == 0 {
+                    shifted
+                } else {
+                    2.0 * shifted - self.previous[i]
+                };
+                self.previous[i] = self.current[i];
+                self.current[i] = next;
+            }
+        }
+        let end = m_norm(mass, &self.current);
+        // False for NaN too.
+        if end <= GROWTH * start {
+            Ok(sweeps)
+        } else {
+            Err(Growth(end / start))
+        }
+    }
+}
+
+/// By how much a vector grew that must not.
+struct Growth(f64);
+
+fn m_norm(mass: &[f64], x: &[f64]) -> f64 {
+    let squares = mass.iter().zip(x).map(|(mass, x)| mass * x * x);
+    squares.sum::<f64>().sqrt()
+}
+
+impl Integrator for Propagator {
+    fn id(&self) -> &'static str {
+        Self::ID
+    }
+
+    fn properties(&self) -> Properties {
+        Properties {
+            accuracy: Accuracy::Exact,
+            needs: Needs::Matrices,
+            // Conserved but for the part of the series left out.
+            energy: EnergyBehaviour::Bounded,
+        }
+    }
+
+    fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
+        if self.prepared.is_for(system, dt) {
+            return Ok(StepReport::default());
+        }
+        let linear = system.as_linear();
+        let linear = linear.ok_or_else(|| Needs::Matrices.lacking(Self::ID))?;
+        let operators = linear.operators();
+        if operators.damping().extra.is_some() {
+            return Err(SetupError::Lacks {
+                integrator: Self::ID,
+                needs: "proportional damping (D = alpha M + beta K, no dashpots); rk4 and cnn-stabilised take any",
+            });
+        }
+        let mut checked = Prepared::default();
+        checked.check(Self::ID, system, dt)?;
+        self.prepared = Prepared::default();
+        let mut series = Series::new(operators, dt);
+        let left_out = series.left_out(dt);
+        let enough = left_out.iter().position(|left| *left <= self.tolerance);
+        let enough = enough.filter(|degree| *degree <= HIGHEST_DEGREE);
+        let degree = match (self.degree, enough) {
+            (None, Some(degree)) => degree.max(1),
+            (Some(degree), _)
+                if left_out
+                    .get(degree)
+                    .is_none_or(|left| *left <= self.tolerance) =>
+            {
+                degree.min(left_out.len() - 1)
+            }
+            (asked, enough) => {
+                return Err(SetupError::Unresolved {
+                    integrator: Self::ID,
+                    reason: match (asked, enough) {
+                        (Some(degree), Some(enough)) => format!(
+                            "degree {degree} leaves out {:.1e} of the motion over a step of {dt} s; take degree {enough} or leave it out",
+                            left_out[degree]
+                        ),
+                        _ => format!(
+                            "a step of {dt} s needs a degree above {HIGHEST_DEGREE}; take a shorter step"
+                        ),
+                    },
+                });
+            }
+        };
+        series.estimate = left_out[degree];
+        series.cut(degree);
+        self.series = series;
+        for buffer in [
+            &mut self.r,
+            &mut self.current,
+            &mut self.previous,
+            &mut self.product,
+            &mut self.sum_u,
+            &mut self.sum_v,
+        ] {
+            buffer.resize(system.dofs(), 0.0);
+        }
+        self.prepared = checked;
+        Ok(StepReport::default())
+    }
+
+    fn stable_step(&self, _system: &dyn System) -> Result<StableStep, SetupError> {
+        Ok(StableStep::Any)
+    }
+
+    fn step(
+        &mut self,
+        system: &dyn System,
+        state: &mut State,
+        dt: f64,
+    ) -> Result<StepReport, StepError> {
+        let mut work = begin(self, system, state, dt)?;
+        let Some(operators) = system.as_linear().map(LinearSystem::operators) else {
+            return Ok(work);
+        };
+        let (t, next) = (state.t, state.t + dt);
+        operators.external_force(t, &mut self.r);
+        operators
+            .stiffness()
+            .subtract_product(&state.u, &mut self.r);
+        for (r, mass) in self.r.iter_mut().zip(operators.mass()) {
+            *r /= mass;
+        }
+        work.sweeps += 1;
+        work.force_evaluations += 1;
+        self.sum_u.copy_from_slice(&state.u);
+        self.sum_v.fill(0.0);
+
+        let grown = |Growth(factor): Growth| StepError::Inaccurate {
+            integrator: Self::ID,
+            t,
+            reason: format!(
+                "the series grew {factor:.2} times where it must not: the largest eigenvalue was underestimated"
+            ),
+        };
+        self.current.copy_from_slice(&state.v);
+        work.sweeps += self
+            .add_series(operators, |series| (&series.s, &series.s_rate))
+            .map_err(grown)?;
+        self.current.copy_from_slice(&self.r);
+        work.sweeps += self
+            .add_series(operators, |series| (&series.g, &series.s))
+            .map_err(grown)?;
+        for load in operators.loads() {
+            let inside = |time: f64| time > t + 1e-9 * dt && time < next - 1e-9 * dt;
+            if let Some(kink) = load.ramp.kink_where(inside) {
+                return Err(StepError::Inaccurate {
+                    integrator: Self::ID,
+                    t,
+                    reason: format!(
+                        "a load is not smooth at t = {kink} s, inside the step; choose a dt that meets that instant"
+                    ),
+                });
+            }
+            if load.ramp.is_constant_between(t, next) {
+                continue;
+            }
+            self.series.follow(&load.ramp, t);
+            self.current.fill(0.0);
+            for &(dof, force) in &load.entries {
+                self.current[dof as usize] += force / operators.mass()[dof as usize];
+            }
+            work.sweeps += self
+                .add_series(operators, |series| (&series.of_load, &series.of_load_rate))
+                .map_err(grown)?;
+        }
+        state.u.copy_from_slice(&self.sum_u);
+        state.v.copy_from_slice(&self.sum_v);
+        state.advance_to(next);
+        system.accept(state);
+        Ok(work)
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let fact = |name, value| Fact { name, value };
+        vec![
+            fact("degree", self.series.degree() as f64),
+            fact("left_out", self.series.estimate),
+        ]
+    }
+}
