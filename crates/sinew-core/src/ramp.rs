@@ -155,6 +155,13 @@ impl Ramp {
         }
     }
 
+    /// Whether the value is constant or linear from `t0` up to, but not at, `t1` (s), where no
+    /// breakpoint lies between them.
+    #[must_use]
+    pub fn is_linear_between(&self, t0: f64, t1: f64) -> bool {
+        matches!(self, Self::Table { .. }) || self.is_constant_between(t0, t1)
+    }
+
     /// Writes the derivatives of order 0, 1, 2, .. just after time `t`, as many as `out` holds
     /// (1, 1/s, 1/s^2, ..). They hold up to the next breakpoint.
     pub fn derivatives_after(&self, t: f64, out: &mut [f64]) {

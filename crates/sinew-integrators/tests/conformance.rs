@@ -16,3 +16,9 @@ macro_rules! suites {
 }
 
 sinew_integrators::for_each_integrator!(suites);
+
+sinew_core::conformance!(propagator_krylov, || {
+    use sinew_integrators::propagator::{Propagator, PropagatorKind};
+    let krylov = Propagator::with_tolerance(PropagatorKind::Krylov, 1e-11);
+    Box::new(krylov) as Box<dyn sinew_core::Integrator>
+});

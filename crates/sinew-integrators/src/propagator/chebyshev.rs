@@ -1,26 +1,17 @@
 //! The propagator by Chebyshev polynomials.
 
 use sinew_core::spectrum::Spectrum;
-use sinew_core::{
-    Accuracy, EnergyBehaviour, Fact, Integrator, LinearOperators, LinearSystem, Needs, OptionError,
-    OptionValue, Options, Prepared, Properties, SetupError, StableStep, State, StepError,
-    StepReport, System,
-};
+use sinew_core::{Fact, LinearOperators, Ramp, SetupError, State, StepError, StepReport};
 
 use super::mode::{Mode, quadrature};
 use super::series::{interpolate, nodes, tails};
-use crate::evaluate::begin;
-use crate::{Method, OptionHelp};
+use super::{HIGHEST_DEGREE, ID, Resolution, load_not_smooth};
 
 /// By how much the largest eigenvalue, which Lanczos finds from below, is raised.
 const MARGIN: f64 = 1e-3;
 /// Largest growth of a Chebyshev vector that rounding can explain. Outside the interval they grow
 /// like powers, so a wrong interval shows at once.
 const GROWTH: f64 = 1.05;
-/// Above this degree shorter steps cost less memory and no more sweeps.
-const HIGHEST_DEGREE: usize = 500;
-/// Error with a degree chosen by hand above which the result is called violently wrong.
-const LOOSE: f64 = 1e-2;
 
 /// The exact motion of a proportionally damped linear system over a step, its functions of
 /// `M^-1 K` expanded in Chebyshev polynomials (Tal-Ezer, Kosloff and Koren, Geophysical Prospecting
@@ -32,10 +23,7 @@ const LOOSE: f64 = 1e-2;
 /// per degree for each load that changes. The degree, about omega_max dt/2 + 5, is the smallest that
 /// brings the part of the series left out below the tolerance.
 #[derive(Debug)]
-pub struct Propagator {
-    tolerance: f64,
-    degree: Option<usize>,
-    prepared: Prepared,
+pub(super) struct Chebyshev {
     series: Series,
     r: Vec<f64>,
     current: Vec<f64>,
@@ -60,88 +48,6 @@ struct Series {
     values: Vec<(f64, f64)>,
     of_load: Vec<f64>,
     of_load_rate: Vec<f64>,
-}
-
-const TOLERANCE: &str = "tolerance";
-const DEGREE: &str = "degree";
-const KIND: &str = "kind";
-
-impl Propagator {
-    /// With a degree that meets this tolerance on the error of a step, relative to the largest
-    /// motion it could bring.
-    #[must_use]
-    pub fn with_tolerance(tolerance: f64) -> Self {
-        Self {
-            tolerance,
-            degree: None,
-            prepared: Prepared::default(),
-            series: Series::default(),
-            r: Vec::new(),
-            current: Vec::new(),
-            previous: Vec::new(),
-            product: Vec::new(),
-            sum_u: Vec::new(),
-            sum_v: Vec::new(),
-        }
-    }
-
-    /// With this degree; refused at set-up where it leaves out more than `tolerance`.
-    #[must_use]
-    pub fn with_degree(degree: usize, tolerance: f64) -> Self {
-        Self {
-            degree: Some(degree),
-            ..Self::with_tolerance(tolerance)
-        }
-    }
-}
-
-impl Method for Propagator {
-    const ID: &'static str = "propagator";
-    const SUMMARY: &'static str =
-        "the exact motion over a step as a polynomial: sweeps only, proportional damping, any ramp";
-    const OPTIONS: &'static [OptionHelp] = &[
-        OptionHelp {
-            key: KIND,
-            help: "\"chebyshev\" (default)",
-            shown_default: None,
-        },
-        OptionHelp {
-            key: TOLERANCE,
-            help: "largest relative error of a step; default 1e-10",
-            shown_default: None,
-        },
-        OptionHelp {
-            key: DEGREE,
-            help: "degree of the polynomial; default: the smallest that meets the tolerance",
-            shown_default: None,
-        },
-    ];
-
-    fn from_options(options: &Options) -> Result<Self, OptionError> {
-        match options.get(KIND) {
-            None => {}
-            Some(OptionValue::Text(word)) if word == "chebyshev" => {}
-            Some(found) => {
-                return Err(OptionError::Value {
-                    integrator: Self::ID.into(),
-                    key: KIND.into(),
-                    found: found.clone(),
-                    expected: "\"chebyshev\"",
-                });
-            }
-        }
-        let expected = "a number above 0 and below 1";
-        let share = |x: f64| x > 0.0 && x < 1.0;
-        let expected_degree = "a whole number from 1 to 500";
-        let whole = |x: f64| (1.0..=HIGHEST_DEGREE as f64).contains(&x) && x.fract() == 0.0;
-        let degree = options.number(Self::ID, DEGREE, 0.0, expected_degree, whole)?;
-        if degree == 0.0 {
-            let tolerance = options.number(Self::ID, TOLERANCE, 1e-10, expected, share)?;
-            return Ok(Self::with_tolerance(tolerance));
-        }
-        let tolerance = options.number(Self::ID, TOLERANCE, LOOSE, expected, share)?;
-        Ok(Self::with_degree(degree as usize, tolerance))
-    }
 }
 
 impl Series {
@@ -219,7 +125,7 @@ impl Series {
     }
 
     /// Coefficients of what a ramp's change since `t` brings by t + dt.
-    fn follow(&mut self, ramp: &sinew_core::Ramp, t: f64) {
+    fn follow(&mut self, ramp: &Ramp, t: f64) {
         let start = ramp.value(t);
         for (value, kernel) in self.values.iter_mut().zip(&self.kernels) {
             *value = (0.0, 0.0);
@@ -244,7 +150,7 @@ impl Series {
     }
 }
 
-impl Propagator {
+impl Chebyshev {
     /// Adds the two series of one vector, in `current`, to the sums: `sum_u += a(M^-1 K) x` and
     /// `sum_v += b(M^-1 K) x`.
     fn add_series(
@@ -300,95 +206,66 @@ fn m_norm(mass: &[f64], x: &[f64]) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-impl Integrator for Propagator {
-    fn id(&self) -> &'static str {
-        Self::ID
-    }
-
-    fn properties(&self) -> Properties {
-        Properties {
-            accuracy: Accuracy::Exact,
-            needs: Needs::Matrices,
-            // Conserved but for the part of the series left out.
-            energy: EnergyBehaviour::Bounded,
-        }
-    }
-
-    fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
-        if self.prepared.is_for(system, dt) {
-            return Ok(StepReport::default());
-        }
-        let linear = system.as_linear();
-        let linear = linear.ok_or_else(|| Needs::Matrices.lacking(Self::ID))?;
-        let operators = linear.operators();
+impl Chebyshev {
+    /// Chooses the degree and makes the coefficients.
+    pub(super) fn set_up(
+        operators: &LinearOperators,
+        dt: f64,
+        resolution: Resolution,
+    ) -> Result<Self, SetupError> {
         if operators.damping().extra.is_some() {
             return Err(SetupError::Lacks {
-                integrator: Self::ID,
-                needs: "proportional damping (D = alpha M + beta K, no dashpots); rk4 and cnn-stabilised take any",
+                integrator: ID,
+                needs: "proportional damping (D = alpha M + beta K, no dashpots); kind = \"krylov\" takes any",
             });
         }
-        let mut checked = Prepared::default();
-        checked.check(Self::ID, system, dt)?;
-        self.prepared = Prepared::default();
+        let Resolution { tolerance, degree } = resolution;
         let mut series = Series::new(operators, dt);
         let left_out = series.left_out(dt);
-        let enough = left_out.iter().position(|left| *left <= self.tolerance);
+        let enough = left_out.iter().position(|left| *left <= tolerance);
         let enough = enough.filter(|degree| *degree <= HIGHEST_DEGREE);
-        let degree = match (self.degree, enough) {
+        let meets = |degree: usize| left_out.get(degree).is_none_or(|left| *left <= tolerance);
+        let degree = match (degree, enough) {
             (None, Some(degree)) => degree.max(1),
-            (Some(degree), _)
-                if left_out
-                    .get(degree)
-                    .is_none_or(|left| *left <= self.tolerance) =>
-            {
-                degree.min(left_out.len() - 1)
-            }
+            (Some(degree), _) if meets(degree) => degree.min(left_out.len() - 1),
             (asked, enough) => {
+                let reason = match (asked, enough) {
+                    (Some(degree), Some(enough)) => format!(
+                        "degree {degree} leaves out {:.1e} of the motion over a step of {dt} s; take degree {enough} or leave it out",
+                        left_out[degree]
+                    ),
+                    _ => format!(
+                        "a step of {dt} s needs a degree above {HIGHEST_DEGREE}; take a shorter step"
+                    ),
+                };
                 return Err(SetupError::Unresolved {
-                    integrator: Self::ID,
-                    reason: match (asked, enough) {
-                        (Some(degree), Some(enough)) => format!(
-                            "degree {degree} leaves out {:.1e} of the motion over a step of {dt} s; take degree {enough} or leave it out",
-                            left_out[degree]
-                        ),
-                        _ => format!(
-                            "a step of {dt} s needs a degree above {HIGHEST_DEGREE}; take a shorter step"
-                        ),
-                    },
+                    integrator: ID,
+                    reason,
                 });
             }
         };
         series.estimate = left_out[degree];
         series.cut(degree);
-        self.series = series;
-        for buffer in [
-            &mut self.r,
-            &mut self.current,
-            &mut self.previous,
-            &mut self.product,
-            &mut self.sum_u,
-            &mut self.sum_v,
-        ] {
-            buffer.resize(system.dofs(), 0.0);
-        }
-        self.prepared = checked;
-        Ok(StepReport::default())
+        let buffer = || vec![0.0; operators.dofs()];
+        Ok(Self {
+            series,
+            r: buffer(),
+            current: buffer(),
+            previous: buffer(),
+            product: buffer(),
+            sum_u: buffer(),
+            sum_v: buffer(),
+        })
     }
 
-    fn stable_step(&self, _system: &dyn System) -> Result<StableStep, SetupError> {
-        Ok(StableStep::Any)
-    }
-
-    fn step(
+    /// Moves u and v over a step.
+    pub(super) fn step(
         &mut self,
-        system: &dyn System,
+        operators: &LinearOperators,
         state: &mut State,
         dt: f64,
     ) -> Result<StepReport, StepError> {
-        let mut work = begin(self, system, state, dt)?;
-        let Some(operators) = system.as_linear().map(LinearSystem::operators) else {
-            return Ok(work);
-        };
+        let mut work = StepReport::default();
         let (t, next) = (state.t, state.t + dt);
         operators.external_force(t, &mut self.r);
         operators
@@ -403,7 +280,7 @@ impl Integrator for Propagator {
         self.sum_v.fill(0.0);
 
         let grown = |Growth(factor): Growth| StepError::Inaccurate {
-            integrator: Self::ID,
+            integrator: ID,
             t,
             reason: format!(
                 "the series grew {factor:.2} times where it must not: the largest eigenvalue was underestimated"
@@ -418,16 +295,7 @@ impl Integrator for Propagator {
             .add_series(operators, |series| (&series.g, &series.s))
             .map_err(grown)?;
         for load in operators.loads() {
-            let inside = |time: f64| time > t + 1e-9 * dt && time < next - 1e-9 * dt;
-            if let Some(kink) = load.ramp.kink_where(inside) {
-                return Err(StepError::Inaccurate {
-                    integrator: Self::ID,
-                    t,
-                    reason: format!(
-                        "a load is not smooth at t = {kink} s, inside the step; choose a dt that meets that instant"
-                    ),
-                });
-            }
+            load_not_smooth(&load.ramp, t, dt)?;
             if load.ramp.is_constant_between(t, next) {
                 continue;
             }
@@ -442,12 +310,10 @@ impl Integrator for Propagator {
         }
         state.u.copy_from_slice(&self.sum_u);
         state.v.copy_from_slice(&self.sum_v);
-        state.advance_to(next);
-        system.accept(state);
         Ok(work)
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    pub(super) fn facts(&self) -> Vec<Fact> {
         let fact = |name, value| Fact { name, value };
         vec![
             fact("degree", self.series.degree() as f64),

@@ -1,7 +1,240 @@
 //! `propagator`: the exact motion over a step, as a polynomial in the network.
 
 mod chebyshev;
+mod dense;
+mod krylov;
 mod mode;
 mod series;
 
-pub use chebyshev::Propagator;
+use chebyshev::Chebyshev;
+use krylov::Krylov;
+use sinew_core::{
+    Accuracy, EnergyBehaviour, Fact, Integrator, LinearSystem, Needs, OptionError, OptionValue,
+    Options, Prepared, Properties, Ramp, SetupError, StableStep, State, StepError, StepReport,
+    System,
+};
+
+use crate::evaluate::begin;
+use crate::{Method, OptionHelp};
+
+const ID: &str = "propagator";
+/// Above this degree shorter steps cost less memory and no more sweeps.
+const HIGHEST_DEGREE: usize = 500;
+/// Error of a step with a degree chosen by hand above which it is refused: a polynomial of too low
+/// a degree is violently wrong.
+const LOOSE: f64 = 1e-2;
+
+/// The exact motion of a linear system over a step, by sweeps of the network only.
+///
+/// By Chebyshev polynomials for proportional damping and any ramp, or in a Krylov space for any
+/// damping and loads that are constant or linear over a step; either way kinks and jumps of loads
+/// must fall on steps. The degree is chosen from the step so that the part left out stays below a
+/// tolerance, and each step is checked.
+#[derive(Debug)]
+pub struct Propagator {
+    kind: PropagatorKind,
+    resolution: Resolution,
+    prepared: Prepared,
+    engine: Option<Engine>,
+}
+
+/// Which polynomials.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PropagatorKind {
+    /// Chebyshev's, on the interval of the eigenvalues: proportional damping, any ramp.
+    #[default]
+    Chebyshev,
+    /// Those that fit the state at hand best: any damping, loads constant or linear over a step.
+    Krylov,
+}
+
+/// How well a step is resolved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Resolution {
+    /// Largest relative error of a step.
+    tolerance: f64,
+    /// Degree, where it is given.
+    degree: Option<usize>,
+}
+
+#[derive(Debug)]
+enum Engine {
+    Chebyshev(Box<Chebyshev>),
+    Krylov(Box<Krylov>),
+}
+
+impl Propagator {
+    /// With degrees that keep the relative error of each step below `tolerance`.
+    #[must_use]
+    pub fn with_tolerance(kind: PropagatorKind, tolerance: f64) -> Self {
+        Self::new(
+            kind,
+            Resolution {
+                tolerance,
+                degree: None,
+            },
+        )
+    }
+
+    /// With this degree; refused where it leaves out more than `tolerance`.
+    #[must_use]
+    pub fn with_degree(kind: PropagatorKind, degree: usize, tolerance: f64) -> Self {
+        Self::new(
+            kind,
+            Resolution {
+                tolerance,
+                degree: Some(degree),
+            },
+        )
+    }
+
+    fn new(kind: PropagatorKind, resolution: Resolution) -> Self {
+        Self {
+            kind,
+            resolution,
+            prepared: Prepared::default(),
+            engine: None,
+        }
+    }
+}
+
+const TOLERANCE: &str = "tolerance";
+const DEGREE: &str = "degree";
+const KIND: &str = "kind";
+
+impl Method for Propagator {
+    const ID: &'static str = ID;
+    const SUMMARY: &'static str = "the exact motion over a step as a polynomial: sweeps only";
+    const OPTIONS: &'static [OptionHelp] = &[
+        OptionHelp {
+            key: KIND,
+            help: "\"chebyshev\" (default; proportional damping, any ramp) or \"krylov\" (any damping)",
+            shown_default: None,
+        },
+        OptionHelp {
+            key: TOLERANCE,
+            help: "largest relative error of a step; default 1e-10",
+            shown_default: None,
+        },
+        OptionHelp {
+            key: DEGREE,
+            help: "degree of the polynomial; default: the smallest that meets the tolerance",
+            shown_default: None,
+        },
+    ];
+
+    fn from_options(options: &Options) -> Result<Self, OptionError> {
+        let kind = match options.get(KIND) {
+            None => PropagatorKind::default(),
+            Some(OptionValue::Text(word)) if word == "chebyshev" => PropagatorKind::Chebyshev,
+            Some(OptionValue::Text(word)) if word == "krylov" => PropagatorKind::Krylov,
+            Some(found) => {
+                return Err(OptionError::Value {
+                    integrator: ID.into(),
+                    key: KIND.into(),
+                    found: found.clone(),
+                    expected: "\"chebyshev\" or \"krylov\"",
+                });
+            }
+        };
+        let expected = "a number above 0 and below 1";
+        let share = |x: f64| x > 0.0 && x < 1.0;
+        let expected_degree = "a whole number from 1 to 500";
+        let whole = |x: f64| (1.0..=HIGHEST_DEGREE as f64).contains(&x) && x.fract() == 0.0;
+        let degree = options.number(ID, DEGREE, 0.0, expected_degree, whole)?;
+        let given = (degree > 0.0).then_some(degree as usize);
+        let default = if given.is_some() { LOOSE } else { 1e-10 };
+        Ok(Self::new(
+            kind,
+            Resolution {
+                tolerance: options.number(ID, TOLERANCE, default, expected, share)?,
+                degree: given,
+            },
+        ))
+    }
+}
+
+impl Integrator for Propagator {
+    fn id(&self) -> &'static str {
+        ID
+    }
+
+    fn properties(&self) -> Properties {
+        Properties {
+            accuracy: Accuracy::Exact,
+            needs: Needs::Matrices,
+            // Conserved but for the part that is left out.
+            energy: EnergyBehaviour::Bounded,
+        }
+    }
+
+    fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
+        if self.prepared.is_for(system, dt) {
+            return Ok(StepReport::default());
+        }
+        let operators = system
+            .as_linear()
+            .map(LinearSystem::operators)
+            .ok_or_else(|| Needs::Matrices.lacking(ID))?;
+        let mut checked = Prepared::default();
+        checked.check(ID, system, dt)?;
+        self.prepared = Prepared::default();
+        let resolution = self.resolution;
+        self.engine = Some(match self.kind {
+            PropagatorKind::Chebyshev => {
+                Engine::Chebyshev(Box::new(Chebyshev::set_up(operators, dt, resolution)?))
+            }
+            PropagatorKind::Krylov => {
+                Engine::Krylov(Box::new(Krylov::set_up(operators, dt, resolution)?))
+            }
+        });
+        self.prepared = checked;
+        Ok(StepReport::default())
+    }
+
+    fn stable_step(&self, _system: &dyn System) -> Result<StableStep, SetupError> {
+        Ok(StableStep::Any)
+    }
+
+    fn step(
+        &mut self,
+        system: &dyn System,
+        state: &mut State,
+        dt: f64,
+    ) -> Result<StepReport, StepError> {
+        let mut work = begin(self, system, state, dt)?;
+        if let Some(operators) = system.as_linear().map(LinearSystem::operators) {
+            match &mut self.engine {
+                Some(Engine::Chebyshev(engine)) => work += engine.step(operators, state, dt)?,
+                Some(Engine::Krylov(engine)) => work += engine.step(operators, state, dt)?,
+                None => {}
+            }
+        }
+        state.advance_to(state.t + dt);
+        system.accept(state);
+        Ok(work)
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        match &self.engine {
+            Some(Engine::Chebyshev(engine)) => engine.facts(),
+            Some(Engine::Krylov(engine)) => engine.facts(),
+            None => Vec::new(),
+        }
+    }
+}
+
+/// Refuses a ramp with a kink or jump inside the step.
+fn load_not_smooth(ramp: &Ramp, t: f64, dt: f64) -> Result<(), StepError> {
+    let inside = |time: f64| time > t + 1e-9 * dt && time < t + dt - 1e-9 * dt;
+    match ramp.kink_where(inside) {
+        None => Ok(()),
+        Some(kink) => Err(StepError::Inaccurate {
+            integrator: ID,
+            t,
+            reason: format!(
+                "a load is not smooth at t = {kink} s, inside the step; choose a dt that meets that instant"
+            ),
+        }),
+    }
+}

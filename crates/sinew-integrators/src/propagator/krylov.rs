@@ -1,0 +1,314 @@
+//! The propagator in a Krylov space.
+
+use sinew_core::spectrum::Spectrum;
+use sinew_core::{Fact, LinearOperators, SetupError, State, StepError, StepReport};
+
+use super::dense::Exponential;
+use super::{HIGHEST_DEGREE, ID, Resolution, load_not_smooth};
+
+/// Columns beyond the Hessenberg matrix that hold e1 and the chain of the phi functions.
+const CHAIN: usize = 3;
+/// How often the error estimate is made while the space grows.
+const EVERY: usize = 3;
+/// Length of a rate below which squares underflow and nothing moves any more.
+const NOTHING: f64 = 1e-140;
+/// Change between two looks at the solution above which the estimate is not believed: in a space far
+/// too small for the step both the solution and its estimate mean nothing.
+const STEADY: f64 = 1e-2;
+
+/// `y' = L y + b` for y = (u, v) over a step: `y+ = y + dt phi_1(dt L) w0 + dt^2 phi_2(dt L) w1` with
+/// `w0 = L y + b(t)` and w1 the rate of b, each product taken in the Krylov space of its vector by the
+/// Arnoldi process (Saad, SIAM J. Numer. Anal. 29, 1992; Sidje, ACM TOMS 24, 1998). The space grows
+/// until Saad's estimate of what it leaves out meets the tolerance.
+///
+/// Inner products weigh velocities by M and displacements by omega_max^2 M, so that both count alike.
+#[derive(Debug)]
+pub(super) struct Krylov {
+    resolution: Resolution,
+    capacity: usize,
+    weight: f64,
+    /// Orthonormal vectors of length 2n: displacement part, then velocity part.
+    basis: Vec<Vec<f64>>,
+    /// Upper Hessenberg, row-major with `capacity` columns.
+    hessenberg: Vec<f64>,
+    exponential: Exponential,
+    start: Vec<f64>,
+    change: Vec<f64>,
+    load: Vec<f64>,
+    /// Coefficients in the basis when they were last looked at.
+    before: Vec<f64>,
+    largest: usize,
+    estimate: f64,
+}
+
+impl Krylov {
+    pub(super) fn set_up(
+        operators: &LinearOperators,
+        dt: f64,
+        resolution: Resolution,
+    ) -> Result<Self, SetupError> {
+        let spectrum = Spectrum::of(operators);
+        let damping = spectrum.mass_damping + spectrum.damping_max;
+        let half = damping / 2.0;
+        let fastest = half + (half * half + spectrum.omega_max.powi(2)).sqrt();
+        // A space of about omega dt + 6 is enough; room for twice that and for tight tolerances.
+        let expected = fastest * dt + 6.0;
+        let room = (2.0 * expected + 20.0) as usize;
+        let n = operators.dofs();
+        let capacity = resolution.degree.unwrap_or(room).min(2 * n).max(1);
+        if capacity > HIGHEST_DEGREE {
+            return Err(SetupError::Unresolved {
+                integrator: ID,
+                reason: format!(
+                    "a step of {dt} s may need a space of {room} dimensions, more than {HIGHEST_DEGREE}; take a shorter step"
+                ),
+            });
+        }
+        let weight = if spectrum.omega_max > 0.0 {
+            spectrum.omega_max.powi(2)
+        } else {
+            1.0 / (dt * dt)
+        };
+        Ok(Self {
+            resolution,
+            capacity,
+            weight,
+            basis: vec![vec![0.0; 2 * n]; capacity + 1],
+            hessenberg: vec![0.0; (capacity + 1) * capacity],
+            exponential: Exponential::with_capacity(capacity + CHAIN),
+            start: vec![0.0; 2 * n],
+            change: vec![0.0; 2 * n],
+            load: vec![0.0; n],
+            before: vec![0.0; capacity],
+            largest: 0,
+            estimate: 0.0,
+        })
+    }
+
+    pub(super) fn step(
+        &mut self,
+        operators: &LinearOperators,
+        state: &mut State,
+        dt: f64,
+    ) -> Result<StepReport, StepError> {
+        let mass = operators.mass();
+        let n = mass.len();
+        let t = state.t;
+        for load in operators.loads() {
+            load_not_smooth(&load.ramp, t, dt)?;
+            if !load.ramp.is_linear_between(t, t + dt) {
+                return Err(StepError::Inaccurate {
+                    integrator: ID,
+                    t,
+                    reason: "a load is neither constant nor linear over the step; kind = \"chebyshev\" takes any ramp".into(),
+                });
+            }
+        }
+        let mut work = StepReport::ONE_FORCE;
+        self.change.fill(0.0);
+
+        // w0 = L y + b: velocity and acceleration.
+        let (of_u, of_v) = self.start.split_at_mut(n);
+        of_u.copy_from_slice(&state.v);
+        operators.net_force(t, &state.u, &state.v, of_v);
+        divide(of_v, mass);
+        work.sweeps += self.add_phi(operators, t, dt, 1)?;
+
+        // w1: the rate of the load. The end of the step is seen from inside, so that a jump there is
+        // the next step's.
+        let inside = 0.5;
+        self.load.fill(0.0);
+        let mut changes = false;
+        for load in operators.loads() {
+            let rate = (load.ramp.value(t + inside * dt) - load.ramp.value(t)) / (inside * dt);
+            if rate != 0.0 {
+                changes = true;
+                for &(dof, force) in &load.entries {
+                    self.load[dof as usize] += rate * force;
+                }
+            }
+        }
+        if changes {
+            let (of_u, of_v) = self.start.split_at_mut(n);
+            of_u.fill(0.0);
+            of_v.copy_from_slice(&self.load);
+            divide(of_v, mass);
+            work.sweeps += self.add_phi(operators, t, dt, 2)?;
+        }
+        let (of_u, of_v) = self.change.split_at(n);
+        for (u, change) in state.u.iter_mut().zip(of_u) {
+            *u += change;
+        }
+        for (v, change) in state.v.iter_mut().zip(of_v) {
+            *v += change;
+        }
+        Ok(work)
+    }
+
+    pub(super) fn facts(&self) -> Vec<Fact> {
+        let fact = |name, value| Fact { name, value };
+        vec![
+            fact("degree", self.largest as f64),
+            fact("left_out", self.estimate),
+        ]
+    }
+
+    /// `change += dt^order phi_order(dt L) start`; returns the sweeps it took.
+    fn add_phi(
+        &mut self,
+        operators: &LinearOperators,
+        t: f64,
+        dt: f64,
+        order: usize,
+    ) -> Result<u64, StepError> {
+        let length = self.norm(operators, &self.start);
+        if length < NOTHING {
+            return Ok(0);
+        }
+        if !length.is_finite() {
+            // A motion that is no number any more is for the caller to see.
+            self.change.fill(f64::NAN);
+            return Ok(0);
+        }
+        for (vector, value) in self.basis[0].iter_mut().zip(&self.start) {
+            *vector = value / length;
+        }
+        self.before.fill(0.0);
+        let capacity = self.capacity;
+        let fixed = self.resolution.degree.is_some();
+        for m in 1..=capacity {
+            let next = self.expand(operators, m);
+            let complete = next == 0.0 || m == self.start.len();
+            let last = m == capacity;
+            let looked_at = if fixed {
+                m + EVERY == capacity
+            } else {
+                m % EVERY == 0
+            };
+            if !(complete || last || looked_at) {
+                continue;
+            }
+            let scale = dt.powi(order as i32);
+            let hessenberg = &self.hessenberg;
+            let size = m + CHAIN;
+            let functions = self.exponential.of(size, |i, j| {
+                if i < m && j < m {
+                    dt * hessenberg[i * capacity + j]
+                } else if (i == 0 && j == m) || (i >= m && j == i + 1) {
+                    1.0
+                } else {
+                    0.0
+                }
+            });
+            // Column m + k - 1 holds phi_k(dt H) e1.
+            let phi = |row: usize, k: usize| functions[row * size + m + k - 1];
+            let before = &mut self.before[..m];
+            let rows = || (0..m).map(|row| phi(row, order));
+            let size_now = rows().map(|now| now * now).sum::<f64>().sqrt();
+            let changes = rows()
+                .zip(before.iter())
+                .map(|(now, before)| (now - before).powi(2));
+            let change = changes.sum::<f64>().sqrt() / size_now;
+            let estimate = (dt * next * phi(m - 1, order + 1)).abs() / size_now;
+            // A space with only one look at it has nothing to compare with.
+            let steady = change <= STEADY || capacity <= EVERY;
+            let met = complete || (steady && estimate <= self.resolution.tolerance);
+            if !(met || last) {
+                before
+                    .iter_mut()
+                    .zip(rows())
+                    .for_each(|(before, now)| *before = now);
+                continue;
+            }
+            if !met {
+                return Err(StepError::Inaccurate {
+                    integrator: ID,
+                    t,
+                    reason: format!(
+                        "a space of {m} dimensions leaves out {:.1e} of the motion over a step of {dt} s; take a shorter step{}",
+                        estimate.max(change),
+                        if fixed { " or a higher degree" } else { "" }
+                    ),
+                });
+            }
+            for (row, vector) in self.basis.iter().take(m).enumerate() {
+                let factor = scale * length * phi(row, order);
+                for (change, value) in self.change.iter_mut().zip(vector) {
+                    *change += factor * value;
+                }
+            }
+            self.largest = self.largest.max(m);
+            self.estimate = self.estimate.max(if complete { 0.0 } else { estimate });
+            return Ok(m as u64);
+        }
+        Ok(0)
+    }
+
+    /// The m-th column of the Hessenberg matrix and the next basis vector by modified Gram-Schmidt;
+    /// returns the entry below the diagonal, 0 where the space is complete.
+    fn expand(&mut self, operators: &LinearOperators, m: usize) -> f64 {
+        let mass = operators.mass();
+        let n = mass.len();
+        let (known, new) = self.basis.split_at_mut(m);
+        let (current, next) = (&known[m - 1], &mut new[0]);
+        let (u, v) = current.split_at(n);
+        let (next_u, next_v) = next.split_at_mut(n);
+        next_u.copy_from_slice(v);
+        next_v.fill(0.0);
+        operators.subtract_internal_force(u, v, next_v);
+        divide(next_v, mass);
+        let before = norm(self.weight, mass, next);
+        for row in 0..m {
+            self.hessenberg[row * self.capacity + m - 1] = 0.0;
+        }
+        let mut length = before;
+        // Again where much was taken away: what is left must be orthogonal to rounding of its own
+        // size (Parlett, The Symmetric Eigenvalue Problem, section 6.9, "twice is enough").
+        for _ in 0..2 {
+            let taken_from = length;
+            for (row, vector) in known.iter().enumerate() {
+                let overlap = dot(self.weight, mass, next, vector);
+                self.hessenberg[row * self.capacity + m - 1] += overlap;
+                for (next, value) in next.iter_mut().zip(vector) {
+                    *next -= overlap * value;
+                }
+            }
+            length = norm(self.weight, mass, next);
+            if length > 0.7 * taken_from {
+                break;
+            }
+        }
+        // What remains is rounding.
+        if length <= 1e-13 * before {
+            return 0.0;
+        }
+        if m < self.capacity {
+            self.hessenberg[m * self.capacity + m - 1] = length;
+        }
+        next.iter_mut().for_each(|value| *value /= length);
+        length
+    }
+
+    fn norm(&self, operators: &LinearOperators, y: &[f64]) -> f64 {
+        norm(self.weight, operators.mass(), y)
+    }
+}
+
+fn divide(values: &mut [f64], mass: &[f64]) {
+    for (value, mass) in values.iter_mut().zip(mass) {
+        *value /= mass;
+    }
+}
+
+fn dot(weight: f64, mass: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    let n = mass.len();
+    let part = |a: &[f64], b: &[f64]| -> f64 {
+        let terms = mass.iter().zip(a).zip(b);
+        terms.map(|((mass, a), b)| mass * a * b).sum()
+    };
+    weight * part(&a[..n], &b[..n]) + part(&a[n..], &b[n..])
+}
+
+fn norm(weight: f64, mass: &[f64], y: &[f64]) -> f64 {
+    dot(weight, mass, y, y).sqrt()
+}
