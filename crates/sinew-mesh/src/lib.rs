@@ -41,7 +41,9 @@ mod tet_mesh;
 mod warning;
 
 pub use cell_type::CellType;
-pub use mesh::{CellBlock, CellData, CellNodeData, CellSet, Entity, Mesh, PeriodicLink, PointData};
+pub use mesh::{
+    CellBlock, CellData, CellIndex, CellNodeData, CellSet, Entity, Mesh, PeriodicLink, PointData,
+};
 pub use msh::{MshError, MshFileError, WriteMshError, read_msh, read_msh_file, write_msh41_ascii};
 pub use physical_tags::PhysicalTags;
 pub use tet_mesh::{Group, GroupMembers, SurfaceError, TetMesh, TetMeshError, UnknownGroup};

@@ -169,15 +169,15 @@ fn elements_may_stand_before_nodes_and_names_last() {
 #[test]
 fn unknown_sections_are_skipped_and_listed() {
     let extra = "$Comments\nmade by hand\n$Nodes inside\n$EndComments\n";
-    let unknown = "$NodeData\n1\n$EndNodes\n$EndNodeData\n";
+    let unknown = "$Attributes\n1\n$EndNodes\n$EndAttributes\n";
     let text = format!("{extra}{TWO_REGIONS_41}{unknown}");
     let mesh = read(&text);
-    assert_eq!(mesh.skipped_sections, ["Comments", "NodeData"]);
+    assert_eq!(mesh.skipped_sections, ["Comments", "Attributes"]);
     assert_eq!(
         only_warning(&mesh),
         format!(
-            "{}: section $NodeData is not read and was skipped",
-            place(&text, "$NodeData")
+            "{}: section $Attributes is not read and was skipped",
+            place(&text, "$Attributes")
         )
     );
     assert_same_mesh(&text, TWO_REGIONS_41);
