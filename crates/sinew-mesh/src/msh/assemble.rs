@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
+use super::assemble_data;
 use super::elements::{BlockPlace, ElementSection, RawGroups};
 use super::entities::Entities;
 use super::fault::Fault;
@@ -9,6 +10,7 @@ use super::nodes::RawNodes;
 use super::physical_names::{NamesWithoutDim, PhysicalNames};
 use super::remarks::Remarks;
 use super::section::Contents;
+use super::tag_index::TagIndex;
 use super::tag_list::{TagList, Tags};
 use crate::cell_type::CellType;
 use crate::mesh::{CellBlock, Entity, Mesh};
@@ -36,7 +38,7 @@ pub(super) fn mesh(contents: Contents, bytes: &[u8], remarks: &mut Remarks) -> R
     remark_repeated_element_tags(&cells, remarks);
     let mut physical_names = contents.physical_names;
     add_dimensions(contents.names_without_dim, &cells, &mut physical_names);
-    let mesh = Mesh {
+    let mut mesh = Mesh {
         points,
         node_tags: tags,
         node_entities: entities,
@@ -46,6 +48,7 @@ pub(super) fn mesh(contents: Contents, bytes: &[u8], remarks: &mut Remarks) -> R
         skipped_sections: contents.skipped,
         ..Mesh::default()
     };
+    assemble_data::add(contents.data, &mut mesh, &index, bytes.len(), remarks)?;
     remark_unknown_periodic_nodes(&mesh, &index, remarks);
     remark_repeated_volume_cells(&mesh, remarks);
     remark_empty_groups(&mesh, remarks);
@@ -71,88 +74,17 @@ fn no_nodes(contents: &Contents) -> Fault {
     Fault::new(contents.length, problem, "a $Nodes section with nodes")
 }
 
-/// Finds the index of a node by its tag.
-struct NodeIndex {
-    lookup: Lookup,
-    least: u64,
-    greatest: u64,
-}
-
-enum Lookup {
-    /// The tags are `least`, `least + 1` and so on.
-    Consecutive,
-    /// `table[tag - least]` is the index plus one; 0 means there is no such node.
-    Table(Vec<u32>),
-    Map(HashMap<u64, u32>),
-}
-
-impl NodeIndex {
-    /// Knows the tags if they are consecutive, and otherwise none of them yet.
-    fn of_range(tags: &[u64]) -> NodeIndex {
-        let least = tags.iter().min().copied().unwrap_or(0);
-        let greatest = tags.iter().max().copied().unwrap_or(0);
-        let span = greatest - least;
-        let is_consecutive = || {
-            let ordinals = (0u64..).zip(tags);
-            ordinals.into_iter().all(|(i, &tag)| tag - least == i)
-        };
-        // A table is several times faster than a map, but its size must not depend on tags that may be as large as 2^64.
-        let lookup = if is_consecutive() {
-            Lookup::Consecutive
-        } else if span <= 4 * tags.len() as u64 + 1024 {
-            Lookup::Table(vec![0; usize::try_from(span).map_or(0, |span| span + 1)])
-        } else {
-            Lookup::Map(HashMap::with_capacity(tags.len()))
-        };
-        NodeIndex {
-            lookup,
-            least,
-            greatest,
-        }
-    }
-
-    fn get(&self, tag: u64) -> Option<u32> {
-        match &self.lookup {
-            Lookup::Consecutive if tag > self.greatest => None,
-            Lookup::Consecutive => u32::try_from(tag.checked_sub(self.least)?).ok(),
-            Lookup::Map(map) => map.get(&tag).copied(),
-            Lookup::Table(table) => {
-                let slot = usize::try_from(tag.checked_sub(self.least)?).ok()?;
-                table.get(slot)?.checked_sub(1)
-            }
-        }
-    }
-
-    /// The tag must be in the range the index was made for.
-    fn insert(&mut self, tag: u64, index: u32) {
-        match &mut self.lookup {
-            Lookup::Consecutive => {}
-            Lookup::Map(map) => {
-                map.insert(tag, index);
-            }
-            Lookup::Table(table) => {
-                let slot = tag
-                    .checked_sub(self.least)
-                    .and_then(|slot| usize::try_from(slot).ok());
-                if let Some(entry) = slot.and_then(|slot| table.get_mut(slot)) {
-                    *entry = index + 1;
-                }
-            }
-        }
-    }
-}
-
 /// Each node once.
 struct Nodes {
     tags: Vec<u64>,
     points: Vec<[f64; 3]>,
     entities: Vec<Entity>,
-    index: NodeIndex,
+    index: TagIndex,
 }
 
 /// Drops repeated rows, and indexes the rest by tag.
 fn unique_nodes(raw: RawNodes, bytes: &[u8], remarks: &mut Remarks) -> Result<Nodes, Fault> {
-    let mut index = NodeIndex::of_range(&raw.tags);
+    let mut index = TagIndex::of_range(&raw.tags);
     let mut nodes = Nodes {
         entities: if raw.entities.len() == raw.tags.len() {
             raw.entities
@@ -161,10 +93,10 @@ fn unique_nodes(raw: RawNodes, bytes: &[u8], remarks: &mut Remarks) -> Result<No
         },
         tags: raw.tags,
         points: raw.points,
-        index: NodeIndex::of_range(&[]),
+        index: TagIndex::of_range(&[]),
     };
     next_index(nodes.tags.len().saturating_sub(1))?;
-    if !matches!(index.lookup, Lookup::Consecutive) {
+    if !index.is_complete() {
         let mut is_repeated = Vec::new();
         let mut unique = 0;
         for (row, &tag) in nodes.tags.iter().enumerate() {
@@ -194,7 +126,7 @@ fn unique_nodes(raw: RawNodes, bytes: &[u8], remarks: &mut Remarks) -> Result<No
 fn drop_repeated(
     nodes: &mut Nodes,
     is_repeated: &[bool],
-    index: &NodeIndex,
+    index: &TagIndex,
     offset: impl Fn(usize) -> usize,
     remarks: &mut Remarks,
 ) -> Result<(), Fault> {
@@ -247,7 +179,7 @@ fn next_index(count: usize) -> Result<u32, Fault> {
 /// The blocks of all `$Elements` sections; rows of later sections that repeat an earlier one are dropped.
 fn cells(
     sections: Vec<ElementSection>,
-    index: &NodeIndex,
+    index: &TagIndex,
     mut groups: Groups,
     bytes: &[u8],
     remarks: &mut Remarks,
@@ -264,10 +196,14 @@ fn cells(
             cells.element_tags = block.element_tags;
             (cells.physical, cells.geometrical) =
                 groups.of_block(block.groups, cells.element_tags.len(), remarks);
-            if !earlier.is_empty() {
-                repeated += drop_known_rows(&mut cells, &earlier, &place, bytes)?;
+            let dropped = match earlier.is_empty() {
+                true => 0,
+                false => drop_known_rows(&mut cells, &earlier, &place, bytes)?,
+            };
+            repeated += dropped;
+            if dropped == 0 || !cells.is_empty() {
+                new_blocks.push(cells);
             }
-            new_blocks.push(cells);
         }
         if repeated > 0 {
             remarks.general(format!(
@@ -317,12 +253,12 @@ fn drop_known_rows(
 fn resolved(
     kind: CellType,
     node_tags: TagList,
-    index: &NodeIndex,
+    index: &TagIndex,
     place: &BlockPlace,
     bytes: &[u8],
 ) -> Result<Vec<u32>, Fault> {
     let unknown = |entry: usize, tag: u64| {
-        let (least, greatest) = (index.least, index.greatest);
+        let (least, greatest) = index.range();
         let problem = format!("node tag {tag} is not in $Nodes (tags {least}..{greatest})");
         place.fault(
             entry / kind.node_count(),
@@ -420,7 +356,7 @@ fn add_dimensions(names: NamesWithoutDim, cells: &[CellBlock], to: &mut Physical
     }
 }
 
-fn remark_unknown_periodic_nodes(mesh: &Mesh, index: &NodeIndex, remarks: &mut Remarks) {
+fn remark_unknown_periodic_nodes(mesh: &Mesh, index: &TagIndex, remarks: &mut Remarks) {
     let tags = mesh.periodic.iter().flat_map(|link| &link.node_tags);
     let unknown = || {
         let tags = tags.clone().flatten().copied();

@@ -24,24 +24,27 @@ pub(super) fn read(
         version,
         are_parts: false,
     };
-    rows.read(source, |row| match entities.get(&row.entity) {
-        Some(earlier) if *earlier != row.physical => {
-            let Entity { dim, tag } = row.entity;
-            let problem =
-                format!("entity {tag} of dimension {dim} occurs twice, with different groups");
-            Err(Fault::new(row.offset, problem, "each entity once"))
+    let mut first_repeated = None;
+    rows.read(source, |row| {
+        match entities.get(&row.entity) {
+            Some(earlier) if *earlier != row.physical => {
+                let Entity { dim, tag } = row.entity;
+                let problem =
+                    format!("entity {tag} of dimension {dim} occurs twice, with different groups");
+                return Err(Fault::new(row.offset, problem, "each entity once"));
+            }
+            Some(_) => first_repeated = first_repeated.or(Some((row.offset, row.entity))),
+            None => {
+                entities.insert(row.entity, row.physical);
+            }
         }
-        Some(_) => {
-            let Entity { dim, tag } = row.entity;
-            let message = format!("$Entities: entity {tag} of dimension {dim} occurs twice");
-            remarks.at(row.offset, message);
-            Ok(())
-        }
-        None => {
-            entities.insert(row.entity, row.physical);
-            Ok(())
-        }
-    })
+        Ok(())
+    })?;
+    if let Some((offset, Entity { dim, tag })) = first_repeated {
+        let message = format!("$Entities: entity {tag} of dimension {dim} occurs twice");
+        remarks.at(offset, message);
+    }
+    Ok(())
 }
 
 /// `$PartitionedEntities` without its last line. The blocks of a partitioned file refer to these entities, so they take

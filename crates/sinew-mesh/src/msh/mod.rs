@@ -32,7 +32,9 @@
 )]
 
 mod assemble;
+mod assemble_data;
 mod cursor;
+mod data;
 mod elements;
 mod entities;
 mod error;
@@ -48,6 +50,7 @@ mod remarks;
 mod rows_of_lines;
 mod section;
 mod source;
+mod tag_index;
 mod tag_list;
 mod write;
 

@@ -84,7 +84,7 @@ fn read_row(
         Some(dim) => names.names.insert((dim, tag), name.clone()),
         None => names.without_dim.insert(tag, name.clone()),
     };
-    if let Some(earlier) = earlier {
+    if let Some(earlier) = earlier.filter(|earlier| *earlier != name) {
         let of_dim = dim.map_or_else(String::new, |dim| format!(" of dimension {dim}"));
         let message = format!(
             "$PhysicalNames: group {tag}{of_dim} is named again: {} after {}; the later name counts",

@@ -1,6 +1,7 @@
 //! Finds the sections of a file and hands each to its decoder.
 
 use super::cursor::{Cursor, LONGEST, quoted};
+use super::data::{self, Holder, RawData};
 use super::elements::{self, ElementSection};
 use super::entities::{self, Entities};
 use super::fault::Fault;
@@ -25,6 +26,7 @@ pub(super) struct Contents {
     pub(super) has_nodes: bool,
     pub(super) elements: Vec<ElementSection>,
     pub(super) periodic: Vec<PeriodicLink>,
+    pub(super) data: Vec<RawData>,
     pub(super) skipped: Vec<String>,
     /// Where the file ends.
     pub(super) length: usize,
@@ -146,11 +148,12 @@ fn read_section(
     let version = format.version;
     let after = match name {
         "MeshFormat" => {
-            return Err(Fault::new(
-                offset,
-                "the section occurs twice",
-                "one $MeshFormat",
-            ));
+            // gmsh appends data with a header of their own.
+            if header::read(cursor, version, remarks)? == format {
+                return Ok(());
+            }
+            let problem = "the section occurs again, with another version or encoding";
+            return Err(Fault::new(offset, problem, "the same as before"));
         }
         "PhysicalNames" => {
             let names = Names {
@@ -195,6 +198,16 @@ fn read_section(
         "Periodic" => {
             contents.periodic.extend(periodic::read(cursor, format)?);
             "the links".to_owned()
+        }
+        "NodeData" | "ElementData" | "ElementNodeData" => {
+            let holder = match name {
+                "NodeData" => Holder::Nodes,
+                "ElementData" => Holder::Elements,
+                _ => Holder::ElementNodes,
+            };
+            let data = data::read(cursor, format, holder, remarks)?;
+            contents.data.push(data);
+            "the rows".to_owned()
         }
         "GhostElements" if !version.is_2() => {
             let count =

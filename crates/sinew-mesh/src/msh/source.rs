@@ -3,7 +3,7 @@
 //! A decoder names the kind of each number; the source knows how that kind is encoded. So the text and the binary
 //! form of a version share one decoder. Long tables are read by a method each, which the two sources do in their own way.
 
-use super::cursor::Cursor;
+use super::cursor::{Cursor, Token};
 use super::fault::Fault;
 use super::number;
 use super::places::Layout;
@@ -167,11 +167,38 @@ impl Record {
 /// Numbers written as text, separated by blanks; line breaks mean nothing.
 pub(super) struct Text<'c, 'a> {
     cursor: &'c mut Cursor<'a>,
+    reprs: Reprs,
+}
+
+/// Numbers as Python shows those of NumPy 2: `np.float64(0.5)`.
+enum Reprs {
+    Refuse,
+    /// And remember where the first one stands.
+    Accept(Option<usize>),
 }
 
 impl<'c, 'a> Text<'c, 'a> {
     pub(super) fn new(cursor: &'c mut Cursor<'a>) -> Text<'c, 'a> {
-        Text { cursor }
+        Text {
+            cursor,
+            reprs: Reprs::Refuse,
+        }
+    }
+
+    /// Text in which numbers may also be spelled `np.float64(0.5)`.
+    pub(super) fn accepting_reprs(cursor: &'c mut Cursor<'a>) -> Text<'c, 'a> {
+        Text {
+            cursor,
+            reprs: Reprs::Accept(None),
+        }
+    }
+
+    /// Where the first number is spelled as Python shows it, if one is.
+    pub(super) fn first_repr(&self) -> Option<usize> {
+        match self.reprs {
+            Reprs::Accept(first) => first,
+            Reprs::Refuse => None,
+        }
     }
 }
 
@@ -204,7 +231,14 @@ impl Source for Text<'_, '_> {
 
     #[inline]
     fn double(&mut self, what: &str) -> Result<f64, Fault> {
-        number::double(self.cursor.token(what)?, what)
+        let token = self.cursor.token(what)?;
+        if let Reprs::Accept(first) = &mut self.reprs
+            && let Some(text) = number::inside_repr(token.text)
+        {
+            first.get_or_insert(token.offset);
+            return number::double(Token { text, ..token }, what);
+        }
+        number::double(token, what)
     }
 
     /// In text a tag is a tag, however large.
