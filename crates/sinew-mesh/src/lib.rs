@@ -38,13 +38,17 @@ mod msh;
 mod physical_tags;
 pub mod structured;
 mod tet_mesh;
+pub mod vtu;
 mod warning;
 
 pub use cell_type::CellType;
 pub use mesh::{
     CellBlock, CellData, CellIndex, CellNodeData, CellSet, Entity, Mesh, PeriodicLink, PointData,
 };
-pub use msh::{MshError, MshFileError, WriteMshError, read_msh, read_msh_file, write_msh41_ascii};
+pub use msh::{
+    MshEncoding, MshError, MshFileError, MshVersion, WriteMshError, read_msh, read_msh_file,
+    write_msh, write_msh41_ascii,
+};
 pub use physical_tags::PhysicalTags;
 pub use tet_mesh::{Group, GroupMembers, SurfaceError, TetMesh, TetMeshError, UnknownGroup};
 pub use warning::{Position, Warning};

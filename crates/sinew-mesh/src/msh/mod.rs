@@ -1,4 +1,4 @@
-//! gmsh's .msh format: reading versions 2.2 and 4.1, writing 4.1, all as text.
+//! gmsh's .msh format: reading versions 2.0 to 4.1, writing 2.2 and 4.1, as text and as bytes.
 //!
 //! The reader walks over the bytes once. [`cursor`] knows offsets, [`source`] turns bytes into numbers, `section` finds
 //! sections, and one module for each section decodes its rows per format version into raw tables that still hold the
@@ -56,7 +56,7 @@ mod write;
 
 pub use error::MshError;
 pub use file::{MshFileError, read_msh_file};
-pub use write::{WriteMshError, write_msh41_ascii};
+pub use write::{MshEncoding, MshVersion, WriteMshError, write_msh, write_msh41_ascii};
 
 use crate::mesh::Mesh;
 use cursor::Cursor;
