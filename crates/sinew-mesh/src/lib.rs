@@ -32,7 +32,9 @@
 //! ```
 
 mod cell_type;
+mod check;
 mod duplicates;
+pub mod info;
 mod mesh;
 mod msh;
 mod physical_tags;
@@ -42,6 +44,7 @@ pub mod vtu;
 mod warning;
 
 pub use cell_type::CellType;
+pub use check::{CheckLimits, EdgeLengths, Extreme, Finding, MeshCheck, Part, SharedFace};
 pub use mesh::{
     CellBlock, CellData, CellIndex, CellNodeData, CellSet, Entity, Mesh, PeriodicLink, PointData,
 };

@@ -13,6 +13,7 @@ use super::section::Contents;
 use super::tag_index::TagIndex;
 use super::tag_list::{TagList, Tags};
 use crate::cell_type::CellType;
+use crate::check::empty_groups;
 use crate::mesh::{CellBlock, Entity, Mesh};
 use crate::physical_tags::PhysicalTags;
 
@@ -408,18 +409,10 @@ fn remark_repeated_volume_cells(mesh: &Mesh, remarks: &mut Remarks) {
 }
 
 fn remark_empty_groups(mesh: &Mesh, remarks: &mut Remarks) {
-    let mut used: HashSet<(u8, i32)> = HashSet::new();
-    for block in &mesh.cells {
-        for tag in block.physical.lists().flatten() {
-            used.insert((block.kind.dim(), tag.saturating_abs()));
-        }
-    }
-    for (&(dim, tag), name) in &mesh.physical_names {
-        if !used.contains(&(dim, tag.saturating_abs())) {
-            remarks.general(format!(
-                "$PhysicalNames: group \"{}\" (dimension {dim}, tag {tag}) is named, but no cell belongs to it",
-                name.escape_debug()
-            ));
-        }
+    for (dim, tag, name) in empty_groups(mesh) {
+        remarks.general(format!(
+            "$PhysicalNames: group \"{}\" (dimension {dim}, tag {tag}) is named, but no cell belongs to it",
+            name.escape_debug()
+        ));
     }
 }
