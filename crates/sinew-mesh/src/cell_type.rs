@@ -127,6 +127,12 @@ impl CellType {
             .find(|kind| kind.name() == name)
     }
 
+    /// Whether the shape is a tetrahedron, of whatever order. Its corners are the first four nodes.
+    #[must_use]
+    pub fn is_tetrahedron(self) -> bool {
+        self.name().starts_with("tetra")
+    }
+
     /// Where gmsh and VTK number the nodes of a cell differently: `vtk_row[i] = gmsh_row[order[i]]`.
     ///
     /// `None` means the two agree. As in meshio 5.3.5, `wedge18` and `pyramid14` are left as gmsh has them.

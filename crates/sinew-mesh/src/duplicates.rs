@@ -2,25 +2,18 @@
 
 use std::collections::HashMap;
 
-/// Pairs (first cell, later cell) of cells with the same set of nodes; `nodes_per_cell` indices for each cell in turn.
+/// Pairs (first cell, later cell) of cells with the same set of nodes, given the nodes of each cell in turn.
 ///
 /// The later cells ascend, and each is paired with the first cell of its node set.
-pub(crate) fn duplicate_cells(connectivity: &[u32], nodes_per_cell: usize) -> Vec<(usize, usize)> {
+pub(crate) fn duplicate_cells<'c>(
+    cells: impl Iterator<Item = &'c [u32]> + Clone,
+) -> Vec<(usize, usize)> {
     // Most meshes have no duplicates, so a cheap key that ignores the order comes first. Equal keys prove nothing;
     // the cells behind them are compared exactly.
-    let keys: Vec<u64> = connectivity
-        .chunks_exact(nodes_per_cell)
-        .map(order_free_key)
-        .collect();
-    let mut sorted = keys.clone();
-    sorted.sort_unstable();
-    let mut shared: Vec<u64> = sorted
-        .windows(2)
-        .filter_map(|pair| match pair {
-            [a, b] if a == b => Some(*a),
-            _ => None,
-        })
-        .collect();
+    let mut shared: Vec<u64> = cells.clone().map(order_free_key).collect();
+    shared.sort_unstable();
+    let mut previous = None;
+    shared.retain(|&key| previous.replace(key) == Some(key));
     if shared.is_empty() {
         return Vec::new();
     }
@@ -28,12 +21,8 @@ pub(crate) fn duplicate_cells(connectivity: &[u32], nodes_per_cell: usize) -> Ve
 
     let mut first_with: HashMap<Vec<u32>, usize> = HashMap::new();
     let mut pairs = Vec::new();
-    for (cell, (nodes, key)) in connectivity
-        .chunks_exact(nodes_per_cell)
-        .zip(&keys)
-        .enumerate()
-    {
-        if shared.binary_search(key).is_err() {
+    for (cell, nodes) in cells.enumerate() {
+        if shared.binary_search(&order_free_key(nodes)).is_err() {
             continue;
         }
         let mut nodes = nodes.to_vec();
@@ -67,12 +56,12 @@ mod tests {
     #[test]
     fn order_does_not_matter_and_the_first_is_kept() {
         let triangles = [0, 1, 2, 3, 4, 5, 2, 0, 1, 0, 1, 3, 1, 2, 0];
-        assert_eq!(duplicate_cells(&triangles, 3), [(0, 2), (0, 4)]);
-        assert_eq!(duplicate_cells(&triangles[..6], 3), []);
+        assert_eq!(duplicate_cells(triangles.chunks_exact(3)), [(0, 2), (0, 4)]);
+        assert_eq!(duplicate_cells(triangles[..6].chunks_exact(3)), []);
     }
 
     #[test]
     fn a_repeated_node_is_not_the_same_set() {
-        assert_eq!(duplicate_cells(&[0, 0, 1, 0, 1, 1], 3), []);
+        assert_eq!(duplicate_cells([0, 0, 1, 0, 1, 1].chunks_exact(3)), []);
     }
 }

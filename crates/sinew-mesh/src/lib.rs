@@ -32,17 +32,26 @@
 //! ```
 
 mod cell_type;
+mod check;
 mod duplicates;
+pub mod info;
 mod mesh;
 mod msh;
 mod physical_tags;
 pub mod structured;
 mod tet_mesh;
+pub mod vtu;
 mod warning;
 
 pub use cell_type::CellType;
-pub use mesh::{CellBlock, CellData, CellNodeData, CellSet, Entity, Mesh, PeriodicLink, PointData};
-pub use msh::{MshError, MshFileError, WriteMshError, read_msh, read_msh_file, write_msh41_ascii};
+pub use check::{CheckLimits, EdgeLengths, Extreme, Finding, MeshCheck, Part, SharedFace};
+pub use mesh::{
+    CellBlock, CellData, CellIndex, CellNodeData, CellSet, Entity, Mesh, PeriodicLink, PointData,
+};
+pub use msh::{
+    MshEncoding, MshError, MshFileError, MshVersion, WriteMshError, read_msh, read_msh_file,
+    write_msh, write_msh41_ascii,
+};
 pub use physical_tags::PhysicalTags;
 pub use tet_mesh::{Group, GroupMembers, SurfaceError, TetMesh, TetMeshError, UnknownGroup};
 pub use warning::{Position, Warning};

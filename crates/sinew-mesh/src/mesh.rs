@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::cell_type::CellType;
+use crate::duplicates::duplicate_cells;
 use crate::physical_tags::PhysicalTags;
 use crate::warning::Warning;
 
@@ -89,10 +90,45 @@ impl CellBlock {
         self.len() == 0
     }
 
+    /// Keeps the cells for which `keep` is true.
+    pub(crate) fn keep(&mut self, keep: &[bool]) {
+        let nodes = self.kind.node_count();
+        let is_kept = |cell: usize| keep.get(cell).copied().unwrap_or(false);
+        let mut entry = 0;
+        self.connectivity.retain(|_| {
+            entry += 1;
+            is_kept((entry - 1) / nodes)
+        });
+        retain(&mut self.element_tags, keep);
+        retain(&mut self.geometrical, keep);
+        self.physical.retain(keep);
+    }
+
     /// The nodes of each cell in turn.
-    pub fn cells(&self) -> impl ExactSizeIterator<Item = &[u32]> {
+    pub fn cells(&self) -> impl ExactSizeIterator<Item = &[u32]> + Clone {
         self.connectivity.chunks_exact(self.kind.node_count())
     }
+}
+
+/// Which cell of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CellIndex {
+    /// Index into [`Mesh::cells`].
+    pub block: usize,
+    /// Index within the block.
+    pub cell: usize,
+}
+
+/// Cells of one type with the nodes of an earlier one: pairs (first cell, later cell).
+pub(crate) struct Duplicates {
+    pub(crate) kind: CellType,
+    pub(crate) pairs: Vec<(CellIndex, CellIndex)>,
+}
+
+/// Keeps the entries for which `keep` is true.
+fn retain<T>(list: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    list.retain(|_| keep.next().copied().unwrap_or(false));
 }
 
 /// Values at points, from one `$NodeData` section.
@@ -174,6 +210,54 @@ impl Mesh {
             .get(point as usize)
             .copied()
             .unwrap_or(ordinal)
+    }
+
+    /// The tag of a cell: its tag in the file, or its index within the mesh plus one where its block has no tags.
+    #[must_use]
+    pub fn element_tag(&self, cell: CellIndex) -> u64 {
+        let tag = self
+            .cells
+            .get(cell.block)
+            .and_then(|block| block.element_tags.get(cell.cell));
+        tag.copied().unwrap_or_else(|| {
+            let before: usize = self.cells.iter().take(cell.block).map(CellBlock::len).sum();
+            (before + cell.cell) as u64 + 1
+        })
+    }
+
+    /// The cells of one dimension that have the nodes of an earlier cell of their type, type by type.
+    pub(crate) fn duplicate_cells(&self, dim: u8) -> Vec<Duplicates> {
+        let kinds: BTreeSet<CellType> = self.cells.iter().map(|block| block.kind).collect();
+        let kinds = kinds.into_iter().filter(|kind| kind.dim() == dim);
+        let found = kinds.map(|kind| {
+            let blocks = || self.cells.iter().filter(|block| block.kind == kind);
+            let pairs = duplicate_cells(blocks().flat_map(CellBlock::cells));
+            // Index of each block of the kind, and how many cells the kind has before it.
+            let mut starts: Vec<(usize, usize)> = Vec::new();
+            let mut cells = 0;
+            for (number, block) in self.cells.iter().enumerate() {
+                if block.kind == kind && !block.is_empty() {
+                    starts.push((number, cells));
+                    cells += block.len();
+                }
+            }
+            let index = |cell: usize| {
+                let after = starts.partition_point(|&(_, start)| start <= cell);
+                let (block, start) = starts[after - 1];
+                CellIndex {
+                    block,
+                    cell: cell - start,
+                }
+            };
+            Duplicates {
+                kind,
+                pairs: pairs
+                    .into_iter()
+                    .map(|(a, b)| (index(a), index(b)))
+                    .collect(),
+            }
+        });
+        found.filter(|found| !found.pairs.is_empty()).collect()
     }
 
     /// Dimension and tag of every physical group, named or not, in ascending order.

@@ -31,16 +31,16 @@ impl PhysicalTags {
 
     /// Adds the next cell's tags. Zeros, gmsh's "no group", are left out.
     pub fn push(&mut self, tags: &[i32]) {
-        let tags = without_zeros(tags);
         // Neighbouring rows of a file nearly always share their groups, so looking at the latest lists is enough to
         // keep them few; a repeated list costs memory, not correctness.
         const LOOK_BACK: usize = 8;
         let start = self.lists.len().saturating_sub(LOOK_BACK);
-        let known = self.lists.iter().skip(start).position(|list| *list == tags);
+        let is_same = |list: &Vec<i32>| list.iter().eq(tags.iter().filter(|&&tag| tag != 0));
+        let known = self.lists.iter().skip(start).position(is_same);
         let index = match known {
             Some(offset) => start + offset,
             None => {
-                self.lists.push(tags);
+                self.lists.push(without_zeros(tags));
                 self.lists.len() - 1
             }
         };
@@ -67,6 +67,13 @@ impl PhysicalTags {
     /// Every list of tags that some cell has, at least once.
     pub(crate) fn lists(&self) -> impl Iterator<Item = &[i32]> {
         self.lists.iter().map(Vec::as_slice)
+    }
+
+    /// Keeps the tags of the cells for which `keep` is true.
+    pub(crate) fn retain(&mut self, keep: &[bool]) {
+        let mut keep = keep.iter();
+        self.list_of_cell
+            .retain(|_| keep.next().copied().unwrap_or(false));
     }
 
     /// Number of cells.

@@ -170,15 +170,15 @@ fn elements_may_stand_before_nodes_and_names_last() {
 #[test]
 fn unknown_sections_are_skipped_and_listed() {
     let extra = "$Comments\nmade by hand\n$Nodes inside\n$EndComments\n";
-    let unknown = "$NodeData\n1\n$EndNodes\n$EndNodeData\n";
+    let unknown = "$Attributes\n1\n$EndNodes\n$EndAttributes\n";
     let text = format!("{extra}{TWO_REGIONS_41}{unknown}");
     let mesh = read(&text);
-    assert_eq!(mesh.skipped_sections, ["Comments", "NodeData"]);
+    assert_eq!(mesh.skipped_sections, ["Comments", "Attributes"]);
     assert_eq!(
         only_warning(&mesh),
         format!(
-            "{}: section $NodeData is not read and was skipped",
-            place(&text, "$NodeData")
+            "{}: section $Attributes is not read and was skipped",
+            place(&text, "$Attributes")
         )
     );
     assert_same_mesh(&text, TWO_REGIONS_41);
@@ -260,8 +260,8 @@ fn repeated_sections_merge_what_is_identical_and_add_the_rest() {
         .iter()
         .map(|block| block.element_tags.clone())
         .collect();
-    assert_eq!(tags, [vec![1], vec![2, 3], vec![], vec![9]]);
-    assert_eq!(mesh.cells[3].physical.of(0), [1]);
+    assert_eq!(tags, [vec![1], vec![2, 3], vec![9]]);
+    assert_eq!(mesh.cells[2].physical.of(0), [1]);
     let all = messages(&mesh);
     assert!(all[1].starts_with("$Elements occurs again: "), "{all:?}");
 }
@@ -370,4 +370,150 @@ fn a_file_without_elements_has_points_and_a_warning() {
     let mesh = read(&text);
     assert_eq!((mesh.points.len(), mesh.cells.len()), (4, 0));
     assert_eq!(only_warning(&mesh), "the file has no $Elements section");
+}
+
+mod data {
+    use super::*;
+
+    /// The file with data: a section for some elements and one for all nodes, rows not in the order of the mesh.
+    fn with_data() -> String {
+        let header = |name: &str, time: &str, components: u32, rows: u32| {
+            format!("1\n\"{name}\"\n1\n{time}\n4\n3\n{components}\n{rows}\n0\n")
+        };
+        let nodes = format!(
+            "$NodeData\n{}50 5\n40 4.5\n7 0.75\n10 1\n30 3\n20 2\n$EndNodeData\n",
+            header("temperature", "0.25", 1, 6)
+        );
+        let elements = format!(
+            "$ElementData\n{}12 1 2 3\n77 0 0 0\n$EndElementData\n",
+            header("fibre", "0.5", 3, 2)
+        );
+        let corners = format!(
+            "$ElementNodeData\n{}100 4 1 2 3 4\n$EndElementNodeData\n",
+            header("corner", "0", 1, 1)
+        );
+        format!("{TWO_REGIONS_41}{nodes}{elements}{corners}")
+    }
+
+    #[test]
+    fn rows_go_by_tag_and_what_is_missing_is_nan() {
+        let mesh = read(&with_data());
+        let temperature = &mesh.point_data[0];
+        assert_eq!(
+            (
+                temperature.name.as_str(),
+                temperature.step,
+                temperature.time
+            ),
+            ("temperature", 3, 0.25)
+        );
+        assert_eq!(temperature.values, [4.5, 1.0, 3.0, 2.0, 5.0, 0.75]);
+        let fibre = &mesh.cell_data[0];
+        assert_eq!((fibre.components, fibre.blocks.len()), (3, 3));
+        assert!(
+            fibre.blocks[0]
+                .iter()
+                .chain(&fibre.blocks[1])
+                .all(|x| x.is_nan())
+        );
+        assert_eq!(fibre.blocks[2], [1.0, 2.0, 3.0]);
+        let corner = &mesh.cell_node_data[0];
+        assert_eq!(corner.blocks[1], [1.0, 2.0, 3.0, 4.0]);
+        assert!(corner.blocks[2].iter().all(|x| x.is_nan()));
+        let told: Vec<String> = mesh.warnings.iter().map(|w| w.message.clone()).collect();
+        insta::assert_snapshot!(told.join("\n"), @r#"
+        $ElementData: "fibre": rows for tags that the mesh does not have, skipped: 1 (first: tag 77)
+        $ElementData: "fibre": 2 of 3 cells have no value; they are NaN
+        $ElementNodeData: "corner": 2 of 3 cells have no value; they are NaN
+        "#);
+    }
+
+    #[test]
+    fn numbers_as_python_shows_them_are_read() {
+        let text = with(
+            &with_data(),
+            "40 4.5\n7 0.75",
+            "40 np.float64(4.5)\n7 np.float64(0.75)",
+        );
+        let mesh = read(&text);
+        assert_eq!(mesh.point_data[0].values, [4.5, 1.0, 3.0, 2.0, 5.0, 0.75]);
+        assert!(
+            mesh.warnings[0]
+                .message
+                .starts_with("numbers are written as np.float64")
+        );
+        let text = with(TWO_REGIONS_41, "\n1 0 0\n", "\nnp.float64(1) 0 0\n");
+        assert!(
+            sinew_mesh::read_msh(text.as_bytes()).is_err(),
+            "coordinates are not spelled so"
+        );
+    }
+
+    #[test]
+    fn values_of_nodes_of_an_element_follow_its_node_order() {
+        let mut text = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n");
+        for tag in 1..=10 {
+            text.push_str(&format!("{tag} {tag} 0 0\n"));
+        }
+        text.push_str("$EndNodes\n$Elements\n1\n1 11 2 1 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n");
+        text.push_str("$ElementNodeData\n1\n\"x\"\n1\n0\n3\n0\n1\n1\n1 10 1 2 3 4 5 6 7 8 9 10\n$EndElementNodeData\n");
+        let mesh = read(&text);
+        let at_nodes: Vec<f64> = mesh.cells[0]
+            .connectivity
+            .iter()
+            .map(|&node| mesh.points[node as usize][0])
+            .collect();
+        assert_eq!(mesh.cell_node_data[0].blocks[0], at_nodes);
+    }
+
+    #[test]
+    fn sections_that_would_explode_are_refused() {
+        let row = |i: usize| {
+            format!(
+                "$NodeData\n1\n\"{i}\"\n1\n0\n3\n0\n900\n1\n7 {}\n$EndNodeData\n",
+                "0 ".repeat(900)
+            )
+        };
+        let many: String = (0..300).map(row).collect();
+        let mut nodes = String::from("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n20000\n");
+        for tag in 1..=20000 {
+            nodes.push_str(&format!("{tag} 0 0 0\n"));
+        }
+        let text = format!("{nodes}$EndNodes\n{many}");
+        let error = sinew_mesh::read_msh(text.as_bytes()).expect_err("it would take gigabytes");
+        assert!(error.to_string().contains("many times the"), "{error}");
+    }
+}
+
+#[test]
+fn names_of_version_2_0_have_no_dimension() {
+    let text = with(
+        &TWICE_22.replace("2.2 0 8", "2.0 0 8"),
+        "2 1 \"base\"\n3 1 \"tissue\"\n3 2 \"stiff part\"",
+        "1 \"base\"\n2 \"stiff part\"\n9 \"none\"",
+    );
+    let mesh = read(&text);
+    let names: Vec<_> = mesh
+        .physical_names
+        .iter()
+        .map(|(&key, name)| (key, name.as_str()))
+        .collect();
+    assert_eq!(
+        names,
+        [
+            ((2, 1), "base"),
+            ((3, 1), "base"),
+            ((3, 2), "stiff part"),
+            ((3, 9), "none")
+        ]
+    );
+    // Files that say 2.0 and have the column are read, too.
+    assert_same_mesh(&TWICE_22.replace("2.2 0 8", "2.0 0 8"), TWICE_22);
+    assert_same_mesh(&TWICE_22.replace("2.2 0 8", "2 0 8"), TWICE_22);
+    assert_same_mesh(&TWICE_22.replace("2.2 0 8", "2.1 0 8"), TWICE_22);
+}
+
+#[test]
+fn a_bare_4_is_settled_by_the_data() {
+    assert_same_mesh(&TWO_REGIONS_41.replace("4.1 0 8", "4 0 8"), TWO_REGIONS_41);
 }

@@ -1,58 +1,56 @@
 //! From tables of tags to a mesh of indices.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
-use super::elements::{ElementSection, RawBlock, RawGroups};
+use super::assemble_data;
+use super::elements::{BlockPlace, ElementSection, RawGroups};
 use super::entities::Entities;
 use super::fault::Fault;
 use super::nodes::RawNodes;
+use super::physical_names::{NamesWithoutDim, PhysicalNames};
 use super::remarks::Remarks;
 use super::section::Contents;
+use super::tag_index::TagIndex;
+use super::tag_list::{TagList, Tags};
 use crate::cell_type::CellType;
-use crate::duplicates::duplicate_cells;
+use crate::check::empty_groups;
 use crate::mesh::{CellBlock, Entity, Mesh};
 use crate::physical_tags::PhysicalTags;
 
-pub(super) fn mesh(contents: Contents, remarks: &mut Remarks) -> Result<Mesh, Fault> {
+pub(super) fn mesh(contents: Contents, bytes: &[u8], remarks: &mut Remarks) -> Result<Mesh, Fault> {
     if contents.nodes.tags.is_empty() {
         return Err(no_nodes(&contents));
     }
-    let (nodes, index) = unique_nodes(contents.nodes, remarks)?;
+    let Nodes {
+        tags,
+        points,
+        entities,
+        index,
+    } = unique_nodes(contents.nodes, bytes, remarks)?;
     if contents.elements.is_empty() {
         remarks.general("the file has no $Elements section");
     }
-    let blocks = merged_sections(contents.elements, remarks)?;
-    remark_repeated_element_tags(&blocks, remarks);
-    let mut unlisted = HashSet::new();
-    let mut cells = Vec::with_capacity(blocks.len());
-    for block in blocks {
-        let connectivity = resolved(&block, &index)?;
-        let listed = contents.entities.as_ref();
-        let RawBlock {
-            kind,
-            element_tags,
-            groups,
-            ..
-        } = block;
-        let (physical, geometrical) =
-            groups_of(groups, element_tags.len(), listed, &mut unlisted, remarks);
-        cells.push(CellBlock {
-            kind,
-            connectivity,
-            element_tags,
-            physical,
-            geometrical,
-        });
-    }
-    let mesh = Mesh {
-        points: nodes.points,
-        node_tags: nodes.tags,
-        node_entities: nodes.entities,
+    let groups = Groups {
+        entities: contents.entities,
+        parts: contents.parts,
+        unlisted: HashSet::new(),
+    };
+    let cells = cells(contents.elements, &index, groups, bytes, remarks)?;
+    remark_repeated_element_tags(&cells, remarks);
+    let mut physical_names = contents.physical_names;
+    add_dimensions(contents.names_without_dim, &cells, &mut physical_names);
+    let mut mesh = Mesh {
+        points,
+        node_tags: tags,
+        node_entities: entities,
         cells,
-        physical_names: contents.physical_names,
+        physical_names,
+        periodic: contents.periodic,
         skipped_sections: contents.skipped,
         ..Mesh::default()
     };
+    assemble_data::add(contents.data, &mut mesh, &index, bytes.len(), remarks)?;
+    remark_unknown_periodic_nodes(&mesh, &index, remarks);
     remark_repeated_volume_cells(&mesh, remarks);
     remark_empty_groups(&mesh, remarks);
     Ok(mesh)
@@ -77,107 +75,101 @@ fn no_nodes(contents: &Contents) -> Fault {
     Fault::new(contents.length, problem, "a $Nodes section with nodes")
 }
 
-/// Finds the index of a node by its tag.
-struct NodeIndex {
-    lookup: Lookup,
-    least: u64,
-    greatest: u64,
-}
-
-enum Lookup {
-    /// `table[tag - least]` is the index plus one; 0 means there is no such node.
-    Table(Vec<u32>),
-    Map(HashMap<u64, u32>),
-}
-
-impl NodeIndex {
-    fn of_range(tags: &[u64]) -> NodeIndex {
-        let least = tags.iter().min().copied().unwrap_or(0);
-        let greatest = tags.iter().max().copied().unwrap_or(0);
-        let span = greatest - least;
-        // A table is several times faster, but its size must not depend on tags that may be as large as 2^64.
-        let lookup = if span <= 4 * tags.len() as u64 + 1024 {
-            Lookup::Table(vec![0; usize::try_from(span).map_or(0, |span| span + 1)])
-        } else {
-            Lookup::Map(HashMap::with_capacity(tags.len()))
-        };
-        NodeIndex {
-            lookup,
-            least,
-            greatest,
-        }
-    }
-
-    fn get(&self, tag: u64) -> Option<u32> {
-        match &self.lookup {
-            Lookup::Map(map) => map.get(&tag).copied(),
-            Lookup::Table(table) => {
-                let slot = usize::try_from(tag.checked_sub(self.least)?).ok()?;
-                table.get(slot)?.checked_sub(1)
-            }
-        }
-    }
-
-    /// The tag must be in the range the index was made for.
-    fn insert(&mut self, tag: u64, index: u32) {
-        match &mut self.lookup {
-            Lookup::Map(map) => {
-                map.insert(tag, index);
-            }
-            Lookup::Table(table) => {
-                let slot = tag
-                    .checked_sub(self.least)
-                    .and_then(|slot| usize::try_from(slot).ok());
-                if let Some(entry) = slot.and_then(|slot| table.get_mut(slot)) {
-                    *entry = index + 1;
-                }
-            }
-        }
-    }
+/// Each node once.
+struct Nodes {
+    tags: Vec<u64>,
+    points: Vec<[f64; 3]>,
+    entities: Vec<Entity>,
+    index: TagIndex,
 }
 
 /// Drops repeated rows, and indexes the rest by tag.
-fn unique_nodes(raw: RawNodes, remarks: &mut Remarks) -> Result<(RawNodes, NodeIndex), Fault> {
-    let mut index = NodeIndex::of_range(&raw.tags);
-    let mut unique = RawNodes {
-        tags: Vec::with_capacity(raw.tags.len()),
-        points: Vec::with_capacity(raw.tags.len()),
-        ..RawNodes::default()
+fn unique_nodes(raw: RawNodes, bytes: &[u8], remarks: &mut Remarks) -> Result<Nodes, Fault> {
+    let mut index = TagIndex::of_range(&raw.tags);
+    let mut nodes = Nodes {
+        entities: if raw.entities.len() == raw.tags.len() {
+            raw.entities
+        } else {
+            Vec::new()
+        },
+        tags: raw.tags,
+        points: raw.points,
+        index: TagIndex::of_range(&[]),
     };
-    let mut entities = raw.entities.into_iter();
-    let mut first_repeated = None;
-    let mut repeated: usize = 0;
-    for ((tag, point), offset) in raw.tags.into_iter().zip(raw.points).zip(raw.offsets) {
-        let entity = entities.next();
-        let Some(earlier) = index.get(tag) else {
-            index.insert(tag, next_index(unique.tags.len(), offset)?);
-            unique.tags.push(tag);
-            unique.points.push(point);
-            unique.entities.extend(entity);
-            continue;
-        };
-        if unique.points.get(earlier as usize) != Some(&point) {
-            let problem = format!("node tag {tag} occurs again, with other coordinates");
-            return Err(Fault::new(offset, problem, "each tag once").inside("$Nodes"));
+    next_index(nodes.tags.len().saturating_sub(1))?;
+    if !index.is_complete() {
+        let mut is_repeated = Vec::new();
+        let mut unique = 0;
+        for (row, &tag) in nodes.tags.iter().enumerate() {
+            if index.get(tag).is_none() {
+                index.insert(tag, next_index(unique)?);
+                unique += 1;
+            } else {
+                is_repeated.resize(row, false);
+                is_repeated.push(true);
+            }
         }
-        first_repeated = first_repeated.or(Some((tag, offset)));
-        repeated += 1;
+        if !is_repeated.is_empty() {
+            is_repeated.resize(nodes.tags.len(), false);
+            drop_repeated(
+                &mut nodes,
+                &is_repeated,
+                &index,
+                |row| raw.places.offset(row, bytes),
+                remarks,
+            )?;
+        }
     }
-    if let Some((tag, offset)) = first_repeated {
-        let message = format!(
-            "$Nodes: rows that repeat an earlier node and were merged with it: {repeated} (first: tag {tag})"
-        );
-        remarks.at(offset, message);
-    }
-    Ok((unique, index))
+    nodes.index = index;
+    Ok(nodes)
 }
 
-fn next_index(count: usize, offset: usize) -> Result<u32, Fault> {
+fn drop_repeated(
+    nodes: &mut Nodes,
+    is_repeated: &[bool],
+    index: &TagIndex,
+    offset: impl Fn(usize) -> usize,
+    remarks: &mut Remarks,
+) -> Result<(), Fault> {
+    let repeated: Vec<(usize, u64, [f64; 3])> = nodes
+        .tags
+        .iter()
+        .zip(&nodes.points)
+        .zip(is_repeated)
+        .enumerate()
+        .filter_map(|(row, ((&tag, &point), &again))| again.then_some((row, tag, point)))
+        .collect();
+    keep_first(&mut nodes.tags, is_repeated);
+    keep_first(&mut nodes.points, is_repeated);
+    keep_first(&mut nodes.entities, is_repeated);
+    for &(row, tag, point) in &repeated {
+        let first = index.get(tag).and_then(|i| nodes.points.get(i as usize));
+        if first != Some(&point) {
+            let problem = format!("node tag {tag} occurs again, with other coordinates");
+            return Err(Fault::new(offset(row), problem, "each tag once").inside("$Nodes"));
+        }
+    }
+    if let Some(&(row, tag, _)) = repeated.first() {
+        let count = repeated.len();
+        let message = format!(
+            "$Nodes: rows that repeat an earlier node and were merged with it: {count} (first: tag {tag})"
+        );
+        remarks.at(offset(row), message);
+    }
+    Ok(())
+}
+
+fn keep_first<T>(rows: &mut Vec<T>, is_repeated: &[bool]) {
+    let mut again = is_repeated.iter();
+    rows.retain(|_| !again.next().copied().unwrap_or(false));
+}
+
+fn next_index(count: usize) -> Result<u32, Fault> {
     match u32::try_from(count) {
         // The last value stands for "no node" elsewhere.
         Ok(index) if index < u32::MAX => Ok(index),
         _ => Err(Fault::unsupported(
-            offset,
+            0,
             format!("the file has more than {} nodes", u32::MAX - 1),
             "split the mesh",
         )
@@ -186,166 +178,200 @@ fn next_index(count: usize, offset: usize) -> Result<u32, Fault> {
 }
 
 /// The blocks of all `$Elements` sections; rows of later sections that repeat an earlier one are dropped.
-fn merged_sections(
+fn cells(
     sections: Vec<ElementSection>,
+    index: &TagIndex,
+    mut groups: Groups,
+    bytes: &[u8],
     remarks: &mut Remarks,
-) -> Result<Vec<RawBlock>, Fault> {
-    let mut sections = sections.into_iter();
-    let mut blocks = sections.next().unwrap_or_default().blocks;
+) -> Result<Vec<CellBlock>, Fault> {
+    let mut cells: Vec<CellBlock> = Vec::new();
     for section in sections {
-        let mut known: HashMap<u64, (CellType, &[u64])> = HashMap::new();
-        for block in &blocks {
-            let rows = block.node_tags.chunks_exact(block.kind.node_count());
-            for (&tag, row) in block.element_tags.iter().zip(rows) {
-                known.insert(tag, (block.kind, row));
-            }
-        }
-        let mut new_blocks = Vec::new();
+        let earlier = rows_by_tag(&cells);
         let mut repeated = 0;
+        let mut new_blocks = Vec::with_capacity(section.blocks.len());
         for block in section.blocks {
-            let (block, dropped) = without_known_rows(block, &known)?;
+            let place = block.place;
+            let connectivity = resolved(block.kind, block.node_tags, index, &place, bytes)?;
+            let mut cells = CellBlock::new(block.kind, connectivity);
+            cells.element_tags = block.element_tags;
+            (cells.physical, cells.geometrical) =
+                groups.of_block(block.groups, cells.element_tags.len(), remarks);
+            let dropped = match earlier.is_empty() {
+                true => 0,
+                false => drop_known_rows(&mut cells, &earlier, &place, bytes)?,
+            };
             repeated += dropped;
-            new_blocks.push(block);
+            if dropped == 0 || !cells.is_empty() {
+                new_blocks.push(cells);
+            }
         }
         if repeated > 0 {
             remarks.general(format!(
                 "$Elements occurs again: rows that repeat earlier ones and were merged with them: {repeated}"
             ));
         }
-        blocks.extend(new_blocks);
+        cells.extend(new_blocks);
     }
-    Ok(blocks)
+    Ok(cells)
 }
 
-fn without_known_rows(
-    block: RawBlock,
-    known: &HashMap<u64, (CellType, &[u64])>,
-) -> Result<(RawBlock, usize), Fault> {
-    let mut is_new = Vec::with_capacity(block.element_tags.len());
-    let rows = block.node_tags.chunks_exact(block.kind.node_count());
-    for (cell, (&tag, row)) in block.element_tags.iter().zip(rows).enumerate() {
+fn rows_by_tag(cells: &[CellBlock]) -> HashMap<u64, (CellType, Vec<u32>)> {
+    let rows = cells.iter().flat_map(|block| {
+        let rows = block.element_tags.iter().zip(block.cells());
+        rows.map(|(&tag, row)| (tag, (block.kind, row.to_vec())))
+    });
+    rows.collect()
+}
+
+fn drop_known_rows(
+    block: &mut CellBlock,
+    known: &HashMap<u64, (CellType, Vec<u32>)>,
+    place: &BlockPlace,
+    bytes: &[u8],
+) -> Result<usize, Fault> {
+    let mut is_new = Vec::with_capacity(block.len());
+    for (cell, (&tag, row)) in block.element_tags.iter().zip(block.cells()).enumerate() {
         match known.get(&tag) {
             None => is_new.push(true),
-            Some(&(kind, nodes)) if kind == block.kind && nodes == row => is_new.push(false),
+            Some((kind, nodes)) if *kind == block.kind && nodes == row => is_new.push(false),
             Some(_) => {
-                let offset = block.offsets.get(cell).copied().unwrap_or(0);
                 let problem = format!(
                     "element tag {tag} occurs in an earlier $Elements section, with other nodes"
                 );
-                return Err(block.place(Fault::new(offset, problem, "each element once"), cell));
+                return Err(place.fault(cell, bytes, problem, "each element once"));
             }
         }
     }
     let dropped = is_new.iter().filter(|&&new| !new).count();
-    Ok((keep_rows(block, &is_new), dropped))
-}
-
-fn keep_rows(block: RawBlock, keep: &[bool]) -> RawBlock {
-    let kept = |cell: usize| keep.get(cell).copied().unwrap_or(false);
-    let rows = block.node_tags.chunks_exact(block.kind.node_count());
-    RawBlock {
-        node_tags: rows
-            .enumerate()
-            .filter(|(cell, _)| kept(*cell))
-            .flat_map(|(_, row)| row)
-            .copied()
-            .collect(),
-        element_tags: kept_only(&block.element_tags, &kept),
-        offsets: kept_only(&block.offsets, &kept),
-        groups: match block.groups {
-            RawGroups::OfEntity { entity, offset } => RawGroups::OfEntity { entity, offset },
-            RawGroups::OfEach {
-                physical,
-                geometrical,
-            } => RawGroups::OfEach {
-                geometrical: kept_only(&geometrical, &kept),
-                physical: {
-                    let mut kept_physical = PhysicalTags::new();
-                    for cell in (0..physical.len()).filter(|&cell| kept(cell)) {
-                        kept_physical.push(physical.of(cell));
-                    }
-                    kept_physical
-                },
-            },
-        },
-        kind: block.kind,
-        number: block.number,
+    if dropped > 0 {
+        block.keep(&is_new);
     }
-}
-
-fn kept_only<T: Copy>(all: &[T], kept: &impl Fn(usize) -> bool) -> Vec<T> {
-    all.iter()
-        .enumerate()
-        .filter(|(cell, _)| kept(*cell))
-        .map(|(_, &value)| value)
-        .collect()
+    Ok(dropped)
 }
 
 /// Indices in VTK order for the node tags of a block.
-fn resolved(block: &RawBlock, index: &NodeIndex) -> Result<Vec<u32>, Fault> {
-    let order = block.kind.vtk_order_in_gmsh_row();
-    let mut connectivity = Vec::with_capacity(block.node_tags.len());
-    let mut row = Vec::with_capacity(block.kind.node_count());
-    for (cell, tags) in block
-        .node_tags
-        .chunks_exact(block.kind.node_count())
-        .enumerate()
-    {
-        row.clear();
-        for &tag in tags {
-            row.push(
-                index
-                    .get(tag)
-                    .ok_or_else(|| unknown_node(block, cell, tag, index))?,
-            );
+fn resolved(
+    kind: CellType,
+    node_tags: TagList,
+    index: &TagIndex,
+    place: &BlockPlace,
+    bytes: &[u8],
+) -> Result<Vec<u32>, Fault> {
+    let unknown = |entry: usize, tag: u64| {
+        let (least, greatest) = index.range();
+        let problem = format!("node tag {tag} is not in $Nodes (tags {least}..{greatest})");
+        place.fault(
+            entry / kind.node_count(),
+            bytes,
+            problem,
+            "an existing node tag",
+        )
+    };
+    let mut connectivity = match node_tags.into_tags() {
+        Tags::Narrow(mut tags) => {
+            for (entry, tag) in tags.iter_mut().enumerate() {
+                match index.get(u64::from(*tag)) {
+                    Some(node) => *tag = node,
+                    None => return Err(unknown(entry, u64::from(*tag))),
+                }
+            }
+            tags
         }
-        match order {
-            None => connectivity.extend_from_slice(&row),
-            Some(order) => {
-                connectivity.extend(order.iter().filter_map(|&i| row.get(usize::from(i))));
+        Tags::Wide(tags) => {
+            let nodes = tags.into_iter().enumerate();
+            nodes
+                .map(|(entry, tag)| index.get(tag).ok_or_else(|| unknown(entry, tag)))
+                .collect::<Result<_, _>>()?
+        }
+    };
+    if let Some(order) = kind.vtk_order_in_gmsh_row() {
+        let mut gmsh_row = Vec::with_capacity(kind.node_count());
+        for row in connectivity.chunks_exact_mut(kind.node_count()) {
+            gmsh_row.clear();
+            gmsh_row.extend_from_slice(row);
+            for (node, &i) in row.iter_mut().zip(order) {
+                *node = gmsh_row.get(usize::from(i)).copied().unwrap_or(*node);
             }
         }
     }
     Ok(connectivity)
 }
 
-fn unknown_node(block: &RawBlock, cell: usize, tag: u64, index: &NodeIndex) -> Fault {
-    let offset = block.offsets.get(cell).copied().unwrap_or(0);
-    let problem = format!(
-        "node tag {tag} is not in $Nodes (tags {}..{})",
-        index.least, index.greatest
-    );
-    block.place(Fault::new(offset, problem, "an existing node tag"), cell)
+/// Which groups a block's elements are in.
+struct Groups {
+    entities: Option<Entities>,
+    /// In a partitioned mesh, blocks refer to these first.
+    parts: Option<Entities>,
+    /// Entities that were remarked upon.
+    unlisted: HashSet<Entity>,
 }
 
-fn groups_of(
-    groups: RawGroups,
-    cells: usize,
-    entities: Option<&Entities>,
-    unlisted: &mut HashSet<Entity>,
-    remarks: &mut Remarks,
-) -> (PhysicalTags, Vec<i32>) {
-    match groups {
-        RawGroups::OfEach {
-            physical,
-            geometrical,
-        } => (physical, geometrical),
-        RawGroups::OfEntity { entity, offset } => {
-            let listed = entities.and_then(|entities| entities.get(&entity));
-            if listed.is_none() && entities.is_some() && unlisted.insert(entity) {
-                let message = format!(
-                    "$Elements: entity {} of dimension {} is not in $Entities; its elements are in no group",
-                    entity.tag, entity.dim
-                );
-                remarks.at(offset, message);
+impl Groups {
+    fn of_block(
+        &mut self,
+        groups: RawGroups,
+        cells: usize,
+        remarks: &mut Remarks,
+    ) -> (PhysicalTags, Vec<i32>) {
+        let (entity, offset) = match groups {
+            RawGroups::OfEach {
+                physical,
+                geometrical,
+            } => return (physical, geometrical),
+            RawGroups::OfEntity { entity, offset } => (entity, offset),
+        };
+        let is_told = self.entities.is_some() || self.parts.is_some();
+        let listed = [&self.parts, &self.entities]
+            .into_iter()
+            .flatten()
+            .find_map(|entities| entities.get(&entity));
+        if listed.is_none() && is_told && self.unlisted.insert(entity) {
+            let message = format!(
+                "$Elements: entity {} of dimension {} is not in $Entities; its elements are in no group",
+                entity.tag, entity.dim
+            );
+            remarks.at(offset, message);
+        }
+        let tags = listed.map_or(&[] as &[i32], Vec::as_slice);
+        (PhysicalTags::uniform(tags, cells), vec![entity.tag; cells])
+    }
+}
+
+/// Version 2.0 names groups by tag alone: the name goes to the dimensions that have cells with the tag.
+fn add_dimensions(names: NamesWithoutDim, cells: &[CellBlock], to: &mut PhysicalNames) {
+    for (tag, name) in names {
+        let mut dims: BTreeSet<u8> = BTreeSet::new();
+        for block in cells {
+            let is_in_group = |&other: &i32| other.saturating_abs() == tag;
+            if block.physical.lists().flatten().any(is_in_group) {
+                dims.insert(block.kind.dim());
             }
-            let tags = listed.map_or(&[] as &[i32], Vec::as_slice);
-            (PhysicalTags::uniform(tags, cells), vec![entity.tag; cells])
+        }
+        if dims.is_empty() {
+            dims.insert(3);
+        }
+        for dim in dims {
+            to.entry((dim, tag)).or_insert_with(|| name.clone());
         }
     }
 }
 
-fn remark_repeated_element_tags(blocks: &[RawBlock], remarks: &mut Remarks) {
+fn remark_unknown_periodic_nodes(mesh: &Mesh, index: &TagIndex, remarks: &mut Remarks) {
+    let tags = mesh.periodic.iter().flat_map(|link| &link.node_tags);
+    let unknown = || {
+        let tags = tags.clone().flatten().copied();
+        tags.filter(|&tag| index.get(tag).is_none())
+    };
+    if let Some(first) = unknown().next() {
+        remarks.general(format!(
+            "$Periodic: node tags that are not in $Nodes: {} (first: {first})",
+            unknown().count()
+        ));
+    }
+}
+
+fn remark_repeated_element_tags(blocks: &[CellBlock], remarks: &mut Remarks) {
     let tags = || blocks.iter().flat_map(|block| &block.element_tags).copied();
     if tags().is_sorted_by(|a, b| a < b) {
         return;
@@ -367,40 +393,26 @@ fn remark_repeated_element_tags(blocks: &[RawBlock], remarks: &mut Remarks) {
 }
 
 fn remark_repeated_volume_cells(mesh: &Mesh, remarks: &mut Remarks) {
-    let mut by_kind: BTreeMap<CellType, (Vec<u32>, Vec<u64>)> = BTreeMap::new();
-    for block in mesh.cells.iter().filter(|block| block.kind.dim() == 3) {
-        let (connectivity, tags) = by_kind.entry(block.kind).or_default();
-        connectivity.extend_from_slice(&block.connectivity);
-        tags.extend_from_slice(&block.element_tags);
-    }
-    for (kind, (connectivity, tags)) in by_kind {
-        let copies = duplicate_cells(&connectivity, kind.node_count());
-        if let Some(&(first, copy)) = copies.first() {
-            let tag = |cell: usize| tags.get(cell).copied().unwrap_or_default();
-            remarks.general(format!(
-                "$Elements: {kind} cells with the same nodes as another: {} (first: tag {} repeats tag {}); all are \
-                 kept, so volumes count twice until they are merged",
-                copies.len(),
-                tag(copy),
-                tag(first),
-            ));
-        }
+    for copies in mesh.duplicate_cells(3) {
+        let Some(&(first, copy)) = copies.pairs.first() else {
+            continue;
+        };
+        remarks.general(format!(
+            "$Elements: {} cells with the same nodes as another: {} (first: tag {} repeats tag {}); all are \
+             kept, so volumes count twice until they are merged",
+            copies.kind,
+            copies.pairs.len(),
+            mesh.element_tag(copy),
+            mesh.element_tag(first),
+        ));
     }
 }
 
 fn remark_empty_groups(mesh: &Mesh, remarks: &mut Remarks) {
-    let mut used: HashSet<(u8, i32)> = HashSet::new();
-    for block in &mesh.cells {
-        for tag in block.physical.lists().flatten() {
-            used.insert((block.kind.dim(), tag.saturating_abs()));
-        }
-    }
-    for (&(dim, tag), name) in &mesh.physical_names {
-        if !used.contains(&(dim, tag.saturating_abs())) {
-            remarks.general(format!(
-                "$PhysicalNames: group \"{}\" (dimension {dim}, tag {tag}) is named, but no cell belongs to it",
-                name.escape_debug()
-            ));
-        }
+    for (dim, tag, name) in empty_groups(mesh) {
+        remarks.general(format!(
+            "$PhysicalNames: group \"{}\" (dimension {dim}, tag {tag}) is named, but no cell belongs to it",
+            name.escape_debug()
+        ));
     }
 }

@@ -5,9 +5,12 @@ use super::fault::Fault;
 /// Longer tokens and lines belong to no .msh file; messages that quote them stay short too.
 pub(super) const LONGEST: usize = 4096;
 
+#[derive(Clone)]
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
     offset: usize,
+    /// Just after the last line break that was passed.
+    line_start: usize,
 }
 
 /// A run of bytes without blanks.
@@ -25,7 +28,20 @@ impl<'a> Cursor<'a> {
         } else {
             0
         };
-        Cursor { bytes, offset }
+        Cursor {
+            bytes,
+            offset,
+            line_start: offset,
+        }
+    }
+
+    /// At a place in the bytes.
+    pub(super) fn at(bytes: &'a [u8], offset: usize) -> Cursor<'a> {
+        Cursor {
+            bytes,
+            offset: offset.min(bytes.len()),
+            line_start: 0,
+        }
     }
 
     pub(super) fn offset(&self) -> usize {
@@ -36,9 +52,14 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.offset..).unwrap_or_default()
     }
 
-    /// The bytes from an earlier offset to here.
-    pub(super) fn since(&self, offset: usize) -> &'a [u8] {
-        self.bytes.get(offset..self.offset).unwrap_or_default()
+    /// Number of bytes in the whole file.
+    pub(super) fn file_length(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// Whether a line break was passed since an earlier offset.
+    pub(super) fn has_passed_line_break_since(&self, offset: usize) -> bool {
+        self.line_start > offset
     }
 
     pub(super) fn is_at_end(&self) -> bool {
@@ -46,14 +67,18 @@ impl<'a> Cursor<'a> {
     }
 
     /// Moves over blanks and line breaks; tells whether there was a line break.
+    #[inline]
     pub(super) fn skip_blanks(&mut self) -> bool {
         let mut passed_line_break = false;
-        for &byte in self.rest() {
+        while let Some(&byte) = self.bytes.get(self.offset) {
             if !is_blank(byte) {
                 break;
             }
-            passed_line_break |= byte == b'\n';
             self.offset += 1;
+            if byte == b'\n' {
+                passed_line_break = true;
+                self.line_start = self.offset;
+            }
         }
         passed_line_break
     }
@@ -68,6 +93,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// The next token, on this line or a later one; `what` names it for the message.
+    #[inline]
     pub(super) fn token(&mut self, what: &str) -> Result<Token<'a>, Fault> {
         self.skip_blanks();
         let offset = self.offset;
@@ -75,8 +101,8 @@ impl<'a> Cursor<'a> {
         let length = rest
             .iter()
             .take(LONGEST + 1)
-            .take_while(|&&byte| !is_blank(byte))
-            .count();
+            .position(|&byte| is_blank(byte))
+            .unwrap_or(rest.len().min(LONGEST + 1));
         if length == 0 {
             return Err(Fault::shortage(offset, "the file ends here", what));
         }
@@ -89,6 +115,27 @@ impl<'a> Cursor<'a> {
         Ok(Token { text, offset })
     }
 
+    /// The next token, if it is a number of at most 19 decimal digits. Otherwise nothing is taken but blanks.
+    #[inline]
+    pub(super) fn plain_number(&mut self) -> Option<u64> {
+        self.skip_blanks();
+        let rest = self.rest();
+        let mut value = 0;
+        for (length, &byte) in rest.iter().take(20).enumerate() {
+            let digit = byte.wrapping_sub(b'0');
+            if digit > 9 {
+                if length == 0 || !is_blank(byte) {
+                    return None;
+                }
+                self.offset += length;
+                return Some(value);
+            }
+            // 19 digits do not overflow; a twentieth is never returned.
+            value = u64::wrapping_mul(value, 10).wrapping_add(u64::from(digit));
+        }
+        None
+    }
+
     /// The rest of this line without its line break and surrounding blanks; moves to the next line.
     pub(super) fn line(&mut self) -> &'a [u8] {
         let rest = self.rest();
@@ -97,10 +144,33 @@ impl<'a> Cursor<'a> {
             .position(|&byte| byte == b'\n')
             .unwrap_or(rest.len());
         self.offset += rest.len().min(length + 1);
+        self.line_start = self.offset;
         rest.get(..length).unwrap_or_default().trim_ascii()
+    }
+
+    /// Moves past the end of this line, on which only blanks may stand before it.
+    pub(super) fn line_end(&mut self, after: &str) -> Result<(), Fault> {
+        let offset = self.offset;
+        match self.line() {
+            [] => Ok(()),
+            line => Err(Fault::new(
+                offset,
+                format!("{} follows {after}", quoted(line)),
+                "the end of the line",
+            )),
+        }
+    }
+
+    /// The next bytes, whatever they are; nothing if there are not as many.
+    #[inline]
+    pub(super) fn take(&mut self, length: usize) -> Option<&'a [u8]> {
+        let taken = self.rest().get(..length)?;
+        self.offset += length;
+        Some(taken)
     }
 }
 
+#[inline]
 fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\r' | b'\n' | b'\x0b' | b'\x0c')
 }

@@ -2,12 +2,14 @@
 
 use super::cursor::Cursor;
 use super::fault::Fault;
-use super::nodes::compare_with_header;
-use super::physical_names::dimension;
+use super::header::{Format, Version, with_source};
+use super::nodes::{Header, entity_of_block};
+use super::places::{Layout, RowPlaces};
 use super::remarks::Remarks;
 use super::rows_of_lines::read_row;
-use super::section::end_section;
-use super::source::{Record, Source, Text};
+use super::section::count_line;
+use super::source::{Record, Source, TagKind, Text};
+use super::tag_list::TagList;
 use crate::cell_type::CellType;
 use crate::mesh::Entity;
 use crate::physical_tags::PhysicalTags;
@@ -23,11 +25,9 @@ pub(super) struct ElementSection {
 pub(super) struct RawBlock {
     pub(super) kind: CellType,
     pub(super) element_tags: Vec<u64>,
-    pub(super) node_tags: Vec<u64>,
-    /// Where the row of each element starts.
-    pub(super) offsets: Vec<usize>,
+    pub(super) node_tags: TagList,
     pub(super) groups: RawGroups,
-    pub(super) number: BlockNumber,
+    pub(super) place: BlockPlace,
 }
 
 /// How a block's elements are attached to groups.
@@ -42,29 +42,32 @@ pub(super) enum RawGroups {
     },
 }
 
+/// Where a block's elements stand, for messages.
+#[derive(Debug)]
+pub(super) struct BlockPlace {
+    number: BlockNumber,
+    rows: RowPlaces,
+}
+
 /// How messages count the elements of a block.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum BlockNumber {
+enum BlockNumber {
     /// Version 4: within the block with this number, from 1.
     InFile(u64),
     /// Version 2 has no blocks: from the number, from 1, of this block's first element.
     FirstElement(u64),
 }
 
-impl RawBlock {
-    fn new(kind: CellType, groups: RawGroups, number: BlockNumber) -> RawBlock {
-        RawBlock {
-            kind,
-            element_tags: Vec::new(),
-            node_tags: Vec::new(),
-            offsets: Vec::new(),
-            groups,
-            number,
-        }
-    }
-
-    /// Adds to a fault which of the block's elements it is about; `cell` counts from 0.
-    pub(super) fn place(&self, fault: Fault, cell: usize) -> Fault {
+impl BlockPlace {
+    /// A fault in one of the block's elements; `cell` counts from 0.
+    pub(super) fn fault(
+        &self,
+        cell: usize,
+        bytes: &[u8],
+        problem: String,
+        expected: &str,
+    ) -> Fault {
+        let fault = Fault::new(self.rows.offset(cell, bytes), problem, expected);
         let cell = cell as u64;
         let fault = match self.number {
             BlockNumber::InFile(block) => fault
@@ -73,6 +76,26 @@ impl RawBlock {
             BlockNumber::FirstElement(first) => fault.inside(format!("element {}", first + cell)),
         };
         fault.inside("$Elements")
+    }
+}
+
+impl RawBlock {
+    fn new(kind: CellType, groups: RawGroups, number: BlockNumber) -> RawBlock {
+        RawBlock {
+            kind,
+            element_tags: Vec::new(),
+            node_tags: TagList::default(),
+            groups,
+            place: BlockPlace {
+                number,
+                rows: RowPlaces::default(),
+            },
+        }
+    }
+
+    fn add_run(&mut self, offset: usize, layout: Layout) {
+        let first_row = self.element_tags.len();
+        self.place.rows.add_run(first_row, offset, layout);
     }
 }
 
@@ -88,47 +111,41 @@ fn cell_type(id: i32, offset: usize) -> Result<CellType, Fault> {
     })
 }
 
-/// The whole section of version 2.2 as text, up to and including `$EndElements`.
-pub(super) fn read_v22_text(
-    cursor: &mut Cursor<'_>,
-    remarks: &mut Remarks,
-) -> Result<ElementSection, Fault> {
-    let mut source = Text::new(cursor);
-    let total = source.size("the number of elements")?;
-    let row = Record {
-        ints: 4,
-        ..Record::default()
-    };
-    source.room_for(total, "the number of elements", row)?;
-    let mut section = ElementSection::default();
-    for number in 1..=total {
-        read_row(cursor, ("element", number, total), |cursor| {
-            read_v22_row(&mut Text::new(cursor), number, &mut section)
-        })?;
-    }
-    let after = format!("the declared {total} elements");
-    end_section(cursor, "Elements", &after, remarks)?;
-    Ok(section)
+/// The blocks of version 2: consecutive rows of one type share a block, as in meshio.
+#[derive(Default)]
+struct V2Blocks {
+    complete: Vec<RawBlock>,
+    open: Option<RawBlock>,
 }
 
-fn read_v22_row(
-    source: &mut impl Source,
-    number: u64,
-    section: &mut ElementSection,
-) -> Result<(), Fault> {
-    let offset = source.next_offset();
-    let element_tag = source.size("the element tag")?;
-    let type_offset = source.next_offset();
-    let kind = cell_type(source.int("the element type")?, type_offset)?;
-    let tag_count = source.size("the number of tags")?;
-    let each = Record {
-        ints: 1,
-        ..Record::default()
-    };
-    source.room_for(tag_count, "the number of tags", each)?;
+impl V2Blocks {
+    /// The block for a row of this type; `number` is the row's, from 1.
+    fn block(&mut self, kind: CellType, number: u64) -> &mut RawBlock {
+        if self.open.as_ref().is_some_and(|open| open.kind != kind) {
+            self.complete.extend(self.open.take());
+        }
+        self.open.get_or_insert_with(|| {
+            let groups = RawGroups::OfEach {
+                physical: PhysicalTags::new(),
+                geometrical: Vec::new(),
+            };
+            RawBlock::new(kind, groups, BlockNumber::FirstElement(number))
+        })
+    }
+
+    fn into_section(mut self) -> ElementSection {
+        self.complete.extend(self.open.take());
+        ElementSection {
+            blocks: self.complete,
+        }
+    }
+}
+
+/// The tags of a row of version 2. The first is the physical group, the second the geometrical entity; partitions,
+/// parents and domains follow, and belong to no group.
+fn read_v2_tags(source: &mut impl Source, count: u64, block: &mut RawBlock) -> Result<(), Fault> {
     let (mut physical_tag, mut geometrical_tag) = (0, 0);
-    for index in 0..tag_count {
-        // Partitions, parents and domains follow; they belong to no group.
+    for index in 0..count {
         match index {
             0 => physical_tag = source.int("the physical tag")?,
             1 => geometrical_tag = source.int("the geometrical tag")?,
@@ -137,20 +154,6 @@ fn read_v22_row(
             }
         }
     }
-    // Consecutive rows of one type share a block, as in meshio.
-    let mut block = match section.blocks.pop() {
-        Some(last) if last.kind == kind => last,
-        last => {
-            section.blocks.extend(last);
-            let groups = RawGroups::OfEach {
-                physical: PhysicalTags::new(),
-                geometrical: Vec::new(),
-            };
-            RawBlock::new(kind, groups, BlockNumber::FirstElement(number))
-        }
-    };
-    block.element_tags.push(element_tag);
-    block.offsets.push(offset);
     if let RawGroups::OfEach {
         physical,
         geometrical,
@@ -159,104 +162,195 @@ fn read_v22_row(
         physical.push(&[physical_tag]);
         geometrical.push(geometrical_tag);
     }
-    read_nodes(source, &mut block)?;
-    section.blocks.push(block);
     Ok(())
 }
 
-fn read_nodes(source: &mut impl Source, block: &mut RawBlock) -> Result<(), Fault> {
+fn read_nodes(source: &mut impl Source, kind: TagKind, block: &mut RawBlock) -> Result<(), Fault> {
     for _ in 0..block.kind.node_count() {
-        block.node_tags.push(source.size("a node tag")?);
+        block.node_tags.push(source.tag(kind, "a node tag")?);
     }
     Ok(())
 }
 
-/// The section of version 4.1 without its last line.
-pub(super) fn read_v41(
+/// The section of version 2 as text, without its last line, and the number of elements it declares.
+pub(super) fn read_v2_text(cursor: &mut Cursor<'_>) -> Result<(ElementSection, u64), Fault> {
+    let mut source = Text::new(cursor);
+    let total = source.size("the number of elements")?;
+    source.room_for(total, "the number of elements", Record::ints(4))?;
+    let mut blocks = V2Blocks::default();
+    for number in 1..=total {
+        read_row(cursor, ("element", number, total), |cursor| {
+            read_v2_text_row(&mut Text::new(cursor), number, &mut blocks)
+        })?;
+    }
+    Ok((blocks.into_section(), total))
+}
+
+fn read_v2_text_row(
+    source: &mut Text<'_, '_>,
+    number: u64,
+    blocks: &mut V2Blocks,
+) -> Result<(), Fault> {
+    let offset = source.next_offset();
+    let element_tag = source.size("the element tag")?;
+    let type_offset = source.next_offset();
+    let kind = cell_type(source.int("the element type")?, type_offset)?;
+    let tag_count = source.size("the number of tags")?;
+    source.room_for(tag_count, "the number of tags", Record::ints(1))?;
+    let block = blocks.block(kind, number);
+    if block.element_tags.is_empty() {
+        let nodes = kind.node_count();
+        block.add_run(offset, Layout::ElementWords { nodes });
+    }
+    block.element_tags.push(element_tag);
+    read_v2_tags(source, tag_count, block)?;
+    read_nodes(source, TagKind::Int, block)
+}
+
+/// The section of version 2 as bytes, without its last line, and the number of elements it declares. The number of
+/// elements is text all the same.
+pub(super) fn read_v2_bytes(
+    cursor: &mut Cursor<'_>,
+    format: Format,
+) -> Result<(ElementSection, u64), Fault> {
+    let total = count_line(cursor, "the number of elements")?;
+    let section = with_source!(format, cursor, source => read_v2_runs(source, total))?;
+    Ok((section, total))
+}
+
+fn read_v2_runs(source: &mut impl Source, total: u64) -> Result<ElementSection, Fault> {
+    // A row has at least its number and a node.
+    source.room_for(total, "the number of elements", Record::ints(2))?;
+    let mut blocks = V2Blocks::default();
+    let mut done = 0;
+    while done < total {
+        let run = read_v2_run_header(source, done, total)
+            .map_err(|fault| fault.in_record("element", done + 1, total))?;
+        let block = blocks.block(run.kind, done + 1);
+        let first = source.next_offset();
+        block.add_run(first, source.layout(run.row()));
+        for number in done + 1..=done + run.rows {
+            read_v2_binary_row(source, run.tags, block)
+                .map_err(|fault| fault.in_record("element", number, total))?;
+        }
+        done += run.rows;
+    }
+    Ok(blocks.into_section())
+}
+
+/// What stands before rows of one type with the same number of tags.
+struct Run {
+    kind: CellType,
+    rows: u64,
+    tags: u64,
+}
+
+impl Run {
+    fn row(&self) -> Record {
+        Record::ints(1 + self.tags + self.kind.node_count() as u64)
+    }
+}
+
+fn read_v2_run_header(source: &mut impl Source, done: u64, total: u64) -> Result<Run, Fault> {
+    let type_offset = source.next_offset();
+    let kind = cell_type(source.int("the element type")?, type_offset)?;
+    let count_offset = source.next_offset();
+    let count = source.int("the number of elements under the header")?;
+    let left = total - done;
+    let rows = match u64::try_from(count) {
+        Ok(rows) if rows > 0 && rows <= left => rows,
+        _ => {
+            let problem = format!("the number of elements under the header is {count}");
+            let expected = format!("1 to {left}, since the section has {total}");
+            return Err(Fault::new(count_offset, problem, expected));
+        }
+    };
+    let tags_offset = source.next_offset();
+    let tags = source.int("the number of tags")?;
+    let tags = u64::try_from(tags).map_err(|_| {
+        let problem = format!("the number of tags is {tags}");
+        Fault::new(tags_offset, problem, "a non-negative whole number")
+    })?;
+    let run = Run { kind, rows, tags };
+    source.room_for(rows, "the number of elements under the header", run.row())?;
+    Ok(run)
+}
+
+fn read_v2_binary_row(
     source: &mut impl Source,
+    tags: u64,
+    block: &mut RawBlock,
+) -> Result<(), Fault> {
+    let element_tag = source.tag(TagKind::Int, "the element tag")?;
+    block.element_tags.push(element_tag);
+    read_v2_tags(source, tags, block)?;
+    read_nodes(source, TagKind::Int, block)
+}
+
+/// The section of version 4 without its last line.
+pub(super) fn read_v4(
+    source: &mut impl Source,
+    version: Version,
     remarks: &mut Remarks,
 ) -> Result<ElementSection, Fault> {
-    let header = source.next_offset();
-    let blocks = source.size("the number of blocks")?;
-    let total = source.size("the number of elements")?;
-    let declared_range = (
-        source.size("the least element tag")?,
-        source.size("the greatest element tag")?,
-    );
-    let block_header = Record {
-        ints: 3,
-        sizes: 1,
-        ..Record::default()
-    };
-    source.room_for(blocks, "the number of blocks", block_header)?;
+    let header = Header::read(source, version, "elements", "element")?;
     let mut section = ElementSection::default();
-    for number in 1..=blocks {
-        let block = read_v41_block(source, number)
-            .map_err(|fault| fault.in_record("block", number, blocks))?;
+    for number in 1..=header.blocks {
+        let block = read_v4_block(source, version, number)
+            .map_err(|fault| fault.in_record("block", number, header.blocks))?;
         section.blocks.push(block);
     }
-    let tags: Vec<u64> = section
-        .blocks
-        .iter()
-        .flat_map(|b| &b.element_tags)
-        .copied()
-        .collect();
-    compare_with_header(
-        &tags,
-        total,
-        declared_range,
-        header,
-        "$Elements",
-        "elements",
-        remarks,
-    );
+    let tags = section.blocks.iter().flat_map(|b| &b.element_tags).copied();
+    header.compare("$Elements", "elements", tags, remarks);
     Ok(section)
 }
 
-fn read_v41_block(source: &mut impl Source, number: u64) -> Result<RawBlock, Fault> {
+fn read_v4_block(
+    source: &mut impl Source,
+    version: Version,
+    number: u64,
+) -> Result<RawBlock, Fault> {
     let header = source.next_offset();
-    let dim = dimension(source.int("the entity dimension")?, header)?;
-    let entity = Entity {
-        dim,
-        tag: source.int("the entity tag")?,
-    };
+    let entity = entity_of_block(source, version)?;
     let type_offset = source.next_offset();
     let kind = cell_type(source.int("the element type")?, type_offset)?;
-    if kind.dim() != dim {
+    if kind.dim() != entity.dim {
         let problem = format!(
-            "the element type is {} ({kind}, dimension {}) on an entity of dimension {dim}",
+            "the element type is {} ({kind}, dimension {}) on an entity of dimension {}",
             kind.gmsh_id(),
-            kind.dim()
+            kind.dim(),
+            entity.dim
         );
         return Err(Fault::new(
             type_offset,
             problem,
-            format!("a type of dimension {dim}"),
+            format!("a type of dimension {}", entity.dim),
         ));
     }
-    let total = source.size("the number of elements in the block")?;
-    let row = Record {
-        sizes: 1 + kind.node_count() as u64,
-        ..Record::default()
+    let what = "the number of elements in the block";
+    let total = source.size(what)?;
+    let tag_kind = match version {
+        Version::V41 => TagKind::Size,
+        _ => TagKind::Int,
     };
-    let count = source.room_for(total, "the number of elements in the block", row)?;
+    let nodes = kind.node_count();
+    let row = Record::tags(tag_kind, 1 + nodes as u64);
+    let count = source.room_for(total, what, row)?;
     let groups = RawGroups::OfEntity {
         entity,
         offset: header,
     };
     let mut block = RawBlock::new(kind, groups, BlockNumber::InFile(number));
-    block.element_tags.reserve(count);
-    block.offsets.reserve(count);
-    block.node_tags.reserve(count * kind.node_count());
-    for number in 1..=total {
-        read_v41_row(source, &mut block)
-            .map_err(|fault| fault.in_record("element", number, total))?;
-    }
+    let first = source.next_offset();
+    block.add_run(first, source.layout(row));
+    block.element_tags.reserve_exact(count);
+    block.node_tags.reserve_exact(count * nodes);
+    source.element_rows(
+        tag_kind,
+        count,
+        nodes,
+        &mut block.element_tags,
+        &mut block.node_tags,
+    )?;
     Ok(block)
-}
-
-fn read_v41_row(source: &mut impl Source, block: &mut RawBlock) -> Result<(), Fault> {
-    block.offsets.push(source.next_offset());
-    block.element_tags.push(source.size("the element tag")?);
-    read_nodes(source, block)
 }

@@ -56,6 +56,10 @@ impl Fault {
         fault
     }
 
+    pub(super) fn offset(&self) -> usize {
+        self.0.offset
+    }
+
     pub(super) fn inside(mut self, place: impl Into<String>) -> Fault {
         self.0.places.push(place.into());
         self
@@ -70,9 +74,9 @@ impl Fault {
         }
     }
 
-    pub(super) fn into_error(self, bytes: &[u8]) -> MshError {
+    pub(super) fn into_error(self, bytes: &[u8], lines: Lines) -> MshError {
         let details = *self.0;
-        let at = position(bytes, details.offset);
+        let at = position(bytes, details.offset, lines);
         let mut places = details.places;
         places.reverse();
         let place = places.join(", ");
@@ -94,12 +98,21 @@ impl Fault {
     }
 }
 
-/// Line and byte of an offset.
-pub(super) fn position(bytes: &[u8], offset: usize) -> Position {
+/// Whether lines mean something in a file.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Lines {
+    #[default]
+    Count,
+    /// The file is binary.
+    DoNot,
+}
+
+/// Line, where lines count, and byte of an offset.
+fn position(bytes: &[u8], offset: usize, lines: Lines) -> Position {
     let before = bytes.get(..offset).unwrap_or(bytes);
-    let line_breaks = before.iter().filter(|&&byte| byte == b'\n').count();
+    let line = || before.iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;
     Position {
-        line: Some(line_breaks as u64 + 1),
+        line: (lines == Lines::Count).then(line),
         byte: offset as u64,
     }
 }

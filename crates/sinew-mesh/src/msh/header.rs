@@ -5,18 +5,56 @@ use super::fault::Fault;
 use super::number;
 use super::remarks::Remarks;
 use super::section::end_section;
+use super::source::{Binary, ByteOrder, SizeWidth};
 
-/// A version and encoding that can be read.
+/// A version and its encoding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Format {
-    /// Version 2.2 as text.
-    V22Text,
-    /// Version 4.1 as text.
-    V41Text,
+pub(super) struct Format {
+    pub(super) version: Version,
+    pub(super) encoding: Encoding,
 }
 
-const ADVICE: &str =
-    "re-save it as version 4.1 ASCII, e.g. with `gmsh in.msh -save -format msh41 -o out.msh`";
+/// A version of the format, as far as versions differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Version {
+    /// `2` and `2.0`: the dimension of physical names may be missing.
+    V20,
+    /// `2.1` and `2.2`.
+    V22,
+    /// `4.0`, and `4` where the data say so.
+    V40,
+    /// `4.1`, and `4` where the data say so.
+    V41,
+}
+
+impl Version {
+    pub(super) fn is_2(self) -> bool {
+        matches!(self, Version::V20 | Version::V22)
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Text,
+    Binary(Binary),
+}
+
+/// Evaluates an expression with the source of numbers that a format has at the cursor.
+macro_rules! with_source {
+    ($format:expr, $cursor:expr, $source:ident => $body:expr) => {
+        match $format.encoding {
+            $crate::msh::header::Encoding::Text => {
+                let $source = &mut $crate::msh::source::Text::new($cursor);
+                $body
+            }
+            $crate::msh::header::Encoding::Binary(binary) => {
+                let $source = &mut $crate::msh::source::Bytes::new($cursor, binary);
+                $body
+            }
+        }
+    };
+}
+pub(super) use with_source;
 
 /// Names the formats that also end in .msh, or are often mistaken for it.
 pub(super) fn refuse_other_formats(bytes: &[u8]) -> Result<(), Fault> {
@@ -41,20 +79,19 @@ pub(super) fn refuse_other_formats(bytes: &[u8]) -> Result<(), Fault> {
     }
 }
 
-/// The rest of the `$MeshFormat` section.
-pub(super) fn read(cursor: &mut Cursor<'_>, remarks: &mut Remarks) -> Result<Format, Fault> {
+/// The rest of the `$MeshFormat` section. `bare_four` is what version `4` stands for in a binary file, where the data
+/// cannot be looked at before they are read.
+pub(super) fn read(
+    cursor: &mut Cursor<'_>,
+    bare_four: Version,
+    remarks: &mut Remarks,
+) -> Result<Format, Fault> {
     let version = cursor.token("the version")?;
     let file_type = cursor.token("the file type")?;
     let data_size = cursor.token("the data size")?;
-    match file_type.text {
-        b"0" => {}
-        b"1" => {
-            return Err(Fault::unsupported(
-                file_type.offset,
-                "binary .msh is not read yet",
-                ADVICE,
-            ));
-        }
+    let is_binary = match file_type.text {
+        b"0" => false,
+        b"1" => true,
         other => {
             let problem = format!("the file type is {}", quoted(other));
             return Err(Fault::new(
@@ -63,10 +100,14 @@ pub(super) fn read(cursor: &mut Cursor<'_>, remarks: &mut Remarks) -> Result<For
                 "0 (text) or 1 (binary)",
             ));
         }
-    }
-    let format = match version.text {
-        b"2.2" => Format::V22Text,
-        b"4.1" => Format::V41Text,
+    };
+    let is_bare_four = version.text == b"4";
+    let version = match version.text {
+        b"2" | b"2.0" => Version::V20,
+        b"2.1" | b"2.2" => Version::V22,
+        b"4" => bare_four,
+        b"4.0" => Version::V40,
+        b"4.1" => Version::V41,
         b"1" | b"1.0" => {
             return Err(Fault::unsupported(
                 version.offset,
@@ -74,28 +115,85 @@ pub(super) fn read(cursor: &mut Cursor<'_>, remarks: &mut Remarks) -> Result<For
                 "re-save with gmsh",
             ));
         }
-        b"2" | b"2.0" | b"2.1" | b"4" | b"4.0" => {
-            let problem = format!("version {} is not read yet", quoted(version.text));
-            return Err(Fault::unsupported(version.offset, problem, ADVICE));
-        }
         other => {
             let problem = format!("the version is {}", quoted(other));
             return Err(Fault::new(
                 version.offset,
                 problem,
-                "a version of the format: 2.2 or 4.1",
+                "a version of the format: 2, 2.0, 2.1, 2.2, 4, 4.0 or 4.1",
             ));
         }
     };
-    if !matches!(number::unsigned(data_size, "the data size")?, 4 | 8) {
-        remarks.at(
-            data_size.offset,
-            format!(
-                "$MeshFormat: the data size is {}; it is 8 or 4 in other files",
-                quoted(data_size.text)
-            ),
-        );
-    }
+    let size = number::unsigned(data_size, "the data size")?;
+    let format = if is_binary {
+        remarks.lines_mean_nothing();
+        remarks.version_is_open = is_bare_four;
+        let size_width = match size {
+            8 => SizeWidth::Eight,
+            4 if version == Version::V41 => SizeWidth::Four,
+            _ => {
+                let problem = format!("the data size is {size}");
+                let expected = match version {
+                    Version::V41 => "4 or 8",
+                    _ => "8",
+                };
+                return Err(Fault::new(data_size.offset, problem, expected));
+            }
+        };
+        cursor.line_end("the data size")?;
+        let order = byte_order(cursor)?;
+        let encoding = Encoding::Binary(Binary { order, size_width });
+        Format { version, encoding }
+    } else {
+        if !matches!(size, 4 | 8) {
+            remarks.at(
+                data_size.offset,
+                format!(
+                    "$MeshFormat: the data size is {}; it is 8 or 4 in other files",
+                    quoted(data_size.text)
+                ),
+            );
+        }
+        let version = match is_bare_four {
+            true => version_of_text(cursor),
+            false => version,
+        };
+        Format {
+            version,
+            encoding: Encoding::Text,
+        }
+    };
     end_section(cursor, "MeshFormat", "the data size", remarks)?;
     Ok(format)
+}
+
+/// A 1 as the file's ints are stored.
+fn byte_order(cursor: &mut Cursor<'_>) -> Result<ByteOrder, Fault> {
+    let offset = cursor.offset();
+    let expected = "the number 1 in 4 bytes, of either byte order";
+    match cursor.take(4) {
+        Some([1, 0, 0, 0]) => Ok(ByteOrder::Little),
+        Some([0, 0, 0, 1]) => Ok(ByteOrder::Big),
+        Some(bytes) => {
+            let problem = format!("the bytes that tell the byte order are {bytes:?}");
+            Err(Fault::new(offset, problem, expected))
+        }
+        None => Err(Fault::shortage(offset, "the file ends here", expected)),
+    }
+}
+
+/// What a bare `4` stands for: version 4.1 if the first line of `$Nodes` has four numbers, else 4.0.
+fn version_of_text(cursor: &Cursor<'_>) -> Version {
+    let mut ahead = cursor.clone();
+    while !ahead.is_at_end() {
+        if ahead.line() == b"$Nodes" {
+            ahead.skip_blanks();
+            let words = ahead.line().split(u8::is_ascii_whitespace);
+            return match words.filter(|word| !word.is_empty()).count() {
+                4 => Version::V41,
+                _ => Version::V40,
+            };
+        }
+    }
+    Version::V40
 }

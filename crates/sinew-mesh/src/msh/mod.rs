@@ -1,4 +1,4 @@
-//! gmsh's .msh format: reading versions 2.2 and 4.1, writing 4.1, all as text.
+//! gmsh's .msh format: reading versions 2.0 to 4.1, writing 2.2 and 4.1, as text and as bytes.
 //!
 //! The reader walks over the bytes once. [`cursor`] knows offsets, [`source`] turns bytes into numbers, `section` finds
 //! sections, and one module for each section decodes its rows per format version into raw tables that still hold the
@@ -32,7 +32,9 @@
 )]
 
 mod assemble;
+mod assemble_data;
 mod cursor;
+mod data;
 mod elements;
 mod entities;
 mod error;
@@ -41,19 +43,25 @@ mod file;
 mod header;
 mod nodes;
 mod number;
+mod periodic;
 mod physical_names;
+mod places;
 mod remarks;
 mod rows_of_lines;
 mod section;
 mod source;
+mod tag_index;
+mod tag_list;
 mod write;
 
 pub use error::MshError;
 pub use file::{MshFileError, read_msh_file};
-pub use write::{WriteMshError, write_msh41_ascii};
+pub use write::{MshEncoding, MshVersion, WriteMshError, write_msh, write_msh41_ascii};
 
 use crate::mesh::Mesh;
 use cursor::Cursor;
+use fault::Fault;
+use header::Version;
 use remarks::Remarks;
 
 /// Reads the bytes of a .msh file: version 2.2 or 4.1, as text.
@@ -73,17 +81,42 @@ use remarks::Remarks;
 /// );
 /// ```
 pub fn read_msh(bytes: &[u8]) -> Result<Mesh, MshError> {
-    let mut remarks = Remarks::default();
-    read_sections(bytes, &mut remarks)
-        .and_then(|contents| assemble::mesh(contents, &mut remarks))
-        .map(|mesh| Mesh {
-            warnings: remarks.into_warnings(bytes),
-            ..mesh
-        })
-        .map_err(|fault| fault.into_error(bytes))
+    let mut reading = Reading::of(bytes, Version::V40);
+    if let Err(fault) = &reading.outcome
+        && reading.remarks.version_is_open
+    {
+        // A bare 4 nearly always is 4.0. If it cannot be, it may be 4.1; what got further tells what is wrong.
+        let as_41 = Reading::of(bytes, Version::V41);
+        let is_further = |other: &Fault| other.offset() > fault.offset();
+        if as_41.outcome.as_ref().err().is_none_or(is_further) {
+            reading = as_41;
+        }
+    }
+    reading.finish(bytes)
 }
 
-fn read_sections(bytes: &[u8], remarks: &mut Remarks) -> Result<section::Contents, fault::Fault> {
-    header::refuse_other_formats(bytes)?;
-    section::read_all(&mut Cursor::new(bytes), remarks)
+struct Reading {
+    outcome: Result<Mesh, Fault>,
+    remarks: Remarks,
+}
+
+impl Reading {
+    fn of(bytes: &[u8], bare_four: Version) -> Reading {
+        let mut remarks = Remarks::default();
+        let outcome = header::refuse_other_formats(bytes)
+            .and_then(|()| section::read_all(&mut Cursor::new(bytes), bare_four, &mut remarks))
+            .and_then(|contents| assemble::mesh(contents, bytes, &mut remarks));
+        Reading { outcome, remarks }
+    }
+
+    fn finish(self, bytes: &[u8]) -> Result<Mesh, MshError> {
+        let lines = self.remarks.lines();
+        match self.outcome {
+            Ok(mesh) => Ok(Mesh {
+                warnings: self.remarks.into_warnings(bytes),
+                ..mesh
+            }),
+            Err(fault) => Err(fault.into_error(bytes, lines)),
+        }
+    }
 }

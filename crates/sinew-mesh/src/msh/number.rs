@@ -48,6 +48,14 @@ pub(super) fn double(token: Token<'_>, what: &str) -> Result<f64, Fault> {
         })
 }
 
+/// The number inside `np.float64(...)` or its like.
+pub(super) fn inside_repr(text: &[u8]) -> Option<&[u8]> {
+    let call = text.strip_prefix(b"np.")?.strip_suffix(b")")?;
+    ["float64(", "float32(", "int64(", "int32("]
+        .iter()
+        .find_map(|name| call.strip_prefix(name.as_bytes()))
+}
+
 fn wrong(token: Token<'_>, what: &str, expected: &str) -> Fault {
     let problem = format!("{what} is {}", quoted(token.text));
     if token.text.starts_with(b"$") {

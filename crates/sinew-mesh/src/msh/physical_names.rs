@@ -4,41 +4,55 @@ use std::collections::BTreeMap;
 
 use super::cursor::{Cursor, LONGEST, Token, quoted};
 use super::fault::Fault;
+use super::header::Version;
 use super::number;
 use super::remarks::Remarks;
 use super::source::{Record, Source, Text};
 
+/// Names by dimension and tag.
 pub(super) type PhysicalNames = BTreeMap<(u8, i32), String>;
+
+/// Names by tag alone: version 2.0 has no column for the dimension.
+pub(super) type NamesWithoutDim = BTreeMap<i32, String>;
+
+/// What names are kept under.
+pub(super) struct Names<'n> {
+    pub(super) version: Version,
+    pub(super) names: &'n mut PhysicalNames,
+    pub(super) without_dim: &'n mut NamesWithoutDim,
+}
 
 pub(super) fn read(
     cursor: &mut Cursor<'_>,
-    names: &mut PhysicalNames,
+    mut names: Names<'_>,
     remarks: &mut Remarks,
 ) -> Result<(), Fault> {
     let mut source = Text::new(cursor);
     let count = source.size("the number of names")?;
-    let least = Record {
-        ints: 2,
-        sizes: 1,
-        ..Record::default()
-    };
-    source.room_for(count, "the number of names", least)?;
+    source.room_for(count, "the number of names", Record::ints(2))?;
     for number in 1..=count {
-        read_row(cursor, names, remarks).map_err(|fault| fault.in_record("name", number, count))?;
+        read_row(cursor, &mut names, remarks)
+            .map_err(|fault| fault.in_record("name", number, count))?;
     }
     Ok(())
 }
 
 fn read_row(
     cursor: &mut Cursor<'_>,
-    names: &mut PhysicalNames,
+    names: &mut Names<'_>,
     remarks: &mut Remarks,
 ) -> Result<(), Fault> {
-    let dim_token = cursor.token("the dimension")?;
-    let dim = dimension(
-        number::signed(dim_token, "the dimension")?,
-        dim_token.offset,
-    )?;
+    cursor.skip_blanks();
+    let row_offset = cursor.offset();
+    let dim = if names.version == Version::V20 && is_tag_and_name(cursor) {
+        None
+    } else {
+        let token = cursor.token("the dimension")?;
+        Some(dimension(
+            number::signed(token, "the dimension")?,
+            token.offset,
+        )?)
+    };
     let tag_token = cursor.token("the tag")?;
     let tag = number::signed(tag_token, "the tag")?;
     if tag < 0 {
@@ -49,8 +63,10 @@ fn read_row(
         ));
     }
     if tag == 0 {
-        let message = format!("$PhysicalNames: tag 0 of dimension {dim} stands for no group");
-        remarks.at(tag_token.offset, message);
+        remarks.at(
+            tag_token.offset,
+            "$PhysicalNames: tag 0 stands for no group",
+        );
     }
     let Token { text, offset } = quoted_text(cursor)?;
     let name = match std::str::from_utf8(text) {
@@ -64,15 +80,28 @@ fn read_row(
             String::from_utf8_lossy(text).into_owned()
         }
     };
-    if let Some(earlier) = names.insert((dim, tag), name.clone()) {
+    let earlier = match dim {
+        Some(dim) => names.names.insert((dim, tag), name.clone()),
+        None => names.without_dim.insert(tag, name.clone()),
+    };
+    if let Some(earlier) = earlier.filter(|earlier| *earlier != name) {
+        let of_dim = dim.map_or_else(String::new, |dim| format!(" of dimension {dim}"));
         let message = format!(
-            "$PhysicalNames: group {tag} of dimension {dim} is named again: {} after {}; the later name counts",
+            "$PhysicalNames: group {tag}{of_dim} is named again: {} after {}; the later name counts",
             quoted(name.as_bytes()),
             quoted(earlier.as_bytes()),
         );
-        remarks.at(dim_token.offset, message);
+        remarks.at(row_offset, message);
     }
     Ok(())
+}
+
+/// Whether a name follows the first number of this row, rather than a second number.
+fn is_tag_and_name(cursor: &Cursor<'_>) -> bool {
+    let mut ahead = cursor.clone();
+    let is_number = ahead.token("the tag").is_ok();
+    ahead.skip_blanks();
+    is_number && ahead.rest().starts_with(b"\"")
 }
 
 /// What stands between the first and the last quote of this line.

@@ -1,5 +1,6 @@
 //! Collects warnings while a file is read.
 
+use super::fault::Lines;
 use crate::warning::{Position, Warning};
 
 /// More warnings than this help nobody.
@@ -9,9 +10,22 @@ const KEPT: usize = 100;
 pub(super) struct Remarks {
     kept: Vec<(Option<usize>, String)>,
     dropped: usize,
+    lines: Lines,
+    /// The file's version is a bare 4, whose meaning had to be assumed.
+    pub(super) version_is_open: bool,
 }
 
 impl Remarks {
+    /// From now on places are told by bytes only, because the file is binary.
+    pub(super) fn lines_mean_nothing(&mut self) {
+        self.lines = Lines::DoNot;
+    }
+
+    /// Whether lines mean something, as far as the file has been read.
+    pub(super) fn lines(&self) -> Lines {
+        self.lines
+    }
+
     /// A remark about one place of the file.
     pub(super) fn at(&mut self, offset: usize, message: impl Into<String>) {
         self.add(Some(offset), message.into());
@@ -33,7 +47,10 @@ impl Remarks {
     pub(super) fn into_warnings(self, bytes: &[u8]) -> Vec<Warning> {
         let mut offsets: Vec<usize> = self.kept.iter().filter_map(|(offset, _)| *offset).collect();
         offsets.sort_unstable();
-        let positions = positions(bytes, &offsets);
+        let mut positions = positions(bytes, &offsets);
+        if self.lines == Lines::DoNot {
+            positions.iter_mut().for_each(|at| at.line = None);
+        }
         let place = |offset: usize| {
             offsets
                 .binary_search(&offset)

@@ -17,7 +17,7 @@ pub(super) fn read_row<'a>(
     let offset = cursor.offset();
     row(cursor)
         .and_then(|()| {
-            let crosses_lines = cursor.since(offset).contains(&b'\n');
+            let crosses_lines = cursor.has_passed_line_break_since(offset);
             if !crosses_lines || (begins_line && cursor.is_at_line_end()) {
                 return Ok(());
             }

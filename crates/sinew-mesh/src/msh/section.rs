@@ -1,30 +1,43 @@
 //! Finds the sections of a file and hands each to its decoder.
 
 use super::cursor::{Cursor, LONGEST, quoted};
+use super::data::{self, Holder, RawData};
 use super::elements::{self, ElementSection};
 use super::entities::{self, Entities};
 use super::fault::Fault;
-use super::header::{self, Format};
+use super::header::{self, Encoding, Format, Version, with_source};
 use super::nodes::{self, RawNodes};
-use super::physical_names::{self, PhysicalNames};
+use super::number;
+use super::periodic;
+use super::physical_names::{self, Names, NamesWithoutDim, PhysicalNames};
 use super::remarks::Remarks;
-use super::source::Text;
+use crate::mesh::PeriodicLink;
 
 /// Everything decoded, with the tags of the file.
 #[derive(Default)]
 pub(super) struct Contents {
     pub(super) physical_names: PhysicalNames,
+    pub(super) names_without_dim: NamesWithoutDim,
     /// `None` if the file has no such section.
     pub(super) entities: Option<Entities>,
+    /// The entities of a partitioned mesh, if it is one.
+    pub(super) parts: Option<Entities>,
     pub(super) nodes: RawNodes,
     pub(super) has_nodes: bool,
     pub(super) elements: Vec<ElementSection>,
+    pub(super) periodic: Vec<PeriodicLink>,
+    pub(super) data: Vec<RawData>,
     pub(super) skipped: Vec<String>,
     /// Where the file ends.
     pub(super) length: usize,
 }
 
-pub(super) fn read_all(cursor: &mut Cursor<'_>, remarks: &mut Remarks) -> Result<Contents, Fault> {
+/// Decodes every section. `bare_four` is what version `4` stands for in a binary file.
+pub(super) fn read_all(
+    cursor: &mut Cursor<'_>,
+    bare_four: Version,
+    remarks: &mut Remarks,
+) -> Result<Contents, Fault> {
     let mut contents = Contents::default();
     let mut format = None;
     loop {
@@ -35,8 +48,16 @@ pub(super) fn read_all(cursor: &mut Cursor<'_>, remarks: &mut Remarks) -> Result
             break;
         }
         let name = section_name(cursor)?;
-        read_section(cursor, offset, &name, &mut format, &mut contents, remarks)
-            .map_err(|fault| fault.inside(format!("${name}")))?;
+        let read = match (name.as_str(), format) {
+            ("MeshFormat", None) => {
+                header::read(cursor, bare_four, remarks).map(|found| format = Some(found))
+            }
+            (name, None) => skip_before_format(cursor, offset, name, &mut contents, remarks),
+            (name, Some(format)) => {
+                read_section(cursor, offset, name, format, &mut contents, remarks)
+            }
+        };
+        read.map_err(|fault| fault.inside(format!("${name}")))?;
     }
     if format.is_none() {
         return Err(Fault::new(
@@ -71,77 +92,184 @@ fn section_name(cursor: &mut Cursor<'_>) -> Result<String, Fault> {
     }
 }
 
+const MSH_1: [&str; 3] = ["NOD", "ELM", "NOE"];
+
+fn is_known(name: &str) -> bool {
+    const KNOWN: [&str; 12] = [
+        "PhysicalNames",
+        "Entities",
+        "PartitionedEntities",
+        "Nodes",
+        "ParametricNodes",
+        "Elements",
+        "Periodic",
+        "GhostElements",
+        "NodeData",
+        "ElementData",
+        "ElementNodeData",
+        "InterpolationScheme",
+    ];
+    KNOWN.contains(&name)
+}
+
+fn msh_1(offset: usize) -> Fault {
+    Fault::unsupported(offset, "MSH 1 is not supported", "re-save with gmsh")
+}
+
+/// Comments and the like may stand before `$MeshFormat`, but nothing that depends on the version.
+fn skip_before_format(
+    cursor: &mut Cursor<'_>,
+    offset: usize,
+    name: &str,
+    contents: &mut Contents,
+    remarks: &mut Remarks,
+) -> Result<(), Fault> {
+    if MSH_1.contains(&name) {
+        return Err(msh_1(offset));
+    }
+    if is_known(name) {
+        return Err(Fault::new(
+            offset,
+            "the section comes before $MeshFormat",
+            "$MeshFormat first",
+        ));
+    }
+    skip(cursor, offset, name, contents, remarks)
+}
+
 fn read_section(
     cursor: &mut Cursor<'_>,
     offset: usize,
     name: &str,
-    format: &mut Option<Format>,
+    format: Format,
     contents: &mut Contents,
     remarks: &mut Remarks,
 ) -> Result<(), Fault> {
-    match (name, *format) {
-        ("MeshFormat", None) => *format = Some(header::read(cursor, remarks)?),
-        ("MeshFormat", Some(_)) => {
-            return Err(Fault::new(
-                offset,
-                "the section occurs twice",
-                "one $MeshFormat",
-            ));
-        }
-        ("NOD" | "ELM" | "NOE", _) => {
-            return Err(Fault::unsupported(
-                offset,
-                "MSH 1 is not supported",
-                "re-save with gmsh",
-            ));
-        }
-        ("PhysicalNames" | "Entities" | "Nodes" | "Elements", None) => {
-            return Err(Fault::new(
-                offset,
-                "the section comes before $MeshFormat",
-                "$MeshFormat first",
-            ));
-        }
-        ("PhysicalNames", _) => {
-            physical_names::read(cursor, &mut contents.physical_names, remarks)?;
-            end_section(cursor, name, "the names", remarks)?;
-        }
-        ("Entities", Some(Format::V41Text)) => {
-            let entities = contents.entities.get_or_insert_default();
-            entities::read_v41(&mut Text::new(cursor), entities, remarks)?;
-            end_section(cursor, name, "the entities", remarks)?;
-        }
-        ("Nodes", Some(format)) => {
-            contents.has_nodes = true;
-            match format {
-                Format::V22Text => nodes::read_v22_text(cursor, &mut contents.nodes, remarks)?,
-                Format::V41Text => {
-                    nodes::read_v41(&mut Text::new(cursor), &mut contents.nodes, remarks)?;
-                    end_section(cursor, name, "the nodes of all blocks", remarks)?;
-                }
+    let version = format.version;
+    let after = match name {
+        "MeshFormat" => {
+            // gmsh appends data with a header of their own.
+            if header::read(cursor, version, remarks)? == format {
+                return Ok(());
             }
+            let problem = "the section occurs again, with another version or encoding";
+            return Err(Fault::new(offset, problem, "the same as before"));
         }
-        ("Elements", Some(format)) => {
-            let section = match format {
-                Format::V22Text => elements::read_v22_text(cursor, remarks)?,
-                Format::V41Text => {
-                    let section = elements::read_v41(&mut Text::new(cursor), remarks)?;
-                    end_section(cursor, name, "the elements of all blocks", remarks)?;
-                    section
-                }
+        "PhysicalNames" => {
+            let names = Names {
+                version,
+                names: &mut contents.physical_names,
+                without_dim: &mut contents.names_without_dim,
             };
+            physical_names::read(cursor, names, remarks)?;
+            "the names".to_owned()
+        }
+        "Entities" if !version.is_2() => {
+            let entities = contents.entities.get_or_insert_default();
+            with_source!(format, cursor, source => {
+                entities::read(source, version, entities, remarks)
+            })?;
+            "the entities".to_owned()
+        }
+        "PartitionedEntities" if !version.is_2() => {
+            let entities = contents.parts.get_or_insert_default();
+            with_source!(format, cursor, source => {
+                entities::read_partitioned(source, version, entities)
+            })?;
+            "the entities".to_owned()
+        }
+        "Nodes" => {
+            contents.has_nodes = true;
+            read_nodes(cursor, format, &mut contents.nodes, remarks)?
+        }
+        "ParametricNodes" if version.is_2() => {
+            contents.has_nodes = true;
+            let total = count_line(cursor, "the number of nodes")?;
+            with_source!(format, cursor, source => {
+                nodes::read_v2_parametric(source, total, &mut contents.nodes)
+            })?;
+            format!("the declared {total} nodes")
+        }
+        "Elements" => {
+            let (section, after) = read_elements(cursor, format, remarks)?;
             contents.elements.push(section);
+            after
         }
-        ("ParametricNodes" | "PartitionedEntities", Some(_)) => {
-            return Err(Fault::unsupported(
+        "Periodic" => {
+            contents.periodic.extend(periodic::read(cursor, format)?);
+            "the links".to_owned()
+        }
+        "NodeData" | "ElementData" | "ElementNodeData" => {
+            let holder = match name {
+                "NodeData" => Holder::Nodes,
+                "ElementData" => Holder::Elements,
+                _ => Holder::ElementNodes,
+            };
+            let data = data::read(cursor, format, holder, remarks)?;
+            contents.data.push(data);
+            "the rows".to_owned()
+        }
+        "GhostElements" if !version.is_2() => {
+            let count =
+                with_source!(format, cursor, source => periodic::read_ghosts(source, version))?;
+            remarks.at(
                 offset,
-                "this section is not read yet, and the mesh cannot be understood without it",
-                "re-save the mesh without partitions and without parametric coordinates",
-            ));
+                format!("$GhostElements: {count} elements of other partitions were read over"),
+            );
+            contents.skipped.push(name.to_owned());
+            "the ghost elements".to_owned()
         }
-        _ => skip(cursor, offset, name, contents, remarks)?,
-    }
-    Ok(())
+        _ => return skip(cursor, offset, name, contents, remarks),
+    };
+    end_section(cursor, name, &after, remarks)
+}
+
+fn read_nodes(
+    cursor: &mut Cursor<'_>,
+    format: Format,
+    nodes: &mut RawNodes,
+    remarks: &mut Remarks,
+) -> Result<String, Fault> {
+    let total = match (format.version, format.encoding) {
+        (Version::V20 | Version::V22, Encoding::Text) => nodes::read_v2_text(cursor, nodes)?,
+        (Version::V20 | Version::V22, Encoding::Binary(_)) => {
+            nodes::read_v2_bytes(cursor, format, nodes)?
+        }
+        (version, _) => {
+            with_source!(format, cursor, source => {
+                nodes::read_v4(source, version, nodes, remarks)
+            })?;
+            return Ok("the nodes of all blocks".to_owned());
+        }
+    };
+    Ok(format!("the declared {total} nodes"))
+}
+
+fn read_elements(
+    cursor: &mut Cursor<'_>,
+    format: Format,
+    remarks: &mut Remarks,
+) -> Result<(ElementSection, String), Fault> {
+    let (section, total) = match (format.version, format.encoding) {
+        (Version::V20 | Version::V22, Encoding::Text) => elements::read_v2_text(cursor)?,
+        (Version::V20 | Version::V22, Encoding::Binary(_)) => {
+            elements::read_v2_bytes(cursor, format)?
+        }
+        (version, _) => {
+            let section = with_source!(format, cursor, source => {
+                elements::read_v4(source, version, remarks)
+            })?;
+            return Ok((section, "the elements of all blocks".to_owned()));
+        }
+    };
+    Ok((section, format!("the declared {total} elements")))
+}
+
+/// A count that stands on a line of its own, as text even in binary files.
+pub(super) fn count_line(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, Fault> {
+    let count = number::unsigned(cursor.token(what)?, what)?;
+    cursor.line_end(what)?;
+    Ok(count)
 }
 
 fn skip(

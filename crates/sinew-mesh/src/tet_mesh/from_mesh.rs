@@ -208,7 +208,7 @@ fn merged_tets(mesh: &Mesh, notes: &mut Vec<String>) -> Result<MergedTets, TetMe
         return Err(TetMeshError::TooManyTetrahedra { count });
     }
 
-    let copies = duplicate_cells(&connectivity, 4);
+    let copies = duplicate_cells(connectivity.chunks_exact(4));
     for &(first, copy) in &copies {
         let copied = std::mem::take(&mut groups[copy]);
         groups[first].extend(copied);

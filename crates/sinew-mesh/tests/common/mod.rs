@@ -4,6 +4,8 @@
 
 use sinew_mesh::{Mesh, MshError, read_msh};
 
+pub(crate) mod encode;
+
 /// Two tetrahedra in two regions that share the face 20 30 40; a surface group on one face; sparse, unordered tags; node
 /// 7 is an orphan.
 pub(crate) const TWO_REGIONS_41: &str = "\

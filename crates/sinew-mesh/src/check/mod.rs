@@ -1,0 +1,506 @@
+//! Is a mesh fit for simulation: what is wrong with its cells, nodes and groups, and where.
+
+mod fixes;
+mod shape;
+
+use std::collections::{BTreeMap, HashSet};
+use std::fmt;
+
+pub(crate) use shape::{TetShape, tet_corners};
+
+use crate::mesh::{CellBlock, CellIndex, Mesh};
+use crate::tet_mesh::OUTWARD_FACES;
+
+/// How many examples of each finding are kept.
+const EXAMPLES: usize = 10;
+
+/// From where on a tetrahedron is worth a mention.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CheckLimits {
+    /// A tetrahedron is flat if its volume is at most this share of the cube of its longest edge.
+    pub flat_volume: f64,
+    /// A tetrahedron is a sliver if two of its faces meet at less than this angle, in degrees,
+    pub sliver_dihedral: f64,
+    /// or if three times its inradius is less than this share of its circumradius (1 for a regular tetrahedron).
+    pub sliver_radius_ratio: f64,
+    /// A mesh wider than this, in its own unit, is probably not in metres.
+    pub widest_in_metres: f64,
+}
+
+impl Default for CheckLimits {
+    fn default() -> CheckLimits {
+        CheckLimits {
+            flat_volume: 1e-9,
+            sliver_dihedral: 5.0,
+            sliver_radius_ratio: 0.02,
+            widest_in_metres: 2.5,
+        }
+    }
+}
+
+/// How often something occurs, and the tags of the first ten places.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Finding {
+    /// How often.
+    pub total: usize,
+    /// The tags of the first ten elements, or nodes.
+    pub first_tags: Vec<u64>,
+}
+
+impl Finding {
+    fn add(&mut self, tag: impl FnOnce() -> u64) {
+        self.total += 1;
+        if self.first_tags.len() < EXAMPLES {
+            self.first_tags.push(tag());
+        }
+    }
+
+    /// Whether it does not occur.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.total == 0
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.total)?;
+        if let [first, rest @ ..] = self.first_tags.as_slice() {
+            write!(f, " (tags {first}")?;
+            for tag in rest {
+                write!(f, ", {tag}")?;
+            }
+            let more = if self.total > self.first_tags.len() {
+                ", ..."
+            } else {
+                ""
+            };
+            write!(f, "{more})")?;
+        }
+        Ok(())
+    }
+}
+
+/// A number and the element that has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extreme {
+    /// The number.
+    pub value: f64,
+    /// Tag of the element.
+    pub element_tag: u64,
+}
+
+/// Lengths of the straight edges of the tetrahedra.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeLengths {
+    /// The shortest.
+    pub shortest: f64,
+    /// The longest.
+    pub longest: f64,
+    /// The mean over all edges of all tetrahedra.
+    pub mean: f64,
+}
+
+/// Cells of three dimensions that hang together by nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// How many cells.
+    pub cells: usize,
+    /// Tag of the first.
+    pub first_tag: u64,
+}
+
+/// A face of more than two tetrahedra.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SharedFace {
+    /// The tags of its corners.
+    pub node_tags: [u64; 3],
+    /// The tags of the tetrahedra.
+    pub element_tags: Vec<u64>,
+}
+
+/// What [`Mesh::check`] finds.
+#[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct MeshCheck {
+    /// Number of tetrahedra, of whatever order; the shape is that of their corners.
+    pub tets: usize,
+    /// Tetrahedra numbered the wrong way round. [`Mesh::orient`] turns them.
+    pub inverted: Finding,
+    /// Tetrahedra without volume.
+    pub flat: Finding,
+    /// Tetrahedra that are not flat, but nearly.
+    pub slivers: Finding,
+    /// Cells that name a node twice.
+    pub repeated_nodes: Finding,
+    /// Cells with the nodes of an earlier one. [`Mesh::merge_duplicates`] merges them.
+    pub duplicates: Finding,
+    /// Nodes that no cell has. [`Mesh::drop_orphans`] drops them.
+    pub orphans: Finding,
+    /// Nodes of lines or surfaces that no volume cell has, in a mesh with volume cells: they have no mass.
+    pub outside_volume: Finding,
+    /// Cells of three dimensions that hang together, largest part first; at most ten.
+    pub parts: Vec<Part>,
+    /// How many such parts there are.
+    pub part_count: usize,
+    /// Faces of more than two different tetrahedra: how many.
+    pub non_manifold_faces: usize,
+    /// The first ten of these.
+    pub first_non_manifold: Vec<SharedFace>,
+    /// Named groups without cells: dimension, tag, name.
+    pub empty_groups: Vec<(u8, i32, String)>,
+    /// The edges of the tetrahedra.
+    pub edges: Option<EdgeLengths>,
+    /// The least angle between two faces of a tetrahedron, in degrees.
+    pub least_dihedral: Option<Extreme>,
+    /// The least ratio of three inradii to the circumradius; 1 for a regular tetrahedron.
+    pub least_radius_ratio: Option<Extreme>,
+    /// A guess about the unit, when the mesh seems too large for metres.
+    pub unit: Option<String>,
+}
+
+impl Mesh {
+    /// Looks for what makes a simulation fail or mislead. Nothing is changed.
+    ///
+    /// Nodes at the same place are no finding: cuts and contact surfaces are made of them.
+    ///
+    /// ```
+    /// use sinew_mesh::{TetMesh, structured};
+    ///
+    /// let mut mesh = structured::cube(2, 0.1, structured::Split::Kuhn)?.to_mesh();
+    /// assert!(mesh.check().is_clean());
+    /// let tets = mesh.cells.last_mut().ok_or("it has tetrahedra")?;
+    /// tets.connectivity.swap(0, 1);
+    /// assert_eq!(mesh.check().inverted.total, 1);
+    /// assert_eq!(mesh.orient(), 1);
+    /// assert!(mesh.check().is_clean());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn check(&self) -> MeshCheck {
+        self.check_against(&CheckLimits::default())
+    }
+
+    /// As [`Mesh::check`], with other limits.
+    #[must_use]
+    pub fn check_against(&self, limits: &CheckLimits) -> MeshCheck {
+        let mut check = MeshCheck::default();
+        check_shapes(self, limits, &mut check);
+        check_nodes_of_cells(self, &mut check);
+        for dim in 0..=3 {
+            for duplicates in self.duplicate_cells(dim) {
+                for (_, copy) in duplicates.pairs {
+                    check.duplicates.add(|| self.element_tag(copy));
+                }
+            }
+        }
+        check_parts(self, &mut check);
+        check_faces(self, &mut check);
+        check.empty_groups = empty_groups(self);
+        check.unit = unit_guess(self, limits);
+        check
+    }
+}
+
+impl MeshCheck {
+    /// Whether nothing was found that needs attention. Several parts alone are none.
+    #[must_use]
+    pub fn is_clean(&self) -> bool {
+        self.problems().is_empty()
+    }
+
+    /// What needs attention, a sentence each.
+    #[must_use]
+    pub fn problems(&self) -> Vec<String> {
+        let mut problems = Vec::new();
+        let mut add = |finding: &Finding, what: &str| {
+            if !finding.is_empty() {
+                problems.push(format!("{what}: {finding}"));
+            }
+        };
+        add(&self.inverted, "inverted tetrahedra");
+        add(&self.flat, "flat tetrahedra");
+        add(&self.slivers, "slivers");
+        add(&self.repeated_nodes, "cells that name a node twice");
+        add(&self.duplicates, "cells with the nodes of an earlier one");
+        add(&self.orphans, "nodes that no cell has");
+        add(&self.outside_volume, "nodes that no volume cell has");
+        if self.non_manifold_faces > 0 {
+            problems.push(format!(
+                "faces of more than two tetrahedra: {}",
+                self.non_manifold_faces
+            ));
+        }
+        for (dim, tag, name) in &self.empty_groups {
+            problems.push(format!(
+                "group \"{name}\" (dimension {dim}, tag {tag}) has no cells"
+            ));
+        }
+        problems.extend(self.unit.clone());
+        problems
+    }
+}
+
+impl fmt::Display for MeshCheck {
+    /// One line for each fact; those that need attention start with `!`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "tetrahedra: {}, in parts: {}",
+            self.tets, self.part_count
+        )?;
+        if self.part_count > 1 {
+            for part in &self.parts {
+                writeln!(
+                    f,
+                    "  a part of {} cells, the first with tag {}",
+                    part.cells, part.first_tag
+                )?;
+            }
+        }
+        if let Some(edges) = self.edges {
+            writeln!(
+                f,
+                "edge lengths: {:.4e} to {:.4e} (1 : {:.1}), mean {:.4e}",
+                edges.shortest,
+                edges.longest,
+                edges.longest / edges.shortest,
+                edges.mean
+            )?;
+        }
+        if let Some(angle) = self.least_dihedral {
+            let Extreme { value, element_tag } = angle;
+            writeln!(
+                f,
+                "least dihedral angle: {value:.4} degrees (tag {element_tag})"
+            )?;
+        }
+        if let Some(ratio) = self.least_radius_ratio {
+            let Extreme { value, element_tag } = ratio;
+            writeln!(f, "least radius ratio: {value:.4e} (tag {element_tag})")?;
+        }
+        for problem in self.problems() {
+            writeln!(f, "! {problem}")?;
+        }
+        for face in &self.first_non_manifold {
+            writeln!(
+                f,
+                "  the face of nodes {:?} belongs to tetrahedra {:?}",
+                face.node_tags, face.element_tags
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// Every cell for which `matters` holds for its block.
+fn cells_of<'m>(
+    mesh: &'m Mesh,
+    matters: impl Fn(&CellBlock) -> bool + 'm,
+) -> impl Iterator<Item = (CellIndex, &'m [u32])> {
+    let blocks = mesh.cells.iter().enumerate();
+    blocks
+        .filter(move |(_, block)| matters(block))
+        .flat_map(|(block, cells)| {
+            let rows = cells.cells().enumerate();
+            rows.map(move |(cell, row)| (CellIndex { block, cell }, row))
+        })
+}
+
+fn check_shapes(mesh: &Mesh, limits: &CheckLimits, check: &mut MeshCheck) {
+    let mut edge_sum = 0.0;
+    let mut edges: Option<(f64, f64)> = None;
+    for (at, row) in cells_of(mesh, |_| true) {
+        let kind = mesh.cells[at.block].kind;
+        let Some(corners) = tet_corners(mesh, kind, row) else {
+            continue;
+        };
+        check.tets += 1;
+        let tag = || mesh.element_tag(at);
+        let shape = TetShape::of(corners);
+        edge_sum += shape.edges.iter().sum::<f64>();
+        for length in shape.edges {
+            let (shortest, longest) = edges.unwrap_or((length, length));
+            edges = Some((shortest.min(length), longest.max(length)));
+        }
+        if shape.is_flat(limits.flat_volume) {
+            check.flat.add(tag);
+            continue;
+        }
+        if shape.volume < 0.0 {
+            check.inverted.add(tag);
+        }
+        let (angle, ratio) = (shape.least_dihedral(), shape.radius_ratio());
+        if angle < limits.sliver_dihedral || ratio < limits.sliver_radius_ratio {
+            check.slivers.add(tag);
+        }
+        keep_least(&mut check.least_dihedral, angle, tag);
+        keep_least(&mut check.least_radius_ratio, ratio, tag);
+    }
+    check.edges = edges.map(|(shortest, longest)| EdgeLengths {
+        shortest,
+        longest,
+        mean: edge_sum / (6 * check.tets) as f64,
+    });
+}
+
+fn keep_least(least: &mut Option<Extreme>, value: f64, tag: impl FnOnce() -> u64) {
+    if least.is_none_or(|least| value < least.value) {
+        let element_tag = tag();
+        *least = Some(Extreme { value, element_tag });
+    }
+}
+
+fn check_nodes_of_cells(mesh: &Mesh, check: &mut MeshCheck) {
+    let mut greatest_dim = vec![None; mesh.points.len()];
+    let mut sorted = Vec::new();
+    for (at, row) in cells_of(mesh, |_| true) {
+        let dim = mesh.cells[at.block].kind.dim();
+        for &node in row {
+            if let Some(greatest) = greatest_dim.get_mut(node as usize) {
+                *greatest = (*greatest).max(Some(dim));
+            }
+        }
+        sorted.clear();
+        sorted.extend_from_slice(row);
+        sorted.sort_unstable();
+        if sorted.windows(2).any(|pair| pair[0] == pair[1]) {
+            check.repeated_nodes.add(|| mesh.element_tag(at));
+        }
+    }
+    let has_volume = greatest_dim.contains(&Some(3));
+    for (node, dim) in (0u32..).zip(greatest_dim) {
+        match dim {
+            None => check.orphans.add(|| mesh.node_tag(node)),
+            Some(dim) if dim < 3 && has_volume => {
+                check.outside_volume.add(|| mesh.node_tag(node));
+            }
+            Some(_) => {}
+        }
+    }
+}
+
+/// Sets of nodes that grow together.
+struct Sets {
+    parent: Vec<u32>,
+}
+
+impl Sets {
+    fn root(&mut self, mut node: u32) -> u32 {
+        while self.parent[node as usize] != node {
+            let above = self.parent[node as usize];
+            // Halve the path for the next one who walks it.
+            self.parent[node as usize] = self.parent[above as usize];
+            node = self.parent[node as usize];
+        }
+        node
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[a.max(b) as usize] = a.min(b);
+    }
+}
+
+fn check_parts(mesh: &Mesh, check: &mut MeshCheck) {
+    let nodes = mesh.points.len();
+    let mut sets = Sets {
+        parent: (0u32..).take(nodes).collect(),
+    };
+    let is_inside = |row: &[u32]| row.iter().all(|&node| (node as usize) < nodes);
+    let volume_cells =
+        || cells_of(mesh, |block| block.kind.dim() == 3).filter(|(_, row)| is_inside(row));
+    for (_, row) in volume_cells() {
+        for pair in row.windows(2) {
+            sets.join(pair[0], pair[1]);
+        }
+    }
+    let mut parts: BTreeMap<u32, Part> = BTreeMap::new();
+    for (at, row) in volume_cells() {
+        let part = parts.entry(sets.root(row[0])).or_insert_with(|| Part {
+            cells: 0,
+            first_tag: mesh.element_tag(at),
+        });
+        part.cells += 1;
+    }
+    check.part_count = parts.len();
+    let mut parts: Vec<Part> = parts.into_values().collect();
+    parts.sort_by_key(|part| std::cmp::Reverse(part.cells));
+    parts.truncate(EXAMPLES);
+    check.parts = parts;
+}
+
+fn check_faces(mesh: &Mesh, check: &mut MeshCheck) {
+    let mut faces: Vec<([u32; 3], CellIndex)> = Vec::new();
+    for (at, row) in cells_of(mesh, |block| block.kind.is_tetrahedron()) {
+        for face in OUTWARD_FACES {
+            let mut nodes = face.map(|i| row[i]);
+            nodes.sort_unstable();
+            faces.push((nodes, at));
+        }
+    }
+    faces.sort_unstable();
+    for shared in faces
+        .chunk_by(|a, b| a.0 == b.0)
+        .filter(|shared| shared.len() > 2)
+    {
+        // Copies of a cell are a finding of their own.
+        let mut seen = HashSet::new();
+        let mut cells: Vec<CellIndex> = Vec::new();
+        for &(_, at) in shared {
+            let block = &mesh.cells[at.block];
+            let count = block.kind.node_count();
+            let mut nodes = block.connectivity[at.cell * count..][..4].to_vec();
+            nodes.sort_unstable();
+            if seen.insert(nodes) {
+                cells.push(at);
+            }
+        }
+        if cells.len() < 3 {
+            continue;
+        }
+        check.non_manifold_faces += 1;
+        if check.first_non_manifold.len() < EXAMPLES {
+            check.first_non_manifold.push(SharedFace {
+                node_tags: shared[0].0.map(|node| mesh.node_tag(node)),
+                element_tags: cells.iter().map(|&at| mesh.element_tag(at)).collect(),
+            });
+        }
+    }
+}
+
+pub(crate) fn empty_groups(mesh: &Mesh) -> Vec<(u8, i32, String)> {
+    let mut used: HashSet<(u8, i32)> = HashSet::new();
+    for block in &mesh.cells {
+        for tag in block.physical.lists().flatten() {
+            used.insert((block.kind.dim(), tag.saturating_abs()));
+        }
+    }
+    let named = mesh.physical_names.iter();
+    named
+        .filter(|&(&(dim, tag), _)| !used.contains(&(dim, tag.saturating_abs())))
+        .map(|(&(dim, tag), name)| (dim, tag, name.clone()))
+        .collect()
+}
+
+fn unit_guess(mesh: &Mesh, limits: &CheckLimits) -> Option<String> {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for (_, row) in cells_of(mesh, |_| true) {
+        for point in row
+            .iter()
+            .filter_map(|&node| mesh.points.get(node as usize))
+        {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(point[axis]);
+                high[axis] = high[axis].max(point[axis]);
+            }
+        }
+    }
+    let width = (0..3)
+        .map(|axis| high[axis] - low[axis])
+        .fold(0.0, f64::max);
+    (width > limits.widest_in_metres).then(|| {
+        format!("the mesh is {width:.4} wide: that looks like millimetres, not metres, for tissue")
+    })
+}
