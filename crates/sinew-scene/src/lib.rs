@@ -40,6 +40,7 @@ mod probe_csv;
 mod scene;
 mod simulation;
 mod source;
+mod whole_file;
 
 pub use error::{Fault, SceneError};
 pub use plan::{Plan, PlanSection};
@@ -47,3 +48,4 @@ pub use probe_csv::ProbeCsv;
 pub use scene::{Body, Initial, MeshSource, Oscillator, ProbePoint, RunSettings, Scene, Subject};
 pub use simulation::{BodyModel, NearestNode, Probe, SceneModel, Simulation};
 pub use source::SceneSource;
+pub use whole_file::WholeFile;

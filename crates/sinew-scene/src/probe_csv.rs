@@ -1,11 +1,11 @@
 //! The motion of probes as a CSV file.
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, Write};
+use std::path::PathBuf;
 
 use sinew_core::{RecordError, Recorder, State, System, Verdict};
 
+use crate::WholeFile;
 use crate::simulation::Probe;
 
 /// Writes the displacement of probes after every step: columns `t_s`, then `<probe>_u_x_m`,
@@ -17,9 +17,7 @@ use crate::simulation::Probe;
 #[derive(Debug)]
 pub struct ProbeCsv {
     probes: Vec<Probe>,
-    path: PathBuf,
-    unfinished: PathBuf,
-    file: Option<BufWriter<File>>,
+    file: WholeFile,
 }
 
 impl ProbeCsv {
@@ -28,15 +26,11 @@ impl ProbeCsv {
     /// # Errors
     /// When no file can be written there.
     pub fn create(path: impl Into<PathBuf>, probes: &[Probe]) -> io::Result<Self> {
-        let path = path.into();
-        let unfinished = unfinished(&path)?;
-        let mut file = BufWriter::new(File::create(&unfinished)?);
+        let mut file = WholeFile::create(path)?;
         writeln!(file, "{}", columns(probes).join(","))?;
         Ok(Self {
             probes: probes.to_vec(),
-            path,
-            unfinished,
-            file: Some(file),
+            file,
         })
     }
 
@@ -44,38 +38,18 @@ impl ProbeCsv {
     ///
     /// # Errors
     /// When it cannot be written or renamed.
-    pub fn finish(mut self) -> io::Result<PathBuf> {
-        if let Some(file) = self.file.take() {
-            let written = file.into_inner().map_err(io::IntoInnerError::into_error);
-            let named = written.and_then(|_| fs::rename(&self.unfinished, &self.path));
-            if named.is_err() {
-                let _ = fs::remove_file(&self.unfinished);
-            }
-            named?;
-        }
-        Ok(self.path.clone())
+    pub fn finish(self) -> io::Result<PathBuf> {
+        self.file.finish()
     }
 
     fn write(&mut self, state: &State) -> io::Result<()> {
-        let Some(file) = &mut self.file else {
-            return Ok(());
-        };
-        write!(file, "{:?}", state.t)?;
+        write!(self.file, "{:?}", state.t)?;
         for probe in &self.probes {
             for value in probe.displacement(&state.u) {
-                write!(file, ",{value:?}")?;
+                write!(self.file, ",{value:?}")?;
             }
         }
-        writeln!(file)
-    }
-}
-
-impl Drop for ProbeCsv {
-    fn drop(&mut self) {
-        if self.file.take().is_some() {
-            // Nobody can be told of a failure here.
-            let _ = fs::remove_file(&self.unfinished);
-        }
+        writeln!(self.file)
     }
 }
 
@@ -95,17 +69,6 @@ impl Recorder for ProbeCsv {
     }
 }
 
-/// A name beside `path`, in the same folder so that renaming does not copy.
-fn unfinished(path: &Path) -> io::Result<PathBuf> {
-    let name = path.file_name().ok_or_else(|| {
-        let message = format!("{} names no file", path.display());
-        io::Error::new(io::ErrorKind::InvalidInput, message)
-    })?;
-    let mut name = name.to_owned();
-    name.push(format!(".{}.unfinished", std::process::id()));
-    Ok(path.with_file_name(name))
-}
-
 fn columns(probes: &[Probe]) -> Vec<String> {
     let mut columns = vec!["t_s".to_owned()];
     for Probe { name, dofs, .. } in probes {
@@ -119,6 +82,8 @@ fn columns(probes: &[Probe]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn probes() -> Vec<Probe> {

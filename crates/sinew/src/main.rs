@@ -24,6 +24,9 @@ enum Command {
     },
     /// Run a scene and write the motion of its probes.
     Run(command::run::Arguments),
+    /// Look into, check and convert mesh files.
+    #[command(subcommand)]
+    Mesh(command::mesh::Command),
     /// List the integrators and their options.
     Integrators,
 }
@@ -32,6 +35,7 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Plan { scene } => command::plan::run(&scene),
         Command::Run(arguments) => command::run::run(&arguments),
+        Command::Mesh(arguments) => command::mesh::run(&arguments),
         Command::Integrators => command::integrators::run(),
     };
     match outcome {

@@ -1,11 +1,11 @@
 //! Files of a bench, each there as a whole or not at all.
 
 use std::{
-    fs::{self, File},
-    io::{self, Write},
+    fs, io,
     path::{Path, PathBuf},
-    sync::atomic::{AtomicU64, Ordering},
 };
+
+use sinew_scene::WholeFile;
 
 use super::{html, markup::slugs, strip, work_precision};
 use crate::results::{BenchResults, ResultsError};
@@ -104,37 +104,17 @@ fn plots(results: &BenchResults) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Writes a file so that readers see the old one or the new one, never a part: into a temporary file
-/// beside it, then renamed.
+/// Writes a file as a whole or not at all.
 ///
 /// # Errors
-/// [`WriteError::File`]; the temporary file is gone and the old file as it was.
+/// [`WriteError::File`]; the old file is then as it was.
 pub fn write_atomically(path: &Path, content: &str) -> Result<(), WriteError> {
-    let temporary = beside(path);
-    write_and_rename(&temporary, path, content).map_err(|source| {
-        // The first error is the one to tell; most often there is nothing left to remove.
-        let _ = fs::remove_file(&temporary);
-        WriteError::File {
+    WholeFile::write(path, content.as_bytes())
+        .map(|_| ())
+        .map_err(|source| WriteError::File {
             path: path.to_owned(),
             source,
-        }
-    })
-}
-
-fn write_and_rename(temporary: &Path, path: &Path, content: &str) -> io::Result<()> {
-    let mut file = File::create_new(temporary)?;
-    file.write_all(content.as_bytes())?;
-    file.sync_all()?;
-    drop(file);
-    fs::rename(temporary, path)
-}
-
-/// A name in the same directory, so that renaming never copies, that no other writer uses.
-fn beside(path: &Path) -> PathBuf {
-    static COUNT: AtomicU64 = AtomicU64::new(0);
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    path.with_file_name(format!(".{name}.{}-{count}.tmp", std::process::id()))
+        })
 }
 
 #[cfg(test)]
@@ -149,16 +129,6 @@ mod tests {
             .collect();
         names.sort();
         names
-    }
-
-    #[test]
-    fn a_file_is_replaced_as_a_whole() {
-        let dir = tempfile::tempdir().unwrap();
-        let path = dir.path().join("a.txt");
-        write_atomically(&path, "old").unwrap();
-        write_atomically(&path, "new").unwrap();
-        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
-        assert_eq!(names(dir.path()), ["a.txt"]);
     }
 
     #[test]

@@ -12,6 +12,8 @@ pub(crate) enum Failure {
     Scene(SceneError),
     /// Anything else that was given and cannot be used: exit code 2.
     Input(String),
+    /// A check found something and said so: exit code 1.
+    Findings,
     /// The run itself failed: exit code 1.
     Run(String),
 }
@@ -37,6 +39,7 @@ impl Failure {
                 eprintln!("error: {message}");
                 ExitCode::from(2)
             }
+            Self::Findings => ExitCode::from(1),
             Self::Run(message) => {
                 eprintln!("error: {message}");
                 ExitCode::from(1)

@@ -2,6 +2,7 @@
 
 mod failure;
 pub(crate) mod integrators;
+pub(crate) mod mesh;
 pub(crate) mod plan;
 pub(crate) mod run;
 

@@ -1,0 +1,320 @@
+//! `sinew mesh info | check | convert`.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Subcommand, ValueEnum};
+use serde_json::json;
+use sinew_mesh::info::MeshInfo;
+use sinew_mesh::vtu::{VtuEncoding, write_vtu};
+use sinew_mesh::{Finding, Mesh, MeshCheck, MshEncoding, MshVersion, read_msh_file, write_msh};
+use sinew_scene::WholeFile;
+
+use super::{Failure, say};
+
+/// What to do with a mesh file.
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Say what is in a gmsh file.
+    Info {
+        /// The .msh file.
+        file: PathBuf,
+        /// As one JSON object.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Look for what makes a simulation fail or mislead; exit code 1 if there is something.
+    Check {
+        /// The .msh file.
+        file: PathBuf,
+        /// As one JSON object.
+        #[arg(long)]
+        json: bool,
+        /// Repair before looking, and write the result to another file; may be given several times.
+        #[arg(long, value_name = "WHAT")]
+        fix: Vec<Fix>,
+        /// Where the repaired mesh goes [default: FILE with .fixed.msh]
+        #[arg(long, value_name = "OUT", requires = "fix")]
+        out: Option<PathBuf>,
+    },
+    /// Write a gmsh file in another version, encoding or format: .msh or .vtu by the name of OUT.
+    Convert {
+        /// The .msh file.
+        input: PathBuf,
+        /// The file to write.
+        output: PathBuf,
+        /// Version of a .msh file.
+        #[arg(long, default_value = "4.1")]
+        version: Version,
+        /// Numbers as text.
+        #[arg(long, conflicts_with = "binary")]
+        ascii: bool,
+        /// Numbers as bytes [default for .vtu; .msh is text by default]
+        #[arg(long)]
+        binary: bool,
+    },
+}
+
+/// A repair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Fix {
+    /// Turn inverted tetrahedra.
+    Orient,
+    /// Drop nodes that no cell has.
+    DropOrphans,
+    /// Merge cells with the same nodes.
+    MergeDuplicates,
+}
+
+/// Version of a .msh file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Version {
+    /// 2.2
+    #[value(name = "2.2")]
+    V22,
+    /// 4.1
+    #[value(name = "4.1")]
+    V41,
+}
+
+pub(crate) fn run(command: &Command) -> Result<(), Failure> {
+    match command {
+        Command::Info { file, json } => info(file, *json),
+        Command::Check {
+            file,
+            json,
+            fix,
+            out,
+        } => check(file, *json, fix, out.as_deref()),
+        Command::Convert {
+            input,
+            output,
+            version,
+            ascii,
+            binary,
+        } => convert(input, output, *version, *ascii, *binary),
+    }
+}
+
+fn read(file: &Path) -> Result<Mesh, Failure> {
+    read_msh_file(file).map_err(|error| Failure::Input(error.to_string()))
+}
+
+fn info(file: &Path, json: bool) -> Result<(), Failure> {
+    let info = MeshInfo::of(&read(file)?);
+    if json {
+        say(&info.to_json());
+        return Ok(());
+    }
+    let [low, high] = info.bbox;
+    let cells: Vec<String> = info
+        .cells
+        .iter()
+        .map(|(kind, count)| format!("{count} {kind}"))
+        .collect();
+    say(&format!("{}", file.display()));
+    say(&format!(
+        "points   {}, from {low:?} to {high:?}",
+        info.num_points
+    ));
+    say(&format!("cells    {}", cells.join(", ")));
+    say(&format!("volume   {:.6e} in tetrahedra", info.tet_volume));
+    for group in &info.physical {
+        let cells: Vec<String> = group
+            .cells
+            .iter()
+            .map(|(kind, count)| format!("{count} {kind}"))
+            .collect();
+        let (dim, tag, name) = (group.dim, group.tag, &group.name);
+        say(&format!(
+            "group    `{name}` (dimension {dim}, tag {tag}): {}",
+            cells.join(", ")
+        ));
+    }
+    for (count, what) in [
+        (
+            info.points_not_in_3d_cells,
+            "points in no cell of three dimensions",
+        ),
+        (
+            info.duplicate_3d_cells,
+            "cells with the nodes of an earlier one",
+        ),
+        (info.tets_inverted, "inverted tetrahedra"),
+        (info.tets_degenerate, "flat tetrahedra"),
+    ] {
+        if count > 0 {
+            say(&format!(
+                "note     {count} {what}; `sinew mesh check` names them"
+            ));
+        }
+    }
+    for warning in &info.warnings {
+        say(&format!("warning  {warning}"));
+    }
+    Ok(())
+}
+
+fn check(file: &Path, json: bool, fixes: &[Fix], out: Option<&Path>) -> Result<(), Failure> {
+    let mut mesh = read(file)?;
+    let mut fixed = Vec::new();
+    for fix in fixes {
+        let (count, what) = match fix {
+            Fix::Orient => (mesh.orient(), "tetrahedra turned"),
+            Fix::DropOrphans => (mesh.drop_orphans(), "nodes dropped"),
+            Fix::MergeDuplicates => (mesh.merge_duplicates(), "cells merged into others"),
+        };
+        fixed.push((count, what));
+    }
+    let written = if fixes.is_empty() {
+        None
+    } else {
+        let default = file.with_extension("fixed.msh");
+        let path = out.unwrap_or(&default);
+        let mut bytes = Vec::new();
+        write_msh(&mesh, MshVersion::V41, MshEncoding::Text, &mut bytes)
+            .map_err(|error| cannot_write(path, &error))?;
+        let path = WholeFile::write(path, &bytes).map_err(|error| cannot_write(path, &error))?;
+        Some(path)
+    };
+    let check = mesh.check();
+    if json {
+        say(&as_json(&check, &fixed, written.as_deref()).to_string());
+    } else {
+        for (count, what) in &fixed {
+            say(&format!("fixed    {count} {what}"));
+        }
+        if let Some(path) = &written {
+            say(&format!("written  {}", path.display()));
+        }
+        report(&check);
+    }
+    if check.is_clean() {
+        Ok(())
+    } else {
+        Err(Failure::Findings)
+    }
+}
+
+fn report(check: &MeshCheck) {
+    say(&format!(
+        "checked  {} tetrahedra in {} part(s)",
+        check.tets, check.part_count
+    ));
+    if let Some(extreme) = &check.least_dihedral {
+        let (value, tag) = (extreme.value, extreme.element_tag);
+        say(&format!(
+            "angle    least between two faces {value:.3} degrees, in tetrahedron {tag}"
+        ));
+    }
+    if let Some(extreme) = &check.least_radius_ratio {
+        let (value, tag) = (extreme.value, extreme.element_tag);
+        say(&format!(
+            "shape    least radius ratio {value:.4}, in tetrahedron {tag}"
+        ));
+    }
+    if let Some(edges) = &check.edges {
+        say(&format!(
+            "edges    from {:.4e} to {:.4e}",
+            edges.shortest, edges.longest
+        ));
+    }
+    for problem in check.problems() {
+        say(&format!("problem  {problem}"));
+    }
+    if check.is_clean() {
+        say("nothing found that needs attention");
+    }
+}
+
+fn as_json(
+    check: &MeshCheck,
+    fixed: &[(usize, &str)],
+    written: Option<&Path>,
+) -> serde_json::Value {
+    let finding =
+        |finding: &Finding| json!({ "total": finding.total, "first_tags": finding.first_tags });
+    let parts: Vec<usize> = check.parts.iter().map(|part| part.cells).collect();
+    let empty: Vec<_> = check
+        .empty_groups
+        .iter()
+        .map(|(dim, tag, name)| json!({ "dim": dim, "tag": tag, "name": name }))
+        .collect();
+    let fixed: Vec<_> = fixed
+        .iter()
+        .map(|(count, what)| json!({ "count": count, "what": what }))
+        .collect();
+    json!({
+        "clean": check.is_clean(),
+        "tets": check.tets,
+        "inverted": finding(&check.inverted),
+        "flat": finding(&check.flat),
+        "slivers": finding(&check.slivers),
+        "repeated_nodes": finding(&check.repeated_nodes),
+        "duplicates": finding(&check.duplicates),
+        "orphans": finding(&check.orphans),
+        "outside_volume": finding(&check.outside_volume),
+        "part_count": check.part_count,
+        "largest_parts": parts,
+        "non_manifold_faces": check.non_manifold_faces,
+        "empty_groups": empty,
+        "shortest_edge": check.edges.as_ref().map(|edges| edges.shortest),
+        "longest_edge": check.edges.as_ref().map(|edges| edges.longest),
+        "least_dihedral_deg": check.least_dihedral.as_ref().map(|extreme| extreme.value),
+        "least_radius_ratio": check.least_radius_ratio.as_ref().map(|extreme| extreme.value),
+        "unit": check.unit,
+        "problems": check.problems(),
+        "fixed": fixed,
+        "written": written.map(|path| path.display().to_string()),
+    })
+}
+
+fn convert(
+    input: &Path,
+    output: &Path,
+    version: Version,
+    ascii: bool,
+    binary: bool,
+) -> Result<(), Failure> {
+    let extension = output.extension().and_then(|extension| extension.to_str());
+    let mesh = read(input)?;
+    let mut bytes = Vec::new();
+    match extension.map(str::to_ascii_lowercase).as_deref() {
+        Some("msh") => {
+            let version = match version {
+                Version::V22 => MshVersion::V22,
+                Version::V41 => MshVersion::V41,
+            };
+            let encoding = if binary {
+                MshEncoding::Binary
+            } else {
+                MshEncoding::Text
+            };
+            write_msh(&mesh, version, encoding, &mut bytes)
+                .map_err(|error| cannot_write(output, &error))?;
+        }
+        Some("vtu") => {
+            let encoding = if ascii {
+                VtuEncoding::Base64
+            } else {
+                VtuEncoding::RawAppended
+            };
+            write_vtu(&mesh, encoding, &mut bytes).map_err(|error| cannot_write(output, &error))?;
+        }
+        _ => {
+            return Err(Failure::Input(format!(
+                "{}: expected a name that ends in .msh or .vtu",
+                output.display()
+            )));
+        }
+    }
+    let written = WholeFile::write(output, &bytes).map_err(|error| cannot_write(output, &error))?;
+    for warning in &mesh.warnings {
+        eprintln!("warning: {}: {warning}", input.display());
+    }
+    say(&format!("{}: {} bytes", written.display(), bytes.len()));
+    Ok(())
+}
+
+fn cannot_write(path: &Path, error: &dyn std::error::Error) -> Failure {
+    Failure::Input(format!("cannot write {}: {error}", path.display()))
+}

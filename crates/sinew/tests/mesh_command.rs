@@ -1,0 +1,161 @@
+//! `sinew mesh`, as a user meets it.
+
+#![cfg(test)]
+
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use assert_cmd::Command;
+
+fn repository(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../..")
+        .join(name)
+}
+
+fn mesh(arguments: &[&str]) -> Output {
+    let mut command = Command::cargo_bin("sinew").unwrap();
+    command.arg("mesh").args(arguments).output().unwrap()
+}
+
+fn json(output: &Output) -> serde_json::Value {
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn info_as_json_has_every_field() {
+    let cube = repository("meshes/paper-cube.msh");
+    let output = mesh(&["info", cube.to_str().unwrap(), "--json"]);
+    assert_eq!(output.status.code(), Some(0));
+    let info = json(&output);
+    assert_eq!(info["num_points"], 1331);
+    assert_eq!(
+        info["bbox"],
+        serde_json::json!([[0.0, 0.0, 0.0], [0.2, 0.2, 0.2]])
+    );
+    assert_eq!(info["cells"]["tetra"], 6000);
+    assert_eq!(info["physical"].as_array().unwrap().len(), 4);
+    assert!((info["tet_volume"].as_f64().unwrap() - 0.008).abs() < 1e-12);
+    for key in [
+        "points_not_in_3d_cells",
+        "duplicate_3d_cells",
+        "tets_inverted",
+        "tets_degenerate",
+    ] {
+        assert_eq!(info[key], 0, "{key}");
+    }
+    assert_eq!(info["warnings"], serde_json::json!([]));
+    assert_eq!(
+        info["first_cells"].as_array().unwrap()[0]
+            .as_array()
+            .unwrap()
+            .len(),
+        3
+    );
+}
+
+#[test]
+fn check_finds_the_slivers_and_says_so_by_its_exit_code() {
+    let clean = repository("meshes/beam.msh");
+    assert_eq!(
+        mesh(&["check", clean.to_str().unwrap()]).status.code(),
+        Some(0)
+    );
+    let slivers = repository("meshes/slivers.msh");
+    let output = mesh(&["check", slivers.to_str().unwrap(), "--json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let check = json(&output);
+    assert_eq!(check["clean"], false);
+    assert!(check["slivers"]["total"].as_u64().unwrap() >= 16);
+    assert!(check["least_dihedral_deg"].as_f64().unwrap() < 0.1);
+}
+
+#[test]
+fn inverted_tetrahedra_are_named_and_turned_on_request_into_another_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let broken = directory.path().join("broken.msh");
+    let text = std::fs::read_to_string(repository("meshes/paper-cube.msh")).unwrap();
+    // The last element row is a tetrahedron: swap its first two nodes.
+    let end = text.find("\n$EndElements").unwrap();
+    let start = text[..end].rfind('\n').unwrap() + 1;
+    let mut row: Vec<&str> = text[start..end].split_whitespace().collect();
+    row.swap(1, 2);
+    let tag: u64 = row[0].parse().unwrap();
+    let text = format!("{}{}{}", &text[..start], row.join(" "), &text[end..]);
+    std::fs::write(&broken, &text).unwrap();
+
+    let output = mesh(&["check", broken.to_str().unwrap(), "--json"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(
+        json(&output)["inverted"]["first_tags"],
+        serde_json::json!([tag])
+    );
+
+    let output = mesh(&["check", broken.to_str().unwrap(), "--fix", "orient"]);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stdout)
+    );
+    assert_eq!(
+        std::fs::read_to_string(&broken).unwrap(),
+        text,
+        "the file itself is as it was"
+    );
+    let fixed = directory.path().join("broken.fixed.msh");
+    assert_eq!(
+        mesh(&["check", fixed.to_str().unwrap()]).status.code(),
+        Some(0)
+    );
+}
+
+#[test]
+fn convert_and_back_keeps_the_mesh() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
+    let organ = repository("meshes/organ.msh");
+    let organ = organ.to_str().unwrap();
+    let first = json(&mesh(&["info", organ, "--json"]));
+    for (name, options) in [
+        ("a.msh", &["--version", "4.1", "--binary"][..]),
+        ("b.msh", &["--version", "4.1", "--ascii"]),
+        ("c.msh", &["--version", "2.2", "--binary"]),
+    ] {
+        let out = path(name);
+        let arguments = [&["convert", organ, &out][..], options].concat();
+        assert_eq!(mesh(&arguments).status.code(), Some(0), "{name}");
+        let info = json(&mesh(&["info", &out, "--json"]));
+        for key in ["num_points", "bbox", "tet_volume", "physical"] {
+            assert_eq!(info[key], first[key], "{name}: {key}");
+        }
+    }
+    assert_eq!(
+        mesh(&["convert", organ, &path("d.vtu")]).status.code(),
+        Some(0)
+    );
+    let refused = mesh(&["convert", organ, &path("e.stl")]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(!directory.path().join("e.stl").exists());
+}
+
+#[test]
+fn what_is_no_mesh_is_refused_with_one_message() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("noise.msh");
+    for bytes in [
+        &b"noise"[..],
+        b"",
+        b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 9 1 9\n",
+    ] {
+        std::fs::write(&path, bytes).unwrap();
+        for command in ["info", "check"] {
+            let output = mesh(&[command, path.to_str().unwrap()]);
+            assert_eq!(output.status.code(), Some(2));
+            assert_eq!(output.stdout, b"");
+            let said = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(said.trim_end().lines().count(), 1, "{said}");
+            assert!(said.contains("noise.msh"), "{said}");
+        }
+    }
+}
