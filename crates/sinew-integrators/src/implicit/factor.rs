@@ -178,6 +178,9 @@ impl Factor {
 /// Eigenvalues in increasing order and eigenvectors of a dense symmetric matrix, both column by
 /// column; only its lower triangle is read.
 pub(crate) fn symmetric_eigen(matrix: &[f64], n: usize) -> Result<(Vec<f64>, Vec<f64>), String> {
+    if n == 0 {
+        return Ok((Vec::new(), Vec::new()));
+    }
     let eigen = MatRef::from_column_major_slice(matrix, n, n)
         .self_adjoint_eigen(Side::Lower)
         .map_err(|_| "a dense eigenproblem did not converge".to_owned())?;

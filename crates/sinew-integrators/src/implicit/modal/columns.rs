@@ -23,7 +23,7 @@ pub(super) fn norm(a: &[f64]) -> f64 {
 
 /// `out[j] = column_j . x`.
 pub(super) fn project(columns: &[f64], x: &[f64], out: &mut [f64]) {
-    for (value, column) in out.iter_mut().zip(columns.chunks_exact(x.len())) {
+    for (value, column) in out.iter_mut().zip(columns.chunks_exact(x.len().max(1))) {
         *value = dot(column, x);
     }
 }
@@ -35,7 +35,7 @@ pub(super) fn project_two(
     (p, q): (&mut [f64], &mut [f64]),
 ) {
     let out = p.iter_mut().zip(q);
-    for ((p, q), column) in out.zip(columns.chunks_exact(x.len())) {
+    for ((p, q), column) in out.zip(columns.chunks_exact(x.len().max(1))) {
         *p = dot(column, x);
         *q = dot(column, y);
     }
@@ -46,7 +46,7 @@ pub(super) fn add(columns: &[f64], coefficients: &[f64], scale: f64, x: &mut [f6
     let n = x.len();
     let (quadruples, rest) = coefficients.as_chunks::<4>();
     let (blocks, last) = columns.split_at(quadruples.len() * 4 * n);
-    for (c, block) in quadruples.iter().zip(blocks.chunks_exact(4 * n)) {
+    for (c, block) in quadruples.iter().zip(blocks.chunks_exact(4 * n.max(1))) {
         let [c0, c1, c2, c3] = c.map(|c| scale * c);
         let (a, b) = block.split_at(2 * n);
         let (a0, a1) = a.split_at(n);
@@ -56,7 +56,7 @@ pub(super) fn add(columns: &[f64], coefficients: &[f64], scale: f64, x: &mut [f6
             *x += (c0 * a0 + c1 * a1) + (c2 * b0 + c3 * b1);
         }
     }
-    for (c, column) in rest.iter().zip(last.chunks_exact(n)) {
+    for (c, column) in rest.iter().zip(last.chunks_exact(n.max(1))) {
         for (x, value) in x.iter_mut().zip(column) {
             *x += scale * c * value;
         }
@@ -72,7 +72,7 @@ pub(super) fn lift_two(
     x.fill(0.0);
     y.fill(0.0);
     let pairs = p.chunks(4).zip(q.chunks(4));
-    for ((p, q), block) in pairs.zip(columns.chunks(4 * x.len())) {
+    for ((p, q), block) in pairs.zip(columns.chunks(4 * x.len().max(1))) {
         add(block, p, 1.0, x);
         add(block, q, 1.0, y);
     }

@@ -8,9 +8,9 @@ mod motion;
 mod small;
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, LinearOperators, LinearSystem, Needs, OptionError,
-    Options, Prepared, Properties, Revision, SetupError, StableStep, State, StepError, StepReport,
-    System,
+    Accuracy, EnergyBehaviour, Fact, Integrator, LinearOperators, LinearSystem, Needs, OptionError,
+    Options, Prepared, Properties, Ramp, Revision, SetupError, StableStep, State, StepError,
+    StepReport, System,
 };
 
 use self::basis::{Basis, Choice, Failure, LoadCase};
@@ -35,7 +35,7 @@ use crate::{Method, OptionHelp};
 ///   the masses and over eight periods of the slowest mode, changes by less than the tolerance from
 ///   one basis to the next larger by a third. Then the modes of the smallest static response
 ///   |phi' F|/omega^2 are left out as far as the tolerance allows. Both shares together are
-///   [`Modal::estimated_error`]. Where that takes a basis of more than half of the degrees of
+///   [`Modal::estimated_error`], which is kept below four fifths of the tolerance. Where that takes a basis of more than half of the degrees of
 ///   freedom, set-up fails. Damping is left out of the estimate.
 /// * `modes = N`: rigid motions and the most excited modes of a basis of 2 N, or of `basis = P`.
 ///   Without loads, the slowest modes, all converged.
@@ -162,7 +162,7 @@ impl Modal {
         });
         self.modes = modes.collect();
         let ramps = self.cases.iter().map(|case| &case.ramp);
-        self.breakpoints = ramps.flat_map(|ramp| ramp.breakpoints()).collect();
+        self.breakpoints = ramps.flat_map(Ramp::breakpoints).collect();
         self.breakpoints.sort_by(f64::total_cmp);
         let (n, m) = (operators.dofs(), self.modes.len());
         for (buffer, length) in [
@@ -386,7 +386,7 @@ impl Integrator for Modal {
         checked.check(integrator, system, dt)?;
         if operators.damping().extra.is_some() {
             return Err(lacks(
-                "proportional damping, D = alpha M + beta K without dashpots,",
+                "proportional damping (D = alpha M + beta K, no dashpots)",
             ));
         }
         self.prepared = Prepared::default();
@@ -402,6 +402,13 @@ impl Integrator for Modal {
 
     fn stable_step(&self, _system: &dyn System) -> Result<StableStep, SetupError> {
         Ok(StableStep::Any)
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let fact = |name, value| Fact { name, value };
+        let mut facts = vec![fact("modes", self.modes.len() as f64)];
+        facts.extend(self.basis.estimate.map(|share| fact("left_out", share)));
+        facts
     }
 
     fn step(
