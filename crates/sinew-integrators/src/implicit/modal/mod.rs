@@ -5,6 +5,7 @@ mod columns;
 mod inverse;
 mod krylov;
 mod motion;
+mod search;
 mod small;
 
 use sinew_core::{
