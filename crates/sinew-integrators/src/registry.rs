@@ -22,6 +22,8 @@ macro_rules! for_each_integrator {
             #[cfg(feature = "implicit")]
             newmark: $crate::implicit::Newmark,
             #[cfg(feature = "implicit")]
+            modal: $crate::implicit::Modal,
+            #[cfg(feature = "implicit")]
             generalized_alpha: $crate::implicit::GeneralizedAlpha,
             cnn: $crate::cnn::Cnn,
             cnn_symplectic: $crate::cnn::CnnSymplectic,

@@ -1,4 +1,5 @@
-//! Sparse Cholesky factors of combinations of M, D and K. The only user of faer.
+//! Sparse Cholesky factors of combinations of M, D and K, and dense eigenproblems. The only user of
+//! faer.
 
 use std::sync::Arc;
 
@@ -11,7 +12,7 @@ use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par, Side, Spec};
+use faer::{Conj, MatMut, MatRef, Par, Side, Spec};
 use sinew_core::{Layers, LinearOperators, Pattern};
 
 /// `mass M + stiffness K + extra D_extra`, where D_extra is the damping beside the proportional.
@@ -172,6 +173,20 @@ impl Factor {
             MemStack::new(&mut self.scratch),
         );
     }
+}
+
+/// Eigenvalues in increasing order and eigenvectors of a dense symmetric matrix, both column by
+/// column; only its lower triangle is read.
+pub(crate) fn symmetric_eigen(matrix: &[f64], n: usize) -> Result<(Vec<f64>, Vec<f64>), String> {
+    if n == 0 {
+        return Ok((Vec::new(), Vec::new()));
+    }
+    let eigen = MatRef::from_column_major_slice(matrix, n, n)
+        .self_adjoint_eigen(Side::Lower)
+        .map_err(|_| "a dense eigenproblem did not converge".to_owned())?;
+    let values = (0..n).map(|i| eigen.S()[i]).collect();
+    let vectors = (0..n).flat_map(|j| (0..n).map(move |i| (i, j)));
+    Ok((values, vectors.map(|(i, j)| eigen.U()[(i, j)]).collect()))
 }
 
 /// Approximate minimum degree on the graph of cells, which is three times smaller each way than

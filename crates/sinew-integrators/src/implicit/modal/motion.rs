@@ -1,0 +1,238 @@
+//! The exact motion of one mode under loads that are constant, linear or sinusoidal in time.
+
+use std::f64::consts::PI;
+
+use sinew_core::Ramp;
+
+type Matrix = [[f64; 4]; 4];
+
+/// `exp(a)` by scaling, a Taylor series and squaring (Moler and Van Loan, SIAM Review 45, 2003,
+/// method 3).
+fn exponential(a: &Matrix) -> Matrix {
+    let size = a
+        .iter()
+        .map(|row| row.iter().map(|x| x.abs()).sum::<f64>())
+        .fold(0.0, f64::max);
+    let halvings = if size > 0.5 && size.is_finite() {
+        (2.0 * size).log2().ceil() as i32
+    } else {
+        0
+    };
+    let scaled = a.map(|row| row.map(|x| x * 0.5_f64.powi(halvings)));
+    // Horner's scheme; (1/2)^16/16! is far below rounding.
+    let mut sum = identity();
+    for k in (1..=16).rev() {
+        sum = product(&scaled, &sum);
+        for (i, row) in sum.iter_mut().enumerate() {
+            row.iter_mut().for_each(|x| *x /= f64::from(k));
+            row[i] += 1.0;
+        }
+    }
+    for _ in 0..halvings {
+        sum = product(&sum, &sum);
+    }
+    sum
+}
+
+fn identity() -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))))
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..4).map(|k| a[i][k] * b[k][j]).sum()))
+}
+
+/// A mode: q'' + damping q' + omega^2 q = force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Mode {
+    /// Undamped angular frequency (rad/s), 0 for a rigid motion.
+    pub(super) omega: f64,
+    /// alpha + beta omega^2 (1/s).
+    pub(super) damping: f64,
+}
+
+/// What q and q' become within a time h: a vector (q, q') for each of q = 1, q' = 1 and two forces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Response {
+    displacement: [f64; 2],
+    velocity: [f64; 2],
+    forces: [[f64; 2]; 2],
+}
+
+impl Response {
+    /// Under the forces 1 and tau/h.
+    pub(super) fn to_linear(mode: Mode, h: f64) -> Self {
+        Self::of(mode, h, [[0.0, 1.0], [0.0, 0.0]])
+    }
+
+    /// Under the forces cos(rate tau) and -sin(rate tau).
+    pub(super) fn to_harmonic(mode: Mode, h: f64, rate: f64) -> Self {
+        Self::of(mode, h, [[0.0, -rate * h], [rate * h, 0.0]])
+    }
+
+    /// The force is the first component of a system z' = `generator` z/h that starts from a unit
+    /// vector. Force and mode together are one linear system, whose exponential holds for any
+    /// frequency and damping, at resonance and at rest (Van Loan, IEEE Trans. Automatic Control
+    /// 23, 1978).
+    fn of(Mode { omega, damping }: Mode, h: f64, generator: [[f64; 2]; 2]) -> Self {
+        // Displacements are scaled to the size of velocities.
+        let scale = omega.max(1.0 / h);
+        let [first, second] = generator;
+        let e = exponential(&[
+            [0.0, scale * h, 0.0, 0.0],
+            [-omega * omega * h / scale, -damping * h, 1.0, 0.0],
+            [0.0, 0.0, first[0], first[1]],
+            [0.0, 0.0, second[0], second[1]],
+        ]);
+        Self {
+            displacement: [e[0][0], scale * e[1][0]],
+            velocity: [e[0][1] / scale, e[1][1]],
+            forces: [2, 3].map(|force| [h * e[0][force] / scale, h * e[1][force]]),
+        }
+    }
+
+    /// (q, q') at the end of the time, without force.
+    pub(super) fn free(&self, q: f64, p: f64) -> [f64; 2] {
+        std::array::from_fn(|i| self.displacement[i] * q + self.velocity[i] * p)
+    }
+
+    /// What two forces add.
+    pub(super) fn forced(&self, sizes: [f64; 2]) -> [f64; 2] {
+        std::array::from_fn(|i| self.forces[0][i] * sizes[0] + self.forces[1][i] * sizes[1])
+    }
+}
+
+/// A ramp within a piece of time that holds none of its breakpoints inside.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Piece {
+    /// Value at the start, and what is added linearly until the end.
+    pub(super) linear: [f64; 2],
+    /// Factors of cos(rate tau) and -sin(rate tau).
+    pub(super) harmonic: Option<[f64; 2]>,
+}
+
+impl Piece {
+    /// Of a ramp from `start` (s), `h` (s) long. What holds in the middle holds throughout, which
+    /// keeps rounding of the ends from mattering.
+    pub(super) fn of(ramp: &Ramp, start: f64, h: f64) -> Self {
+        let middle = start + 0.5 * h;
+        match ramp {
+            Ramp::Sin2 { rise } if (0.0..*rise).contains(&middle) => {
+                // (1 - cos(rate t))/2
+                let (sin, cos) = (PI / rise * start).sin_cos();
+                Self {
+                    linear: [0.5, 0.0],
+                    harmonic: Some([-0.5 * cos, -0.5 * sin]),
+                }
+            }
+            _ => {
+                let mut derivatives = [0.0; 2];
+                ramp.derivatives_after(middle, &mut derivatives);
+                let rise = match ramp {
+                    Ramp::Table { .. } => derivatives[1] * h,
+                    Ramp::Step | Ramp::Sin2 { .. } | Ramp::Pulse { .. } => 0.0,
+                };
+                Self {
+                    linear: [derivatives[0] - 0.5 * rise, rise],
+                    harmonic: None,
+                }
+            }
+        }
+    }
+}
+
+/// The rate (rad/s) of a ramp that is sinusoidal for a while.
+pub(super) fn harmonic_rate(ramp: &Ramp) -> Option<f64> {
+    match ramp {
+        Ramp::Sin2 { rise } => Some(PI / rise),
+        Ramp::Step | Ramp::Pulse { .. } | Ramp::Table { .. } => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use sinew_core::closed_form::DampedOscillator;
+
+    use super::*;
+
+    fn close(found: [f64; 2], expected: [f64; 2], omega: f64) {
+        let size = expected[0].abs() * omega + expected[1].abs() + 1e-12;
+        let off = (found[0] - expected[0]).abs() * omega + (found[1] - expected[1]).abs();
+        assert!(off < 1e-11 * size, "{found:?} {expected:?}");
+    }
+
+    #[test]
+    fn constant_loads_give_the_closed_form() {
+        for omega in [0.3, 10.0, 900.0] {
+            for damping in [0.0, 0.2 * omega, 1.999 * omega, 2.0 * omega, 5.0 * omega] {
+                for h in [1e-4, 1e-2, 0.5] {
+                    let response = Response::to_linear(Mode { omega, damping }, h);
+                    let free = response.free(0.3, -2.0);
+                    let forced = response.forced([7.0, 0.0]);
+                    let exact = DampedOscillator {
+                        omega,
+                        damping,
+                        load: 7.0,
+                        displacement: 0.3,
+                        velocity: -2.0,
+                    };
+                    let (q, p) = exact.at(h);
+                    if q.is_finite() && 0.5 * damping * h < 300.0 {
+                        close([free[0] + forced[0], free[1] + forced[1]], [q, p], omega);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_rigid_motion_is_a_parabola_and_a_rising_load_a_cubic() {
+        let rigid = Mode {
+            omega: 0.0,
+            damping: 0.0,
+        };
+        let h = 0.2;
+        let response = Response::to_linear(rigid, h);
+        close(response.free(1.0, 3.0), [1.6, 3.0], 1.0);
+        close(response.forced([2.0, 0.0]), [h * h, 2.0 * h], 1.0);
+        close(response.forced([0.0, 6.0]), [h * h, 3.0 * h], 1.0);
+    }
+
+    #[test]
+    fn resonance_grows_as_the_textbooks_say() {
+        // q'' + w^2 q = cos(w t) from rest: q = t sin(w t)/(2 w).
+        let (w, h) = (30.0_f64, 0.21);
+        let mode = Mode {
+            omega: w,
+            damping: 0.0,
+        };
+        let found = Response::to_harmonic(mode, h, w).forced([1.0, 0.0]);
+        let (sin, cos) = (w * h).sin_cos();
+        close(found, [h * sin / (2.0 * w), (sin / w + h * cos) / 2.0], w);
+    }
+
+    #[test]
+    fn pieces_give_the_ramps_values() {
+        let ramps = [
+            Ramp::Step,
+            Ramp::Sin2 { rise: 0.4 },
+            Ramp::Pulse { from: 0.1, to: 0.3 },
+            Ramp::Table {
+                times: vec![0.1, 0.2, 0.5],
+                values: vec![1.0, 3.0, -1.0],
+            },
+        ];
+        for ramp in ramps {
+            for (start, h) in [(0.1, 0.1), (0.2, 0.1), (0.3, 0.1), (0.6, 0.1)] {
+                let piece = Piece::of(&ramp, start, h);
+                let tau = 0.77 * h;
+                let mut value = piece.linear[0] + 0.77 * piece.linear[1];
+                if let (Some([c, s]), Some(rate)) = (piece.harmonic, harmonic_rate(&ramp)) {
+                    value += c * (rate * tau).cos() - s * (rate * tau).sin();
+                }
+                let expected = ramp.value(start + tau);
+                assert!((value - expected).abs() < 1e-14, "{ramp:?} from {start}");
+            }
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! The search for the modes that loads excite.
+
+use super::basis::{Candidate, Failure, LoadCase, SMALL, most_excited};
+use super::columns::{add, dot};
+use super::inverse::{Inverse, noise};
+use super::krylov::{Krylov, Ritz};
+
+/// Share of the degrees of freedom that a Lanczos basis may take up in the search for a tolerance.
+const SHARE: f64 = 0.5;
+
+/// Share of the tolerance that the estimate is held to: it is a mean over all phases of the modes,
+/// and a run sees some of them.
+const MARGIN: f64 = 0.8;
+
+/// Lowest modes that are taken where nothing but the first state excites any.
+const WITHOUT_LOADS: usize = 64;
+
+/// Size of the first Lanczos basis; each further one is larger by a third.
+const FIRST: usize = 24;
+
+/// `||A x - theta x|| / theta` of a mode that counts as found.
+const CONVERGED: f64 = 1e-8;
+
+/// Columns, modes and the estimated error.
+pub(super) type Found = (Vec<f64>, Vec<Candidate>, Option<f64>);
+
+/// The search for modes in Lanczos bases that start from the static response to each load case
+/// (Wilson, Yuan and Dickens, Earthquake Eng. Struct. Dyn. 10, 1982): what loads do not excite
+/// never enters. In the basis Q the equation of motion, multiplied by A, is
+/// `T q'' + (alpha T + beta) q' + q = Q' A f` with `T = Q' A Q` (Nour-Omid and Clough, same journal
+/// 12, 1984), whose eigenvectors are the modes as far as they have converged and bundles of fast
+/// modes beyond; the static response is exact in any of these bases.
+pub(super) struct Search<'a> {
+    krylov: Krylov,
+    cases: &'a [LoadCase],
+    rigid_forces: Vec<Vec<f64>>,
+    shift: f64,
+    free: usize,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(
+        rigid: Vec<f64>,
+        cases: &'a [LoadCase],
+        inverse: &mut Inverse,
+        free: usize,
+    ) -> Self {
+        let n = inverse.root.len();
+        let scaled = |case: &LoadCase, root: &[f64]| -> Vec<f64> {
+            let entries = case.force.iter().zip(root);
+            let entry = |(force, root): (&f64, &f64)| if *root > 0.0 { force / root } else { 0.0 };
+            entries.map(entry).collect()
+        };
+        let forces: Vec<Vec<f64>> = cases
+            .iter()
+            .map(|case| scaled(case, &inverse.root))
+            .collect();
+        let rigid_forces = rigid
+            .chunks_exact(n)
+            .map(|motion| forces.iter().map(|force| dot(motion, force)).collect())
+            .collect();
+        let mut starts: Vec<Vec<f64>> = forces
+            .iter()
+            .map(|force| {
+                let mut elastic = force.clone();
+                for motion in rigid.chunks_exact(n) {
+                    let part = dot(motion, force);
+                    add(motion, &[part], -1.0, &mut elastic);
+                }
+                let mut response = vec![0.0; n];
+                inverse.apply(&elastic, &mut response);
+                response
+            })
+            .collect();
+        if starts.is_empty() {
+            // More than one finds modes of equal frequency.
+            starts = (0..3).map(|i| noise(n, i + 100)).collect();
+            starts.iter_mut().for_each(|start| inverse.mask(start));
+        }
+        Self {
+            krylov: Krylov::new(rigid, starts, n),
+            cases,
+            rigid_forces,
+            shift: inverse.shift,
+            free,
+        }
+    }
+
+    pub(super) fn so_many(
+        mut self,
+        count: usize,
+        basis: Option<usize>,
+        inverse: &mut Inverse,
+    ) -> Result<Found, Failure> {
+        let wanted = count.saturating_sub(self.rigid_forces.len());
+        if self.cases.is_empty() {
+            let pairs = self.slowest(wanted, inverse)?;
+            return Ok(self.take(pairs, count, None));
+        }
+        let basis = basis.unwrap_or(wanted.saturating_mul(2)).max(wanted);
+        self.krylov.grow(basis.min(self.free), inverse);
+        let pairs = self.pairs()?;
+        Ok(self.take(pairs, count, None))
+    }
+
+    fn pairs(&self) -> Result<Vec<Ritz>, Failure> {
+        self.krylov.ritz_pairs().map_err(Failure::Factorization)
+    }
+
+    /// So many of the slowest modes, converged.
+    fn slowest(&mut self, count: usize, inverse: &mut Inverse) -> Result<Vec<Ritz>, Failure> {
+        let mut size = 2 * count + FIRST;
+        loop {
+            self.krylov.grow(size, inverse);
+            let mut pairs = self.pairs()?;
+            pairs.truncate(count);
+            let found = pairs
+                .iter()
+                .all(|pair| pair.residual <= CONVERGED * pair.theta);
+            if found || self.krylov.exhausted() {
+                return Ok(pairs);
+            }
+            size += size / 3;
+        }
+    }
+
+    /// Grows the basis until the response to suddenly applied loads changes by less than the
+    /// error aimed at, then leaves out what is least excited.
+    pub(super) fn within(
+        mut self,
+        tolerance: f64,
+        inverse: &mut Inverse,
+    ) -> Result<Found, Failure> {
+        if self.cases.is_empty() {
+            let pairs = self.slowest(WITHOUT_LOADS, inverse)?;
+            let count = self.rigid_forces.len() + pairs.len();
+            return Ok(self.take(pairs, count, None));
+        }
+        let aim = MARGIN * tolerance;
+        let most = ((SHARE * self.free as f64) as usize).max(SMALL);
+        let mut instants = Vec::new();
+        let mut before: Option<Vec<Vec<f64>>> = None;
+        let mut size = FIRST;
+        loop {
+            self.krylov.grow(size, inverse);
+            let pairs = self.pairs()?;
+            if instants.is_empty() {
+                let slowest = pairs.first().map_or(0.0, |pair| self.squared(pair));
+                instants = sample_times(slowest.sqrt());
+            }
+            let responses = self.responses(&pairs, &instants);
+            let change = match &before {
+                _ if self.krylov.exhausted() => 0.0,
+                None => f64::INFINITY,
+                Some(before) => relative_change(before, &responses),
+            };
+            // Half of the allowed square is kept for the modes that are left out.
+            if change <= aim * std::f64::consts::FRAC_1_SQRT_2 {
+                return Ok(self.thin_out(pairs, aim, change));
+            }
+            if size >= most {
+                return Err(Failure::TooMany {
+                    basis: size,
+                    dofs: self.free,
+                    estimate: change,
+                });
+            }
+            before = Some(responses);
+            size = (size + size / 3).min(most);
+        }
+    }
+
+    fn squared(&self, pair: &Ritz) -> f64 {
+        (pair.theta.recip() - self.shift).max(0.0)
+    }
+
+    /// Parts along the basis of the undamped responses to each load case, suddenly applied.
+    fn responses(&self, pairs: &[Ritz], instants: &[f64]) -> Vec<Vec<f64>> {
+        let mut responses = Vec::new();
+        for (case, load) in self.cases.iter().enumerate() {
+            for t in instants {
+                let mut response = vec![0.0; self.krylov.size()];
+                for pair in pairs {
+                    let swing = 1.0 - (self.squared(pair).sqrt() * t).cos();
+                    let size = load.peak() * pair.excitation[case] * swing;
+                    add(&pair.vector, &[size], 1.0, &mut response);
+                }
+                responses.push(response);
+            }
+        }
+        responses
+    }
+
+    /// Leaves out the least excited modes as far as the error aimed at allows.
+    fn thin_out(self, pairs: Vec<Ritz>, aim: f64, change: f64) -> Found {
+        let size = |pair: &Ritz| -> f64 {
+            let parts = pair.excitation.iter().zip(self.cases);
+            parts.map(|(part, case)| (case.peak() * part).powi(2)).sum()
+        };
+        let mut sizes: Vec<f64> = pairs.iter().map(size).collect();
+        sizes.sort_by(f64::total_cmp);
+        let total: f64 = sizes.iter().sum();
+        let allowed = (aim * aim - change * change) * total;
+        let mut lost = 0.0;
+        let spared = sizes.iter().take_while(|size| {
+            let fits = lost + **size <= allowed;
+            if fits {
+                lost += **size;
+            }
+            fits
+        });
+        let count = self.rigid_forces.len() + pairs.len() - spared.count();
+        let estimate = (change * change + lost / total).sqrt();
+        self.take(pairs, count, Some(estimate))
+    }
+
+    fn take(self, pairs: Vec<Ritz>, count: usize, estimate: Option<f64>) -> Found {
+        let n_rigid = self.rigid_forces.len();
+        let size = self.krylov.size();
+        let unit = |at: usize| {
+            let mut unit = vec![0.0; n_rigid + size];
+            unit[at] = 1.0;
+            unit
+        };
+        let rigid = self
+            .rigid_forces
+            .iter()
+            .enumerate()
+            .map(|(i, forces)| Candidate {
+                squared: 0.0,
+                vector: unit(i),
+                forces: forces.clone(),
+            });
+        let elastic = pairs.into_iter().map(|pair| {
+            let mut vector = vec![0.0; n_rigid];
+            let excitation = pair.excitation.iter();
+            Candidate {
+                // Nothing elastic is without any stiffness.
+                squared: (pair.theta.recip() - self.shift).max(f64::MIN_POSITIVE),
+                forces: match self.cases.is_empty() {
+                    true => Vec::new(),
+                    false => excitation.map(|part| part / pair.theta).collect(),
+                },
+                vector: {
+                    vector.extend(pair.vector);
+                    vector
+                },
+            }
+        });
+        let modes = most_excited(rigid.chain(elastic).collect(), self.cases, count);
+        let columns = [self.krylov.rigid(), self.krylov.basis()].concat();
+        (columns, modes, estimate)
+    }
+}
+
+/// Instants over eight periods of the slowest mode, spread evenly by the golden ratio.
+fn sample_times(slowest: f64) -> Vec<f64> {
+    const COUNT: u32 = 48;
+    let span = 8.0 * std::f64::consts::TAU / slowest.max(f64::MIN_POSITIVE);
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    (0..COUNT)
+        .map(|i| span * ((f64::from(i) + 0.5) * golden).fract())
+        .collect()
+}
+
+/// `||now - before|| / ||now||`; the parts known before come first.
+fn relative_change(before: &[Vec<f64>], now: &[Vec<f64>]) -> f64 {
+    let (mut difference, mut size) = (0.0, 0.0);
+    for (before, now) in before.iter().zip(now) {
+        for (i, value) in now.iter().enumerate() {
+            difference += (value - before.get(i).copied().unwrap_or(0.0)).powi(2);
+            size += value * value;
+        }
+    }
+    f64::sqrt(difference / size)
+}
