@@ -303,7 +303,7 @@ impl Modal {
 
 impl Default for Modal {
     fn default() -> Self {
-        Self::with_tolerance(1e-3)
+        Self::with_tolerance(1e-2)
     }
 }
 
@@ -314,7 +314,7 @@ impl Method for Modal {
     const OPTIONS: &'static [OptionHelp] = &[
         OptionHelp {
             key: "tolerance",
-            help: "share of the response that may be lost, above 0 and below 1; default 0.001",
+            help: "share of the response that may be lost, above 0 and below 1; default 0.01",
             shown_default: None,
         },
         OptionHelp {
@@ -355,7 +355,7 @@ impl Method for Modal {
         refuse("basis", "nothing without `modes`")?;
         let expected = "a number above 0 and below 1";
         let fits = |x| x > 0.0 && x < 1.0;
-        let tolerance = options.number(Self::ID, "tolerance", 1e-3, expected, fits)?;
+        let tolerance = options.number(Self::ID, "tolerance", 1e-2, expected, fits)?;
         Ok(Self::with_tolerance(tolerance))
     }
 }
