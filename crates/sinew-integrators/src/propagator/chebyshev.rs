@@ -3,7 +3,7 @@
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
     Accuracy, EnergyBehaviour, Fact, Integrator, LinearOperators, LinearSystem, Needs, OptionError,
-    OptionValue, Options, Prepared, Properties, SetupError, StableStep, State, StepError,
+    OptionValue, Options, Prepared, Properties, Ramp, SetupError, StableStep, State, StepError,
     StepReport, System,
 };
 
@@ -61,6 +61,9 @@ struct Series {
     of_load: Vec<f64>,
     of_load_rate: Vec<f64>,
 }
+
+/// Share of a step by which times that were added up miss an instant they stand for.
+const AT_A_STEP: f64 = 1e-6;
 
 const TOLERANCE: &str = "tolerance";
 const DEGREE: &str = "degree";
@@ -219,7 +222,7 @@ impl Series {
     }
 
     /// Coefficients of what a ramp's change since `t` brings by t + dt.
-    fn follow(&mut self, ramp: &sinew_core::Ramp, t: f64) {
+    fn follow(&mut self, ramp: &Ramp, t: f64) {
         let start = ramp.value(t);
         for (value, kernel) in self.values.iter_mut().zip(&self.kernels) {
             *value = (0.0, 0.0);
@@ -290,6 +293,13 @@ impl Propagator {
             Err(Growth(end / start))
         }
     }
+}
+
+/// The instant at which a step begins for a ramp: its kink where there is one, on whichever side of
+/// it rounding put `t`, as a jump belongs to the step that begins with it.
+fn beginning(ramp: &Ramp, t: f64, dt: f64) -> f64 {
+    let kink = ramp.kink_where(|time| (time - t).abs() <= AT_A_STEP * dt);
+    kink.unwrap_or(t)
 }
 
 /// By how much a vector grew that must not.
@@ -390,7 +400,13 @@ impl Integrator for Propagator {
             return Ok(work);
         };
         let (t, next) = (state.t, state.t + dt);
-        operators.external_force(t, &mut self.r);
+        self.r.fill(0.0);
+        for load in operators.loads() {
+            let factor = load.ramp.value(beginning(&load.ramp, t, dt));
+            for &(dof, force) in &load.entries {
+                self.r[dof as usize] += factor * force;
+            }
+        }
         operators
             .stiffness()
             .subtract_product(&state.u, &mut self.r);
@@ -418,7 +434,7 @@ impl Integrator for Propagator {
             .add_series(operators, |series| (&series.g, &series.s))
             .map_err(grown)?;
         for load in operators.loads() {
-            let inside = |time: f64| time > t + 1e-9 * dt && time < next - 1e-9 * dt;
+            let inside = |time: f64| time > t + AT_A_STEP * dt && time < next - AT_A_STEP * dt;
             if let Some(kink) = load.ramp.kink_where(inside) {
                 return Err(StepError::Inaccurate {
                     integrator: Self::ID,
@@ -431,7 +447,7 @@ impl Integrator for Propagator {
             if load.ramp.is_constant_between(t, next) {
                 continue;
             }
-            self.series.follow(&load.ramp, t);
+            self.series.follow(&load.ramp, beginning(&load.ramp, t, dt));
             self.current.fill(0.0);
             for &(dof, force) in &load.entries {
                 self.current[dof as usize] += force / operators.mass()[dof as usize];
