@@ -12,7 +12,8 @@ pub enum Ramp {
         /// Time of the rise (s).
         rise: f64,
     },
-    /// 1 for `from <= t < to` (s), 0 elsewhere.
+    /// 1 for `from <= t < to` (s), 0 elsewhere. A time short of either by a billionth of their
+    /// distance counts as there: times are sums of steps, and .1 added up eight times is below .8.
     Pulse {
         /// First instant (s).
         from: f64,
@@ -100,7 +101,10 @@ impl Ramp {
                 let angle = PI / 2.0 * (t / rise).clamp(0.0, 1.0);
                 angle.sin().powi(2)
             }
-            Self::Pulse { from, to } => f64::from(*from <= t && t < *to),
+            Self::Pulse { from, to } => {
+                let t = t + 1e-9 * (to - from);
+                f64::from(*from <= t && t < *to)
+            }
             Self::Table { times, values } => match times.partition_point(|&time| time <= t) {
                 0 => values[0],
                 next if next == times.len() => values[next - 1],
@@ -220,6 +224,9 @@ mod tests {
         assert!((at(0.2)[1] - 0.5).abs() < 1e-15);
         assert!((at(0.15)[3] - 2.0).abs() < 1e-12);
         assert_eq!(at(0.3)[2], 0.0, "a pulse ends just before its last instant");
+        let added_up: f64 = std::iter::repeat_n(0.1, 8).sum();
+        assert!(added_up < 0.8);
+        assert_eq!(Ramp::Pulse { from: 0.0, to: 0.8 }.value(added_up), 0.0);
         assert_eq!(at(9.0), [1.0, 1.0, 0.0, -1.0]);
     }
 

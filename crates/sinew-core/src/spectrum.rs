@@ -52,7 +52,8 @@ pub fn largest_eigenvalue_of_pencil(
         diagonal.push(alpha);
         solve(&next, &mut primal);
         let beta = dot(&next, &primal).max(0.0).sqrt();
-        let exhausted = step >= n || beta <= 1e-14 * estimate;
+        // Rounding costs the basis its orthogonality, so that n steps need not be enough.
+        let exhausted = beta <= 1e-14 * alpha.abs().max(estimate);
         if exhausted || step % 10 == 0 || step == MAX_STEPS {
             let better = largest_of_tridiagonal(&diagonal, &off_diagonal);
             let settled = better - estimate <= 1e-11 * better;

@@ -19,7 +19,8 @@ pub struct State {
     /// Acceleration at `a_time` (m/s^2), empty unless a method keeps one.
     pub a: Vec<f64>,
     /// Time at which `a` holds (s); minus infinity when none is kept. It is up to date only
-    /// when it equals `t`.
+    /// when it equals `t`. Staggered methods that keep none set it to that, those that keep one
+    /// have it half a step behind the velocity.
     pub a_time: f64,
 }
 
@@ -45,8 +46,9 @@ impl State {
 
     /// Writes the velocity at `t` (m/s) into `out` (length of `u`).
     ///
-    /// A staggered velocity is brought to `t` with the acceleration there: one force
-    /// evaluation, accurate to second order in the distance.
+    /// A staggered velocity is brought to `t` with the acceleration that led to it, where the method
+    /// keeps one (its mass may be another than the system's), and otherwise with the acceleration at
+    /// `t`, which takes a force evaluation. Either is accurate to second order in the distance.
     ///
     /// # Errors
     /// [`EvaluationError`] when the system refuses the state.
@@ -58,6 +60,16 @@ impl State {
         let distance = self.t - self.v_time;
         if distance == 0.0 {
             out.copy_from_slice(&self.v);
+            return Ok(());
+        }
+        // One that a staggered method keeps is as far behind the velocity as that behind t.
+        let kept = self.a.len() == self.v.len()
+            && self.a_time < self.v_time
+            && self.v_time - self.a_time <= 1.5 * distance;
+        if kept {
+            for ((value, v), a) in out.iter_mut().zip(&self.v).zip(&self.a) {
+                *value = v + distance * a;
+            }
             return Ok(());
         }
         let trial = Trial {

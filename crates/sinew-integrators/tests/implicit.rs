@@ -112,7 +112,7 @@ fn factors_are_kept() {
     let other_load = LinearModel::new(operators.clone().with_loads(vec![load]).unwrap());
     let other_size = cube(2);
     let same_matrices = LinearModel::new(operators.clone());
-    for id in ["newmark", "implicit-euler"] {
+    for id in ["newmark", "implicit-euler", "generalized-alpha"] {
         let mut integrator = build(id, &plain());
         let mut work = |system: &dyn System, dt: f64| {
             let mut state = State::at_rest(system.dofs());
@@ -154,7 +154,7 @@ fn what_a_factor_was_used_for_before_leaves_no_trace() {
         let (mass, damping) = (operators.mass().to_vec(), operators.damping().clone());
         LinearModel::new(LinearOperators::new(mass, stiffness, damping, vec![]).unwrap())
     };
-    for id in ["newmark", "implicit-euler"] {
+    for id in ["newmark", "implicit-euler", "generalized-alpha"] {
         let mut used = build(id, &plain());
         for system in [&stiffer as &dyn System, &smaller] {
             let mut state = State::at_rest(system.dofs());

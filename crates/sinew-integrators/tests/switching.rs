@@ -69,11 +69,17 @@ fn methods_of_second_order_hand_over_at_second_order() {
     let mut sequences = vec![
         vec!["central-difference", "rk4"],
         vec!["rk4", "central-difference"],
+        vec!["cnn-stabilised", "rk4"],
+        vec!["rk4", "cnn-stabilised", "propagator", "cnn-stabilised"],
+        vec!["modified-leapfrog", "propagator"],
+        vec!["propagator", "modified-leapfrog"],
     ];
     if cfg!(feature = "implicit") {
         sequences.extend([
             vec!["central-difference", "newmark"],
             vec!["newmark", "central-difference", "rk4", "newmark"],
+            vec!["central-difference", "generalized-alpha"],
+            vec!["newmark", "generalized-alpha", "rk4", "generalized-alpha"],
         ]);
     }
     for ids in sequences {

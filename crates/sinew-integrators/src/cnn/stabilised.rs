@@ -228,8 +228,15 @@ impl Integrator for CnnStabilised {
         }
         stabiliser.solve(&self.force, &mut self.change);
         work.sweeps += self.inner.sweeps();
-        for ((u, v), change) in state.u.iter_mut().zip(&mut state.v).zip(&self.change) {
+        // Kept so that the velocity at the displacement's time can be had: M^-1 of the force is not
+        // the acceleration of this motion.
+        state.a.resize(state.u.len(), 0.0);
+        state.a_time = state.t;
+        let moving = state.u.iter_mut().zip(&mut state.v).zip(&mut state.a);
+        for (((u, v), a), change) in moving.zip(&self.change) {
+            let before = *v;
             *v = if running { *v + change } else { *change };
+            *a = (*v - before) / weight;
             *u += dt * *v;
         }
         state.t += dt;

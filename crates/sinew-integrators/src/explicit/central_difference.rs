@@ -84,6 +84,7 @@ impl Integrator for CentralDifference {
         }
         state.t += dt;
         state.v_time = state.t - dt / 2.0;
+        state.a_time = f64::NEG_INFINITY;
         system.accept(state);
         Ok(work)
     }

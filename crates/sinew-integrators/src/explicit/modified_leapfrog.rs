@@ -169,6 +169,7 @@ impl Integrator for ModifiedLeapfrog {
         }
         state.t += dt;
         state.v_time = state.t - dt / 2.0;
+        state.a_time = f64::NEG_INFINITY;
         system.accept(state);
         Ok(work)
     }

@@ -4,7 +4,10 @@
 
 use std::sync::OnceLock;
 
-use sinew_core::{Integrator, Options, Ramp, Run, RunReport, State, System};
+use sinew_core::{
+    Damping, Integrator, LinearModel, LinearOperators, LinearSystem, Load, Options, Ramp, Run,
+    RunReport, State, System,
+};
 use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 
@@ -15,24 +18,26 @@ pub(crate) const INSTANT: f64 = 0.02;
 /// Instants after t = 0.
 const INSTANTS: usize = 50;
 
-/// The cube with `cells` grid cells along each edge.
-pub(crate) fn cube(cells: usize) -> Model {
-    let mesh = structured::cube(cells, 0.2, Split::Kuhn).unwrap();
+/// Springs after Lloyd, Szekely and Harders, uncalibrated, with these dashpots.
+pub(crate) fn springs(damping_ratio: f64) -> Law {
+    Law::Springs {
+        youngs_modulus: 3500.0,
+        rule: SpringRule::Lloyd,
+        calibrate: false,
+        damping_ratio,
+    }
+}
+
+/// A cube held at its four lateral faces under 500 Pa on its top.
+pub(crate) fn scene(cells: usize, edge: f64, law: Law, damping: Rayleigh) -> Model {
+    let mesh = structured::cube(cells, edge, Split::Kuhn).unwrap();
     let problem = Problem {
         regions: vec![Region {
             group: None,
             density: 1060.0,
-            law: Law::Springs {
-                youngs_modulus: 3500.0,
-                rule: SpringRule::Lloyd,
-                calibrate: false,
-                damping_ratio: 0.0,
-            },
+            law,
         }],
-        damping: Rayleigh {
-            mass: 80.0,
-            stiffness: 0.0,
-        },
+        damping,
         fixed: vec![Fixed {
             group: "sides".into(),
             axes: [true; 3],
@@ -45,6 +50,27 @@ pub(crate) fn cube(cells: usize) -> Model {
         gravity: None,
     };
     Model::build(&mesh, &problem).unwrap()
+}
+
+/// Damping in proportion to the mass.
+pub(crate) fn mass_damping(mass: f64) -> Rayleigh {
+    Rayleigh {
+        mass,
+        stiffness: 0.0,
+    }
+}
+
+/// The cube with `cells` grid cells along each edge.
+pub(crate) fn cube(cells: usize) -> Model {
+    scene(cells, 0.2, springs(0.0), mass_damping(80.0))
+}
+
+/// The matrices of a model under other damping and other loads.
+pub(crate) fn altered(model: &Model, damping: Damping, loads: Vec<Load>) -> LinearModel {
+    let operators = model.operators();
+    let stiffness = operators.stiffness().as_ref().clone();
+    let mass = operators.mass().to_vec();
+    LinearModel::new(LinearOperators::new(mass, stiffness, damping, loads).unwrap())
 }
 
 /// The paper's cube of ten cells.

@@ -14,7 +14,11 @@ pub(crate) mod cube;
 pub(crate) mod dense;
 pub(crate) mod dense_methods;
 
-use sinew_core::{Integrator, Options, Outcome, Run, RunReport, State, System, Verdict, simulate};
+use std::collections::BTreeMap;
+
+use sinew_core::{
+    Integrator, OptionValue, Options, Outcome, Run, RunReport, State, System, Verdict, simulate,
+};
 
 /// An integrator by name, under these options.
 pub(crate) fn build(id: &str, options: &Options) -> Box<dyn Integrator> {
@@ -29,6 +33,15 @@ pub(crate) fn plain() -> Options {
 /// The option `saturation`.
 pub(crate) fn saturation(q: f64) -> Options {
     Options::new().with_number("saturation", q)
+}
+
+/// The option `inner` of `cnn-stabilised`.
+pub(crate) fn inner(kind: &str, sweeps: Option<f64>) -> OptionValue {
+    let mut entries = BTreeMap::from([("kind".to_owned(), OptionValue::Text(kind.into()))]);
+    if let Some(sweeps) = sweeps {
+        entries.insert("sweeps".to_owned(), OptionValue::Number(sweeps));
+    }
+    OptionValue::Table(entries)
 }
 
 /// Takes so many steps.

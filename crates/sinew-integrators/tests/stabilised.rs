@@ -1,0 +1,565 @@
+//! `cnn-stabilised`: what it conserves, where it comes to rest and which methods it becomes.
+
+#![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use std::collections::BTreeMap;
+
+use common::cube::{altered, cube, mass_damping, scene, springs};
+use common::dense::{dense, dense_damping};
+use common::{advance, build, inner, largest, plain};
+use nalgebra::{DMatrix, DVector};
+use sinew_cnn::{Blend, GammaRule, Inner, Stabiliser};
+use sinew_core::spectrum::critical_step;
+use sinew_core::{
+    Damping, Integrator, LinearModel, LinearOperators, LinearSystem, OptionValue, Options, State,
+    System,
+};
+#[cfg(feature = "implicit")]
+use sinew_core::{Load, Ramp};
+use sinew_integrators::cnn::CnnStabilised;
+
+const INNERS: [Inner; 6] = [
+    Inner::Block,
+    Inner::Jacobi { sweeps: 3 },
+    Inner::Chebyshev { sweeps: 1 },
+    Inner::Chebyshev { sweeps: 2 },
+    Inner::Chebyshev { sweeps: 5 },
+    Inner::GaussSeidel { sweeps: 2 },
+];
+
+fn method(inner: Inner, blend: Blend) -> CnnStabilised {
+    CnnStabilised::new(inner, GammaRule::Power, blend)
+}
+
+fn matrix(rows: Vec<Vec<f64>>) -> DMatrix<f64> {
+    let n = rows.len();
+    DMatrix::from_row_iterator(n, n, rows.into_iter().flatten())
+}
+
+/// A displacement and a velocity without pattern, up to `u` and `v`.
+fn moving(dofs: usize, u: f64, v: f64) -> State {
+    let wave = |size: f64, rate: f64| {
+        let value = |dof| size * f64::sin(1.0 + rate * f64::from(dof));
+        (0..dofs as u32).map(value).collect()
+    };
+    State::new(wave(u, 7.1), wave(v, 3.7))
+}
+
+fn oscillator(damping: f64) -> LinearModel {
+    LinearModel::new(LinearOperators::oscillator(0.1, 100.0, damping).unwrap())
+}
+
+/// The cube's network without loads under mass damping.
+fn network(mass: f64) -> LinearModel {
+    let damping = Damping {
+        mass,
+        ..Damping::default()
+    };
+    altered(&cube(3), damping, vec![])
+}
+
+/// A network damped in every way, under the cube's load.
+fn damped_in_every_way(loads: bool) -> LinearModel {
+    let model = scene(3, 0.2, springs(0.3), mass_damping(5.0));
+    let damping = Damping {
+        stiffness: 2e-3,
+        ..model.operators().damping().clone()
+    };
+    assert!(damping.extra.is_some());
+    let loads = if loads {
+        model.operators().loads().to_vec()
+    } else {
+        vec![]
+    };
+    altered(&model, damping, loads)
+}
+
+/// The energy form of a system, a step and P.
+struct Form {
+    /// P - dt/2 D - dt^2/4 K.
+    moving: DMatrix<f64>,
+    stiffness: DMatrix<f64>,
+    damping: DMatrix<f64>,
+}
+
+fn quadratic(matrix: &DMatrix<f64>, x: &DVector<f64>) -> f64 {
+    x.dot(&(matrix * x))
+}
+
+impl Form {
+    fn of(system: &LinearModel, dt: f64, inner: Inner, blend: Blend) -> Self {
+        let operators = system.operators();
+        let n = operators.dofs();
+        let mut solver = Stabiliser::new(operators, dt, GammaRule::Power, blend, inner);
+        let mut inverse = DMatrix::zeros(n, n);
+        let (mut unit, mut column) = (vec![0.0; n], vec![0.0; n]);
+        for j in 0..n {
+            unit.fill(0.0);
+            unit[j] = 1.0;
+            solver.solve(&unit, &mut column);
+            inverse.set_column(j, &DVector::from_row_slice(&column));
+        }
+        let p = inverse.try_inverse().unwrap();
+        let p = (&p + p.transpose()) * 0.5;
+        let (stiffness, damping) = (
+            matrix(dense(operators.stiffness())),
+            matrix(dense_damping(operators)),
+        );
+        Self {
+            moving: p - &damping * (dt / 2.0) - &stiffness * (dt * dt / 4.0),
+            stiffness,
+            damping,
+        }
+    }
+
+    /// Of a step that has just been taken from the displacement `before`.
+    fn energy(&self, before: &[f64], after: &State) -> f64 {
+        let mean = |(a, b): (&f64, &f64)| 0.5 * (a + b);
+        let middle = before.iter().zip(&after.u).map(mean);
+        let middle = DVector::from_iterator(before.len(), middle);
+        let v = DVector::from_row_slice(&after.v);
+        0.5 * (quadratic(&self.moving, &v) + quadratic(&self.stiffness, &middle))
+    }
+}
+
+/// Follows so many steps and shows the displacement before each, the velocity before it (none
+/// for the first) and the state after it.
+fn follow(
+    system: &dyn System,
+    integrator: &mut dyn Integrator,
+    state: &mut State,
+    dt: f64,
+    steps: usize,
+    mut see: impl FnMut(usize, &[f64], &[f64], &State),
+) {
+    let (mut u, mut v) = (vec![0.0; state.u.len()], vec![0.0; state.u.len()]);
+    for step in 0..steps {
+        u.copy_from_slice(&state.u);
+        v.copy_from_slice(&state.v);
+        integrator.step(system, state, dt).unwrap();
+        see(step, &u, &v, state);
+    }
+}
+
+/// 10,000 steps without damping at 250 times the limit.
+fn assert_conserves(system: &LinearModel, inner: Inner, blend: Blend) {
+    let dt = 250.0 * critical_step(system.operators());
+    let form = Form::of(system, dt, inner, blend);
+    let mut state = moving(system.dofs(), 1e-3, 1e-3 / dt);
+    let (mut first, mut early, mut late) = (None, 0.0_f64, 0.0_f64);
+    let mut integrator = method(inner, blend);
+    follow(
+        system,
+        &mut integrator,
+        &mut state,
+        dt,
+        10_000,
+        |step, before, _, after| {
+            let energy = form.energy(before, after);
+            let change = energy / *first.get_or_insert(energy) - 1.0;
+            assert!(
+                change.abs() <= 1e-9,
+                "{inner:?} {blend:?}, step {step}: {change:e}"
+            );
+            let size = if step < 5000 { &mut early } else { &mut late };
+            *size = size.max(largest(&after.u));
+        },
+    );
+    assert!(integrator.stabiliser().is_some());
+    assert!(late <= 1.5 * early, "{inner:?}: {early} {late}");
+    assert!(early <= 0.1, "{inner:?}: {early}");
+}
+
+#[test]
+fn an_undamped_oscillator_keeps_its_energy_form_at_250_times_the_limit() {
+    for inner in INNERS {
+        for blend in [Blend::Auto, Blend::Full] {
+            assert_conserves(&oscillator(0.0), inner, blend);
+        }
+    }
+}
+
+#[test]
+fn an_undamped_network_keeps_its_energy_form_at_250_times_the_limit() {
+    for inner in INNERS {
+        assert_conserves(&network(0.0), inner, Blend::Auto);
+    }
+    assert_conserves(&network(0.0), Inner::Block, Blend::Full);
+}
+
+/// `E+ - E- = -dt vbar' D vbar`, vbar being the mean of the two velocities.
+#[test]
+fn damping_takes_from_the_energy_form_what_it_should() {
+    for system in [network(80.0), damped_in_every_way(false)] {
+        for share in [1.5, 250.0] {
+            let dt = share * critical_step(system.operators());
+            for inner in INNERS {
+                let form = Form::of(&system, dt, inner, Blend::Auto);
+                let mut state = moving(system.dofs(), 1e-3, 1e-3 / dt);
+                let (mut first, mut before_energy, mut lost) = (0.0, 0.0, 0.0);
+                let see = |step, before: &[f64], v: &[f64], after: &State| {
+                    let energy = form.energy(before, after);
+                    if step == 0 {
+                        first = energy;
+                    } else {
+                        let sum = v.iter().zip(&after.v).map(|(a, b)| 0.5 * (a + b));
+                        let mean = DVector::from_iterator(v.len(), sum);
+                        let loss = dt * quadratic(&form.damping, &mean);
+                        let error = (before_energy - energy - loss) / first;
+                        assert!(
+                            error.abs() <= 1e-10,
+                            "{inner:?} at {share}, step {step}: {error:e}"
+                        );
+                        lost += loss;
+                    }
+                    before_energy = energy;
+                };
+                let mut integrator = method(inner, Blend::Auto);
+                follow(&system, &mut integrator, &mut state, dt, 500, see);
+                assert!(
+                    lost > 1e-3 * first && lost <= first * (1.0 + 1e-9),
+                    "{inner:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Whatever P is.
+#[cfg(feature = "implicit")]
+#[test]
+fn every_inner_iteration_comes_to_rest_where_stiffness_carries_the_load() {
+    for (model, dt) in [
+        (scene(3, 0.2, springs(0.0), mass_damping(80.0)), 0.02),
+        (scene(3, 0.2, springs(0.3), mass_damping(30.0)), 0.1),
+    ] {
+        let mut load = vec![0.0; model.dofs()];
+        model.external_force(1.0, &mut load);
+        let expected = sinew_integrators::static_solution(&model, &load).unwrap();
+        for inner in INNERS {
+            for blend in [Blend::Auto, Blend::Full] {
+                let mut state = State::at_rest(model.dofs());
+                advance(&mut method(inner, blend), &model, &mut state, 3000, dt);
+                let off: Vec<f64> = state.u.iter().zip(&expected).map(|(a, b)| a - b).collect();
+                let off = largest(&off) / largest(&expected);
+                assert!(off <= 1e-8, "{inner:?}: {off:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn below_the_critical_step_it_is_central_difference_to_the_last_bit() {
+    for system in [network(0.0), network(80.0)] {
+        let limit = critical_step(system.operators());
+        for (share, same) in [(0.3, true), (0.9899, true), (0.9901, false)] {
+            for inner in INNERS {
+                let start = moving(system.dofs(), 1e-3, 0.1);
+                let (mut one, mut other) = (start.clone(), start);
+                let mut stabilised = method(inner, Blend::Auto);
+                let mut plain = build("central-difference", &plain());
+                for _ in 0..50 {
+                    let work = stabilised.step(&system, &mut one, share * limit).unwrap();
+                    let expected = plain.step(&system, &mut other, share * limit).unwrap();
+                    assert!(!same || work == expected);
+                }
+                assert_eq!(one == other, same, "{inner:?} at {share}");
+                assert_eq!(stabilised.stabiliser().is_none(), same);
+            }
+        }
+    }
+}
+
+/// The displacements after each of so many steps.
+#[cfg(feature = "implicit")]
+fn displacements(
+    system: &dyn System,
+    integrator: &mut dyn Integrator,
+    start: &State,
+    dt: f64,
+) -> Vec<Vec<f64>> {
+    let mut state = start.clone();
+    let step = |_| {
+        integrator.step(system, &mut state, dt).unwrap();
+        state.u.clone()
+    };
+    (0..60).map(step).collect()
+}
+
+/// Both agree to 1e-8, sooner or later.
+#[cfg(feature = "implicit")]
+fn assert_becomes_newmark(system: &LinearModel, start: &State, blend: Blend) {
+    for (share, inner) in [
+        (1.4, Inner::Jacobi { sweeps: 400 }),
+        (1.4, Inner::GaussSeidel { sweeps: 60 }),
+        (5.0, Inner::Chebyshev { sweeps: 200 }),
+    ] {
+        let dt = share * critical_step(system.operators());
+        let mut network = method(inner, blend);
+        network.prepare(system, dt).unwrap();
+        let s = network.stabiliser().unwrap().majorant().s();
+        assert_eq!(s < 1.0, blend == Blend::Auto);
+        let mut newmark = build("newmark", &plain().with_number("beta", s / 4.0));
+        let found = displacements(system, &mut network, start, dt);
+        let expected = displacements(system, &mut *newmark, start, dt);
+        let error = common::relative_error(&found, &expected);
+        assert!(error <= 1e-8, "{inner:?}: {error:e}");
+        // It is the iteration that does it.
+        let one = displacements(system, &mut method(Inner::Block, blend), start, dt);
+        assert!(common::relative_error(&one, &expected) > 1e-3);
+    }
+}
+
+/// With beta = s/4 and gamma = 1/2 both obey
+/// `A (u+ - 2 u + u-) = dt^2 (F - K u) - dt D (u - u-)`, `A = M + dt/2 D + s dt^2/4 K`. The network's
+/// first step is `A (u1 - u0) = dt M v0 + dt^2/2 (F - K u0)`; Newmark's adds
+/// `(1 - s) dt^3/4 D a0` on the right: the same without damping, with s = 1, or where a0 = 0.
+#[cfg(feature = "implicit")]
+#[test]
+fn many_sweeps_make_it_newmark_s_method() {
+    let loads = cube(3).operators().loads().to_vec();
+    let undamped = altered(&cube(3), Damping::default(), loads);
+    let damped = damped_in_every_way(true);
+    let n = undamped.dofs();
+    for start in [State::at_rest(n), moving(n, 0.0, 0.1), moving(n, 1e-3, 0.1)] {
+        assert_becomes_newmark(&undamped, &start, Blend::Auto);
+        assert_becomes_newmark(&undamped, &start, Blend::Full);
+        assert_becomes_newmark(&damped, &start, Blend::Full);
+    }
+}
+
+/// F = K u0 + D v0.
+#[cfg(feature = "implicit")]
+#[test]
+fn damped_motion_without_a_first_acceleration_is_newmark_s_at_any_s() {
+    let unloaded = damped_in_every_way(false);
+    let start = moving(unloaded.dofs(), 1e-3, 0.1);
+    let mut force = vec![0.0; unloaded.dofs()];
+    unloaded
+        .operators()
+        .subtract_internal_force(&start.u, &start.v, &mut force);
+    let load = Load {
+        ramp: Ramp::Step,
+        entries: (0..).zip(force.iter().map(|force| -force)).collect(),
+    };
+    let damping = unloaded.operators().damping().clone();
+    let system = altered(
+        &scene(3, 0.2, springs(0.3), mass_damping(5.0)),
+        damping,
+        vec![load],
+    );
+    assert_becomes_newmark(&system, &start, Blend::Auto);
+}
+
+#[cfg(feature = "implicit")]
+#[test]
+fn otherwise_the_first_steps_differ_by_the_jerk_of_the_damping() {
+    let system = damped_in_every_way(true);
+    let operators = system.operators();
+    let dt = 1.4 * critical_step(operators);
+    let start = moving(system.dofs(), 1e-3, 0.1);
+    let mut network = method(Inner::GaussSeidel { sweeps: 200 }, Blend::Auto);
+    network.prepare(&system, dt).unwrap();
+    let s = network.stabiliser().unwrap().majorant().s();
+    let mut newmark = build("newmark", &plain().with_number("beta", s / 4.0));
+    let [one, other] = [
+        displacements(&system, &mut network, &start, dt).swap_remove(0),
+        displacements(&system, &mut *newmark, &start, dt).swap_remove(0),
+    ]
+    .map(DVector::from_vec);
+    let mass = DMatrix::from_diagonal(&DVector::from_row_slice(operators.mass()));
+    let k = matrix(dense(operators.stiffness()));
+    let d = matrix(dense_damping(operators));
+    let mut net = vec![0.0; system.dofs()];
+    operators.net_force(0.0, &start.u, &start.v, &mut net);
+    let a0 = DVector::from_vec(net).component_div(&DVector::from_row_slice(operators.mass()));
+    let a = mass + &d * (dt / 2.0) + k * (s * dt * dt / 4.0);
+    let expected = a.lu().solve(&(d * a0)).unwrap() * ((1.0 - s) * dt.powi(3) / 4.0);
+    let difference = other - one;
+    assert!(difference.norm() > 1e-5);
+    let error = (&difference - &expected).norm() / expected.norm();
+    assert!(error <= 1e-8, "{error:e}");
+}
+
+/// With s = 1 P differs from M at every step, by as much as keeps the order; in the limit of many
+/// sweeps with any damping, with a block per cell where damping is in proportion to the mass.
+#[test]
+fn order_2() {
+    let mass_damped = network(20.0);
+    let damped = damped_in_every_way(true);
+    let cases: Vec<(&LinearModel, Inner, Blend)> = INNERS
+        .into_iter()
+        .flat_map(|inner| [Blend::Auto, Blend::Full].map(|blend| (&mass_damped, inner, blend)))
+        .chain([(&damped, Inner::GaussSeidel { sweeps: 30 }, Blend::Auto)])
+        .collect();
+    for (system, inner, blend) in cases {
+        let limit = critical_step(system.operators());
+        let start = moving(system.dofs(), 1e-3, 0.1);
+        let end = |integrator: &mut dyn Integrator, parts: usize| {
+            let mut state = start.clone();
+            advance(
+                integrator,
+                system,
+                &mut state,
+                20 * parts,
+                0.2 * limit / parts as f64,
+            );
+            state.u
+        };
+        let reference = [end(&mut *build("rk4", &plain()), 32)];
+        let error =
+            |parts| common::relative_error(&[end(&mut method(inner, blend), parts)], &reference);
+        let order = (error(4) / error(8)).log2();
+        assert!((order - 2.0).abs() <= 0.1, "{inner:?} {blend:?}: {order}");
+    }
+}
+
+#[test]
+fn work_is_one_sweep_and_those_of_the_inner_iteration() {
+    let system = network(80.0);
+    let dt = 3.0 * critical_step(system.operators());
+    for (kind, sweeps, expected) in [
+        ("block", None, 1),
+        ("jacobi", Some(3.0), 3),
+        ("chebyshev", Some(1.0), 1),
+        ("chebyshev", Some(8.0), 8),
+        ("gauss-seidel", Some(1.0), 2),
+        ("gauss-seidel", Some(3.0), 6),
+    ] {
+        let options = plain().with("inner", inner(kind, sweeps));
+        let mut integrator = build("cnn-stabilised", &options);
+        let mut state = State::at_rest(system.dofs());
+        for _ in 0..3 {
+            let work = integrator.step(&system, &mut state, dt).unwrap();
+            assert_eq!(work.sweeps, expected, "{kind}");
+        }
+    }
+}
+
+#[test]
+fn facts_say_what_was_added() {
+    let system = damped_in_every_way(false);
+    let dt = 250.0 * critical_step(system.operators());
+    let facts = |gamma: &str| {
+        let gamma = OptionValue::Text(gamma.into());
+        let mut integrator = build("cnn-stabilised", &plain().with("gamma", gamma));
+        assert!(integrator.facts().is_empty());
+        integrator.prepare(&system, dt).unwrap();
+        let facts = integrator.facts();
+        let names: Vec<&str> = facts.iter().map(|fact| fact.name).collect();
+        assert_eq!(names, ["s", "gamma_k", "gamma_d", "certificate"]);
+        facts.iter().map(|fact| fact.value).collect::<Vec<f64>>()
+    };
+    let (power, circles) = (facts("power"), facts("gershgorin"));
+    assert!((power[0] - (1.0 - (0.99_f64 / 250.0).powi(2))).abs() < 1e-12);
+    assert!(power[1] > 1.0 && power[1] < circles[1]);
+    assert!(power[2] > 1.0 && power[2] < circles[2]);
+    assert!(power[3] < 1.0 && circles[3] < power[3]);
+}
+
+#[test]
+fn options_that_make_no_sense_are_refused() {
+    const INNER: &str = "{ kind = \"block\" }, or kind = \"jacobi\", \"chebyshev\" or \"gauss-seidel\" with sweeps = a whole number from 1 on";
+    let text = |word: &str| OptionValue::Text(word.into());
+    let number = OptionValue::Number;
+    let mut misspelt = BTreeMap::from([("kind".to_owned(), text("jacobi"))]);
+    misspelt.insert("sweep".to_owned(), number(3.0));
+    for (key, value, shown, expected) in [
+        (
+            "inner",
+            inner("chebyshev", Some(0.0)),
+            "{ kind = \"chebyshev\", sweeps = 0 }",
+            INNER,
+        ),
+        (
+            "inner",
+            inner("jacobi", Some(2.5)),
+            "{ kind = \"jacobi\", sweeps = 2.5 }",
+            INNER,
+        ),
+        (
+            "inner",
+            inner("jacobi", Some(f64::NAN)),
+            "{ kind = \"jacobi\", sweeps = NaN }",
+            INNER,
+        ),
+        (
+            "inner",
+            inner("jacobi", Some(-1.0)),
+            "{ kind = \"jacobi\", sweeps = -1 }",
+            INNER,
+        ),
+        (
+            "inner",
+            inner("gauss-seidel", None),
+            "{ kind = \"gauss-seidel\" }",
+            INNER,
+        ),
+        (
+            "inner",
+            inner("block", Some(2.0)),
+            "{ kind = \"block\", sweeps = 2 }",
+            INNER,
+        ),
+        (
+            "inner",
+            inner("cg", Some(2.0)),
+            "{ kind = \"cg\", sweeps = 2 }",
+            INNER,
+        ),
+        (
+            "inner",
+            OptionValue::Table(misspelt),
+            "{ kind = \"jacobi\", sweep = 3 }",
+            INNER,
+        ),
+        ("inner", text("jacobi"), "\"jacobi\"", INNER),
+        ("s", number(0.5), "0.5", "\"auto\" or 1"),
+        ("s", number(f64::NAN), "NaN", "\"auto\" or 1"),
+        ("s", text("full"), "\"full\"", "\"auto\" or 1"),
+        (
+            "gamma",
+            text("tight"),
+            "\"tight\"",
+            "\"power\" or \"gershgorin\"",
+        ),
+        ("gamma", number(2.0), "2", "\"power\" or \"gershgorin\""),
+    ] {
+        let options = Options::new().with(key, value);
+        let refusal = sinew_integrators::build("cnn-stabilised", &options).err();
+        assert_eq!(
+            refusal.unwrap().to_string(),
+            format!("`cnn-stabilised`: {key} = {shown}: expected {expected}")
+        );
+    }
+}
+
+/// Beyond the critical step M^-1 of the force is not the acceleration of the motion: extrapolating
+/// with it would give velocities thousands of times too large.
+#[test]
+fn the_velocity_at_the_time_of_the_displacement_is_of_the_size_of_its_neighbours() {
+    let system = network(1.0);
+    let Some(linear) = system.as_linear() else {
+        panic!("a network is linear");
+    };
+    for factor in [2.5, 25.0, 250.0] {
+        let dt = factor * critical_step(linear.operators());
+        let mut integrator = method(Inner::Block, Blend::Auto);
+        let mut state = moving(system.dofs(), 1e-3, 1e-2);
+        for _ in 0..20 {
+            let before = largest(&state.v);
+            integrator.step(&system, &mut state, dt).unwrap();
+            let mut at_t = vec![0.0; system.dofs()];
+            state.velocity_at_t(&system, &mut at_t).unwrap();
+            let around = before.max(largest(&state.v));
+            assert!(
+                largest(&at_t) <= 3.0 * around,
+                "{:.1e} among {around:.1e} at {factor} x critical",
+                largest(&at_t)
+            );
+        }
+    }
+}
