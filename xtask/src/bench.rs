@@ -9,10 +9,17 @@ use crate::failure::Failure;
 use crate::progress::Bar;
 use crate::root;
 
+/// What is measured unless other scenes are named.
+const DEFAULT_SCENES: [&str; 3] = [
+    "paper-oscillator.toml",
+    "paper-cube.toml",
+    "peers-cube.toml",
+];
+
 /// What to measure and where to write it.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A scene file; may be given several times [default: the paper's two scenes]
+    /// A scene file; may be given several times [default: the paper's two scenes and the peers' cube]
     #[arg(long = "scene", value_name = "FILE")]
     scenes: Vec<PathBuf>,
     /// An integrator; may be given several times [default: all]
@@ -30,9 +37,9 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let default = |name: &str| root().join("scenes").join(name);
     let scenes = if arguments.scenes.is_empty() {
-        vec![default("paper-oscillator.toml"), default("paper-cube.toml")]
+        let scene = |name: &&str| root().join("scenes").join(name);
+        DEFAULT_SCENES.iter().map(scene).collect()
     } else {
         arguments.scenes.clone()
     };
