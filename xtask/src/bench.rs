@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use sinew_bench::report::{terminal, write_all};
 use sinew_bench::{Bench, machine, revision};
 
+use crate::beside::{self, Program};
 use crate::failure::Failure;
 use crate::progress::Bar;
 use crate::root;
@@ -34,6 +35,10 @@ pub(crate) struct Arguments {
     /// Where results.json, report.html and the plots go [default: target/bench]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Run another program on the peers' cube in turn with our cheapest methods and print the ratios
+    /// of CPU time, nothing else; numpy and scipy are installed by pip into target/
+    #[arg(long, value_enum, value_name = "PROGRAM", conflicts_with_all = ["scenes", "steps", "out"])]
+    beside: Option<Program>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -49,6 +54,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         steps: arguments.steps.clone(),
         quick: arguments.quick,
     };
+    if let Some(program) = arguments.beside {
+        return beside::run(program, &bench);
+    }
     let bar = Bar::new();
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();
