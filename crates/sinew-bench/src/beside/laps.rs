@@ -122,8 +122,7 @@ fn run_here(
     let error = apart(&theirs, &case.samples().displacements);
     let ours = Contender::new(case, same.0, same.1)?.displacements(case)?;
     let difference = apart(&theirs, &ours);
-    // Written so that what is not a number fails.
-    if !(difference <= ROUNDING) {
+    if difference.is_nan() || difference > ROUNDING {
         return Err(LapError::Apart {
             rival: rival.name(),
             integrator: same.0.to_owned(),
