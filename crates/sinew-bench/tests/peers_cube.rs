@@ -3,6 +3,8 @@
 //! Central difference and backward Euler are those of scipy, SOFA and VegaFEM, which agree with each
 //! other to four digits and more; the figures stand here with the digits they were given with.
 
+#![expect(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
 use std::path::PathBuf;
 use std::sync::{Mutex, OnceLock};
 
