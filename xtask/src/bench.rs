@@ -5,14 +5,22 @@ use std::path::PathBuf;
 use sinew_bench::report::{terminal, write_all};
 use sinew_bench::{Bench, machine, revision};
 
+use crate::beside::{self, Program};
 use crate::failure::Failure;
 use crate::progress::Bar;
 use crate::root;
 
+/// What is measured unless other scenes are named.
+const DEFAULT_SCENES: [&str; 3] = [
+    "paper-oscillator.toml",
+    "paper-cube.toml",
+    "peers-cube.toml",
+];
+
 /// What to measure and where to write it.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A scene file; may be given several times [default: the paper's two scenes]
+    /// A scene file; may be given several times [default: the paper's two scenes and the peers' cube]
     #[arg(long = "scene", value_name = "FILE")]
     scenes: Vec<PathBuf>,
     /// An integrator; may be given several times [default: all]
@@ -27,12 +35,16 @@ pub(crate) struct Arguments {
     /// Where results.json, report.html and the plots go [default: target/bench]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Run another program on the peers' cube in turn with our cheapest methods and print the ratios
+    /// of CPU time, nothing else; numpy and scipy are installed by pip into target/
+    #[arg(long, value_enum, value_name = "PROGRAM", conflicts_with_all = ["scenes", "steps", "out"])]
+    beside: Option<Program>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let default = |name: &str| root().join("scenes").join(name);
     let scenes = if arguments.scenes.is_empty() {
-        vec![default("paper-oscillator.toml"), default("paper-cube.toml")]
+        let scene = |name: &&str| root().join("scenes").join(name);
+        DEFAULT_SCENES.iter().map(scene).collect()
     } else {
         arguments.scenes.clone()
     };
@@ -42,6 +54,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         steps: arguments.steps.clone(),
         quick: arguments.quick,
     };
+    if let Some(program) = arguments.beside {
+        return beside::run(program, &bench);
+    }
     let bar = Bar::new();
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();

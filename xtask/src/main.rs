@@ -1,6 +1,7 @@
 //! Repository chores: `cargo xtask bench | reproduce | meshes | docs | ci`.
 
 mod bench;
+mod beside;
 mod ci;
 mod docs;
 mod failure;

@@ -150,3 +150,24 @@ fn a_method_that_cannot_run_is_listed_with_its_reason_and_the_others_run() {
     assert!(said.contains("newmark"), "{said}");
     assert!(out.join("results.json").exists());
 }
+
+#[test]
+fn another_program_needs_python_and_takes_no_scene() {
+    let beside = |arguments: &[&str]| {
+        let nothing = tempfile::tempdir().unwrap();
+        let mut command = Command::cargo_bin("xtask").unwrap();
+        command.args(["bench", "--beside"]).args(arguments);
+        let output = command.env("PATH", nothing.path()).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert_eq!(output.stdout, b"");
+        said
+    };
+    let said = beside(&["scipy"]);
+    assert_eq!(said.trim_end().lines().count(), 1, "{said}");
+    assert!(said.contains("--beside scipy needs Python 3"), "{said}");
+    assert!(beside(&["scipy", "--scene", "a.toml"]).contains("cannot be used with"));
+    assert!(beside(&["matlab"]).contains("possible values: scipy"));
+    let said = beside(&["scipy", "--integrator", "cn"]);
+    assert!(said.contains("unknown integrator `cn`"), "{said}");
+}

@@ -86,10 +86,7 @@ impl Bench {
         if let Some(&step) = self.steps.iter().find(|dt| !(dt.is_finite() && **dt > 0.0)) {
             return Err(BenchError::Step(step));
         }
-        // Products may use a thread pool; one thread keeps times and counts comparable.
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-        let pool = pool.map_err(|error| BenchError::Thread(error.to_string()))?;
-        pool.install(|| self.run_here(&methods, revision, machine, &mut progress))
+        on_one_thread(|| self.run_here(&methods, revision, machine, &mut progress))?
     }
 
     fn run_here(
@@ -146,7 +143,11 @@ impl Bench {
         Ok(results)
     }
 
-    fn methods(&self) -> Result<Vec<String>, BenchError> {
+    /// The integrators to measure.
+    ///
+    /// # Errors
+    /// [`BenchError::Integrator`] for one that does not exist.
+    pub fn methods(&self) -> Result<Vec<String>, BenchError> {
         let known = sinew_integrators::ids();
         if self.integrators.is_empty() {
             return Ok(known.into_iter().map(str::to_owned).collect());
@@ -169,9 +170,16 @@ impl Bench {
     }
 }
 
+/// Products may use a thread pool; one thread keeps times and counts comparable.
+pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, BenchError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let pool = pool.map_err(|error| BenchError::Thread(error.to_string()))?;
+    Ok(pool.install(work))
+}
+
 /// The scene's own integrator runs with the scene's options, every other with its defaults. Those
 /// that saturate say at which voltage.
-fn method_on(case: &Case, integrator: &str) -> Method {
+pub(crate) fn method_on(case: &Case, integrator: &str) -> Method {
     let mut method = Method::new(integrator);
     let settings = case.simulation().settings();
     if settings.integrator == integrator {

@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Write};
 use super::{
     columns::{COLUMNS, Column},
     markup::{escape, slugs},
-    number, strip,
+    number, peers, strip,
     summary::cheapest,
     verdict, work_precision,
 };
@@ -159,6 +159,9 @@ impl Page {
             self.figure(&work_precision(results, id).svg());
             self.figure(&strip(results, id));
             self.runs(&rows);
+        }
+        if id == crate::peers::CASE {
+            self.out.push_str(&peers::peers());
         }
         self.out.push_str("</section>\n");
     }

@@ -1,0 +1,244 @@
+//! Laps in turn: theirs, ours, theirs, ours.
+
+use sinew_core::{Integrator, Run, SimulateError, State, simulate};
+
+use super::pilots::{Target, pilots};
+use crate::bench::{method_on, on_one_thread};
+use crate::case::Case;
+use crate::cpu_time::thread_cpu_time;
+use crate::reference::track::ErrorNorm;
+
+/// Another program that steps the same system.
+pub trait Rival {
+    /// What it is, with versions.
+    fn name(&self) -> String;
+
+    /// The integrator of ours that does the same, and its step (s).
+    fn same(&self) -> (&'static str, f64);
+
+    /// One run over the case's duration: CPU time (s) of its steps alone.
+    ///
+    /// # Errors
+    /// What went wrong, in words.
+    fn lap(&mut self) -> Result<f64, String>;
+
+    /// Displacement (m) at the case's samples, t = 0 first, from a run that nobody times.
+    ///
+    /// # Errors
+    /// What went wrong, in words.
+    fn displacements(&mut self) -> Result<Vec<Vec<f64>>, String>;
+}
+
+/// How often.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rounds(pub usize);
+
+/// Why there are no ratios.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LapError {
+    /// The other program.
+    #[error("{0}")]
+    Rival(String),
+    /// One of our methods.
+    #[error("{0}")]
+    Ours(String),
+    /// The two did not solve the same problem.
+    #[error(
+        "{rival} and `{integrator}` are {difference:.1e} apart (relative), more than {allowed:.0e}: not the same computation"
+    )]
+    Apart {
+        /// The other program.
+        rival: String,
+        /// Ours.
+        integrator: String,
+        /// Relative L2 difference of the displacements.
+        difference: f64,
+        /// What rounding explains.
+        allowed: f64,
+    },
+}
+
+/// Largest relative L2 difference that rounding explains over some thousand undamped steps.
+const ROUNDING: f64 = 1e-9;
+
+/// One of our runs and its laps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    /// What the run is here for.
+    pub target: Target,
+    /// CPU time of our steps over that of theirs in the lap before, sorted.
+    pub ratios: Vec<f64>,
+    /// CPU time of our set-up over the median of their laps.
+    pub setup: f64,
+}
+
+impl Pair {
+    /// Median of the ratios.
+    #[must_use]
+    pub fn median(&self) -> f64 {
+        median(&self.ratios)
+    }
+}
+
+/// Our methods beside another program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beside {
+    /// The other program.
+    pub rival: String,
+    /// Its integrator by our name, and its step (s).
+    pub same: (String, f64),
+    /// Its relative L2 error (fraction).
+    pub error: f64,
+    /// Relative L2 difference between its displacements and ours with the same method and step.
+    pub difference: f64,
+    /// Our runs, that of the same method and step first.
+    pub pairs: Vec<Pair>,
+}
+
+/// Finds our cheapest runs, checks that the other program computes the same as ours, and times both
+/// in turn on one thread.
+///
+/// # Errors
+/// [`LapError`].
+pub fn run_beside(
+    case: &mut Case,
+    integrators: &[String],
+    rival: &mut (dyn Rival + Send),
+    rounds: Rounds,
+) -> Result<Beside, LapError> {
+    let run = || run_here(case, integrators, rival, rounds);
+    on_one_thread(run).map_err(|error| LapError::Ours(error.to_string()))?
+}
+
+fn run_here(
+    case: &mut Case,
+    integrators: &[String],
+    rival: &mut dyn Rival,
+    Rounds(rounds): Rounds,
+) -> Result<Beside, LapError> {
+    let same = rival.same();
+    let theirs = rival.displacements().map_err(LapError::Rival)?;
+    let error = apart(&theirs, &case.samples().displacements);
+    let ours = Contender::new(case, same.0, same.1)?.displacements(case)?;
+    let difference = apart(&theirs, &ours);
+    if difference.is_nan() || difference > ROUNDING {
+        return Err(LapError::Apart {
+            rival: rival.name(),
+            integrator: same.0.to_owned(),
+            difference,
+            allowed: ROUNDING,
+        });
+    }
+    let targets = pilots(case, integrators, same).map_err(LapError::Ours)?;
+    let contenders = targets
+        .iter()
+        .map(|target| Contender::new(case, &target.row.integrator, target.row.dt));
+    let mut contenders = contenders.collect::<Result<Vec<_>, _>>()?;
+    let mut ratios = vec![Vec::with_capacity(rounds); contenders.len()];
+    let mut laps = Vec::with_capacity(rounds * contenders.len());
+    // The first round brings memory and clocks up to speed and counts for nothing.
+    for round in 0..=rounds {
+        for (contender, ratios) in contenders.iter_mut().zip(&mut ratios) {
+            let theirs = rival.lap().map_err(LapError::Rival)?;
+            let ours = contender.lap(case).map_err(failed)?;
+            if round > 0 {
+                laps.push(theirs);
+                ratios.push(ours / theirs);
+            }
+        }
+    }
+    laps.sort_by(f64::total_cmp);
+    let lap = median(&laps);
+    let pairs = targets.into_iter().zip(ratios).map(|(target, mut ratios)| {
+        ratios.sort_by(f64::total_cmp);
+        Pair {
+            setup: target.row.setup_cpu_s / lap,
+            target,
+            ratios,
+        }
+    });
+    Ok(Beside {
+        rival: rival.name(),
+        same: (same.0.to_owned(), same.1),
+        error,
+        difference,
+        pairs: pairs.collect(),
+    })
+}
+
+/// One of our methods, ready to run.
+struct Contender {
+    integrator: Box<dyn Integrator>,
+    run: Run,
+    state: State,
+}
+
+impl Contender {
+    fn new(case: &Case, integrator: &str, dt: f64) -> Result<Self, LapError> {
+        let method = method_on(case, integrator);
+        let built = sinew_integrators::build(&method.integrator, &method.options);
+        let mut integrator = built.map_err(failed)?;
+        integrator
+            .prepare(case.simulation().system(), dt)
+            .map_err(failed)?;
+        Ok(Self {
+            integrator,
+            run: case.run(dt),
+            state: case.simulation().initial_state().clone(),
+        })
+    }
+
+    /// CPU time (s) of the steps.
+    fn lap(&mut self, case: &Case) -> Result<f64, SimulateError> {
+        let system = case.simulation().system();
+        self.state.clone_from(case.simulation().initial_state());
+        let before = thread_cpu_time();
+        simulate(
+            system,
+            &mut *self.integrator,
+            &mut self.state,
+            &self.run,
+            &mut (),
+        )?;
+        Ok((thread_cpu_time() - before).as_secs_f64())
+    }
+
+    /// Displacement (m) at the samples, for a step that meets them.
+    fn displacements(&mut self, case: &Case) -> Result<Vec<Vec<f64>>, LapError> {
+        let system = case.simulation().system();
+        let samples = case.simulation().settings().samples;
+        let run = Run {
+            steps: self.run.steps / samples,
+            ..self.run
+        };
+        let mut state = case.simulation().initial_state().clone();
+        let mut displacements = vec![state.u.clone()];
+        for _ in 0..samples {
+            simulate(system, &mut *self.integrator, &mut state, &run, &mut ()).map_err(failed)?;
+            displacements.push(state.u.clone());
+        }
+        Ok(displacements)
+    }
+}
+
+fn failed(error: impl ToString) -> LapError {
+    LapError::Ours(error.to_string())
+}
+
+/// Relative L2 difference over all samples; infinite where they are not the same in number.
+fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    if a.len() != b.len() || a.iter().zip(b).any(|(a, b)| a.len() != b.len()) {
+        return f64::INFINITY;
+    }
+    let mut norm = ErrorNorm::default();
+    for (a, b) in a.iter().zip(b) {
+        norm.include(a, b);
+    }
+    norm.relative()
+}
+
+/// The middle of sorted values.
+fn median(sorted: &[f64]) -> f64 {
+    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+}

@@ -1,0 +1,127 @@
+//! Ratios as people read them, each with both errors beside it.
+
+use std::fmt;
+
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+
+use super::laps::{Beside, Pair};
+use crate::report::{milliseconds, percent, three};
+
+const RULED_HEAD: TableStyle =
+    TableStyle::new().header_separator(LineStyle::new('─', '─', '─', '─'));
+
+const HEAD: [&str; 7] = [
+    "wanted",
+    "ours",
+    "dt\n[ms]",
+    "our error\n[%]",
+    "CPU of ours\nover theirs",
+    "lowest .. highest",
+    "set-up over\ntheir run",
+];
+
+impl fmt::Display for Beside {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (integrator, dt) = (&self.same.0, milliseconds(self.same.1));
+        let laps = self.pairs.first().map_or(0, |pair| pair.ratios.len());
+        writeln!(
+            f,
+            "{}: {integrator}, {dt} ms, error {} %",
+            self.rival,
+            percent(self.error)
+        )?;
+        writeln!(
+            f,
+            "Its displacements and those of our {integrator} differ by {:.1e} (relative): the same computation.",
+            self.difference
+        )?;
+        writeln!(
+            f,
+            "Each of our laps follows one of theirs, {laps} pairs each, one thread; CPU time of the steps alone, medians.\n"
+        )?;
+        let mut table = Table::new();
+        table
+            .load_style(RULED_HEAD)
+            .set_content_arrangement(ContentArrangement::Disabled)
+            .set_header(HEAD);
+        for pair in &self.pairs {
+            table.add_row(cells(pair));
+        }
+        for (index, column) in table.column_iter_mut().enumerate() {
+            column.set_padding((0, 2));
+            if index >= 2 {
+                column.set_cell_alignment(CellAlignment::Right);
+            }
+        }
+        let lines: Vec<String> = table.lines().map(|l| l.trim_end().to_owned()).collect();
+        f.write_str(&lines.join("\n"))
+    }
+}
+
+fn cells(pair: &Pair) -> [String; 7] {
+    let row = &pair.target.row;
+    let wanted = match pair.target.error {
+        None => "the same".to_owned(),
+        Some(error) => format!("error at most {} %", short_percent(error)),
+    };
+    let end = |ratio: Option<&f64>| ratio.map_or_else(String::new, |ratio| three(*ratio));
+    [
+        wanted,
+        row.label(),
+        milliseconds(row.dt),
+        row.error.map_or_else(|| "none".to_owned(), percent),
+        three(pair.median()),
+        format!(
+            "{} .. {}",
+            end(pair.ratios.first()),
+            end(pair.ratios.last())
+        ),
+        three(pair.setup),
+    ]
+}
+
+fn short_percent(fraction: f64) -> String {
+    crate::report::short(100.0 * fraction)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Target;
+    use super::*;
+    use crate::results::Row;
+
+    #[test]
+    fn a_ratio_stands_beside_both_errors() {
+        let pair = Pair {
+            target: Target {
+                error: Some(1e-6),
+                row: Row {
+                    integrator: "rk4".into(),
+                    dt: 1e-4,
+                    error: Some(7.5e-7),
+                    ..Row::default()
+                },
+            },
+            ratios: vec![0.5, 0.6, 0.9],
+            setup: 0.001,
+        };
+        let beside = Beside {
+            rival: "scipy 1.0".into(),
+            same: ("central-difference".into(), 1e-3),
+            error: 0.0313,
+            difference: 2e-13,
+            pairs: vec![pair],
+        };
+        let text = beside.to_string();
+        assert!(text.starts_with("scipy 1.0: central-difference, 1 ms, error 3.13 %\n"));
+        let line = text.lines().find(|line| line.contains("rk4")).unwrap();
+        let cells: Vec<&str> = line.split_whitespace().collect();
+        assert_eq!(
+            cells,
+            [
+                "error", "at", "most", "1e-4", "%", "rk4", "0.1", "7.50e-5", "0.600", "0.500",
+                "..", "0.900", "0.00100"
+            ]
+        );
+    }
+}

@@ -1,0 +1,145 @@
+//! The peers' cube: published figures of other programs on the same mesh, mass and load.
+//!
+//! Central difference and backward Euler are those of scipy, SOFA and VegaFEM, which agree with each
+//! other to four digits and more; the figures stand here with the digits they were given with.
+
+#![expect(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+
+use sinew_bench::{Case, Effort, Method, measure};
+use sinew_core::LinearSystem;
+use sinew_core::spectrum::largest_eigenvalue_of_pencil;
+use sinew_integrators::implicit::static_solution;
+use sinew_scene::Simulation;
+
+fn case() -> &'static Mutex<Case> {
+    static CASE: OnceLock<Mutex<Case>> = OnceLock::new();
+    CASE.get_or_init(|| {
+        let scenes = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+        Mutex::new(Case::load(&scenes.join("peers-cube.toml")).unwrap())
+    })
+}
+
+/// The case; a test that failed while it held the case has not changed it.
+fn locked() -> MutexGuard<'static, Case> {
+    case().lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn with_simulation<T>(look: impl FnOnce(&Simulation, &dyn LinearSystem) -> T) -> T {
+    let case = locked();
+    let simulation = case.simulation();
+    look(simulation, simulation.system().as_linear().unwrap())
+}
+
+/// The error (%) of a method in steps of `ms`.
+fn error(integrator: &str, ms: f64) -> f64 {
+    let mut case = locked();
+    let method = Method::new(integrator);
+    let row = measure(&mut case, &method, ms * 1e-3, Effort::QUICK).unwrap();
+    100.0 * row.error.unwrap()
+}
+
+/// `value` rounds to the figure as it was printed.
+fn prints_as(value: f64, figure: &str) {
+    let decimals = figure.split_once('.').map_or(0, |(_, after)| after.len());
+    assert_eq!(format!("{value:.decimals$}"), figure, "{value}");
+}
+
+#[test]
+fn central_difference() {
+    for (ms, figure) in [
+        (2.0, "6.0"),
+        (1.0, "3.1"),
+        (0.5, "1.6"),
+        (0.25, "0.47"),
+        (0.1, "0.076"),
+    ] {
+        prints_as(error("central-difference", ms), figure);
+    }
+}
+
+#[test]
+fn newmark() {
+    for (ms, figure) in [(10.0, "33.9"), (5.0, "21.2"), (1.0, "4.3")] {
+        prints_as(error("newmark", ms), figure);
+    }
+}
+
+#[test]
+fn backward_euler() {
+    for (ms, figure) in [(10.0, "54"), (1.0, "27")] {
+        prints_as(error("implicit-euler", ms), figure);
+    }
+}
+
+#[test]
+fn the_body_is_that_of_the_figures() {
+    with_simulation(|simulation, linear| {
+        let body = simulation.model().body().unwrap();
+        assert_eq!((body.mesh.points.len(), body.mesh.tets.len()), (1331, 6000));
+        assert_eq!(linear.dofs(), 3 * 891);
+        let damping = linear.operators().damping();
+        assert!(damping.mass == 0.0 && damping.stiffness == 0.0 && damping.extra.is_none());
+    });
+}
+
+#[test]
+fn the_force_is_shared_equally_by_the_81_nodes_of_the_top_that_move() {
+    with_simulation(|simulation, linear| {
+        let body = simulation.model().body().unwrap();
+        let height = |dof: usize| body.mesh.points[body.model.nodes()[dof / 3] as usize][2];
+        let mut force = vec![0.0; linear.dofs()];
+        linear.external_force(0.0, &mut force);
+        let loaded: Vec<usize> = (0..force.len()).filter(|i| force[*i] != 0.0).collect();
+        assert_eq!(loaded.len(), 81);
+        assert!(loaded.iter().all(|&i| (height(i) - 0.1).abs() < 1e-12));
+        let share = -0.042135 / 81.0;
+        assert!(
+            loaded
+                .iter()
+                .all(|&i| i % 3 == 2 && (force[i] / share - 1.0).abs() < 1e-12)
+        );
+    });
+}
+
+#[test]
+fn errors_are_taken_at_every_10_ms_and_rest_at_0_adds_nothing() {
+    let case = locked();
+    let track = case.samples();
+    assert_eq!(track.times.len(), 101);
+    for (j, time) in track.times.iter().enumerate() {
+        assert!((time - 0.01 * j as f64).abs() < 1e-12);
+    }
+    assert!(track.displacements[0].iter().all(|u| *u == 0.0));
+    assert!(track.error < 1e-12);
+}
+
+#[test]
+fn the_peak_is_a_tenth_of_a_millimetre() {
+    let case = locked();
+    prints_as(1e3 * case.samples().max_u, "0.10");
+}
+
+#[test]
+fn the_critical_step_of_central_difference() {
+    let case = locked();
+    prints_as(1e3 * case.critical_step().unwrap(), "2.0208");
+}
+
+#[test]
+fn the_lowest_frequency() {
+    with_simulation(|_, linear| {
+        let mass = linear.operators().mass();
+        let slowness = largest_eigenvalue_of_pencil(
+            linear.dofs(),
+            |x, out| {
+                let entries = out.iter_mut().zip(x).zip(mass);
+                entries.for_each(|((out, x), mass)| *out = mass * x);
+            },
+            |force, out| out.copy_from_slice(&static_solution(linear, force).unwrap()),
+        );
+        prints_as(slowness.sqrt().recip() / std::f64::consts::TAU, "7.27");
+    });
+}

@@ -1,0 +1,36 @@
+//! `cargo xtask bench --beside scipy`.
+
+mod python;
+mod scipy;
+
+use sinew_bench::beside::{Rounds, export, run_beside};
+use sinew_bench::{Bench, Case, peers};
+
+use crate::bench::say;
+use crate::failure::Failure;
+use crate::root;
+use python::Python;
+use scipy::Scipy;
+
+/// Another program to run beside ours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Program {
+    /// scipy's sparse matrices, central difference at 1 ms.
+    Scipy,
+}
+
+/// Runs the program and our cheapest methods in turn on the peers' cube and prints their ratios.
+pub(crate) fn run(Program::Scipy: Program, bench: &Bench) -> Result<(), Failure> {
+    let integrators = bench.methods().map_err(Failure::input)?;
+    let target = root().join("target");
+    let python = Python::with_scipy(&target)?;
+    let scene = root().join("scenes").join(format!("{}.toml", peers::CASE));
+    let mut case = Case::load(&scene).map_err(Failure::input)?;
+    let exported = export(&case, &target.join("beside")).map_err(Failure::input)?;
+    let mut scipy = Scipy::start(&python, &exported).map_err(Failure::Chore)?;
+    let rounds = Rounds(if bench.quick { 3 } else { 15 });
+    say("looking for our cheapest runs ...");
+    let beside = run_beside(&mut case, &integrators, &mut scipy, rounds).map_err(Failure::chore)?;
+    say(&format!("\n{beside}"));
+    Ok(())
+}
