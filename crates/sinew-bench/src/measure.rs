@@ -48,7 +48,7 @@ impl Effort {
     /// For results to be shown.
     pub const FULL: Self = Self {
         repeats: 5,
-        budget: 0.4,
+        budget: 0.2,
     };
     /// For checks that everything runs.
     pub const QUICK: Self = Self {
