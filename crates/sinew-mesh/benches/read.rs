@@ -76,7 +76,7 @@ fn main() {
         .cells
         .iter()
         .filter(|b| b.kind.dim() == 3)
-        .map(|b| b.len())
+        .map(sinew_mesh::CellBlock::len)
         .sum();
     println!("{tets} tetrahedra, {} nodes", mesh.points.len());
     let dir = tempfile::tempdir().expect("a directory");

@@ -176,7 +176,8 @@ fn short_number(bytes: [u8; 8]) -> (u64, usize) {
     let bytes = u64::from_le_bytes(bytes);
     // The top bit of a byte is set where the byte is no digit; carries go to later bytes only.
     let digits = bytes ^ (EACH * 0x30);
-    let others = ((digits & (EACH * 0x7f)) + EACH * 0x76 | digits) & (EACH * 0x80);
+    let above_9 = (digits & (EACH * 0x7f)) + EACH * 0x76;
+    let others = (above_9 | digits) & (EACH * 0x80);
     let length = others.trailing_zeros() as usize / 8;
     if length == 0 {
         return (0, 0);
