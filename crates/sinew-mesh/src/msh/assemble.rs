@@ -50,6 +50,7 @@ pub(super) fn mesh(contents: Contents, bytes: &[u8], remarks: &mut Remarks) -> R
         ..Mesh::default()
     };
     assemble_data::add(contents.data, &mut mesh, &index, bytes.len(), remarks)?;
+    take_groups_from_data(&mut mesh, remarks);
     remark_unknown_periodic_nodes(&mesh, &index, remarks);
     remark_repeated_volume_cells(&mesh, remarks);
     remark_empty_groups(&mesh, remarks);
@@ -367,6 +368,32 @@ fn add_dimensions(names: NamesWithoutDim, cells: &[CellBlock], to: &mut Physical
             to.entry((dim, tag)).or_insert_with(|| name.clone());
         }
     }
+}
+
+/// meshio's version 4.0 has no entities, and the groups of cells as data under this name.
+fn take_groups_from_data(mesh: &mut Mesh, remarks: &mut Remarks) {
+    const NAME: &str = "gmsh:physical";
+    let is_in_group = |block: &CellBlock| block.physical.lists().flatten().next().is_some();
+    let is_tag = |x: f64| x.fract() == 0.0 && x.abs() <= f64::from(i32::MAX);
+    let data = mesh.cell_data.iter().find(|data| {
+        let mut values = data.blocks.iter().flatten();
+        data.name == NAME && data.components == 1 && values.all(|&x| is_tag(x))
+    });
+    let Some(data) = data else {
+        return;
+    };
+    if mesh.cells.iter().any(is_in_group) {
+        return;
+    }
+    for (block, values) in mesh.cells.iter_mut().zip(&data.blocks) {
+        block.physical = PhysicalTags::new();
+        for &tag in values {
+            block.physical.push(&[tag as i32]);
+        }
+    }
+    remarks.general(format!(
+        "$ElementData: the groups of cells are those of \"{NAME}\", as meshio writes version 4.0"
+    ));
 }
 
 fn remark_unknown_periodic_nodes(mesh: &Mesh, index: &TagIndex, remarks: &mut Remarks) {

@@ -26,6 +26,7 @@
 //! | data rows spelled `np.float64(0.5)` (meshio with NumPy 2) | reads the number, warns |
 //! | data for a small part of the mesh whose rest would take many times the file's size | refuses |
 //! | data rows counting from 1 for elements counting from 0 (meshio's 4.0) | row 1 is for element 0, warns |
+//! | no cell has a group, but there is a data field `gmsh:physical` (meshio's 4.0) | the field gives the groups, warns |
 //! | tags of data rows in binary files | 4 bytes, or 8 if only that fits |
 //! | links between nodes that `$Nodes` does not have | keeps them, warns |
 //! | ghost elements | checks them, keeps none |
