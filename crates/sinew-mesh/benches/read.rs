@@ -140,16 +140,16 @@ fn array_bytes(mesh: &Mesh) -> usize {
         + cells.sum::<usize>()
 }
 
-/// The shortest of three readings, without the time it takes to load Python.
+/// The median of three readings, without the time it takes to load Python.
 fn meshio_seconds(path: &Path) -> Option<f64> {
     const SCRIPT: &str = "
 import sys, time, meshio
-best = 1e9
+seconds = []
 for _ in range(3):
     start = time.perf_counter()
     meshio.gmsh.read(sys.argv[1])
-    best = min(best, time.perf_counter() - start)
-print(best)
+    seconds.append(time.perf_counter() - start)
+print(sorted(seconds)[1])
 ";
     let output = Command::new("python3")
         .args(["-c", SCRIPT])

@@ -98,11 +98,11 @@ impl<'a> Cursor<'a> {
         self.skip_blanks();
         let offset = self.offset;
         let rest = self.rest();
-        let length = rest
+        let window = rest.get(..=LONGEST).unwrap_or(rest);
+        let length = window
             .iter()
-            .take(LONGEST + 1)
             .position(|&byte| is_blank(byte))
-            .unwrap_or(rest.len().min(LONGEST + 1));
+            .unwrap_or(window.len());
         if length == 0 {
             return Err(Fault::shortage(offset, "the file ends here", what));
         }

@@ -246,6 +246,15 @@ impl Source for Text<'_, '_> {
         number::double(token, what)
     }
 
+    #[inline]
+    fn finite(&mut self, what: &str) -> Result<f64, Fault> {
+        let token = self.cursor.token(what)?;
+        match number::double(token, what)? {
+            value if value.is_finite() => Ok(value),
+            value => Err(not_finite(token.offset, what, value)),
+        }
+    }
+
     /// In text a tag is a tag, however large.
     #[inline]
     fn tag(&mut self, _: TagKind, what: &str) -> Result<u64, Fault> {
