@@ -2,7 +2,8 @@
 """Makes the files that the tests of sinew-mesh are compared on.
 
 gmsh (pip, 4.15) and meshio (pip, 5.3.5) write small .msh files; what meshio reads from each is stored beside it as
-plain text. The results are the packs under crates/sinew-mesh/tests/data. Run it from anywhere:
+plain text. The results are the packs under crates/sinew-mesh/tests/data; some of the files also go to
+crates/sinew-mesh/fuzz/seeds. Run it from anywhere:
 
     python3 meshes/reference.py
 
@@ -40,6 +41,19 @@ meshio.gmsh._gmsh40.Mesh = meshio.gmsh._gmsh41.Mesh = mesh_without_incomplete_gr
 DATA = Path(__file__).resolve().parent.parent / "crates" / "sinew-mesh" / "tests" / "data"
 
 
+SEEDS = DATA.parent.parent / "fuzz" / "seeds"
+
+
+def is_seed(pack, name, content):
+    """Small files of every kind, to start fuzzing from."""
+    kind = name.split("-")[0]
+    if pack == "cell-types":
+        return kind in ("tetra", "tetra10")
+    if pack == "gmsh":
+        return len(content) < 9000 and kind in ("boxes", "parametric", "partitioned", "pyramid", "reversed")
+    return True
+
+
 class Pack:
     def __init__(self, name):
         self.name = name
@@ -58,6 +72,8 @@ class Pack:
             self.unread.append(f"{name}: {type(error).__name__} {error}")
 
     def entry(self, kind, name, content):
+        if kind == "file" and is_seed(self.name, name, content):
+            (SEEDS / f"{name}.msh").write_bytes(content)
         self.out.write(f"{kind} {name} {len(content)}\n".encode())
         self.out.write(content)
         self.out.write(b"\n")
@@ -377,6 +393,7 @@ def gmsh_files():
 
 if __name__ == "__main__":
     os.chdir(tempfile.gettempdir())
+    SEEDS.mkdir(parents=True, exist_ok=True)
     cell_types()
     meshio_data()
     gmsh_files()

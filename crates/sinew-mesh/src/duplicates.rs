@@ -8,21 +8,29 @@ use std::collections::HashMap;
 pub(crate) fn duplicate_cells<'c>(
     cells: impl Iterator<Item = &'c [u32]> + Clone,
 ) -> Vec<(usize, usize)> {
-    // Most meshes have no duplicates, so a cheap key that ignores the order comes first. Equal keys prove nothing;
-    // the cells behind them are compared exactly.
-    let mut shared: Vec<u64> = cells.clone().map(order_free_key).collect();
-    shared.sort_unstable();
-    let mut previous = None;
-    shared.retain(|&key| previous.replace(key) == Some(key));
-    if shared.is_empty() {
+    // Most meshes have no duplicates, so a cheap key that ignores the order comes first, and bits tell which keys may have
+    // been there before. Equal keys prove nothing; the cells behind them are compared exactly.
+    let mut seen = Bits::for_keys(cells.clone().count());
+    let mut suspects: Vec<u64> = cells
+        .clone()
+        .map(order_free_key)
+        .filter(|&key| seen.replace(key))
+        .collect();
+    if suspects.is_empty() {
         return Vec::new();
     }
-    shared.dedup();
+    suspects.sort_unstable();
+    suspects.dedup();
+    let mut suspected = Bits::for_keys(suspects.len());
+    for &key in &suspects {
+        suspected.replace(key);
+    }
 
     let mut first_with: HashMap<Vec<u32>, usize> = HashMap::new();
     let mut pairs = Vec::new();
     for (cell, nodes) in cells.enumerate() {
-        if shared.binary_search(&order_free_key(nodes)).is_err() {
+        let key = order_free_key(nodes);
+        if !suspected.contains(key) || suspects.binary_search(&key).is_err() {
             continue;
         }
         let mut nodes = nodes.to_vec();
@@ -33,6 +41,39 @@ pub(crate) fn duplicate_cells<'c>(
         }
     }
     pairs
+}
+
+/// A set of keys that may take a key for another, but never misses one.
+struct Bits {
+    words: Vec<u64>,
+}
+
+impl Bits {
+    /// With 8 to 16 bits for each key: few enough to stay in the processor's cache.
+    fn for_keys(keys: usize) -> Bits {
+        Bits {
+            words: vec![0; keys.div_ceil(8).next_power_of_two()],
+        }
+    }
+
+    fn place(&self, key: u64) -> (usize, u64) {
+        // The number of words is a power of two.
+        let word = (key >> 6) as usize & (self.words.len() - 1);
+        (word, 1 << (key & 63))
+    }
+
+    /// Adds a key, and tells whether it seemed to be there.
+    fn replace(&mut self, key: u64) -> bool {
+        let (word, bit) = self.place(key);
+        let was_set = self.words[word] & bit != 0;
+        self.words[word] |= bit;
+        was_set
+    }
+
+    fn contains(&self, key: u64) -> bool {
+        let (word, bit) = self.place(key);
+        self.words[word] & bit != 0
+    }
 }
 
 fn order_free_key(nodes: &[u32]) -> u64 {

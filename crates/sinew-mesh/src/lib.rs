@@ -1,7 +1,9 @@
-//! Tetrahedral meshes with named groups: gmsh .msh in and out, structured generators.
+//! Tetrahedral meshes with named groups: gmsh .msh in and out, .vtu out, checks and repairs, structured generators.
 //!
 //! A file is read into a [`Mesh`]: all its cells, tags, groups and warnings, arranged as meshio arranges them.
-//! [`Mesh::to_tet_mesh`] makes of it the [`TetMesh`] that a simulation needs. Nothing here knows mechanics.
+//! [`Mesh::check`] finds what makes a simulation fail, [`info::MeshInfo`] sums a mesh up, [`write_msh`] and
+//! [`vtu::write_vtu`] write it. [`Mesh::to_tet_mesh`] makes of it the [`TetMesh`] that a simulation needs. Nothing here knows
+//! mechanics.
 //!
 //! ```
 //! use sinew_mesh::{GroupMembers, read_msh, structured, write_msh41_ascii};

@@ -309,6 +309,15 @@ fn groups_and_data_of_meshio() {
     let pack = pack("meshio-data");
     assert_pack_is_read(&pack);
     assert_eq!(pack.files.len(), pack.expected.len());
+    for name in ["data-4.0-ascii", "data-4.0-binary", "data-4.0-ascii-repr"] {
+        let mesh = read(name, &pack.files[name]);
+        assert_eq!(
+            mesh.cells[0].physical.of(0),
+            [2],
+            "{name}: groups that are data are groups"
+        );
+        assert_eq!(mesh.cells[1].physical.of(1), [7], "{name}");
+    }
     let mesh = read("repr", &pack.files["data-4.1-ascii-repr"]);
     let is_named = |w: &sinew_mesh::Warning| w.message.contains("np.float64");
     assert!(mesh.warnings.iter().any(is_named), "{:?}", mesh.warnings);

@@ -50,6 +50,7 @@ pub(super) fn mesh(contents: Contents, bytes: &[u8], remarks: &mut Remarks) -> R
         ..Mesh::default()
     };
     assemble_data::add(contents.data, &mut mesh, &index, bytes.len(), remarks)?;
+    take_groups_from_data(&mut mesh, remarks);
     remark_unknown_periodic_nodes(&mesh, &index, remarks);
     remark_repeated_volume_cells(&mesh, remarks);
     remark_empty_groups(&mesh, remarks);
@@ -269,6 +270,18 @@ fn resolved(
         )
     };
     let mut connectivity = match node_tags.into_tags() {
+        Tags::Narrow(mut tags) if index.is_complete() => {
+            // The tags are consecutive: all that is left is to count from 0.
+            let (least, greatest) = index.range();
+            let is_known = |tag: u32| (least..=greatest).contains(&u64::from(tag));
+            if !tags.iter().fold(true, |all, &tag| all & is_known(tag)) {
+                let entry = tags.iter().position(|&tag| !is_known(tag)).unwrap_or(0);
+                let tag = tags.get(entry).copied().map_or(0, u64::from);
+                return Err(unknown(entry, tag));
+            }
+            tags.iter_mut().for_each(|tag| *tag -= least as u32);
+            tags
+        }
         Tags::Narrow(mut tags) => {
             for (entry, tag) in tags.iter_mut().enumerate() {
                 match index.get(u64::from(*tag)) {
@@ -357,6 +370,32 @@ fn add_dimensions(names: NamesWithoutDim, cells: &[CellBlock], to: &mut Physical
     }
 }
 
+/// meshio's version 4.0 has no entities, and the groups of cells as data under this name.
+fn take_groups_from_data(mesh: &mut Mesh, remarks: &mut Remarks) {
+    const NAME: &str = "gmsh:physical";
+    let is_in_group = |block: &CellBlock| block.physical.lists().flatten().next().is_some();
+    let is_tag = |x: f64| x.fract() == 0.0 && x.abs() <= f64::from(i32::MAX);
+    let data = mesh.cell_data.iter().find(|data| {
+        let mut values = data.blocks.iter().flatten();
+        data.name == NAME && data.components == 1 && values.all(|&x| is_tag(x))
+    });
+    let Some(data) = data else {
+        return;
+    };
+    if mesh.cells.iter().any(is_in_group) {
+        return;
+    }
+    for (block, values) in mesh.cells.iter_mut().zip(&data.blocks) {
+        block.physical = PhysicalTags::new();
+        for &tag in values {
+            block.physical.push(&[tag as i32]);
+        }
+    }
+    remarks.general(format!(
+        "$ElementData: the groups of cells are those of \"{NAME}\", as meshio writes version 4.0"
+    ));
+}
+
 fn remark_unknown_periodic_nodes(mesh: &Mesh, index: &TagIndex, remarks: &mut Remarks) {
     let tags = mesh.periodic.iter().flat_map(|link| &link.node_tags);
     let unknown = || {
@@ -372,10 +411,10 @@ fn remark_unknown_periodic_nodes(mesh: &Mesh, index: &TagIndex, remarks: &mut Re
 }
 
 fn remark_repeated_element_tags(blocks: &[CellBlock], remarks: &mut Remarks) {
-    let tags = || blocks.iter().flat_map(|block| &block.element_tags).copied();
-    if tags().is_sorted_by(|a, b| a < b) {
+    if have_ascending_tags_apart(blocks) {
         return;
     }
+    let tags = || blocks.iter().flat_map(|block| &block.element_tags).copied();
     let mut sorted: Vec<u64> = tags().collect();
     sorted.sort_unstable();
     let repeats = || {
@@ -390,6 +429,23 @@ fn remark_repeated_element_tags(blocks: &[CellBlock], remarks: &mut Remarks) {
             repeats().count()
         ));
     }
+}
+
+/// Whether the tags ascend within each block, and no two blocks overlap: then none is repeated, as in most files.
+fn have_ascending_tags_apart(blocks: &[CellBlock]) -> bool {
+    let mut ranges = Vec::with_capacity(blocks.len());
+    for block in blocks {
+        let tags = &block.element_tags;
+        if let (Some(first), Some(last)) = (tags.first(), tags.last()) {
+            if !tags.is_sorted_by(|a, b| a < b) {
+                return false;
+            }
+            ranges.push((first, last));
+        }
+    }
+    ranges.sort_unstable();
+    let mut neighbours = ranges.iter().zip(ranges.iter().skip(1));
+    neighbours.all(|(before, after)| before.1 < after.0)
 }
 
 fn remark_repeated_volume_cells(mesh: &Mesh, remarks: &mut Remarks) {

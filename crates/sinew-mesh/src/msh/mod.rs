@@ -8,7 +8,9 @@
 //!
 //! | case | what the reader does |
 //! |---|---|
-//! | totals or tag ranges in a 4.1 header disagree with the blocks | believes the blocks, warns |
+//! | version `2` or `2.0` | as 2.2; names of groups may lack the dimension, and get those of the cells with their tag |
+//! | version `4` | 4.0 if the first line of `$Nodes` has two numbers, 4.1 if four; in binary files, what can be read |
+//! | totals or tag ranges in a version 4 header disagree with the blocks | believes the blocks, warns |
 //! | a node row occurs twice | the same coordinates: warns, keeps one; others: refuses |
 //! | `$Nodes` or `$Elements` occurs again | rows seen before merge if identical, else refuses; new rows are added |
 //! | an element tag occurs twice in one section | keeps both, warns |
@@ -17,7 +19,18 @@
 //! | a block on an entity that `$Entities` does not list | no physical group, warns |
 //! | `$Elements` before `$Nodes` | accepts |
 //! | the last `$End...` is missing | accepts with a warning if the last row ends with a line break, else refuses |
-//! | a row of version 2.2 that ends, or begins, in the middle of a line and crosses a line break | refuses |
+//! | a row of version 2 that ends, or begins, in the middle of a line and crosses a line break | refuses |
+//! | `$MeshFormat` occurs again (gmsh appends data so) | accepts it if it is the same, else refuses |
+//! | a data row for a tag that the mesh does not have | skips the row, warns |
+//! | points or cells without a data row | NaN, warns |
+//! | data rows spelled `np.float64(0.5)` (meshio with NumPy 2) | reads the number, warns |
+//! | data for a small part of the mesh whose rest would take many times the file's size | refuses |
+//! | data rows counting from 1 for elements counting from 0 (meshio's 4.0) | row 1 is for element 0, warns |
+//! | no cell has a group, but there is a data field `gmsh:physical` (meshio's 4.0) | the field gives the groups, warns |
+//! | tags of data rows in binary files | 4 bytes, or 8 if only that fits |
+//! | links between nodes that `$Nodes` does not have | keeps them, warns |
+//! | ghost elements | checks them, keeps none |
+//! | wedge18 and pyramid14 | left in gmsh's node order, as meshio 5.3.5 leaves them |
 //! | an unknown section | skips it, warns |
 //! | Fortran exponents (`1D-3`), `nan`, `inf`, `1e999` | refuses |
 //! | a name that is not UTF-8 | replaces the bad bytes, warns |
@@ -64,7 +77,10 @@ use fault::Fault;
 use header::Version;
 use remarks::Remarks;
 
-/// Reads the bytes of a .msh file: version 2.2 or 4.1, as text.
+/// Reads the bytes of a .msh file: version 2.0, 2.1, 2.2, 4.0 or 4.1, as text or as bytes of either order.
+///
+/// Points, cells, names and their order are those that meshio 5.3.5 gives, wherever meshio reads a file as it is meant. Beyond
+/// that, every cell has its groups in every version, data rows go by their tags, and what meshio refuses is read.
 ///
 /// What was tolerated stands in [`Mesh::warnings`].
 ///

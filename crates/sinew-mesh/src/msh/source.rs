@@ -159,6 +159,11 @@ impl Record {
         }
     }
 
+    fn numbers(self) -> u64 {
+        let integers = self.ints.saturating_add(self.sizes);
+        integers.saturating_add(self.doubles)
+    }
+
     pub(super) fn and_doubles(self, doubles: u64) -> Record {
         Record { doubles, ..self }
     }
@@ -241,6 +246,15 @@ impl Source for Text<'_, '_> {
         number::double(token, what)
     }
 
+    #[inline]
+    fn finite(&mut self, what: &str) -> Result<f64, Fault> {
+        let token = self.cursor.token(what)?;
+        match number::double(token, what)? {
+            value if value.is_finite() => Ok(value),
+            value => Err(not_finite(token.offset, what, value)),
+        }
+    }
+
     /// In text a tag is a tag, however large.
     #[inline]
     fn tag(&mut self, _: TagKind, what: &str) -> Result<u64, Fault> {
@@ -249,7 +263,7 @@ impl Source for Text<'_, '_> {
 
     fn least_bytes(&self, record: Record) -> u64 {
         // A digit and a blank.
-        2 * (record.ints + record.sizes + record.doubles)
+        record.numbers().saturating_mul(2)
     }
 
     fn bytes_left(&self) -> u64 {
@@ -257,7 +271,7 @@ impl Source for Text<'_, '_> {
     }
 
     fn layout(&self, row: Record) -> Layout {
-        Layout::Words((row.ints + row.sizes + row.doubles) as usize)
+        Layout::Words(row.numbers() as usize)
     }
 
     fn node_tags(&mut self, count: usize, tags: &mut Vec<u64>) -> Result<(), Fault> {
@@ -544,11 +558,12 @@ fn extend_elements<const N: usize>(
     decode: impl Fn([u8; N]) -> u64 + Copy,
 ) {
     let rows = bytes.as_chunks().0.chunks_exact(row_words);
-    element_tags.extend(
-        rows.clone()
-            .map(|row| row.first().map_or(0, |&word| decode(word))),
-    );
-    node_tags.extend_rows(rows.map(|row| row.get(1..).unwrap_or_default()), decode);
+    let nodes = rows.map(|row| {
+        let (first, nodes) = row.split_first().unwrap_or((&[0; N], &[]));
+        element_tags.push(decode(*first));
+        nodes
+    });
+    node_tags.extend_rows(nodes, decode);
 }
 
 /// Names the first negative tag among rows of ints.

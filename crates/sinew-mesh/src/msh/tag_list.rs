@@ -34,27 +34,26 @@ impl TagList {
     /// Adds rows of words, each as `decode` reads it.
     pub(super) fn extend_rows<'b, const N: usize>(
         &mut self,
-        rows: impl Iterator<Item = &'b [[u8; N]]> + Clone,
+        mut rows: impl Iterator<Item = &'b [[u8; N]]>,
         decode: impl Fn([u8; N]) -> u64 + Copy,
     ) {
         if self.wide.is_empty() {
-            let before = self.narrow.len();
-            let mut all_bits = 0;
-            for row in rows.clone() {
+            for row in rows.by_ref() {
+                let mut all_bits = 0;
                 self.narrow.extend(row.iter().map(|&word| {
                     let tag = decode(word);
                     all_bits |= tag;
                     tag as u32
                 }));
+                if all_bits > u64::from(u32::MAX) {
+                    self.narrow.truncate(self.narrow.len() - row.len());
+                    self.widened().extend(row.iter().map(|&word| decode(word)));
+                    break;
+                }
             }
-            if all_bits <= u64::from(u32::MAX) {
-                return;
-            }
-            self.narrow.truncate(before);
         }
-        let wide = self.widened();
         for row in rows {
-            wide.extend(row.iter().map(|&word| decode(word)));
+            self.wide.extend(row.iter().map(|&word| decode(word)));
         }
     }
 
