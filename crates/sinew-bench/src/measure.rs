@@ -85,6 +85,11 @@ pub fn measure(case: &mut Case, method: &Method, dt: f64, effort: Effort) -> Res
 
     let time_per_run = time_run(system, &mut *integrator, start, &run, report.steps, effort)
         .map_err(|error| error.to_string())?;
+    let facts = integrator.facts().into_iter();
+    let facts = facts.filter(|fact| fact.value.is_finite());
+    let facts = facts
+        .map(|fact| (fact.name.to_owned(), fact.value))
+        .collect();
     let simulated = report.steps as f64 * dt;
     let steps = report.steps.max(1) as f64;
 
@@ -126,6 +131,7 @@ pub fn measure(case: &mut Case, method: &Method, dt: f64, effort: Effort) -> Res
         cpu_s_per_s: time_per_run / simulated,
         us_per_step: time_per_run / steps * 1e6,
         setup_cpu_s: setup_cpu.as_secs_f64(),
+        facts,
         pareto: false,
     })
 }

@@ -131,6 +131,10 @@ pub struct Row {
     /// CPU time of the set-up (s), in none of the other times.
     #[serde(default)]
     pub setup_cpu_s: f64,
+    /// What the method's set-up found out, by name: the certificate of a stabilised network, the
+    /// degree of a propagator.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub facts: BTreeMap<String, f64>,
     /// No other run of the case is both as cheap and as accurate; see [`mark_pareto`].
     #[serde(default)]
     pub pareto: bool,

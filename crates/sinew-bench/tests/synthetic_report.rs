@@ -189,6 +189,7 @@ fn cube_rows(case: &str, harder: f64) -> Vec<Row> {
                 cpu_s_per_s: per_step / dt,
                 us_per_step: 1e6 * per_step,
                 setup_cpu_s: 0.011 + 0.083 * method.work.1,
+                facts: BTreeMap::new(),
                 pareto: false,
             }
         })

@@ -159,6 +159,7 @@ impl Page {
             self.figure(&work_precision(results, id).svg());
             self.figure(&strip(results, id));
             self.runs(&rows);
+            self.findings(&rows);
         }
         if id == crate::peers::CASE {
             self.out.push_str(&peers::peers());
@@ -193,6 +194,32 @@ impl Page {
                 ),
             ),
         ]);
+    }
+
+    /// What methods found out at set-up, folded away.
+    fn findings(&mut self, rows: &[&Row]) {
+        let telling: Vec<&&Row> = rows.iter().filter(|row| !row.facts.is_empty()).collect();
+        if telling.is_empty() {
+            return;
+        }
+        self.out.push_str(
+            "<details>\n<summary>What methods found out at set-up</summary>\n\
+             <p>A certificate below 1 proves that a stabilised network cannot gain energy on this \
+             case at this step. <code>left_out</code> is what a truncated method estimates it loses.</p>\n<ul>\n",
+        );
+        for row in telling {
+            let facts = row.facts.iter();
+            let facts: Vec<String> = facts
+                .map(|(name, value)| format!("{name} {}", number::short(*value)))
+                .collect();
+            self.put(format_args!(
+                "<li>{}, {} ms: {}</li>\n",
+                Escaped(&row.label()),
+                number::milliseconds(row.dt),
+                Escaped(&facts.join(", "))
+            ));
+        }
+        self.out.push_str("</ul>\n</details>\n");
     }
 
     /// Facts; empty ones are left out.
