@@ -56,6 +56,8 @@ const STEPS: &[(&str, &[&str])] = &[
             "--workspace",
             "--exclude",
             "xtask",
+            "--exclude",
+            "sinew-mesh-tests",
             "--allow-dirty",
             "--quiet",
         ],

@@ -600,15 +600,15 @@ mod tests {
     fn a_series_lists_its_frames() {
         let mut file = Vec::new();
         write_pvd(&[(0.0, "a.vtu"), (0.5, "b & c.vtu")], &mut file).expect("memory takes all");
-        insta::assert_snapshot!(String::from_utf8_lossy(&file), @r#"
-        <?xml version="1.0"?>
-        <VTKFile type="Collection" version="0.1" byte_order="LittleEndian">
-        <Collection>
-        <DataSet timestep="0.0" group="" part="0" file="a.vtu"/>
-        <DataSet timestep="0.5" group="" part="0" file="b &amp; c.vtu"/>
-        </Collection>
-        </VTKFile>
-        "#);
+        let expected = r#"<?xml version="1.0"?>
+<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">
+<Collection>
+<DataSet timestep="0.0" group="" part="0" file="a.vtu"/>
+<DataSet timestep="0.5" group="" part="0" file="b &amp; c.vtu"/>
+</Collection>
+</VTKFile>
+"#;
+        assert_eq!(String::from_utf8_lossy(&file), expected);
     }
 
     #[test]
@@ -627,9 +627,21 @@ mod tests {
         fn triangle(nodes: &[u32]) -> Vec<(CellType, &[u32])> {
             vec![(CellType::Triangle, nodes)]
         }
-        insta::assert_snapshot!(with(triangle(&[0, 1, 3]), &[0.0; 3]), @"a triangle has node index 3, but there are 3 nodes");
-        insta::assert_snapshot!(with(triangle(&[0, 1]), &[0.0; 3]), @"the list of nodes of triangle cells has 2 entries, but 3 are needed");
-        insta::assert_snapshot!(with(triangle(&[0, 1, 2]), &[0.0; 4]), @r#"array "x" has 4 entries, but 3 are needed"#);
-        insta::assert_snapshot!(with(vec![(CellType::Wedge18, &[])], &[0.0; 3]), @"the mesh has wedge18 cells, which cannot be written as .vtu");
+        assert_eq!(
+            with(triangle(&[0, 1, 3]), &[0.0; 3]),
+            "a triangle has node index 3, but there are 3 nodes"
+        );
+        assert_eq!(
+            with(triangle(&[0, 1]), &[0.0; 3]),
+            "the list of nodes of triangle cells has 2 entries, but 3 are needed"
+        );
+        assert_eq!(
+            with(triangle(&[0, 1, 2]), &[0.0; 4]),
+            r#"array "x" has 4 entries, but 3 are needed"#
+        );
+        assert_eq!(
+            with(vec![(CellType::Wedge18, &[])], &[0.0; 3]),
+            "the mesh has wedge18 cells, which cannot be written as .vtu"
+        );
     }
 }
