@@ -120,31 +120,22 @@ impl Ramp {
     /// The instants (s) at which the ramp or one of its derivatives jumps, in increasing order.
     #[must_use]
     pub fn breakpoints(&self) -> Vec<f64> {
-        match self {
-            Self::Step => vec![0.0],
-            Self::Sin2 { rise } => vec![0.0, *rise],
-            Self::Pulse { from, to } => vec![*from, *to],
-            Self::Table { times, .. } => times.clone(),
-        }
+        self.at_breakpoints(<[f64]>::to_vec)
     }
 
     /// The first breakpoint (s) for which `wanted` holds. Allocates nothing.
     #[must_use]
     pub fn kink_where(&self, wanted: impl Fn(f64) -> bool) -> Option<f64> {
-        let pair;
-        let points: &[f64] = match self {
-            Self::Step => &[0.0],
-            Self::Sin2 { rise } => {
-                pair = [0.0, *rise];
-                &pair
-            }
-            Self::Pulse { from, to } => {
-                pair = [*from, *to];
-                &pair
-            }
-            Self::Table { times, .. } => times,
-        };
-        points.iter().copied().find(|time| wanted(*time))
+        self.at_breakpoints(|points| points.iter().copied().find(|time| wanted(*time)))
+    }
+
+    fn at_breakpoints<R>(&self, look: impl FnOnce(&[f64]) -> R) -> R {
+        match self {
+            Self::Step => look(&[0.0]),
+            Self::Sin2 { rise } => look(&[0.0, *rise]),
+            Self::Pulse { from, to } => look(&[*from, *to]),
+            Self::Table { times, .. } => look(times),
+        }
     }
 
     /// Whether the value stays the same from `t0` up to, but not at, `t1` (s), where no breakpoint
