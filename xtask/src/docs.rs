@@ -1,7 +1,8 @@
 //! `cargo xtask docs`.
 
 use sinew_bench::report::{markdown_rows, work_precision, write_atomically};
-use sinew_bench::results::{BenchResults, Row};
+use sinew_bench::results::BenchResults;
+use sinew_measure::Row;
 
 use crate::bench::say;
 use crate::failure::Failure;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use sinew_bench::Case;
 use sinew_bench::reproduce::reproduce;
+use sinew_measure::Case;
 
 use crate::bench::say;
 use crate::failure::Failure;

@@ -39,6 +39,10 @@ const ROOMS: &[(&str, &[&str])] = &[
         &["sinew-core", "sinew-mesh", "sinew-fem", "sinew-integrators"],
     ),
     (
+        "sinew-measure",
+        &["sinew-core", "sinew-integrators", "sinew-scene"],
+    ),
+    (
         "sinew-bench",
         &[
             "sinew-core",
@@ -47,6 +51,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "sinew-cnn",
             "sinew-integrators",
             "sinew-scene",
+            "sinew-measure",
         ],
     ),
     (
@@ -59,9 +64,10 @@ const ROOMS: &[(&str, &[&str])] = &[
             "sinew-cnn",
             "sinew-integrators",
             "sinew-scene",
+            "sinew-measure",
         ],
     ),
-    ("xtask", &["sinew-bench", "sinew-mesh"]),
+    ("xtask", &["sinew-bench", "sinew-measure", "sinew-mesh"]),
 ];
 
 /// Libraries that only one crate may name.

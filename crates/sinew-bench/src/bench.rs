@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use sinew_core::OptionError;
 
-use crate::case::{Case, CaseError};
-use crate::measure::{Effort, Method, measure};
-use crate::results::{BenchResults, Machine, Skipped, mark_pareto};
+use sinew_measure::{
+    Case, CaseError, Effort, Method, ThreadError, mark_pareto, measure, on_one_thread,
+};
+
+use crate::results::{BenchResults, Machine, Skipped};
 
 /// What to measure.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,8 +37,8 @@ pub enum BenchError {
     #[error(transparent)]
     Case(#[from] CaseError),
     /// No thread to measure on.
-    #[error("the measuring thread could not be started: {0}")]
-    Thread(String),
+    #[error(transparent)]
+    Thread(#[from] ThreadError),
 }
 
 /// How far a bench has come.
@@ -128,7 +130,7 @@ impl Bench {
                 of: plan.len(),
                 what: format!("{}: {integrator}, {} ms", case.id(), round(dt * 1e3)),
             });
-            let method = method_on(case, integrator);
+            let method = Method::on(case, integrator);
             match measure(case, &method, dt, effort) {
                 Ok(row) => results.rows.push(row),
                 Err(reason) => results.skipped.push(Skipped {
@@ -168,31 +170,6 @@ impl Bench {
             self.steps.clone()
         }
     }
-}
-
-/// Products may use a thread pool; one thread keeps times and counts comparable.
-pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, BenchError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    let pool = pool.map_err(|error| BenchError::Thread(error.to_string()))?;
-    Ok(pool.install(work))
-}
-
-/// The scene's own integrator runs with the scene's options, every other with its defaults. Those
-/// that saturate say at which voltage.
-pub(crate) fn method_on(case: &Case, integrator: &str) -> Method {
-    let mut method = Method::new(integrator);
-    let settings = case.simulation().settings();
-    if settings.integrator == integrator {
-        method.options = settings.options.clone();
-    }
-    let entries = sinew_integrators::entries();
-    let options = entries.iter().filter(|entry| entry.id == integrator);
-    for help in options.flat_map(|entry| entry.options) {
-        if let (Some(default), None) = (help.shown_default, method.options.get(help.key)) {
-            method.options = method.options.with_number(help.key, default);
-        }
-    }
-    method
 }
 
 fn round(value: f64) -> f64 {

@@ -5,8 +5,9 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use sinew_bench::results::{BenchResults, Machine, Outcome, Row, Verdict};
+use sinew_bench::results::{BenchResults, Machine};
 use sinew_bench::{Bench, default_steps};
+use sinew_measure::{Outcome, Row, Verdict};
 
 fn scene(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))

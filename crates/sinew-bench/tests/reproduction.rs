@@ -4,8 +4,8 @@
 
 use std::path::PathBuf;
 
-use sinew_bench::Case;
 use sinew_bench::reproduce::{Holds, reproduce};
+use sinew_measure::Case;
 
 fn case(name: &str) -> Case {
     let scenes = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenes");

@@ -8,8 +8,9 @@ use std::{collections::BTreeMap, fs, path::Path};
 use serde_json::{Value, json};
 use sinew_bench::{
     report::{Axis, Plot, Series, Style, Surface, markdown, terminal, write_all, write_atomically},
-    results::{BenchResults, CaseInfo, Machine, Outcome, Row, Skipped, Verdict, Work, mark_pareto},
+    results::{BenchResults, Machine, Skipped},
 };
+use sinew_measure::{CaseInfo, Outcome, Row, Verdict, Work, mark_pareto};
 
 const DOFS: usize = 2673;
 /// CPU seconds of a sweep over the cube, and of a solve with its factorised matrix.

@@ -4,7 +4,8 @@ mod python;
 mod scipy;
 
 use sinew_bench::beside::{Rounds, export, run_beside};
-use sinew_bench::{Bench, Case, peers};
+use sinew_bench::{Bench, peers};
+use sinew_measure::Case;
 
 use crate::bench::say;
 use crate::failure::Failure;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 use sinew_core::{LinearOperators, Ramp};
 
-use crate::case::Case;
+use sinew_measure::Case;
 
 /// Files of an exported case: little-endian arrays without heads, and `system.json`, which holds
 /// their lengths, the duration (s) and the number of samples.

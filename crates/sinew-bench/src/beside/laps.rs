@@ -3,10 +3,10 @@
 use sinew_core::{Integrator, Run, SimulateError, State, simulate};
 
 use super::pilots::{Target, pilots};
-use crate::bench::{method_on, on_one_thread};
-use crate::case::Case;
-use crate::cpu_time::thread_cpu_time;
-use crate::reference::track::ErrorNorm;
+use sinew_measure::Case;
+use sinew_measure::reference::ErrorNorm;
+use sinew_measure::thread_cpu_time;
+use sinew_measure::{Method, on_one_thread};
 
 /// Another program that steps the same system.
 pub trait Rival {
@@ -176,7 +176,7 @@ struct Contender {
 
 impl Contender {
     fn new(case: &Case, integrator: &str, dt: f64) -> Result<Self, LapError> {
-        let method = method_on(case, integrator);
+        let method = Method::on(case, integrator);
         let built = sinew_integrators::build(&method.integrator, &method.options);
         let mut integrator = built.map_err(failed)?;
         integrator

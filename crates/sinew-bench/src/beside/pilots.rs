@@ -1,9 +1,8 @@
 //! Short runs that find which methods and steps are worth laps.
 
-use crate::bench::method_on;
-use crate::case::Case;
-use crate::measure::{Effort, measure};
-use crate::results::{Outcome, Row};
+use sinew_measure::Case;
+use sinew_measure::{Effort, Method, measure};
+use sinew_measure::{Outcome, Row};
 
 /// An error and the run of ours that reaches it most cheaply.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,14 +36,14 @@ pub fn pilots(
 ) -> Result<Vec<Target>, String> {
     let settings = case.simulation().settings();
     let between = settings.duration / settings.samples as f64;
-    let method = method_on(case, same.0);
+    let method = Method::on(case, same.0);
     let same = measure(case, &method, same.1, Effort::QUICK)?;
     // Nor is one followed once it costs more than a run that already meets the smallest error.
     let mut too_dear = TOO_DEAR * same.cpu_s_per_s;
 
     let mut rows = Vec::new();
     for integrator in integrators {
-        let method = method_on(case, integrator);
+        let method = Method::on(case, integrator);
         for parts in LADDER {
             // What cannot run here is no candidate; the bench lists why.
             let Ok(row) = measure(case, &method, between / f64::from(parts), Effort::QUICK) else {

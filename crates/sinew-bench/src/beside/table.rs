@@ -88,7 +88,7 @@ fn short_percent(fraction: f64) -> String {
 mod tests {
     use super::super::Target;
     use super::*;
-    use crate::results::Row;
+    use sinew_measure::Row;
 
     #[test]
     fn a_ratio_stands_beside_both_errors() {

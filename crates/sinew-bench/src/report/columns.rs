@@ -1,7 +1,7 @@
 //! The columns of every table of runs.
 
 use super::{number, verdict};
-use crate::results::Row;
+use sinew_measure::Row;
 
 /// A column: its head, what stands in it, what it is sorted by.
 pub(super) struct Column {
@@ -139,7 +139,7 @@ fn yes(value: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::Work;
+    use sinew_measure::Work;
 
     #[test]
     fn solves_are_work_too() {

@@ -9,7 +9,8 @@ use super::{
     summary::cheapest,
     verdict, work_precision,
 };
-use crate::results::{ACCURATE, BenchResults, CaseInfo, Row, Skipped, Verdict};
+use crate::results::{BenchResults, Skipped};
+use sinew_measure::{ACCURATE, CaseInfo, Row, Verdict};
 
 /// The whole page.
 #[must_use]
@@ -80,10 +81,10 @@ impl Page {
         for verdict in Verdict::ALL {
             self.put(format_args!(
                 "<span class=\"sign\" style=\"background:{}\">{}</span> {} ({}){}",
-                verdict.tint(),
+                verdict::tint(verdict),
                 verdict.symbol(),
                 verdict.word(),
-                Escaped(verdict.meaning()),
+                Escaped(verdict::meaning(verdict)),
                 if verdict == Verdict::Diverged {
                     ".</li>\n"
                 } else {
@@ -289,7 +290,7 @@ impl Page {
             };
             self.put(format_args!(
                 "<td class=\"n verdict\" style=\"background:{}\" title=\"{}\"{key}>{} {symbol}</td>",
-                verdict.tint(),
+                verdict::tint(verdict),
                 verdict.word(),
                 Escaped(&cell),
             ));

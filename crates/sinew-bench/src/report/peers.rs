@@ -48,7 +48,8 @@ mod tests {
     use super::*;
     use crate::peers::CASE;
     use crate::report::html;
-    use crate::results::{BenchResults, CaseInfo, Machine};
+    use crate::results::{BenchResults, Machine};
+    use sinew_measure::CaseInfo;
 
     fn page(id: &str) -> String {
         let mut results = BenchResults::new("r", Machine::default());

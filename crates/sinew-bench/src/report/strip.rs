@@ -1,12 +1,14 @@
 //! Stability strip: the verdict on every method at every step.
 
+use sinew_measure::{Outcome, Row, Verdict};
+
 use super::{
     number,
     style::Dash,
     svg::{Anchor, Frame, Paint, Stroke, Svg, Text, text_width},
     verdict,
 };
-use crate::results::{BenchResults, Outcome, Row, Verdict};
+use crate::results::BenchResults;
 
 const MARGIN: f64 = 12.0;
 const TITLE: f64 = 15.0;
@@ -170,7 +172,7 @@ fn note(run: &Row) -> String {
 
 fn draw_cell(svg: &mut Svg, frame: Frame, run: &Row) {
     let verdict = run.verdict();
-    svg.rect(frame, Paint::Data(verdict.tint()));
+    svg.rect(frame, Paint::Data(verdict::tint(verdict)));
     let y = frame.top + 0.5 * frame.height;
     let restless = run.outcome == Outcome::Finished && run.bounded && !run.settles;
     let symbol = if restless {
@@ -217,7 +219,7 @@ impl Entry {
                     width: 22.0,
                     height: 16.0,
                 };
-                svg.rect(frame, Paint::Data(verdict.tint()));
+                svg.rect(frame, Paint::Data(verdict::tint(verdict)));
                 Paint::OnTint
             }
             None => Paint::Ink,
@@ -236,7 +238,7 @@ fn legend() -> Vec<Entry> {
     let verdicts = Verdict::ALL.into_iter().map(|verdict| Entry {
         verdict: Some(verdict),
         symbol: verdict.symbol(),
-        text: format!("{}: {}", verdict.word(), verdict.meaning()),
+        text: format!("{}: {}", verdict.word(), verdict::meaning(verdict)),
     });
     verdicts
         .chain([Entry {

@@ -1,6 +1,6 @@
 //! What to take home from a case.
 
-use crate::results::{Row, Verdict};
+use sinew_measure::{Row, Verdict};
 
 /// The accurate run that costs least among those with at most the given error (fraction).
 pub(super) fn cheapest<'a>(

@@ -6,7 +6,8 @@ use super::{
     columns::{COLUMNS, Column},
     number,
 };
-use crate::results::{BenchResults, Row};
+use crate::results::BenchResults;
+use sinew_measure::Row;
 
 /// Lines cost width, which a terminal lacks.
 const RULED_HEAD: TableStyle =
@@ -123,7 +124,8 @@ fn align_right(table: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{Machine, Outcome, Skipped};
+    use crate::results::{Machine, Skipped};
+    use sinew_measure::Outcome;
 
     fn results() -> BenchResults {
         let mut results = BenchResults::new("r", Machine::default());

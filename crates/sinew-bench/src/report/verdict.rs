@@ -1,61 +1,28 @@
 //! How verdicts look: a symbol and a word beside every colour.
 
+use sinew_measure::{Outcome, Row, Verdict};
+
 use super::{number, style::Colour};
-use crate::results::{Outcome, Row, Verdict};
 
-impl Verdict {
-    /// All verdicts, the best first.
-    pub const ALL: [Self; 5] = [
-        Self::Accurate,
-        Self::Wrong,
-        Self::Guarded,
-        Self::Unbounded,
-        Self::Diverged,
-    ];
-
-    /// A symbol that tells the verdict without colour.
-    #[must_use]
-    pub fn symbol(self) -> &'static str {
-        match self {
-            Self::Accurate => "✓",
-            Self::Wrong => "✗",
-            Self::Guarded => "G",
-            Self::Unbounded => "∞",
-            Self::Diverged => "D",
-        }
+/// What a verdict says of a run.
+pub(super) fn meaning(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Accurate => "error ≤ 5 %",
+        Verdict::Wrong => "bounded, error > 5 %",
+        Verdict::Guarded => "cells saturated",
+        Verdict::Unbounded => "|u| > 10× the reference's",
+        Verdict::Diverged => "given up early",
     }
+}
 
-    /// The verdict in one word.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Accurate => "accurate",
-            Self::Wrong => "wrong",
-            Self::Guarded => "guarded",
-            Self::Unbounded => "unbounded",
-            Self::Diverged => "diverged",
-        }
-    }
-
-    pub(super) fn meaning(self) -> &'static str {
-        match self {
-            Self::Accurate => "error ≤ 5 %",
-            Self::Wrong => "bounded, error > 5 %",
-            Self::Guarded => "cells saturated",
-            Self::Unbounded => "|u| > 10× the reference's",
-            Self::Diverged => "given up early",
-        }
-    }
-
-    /// Light enough for black text: tints of the Okabe-Ito colours.
-    pub(super) fn tint(self) -> Colour {
-        match self {
-            Self::Accurate => Colour(0xb8, 0xe6, 0xd4),
-            Self::Wrong => Colour(0xfb, 0xe3, 0xad),
-            Self::Guarded => Colour(0xec, 0xcf, 0xe0),
-            Self::Unbounded => Colour(0xf6, 0xb9, 0x8d),
-            Self::Diverged => Colour(0xd9, 0xd9, 0xd9),
-        }
+/// Light enough for black text: tints of the Okabe-Ito colours.
+pub(super) fn tint(verdict: Verdict) -> Colour {
+    match verdict {
+        Verdict::Accurate => Colour(0xb8, 0xe6, 0xd4),
+        Verdict::Wrong => Colour(0xfb, 0xe3, 0xad),
+        Verdict::Guarded => Colour(0xec, 0xcf, 0xe0),
+        Verdict::Unbounded => Colour(0xf6, 0xb9, 0x8d),
+        Verdict::Diverged => Colour(0xd9, 0xd9, 0xd9),
     }
 }
 

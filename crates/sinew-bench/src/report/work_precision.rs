@@ -7,7 +7,8 @@ use super::{
     style::{Colour, Dash, Style},
     verdict,
 };
-use crate::results::{BenchResults, Outcome, Row};
+use crate::results::BenchResults;
+use sinew_measure::{Outcome, Row};
 
 /// Errors above this (fraction) are drawn in the lane of the unbounded runs.
 const LARGEST_SHOWN_ERROR: f64 = 100.0;

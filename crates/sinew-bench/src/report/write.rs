@@ -120,7 +120,8 @@ pub fn write_atomically(path: &Path, content: &str) -> Result<(), WriteError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{Machine, Row};
+    use crate::results::Machine;
+    use sinew_measure::Row;
 
     fn names(dir: &Path) -> Vec<String> {
         let mut names: Vec<String> = fs::read_dir(dir)

@@ -3,7 +3,7 @@
 use super::figures::{error_in_words, percent};
 use super::runs::{LARGE, Runs, SMALL, VOLTAGES};
 use crate::report::three;
-use crate::results::Row;
+use sinew_measure::Row;
 
 /// A claim of the paper and what was measured.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use sinew_mesh::GroupMembers;
 use super::ReproduceError;
 use super::runs::{History, LARGE, Runs, SMALL, Snapshot, VOLTAGES};
 use crate::report::{Axis, Plot, Series, Style, Surface, three};
-use crate::results::Row;
+use sinew_measure::Row;
 
 /// A figure of the paper.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,8 +14,8 @@ pub use claims::{Claim, Holds};
 pub use figures::Figure;
 pub use page::WrittenReproduction;
 
-use crate::case::Case;
 use crate::report::WriteError;
+use sinew_measure::Case;
 
 /// Figures and claims.
 #[derive(Clone, Debug, PartialEq)]

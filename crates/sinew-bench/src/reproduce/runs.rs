@@ -3,10 +3,10 @@
 use sinew_core::{Options, Run, State, simulate};
 
 use super::ReproduceError;
-use crate::case::Case;
-use crate::measure::{Effort, Method, measure};
-use crate::reference::track::ErrorNorm;
-use crate::results::{Row, finite};
+use sinew_measure::Case;
+use sinew_measure::reference::{ErrorNorm, largest};
+use sinew_measure::{Effort, Method, measure};
+use sinew_measure::{Row, finite};
 
 /// The paper's steps (s).
 pub(super) const SMALL: f64 = 0.001;
@@ -89,7 +89,7 @@ impl<'a> Runs<'a> {
             limit_cycles,
             cube_small,
             cube_large,
-            euler_after_a_second: crate::reference::track::largest(&end.u),
+            euler_after_a_second: largest(&end.u),
             cube,
         })
     }

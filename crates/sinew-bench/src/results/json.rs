@@ -1,8 +1,9 @@
 //! Results as JSON, which has no NaN and no infinity.
 
 use serde::Deserialize;
+use sinew_measure::{CaseInfo, Outcome, Row};
 
-use super::{BenchResults, CaseInfo, Outcome, Row, SCHEMA};
+use super::{BenchResults, SCHEMA};
 
 /// Why results cannot be written as, or read from, JSON.
 #[derive(Debug, thiserror::Error)]
@@ -65,15 +66,15 @@ impl BenchResults {
 
     fn check(&self) -> Result<(), ResultsError> {
         for case in &self.cases {
-            check_finite(case.numbers(), || format!("case {}", case.id))?;
+            check_finite(case_numbers(case), || format!("case {}", case.id))?;
         }
         for row in &self.rows {
             let name = || format!("{}, {}, dt = {} s", row.case, row.label(), row.dt);
             check_finite(
-                row.required_numbers().map(|(field, x)| (field, Some(x))),
+                required_numbers(row).map(|(field, x)| (field, Some(x))),
                 name,
             )?;
-            check_finite(row.optional_numbers(), name)?;
+            check_finite(optional_numbers(row), name)?;
             if row.outcome == Outcome::Finished && row.error.is_none() {
                 return Err(ResultsError::FinishedWithoutError { of: name() });
             }
@@ -87,38 +88,34 @@ impl BenchResults {
     }
 }
 
-impl Row {
-    fn required_numbers(&self) -> [(&'static str, f64); 6] {
-        [
-            ("dt", self.dt),
-            ("sweeps_per_s", self.sweeps_per_s),
-            ("saturated", self.saturated),
-            ("cpu_s_per_s", self.cpu_s_per_s),
-            ("us_per_step", self.us_per_step),
-            ("setup_cpu_s", self.setup_cpu_s),
-        ]
-    }
-
-    fn optional_numbers(&self) -> [(&'static str, Option<f64>); 4] {
-        [
-            ("error", self.error),
-            ("max_u", self.max_u),
-            ("late_amplitude", self.late_amplitude),
-            ("diverged_at_s", self.diverged_at_s),
-        ]
-    }
+fn required_numbers(row: &Row) -> [(&'static str, f64); 6] {
+    [
+        ("dt", row.dt),
+        ("sweeps_per_s", row.sweeps_per_s),
+        ("saturated", row.saturated),
+        ("cpu_s_per_s", row.cpu_s_per_s),
+        ("us_per_step", row.us_per_step),
+        ("setup_cpu_s", row.setup_cpu_s),
+    ]
 }
 
-impl CaseInfo {
-    fn numbers(&self) -> [(&'static str, Option<f64>); 5] {
-        [
-            ("duration_s", Some(self.duration_s)),
-            ("reference_error", Some(self.reference_error)),
-            ("max_u_m", Some(self.max_u_m)),
-            ("late_amplitude_m", Some(self.late_amplitude_m)),
-            ("critical_step_s", self.critical_step_s),
-        ]
-    }
+fn optional_numbers(row: &Row) -> [(&'static str, Option<f64>); 4] {
+    [
+        ("error", row.error),
+        ("max_u", row.max_u),
+        ("late_amplitude", row.late_amplitude),
+        ("diverged_at_s", row.diverged_at_s),
+    ]
+}
+
+fn case_numbers(case: &CaseInfo) -> [(&'static str, Option<f64>); 5] {
+    [
+        ("duration_s", Some(case.duration_s)),
+        ("reference_error", Some(case.reference_error)),
+        ("max_u_m", Some(case.max_u_m)),
+        ("late_amplitude_m", Some(case.late_amplitude_m)),
+        ("critical_step_s", case.critical_step_s),
+    ]
 }
 
 fn check_finite<const N: usize>(
@@ -144,7 +141,8 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::results::{Machine, Skipped, Verdict, Work, finite};
+    use crate::results::{Machine, Skipped};
+    use sinew_measure::{Verdict, Work, finite};
 
     fn row() -> Row {
         Row {

@@ -11,9 +11,8 @@ use sinew_core::{
 
 use crate::case::Case;
 use crate::cpu_time::thread_cpu_time;
-use crate::reference::Track;
-use crate::reference::track::{ErrorNorm, LateRange, largest};
-use crate::results::{Outcome, Row, Work, finite};
+use crate::reference::{ErrorNorm, LateRange, Track, largest};
+use crate::row::{Outcome, Row, Work, finite};
 
 /// An integrator with its options.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +31,25 @@ impl Method {
             integrator: integrator.into(),
             options: Options::new(),
         }
+    }
+
+    /// As it is compared with others on a case: the scene's own integrator has the scene's options,
+    /// every other its defaults. Those that saturate say at which voltage.
+    #[must_use]
+    pub fn on(case: &Case, integrator: &str) -> Self {
+        let mut method = Self::new(integrator);
+        let settings = case.simulation().settings();
+        if settings.integrator == integrator {
+            method.options = settings.options.clone();
+        }
+        let entries = sinew_integrators::entries();
+        let options = entries.iter().filter(|entry| entry.id == integrator);
+        for help in options.flat_map(|entry| entry.options) {
+            if let (Some(default), None) = (help.shown_default, method.options.get(help.key)) {
+                method.options = method.options.with_number(help.key, default);
+            }
+        }
+        method
     }
 }
 

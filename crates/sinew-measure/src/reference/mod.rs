@@ -4,7 +4,8 @@
 //! in time, to rounding; no method under test is involved.
 
 mod taylor;
-pub(crate) mod track;
+mod track;
 
 pub use taylor::Taylor;
-pub use track::{ReferenceError, Track, follow};
+pub(crate) use track::LateRange;
+pub use track::{ErrorNorm, ReferenceError, Track, follow, largest};

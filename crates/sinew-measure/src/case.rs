@@ -9,7 +9,7 @@ use sinew_core::spectrum::Spectrum;
 use sinew_scene::{Scene, SceneError, SceneModel, Simulation};
 
 use crate::reference::{ReferenceError, Track, follow};
-use crate::results::CaseInfo;
+use crate::row::CaseInfo;
 
 /// Displacement over the reference's largest at which an oscillator counts as diverged; a body
 /// counts as diverged at a hundred times its size.

@@ -8,10 +8,10 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
-use sinew_bench::{Case, Effort, Method, measure};
 use sinew_core::LinearSystem;
 use sinew_core::spectrum::largest_eigenvalue_of_pencil;
 use sinew_integrators::implicit::static_solution;
+use sinew_measure::{Case, Effort, Method, measure};
 use sinew_scene::Simulation;
 
 fn case() -> &'static Mutex<Case> {

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 /// Thread CPU time since some fixed instant: what other processes do does not count. Wall time
 /// where the platform has no such clock.
-pub(crate) fn thread_cpu_time() -> Duration {
+#[must_use]
+pub fn thread_cpu_time() -> Duration {
     #[cfg(unix)]
     {
         let now = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);

@@ -117,7 +117,8 @@ fn peak_between(before: &State, after: &State) -> f64 {
 }
 
 /// Largest |component|; infinite where one is not a number.
-pub(crate) fn largest(u: &[f64]) -> f64 {
+#[must_use]
+pub fn largest(u: &[f64]) -> f64 {
     let larger = |max: f64, u: &f64| {
         if u.is_nan() {
             f64::INFINITY
@@ -139,13 +140,14 @@ fn relative_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 
 /// Sums for a relative L2 error.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct ErrorNorm {
+pub struct ErrorNorm {
     difference: f64,
     reference: f64,
 }
 
 impl ErrorNorm {
-    pub(crate) fn include(&mut self, u: &[f64], reference: &[f64]) {
+    /// Includes the displacement at one instant.
+    pub fn include(&mut self, u: &[f64], reference: &[f64]) {
         for (u, reference) in u.iter().zip(reference) {
             self.difference += (u - reference).powi(2);
             self.reference += reference * reference;
@@ -153,7 +155,8 @@ impl ErrorNorm {
     }
 
     /// The relative error; where the reference never moves, 0 or infinite.
-    pub(crate) fn relative(self) -> f64 {
+    #[must_use]
+    pub fn relative(self) -> f64 {
         if self.difference == 0.0 {
             return 0.0;
         }

@@ -1,0 +1,16 @@
+//! One run on a scene, measured: its error against a reference, its verdicts, its work and its cost.
+//!
+//! A [`Case`] is a scene with its reference solution; [`measure()`] makes one [`Row`] of a run on it.
+
+mod case;
+mod cpu_time;
+mod measure;
+mod one_thread;
+pub mod reference;
+mod row;
+
+pub use case::{Case, CaseError};
+pub use cpu_time::thread_cpu_time;
+pub use measure::{Effort, Method, measure};
+pub use one_thread::{ThreadError, on_one_thread};
+pub use row::{ACCURATE, CaseInfo, Outcome, Row, Verdict, Work, finite, mark_pareto};

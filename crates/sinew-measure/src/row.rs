@@ -1,0 +1,228 @@
+//! What is known of a run: its error, its verdicts, its work and its cost.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+mod label;
+mod pareto;
+
+pub use pareto::mark_pareto;
+
+/// Largest relative error that is called accurate.
+pub const ACCURATE: f64 = 0.05;
+
+/// A case and the reference its runs are measured against.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CaseInfo {
+    /// Id, as in `paper-cube`.
+    pub id: String,
+    /// Title for people.
+    pub title: String,
+    /// Free degrees of freedom.
+    pub dofs: usize,
+    /// Simulated time (s).
+    pub duration_s: f64,
+    /// How the reference was made.
+    pub reference: String,
+    /// The reference's own estimated relative error (fraction).
+    pub reference_error: f64,
+    /// Largest |component| of the displacement in the reference (m).
+    pub max_u_m: f64,
+    /// Half the range of the reference's worst dof over the last fifth of the run (m).
+    pub late_amplitude_m: f64,
+    /// Critical step `2 / omega_max` of the undamped system (s); none where there is no omega_max.
+    #[serde(default)]
+    pub critical_step_s: Option<f64>,
+}
+
+/// One run: a case, an integrator with its options, a step.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Id of the case.
+    pub case: String,
+    /// Id of the integrator.
+    pub integrator: String,
+    /// Options that differ from the integrator's defaults.
+    #[serde(default)]
+    pub options: BTreeMap<String, Value>,
+    /// Step (s).
+    pub dt: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Sweeps per simulated second (1/s).
+    pub sweeps_per_s: f64,
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// Simulated time at which the run was given up (s); only when diverged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diverged_at_s: Option<f64>,
+    /// All finite, and never larger than ten times the reference.
+    pub bounded: bool,
+    /// The motion dies out as the reference's does.
+    pub settles: bool,
+    /// Relative L2 error of the displacement (fraction, 1 = as wrong as returning zero); none only
+    /// when diverged.
+    pub error: Option<f64>,
+    /// Largest |component| of the displacement over the run (m); none where not finite.
+    pub max_u: Option<f64>,
+    /// Half the range of the worst dof over the last fifth of the steps (m); none where not finite.
+    pub late_amplitude: Option<f64>,
+    /// Share of the (dof, step) pairs that were saturated (fraction).
+    pub saturated: f64,
+    /// Some cells were saturated: bounded by the guard, not by the physics.
+    #[serde(default)]
+    pub guarded: bool,
+    /// Inverted elements in the last state.
+    pub inverted: u64,
+    /// Work counts over the run; they reproduce, seconds do not.
+    pub work: Work,
+    /// CPU seconds per simulated second (thread CPU time, median of the repeats).
+    pub cpu_s_per_s: f64,
+    /// CPU time per step (microseconds).
+    pub us_per_step: f64,
+    /// CPU time of the set-up (s), in none of the other times.
+    #[serde(default)]
+    pub setup_cpu_s: f64,
+    /// What the method's set-up found out, by name: the certificate of a stabilised network, the
+    /// degree of a propagator.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub facts: BTreeMap<String, f64>,
+    /// No other run of the case is both as cheap and as accurate; see [`mark_pareto`].
+    #[serde(default)]
+    pub pareto: bool,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// Took all its steps.
+    #[default]
+    Finished,
+    /// Given up early: not finite, or far beyond the size of the body.
+    Diverged,
+}
+
+/// Work counts of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Work {
+    /// Sweeps over the network (each the cost of one sparse product).
+    #[serde(default)]
+    pub sweeps: u64,
+    /// Evaluations of the force.
+    #[serde(default)]
+    pub force_evaluations: u64,
+    /// Solves with a factorised matrix.
+    #[serde(default)]
+    pub solves: u64,
+    /// Factorisations.
+    #[serde(default)]
+    pub factorizations: u64,
+    /// Newton iterations.
+    #[serde(default)]
+    pub newton_iterations: u64,
+}
+
+/// The verdict on a run in one word. Stability and accuracy are separate questions; see the
+/// fields of [`Row`] for all the answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Verdict {
+    /// Finished, bounded, nothing saturated, error at most [`ACCURATE`].
+    Accurate,
+    /// Finished, bounded, nothing saturated, error above [`ACCURATE`].
+    Wrong,
+    /// Finished and bounded with saturated cells, whatever the error.
+    Guarded,
+    /// Finished, but passed the bound.
+    Unbounded,
+    /// Given up early.
+    Diverged,
+}
+
+impl Verdict {
+    /// All verdicts, the best first.
+    pub const ALL: [Self; 5] = [
+        Self::Accurate,
+        Self::Wrong,
+        Self::Guarded,
+        Self::Unbounded,
+        Self::Diverged,
+    ];
+
+    /// A symbol that tells the verdict without colour.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Accurate => "✓",
+            Self::Wrong => "✗",
+            Self::Guarded => "G",
+            Self::Unbounded => "∞",
+            Self::Diverged => "D",
+        }
+    }
+
+    /// The verdict in one word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Accurate => "accurate",
+            Self::Wrong => "wrong",
+            Self::Guarded => "guarded",
+            Self::Unbounded => "unbounded",
+            Self::Diverged => "diverged",
+        }
+    }
+}
+
+impl Row {
+    /// The integrator and its non-default options, as in `cnn Q=4`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        label::label(&self.integrator, &self.options)
+    }
+
+    /// The verdict in one word.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        match self.outcome {
+            Outcome::Diverged => Verdict::Diverged,
+            Outcome::Finished if !self.bounded => Verdict::Unbounded,
+            Outcome::Finished if self.guarded || self.saturated > 0.0 => Verdict::Guarded,
+            Outcome::Finished if self.error.is_some_and(|e| e <= ACCURATE) => Verdict::Accurate,
+            Outcome::Finished => Verdict::Wrong,
+        }
+    }
+}
+
+/// `Some` where the value is finite, for the fields that JSON must be able to hold.
+#[must_use]
+pub fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verdicts() {
+        let clean = Row {
+            bounded: true,
+            error: Some(ACCURATE),
+            ..Row::default()
+        };
+        assert_eq!(clean.verdict(), Verdict::Accurate);
+        let with = |change: fn(&mut Row)| {
+            let mut row = clean.clone();
+            change(&mut row);
+            row.verdict()
+        };
+        assert_eq!(with(|r| r.error = Some(0.051)), Verdict::Wrong);
+        assert_eq!(with(|r| r.guarded = true), Verdict::Guarded);
+        assert_eq!(with(|r| r.saturated = 1e-6), Verdict::Guarded);
+        assert_eq!(with(|r| r.bounded = false), Verdict::Unbounded);
+        assert_eq!(with(|r| r.outcome = Outcome::Diverged), Verdict::Diverged);
+    }
+}
