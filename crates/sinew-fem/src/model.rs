@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use sinew_core::{
     BlockMatrix, Damping, Energy, EvaluationError, Layers, LinearOperators, LinearSystem, Pattern,
-    Revision, System, Trial,
+    Revision, Scales, System, Trial,
 };
 use sinew_mesh::TetMesh;
 
 use crate::cells::Cells;
 use crate::error::{Cause, FemError, Item};
 use crate::report::{ModelReport, RegionFacts};
+use crate::scales::OwnedScales;
 use crate::{Law, Problem, assembly, check, loads, tetra};
 
 /// A linear model of a body: M, D, K over its moving nodes, loads, and the geometry behind them.
@@ -22,6 +23,7 @@ pub struct Model {
     points: Vec<[f64; 3]>,
     tets: Vec<[u32; 4]>,
     extent: f64,
+    scales: OwnedScales,
     report: ModelReport,
 }
 
@@ -107,6 +109,10 @@ impl Model {
             facts
         });
 
+        let (low, high) = mesh.bounding_box();
+        let extent = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+        let scales = OwnedScales::new(mesh, &cells, problem, &regions, &core_loads, extent);
+
         let damping = Damping {
             mass: problem.damping.mass,
             stiffness: problem.damping.stiffness,
@@ -120,7 +126,6 @@ impl Model {
         let operators = LinearOperators::new(moving.collect(), stiffness, damping, core_loads)
             .map_err(|error| FemError::new(Item::Mesh, error.into()))?;
 
-        let (low, high) = mesh.bounding_box();
         let report = ModelReport {
             nodes: mesh.points.len(),
             tets: mesh.tets.len(),
@@ -143,7 +148,8 @@ impl Model {
             node_tags: mesh.node_tags.clone(),
             points: mesh.points.clone(),
             tets: mesh.tets.clone(),
-            extent: (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max),
+            extent,
+            scales,
             report,
         })
     }
@@ -238,6 +244,14 @@ impl System for Model {
 
     fn extent(&self) -> Option<f64> {
         Some(self.extent)
+    }
+
+    fn scales(&self) -> Option<Scales<'_>> {
+        Some(Scales {
+            cell_size: &self.scales.cell_size,
+            impedance: self.scales.impedance,
+            pressure: self.scales.pressure,
+        })
     }
 
     fn cell_name(&self, dof: usize) -> String {

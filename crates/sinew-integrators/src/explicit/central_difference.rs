@@ -5,6 +5,7 @@ use sinew_core::{
     SetupError, StableStep, State, StepError, StepReport, System,
 };
 
+use super::GuardOption;
 use crate::Method;
 use crate::evaluate::{acceleration, prepare_buffers, synchronise};
 use crate::limits;
@@ -28,6 +29,7 @@ impl Method for CentralDifference {
     const ID: &'static str = "central-difference";
     const SUMMARY: &'static str = "explicit, order 2 with mass damping; stable up to 2/omega_max";
     const SUBSTEPS: bool = true;
+    const GUARD: GuardOption = GuardOption::Any { runs_away: false };
 
     fn from_options(_options: &Options) -> Result<Self, OptionError> {
         Ok(Self::default())

@@ -2,6 +2,7 @@
 
 mod central_difference;
 mod forward_euler;
+mod guard;
 mod modified_leapfrog;
 mod rk4;
 mod substeps;
@@ -9,6 +10,7 @@ mod symplectic_euler;
 
 pub use central_difference::CentralDifference;
 pub use forward_euler::ForwardEuler;
+pub use guard::{Guard, GuardOption, Guarded};
 pub use modified_leapfrog::ModifiedLeapfrog;
 pub use rk4::Rk4;
 pub use substeps::{Substepped, Substeps};

@@ -44,6 +44,20 @@ impl Substeps {
     }
 }
 
+/// Parts of a step `dt` that are below nine tenths of the stable step `limit`.
+pub(super) fn parts_below(limit: f64, dt: f64) -> u32 {
+    if dt <= MARGIN * limit {
+        1
+    } else {
+        whole(dt / (MARGIN * limit))
+    }
+}
+
+/// The next whole number of parts.
+pub(super) fn whole(parts: f64) -> u32 {
+    parts.ceil().clamp(1.0, f64::from(u32::MAX)) as u32
+}
+
 /// An integrator that takes several equal steps for each one asked of it.
 pub struct Substepped {
     inner: Box<dyn Integrator>,
@@ -73,10 +87,7 @@ impl Substepped {
             Substeps::Fixed(parts) => Ok(parts),
             Substeps::Auto => match self.inner.stable_step(system)? {
                 StableStep::Any => Ok(1),
-                StableStep::UpTo(limit) if dt <= MARGIN * limit => Ok(1),
-                StableStep::UpTo(limit) if limit > 0.0 && dt.is_finite() => {
-                    Ok((dt / (MARGIN * limit)).ceil().min(f64::from(u32::MAX)) as u32)
-                }
+                StableStep::UpTo(limit) if limit > 0.0 => Ok(parts_below(limit, dt)),
                 StableStep::UpTo(_) | StableStep::Unknown => Err(SetupError::Lacks {
                     integrator: self.inner.id(),
                     needs: "a stable step above 0 to choose sub-steps by",
@@ -123,7 +134,7 @@ impl Integrator for Substepped {
         let mut work = self.prepare(system, dt)?;
         let parts = self.parts(system, dt)?;
         for _ in 0..parts {
-            work += self.inner.step(system, state, dt / f64::from(parts))?;
+            work.add_part(self.inner.step(system, state, dt / f64::from(parts))?);
         }
         Ok(work)
     }

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use sinew_core::{Outcome, RunReport, simulate};
+use sinew_core::{Integrator, Outcome, RunReport, simulate};
+use sinew_integrators::explicit::Guarded;
 use sinew_scene::{ProbeCsv, Scene, Simulation};
 
 use super::{Failure, say};
@@ -42,7 +43,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|error| Failure::Run(error.to_string()))?;
     let written = csv.finish().map_err(cannot_write)?;
 
-    say(&summary(&simulation, &report));
+    say(&summary(&simulation, &*integrator, &report));
     for probe in simulation.probes() {
         let u: Vec<String> = probe
             .displacement(&state.u)
@@ -65,7 +66,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-fn summary(simulation: &Simulation, report: &RunReport) -> String {
+fn summary(simulation: &Simulation, integrator: &dyn Integrator, report: &RunReport) -> String {
     let settings = simulation.settings();
     let pairs = report.steps as f64 * simulation.system().dofs() as f64;
     let work = report.work;
@@ -78,6 +79,13 @@ fn summary(simulation: &Simulation, report: &RunReport) -> String {
         work.sweeps,
         work.solves
     );
+    let mut facts = integrator.facts().into_iter();
+    if let Some(parts) = facts.find(|fact| fact.name == Guarded::SUBSTEPS && fact.value > 1.0) {
+        text.push_str(&format!(
+            "\nthe guard cut each step into {}: in one of {} s cells could pass more than a fifth of their size",
+            parts.value, settings.dt
+        ));
+    }
     if work.saturated > 0 {
         let share = 100.0 * work.saturated as f64 / pairs;
         text.push_str(&format!(
