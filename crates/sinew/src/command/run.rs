@@ -82,8 +82,8 @@ fn summary(simulation: &Simulation, integrator: &dyn Integrator, report: &RunRep
     let mut facts = integrator.facts().into_iter();
     if let Some(parts) = facts.find(|fact| fact.name == Guarded::SUBSTEPS && fact.value > 1.0) {
         text.push_str(&format!(
-            "\nthe guard cut each step into {}: in one of {} s cells could pass more than a fifth of their size",
-            parts.value, settings.dt
+            "\nthe guard took each step in {} parts: whole, it is longer than the stable step of `{}`",
+            parts.value, settings.integrator
         ));
     }
     if work.saturated > 0 {
