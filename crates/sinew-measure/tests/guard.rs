@@ -46,7 +46,7 @@ fn run(simulation: &Simulation, options: &Options) -> (u64, Vec<u64>) {
 #[test]
 fn a_sound_run_is_the_same_to_the_bit() {
     for name in SCENES {
-        let simulation = Scene::load(&scene(name)).unwrap().build().unwrap();
+        let simulation = Scene::load(scene(name)).unwrap().build().unwrap();
         let parts = with_word(Options::new(), "substeps", "auto");
         let (saturated, guarded) =
             run(&simulation, &with_word(parts.clone(), "saturation", "auto"));

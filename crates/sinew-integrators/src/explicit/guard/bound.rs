@@ -3,13 +3,12 @@
 //! The motion of a linear system is that of its start without loads and that of its loads from
 //! rest, added up; so is the limit, `Q_i = Q_i(loads) + Q_i(start)`.
 //!
-//! *Loads.* `Q_i = min(sqrt(2 E/m_i), 3 max(2 p/(rho c), sqrt(2 W/m)))`. W bounds the energy that the
+//! *Loads.* `Q_i = min(sqrt(2 E/m_i), 3 (2 p/(rho c) + sqrt(2 W/m)))`. W bounds the energy that the
 //! loads can have put into the body at any time (`load_work.rs`), m is its mass and m_i the cell's; E is
 //! ten times W, for what methods make of it (see [`DISCRETE`]). A pressure p put on a surface moves it at
-//! p/(rho c) at once, and at twice that where the wave comes back; three times as much is room for
-//! the third dimension. That is enough for what is as long as thick. What is slender, or swings in
-//! step with its load, gets faster than the waves alone would make it: by the speed that all of W
-//! would give to the body as a whole.
+//! p/(rho c) at once, and at twice that where the wave comes back. What is slender, or swings in
+//! step with its load, or floats, gets faster than by a wave: the speed that all of W would give to the
+//! body as a whole is added. Three times as much is room for where motions meet.
 //!
 //! *Start.* `Q_i = min(sqrt(2 E/m_i), 3 (s + sqrt(2 W/m)))` with the energy W at the start and s the
 //! largest speed of a cell that turns all elastic energy about it into motion of its own: the strain times c
@@ -26,7 +25,9 @@ use super::load_work::load_work;
 /// and symplectic Euler's by `1/sqrt(1 - dt/dt_c)`: sqrt 10 at nine tenths of it.
 const DISCRETE: f64 = 10.0;
 
-/// Room for three dimensions in the speeds of plane waves.
+/// Room for where motions meet. Of 16 000 bodies made at random, set in motion cell by cell or
+/// loaded, none used more than three quarters of it in exact motion; what is left is for methods near their
+/// stable step.
 const ROOM: f64 = 3.0;
 
 /// What bounds the velocities in a system.
@@ -66,7 +67,7 @@ impl Bound {
         let scales = system.scales();
         let load_speed = scales.map_or(f64::INFINITY, |scales| {
             let wave = 2.0 * scales.pressure / scales.impedance;
-            wave.max(load_strength / root_mass)
+            wave + load_strength / root_mass
         });
         Ok(Self {
             mass,
