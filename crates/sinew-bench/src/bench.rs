@@ -165,7 +165,7 @@ impl Bench {
 
     fn steps_of(&self, case: &Case) -> Vec<f64> {
         if self.steps.is_empty() {
-            default_steps(case.simulation().settings().dt, self.quick)
+            default_steps(case.simulation().dt(), self.quick)
         } else {
             self.steps.clone()
         }

@@ -15,6 +15,7 @@ use sinew_core::{OptionValue, Options, Ramp};
 use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule};
 use sinew_scene::{
     Body, Initial, MeshSource, Oscillator, ProbePoint, RunSettings, Scene, SceneSource, Subject,
+    TimeStep,
 };
 
 fn scenes() -> Vec<PathBuf> {
@@ -72,7 +73,7 @@ fn the_papers_oscillator() {
             duration: 1.0,
             samples: 50,
             integrator: "cnn".into(),
-            dt: 0.02,
+            dt: TimeStep::Given(0.02),
             options: Options::new().with_number("saturation", 4.0),
         }
     );
@@ -118,7 +119,7 @@ fn the_papers_cube() {
     let scene = scene("paper-cube.toml");
     assert_eq!(scene.title(), "The paper's cube, reproduction scene");
     assert_eq!(scene.subject(), &Subject::Body(expected));
-    assert_eq!(scene.run().dt, 0.02);
+    assert_eq!(scene.run().dt, TimeStep::Given(0.02));
 }
 
 /// Every key that the paper's scenes do not use.

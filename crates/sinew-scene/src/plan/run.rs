@@ -4,7 +4,7 @@ use sinew_core::StableStep;
 
 use super::Plan;
 use super::number::{count, short};
-use crate::scene::RunSettings;
+use crate::scene::{RunSettings, TimeStep};
 use crate::simulation::Simulation;
 
 pub(super) fn describe(simulation: &Simulation, plan: &mut Plan) {
@@ -12,15 +12,23 @@ pub(super) fn describe(simulation: &Simulation, plan: &mut Plan) {
         duration,
         samples,
         integrator: id,
-        dt,
+        dt: asked,
         options,
     } = simulation.settings();
+    let dt = &simulation.dt();
     let options: Vec<String> = options
         .iter()
         .map(|(key, value)| format!(", {key} = {value}"))
         .collect();
     let mut lines = vec![
-        format!("`{id}`, dt = {dt} s{}", options.concat()),
+        match asked {
+            TimeStep::Given(_) => format!("`{id}`, dt = {dt} s{}", options.concat()),
+            TimeStep::Auto => format!(
+                "`{id}`, dt = \"auto\": {} s{}",
+                short(*dt),
+                options.concat()
+            ),
+        },
         format!(
             "{} for {duration} s, error taken at {} instants",
             count(simulation.run().steps, "step"),

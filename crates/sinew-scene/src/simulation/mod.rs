@@ -3,6 +3,7 @@
 mod body;
 mod probe;
 mod start;
+mod step;
 
 use sinew_core::{
     Integrator, LinearModel, LinearOperators, Load, OptionError, Ramp, Run, State, System,
@@ -23,6 +24,7 @@ pub struct Simulation {
     model: SceneModel,
     initial: State,
     probes: Vec<Probe>,
+    dt: f64,
 }
 
 /// What moves, with its matrices.
@@ -92,7 +94,10 @@ impl Scene {
                 )
             }
         };
+        let dt = step::seconds(self.run(), model.system())
+            .map_err(|fault| self.places().run.value_fault("dt", fault))?;
         Ok(Simulation {
+            dt,
             scene: self,
             model,
             initial,
@@ -151,6 +156,12 @@ impl Simulation {
         self.scene.run()
     }
 
+    /// The step (s), also where the scene leaves it to the integrator.
+    #[must_use]
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
     /// Points whose motion is written down; of an oscillator, its mass.
     #[must_use]
     pub fn probes(&self) -> &[Probe] {
@@ -170,8 +181,7 @@ impl Simulation {
     /// times its size.
     #[must_use]
     pub fn run(&self) -> Run {
-        let settings = self.settings();
-        let run = Run::covering(settings.duration, settings.dt);
+        let run = Run::covering(self.settings().duration, self.dt);
         match self.system().extent() {
             Some(extent) => run.with_divergence_limit(100.0 * extent),
             None => run,
