@@ -11,16 +11,17 @@ use crate::progress::Bar;
 use crate::root;
 
 /// What is measured unless other scenes are named.
-const DEFAULT_SCENES: [&str; 3] = [
+const DEFAULT_SCENES: [&str; 4] = [
     "paper-oscillator.toml",
     "paper-cube.toml",
+    "light-cube.toml",
     "peers-cube.toml",
 ];
 
 /// What to measure and where to write it.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A scene file; may be given several times [default: the paper's two scenes and the peers' cube]
+    /// A scene file; may be given several times [default: the paper's two scenes, a lightly damped cube and the peers' cube]
     #[arg(long = "scene", value_name = "FILE")]
     scenes: Vec<PathBuf>,
     /// An integrator; may be given several times [default: all]

@@ -12,7 +12,7 @@ use sinew_core::{
 use crate::case::Case;
 use crate::cpu_time::thread_cpu_time;
 use crate::reference::{ErrorNorm, LateRange, Track, largest};
-use crate::row::{Outcome, Row, Work, finite};
+use crate::row::{Outcome, Row, Work, finite, label};
 
 /// An integrator with its options.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +51,12 @@ impl Method {
         }
         method
     }
+
+    /// Its name and options in short, as rows show them.
+    #[must_use]
+    pub fn label(&self) -> String {
+        label(&self.integrator, &json_options(&self.options))
+    }
 }
 
 /// How much time goes into measuring the cost of a run.
@@ -66,7 +72,7 @@ impl Effort {
     /// For results to be shown.
     pub const FULL: Self = Self {
         repeats: 5,
-        budget: 0.2,
+        budget: 0.12,
     };
     /// For checks that everything runs.
     pub const QUICK: Self = Self {

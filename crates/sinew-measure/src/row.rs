@@ -8,6 +8,7 @@ use serde_json::Value;
 mod label;
 mod pareto;
 
+pub(crate) use label::label;
 pub use pareto::mark_pareto;
 
 /// Largest relative error that is called accurate.
@@ -35,6 +36,9 @@ pub struct CaseInfo {
     /// Critical step `2 / omega_max` of the undamped system (s); none where there is no omega_max.
     #[serde(default)]
     pub critical_step_s: Option<f64>,
+    /// The largest stable step of each method that ran and has one (s), by its label.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub stable_steps_s: BTreeMap<String, f64>,
 }
 
 /// One run: a case, an integrator with its options, a step.
@@ -180,7 +184,7 @@ impl Row {
     /// The integrator and its non-default options, as in `cnn Q=4`.
     #[must_use]
     pub fn label(&self) -> String {
-        label::label(&self.integrator, &self.options)
+        label(&self.integrator, &self.options)
     }
 
     /// The verdict in one word.

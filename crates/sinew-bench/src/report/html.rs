@@ -4,6 +4,7 @@ use std::fmt::{self, Display, Write};
 
 use super::{
     columns::{COLUMNS, Column},
+    front::{self, front_members},
     markup::{escape, slugs},
     number, peers, strip,
     summary::cheapest,
@@ -158,6 +159,7 @@ impl Page {
             self.out.push_str("<p class=\"none\">No run.</p>\n");
         } else {
             self.figure(&work_precision(results, id).svg());
+            self.front(results, id);
             self.figure(&strip(results, id));
             self.runs(&rows);
             self.findings(&rows);
@@ -195,6 +197,23 @@ impl Page {
                 ),
             ),
         ]);
+    }
+
+    /// Who is on the front, and why.
+    fn front(&mut self, results: &BenchResults, id: &str) {
+        self.out.push_str("<h3>The front</h3>\n<ul>\n");
+        for member in front_members(results, id) {
+            self.put(format_args!(
+                "<li><b>{}</b>: {}. <small>{}</small></li>\n",
+                Escaped(&member.label),
+                Escaped(&member.says),
+                Escaped(&member.summary)
+            ));
+        }
+        self.out.push_str("</ul>\n");
+        for sentence in front::sentences(results, id) {
+            self.put(format_args!("<p>{}</p>\n", Escaped(&sentence)));
+        }
     }
 
     /// What methods found out at set-up, folded away.

@@ -7,6 +7,7 @@
 mod axis;
 mod colour_map;
 mod columns;
+mod front;
 mod html;
 mod markup;
 mod number;
@@ -23,6 +24,7 @@ mod work_precision;
 mod write;
 
 pub use axis::{Axis, Scale};
+pub use front::{FrontMember, front_members, modal_sentence, paper_sentence};
 pub use html::html;
 pub(crate) use markup::escape;
 pub(crate) use number::{milliseconds, percent, short, three};

@@ -4,7 +4,7 @@ use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyl
 
 use super::{
     columns::{COLUMNS, Column},
-    number,
+    front, number,
 };
 use crate::results::BenchResults;
 use sinew_measure::Row;
@@ -65,6 +65,10 @@ fn by_case<'a>(
         }
         let rows = results.rows.iter().filter(|row| row.case == id).collect();
         out.push_str(&format!("\n\n{}\n\n", table(rows)));
+        for line in front::lines(results, id) {
+            out.push_str(&format!("* {line}\n"));
+        }
+        out.push('\n');
     }
     if !results.skipped.is_empty() {
         out.push_str(&format!("{heading}not run\n\n"));
