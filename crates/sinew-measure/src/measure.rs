@@ -12,7 +12,7 @@ use sinew_core::{
 use crate::case::Case;
 use crate::cpu_time::thread_cpu_time;
 use crate::reference::{ErrorNorm, LateRange, Track, largest};
-use crate::row::{Outcome, Row, Work, finite};
+use crate::row::{Outcome, Row, Work, finite, label};
 
 /// An integrator with its options.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,14 +42,26 @@ impl Method {
         if settings.integrator == integrator {
             method.options = settings.options.clone();
         }
+        method.showing_defaults()
+    }
+
+    /// With those defaults written out that change what a run means.
+    #[must_use]
+    pub fn showing_defaults(mut self) -> Self {
         let entries = sinew_integrators::entries();
-        let options = entries.iter().filter(|entry| entry.id == integrator);
+        let options = entries.iter().filter(|entry| entry.id == self.integrator);
         for help in options.flat_map(|entry| entry.options) {
-            if let (Some(default), None) = (help.shown_default, method.options.get(help.key)) {
-                method.options = method.options.with_number(help.key, default);
+            if let (Some(default), None) = (help.shown_default, self.options.get(help.key)) {
+                self.options.insert(help.key, OptionValue::Number(default));
             }
         }
-        method
+        self
+    }
+
+    /// Name and options, as in `cnn Q=4`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        label(&self.integrator, &json_options(&self.options))
     }
 }
 

@@ -8,6 +8,7 @@ use serde_json::Value;
 mod label;
 mod pareto;
 
+pub(crate) use label::label;
 pub use pareto::mark_pareto;
 
 /// Largest relative error that is called accurate.
@@ -180,7 +181,22 @@ impl Row {
     /// The integrator and its non-default options, as in `cnn Q=4`.
     #[must_use]
     pub fn label(&self) -> String {
-        label::label(&self.integrator, &self.options)
+        label(&self.integrator, &self.options)
+    }
+
+    /// The error, where it means something: of a run that finished bounded with nothing saturated.
+    #[must_use]
+    pub fn sound_error(&self) -> Option<f64> {
+        match self.verdict() {
+            Verdict::Accurate | Verdict::Wrong => self.error,
+            Verdict::Guarded | Verdict::Unbounded | Verdict::Diverged => None,
+        }
+    }
+
+    /// CPU time (s) of set-up and of the steps that simulate `duration` (s).
+    #[must_use]
+    pub fn total_cpu_s(&self, duration: f64) -> f64 {
+        self.setup_cpu_s + self.cpu_s_per_s * duration
     }
 
     /// The verdict in one word.

@@ -53,6 +53,12 @@ impl<'a> Taylor<'a> {
         }
     }
 
+    /// The longest step (s) it takes by itself.
+    #[must_use]
+    pub fn longest_step(&self) -> f64 {
+        self.longest_step
+    }
+
     /// Moves `state`, whose velocity must hold at its time, to time `t` (s). `each_step` sees the
     /// displacement after every internal step.
     pub fn advance(&mut self, state: &mut State, t: f64, mut each_step: impl FnMut(&State)) {
