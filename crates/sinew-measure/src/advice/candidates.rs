@@ -1,0 +1,69 @@
+//! The methods that are tried.
+
+use std::collections::BTreeMap;
+
+use sinew_core::{OptionValue, Options};
+
+use crate::case::Case;
+use crate::measure::Method;
+use crate::search::Candidate;
+
+/// Every integrator with its defaults, the scene's own also with the scene's options, and those
+/// that trade error for cost by an option set to fit `error`. What cannot run on the scene goes to
+/// `refused` with its reason.
+pub(super) fn candidates(
+    case: &Case,
+    error: f64,
+    refused: &mut Vec<(Method, String)>,
+) -> Vec<Candidate> {
+    let own = &case.simulation().settings().integrator;
+    let mut found = Vec::new();
+    for id in sinew_integrators::ids() {
+        let mut methods = variants(id, error);
+        if id == own {
+            methods.push(Method::on(case, id));
+        }
+        for method in methods {
+            match Candidate::of(case, method.clone()) {
+                Ok(candidate) => found.push(candidate),
+                Err(reason) => refused.push((method, reason)),
+            }
+        }
+    }
+    found
+}
+
+/// An integrator with the option sets worth trying for an error.
+fn variants(id: &str, error: f64) -> Vec<Method> {
+    let with = |options: Options| {
+        let method = Method {
+            integrator: id.to_owned(),
+            options,
+        };
+        method.showing_defaults()
+    };
+    let default = with(Options::new());
+    // Errors of steps add up; a tenth leaves room for that and costs few degrees.
+    let loose = Options::new().with_number("tolerance", error / 10.0);
+    match id {
+        "cnn-stabilised" => {
+            let chebyshev = |sweeps| with(Options::new().with("inner", inner("chebyshev", sweeps)));
+            vec![default, chebyshev(4.0), chebyshev(8.0)]
+        }
+        "propagator" => {
+            let krylov = OptionValue::Text("krylov".into());
+            let krylov = loose.clone().with("kind", krylov);
+            vec![default, with(loose), with(krylov)]
+        }
+        // Its error is the share of the response that it leaves out.
+        "modal" => vec![with(Options::new().with_number("tolerance", error))],
+        _ => vec![default],
+    }
+}
+
+fn inner(kind: &str, sweeps: f64) -> OptionValue {
+    OptionValue::Table(BTreeMap::from([
+        ("kind".to_owned(), OptionValue::Text(kind.to_owned())),
+        ("sweeps".to_owned(), OptionValue::Number(sweeps)),
+    ]))
+}
