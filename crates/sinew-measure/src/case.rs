@@ -8,6 +8,7 @@ use sinew_core::Run;
 use sinew_core::spectrum::Spectrum;
 use sinew_scene::{Scene, SceneError, SceneModel, Simulation};
 
+use crate::cpu_time::thread_cpu_time;
 use crate::reference::{ReferenceError, Track, follow};
 use crate::row::CaseInfo;
 
@@ -22,6 +23,7 @@ pub struct Case {
     simulation: Simulation,
     span: Span,
     critical_step: Option<f64>,
+    reference_cpu_s: f64,
     samples: Arc<Track>,
     /// References at every step, for steps that do not meet the scene's instants.
     every_step: BTreeMap<(u64, usize), Arc<Track>>,
@@ -107,11 +109,13 @@ impl Case {
     ) -> Result<Self, CaseError> {
         let id = id.into();
         let times = span.instants();
+        let before = thread_cpu_time();
         let samples = follow(simulation.system(), simulation.initial_state(), &times);
         let samples = samples.map_err(|source| CaseError::Reference {
             case: id.clone(),
             source,
         })?;
+        let reference_cpu_s = (thread_cpu_time() - before).as_secs_f64();
         let linear = simulation.system().as_linear();
         let critical_step = linear
             .map(|linear| Spectrum::of(linear.operators()).critical_step())
@@ -119,6 +123,7 @@ impl Case {
         Ok(Self {
             id,
             critical_step,
+            reference_cpu_s,
             samples: Arc::new(samples),
             every_step: BTreeMap::new(),
             simulation,
@@ -148,6 +153,12 @@ impl Case {
     #[must_use]
     pub fn critical_step(&self) -> Option<f64> {
         self.critical_step
+    }
+
+    /// CPU time (s) that the reference took, its check included.
+    #[must_use]
+    pub fn reference_cpu_s(&self) -> f64 {
+        self.reference_cpu_s
     }
 
     /// The reference at the case's instants.

@@ -8,6 +8,7 @@ use sinew_core::{
     Integrator, OptionValue, Options, RecordError, Recorder, Run, RunReport, SimulateError, State,
     System, Verdict, simulate,
 };
+use sinew_scene::Simulation;
 
 use crate::case::Case;
 use crate::cpu_time::thread_cpu_time;
@@ -37,8 +38,14 @@ impl Method {
     /// every other its defaults. Those that saturate say at which voltage.
     #[must_use]
     pub fn on(case: &Case, integrator: &str) -> Self {
+        Self::of_scene(case.simulation(), integrator)
+    }
+
+    /// As [`Method::on`], where there is no case yet.
+    #[must_use]
+    pub fn of_scene(simulation: &Simulation, integrator: &str) -> Self {
         let mut method = Self::new(integrator);
-        let settings = case.simulation().settings();
+        let settings = simulation.settings();
         if settings.integrator == integrator {
             method.options = settings.options.clone();
         }

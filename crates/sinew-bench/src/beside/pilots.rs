@@ -28,9 +28,9 @@ pub fn pilots(
     let method = Method::on(case, same.0);
     let same = measure(case, &method, same.1, Effort::QUICK)?;
     // What cannot run here is no candidate; the bench lists why.
-    let candidates = integrators
-        .iter()
-        .filter_map(|integrator| Candidate::of(case, Method::on(case, integrator)).ok());
+    let candidates = integrators.iter().filter_map(|integrator| {
+        Candidate::of(case.simulation(), Method::on(case, integrator)).ok()
+    });
     let candidates: Vec<Candidate> = candidates.collect();
     let span = case.span();
     let mut search = Search::new(CasePilots::new(case), span, span.duration);

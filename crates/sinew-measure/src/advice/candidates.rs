@@ -3,34 +3,41 @@
 use std::collections::BTreeMap;
 
 use sinew_core::{OptionValue, Options};
+use sinew_scene::Simulation;
 
-use crate::case::Case;
 use crate::measure::Method;
 use crate::search::Candidate;
 
 /// Every integrator with its defaults, the scene's own also with the scene's options, and those
-/// that trade error for cost by an option set to fit `error`. What cannot run on the scene goes to
-/// `refused` with its reason.
+/// that trade error for cost by an option set to fit each of `errors`. Those that cannot run on
+/// the scene come with the reason.
 pub(super) fn candidates(
-    case: &Case,
-    error: f64,
-    refused: &mut Vec<(Method, String)>,
-) -> Vec<Candidate> {
-    let own = &case.simulation().settings().integrator;
-    let mut found = Vec::new();
-    for id in sinew_integrators::ids() {
-        let mut methods = variants(id, error);
-        if id == own {
-            methods.push(Method::on(case, id));
+    simulation: &Simulation,
+    errors: [f64; 2],
+) -> (Vec<Candidate>, Vec<(Method, String)>) {
+    let own = &simulation.settings().integrator;
+    let mut methods: Vec<Method> = Vec::new();
+    let mut add = |method: Method| {
+        if !methods.contains(&method) {
+            methods.push(method);
         }
-        for method in methods {
-            match Candidate::of(case, method.clone()) {
-                Ok(candidate) => found.push(candidate),
-                Err(reason) => refused.push((method, reason)),
+    };
+    for error in errors {
+        for id in sinew_integrators::ids() {
+            variants(id, error).into_iter().for_each(&mut add);
+            if id == own {
+                add(Method::of_scene(simulation, id));
             }
         }
     }
-    found
+    let (mut found, mut refused) = (Vec::new(), Vec::new());
+    for method in methods {
+        match Candidate::of(simulation, method.clone()) {
+            Ok(candidate) => found.push(candidate),
+            Err(reason) => refused.push((method, reason)),
+        }
+    }
+    (found, refused)
 }
 
 /// An integrator with the option sets worth trying for an error.

@@ -53,8 +53,10 @@ pub struct Advice {
     pub pilots: usize,
     /// CPU time (s) of it all, the reference included.
     pub spent_s: f64,
-    /// Whether candidates were given up because the time for pilots had run out.
-    pub cut_short: bool,
+    /// Whether the time for pilots ran out before every candidate for the answer was followed.
+    pub choice_cut_short: bool,
+    /// Whether it ran out before the others were taken to their own best.
+    pub others_cut_short: bool,
 }
 
 /// The runs that answer a question. Total cost is that of set-up and of the whole scene.
@@ -96,6 +98,17 @@ pub enum AdviceError {
         /// CPU time (s) it takes.
         needed: f64,
     },
+    /// No time was left for pilots.
+    #[error(
+        "no run could be measured: making ready and the reference took {spent:.1} s of CPU time, and {given} s were given; give --pilot-seconds more, such as {:.0}",
+        10.0 * .spent.max(*.given)
+    )]
+    NoTime {
+        /// CPU time given (s).
+        given: f64,
+        /// CPU time taken (s).
+        spent: f64,
+    },
     /// Errors are relative to the motion, and there is none.
     #[error(
         "nothing moves in the first {duration} s of the scene, so that no error can be told; {remedy}"
@@ -136,73 +149,52 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
     let begun = thread_cpu_time();
     let until = begun + Duration::from_secs_f64(question.pilot_seconds);
     let whole = Span::of(&simulation);
-    let measured = horizon(&simulation, question.pilot_seconds * FOR_THE_REFERENCE)?;
-    let before_reference = thread_cpu_time();
+    let tolerances = [question.tolerance, question.tolerance / 10.0];
+    let (candidates, mut refused) = candidates(&simulation, tolerances);
+    let prepared = thread_cpu_time();
+    let left = until.saturating_sub(prepared).as_secs_f64();
+    let measured = horizon(&simulation, FOR_THE_REFERENCE * left)?;
     let mut case = Case::over("scene", simulation, measured)?;
-    let reference_s = (thread_cpu_time() - before_reference).as_secs_f64();
     check_reference(&case, whole, question.tolerance)?;
 
-    let goal = Goal {
-        error: question.tolerance,
-        budget: question.budget.unwrap_or(f64::INFINITY),
-    };
-    let any_cost = Goal::error(goal.error);
-    let tenth = Goal::error(goal.error / 10.0);
-    let mut refused = Vec::new();
-    let first = candidates(&case, goal.error, &mut refused);
-    let further = candidates(&case, tenth.error, &mut refused);
     let own = OwnRun::of(&case);
-    let own_s = own.least_cpu_s(&case, reference_s);
-
+    let own_s = own.least_cpu_s(&case);
     let pilots = CasePilots::new(&mut case).until(until);
     let mut search = Search::new(pilots, measured, whole.duration);
-    let written = if own_s > search.left() / 2.0 {
-        let (steps, dt) = ((measured.duration / own.dt).ceil(), own.dt);
-        Err(format!(
-            "{steps} steps of {dt} s would leave too little time for other pilots"
-        ))
-    } else {
+    let written = if own_s <= search.left() / 2.0 {
         search.include(&own.method, own.dt)
+    } else {
+        Err("it would leave too little time for other pilots".to_owned())
     };
-    let exact = first.iter().filter(|candidate| candidate.order.is_none());
+    // A step that misses the instants wants a reference of its own, which this run has had made.
+    let reference_is_there = written.is_ok() && own.misses_instants(measured);
+    let exact = candidates
+        .iter()
+        .filter(|candidate| candidate.order.is_none());
     let exact: Vec<Method> = exact.map(|candidate| candidate.method.clone()).collect();
-    first
+    candidates
         .into_iter()
         .for_each(|candidate| search.add(candidate));
-    search.seek(goal);
-    // A step that misses the instants wants a reference of its own, which the run as written had.
-    if written.is_ok() && own.misses_instants(measured) {
+    let (answer, choice_cut_short) = answer(&mut search, question, |search| {
         for method in exact.iter().filter(|method| **method != own.method) {
-            if search.left() > own_s {
+            if reference_is_there && search.left() > own_s {
                 // What refuses this step still runs at others.
                 let _ = search.include(method, own.dt);
             }
         }
-    }
-    search.confirm(goal);
-    let answer = if search.cheapest(goal).is_some() {
-        further
-            .into_iter()
-            .for_each(|candidate| search.add(candidate));
-        search.seek(tenth);
-        search.survey(goal, RUNNERS_UP_WITHIN);
-        Answer::Met {
-            cheapest: advised_first(&search, goal),
-            tenfold: boxed(search.cheapest(tenth)),
-        }
-    } else {
-        search.seek(any_cost);
-        search.spend(goal.budget);
-        Answer::Missed {
-            within_tolerance: boxed(search.cheapest(any_cost)),
-            within_budget: boxed(most_accurate(&search, goal.budget)),
-        }
-    };
+    });
     let written = written.and_then(|()| {
         let mut runs = search.runs();
         let own = runs.find(|run| run.method == own.method && run.row.dt == own.dt);
         own.cloned().ok_or_else(|| "it was not measured".to_owned())
     });
+    let spent_s = (thread_cpu_time() - begun).as_secs_f64();
+    if search.runs().next().is_none() {
+        return Err(AdviceError::NoTime {
+            given: question.pilot_seconds,
+            spent: spent_s,
+        });
+    }
     let never_ran = search.refused();
     refused.extend(never_ran.map(|(method, reason)| (method.clone(), reason.to_owned())));
     Ok(Advice {
@@ -213,9 +205,47 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
         answer,
         refused,
         pilots: search.count(),
-        spent_s: (thread_cpu_time() - begun).as_secs_f64(),
-        cut_short: search.cut_short(),
+        spent_s,
+        choice_cut_short,
+        others_cut_short: search.cut_short(),
     })
+}
+
+/// The answer, and whether the time ran out before it was found. `also` adds runs off the ladder.
+fn answer(
+    search: &mut Search<CasePilots<'_>>,
+    question: Question,
+    also: impl FnOnce(&mut Search<CasePilots<'_>>),
+) -> (Answer, bool) {
+    let any_cost = Goal::error(question.tolerance);
+    let tenth = Goal::error(question.tolerance / 10.0);
+    let goal = Goal {
+        budget: question.budget.unwrap_or(f64::INFINITY),
+        ..any_cost
+    };
+    search.seek(goal);
+    also(search);
+    search.confirm(goal);
+    if search.cheapest(goal).is_none() {
+        search.seek(any_cost);
+        let cut_short = search.cut_short();
+        search.spend(goal.budget);
+        let missed = Answer::Missed {
+            within_tolerance: boxed(search.cheapest(any_cost)),
+            within_budget: boxed(most_accurate(search, goal.budget)),
+        };
+        return (missed, cut_short);
+    }
+    search.seek(tenth);
+    let cut_short = search.cut_short();
+    search.survey(goal, RUNNERS_UP_WITHIN);
+    let cheapest = advised_first(search, goal);
+    let already = cheapest.first().filter(|best| tenth.is_met_by(&best.row));
+    let met = Answer::Met {
+        tenfold: boxed(already.or_else(|| search.cheapest(tenth))),
+        cheapest,
+    };
+    (met, cut_short)
 }
 
 fn boxed(pilot: Option<&Pilot>) -> Option<Box<Pilot>> {
@@ -266,17 +296,14 @@ impl OwnRun {
         parts < 0.5 || (parts - parts.round()).abs() > 1e-9 * parts
     }
 
-    /// CPU time (s) that a pilot of it takes at one sweep a step, from what the case's reference
-    /// took, and that of a reference of its own where it needs one.
-    fn least_cpu_s(&self, case: &Case, reference_s: f64) -> f64 {
+    /// CPU time (s) that a pilot of it takes at one sweep a step, and a reference of its own where
+    /// it needs one.
+    fn least_cpu_s(&self, case: &Case) -> f64 {
         let steps = case.run(self.dt).steps as f64;
-        let sweep = reference_s / case.samples().sweeps.max(1) as f64;
-        let reference = if self.misses_instants(case.span()) {
-            reference_s
-        } else {
-            0.0
-        };
-        2.0 * steps * sweep + reference
+        let reference = case.reference_cpu_s();
+        let sweep = reference / case.samples().sweeps.max(1) as f64;
+        let own_reference = f64::from(u8::from(self.misses_instants(case.span()))) * reference;
+        2.0 * steps * sweep + own_reference
     }
 }
 

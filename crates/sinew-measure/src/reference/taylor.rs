@@ -29,7 +29,12 @@ impl<'a> Taylor<'a> {
     /// For these matrices. `refinement` above 1 takes shorter steps, for a check by comparison.
     #[must_use]
     pub fn new(operators: &'a LinearOperators, refinement: f64) -> Self {
-        let spectrum = Spectrum::of(operators);
+        Self::within(operators, &Spectrum::of(operators), refinement)
+    }
+
+    /// As [`Taylor::new`], where the spectrum of the matrices is known.
+    #[must_use]
+    pub fn within(operators: &'a LinearOperators, spectrum: &Spectrum, refinement: f64) -> Self {
         let damping = spectrum.mass_damping + spectrum.damping_max;
         // |lambda|^2 <= d |lambda| + w^2 for every root.
         let half = damping / 2.0;

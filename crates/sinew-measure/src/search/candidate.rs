@@ -1,9 +1,12 @@
 //! What a search may choose from.
 
 use sinew_core::{Accuracy, StableStep};
+use sinew_scene::Simulation;
 
-use crate::case::Case;
 use crate::measure::Method;
+
+/// Integrators whose set-up factorises a matrix; known before the first of them has run.
+const FACTORISING: [&str; 4] = ["implicit-euler", "newmark", "generalized-alpha", "modal"];
 
 /// A method with what its search needs to know of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,20 +18,20 @@ pub struct Candidate {
     pub stable_step: f64,
     /// The highest order it declares; none where it is exact at any step.
     pub order: Option<u8>,
-    /// An integrator whose set-up is a part of this one's.
-    pub contains_setup_of: Option<&'static str>,
+    /// Whether its set-up factorises a matrix, which on a large mesh costs more than many runs.
+    pub factorises: bool,
 }
 
 impl Candidate {
-    /// A method on a case.
+    /// A method on a scene.
     ///
     /// # Errors
     /// A reason in words when its options do not fit or the system lacks what it needs.
-    pub fn of(case: &Case, method: Method) -> Result<Self, String> {
+    pub fn of(simulation: &Simulation, method: Method) -> Result<Self, String> {
         let integrator = sinew_integrators::build(&method.integrator, &method.options)
             .map_err(|error| error.to_string())?;
         let stable_step = integrator
-            .stable_step(case.simulation().system())
+            .stable_step(simulation.system())
             .map_err(|error| error.to_string())?;
         let order = match integrator.properties().accuracy {
             Accuracy::Exact => None,
@@ -40,8 +43,7 @@ impl Candidate {
                 StableStep::Any | StableStep::Unknown => f64::INFINITY,
             },
             order,
-            // Modes are found with a factor of K; Newmark's set-up is one of the same pattern.
-            contains_setup_of: (method.integrator == "modal").then_some("newmark"),
+            factorises: FACTORISING.contains(&method.integrator.as_str()),
             method,
         })
     }

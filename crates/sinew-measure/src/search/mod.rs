@@ -107,6 +107,7 @@ impl<P: Pilots> Search<P> {
                     goal,
                     best: limit(self, trail),
                     duration: self.duration,
+                    least_step: self.pilots.least_step_cpu_s(),
                 };
                 if pilots_left[index] == 0 || self.begins_too_dear(trail, aim.best) {
                     return None;
@@ -256,30 +257,19 @@ impl<P: Pilots> Search<P> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether the set-up alone of a candidate that has not run costs more than the best run,
-    /// which shows in the set-up of a method whose work it contains, or of the same one with other
-    /// options.
+    /// Whether the set-up alone of a candidate that factorises costs more than the best run, as
+    /// that of one that has run shows.
     fn begins_too_dear(&self, trail: &Trail, best: f64) -> bool {
-        let Candidate {
-            method,
-            contains_setup_of: Some(contained),
-            ..
-        } = &trail.candidate
-        else {
-            return false;
-        };
-        let alike = |pilot: &&Pilot| {
-            let integrator = &pilot.method.integrator;
-            integrator == contained || *integrator == method.integrator
-        };
-        let dear = |pilot: &Pilot| pilot.row.setup_cpu_s > best;
-        trail.runs().next().is_none() && self.runs().filter(alike).any(dear)
+        let dear =
+            |pilot: &Pilot| pilot.row.work.factorizations > 0 && pilot.row.setup_cpu_s > best;
+        trail.candidate.factorises && trail.runs().next().is_none() && self.runs().any(dear)
     }
 
     /// Measures a candidate in so many parts of the interval; false where no time is left for it.
     fn follow(&mut self, index: usize, parts: u32) -> bool {
         let trail = &mut self.trails[index];
-        if trail.price(parts, self.span.duration) >= self.pilots.left() {
+        let price = trail.price(parts, self.span.duration, self.pilots.least_step_cpu_s());
+        if price >= self.pilots.left() {
             self.cut_short = true;
             return false;
         }

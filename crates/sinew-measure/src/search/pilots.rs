@@ -28,6 +28,11 @@ pub trait Pilots {
     fn left(&self) -> f64 {
         f64::INFINITY
     }
+
+    /// CPU time (s) below which no step of a method of some order stays.
+    fn least_step_cpu_s(&self) -> f64 {
+        0.0
+    }
 }
 
 /// Pilots on a case, until some CPU time of this thread.
@@ -62,5 +67,10 @@ impl Pilots for CasePilots<'_> {
         self.until.map_or(f64::INFINITY, |until| {
             until.saturating_sub(thread_cpu_time()).as_secs_f64()
         })
+    }
+
+    /// A sweep of the reference also sums its series: half of it is no more than a sweep.
+    fn least_step_cpu_s(&self) -> f64 {
+        0.5 * self.case.reference_cpu_s() / self.case.samples().sweeps.max(1) as f64
     }
 }

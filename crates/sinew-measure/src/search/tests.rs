@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use super::*;
+use crate::Work;
 
 /// `error = factor dt^order`, never below `floor`; one unit of cost a step.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +15,7 @@ struct Law {
     setup: f64,
     step: f64,
     stable: f64,
+    factorizations: u64,
 }
 
 const PLAIN: Law = Law {
@@ -23,6 +25,7 @@ const PLAIN: Law = Law {
     setup: 0.0,
     step: 1e-5,
     stable: f64::INFINITY,
+    factorizations: 0,
 };
 
 #[derive(Debug, Default)]
@@ -32,6 +35,7 @@ struct Laws {
     kink: Option<f64>,
     guarded: Vec<&'static str>,
     left: RefCell<f64>,
+    least_step: f64,
     taken: Vec<(String, f64)>,
 }
 
@@ -59,6 +63,10 @@ impl Pilots for &mut Laws {
     fn left(&self) -> f64 {
         *self.left.borrow()
     }
+
+    fn least_step_cpu_s(&self) -> f64 {
+        self.least_step
+    }
 }
 
 impl Law {
@@ -72,6 +80,10 @@ impl Law {
             cpu_s_per_s: self.step / dt,
             sweeps_per_s: 1.0 / dt,
             setup_cpu_s: self.setup,
+            work: Work {
+                factorizations: self.factorizations,
+                ..Work::default()
+            },
             ..Row::default()
         }
     }
@@ -81,7 +93,7 @@ impl Law {
             method: Method::new(integrator),
             stable_step: self.stable,
             order: Some(self.order),
-            contains_setup_of: None,
+            factorises: false,
         }
     }
 }
@@ -274,21 +286,25 @@ fn set_up_counts_once_for_the_duration() {
 }
 
 #[test]
-fn what_contains_a_set_up_that_is_too_dear_is_never_begun() {
+fn one_factorisation_that_is_too_dear_speaks_for_all() {
     let dear = Law {
         setup: 5.0,
+        factorizations: 1,
         ..PLAIN
     };
     let mut laws = laws(&[("factor", dear), ("modes", dear), ("quick", PLAIN)]);
     let mut search = Search::new(&mut laws, SPAN, 1.0);
-    search.add(Candidate {
-        contains_setup_of: Some("factor"),
-        ..dear.candidate("modes")
-    });
-    search.add(dear.candidate("factor"));
+    for id in ["factor", "modes"] {
+        search.add(Candidate {
+            factorises: true,
+            ..dear.candidate(id)
+        });
+    }
     search.add(PLAIN.candidate("quick"));
     search.seek(Goal::error(1e-2));
-    assert!(laws.taken.iter().all(|(id, _)| id != "modes"));
+    assert_eq!(laws.taken[0].0, "quick");
+    let factorised = laws.taken.iter().filter(|(id, _)| id != "quick");
+    assert_eq!(factorised.count(), 1, "{:?}", laws.taken);
 }
 
 #[test]
@@ -444,4 +460,21 @@ fn a_survey_takes_each_integrator_to_its_own_best() {
         })
         .collect();
     assert_eq!(found, [("best", 18), ("second", 18)]);
+}
+
+#[test]
+fn a_method_whose_first_step_is_too_short_to_win_is_never_begun() {
+    let creeping = Law {
+        order: 1,
+        stable: 1e-6,
+        ..PLAIN
+    };
+    let mut laws = laws(&[("creeping", creeping), ("plain", PLAIN)]);
+    laws.least_step = 0.5e-5;
+    search(&mut laws).seek(Goal::error(1e-2));
+    assert!(
+        laws.taken.iter().all(|(id, _)| id == "plain"),
+        "{:?}",
+        laws.taken
+    );
 }

@@ -26,6 +26,8 @@ pub(super) struct Aim {
     pub(super) best: f64,
     /// Simulated time (s) over which set-up is spread.
     pub(super) duration: f64,
+    /// CPU time (s) below which no step stays.
+    pub(super) least_step: f64,
 }
 
 impl Aim {
@@ -53,6 +55,7 @@ pub(super) struct Trail {
     pub(super) candidate: Candidate,
     /// Why it was refused last.
     pub(super) reason: Option<String>,
+    interval: f64,
     first: Option<u32>,
     runs: BTreeMap<u32, Pilot>,
     refused: BTreeSet<u32>,
@@ -67,6 +70,7 @@ impl Trail {
         Self {
             candidate,
             reason: None,
+            interval: span.interval(),
             first: (parts <= f64::from(u32::MAX)).then_some(parts as u32),
             runs: BTreeMap::new(),
             refused: BTreeSet::new(),
@@ -95,12 +99,17 @@ impl Trail {
     }
 
     /// CPU time (s) that a pilot of `simulated` s will take: a run to compare and a run to time.
-    pub(super) fn price(&self, parts: u32, simulated: f64) -> f64 {
+    pub(super) fn price(&self, parts: u32, simulated: f64, least_step: f64) -> f64 {
         let Some((&at, pilot)) = self.nearest(parts) else {
-            return 0.0;
+            return 2.0 * simulated * self.least_cost(parts, least_step);
         };
         let run = pilot.row.cpu_s_per_s * f64::from(parts) / f64::from(at) * simulated;
         pilot.row.setup_cpu_s + 2.0 * run
+    }
+
+    /// CPU s per simulated s of steps that cost no more than they must.
+    fn least_cost(&self, parts: u32, least_step: f64) -> f64 {
+        f64::from(parts) * least_step / self.interval
     }
 
     fn nearest(&self, parts: u32) -> Option<(&u32, &Pilot)> {
@@ -130,7 +139,7 @@ impl Trail {
         let short = self.runs.range(..below).next_back();
         let short = short.map(|(&parts, pilot)| (parts, &pilot.row));
         let mut next = match (short, enough) {
-            (None, None) => self.start()?,
+            (None, None) => self.start(aim)?,
             (None, Some(_)) => return None,
             (Some(short), None) => self.shorter(short, aim)?,
             (Some(short), Some(enough)) => between(short, enough, aim)?,
@@ -141,18 +150,26 @@ impl Trail {
         (next.parts < below && self.refused.len() < MOST_REFUSALS).then_some(next)
     }
 
-    /// What a candidate costs is not known before it ran once: all do so first, those last whose
-    /// set-up may show from that of another to be too dear.
-    fn start(&self) -> Option<Next> {
+    /// What a candidate costs is known once it has run; before, only what it must. Those that
+    /// factorise go last: set-up is in no bound, and one may show that all are too dear.
+    fn start(&self, aim: &Aim) -> Option<Next> {
         let parts = match self.refused.last() {
-            None => self.first,
-            Some(last) => RUNGS.into_iter().find(|rung| rung > last),
+            None => self.first?,
+            Some(last) => RUNGS.into_iter().find(|rung| rung > last)?,
         };
-        let promise = match self.candidate.contains_setup_of {
-            None => 0.0,
-            Some(_) => f64::MAX,
+        let cost = self.least_cost(parts, aim.least_step);
+        let total = cost * aim.duration;
+        // Steps of exact methods may cost less than a sweep.
+        let hopeless = cost > aim.goal.budget || total >= aim.best;
+        if hopeless && self.candidate.order.is_some() {
+            return None;
+        }
+        let promise = if self.candidate.factorises {
+            f64::MAX
+        } else {
+            total
         };
-        parts.map(|parts| Next { parts, promise })
+        Some(Next { parts, promise })
     }
 
     /// The step by which the error should be met, going no further at once than can be foreseen.

@@ -92,12 +92,16 @@ fn answer(advice: &Advice) -> String {
                 .map(|pilot| run(pilot))
                 .collect();
             nearest.dedup();
-            match nearest.len() {
+            let text = match nearest.len() {
                 0 => format!("nothing measured has {asked}"),
                 _ => format!(
                     "nothing measured has {asked}; nearest: {}",
                     nearest.join(" or ")
                 ),
+            };
+            match within_budget {
+                Some(_) => text,
+                None => format!("{text}; no sound run is within the budget"),
             }
         }
     }
@@ -181,12 +185,14 @@ fn provenance(advice: &Advice) -> String {
     for (method, reason) in &advice.refused {
         lines.push(format!("cannot run here: {}: {reason}", method.label()));
     }
-    if advice.cut_short {
-        lines.push(
-            "the time for pilots ran out before every candidate was followed: --pilot-seconds looks further"
-                .to_owned(),
-        );
-    }
+    let what = match (advice.choice_cut_short, advice.others_cut_short) {
+        (true, _) => Some("every candidate was followed, so that there may be something cheaper"),
+        (false, true) => Some("all runners-up were followed to their own best"),
+        (false, false) => None,
+    };
+    lines.extend(what.map(|what| {
+        format!("the time for pilots ran out before {what}: --pilot-seconds looks further")
+    }));
     lines.join("\n")
 }
 
@@ -272,7 +278,8 @@ pub(super) fn as_json(advice: &Advice) -> Value {
         "measured_s": advice.measured.duration,
         "pilots": advice.pilots,
         "spent_cpu_s": advice.spent_s,
-        "cut_short": advice.cut_short,
+        "choice_cut_short": advice.choice_cut_short,
+        "others_cut_short": advice.others_cut_short,
         "refused": refused,
         "as_written": advice.written.as_ref().ok().map(run),
     });
