@@ -27,7 +27,7 @@ fn simulation(scene: &str) -> Simulation {
 /// Time enough that the choice is not cut short, on slow machines too.
 fn question(tolerance: f64) -> Question {
     Question {
-        pilot_seconds: 30.0,
+        pilot_seconds: 20.0,
         ..Question::new(tolerance)
     }
 }
@@ -73,9 +73,9 @@ fn holds_when_repeated(scene: &str, tolerance: f64) {
     let Answer::Met { cheapest, tenfold } = &advice.answer else {
         panic!("{:?}", advice.answer);
     };
-    let tenfold = tenfold.as_deref().map(|pilot| (pilot, tolerance / 10.0));
-    let runs = cheapest.iter().map(|pilot| (pilot, tolerance));
-    for (pilot, tolerance) in runs.chain(tenfold) {
+    let best = cheapest.first().unwrap();
+    let tenfold = tenfold.as_deref().unwrap();
+    for (pilot, tolerance) in [(best, tolerance), (tenfold, tolerance / 10.0)] {
         let row = repeated(scene, &advice.run_table(pilot));
         assert_eq!(row.error, pilot.row.error, "{}", advice.run_table(pilot));
         assert_eq!(row.label(), pilot.row.label());

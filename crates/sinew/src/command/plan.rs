@@ -19,7 +19,7 @@ pub(crate) struct Arguments {
     scene: PathBuf,
     /// Name the cheapest method and step whose relative error is at most this fraction, such as
     /// 1e-2, from short runs on the scene
-    #[arg(long, value_name = "ERROR", value_parser = tolerance, allow_negative_numbers = true)]
+    #[arg(long, value_name = "ERROR", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Most CPU seconds per simulated second, set-up apart; 1 is real time
     #[arg(
@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
         value_name = "CPU_S_PER_S",
         requires = "tolerance",
         value_parser = budget,
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     budget: Option<f64>,
     /// CPU seconds after which no further pilot run begins
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
         requires = "tolerance",
         default_value_t = DEFAULT_PILOT_SECONDS,
         value_parser = pilot_seconds,
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     pilot_seconds: f64,
     /// The advice as one JSON object, without the plan
