@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+use sinew_bench::hard::HardBench;
 use sinew_bench::report::{terminal, write_all};
+use sinew_bench::results::BenchResults;
 use sinew_bench::{Bench, machine, revision};
 
 use crate::beside::{self, Program};
@@ -32,9 +34,13 @@ pub(crate) struct Arguments {
     /// Fewer steps and repeats: does everything run?
     #[arg(long)]
     quick: bool,
-    /// Where results.json, report.html and the plots go [default: target/bench]
+    /// Where results.json, report.html and the plots go [default: target/bench, target/bench-hard]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// The hard cases under scenes/hard instead: what fails where, stability maps, and pass marks; exits
+    /// with 1 when a mark is not passed
+    #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "beside"])]
+    hard: bool,
     /// Run another program on the peers' cube in turn with our cheapest methods and print the ratios
     /// of CPU time, nothing else; numpy and scipy are installed by pip into target/
     #[arg(long, value_enum, value_name = "PROGRAM", conflicts_with_all = ["scenes", "steps", "out"])]
@@ -42,6 +48,9 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.hard {
+        return run_hard(arguments);
+    }
     let scenes = if arguments.scenes.is_empty() {
         let scene = |name: &&str| root().join("scenes").join(name);
         DEFAULT_SCENES.iter().map(scene).collect()
@@ -61,10 +70,41 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();
     let results = results.map_err(Failure::input)?;
+    write(&results, arguments, "bench")
+}
+
+/// The hard cases. Everything is written before a failed mark fails the command.
+fn run_hard(arguments: &Arguments) -> Result<(), Failure> {
+    let bench = HardBench {
+        scenes: root().join("scenes"),
+        quick: arguments.quick,
+    };
+    let bar = Bar::new();
+    let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
+    bar.finish();
+    let results = results.map_err(Failure::input)?;
+    write(&results, arguments, "bench-hard")?;
+    marks_passed(&results)
+}
+
+/// A failure that names the marks that are not passed, where there are any.
+fn marks_passed(results: &BenchResults) -> Result<(), Failure> {
+    let failed: Vec<String> = results
+        .failed_marks()
+        .map(|mark| format!("{} ({}, measured {})", mark.case, mark.asked, mark.measured))
+        .collect();
+    if failed.is_empty() {
+        return Ok(());
+    }
+    let (count, list) = (failed.len(), failed.join("; "));
+    Err(Failure::Chore(format!("{count} marks not passed: {list}")))
+}
+
+fn write(results: &BenchResults, arguments: &Arguments, folder: &str) -> Result<(), Failure> {
     let out = arguments.out.clone();
-    let out = out.unwrap_or_else(|| root().join("target").join("bench"));
-    let written = write_all(&results, &out).map_err(Failure::input)?;
-    say(&terminal(&results));
+    let out = out.unwrap_or_else(|| root().join("target").join(folder));
+    let written = write_all(results, &out).map_err(Failure::input)?;
+    say(&terminal(results));
     say(&format!(
         "results: {}\nreport:  {}\nplots:   {}",
         written.results.display(),

@@ -12,7 +12,7 @@ use sinew_core::{
 use crate::case::Case;
 use crate::cpu_time::thread_cpu_time;
 use crate::reference::{ErrorNorm, LateRange, Track, largest};
-use crate::row::{Outcome, Row, Work, finite};
+use crate::row::{Outcome, Row, Work, finite, label};
 
 /// An integrator with its options.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +51,12 @@ impl Method {
         }
         method
     }
+
+    /// Its name and options in short, as rows show them.
+    #[must_use]
+    pub fn label(&self) -> String {
+        label(&self.integrator, &json_options(&self.options))
+    }
 }
 
 /// How much time goes into measuring the cost of a run.
@@ -72,6 +78,11 @@ impl Effort {
     pub const QUICK: Self = Self {
         repeats: 1,
         budget: 0.05,
+    };
+    /// Nothing is timed and the row's times are 0: for error and verdicts alone.
+    pub const UNTIMED: Self = Self {
+        repeats: 0,
+        budget: 0.0,
     };
 }
 
@@ -150,7 +161,7 @@ pub fn measure(case: &mut Case, method: &Method, dt: f64, effort: Effort) -> Res
         us_per_step: time_per_run / steps * 1e6,
         setup_cpu_s: setup_cpu.as_secs_f64(),
         facts,
-        pareto: false,
+        ..Row::default()
     })
 }
 
@@ -175,6 +186,9 @@ fn time_run(
 ) -> Result<f64, SimulateError> {
     // Long enough that neither the clock's resolution nor its cost shows.
     const LONG_ENOUGH: Duration = Duration::from_millis(2);
+    if effort == Effort::UNTIMED {
+        return Ok(0.0);
+    }
     let run = Run { steps, ..*run };
     let mut state = start.clone();
     let mut batch = |runs: u32| -> Result<Duration, SimulateError> {

@@ -8,6 +8,8 @@ use serde_json::Value;
 mod label;
 mod pareto;
 
+pub(crate) use label::label;
+
 pub use pareto::mark_pareto;
 
 /// Largest relative error that is called accurate.
@@ -89,6 +91,17 @@ pub struct Row {
     /// degree of a propagator.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub facts: BTreeMap<String, f64>,
+    /// Step over the critical step 2/omega_max; of hard cases only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step_over_critical: Option<f64>,
+    /// Relative distance of the last displacement from equilibrium under the last loads, where the
+    /// reference comes to rest; of hard cases only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_error: Option<f64>,
+    /// Relative change of the method's energy in 1000 steps, where nothing damps or loads the
+    /// system; of hard cases only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub energy_drift: Option<f64>,
     /// No other run of the case is both as cheap and as accurate; see [`mark_pareto`].
     #[serde(default)]
     pub pareto: bool,
@@ -180,7 +193,7 @@ impl Row {
     /// The integrator and its non-default options, as in `cnn Q=4`.
     #[must_use]
     pub fn label(&self) -> String {
-        label::label(&self.integrator, &self.options)
+        label(&self.integrator, &self.options)
     }
 
     /// The verdict in one word.

@@ -7,7 +7,9 @@
 mod axis;
 mod colour_map;
 mod columns;
+mod heat_map;
 mod html;
+mod marks;
 mod markup;
 mod number;
 mod peers;
@@ -23,7 +25,9 @@ mod work_precision;
 mod write;
 
 pub use axis::{Axis, Scale};
+pub use heat_map::heat_map;
 pub use html::html;
+pub use marks::{markdown_marks, terminal_marks};
 pub(crate) use markup::escape;
 pub(crate) use number::{milliseconds, percent, short, three};
 pub use plot::{Plot, Point, Rule, Series};

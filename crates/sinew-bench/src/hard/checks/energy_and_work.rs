@@ -1,0 +1,45 @@
+//! What a method adds to the energy beside the work of the loads.
+
+use sinew_measure::{Case, Method};
+
+use super::at;
+use crate::hard::hard_run::run_with_energies;
+use crate::hard::mark::{Asked, Mark};
+use crate::hard::methods::{block, chebyshev, cnn, gauss_seidel};
+use crate::report::three;
+
+/// The largest excess of the energy over E0 and the work so far, as a share of them, among the
+/// methods that promise there is none.
+pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
+    let dt = case.simulation().dt();
+    let critical = case.critical_step().ok_or("nothing vibrates")?;
+    let promising = [
+        (block(), dt),
+        (chebyshev(4), dt),
+        (chebyshev(8), dt),
+        (gauss_seidel(4), dt),
+        (Method::new("newmark"), dt),
+        (Method::new("central-difference"), 0.9 * critical),
+    ];
+    let mut worst = (0.0, String::new());
+    let mut names = Vec::new();
+    for (method, dt) in &promising {
+        let excess = excess(case, method, *dt)?;
+        names.push(at(&method.label(), *dt));
+        if !(excess <= worst.0) || worst.1.is_empty() {
+            worst = (excess, at(&method.label(), *dt));
+        }
+    }
+    let paper = excess(case, &cnn(), dt)?;
+    let note = format!(
+        "largest of: {}; the paper's network at this step: {}",
+        names.join("; "),
+        three(paper)
+    );
+    Ok(asked.measured(worst.0, three, worst.1).noting(note))
+}
+
+fn excess(case: &Case, method: &Method, dt: f64) -> Result<f64, String> {
+    let (_, energies) = run_with_energies(case, method, dt, case.run(dt).steps)?;
+    Ok(energies.excess)
+}

@@ -1,0 +1,78 @@
+//! What is symmetric stays symmetric.
+
+use sinew_measure::{Case, Method};
+
+use super::{at, trajectory};
+use crate::hard::mark::{Asked, Mark};
+use crate::hard::methods::{block, chebyshev, cnn, cut};
+use crate::hard::pairs::body;
+use crate::report::three;
+
+/// The largest `|u_x(mirror image) + u_x|`, and the same in y, over the largest displacement, among
+/// several methods.
+pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
+    let simulation = case.simulation();
+    let (system, start, dt) = (
+        simulation.system(),
+        simulation.initial_state(),
+        simulation.dt(),
+    );
+    let images = [images(case, 0)?, images(case, 1)?];
+    let mut worst = (0.0, String::new());
+    let methods = [
+        block(),
+        chebyshev(4),
+        Method::new("newmark"),
+        cut("central-difference"),
+        cnn(),
+    ];
+    for method in &methods {
+        let path = trajectory(system, start, method, dt, case.run(dt).steps)?;
+        let mut drift = 0.0_f64;
+        for u in &path {
+            for (axis, images) in images.iter().enumerate() {
+                for (cell, image) in images.iter().enumerate() {
+                    let sum = u[3 * cell + axis] + u[3 * image + axis];
+                    drift = if sum.is_nan() {
+                        f64::INFINITY
+                    } else {
+                        drift.max(sum.abs())
+                    };
+                }
+            }
+        }
+        let largest = path
+            .iter()
+            .flatten()
+            .fold(0.0, |max: f64, u| max.max(u.abs()));
+        if !(drift / largest <= worst.0) {
+            worst = (drift / largest, at(&method.label(), dt));
+        }
+    }
+    let names: Vec<String> = methods.iter().map(Method::label).collect();
+    let note = format!("largest of {}, in x and y, at every step", names.join(", "));
+    Ok(asked.measured(worst.0, three, worst.1).noting(note))
+}
+
+/// The mirror image of each cell in the middle plane across an axis.
+fn images(case: &Case, axis: usize) -> Result<Vec<usize>, String> {
+    let (built, _) = body(case.simulation()).ok_or("an oscillator has no mirror image")?;
+    let (low, high) = built.mesh.bounding_box();
+    let tolerance = 1e-6 * (high[axis] - low[axis]);
+    let points: Vec<[f64; 3]> = built
+        .model
+        .nodes()
+        .iter()
+        .map(|node| built.mesh.points[*node as usize])
+        .collect();
+    let image = |point: &[f64; 3]| {
+        let mut mirrored = *point;
+        mirrored[axis] = low[axis] + high[axis] - point[axis];
+        let near = |other: &[f64; 3]| (0..3).all(|i| (other[i] - mirrored[i]).abs() <= tolerance);
+        points
+            .iter()
+            .position(near)
+            .ok_or("the mesh is not its own mirror image")
+    };
+    Ok(points.iter().map(image).collect::<Result<_, _>>()?)
+}
