@@ -13,16 +13,17 @@ use crate::progress::Bar;
 use crate::root;
 
 /// What is measured unless other scenes are named.
-const DEFAULT_SCENES: [&str; 3] = [
+const DEFAULT_SCENES: [&str; 4] = [
     "paper-oscillator.toml",
     "paper-cube.toml",
+    "light-cube.toml",
     "peers-cube.toml",
 ];
 
 /// What to measure and where to write it.
-#[derive(clap::Args)]
+#[derive(clap::Args, Default)]
 pub(crate) struct Arguments {
-    /// A scene file; may be given several times [default: the paper's two scenes and the peers' cube]
+    /// A scene file; may be given several times [default: the paper's two scenes, a lightly damped cube and the peers' cube]
     #[arg(long = "scene", value_name = "FILE")]
     scenes: Vec<PathBuf>,
     /// An integrator; may be given several times [default: all]
@@ -83,8 +84,12 @@ fn run_hard(arguments: &Arguments) -> Result<(), Failure> {
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();
     let results = results.map_err(Failure::input)?;
-    write(&results, arguments, "bench-hard")?;
-    marks_passed(&results)
+    conclude(&results, arguments)
+}
+
+fn conclude(results: &BenchResults, arguments: &Arguments) -> Result<(), Failure> {
+    write(results, arguments, "bench-hard")?;
+    marks_passed(results)
 }
 
 /// A failure that names the marks that are not passed, where there are any.
@@ -118,4 +123,57 @@ fn write(results: &BenchResults, arguments: &Arguments, folder: &str) -> Result<
 pub(crate) fn say(text: &str) {
     use std::io::Write;
     let _ = writeln!(std::io::stdout(), "{text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use sinew_bench::hard::{Mark, MarkVerdict};
+
+    use super::*;
+
+    fn results(verdict: MarkVerdict) -> BenchResults {
+        let mut results = BenchResults::new("r", machine());
+        results.marks.push(Mark {
+            case: "a hard case".into(),
+            asked: "at most 5 %".into(),
+            measured: "7.31 %".into(),
+            verdict,
+            ..Mark::default()
+        });
+        results
+    }
+
+    fn concluded(verdict: MarkVerdict) -> (Result<(), Failure>, String) {
+        let directory = tempfile::tempdir().unwrap();
+        let arguments = Arguments {
+            hard: true,
+            out: Some(directory.path().to_owned()),
+            ..Arguments::default()
+        };
+        let outcome = conclude(&results(verdict), &arguments);
+        let page = std::fs::read_to_string(directory.path().join("report.html")).unwrap();
+        assert!(directory.path().join("results.json").exists());
+        (outcome, page)
+    }
+
+    #[test]
+    fn a_failed_mark_is_written_with_its_figure_and_then_exits_with_1() {
+        let (outcome, page) = concluded(MarkVerdict::Fail);
+        assert!(page.contains("FAIL") && page.contains("7.31 %"));
+        let failure = outcome.unwrap_err();
+        let Failure::Chore(message) = &failure else {
+            panic!("{failure:?}");
+        };
+        assert!(message.contains("a hard case (at most 5 %, measured 7.31 %)"));
+        let code = format!("{:?}", failure.report());
+        assert_eq!(code, format!("{:?}", std::process::ExitCode::from(1)));
+    }
+
+    #[test]
+    fn marks_that_pass_or_do_not_apply_are_no_failure() {
+        for verdict in [MarkVerdict::Pass, MarkVerdict::NotApplicable] {
+            let (outcome, page) = concluded(verdict);
+            assert!(outcome.is_ok() && !page.contains("FAIL"));
+        }
+    }
 }

@@ -260,6 +260,7 @@ fn case(id: &str, title: &str, dofs: usize, critical_step_s: f64) -> CaseInfo {
         max_u_m: 0.02,
         late_amplitude_m: 1.2e-5,
         critical_step_s: Some(critical_step_s),
+        stable_steps_s: BTreeMap::new(),
     }
 }
 

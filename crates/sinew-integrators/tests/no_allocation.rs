@@ -128,3 +128,12 @@ fn neither_do_loads_that_change_nor_other_damping() {
         assert_eq!(count, 0, "`{id}`");
     }
 }
+
+#[cfg(feature = "implicit")]
+#[test]
+fn neither_do_patches() {
+    use common::sliver::{MASS_DAMPING, auto, model, with_sliver};
+    let system = model(&with_sliver(1000.0), MASS_DAMPING);
+    let count = allocations_of_steps(&system, "central-difference", &auto(), 0.004);
+    assert_eq!(count, 0);
+}

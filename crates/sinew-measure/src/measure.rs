@@ -72,7 +72,7 @@ impl Effort {
     /// For results to be shown.
     pub const FULL: Self = Self {
         repeats: 5,
-        budget: 0.2,
+        budget: 0.12,
     };
     /// For checks that everything runs.
     pub const QUICK: Self = Self {

@@ -9,7 +9,6 @@ mod label;
 mod pareto;
 
 pub(crate) use label::label;
-
 pub use pareto::mark_pareto;
 
 /// Largest relative error that is called accurate.
@@ -37,6 +36,9 @@ pub struct CaseInfo {
     /// Critical step `2 / omega_max` of the undamped system (s); none where there is no omega_max.
     #[serde(default)]
     pub critical_step_s: Option<f64>,
+    /// The largest stable step of each method that ran and has one (s), by its label.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub stable_steps_s: BTreeMap<String, f64>,
 }
 
 /// One run: a case, an integrator with its options, a step.

@@ -2,7 +2,7 @@
 
 use sinew_measure::Method;
 
-use super::methods::{block, chebyshev, cnn, cut, gauss_seidel};
+use super::methods::{block, chebyshev, cnn, cut, gauss_seidel, patched};
 
 /// A scene with its runs.
 pub(crate) struct HardCase {
@@ -29,6 +29,13 @@ fn rivals() -> Vec<Method> {
         Method::new("newmark"),
         Method::new("implicit-euler"),
     ]
+}
+
+/// And those that single out bad elements.
+fn rivals_and_patches() -> Vec<Method> {
+    let mut methods = rivals();
+    methods.push(patched());
+    methods
 }
 
 /// Nothing of the network but its most and its least work; methods that keep their energy.
@@ -81,11 +88,15 @@ pub(crate) fn all() -> Vec<HardCase> {
             stiffly_damped(),
             &[0.02],
         )),
-        case("hard/no-sliver.toml", rivals(), &[0.005]),
-        case("hard/sliver-20.toml", rivals(), &[0.005]),
-        case("hard/sliver-100.toml", rivals(), &[0.005]),
-        case("hard/sliver-1000.toml", rivals(), &[0.005]),
-        slow(case("hard/stiff-inclusion.toml", rivals(), &[0.005, 0.02])),
+        case("hard/no-sliver.toml", rivals_and_patches(), &[0.005]),
+        case("hard/sliver-20.toml", rivals_and_patches(), &[0.005]),
+        case("hard/sliver-100.toml", rivals_and_patches(), &[0.005]),
+        case("hard/sliver-1000.toml", rivals_and_patches(), &[0.005]),
+        slow(case(
+            "hard/stiff-inclusion.toml",
+            rivals_and_patches(),
+            &[0.005, 0.02],
+        )),
         case("hard/nearly-free.toml", rivals(), &[0.01, 0.02]),
         case("hard/impulsive-tool.toml", rivals(), &[0.02]),
         case("hard/released-bar.toml", conservative(), &[0.005, 0.02]),

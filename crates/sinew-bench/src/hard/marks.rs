@@ -1,6 +1,7 @@
 //! All pass marks, in the order of the report.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use sinew_measure::{Case, Row};
 
@@ -14,6 +15,8 @@ use super::mark::{Asked, Mark};
 pub(crate) struct Measured<'a> {
     pub(crate) cases: &'a BTreeMap<String, Case>,
     pub(crate) rows: &'a [Row],
+    /// Where scenes are.
+    pub(crate) folders: [PathBuf; 2],
     pub(crate) quick: bool,
 }
 
@@ -194,7 +197,7 @@ pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<
         1e-12,
     );
     give(dimensionless, &mut |asked| {
-        units::check(asked, measured.cases.values())
+        units::check(asked, &measured.folders)
     });
     if measured.has("symmetric-load") {
         let symmetric = asked(

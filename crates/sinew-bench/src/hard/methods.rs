@@ -44,3 +44,11 @@ pub(crate) fn cut(integrator: &str) -> Method {
     method.options = method.options.with("substeps", auto);
     method
 }
+
+/// Central difference that solves the few elements which forbid its step as small blocks.
+pub(crate) fn patched() -> Method {
+    let mut method = Method::new("central-difference");
+    let auto = OptionValue::Text("auto".into());
+    method.options = method.options.with("patches", auto);
+    method
+}

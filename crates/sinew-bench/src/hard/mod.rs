@@ -100,6 +100,7 @@ impl HardBench {
         let measured = marks::Measured {
             cases: &cases,
             rows: &results.rows,
+            folders: [self.scenes.clone(), self.scenes.join("hard")],
             quick: self.quick,
         };
         let marks = marks::all(&measured, |case| {

@@ -155,7 +155,7 @@ fn draw_steps(svg: &mut Svg, map: &StabilityMap, frame: Frame) {
                     .sized(SMALL)
                     .anchored(Anchor::Middle),
             );
-            free = x + half + 3.0;
+            free = x + half + 8.0;
         }
     }
     let middle = frame.left + 0.5 * frame.width;
@@ -273,7 +273,7 @@ fn note(map: &StabilityMap, panel: &MapPanel, value: f64, dt: f64, run: &MapRun)
 /// Colours, signs and the line, in one row beneath the panels.
 fn draw_legend(svg: &mut Svg, left: f64, top: f64) {
     let bar = Frame {
-        left: left + 6.0,
+        left: left + 24.0,
         top: top + 20.0,
         width: 250.0,
         height: 14.0,

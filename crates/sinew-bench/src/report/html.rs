@@ -4,6 +4,7 @@ use std::fmt::{self, Display, Write};
 
 use super::{
     columns::{Column, columns_of},
+    front::{self, front_members},
     heat_map, marks,
     markup::{escape, slugs},
     number, peers, strip,
@@ -180,6 +181,7 @@ impl Page {
             self.out.push_str("<p class=\"none\">No run.</p>\n");
         } else {
             self.figure(&work_precision(results, id).svg());
+            self.front(results, id);
             self.figure(&strip(results, id));
             self.runs(&rows);
             self.findings(&rows);
@@ -217,6 +219,23 @@ impl Page {
                 ),
             ),
         ]);
+    }
+
+    /// Who is on the front, and why.
+    fn front(&mut self, results: &BenchResults, id: &str) {
+        self.out.push_str("<h3>The front</h3>\n<ul>\n");
+        for member in front_members(results, id) {
+            self.put(format_args!(
+                "<li><b>{}</b>: {}. <small>{}</small></li>\n",
+                Escaped(&member.label),
+                Escaped(&member.says),
+                Escaped(&member.summary)
+            ));
+        }
+        self.out.push_str("</ul>\n");
+        for sentence in front::sentences(results, id) {
+            self.put(format_args!("<p>{}</p>\n", Escaped(&sentence)));
+        }
     }
 
     /// What methods found out at set-up, folded away.

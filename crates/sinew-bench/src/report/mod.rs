@@ -7,6 +7,7 @@
 mod axis;
 mod colour_map;
 mod columns;
+mod front;
 mod heat_map;
 mod html;
 mod marks;
@@ -25,6 +26,7 @@ mod work_precision;
 mod write;
 
 pub use axis::{Axis, Scale};
+pub use front::{FrontMember, front_members, modal_sentence, paper_sentence};
 pub use heat_map::heat_map;
 pub use html::html;
 pub use marks::{markdown_marks, terminal_marks};

@@ -4,6 +4,7 @@ use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyl
 
 use super::{
     columns::{Column, columns_of},
+    front,
     marks::{markdown_marks, terminal_marks},
     number,
 };
@@ -70,6 +71,10 @@ fn by_case<'a>(
         }
         let rows = results.rows.iter().filter(|row| row.case == id).collect();
         out.push_str(&format!("\n\n{}\n\n", table(rows)));
+        for line in front::lines(results, id) {
+            out.push_str(&format!("* {line}\n"));
+        }
+        out.push('\n');
     }
     if !results.marks.is_empty() {
         out.push_str(&format!("{heading}marks\n\n{}\n\n", marks(&results.marks)));

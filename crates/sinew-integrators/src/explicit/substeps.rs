@@ -146,4 +146,8 @@ impl Integrator for Substepped {
         }
         facts
     }
+
+    fn remarks(&self) -> Vec<String> {
+        self.inner.remarks()
+    }
 }

@@ -43,6 +43,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let written = csv.finish().map_err(cannot_write)?;
 
     say(&summary(&simulation, &report));
+    for remark in integrator.remarks() {
+        say(&remark);
+    }
     for probe in simulation.probes() {
         let u: Vec<String> = probe
             .displacement(&state.u)

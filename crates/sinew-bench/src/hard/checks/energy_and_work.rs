@@ -34,9 +34,18 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
     let note = format!(
         "largest of: {}; the paper's network at this step: {}",
         names.join("; "),
-        three(paper)
+        without_bound_or(paper)
     );
     Ok(asked.measured(worst.0, three, worst.1).noting(note))
+}
+
+/// An excess in words.
+fn without_bound_or(excess: f64) -> String {
+    if excess.is_finite() {
+        three(excess)
+    } else {
+        "beyond all bounds".into()
+    }
 }
 
 fn excess(case: &Case, method: &Method, dt: f64) -> Result<f64, String> {

@@ -11,7 +11,7 @@ use crate::report::{short, three};
 
 /// Steps between two looks at the distance, and most of these.
 const ROUND: usize = 1000;
-const MOST_ROUNDS: usize = 30;
+const MOST_ROUNDS: usize = 200;
 
 /// The largest relative distance from the solution of K u = F, among several methods that are given
 /// the time they need.
