@@ -108,7 +108,7 @@ impl<'a> Ledger<'a> {
         found.change = largest(found.change, found.drift.abs());
         let allowed = self.start + self.work;
         found.largest_allowed = found.largest_allowed.max(allowed);
-        if !(energy <= allowed) {
+        if energy > allowed || energy.is_nan() {
             let excess = (energy - allowed) / found.largest_allowed;
             found.excess = largest(found.excess, excess);
         }

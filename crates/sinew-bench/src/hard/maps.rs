@@ -65,7 +65,7 @@ const VARIED: [Varied; 5] = [
     Varied {
         id: "thinness",
         title: "Thinness of one element (1: none is thin)",
-        parameter: "thickness of the rest / of the one [1]",
+        parameter: "thickness, rest over one [1]",
         values: &[1.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0],
         divisors: COARSE,
         samples: 20,
@@ -92,8 +92,8 @@ const VARIED: [Varied; 5] = [
     },
     Varied {
         id: "pair-damping",
-        title: "Dashpots beside the springs",
-        parameter: "share of each pair's critical damping [1]",
+        title: "Dashpots beside the springs, by their share of each pair's critical damping",
+        parameter: "share of critical damping [1]",
         values: &[0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0],
         divisors: COARSE,
         samples: 20,

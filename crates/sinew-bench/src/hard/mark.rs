@@ -121,10 +121,42 @@ impl Mark {
     }
 }
 
+/// The largest of several figures and what gave it; one that is not a number is the largest of all.
+#[derive(Debug, Default)]
+pub(crate) struct Worst {
+    pub(crate) figure: f64,
+    pub(crate) by: String,
+}
+
+impl Worst {
+    pub(crate) fn include(&mut self, figure: f64, by: String) {
+        let figure = if figure.is_nan() {
+            f64::INFINITY
+        } else {
+            figure
+        };
+        if figure > self.figure || self.by.is_empty() {
+            *self = Self { figure, by };
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::report::three;
+
+    #[test]
+    fn what_is_not_a_number_is_worst() {
+        let mut worst = Worst::default();
+        for (figure, by) in [(0.0, "a"), (2.0, "b"), (1.0, "c")] {
+            worst.include(figure, by.into());
+        }
+        assert_eq!((worst.figure, worst.by.as_str()), (2.0, "b"));
+        worst.include(f64::NAN, "d".into());
+        worst.include(3.0, "e".into());
+        assert_eq!((worst.figure, worst.by.as_str()), (f64::INFINITY, "d"));
+    }
 
     #[test]
     fn a_figure_passes_up_to_its_limit_and_nan_never_does() {

@@ -82,7 +82,7 @@ impl Layout {
             panel,
             top,
             legend_top,
-            width: width.max(860.0),
+            width: width.max(1040.0),
             height: legend_top + 66.0 + MARGIN,
         }
     }

@@ -17,7 +17,7 @@ fn cells(mark: &Mark) -> [&str; 5] {
 /// The marks for a terminal.
 #[must_use]
 pub fn terminal_marks(marks: &[Mark]) -> String {
-    let mut table = table(marks, RULED_HEAD, |cell| cell.to_owned());
+    let mut table = table(marks, RULED_HEAD, str::to_owned);
     for column in table.column_iter_mut() {
         column.set_padding((0, 1));
     }

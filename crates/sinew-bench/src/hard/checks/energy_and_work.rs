@@ -4,7 +4,7 @@ use sinew_measure::{Case, Method};
 
 use super::at;
 use crate::hard::hard_run::run_with_energies;
-use crate::hard::mark::{Asked, Mark};
+use crate::hard::mark::{Asked, Mark, Worst};
 use crate::hard::methods::{block, chebyshev, cnn, gauss_seidel};
 use crate::report::three;
 
@@ -21,14 +21,12 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
         (Method::new("newmark"), dt),
         (Method::new("central-difference"), 0.9 * critical),
     ];
-    let mut worst = (0.0, String::new());
+    let mut worst = Worst::default();
     let mut names = Vec::new();
     for (method, dt) in &promising {
         let excess = excess(case, method, *dt)?;
         names.push(at(&method.label(), *dt));
-        if !(excess <= worst.0) || worst.1.is_empty() {
-            worst = (excess, at(&method.label(), *dt));
-        }
+        worst.include(excess, at(&method.label(), *dt));
     }
     let paper = excess(case, &cnn(), dt)?;
     let note = format!(
@@ -36,7 +34,7 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
         names.join("; "),
         without_bound_or(paper)
     );
-    Ok(asked.measured(worst.0, three, worst.1).noting(note))
+    Ok(asked.measured(worst.figure, three, worst.by).noting(note))
 }
 
 /// An excess in words.

@@ -4,7 +4,7 @@ use sinew_measure::{Case, Method};
 
 use super::trajectory;
 use crate::hard::hard_run::run_with_energies;
-use crate::hard::mark::{Asked, Mark};
+use crate::hard::mark::{Asked, Mark, Worst};
 use crate::hard::methods::{block, chebyshev, gauss_seidel};
 use crate::report::{short, three};
 use sinew_measure::reference::largest;
@@ -16,18 +16,16 @@ const STEPS: [f64; 3] = [5.0, 25.0, 250.0];
 /// iterations and steps; the displacement must stay within ten times the reference's.
 pub(crate) fn check(asked: Asked, case: &Case, steps: usize) -> Result<Mark, String> {
     let critical = case.critical_step().ok_or("nothing vibrates")?;
-    let mut worst = (0.0, String::new());
+    let mut worst = Worst::default();
     let mut bounded = true;
     let mut largest_u = 0.0_f64;
     for method in [block(), chebyshev(4), gauss_seidel(4)] {
         for factor in STEPS {
             let (change, u) = follow(case, &method, factor * critical, steps)?;
-            if !(change <= worst.0) {
-                worst = (
-                    change,
-                    format!("{}, {factor} critical steps", method.label()),
-                );
-            }
+            worst.include(
+                change,
+                format!("{}, {factor} critical steps", method.label()),
+            );
             largest_u = largest_u.max(u);
             bounded &= u <= 10.0;
         }
@@ -38,7 +36,7 @@ pub(crate) fn check(asked: Asked, case: &Case, steps: usize) -> Result<Mark, Str
         three(largest_u)
     );
     Ok(asked
-        .measured(worst.0, three, worst.1)
+        .measured(worst.figure, three, worst.by)
         .and(bounded)
         .noting(note))
 }

@@ -5,7 +5,7 @@ use sinew_measure::{Case, Method};
 
 use super::{at, set_up};
 use crate::hard::hard_run::{equilibrium, relative_distance};
-use crate::hard::mark::{Asked, Mark};
+use crate::hard::mark::{Asked, Mark, Worst};
 use crate::hard::methods::{block, chebyshev, cut};
 use crate::report::{short, three};
 
@@ -18,7 +18,7 @@ const MOST_ROUNDS: usize = 200;
 pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
     let rest = equilibrium(case).ok_or("the reference does not come to rest")?;
     let dt = case.simulation().dt();
-    let mut worst = (0.0, String::new());
+    let mut worst = Worst::default();
     let mut notes = Vec::new();
     let mut bounded = true;
     for method in [
@@ -34,13 +34,11 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
             short(settled.time)
         ));
         bounded &= settled.bounded;
-        if !(settled.distance <= worst.0) {
-            worst = (settled.distance, at(&method.label(), dt));
-        }
+        worst.include(settled.distance, at(&method.label(), dt));
     }
     let note = format!("largest of: {}", notes.join(", "));
     Ok(asked
-        .measured(worst.0, three, worst.1)
+        .measured(worst.figure, three, worst.by)
         .and(bounded)
         .noting(note))
 }

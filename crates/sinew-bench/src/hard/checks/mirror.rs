@@ -3,7 +3,7 @@
 use sinew_measure::{Case, Method};
 
 use super::{at, trajectory};
-use crate::hard::mark::{Asked, Mark};
+use crate::hard::mark::{Asked, Mark, Worst};
 use crate::hard::methods::{block, chebyshev, cnn, cut};
 use crate::hard::pairs::body;
 use crate::report::three;
@@ -18,7 +18,7 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
         simulation.dt(),
     );
     let images = [images(case, 0)?, images(case, 1)?];
-    let mut worst = (0.0, String::new());
+    let mut worst = Worst::default();
     let methods = [
         block(),
         chebyshev(4),
@@ -31,9 +31,7 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
     };
     for method in &methods {
         let drift = drift_of(method)?;
-        if !(drift <= worst.0) {
-            worst = (drift, at(&method.label(), dt));
-        }
+        worst.include(drift, at(&method.label(), dt));
     }
     let names: Vec<String> = methods.iter().map(Method::label).collect();
     let note = format!(
@@ -42,7 +40,7 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
         names.join(", "),
         three(drift_of(&cnn())?)
     );
-    Ok(asked.measured(worst.0, three, worst.1).noting(note))
+    Ok(asked.measured(worst.figure, three, worst.by).noting(note))
 }
 
 /// The largest lateral asymmetry of a trajectory over its largest displacement.

@@ -3,7 +3,7 @@
 use sinew_measure::{Case, Method};
 
 use super::{at, largest_difference, trajectory};
-use crate::hard::mark::{Asked, Mark};
+use crate::hard::mark::{Asked, Mark, Worst};
 use crate::hard::methods::{block, chebyshev, cnn};
 use crate::hard::pairs::{QuarterTurn, turned};
 use crate::report::three;
@@ -22,7 +22,7 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
         (Method::new("central-difference"), 0.9 * critical),
         (cnn(), dt),
     ];
-    let mut worst = (0.0, String::new());
+    let mut worst = Worst::default();
     for axis in 0..3 {
         let turn = QuarterTurn(axis);
         let twin = turned(simulation, turn)?;
@@ -32,12 +32,10 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
             let there = trajectory(&*twin.system, &twin.start, method, *dt, steps)?;
             let here: Vec<Vec<f64>> = here.iter().map(|u| turn.of_field(u)).collect();
             let difference = largest_difference(&there, &here);
-            if !(difference <= worst.0) {
-                worst = (difference, at(&method.label(), *dt));
-            }
+            worst.include(difference, at(&method.label(), *dt));
         }
     }
     let names: Vec<String> = methods.iter().map(|(method, _)| method.label()).collect();
     let note = format!("largest of {}, turned about x, y and z", names.join(", "));
-    Ok(asked.measured(worst.0, three, worst.1).noting(note))
+    Ok(asked.measured(worst.figure, three, worst.by).noting(note))
 }

@@ -7,7 +7,7 @@ use sinew_measure::Method;
 use sinew_scene::{Scene, Simulation};
 
 use super::{at, largest_difference, trajectory};
-use crate::hard::mark::{Asked, Mark};
+use crate::hard::mark::{Asked, Mark, Worst};
 use crate::hard::methods::block;
 use crate::hard::pairs::in_units;
 use crate::report::three;
@@ -26,7 +26,7 @@ const MOST_STEPS: usize = 200;
 /// largest displacement: of every scene in these folders by its own method, if that is not the
 /// paper's, at its own step.
 pub(crate) fn check(asked: Asked, folders: &[PathBuf]) -> Result<Mark, String> {
-    let mut worst = (0.0, String::new());
+    let mut worst = Worst::default();
     let mut names = Vec::new();
     let mut papers = Vec::new();
     for path in scenes(folders)? {
@@ -47,9 +47,7 @@ pub(crate) fn check(asked: Asked, folders: &[PathBuf]) -> Result<Mark, String> {
         }
         for per_metre in UNITS {
             let difference = difference(&simulation, &method, dt, per_metre)?;
-            if !(difference <= worst.0) {
-                worst = (difference, format!("{name}: {}", at(&method.label(), dt)));
-            }
+            worst.include(difference, format!("{name}: {}", at(&method.label(), dt)));
         }
         names.push(name.into_owned());
     }
@@ -62,7 +60,7 @@ pub(crate) fn check(asked: Asked, folders: &[PathBuf]) -> Result<Mark, String> {
              there: {papers}"
         ));
     }
-    Ok(asked.measured(worst.0, three, worst.1).noting(note))
+    Ok(asked.measured(worst.figure, three, worst.by).noting(note))
 }
 
 /// The scenes in the folders, sorted.
