@@ -36,6 +36,9 @@ pub enum BenchError {
     /// A scene.
     #[error(transparent)]
     Case(#[from] CaseError),
+    /// A stability map.
+    #[error("stability map: {0}")]
+    Map(String),
     /// No thread to measure on.
     #[error(transparent)]
     Thread(#[from] ThreadError),

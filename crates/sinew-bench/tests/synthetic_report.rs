@@ -192,6 +192,7 @@ fn cube_rows(case: &str, harder: f64) -> Vec<Row> {
                 setup_cpu_s: 0.011 + 0.083 * method.work.1,
                 facts: BTreeMap::new(),
                 pareto: false,
+                ..Row::default()
             }
         })
     });

@@ -3,13 +3,15 @@
 use std::fmt::{self, Display, Write};
 
 use super::{
-    columns::{COLUMNS, Column},
+    columns::{Column, columns_of},
     front::{self, front_members},
+    heat_map, marks,
     markup::{escape, slugs},
     number, peers, strip,
     summary::cheapest,
     verdict, work_precision,
 };
+use crate::hard::StabilityMap;
 use crate::results::{BenchResults, Skipped};
 use sinew_measure::{ACCURATE, CaseInfo, Row, Verdict};
 
@@ -28,7 +30,9 @@ pub fn html(results: &BenchResults) -> String {
     page.how_to_read();
     let ids = results.case_ids();
     let anchors = slugs(&ids);
+    page.out.push_str(&marks::section(&results.marks));
     page.summary(results, &ids, &anchors);
+    page.maps(&results.maps);
     for (id, anchor) in ids.iter().zip(&anchors) {
         page.case(results, id, anchor);
     }
@@ -140,6 +144,24 @@ impl Page {
             self.out.push_str("</tr>\n");
         }
         self.out.push_str("</tbody>\n</table></div>\n</section>\n");
+    }
+
+    fn maps(&mut self, maps: &[StabilityMap]) {
+        if maps.is_empty() {
+            return;
+        }
+        self.out.push_str(
+            "<section>\n<h2 id=\"maps\">Where methods hold: step against one property of the scene</h2>\n\
+             <p>Every square is a run on a small cube, coloured by its error. The line is the largest \
+             stable step that each method computes from the matrices before it runs: theory, beside \
+             the runs. With dashpots it is a bound from below, for the paper's network 0. <b>Bounded is not accurate</b>: where there is no line, only the colour tells \
+             how far a method can be trusted.</p>\n",
+        );
+        for map in maps {
+            self.put(format_args!("<h3>{}</h3>\n", Escaped(&map.title)));
+            self.figure(&heat_map(map));
+        }
+        self.out.push_str("</section>\n");
     }
 
     fn case(&mut self, results: &BenchResults, id: &str, anchor: &str) {
@@ -256,9 +278,10 @@ impl Page {
     }
 
     fn runs(&mut self, rows: &[&Row]) {
+        let columns = columns_of(rows);
         self.out
             .push_str("<h3>All runs</h3>\n<div class=\"wide\"><table class=\"runs\">\n<thead><tr>");
-        for column in &COLUMNS {
+        for column in &columns {
             self.put(format_args!(
                 "<th{} title=\"{}\">{}<small>{}</small></th>",
                 class(column),
@@ -278,7 +301,7 @@ impl Page {
                 (false, false) => "",
             };
             self.put(format_args!("<tr{classes}>"));
-            for column in &COLUMNS {
+            for column in &columns {
                 self.cell(column, row);
             }
             self.out.push_str("</tr>\n");

@@ -15,7 +15,10 @@ pub use probe::{NearestNode, Probe};
 
 use crate::error::{Fault, SceneError};
 use crate::plan::Plan;
-use crate::scene::{Oscillator, RunSettings, Scene, Subject};
+use crate::scene::{Body, Oscillator, Places, RunSettings, Scene, Subject};
+
+/// A mesh and what its reader accepted but a user should know.
+type MeshAndWarnings = (TetMesh, Vec<String>);
 
 /// A scene made ready to run. All its files are read.
 #[derive(Debug)]
@@ -73,9 +76,26 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with the line of the scene that asks for what cannot be had.
     pub fn build(self) -> Result<Simulation, SceneError> {
+        self.assemble(body::mesh)
+    }
+
+    /// As [`Scene::build`], on a mesh at hand (m) in place of the one that `[mesh]` names. An
+    /// oscillator has no use for it.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the line of the scene that asks for what this mesh does not have.
+    pub fn build_on(self, mesh: TetMesh) -> Result<Simulation, SceneError> {
+        self.assemble(|_, _| Ok((mesh, Vec::new())))
+    }
+
+    fn assemble(
+        self,
+        mesh: impl FnOnce(&Body, &Places) -> Result<MeshAndWarnings, SceneError>,
+    ) -> Result<Simulation, SceneError> {
         let (model, initial, probes) = match self.subject() {
             Subject::Body(body) => {
-                let model = body::build(body, self.places())?;
+                let mesh = mesh(body, self.places())?;
+                let model = body::build(body, mesh, self.places())?;
                 let initial = start::state(body, self.places(), &model)?;
                 let probes = probe::of_body(&body.probes, &model);
                 (SceneModel::Body(Box::new(model)), initial, probes)
