@@ -180,7 +180,8 @@ pub struct StepReport {
     pub factorizations: u64,
     /// Newton iterations.
     pub newton_iterations: u64,
-    /// Degrees of freedom whose velocity was saturated.
+    /// Degrees of freedom whose velocity was saturated; of a step taken in parts, in the part in which
+    /// most were.
     pub saturated: u64,
 }
 
@@ -194,6 +195,13 @@ impl StepReport {
         newton_iterations: 0,
         saturated: 0,
     };
+
+    /// Adds the work of a part of the same step.
+    pub fn add_part(&mut self, part: Self) {
+        let saturated = self.saturated.max(part.saturated);
+        *self += part;
+        self.saturated = saturated;
+    }
 }
 
 impl AddAssign for StepReport {

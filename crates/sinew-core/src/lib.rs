@@ -44,5 +44,5 @@ pub use ramp::{Ramp, RampError};
 pub use recorder::{RecordError, Recorder, Recorders, Verdict};
 pub use simulate::{Outcome, Run, RunReport, SimulateError, simulate};
 pub use sinew_sparse::{BlockMatrix, Layers, Pattern};
-pub use state::State;
-pub use system::{Energy, EvaluationError, Revision, System, Trial};
+pub use state::{Start, State};
+pub use system::{Energy, EvaluationError, Revision, Scales, System, Trial};

@@ -117,6 +117,48 @@ impl Ramp {
         }
     }
 
+    /// The largest size of the value at any time.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        match self {
+            Self::Step | Self::Sin2 { .. } | Self::Pulse { .. } => 1.0,
+            Self::Table { values, .. } => values.iter().fold(0.0, |max, v| v.abs().max(max)),
+        }
+    }
+
+    /// How far the value goes up and down in all, from 0 before the start on.
+    #[must_use]
+    pub fn variation(&self) -> f64 {
+        match self {
+            Self::Step | Self::Sin2 { .. } => 1.0,
+            Self::Pulse { .. } => 2.0,
+            Self::Table { values, .. } => {
+                let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+                values.first().map_or(0.0, |first| first.abs()) + steps.sum::<f64>()
+            }
+        }
+    }
+
+    /// Bound of the integral of the value's size from t = 0 on (s), which is infinite where the load
+    /// stays.
+    #[must_use]
+    pub fn impulse(&self) -> f64 {
+        match self {
+            Self::Step | Self::Sin2 { .. } => f64::INFINITY,
+            Self::Pulse { from, to } => to.max(0.0) - from.max(0.0),
+            Self::Table { times, values } => {
+                if values.last().is_none_or(|last| *last != 0.0) {
+                    return f64::INFINITY;
+                }
+                let before = times[0].max(0.0) * values[0].abs();
+                let between = times.windows(2).zip(values.windows(2));
+                let between = between
+                    .map(|(t, v)| (t[1].max(0.0) - t[0].max(0.0)) * v[0].abs().max(v[1].abs()));
+                before + between.sum::<f64>()
+            }
+        }
+    }
+
     /// The instants (s) at which the ramp or one of its derivatives jumps, in increasing order.
     #[must_use]
     pub fn breakpoints(&self) -> Vec<f64> {
@@ -233,6 +275,31 @@ mod tests {
                 }
                 assert!((sum - ramp.value(t + h)).abs() < 1e-12, "{ramp:?} at {t}");
             }
+        }
+    }
+
+    #[test]
+    fn sizes_bound_the_sums_over_fine_steps() {
+        let mut ramps = ramps();
+        ramps.push(Ramp::Table {
+            times: vec![0.1, 0.2, 0.5],
+            values: vec![-2.0, 3.0, 0.0],
+        });
+        let dt = 1e-4;
+        for ramp in ramps {
+            let values: Vec<f64> = (0..=20_000)
+                .map(|n| ramp.value(f64::from(n) * dt))
+                .collect();
+            let largest = values.iter().fold(0.0, |max: f64, v| v.abs().max(max));
+            assert!((ramp.largest() - largest).abs() < 1e-9, "{ramp:?}");
+            let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+            let variation = values[0].abs() + steps.sum::<f64>();
+            assert!((ramp.variation() - variation).abs() < 1e-2, "{ramp:?}");
+            let impulse: f64 = values.iter().map(|v| v.abs() * dt).sum();
+            let ends = values.last() == Some(&0.0);
+            assert_eq!(ramp.impulse().is_finite(), ends, "{ramp:?}");
+            assert!(ramp.impulse() > impulse - 1e-3, "{ramp:?}");
+            assert!(!ends || ramp.impulse() < 2.0 * impulse, "{ramp:?}");
         }
     }
 

@@ -1,6 +1,6 @@
 //! The state of a simulation.
 
-use crate::{EvaluationError, System, Trial};
+use crate::{EvaluationError, Revision, System, Trial};
 
 /// Where a system is and how it moves, free degrees of freedom only, node-major (x y z).
 ///
@@ -22,6 +22,20 @@ pub struct State {
     /// when it equals `t`. Staggered methods that keep none set it to that, those that keep one
     /// have it half a step behind the velocity.
     pub a_time: f64,
+    /// What the motion began with, where a guarded method bounds velocities by it; `None` until
+    /// then. Set it to `None` after changing `u` or `v` by hand.
+    pub start: Option<Start>,
+}
+
+/// What a motion began with, as far as its velocities are bounded by it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// The system in which it began; in another one the motion begins anew.
+    pub system: Revision,
+    /// Kinetic and elastic energy (J).
+    pub energy: f64,
+    /// The largest velocity (m/s) that a cell has when all energy at it is kinetic.
+    pub speed: f64,
 }
 
 impl State {
@@ -41,6 +55,7 @@ impl State {
             v_time: 0.0,
             a: Vec::new(),
             a_time: f64::NEG_INFINITY,
+            start: None,
         }
     }
 

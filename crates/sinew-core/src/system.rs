@@ -2,6 +2,8 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use sinew_sparse::Layers;
+
 use crate::{LinearSystem, State};
 
 /// Identity of a system's matrices and laws, unique in the process.
@@ -49,6 +51,18 @@ impl Energy {
     pub fn total(self) -> f64 {
         self.kinetic + self.elastic
     }
+}
+
+/// Sizes by which a guard judges velocities.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales<'a> {
+    /// Shortest distance from each cell to a neighbour (m), one entry a cell.
+    pub cell_size: &'a [f64],
+    /// Density times the speed of the waves by which a pressed surface yields (kg/(m^2 s)), of the
+    /// material in which it is least: pressure waves, or shear waves where those are far slower.
+    pub impedance: f64,
+    /// Bound of the pressure that all loads together put on the body at any time (Pa).
+    pub pressure: f64,
 }
 
 /// A law was asked outside its domain.
@@ -107,6 +121,19 @@ pub trait System: Send + Sync {
     /// Size of the body (m), where it has one: the longest edge of its bounding box.
     fn extent(&self) -> Option<f64> {
         None
+    }
+
+    /// Sizes by which a guard judges velocities, where the system has cells in space.
+    fn scales(&self) -> Option<Scales<'_>> {
+        None
+    }
+
+    /// Degrees of freedom of a cell: the components that turn together with the axes. A nonlinear
+    /// system in space says so itself.
+    fn layers(&self) -> Layers {
+        self.as_linear().map_or(Layers::One, |linear| {
+            linear.operators().stiffness().layers()
+        })
     }
 
     /// Name of the cell of a degree of freedom in the user's terms, for messages.

@@ -34,6 +34,7 @@ mod loads;
 mod model;
 mod problem;
 mod report;
+mod scales;
 pub mod springs;
 pub mod tetra;
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use sinew_core::{
     BlockMatrix, Damping, ElementStiffness, Elements, Energy, EvaluationError, Layers,
-    LinearOperators, LinearSystem, Pattern, Revision, System, Trial,
+    LinearOperators, LinearSystem, Pattern, Revision, Scales, System, Trial,
 };
 use sinew_mesh::TetMesh;
 
@@ -13,6 +13,7 @@ use crate::cells::Cells;
 use crate::elements::{ElementLaw, Tetrahedra};
 use crate::error::{Cause, FemError, Item};
 use crate::report::{ModelReport, RegionFacts};
+use crate::scales::OwnedScales;
 use crate::{Law, Problem, assembly, check, loads, tetra};
 
 /// A linear model of a body: M, D, K over its moving nodes, loads, and the geometry behind them.
@@ -23,6 +24,7 @@ pub struct Model {
     node_tags: Vec<u64>,
     tetrahedra: Tetrahedra,
     extent: f64,
+    scales: OwnedScales,
     report: ModelReport,
 }
 
@@ -118,6 +120,10 @@ impl Model {
             facts
         });
 
+        let (low, high) = mesh.bounding_box();
+        let extent = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+        let scales = OwnedScales::new(mesh, &cells, problem, &regions, &core_loads, extent);
+
         let damping = Damping {
             mass: problem.damping.mass,
             stiffness: problem.damping.stiffness,
@@ -131,7 +137,6 @@ impl Model {
         let operators = LinearOperators::new(moving.collect(), stiffness, damping, core_loads)
             .map_err(|error| FemError::new(Item::Mesh, error.into()))?;
 
-        let (low, high) = mesh.bounding_box();
         let report = ModelReport {
             nodes: mesh.points.len(),
             tets: mesh.tets.len(),
@@ -153,7 +158,8 @@ impl Model {
             cells,
             node_tags: mesh.node_tags.clone(),
             tetrahedra: Tetrahedra::new(mesh, &region_of, laws),
-            extent: (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max),
+            extent,
+            scales,
             report,
         })
     }
@@ -249,6 +255,14 @@ impl System for Model {
 
     fn extent(&self) -> Option<f64> {
         Some(self.extent)
+    }
+
+    fn scales(&self) -> Option<Scales<'_>> {
+        Some(Scales {
+            cell_size: &self.scales.cell_size,
+            impedance: self.scales.impedance,
+            pressure: self.scales.pressure,
+        })
     }
 
     fn cell_name(&self, dof: usize) -> String {

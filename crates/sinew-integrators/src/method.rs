@@ -2,6 +2,8 @@
 
 use sinew_core::{Integrator, OptionError, Options};
 
+use crate::explicit::GuardOption;
+
 /// An integrator that can be built from named options.
 pub trait Method: Integrator + Sized + 'static {
     /// The name users type.
@@ -12,6 +14,9 @@ pub trait Method: Integrator + Sized + 'static {
     const OPTIONS: &'static [OptionHelp] = &[];
     /// Whether it takes `substeps`: methods with a largest stable step do.
     const SUBSTEPS: bool = false;
+
+    /// What the option `saturation` means to it: methods that can grow without bound take a guard.
+    const GUARD: GuardOption = GuardOption::None;
 
     /// Builds it. Keys outside [`Method::OPTIONS`] have been refused before.
     ///

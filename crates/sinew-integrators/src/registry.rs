@@ -2,7 +2,7 @@
 
 use sinew_core::{Integrator, OptionError, Options};
 
-use crate::explicit::{Substepped, Substeps};
+use crate::explicit::{GuardOption, Guarded, Substepped, Substeps};
 use crate::{Method, OptionHelp};
 
 /// Calls `$then! { name: Type, .. }` with every integrator there is: the one list that the
@@ -39,10 +39,12 @@ pub struct Entry {
     pub id: &'static str,
     /// One line about it.
     pub summary: &'static str,
-    /// The options it takes, beside `substeps`.
+    /// The options it takes, beside `substeps` and the guard's.
     pub options: &'static [OptionHelp],
     /// Whether it takes `substeps`.
     pub substeps: bool,
+    /// What `saturation` means to it.
+    pub guard: GuardOption,
     build: fn(&Options) -> Result<Box<dyn Integrator>, OptionError>,
 }
 
@@ -61,6 +63,7 @@ impl Entry {
             summary: M::SUMMARY,
             options: M::OPTIONS,
             substeps: M::SUBSTEPS,
+            guard: M::GUARD,
             build: |options| Ok(Box::new(M::from_options(options)?)),
         }
     }
@@ -71,17 +74,23 @@ impl Entry {
     /// [`OptionError`] for an option it does not take or a value that does not fit.
     pub fn build(&self, options: &Options) -> Result<Box<dyn Integrator>, OptionError> {
         let mut known: Vec<&'static str> = self.options.iter().map(|help| help.key).collect();
+        known.extend(self.guard.help().map(|help| help.key));
         if self.substeps {
             known.push(Substeps::KEY);
         }
         options.only(self.id, &known)?;
         let mut options = options.clone();
         let substeps = Substeps::take_from(&mut options, self.id)?;
-        let integrator = (self.build)(&options)?;
-        Ok(match substeps {
-            None => integrator,
-            Some(substeps) => Box::new(Substepped::new(integrator, substeps)),
-        })
+        let guard = self.guard.take_from(&mut options, self.id)?;
+        let mut integrator = (self.build)(&options)?;
+        // Within the parts, so that each of them is guarded.
+        if let Some(guard) = guard {
+            integrator = Box::new(Guarded::new(integrator, guard));
+        }
+        if let Some(substeps) = substeps {
+            integrator = Box::new(Substepped::new(integrator, substeps));
+        }
+        Ok(integrator)
     }
 }
 
@@ -141,8 +150,8 @@ mod tests {
     fn what_is_not_known_is_refused_by_name() {
         assert!(refusal("euler", Options::new()).starts_with("unknown integrator `euler`"));
         assert_eq!(
-            refusal("rk4", Options::new().with_number("saturation", 4.0)),
-            "`rk4` has no option `saturation`; it takes `substeps`"
+            refusal("rk4", Options::new().with_number("gamma", 4.0)),
+            "`rk4` has no option `gamma`; it takes `saturation`, `substeps`"
         );
         let cases = [
             ("cnn", "saturation", OptionValue::Number(-4.0)),

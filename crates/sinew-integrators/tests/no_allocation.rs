@@ -12,9 +12,10 @@ use std::alloc::{GlobalAlloc, Layout, System as SystemAllocator};
 use std::cell::Cell;
 use std::hint::black_box;
 
-use common::cube::{altered, cube};
+use common::cube::{altered, cube, paper_cube};
 use common::{build, inner, plain};
-use sinew_core::{LinearSystem, Load, OptionValue, Options, Ramp, State, System};
+use sinew_core::{Fact, LinearSystem, Load, OptionValue, Options, Ramp, State, System};
+use sinew_integrators::explicit::{GuardOption, Guarded};
 
 /// Counts what each thread allocates, so that the test harness does not disturb the count.
 struct Counting;
@@ -86,13 +87,16 @@ fn no_integrator_allocates_after_its_second_step() {
             variants.push(plain().with_number("substeps", 3.0));
             variants.push(plain().with("substeps", OptionValue::Text("auto".into())));
         }
-        if entry
-            .options
-            .iter()
-            .any(|option| option.key == "saturation")
-        {
+        if entry.guard != GuardOption::None {
             // So low that it is reached.
-            variants.push(plain().with_number("saturation", 1e-6));
+            let low = plain().with_number("saturation", 1e-6);
+            let auto = plain().with("saturation", OptionValue::Text("auto".into()));
+            for guarded in [low, auto] {
+                if entry.substeps {
+                    variants.push(guarded.clone().with_number("substeps", 3.0));
+                }
+                variants.push(guarded);
+            }
         }
         if entry.id == "propagator" {
             for kind in ["two-step", "krylov"] {
@@ -112,6 +116,26 @@ fn no_integrator_allocates_after_its_second_step() {
             assert_eq!(count, 0, "`{}` with {options:?}", entry.id);
         }
     }
+}
+
+#[test]
+fn neither_does_a_guard_that_cuts_and_clamps() {
+    let (model, dt) = (paper_cube(), 0.02);
+    let auto = plain().with("saturation", OptionValue::Text("auto".into()));
+    let mut integrator = build("forward-euler", &auto);
+    let mut state = State::at_rest(model.dofs());
+    common::advance(&mut *integrator, model, &mut state, 10, dt);
+    let cut = |fact: &Fact| fact.name == Guarded::SUBSTEPS && fact.value > 1.0;
+    assert!(integrator.facts().iter().any(cut));
+    let mut saturated = 0;
+    let count = allocations(|| {
+        for _ in 0..20 {
+            let work = integrator.step(model, &mut state, dt);
+            saturated += work.map_or(0, |work| work.saturated);
+        }
+    });
+    assert_eq!(count, 0);
+    assert!(saturated > 0);
 }
 
 /// A load that changes takes sweeps of its own, and damping of another kind products of its own.

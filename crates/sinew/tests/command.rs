@@ -56,6 +56,31 @@ fn run_writes_the_probes_and_calls_a_guarded_run_guarded() {
 }
 
 #[test]
+fn run_says_into_how_many_parts_the_guard_cut_each_step() {
+    let directory = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(scene("paper-cube.toml")).unwrap();
+    let mesh = scene("../meshes/paper-cube.msh");
+    let text = text
+        .replace("../meshes/paper-cube.msh", mesh.to_str().unwrap())
+        .replace("\"cnn\"", "\"forward-euler\"")
+        .replace("saturation = 4.0", "saturation = \"auto\"");
+    std::fs::write(directory.path().join("guarded.toml"), &text).unwrap();
+    let said = sinew(directory.path(), &["run", "guarded.toml"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let cut = "the guard took each step in 7 parts: whole, it is longer than the stable step of `forward-euler`";
+    assert!(said.out.contains(cut), "{}", said.out);
+    assert!(said.out.contains("guarded: 51.05"), "{}", said.out);
+    // Whole steps are nothing to speak of.
+    let text = text.replace("dt = 0.02", "dt = 0.001");
+    std::fs::write(directory.path().join("guarded.toml"), text).unwrap();
+    let said = sinew(directory.path(), &["run", "guarded.toml"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    for part in ["the guard", "guarded:"] {
+        assert!(!said.out.contains(part), "{}", said.out);
+    }
+}
+
+#[test]
 fn a_diverging_run_says_so_keeps_what_it_has_and_fails() {
     let directory = tempfile::tempdir().unwrap();
     let text = std::fs::read_to_string(scene("paper-cube.toml")).unwrap();
@@ -131,4 +156,6 @@ fn every_integrator_is_listed() {
     for id in sinew::integrators::ids() {
         assert!(said.out.contains(id));
     }
+    let guards = said.out.matches("saturation: guard").count();
+    assert_eq!(guards, 6, "{}", said.out);
 }

@@ -6,23 +6,24 @@ use sinew_core::{
 };
 
 use crate::OptionHelp;
+use crate::explicit::GuardOption;
 
 /// The paper's saturation voltage (m/s).
 const PAPER_Q: f64 = 4.0;
 
 pub(super) const SATURATION: OptionHelp = OptionHelp {
     key: "saturation",
-    help: "saturation voltage Q [m/s] above 0, or \"off\"; default 4, the paper's",
+    help: "saturation voltage Q [m/s] above 0, \"auto\" for a guard in its place, or \"off\"; default 4, the paper's",
     shown_default: Some(PAPER_Q),
 };
 
-/// The option `saturation`.
+/// The option `saturation`; its "auto" is the guard's.
 pub(super) fn saturation(options: &Options, integrator: &str) -> Result<Saturation, OptionError> {
     let refused = |found: &OptionValue| OptionError::Value {
         integrator: integrator.into(),
         key: SATURATION.key.into(),
         found: found.clone(),
-        expected: "a number above 0 [m/s], or \"off\"",
+        expected: GuardOption::EXPECTED,
     };
     let (voltage, given) = match options.get(SATURATION.key) {
         None => (PAPER_Q, &OptionValue::Number(PAPER_Q)),

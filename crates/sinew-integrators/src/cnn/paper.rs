@@ -8,6 +8,7 @@ use sinew_core::{
 
 use super::network::{self, Network};
 use crate::evaluate::begin;
+use crate::explicit::GuardOption;
 use crate::{Method, OptionHelp, limits};
 
 /// `y += dt f(x)`, `x += dt (A y - C x + B F(t))`, both from the old x and y, with the component-wise
@@ -38,6 +39,7 @@ impl Method for Cnn {
     const SUMMARY: &'static str = "the paper's cellular network: forward Euler with a clamp";
     const OPTIONS: &'static [OptionHelp] = &[network::SATURATION];
     const SUBSTEPS: bool = true;
+    const GUARD: GuardOption = GuardOption::OwnOrAuto;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
         network::saturation(options, Self::ID).map(Self::new)

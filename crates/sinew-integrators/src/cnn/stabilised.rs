@@ -8,7 +8,7 @@ use sinew_core::{
 };
 
 use crate::evaluate::{net_force, synchronise};
-use crate::explicit::CentralDifference;
+use crate::explicit::{CentralDifference, GuardOption};
 use crate::{Method, OptionHelp};
 
 /// `P (v+ - v-) = dt (F(t) - K u - D v-)`, `u += dt v+`, the velocity half a step behind, started with
@@ -87,6 +87,8 @@ impl Method for CnnStabilised {
             shown_default: None,
         },
     ];
+
+    const GUARD: GuardOption = GuardOption::Any { runs_away: false };
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
         let refused = |key: &str, found: &OptionValue, expected| {

@@ -8,6 +8,7 @@ use sinew_core::{
 
 use super::network::{self, Network};
 use crate::evaluate::begin;
+use crate::explicit::GuardOption;
 use crate::{Method, OptionHelp, limits};
 
 /// `x += dt (A y - C x + B F(t))`, then `y += dt f(x)` with the new x: symplectic Euler with a clamp
@@ -34,6 +35,7 @@ impl Method for CnnSymplectic {
     const SUMMARY: &'static str = "cellular network, state first: symplectic Euler with a clamp";
     const OPTIONS: &'static [OptionHelp] = &[network::SATURATION];
     const SUBSTEPS: bool = true;
+    const GUARD: GuardOption = GuardOption::OwnOrAuto;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
         network::saturation(options, Self::ID).map(Self::new)

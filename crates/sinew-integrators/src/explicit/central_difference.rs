@@ -5,6 +5,7 @@ use sinew_core::{
     SetupError, StableStep, State, StepError, StepReport, System,
 };
 
+use super::GuardOption;
 use super::patches::{self, AutoPatches};
 use crate::evaluate::{acceleration, prepare_buffers, synchronise};
 use crate::{Method, OptionHelp, limits};
@@ -34,6 +35,7 @@ impl Method for CentralDifference {
     const SUMMARY: &'static str = "explicit, order 2 with mass damping; stable up to 2/omega_max";
     const OPTIONS: &'static [OptionHelp] = patches::OPTIONS;
     const SUBSTEPS: bool = true;
+    const GUARD: GuardOption = GuardOption::Any { runs_away: false };
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
         Ok(Self {

@@ -2,6 +2,7 @@
 
 mod central_difference;
 mod forward_euler;
+mod guard;
 mod modified_leapfrog;
 #[cfg(feature = "implicit")]
 mod patches;
@@ -14,6 +15,7 @@ mod symplectic_euler;
 
 pub use central_difference::CentralDifference;
 pub use forward_euler::ForwardEuler;
+pub use guard::{Guard, GuardOption, Guarded};
 pub use modified_leapfrog::ModifiedLeapfrog;
 pub use rk4::Rk4;
 pub use substeps::{Substepped, Substeps};

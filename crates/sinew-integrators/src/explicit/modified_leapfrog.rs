@@ -5,6 +5,7 @@ use sinew_core::{
     Options, Prepared, Properties, SetupError, StableStep, State, StepError, StepReport, System,
 };
 
+use super::GuardOption;
 use crate::Method;
 use crate::evaluate::{prepare_buffers, synchronise};
 use crate::limits;
@@ -29,6 +30,7 @@ impl Method for ModifiedLeapfrog {
     const ID: &'static str = "modified-leapfrog";
     const SUMMARY: &'static str = "explicit, order 4 where damping is small, two sweeps a step";
     const SUBSTEPS: bool = true;
+    const GUARD: GuardOption = GuardOption::Any { runs_away: true };
 
     fn from_options(_options: &Options) -> Result<Self, OptionError> {
         Ok(Self::default())

@@ -5,6 +5,7 @@ use sinew_core::{
     SetupError, StableStep, State, StepError, StepReport, System, Trial,
 };
 
+use super::GuardOption;
 use crate::Method;
 use crate::evaluate::{begin, net_force, prepare_buffers};
 use crate::limits;
@@ -32,6 +33,7 @@ impl Method for Rk4 {
     const ID: &'static str = "rk4";
     const SUMMARY: &'static str = "explicit, order 4, four sweeps a step";
     const SUBSTEPS: bool = true;
+    const GUARD: GuardOption = GuardOption::Any { runs_away: true };
 
     fn from_options(_options: &Options) -> Result<Self, OptionError> {
         Ok(Self::default())

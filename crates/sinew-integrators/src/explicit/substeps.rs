@@ -26,8 +26,7 @@ impl Substeps {
     #[must_use]
     pub fn parts_of(dt: f64, limit: f64) -> u32 {
         // The subtrahend keeps a quotient like 3.0000000000000004 from costing one part more.
-        let parts = (dt / (MARGIN * limit) - 1e-9).ceil();
-        parts.clamp(1.0, f64::from(u32::MAX)) as u32
+        whole(dt / (MARGIN * limit) - 1e-9)
     }
 
     /// Takes the option out of the others; `None` where it is absent.
@@ -51,6 +50,11 @@ impl Substeps {
             }),
         }
     }
+}
+
+/// The next whole number of parts, from 1 on.
+pub(super) fn whole(parts: f64) -> u32 {
+    parts.ceil().clamp(1.0, f64::from(u32::MAX)) as u32
 }
 
 /// An integrator that takes several equal steps for each one asked of it.
@@ -131,7 +135,7 @@ impl Integrator for Substepped {
         let mut work = self.prepare(system, dt)?;
         let parts = self.parts(system, dt)?;
         for _ in 0..parts {
-            work += self.inner.step(system, state, dt / f64::from(parts))?;
+            work.add_part(self.inner.step(system, state, dt / f64::from(parts))?);
         }
         Ok(work)
     }

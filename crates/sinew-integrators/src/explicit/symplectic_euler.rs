@@ -5,6 +5,7 @@ use sinew_core::{
     SetupError, StableStep, State, StepError, StepReport, System,
 };
 
+use super::GuardOption;
 use crate::Method;
 use crate::evaluate::{acceleration, begin, prepare_buffers};
 use crate::limits;
@@ -21,6 +22,7 @@ impl Method for SymplecticEuler {
     const ID: &'static str = "symplectic-euler";
     const SUMMARY: &'static str = "explicit, order 1, keeps the energy of undamped motion bounded";
     const SUBSTEPS: bool = true;
+    const GUARD: GuardOption = GuardOption::Any { runs_away: false };
 
     fn from_options(_options: &Options) -> Result<Self, OptionError> {
         Ok(Self::default())

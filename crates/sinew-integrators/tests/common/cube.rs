@@ -31,7 +31,12 @@ pub(crate) fn springs(damping_ratio: f64) -> Law {
 /// A cube held at its four lateral faces under 500 Pa on its top.
 pub(crate) fn scene(cells: usize, edge: f64, law: Law, damping: Rayleigh) -> Model {
     let mesh = structured::cube(cells, edge, Split::Kuhn).unwrap();
-    let problem = Problem {
+    Model::build(&mesh, &problem(law, damping, [0.0, 0.0, -500.0])).unwrap()
+}
+
+/// A body held at its four lateral faces under a traction on its top (Pa).
+pub(crate) fn problem(law: Law, damping: Rayleigh, traction: [f64; 3]) -> Problem {
+    Problem {
         regions: vec![Region {
             group: None,
             density: 1060.0,
@@ -44,12 +49,11 @@ pub(crate) fn scene(cells: usize, edge: f64, law: Law, damping: Rayleigh) -> Mod
         }],
         loads: vec![LoadSpec {
             group: "top".into(),
-            kind: LoadKind::Traction([0.0, 0.0, -500.0]),
+            kind: LoadKind::Traction(traction),
             ramp: Ramp::Step,
         }],
         gravity: None,
-    };
-    Model::build(&mesh, &problem).unwrap()
+    }
 }
 
 /// Damping in proportion to the mass.

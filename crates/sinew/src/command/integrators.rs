@@ -5,7 +5,7 @@ use super::{Failure, say};
 pub(crate) fn run() -> Result<(), Failure> {
     for entry in sinew_integrators::entries() {
         say(&format!("{:20} {}", entry.id, entry.summary));
-        for option in entry.options {
+        for option in entry.options.iter().copied().chain(entry.guard.help()) {
             say(&format!("{:20}   {}: {}", "", option.key, option.help));
         }
         if entry.substeps {

@@ -1,0 +1,96 @@
+//! The most energy that loads can put into a body.
+
+use sinew_core::LinearOperators;
+
+/// Iterations after which a body counts as not held.
+const MOST_ITERATIONS: usize = 2000;
+
+/// Residual of a solution, relative to the load; the error of the energy is its square.
+const RESIDUAL: f64 = 1e-5;
+
+/// Stiffness of a motion, relative to that of moving each cell by itself, which is rounding of zero.
+const UNRESISTED: f64 = 1e-12;
+
+/// Bound of the energy (J) that the loads have put into the system, kinetic and elastic about the
+/// equilibrium of the moment, at any time after a start at rest; infinite where they can go on for ever.
+///
+/// For `e^2 = v'Mv + (u - u_s)'K(u - u_s)`, u_s the equilibrium under the load of the moment `r(t) F`,
+/// `de/dt <= |dr/dt| sqrt(F'K^-1 F)`, since damping takes energy away: e is at most the ramp's variation
+/// times `sqrt(F'K^-1 F)`. The power of a load gives another bound, `d sqrt(v'Mv + u'Ku)/dt <= |r|
+/// sqrt(F'M^-1 F)`, which holds for floating bodies too. The loads' bounds of e add up.
+pub(super) fn load_work(operators: &LinearOperators) -> f64 {
+    let mut force = vec![0.0; operators.dofs()];
+    let strengths = operators.loads().iter().map(|load| {
+        force.fill(0.0);
+        for &(dof, value) in &load.entries {
+            force[dof as usize] += value;
+        }
+        let pushed = force.iter().zip(operators.mass());
+        let pushed = pushed.map(|(f, mass)| f * f / mass).sum::<f64>().sqrt();
+        if pushed == 0.0 {
+            return 0.0;
+        }
+        let by_impulse = load.ramp.impulse() * pushed;
+        let by_work = load.ramp.variation() * compliance(operators, &force).sqrt();
+        by_impulse.min(by_work)
+    });
+    strengths.sum::<f64>().powi(2) / 2.0
+}
+
+/// `F'K^-1 F` (J) by conjugate gradients, preconditioned by one number for each cell, which does not depend
+/// on the axes' directions; infinite where K does not resist F, or hardly.
+fn compliance(operators: &LinearOperators, force: &[f64]) -> f64 {
+    let stiffness = operators.stiffness();
+    let layers = stiffness.layers().count();
+    let traces = (0..stiffness.pattern().cells()).map(|cell| {
+        let block = stiffness.block(cell, cell).unwrap_or_default();
+        block.iter().step_by(layers + 1).sum::<f64>()
+    });
+    let traces: Vec<f64> = traces.collect();
+    let loaded = force.iter().enumerate().filter(|(_, f)| **f != 0.0);
+    if loaded.clone().any(|(dof, _)| traces[dof / layers] <= 0.0) {
+        return f64::INFINITY;
+    }
+    let divide = |residual: &[f64], out: &mut [f64]| {
+        for (dof, (out, r)) in out.iter_mut().zip(residual).enumerate() {
+            let trace = traces[dof / layers];
+            *out = if trace > 0.0 { r / trace } else { 0.0 };
+        }
+    };
+    let mut residual = force.to_vec();
+    let mut scaled = vec![0.0; force.len()];
+    divide(&residual, &mut scaled);
+    let mut direction = scaled.clone();
+    let mut product = vec![0.0; force.len()];
+    let mut size = dot(&residual, &scaled);
+    let enough = RESIDUAL * RESIDUAL * size;
+    let mut energy = 0.0;
+    for _ in 0..MOST_ITERATIONS {
+        stiffness.multiply(&direction, &mut product);
+        let curvature = dot(&direction, &product);
+        let stiff = direction.iter().enumerate();
+        let stiff = stiff.map(|(dof, d)| traces[dof / layers] * d * d);
+        if curvature <= UNRESISTED * stiff.sum::<f64>() {
+            return f64::INFINITY;
+        }
+        let step = size / curvature;
+        energy += step * size;
+        for (residual, product) in residual.iter_mut().zip(&product) {
+            *residual -= step * product;
+        }
+        divide(&residual, &mut scaled);
+        let next = dot(&residual, &scaled);
+        if next <= enough {
+            return energy;
+        }
+        for (direction, scaled) in direction.iter_mut().zip(&scaled) {
+            *direction = scaled + next / size * *direction;
+        }
+        size = next;
+    }
+    f64::INFINITY
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,184 @@
+//! `saturation`: a guard that bounds velocities whatever the step.
+
+mod bound;
+mod clamp;
+mod limits;
+mod load_work;
+mod option;
+mod unaccepted;
+
+use sinew_core::{
+    Fact, Integrator, Prepared, Properties, SetupError, StableStep, Start, State, StepError,
+    StepReport, System,
+};
+
+use super::substeps::{Substeps, whole};
+use clamp::Clamp;
+use limits::Limits;
+pub use option::{Guard, GuardOption};
+use unaccepted::Unaccepted;
+
+/// An integrator whose velocities and displacements are clamped after each step: `|v_i| <= Q_i`
+/// and `|u_i(t + dt) - u_i(t)| <= Q_i dt` for the vectors of each cell i, so that the result does not
+/// depend on the axes' directions. Not a bit changes while nothing saturates.
+///
+/// With [`Guard::Auto`] the limits Q_i are those of the system, its loads and the start of the motion,
+/// and a step that is longer than the method's stable one is cut into equal parts: so many that no
+/// cell passes a fifth of its size in a part, or that a part is stable, whichever are fewer.
+/// A number clamps and does nothing else.
+///
+/// Where a method moves displacements with its new velocity, both clamps are the same; where with
+/// the old one, that was clamped a step before. Staggered velocities stay where the method has
+/// them, and an acceleration that a method keeps beside them is that of the clamped motion.
+pub struct Guarded {
+    inner: Box<dyn Integrator>,
+    guard: Guard,
+    prepared: Prepared,
+    limits: Limits,
+    clamp: Clamp,
+    parts: u32,
+}
+
+impl Guarded {
+    /// Name of the fact that tells into how many parts a step is cut.
+    pub const SUBSTEPS: &'static str = "guard_substeps";
+    /// Name of the fact that tells the largest of all limits (m/s).
+    pub const LARGEST_LIMIT: &'static str = "guard_q_max";
+
+    /// Guards `inner`.
+    #[must_use]
+    pub fn new(inner: Box<dyn Integrator>, guard: Guard) -> Self {
+        Self {
+            inner,
+            guard,
+            prepared: Prepared::default(),
+            limits: Limits::default(),
+            clamp: Clamp::default(),
+            parts: 1,
+        }
+    }
+
+    /// What the motion began with. Kept in the state, for a run that is continued by a fresh
+    /// integrator to have the same limits.
+    fn start(&mut self, system: &dyn System, state: &mut State) -> Option<Start> {
+        if let Guard::At(_) = self.guard {
+            return None;
+        }
+        let known = state
+            .start
+            .filter(|start| start.system == system.revision());
+        state.start = known.or_else(|| bound::start(system, state));
+        state.start
+    }
+
+    /// Parts of a step within which no cell passes a fifth of its size, as far as the method's
+    /// stable step asks for them.
+    fn parts(&self, system: &dyn System, dt: f64) -> Result<u32, SetupError> {
+        let Guard::Auto { within_stable_step } = self.guard else {
+            return Ok(1);
+        };
+        let moved = dt * self.limits.largest_rate() / Limits::SHARE_OF_SIZE;
+        if moved <= 1.0 && !within_stable_step {
+            return Ok(1);
+        }
+        Ok(match self.inner.stable_step(system)? {
+            StableStep::Any => 1,
+            StableStep::UpTo(limit) if dt <= limit => 1,
+            StableStep::UpTo(limit) if limit > 0.0 => {
+                let stable = Substeps::parts_of(dt, limit);
+                if within_stable_step {
+                    stable
+                } else {
+                    stable.min(whole(moved))
+                }
+            }
+            StableStep::UpTo(_) | StableStep::Unknown => whole(moved),
+        })
+    }
+}
+
+impl Integrator for Guarded {
+    fn id(&self) -> &'static str {
+        self.inner.id()
+    }
+
+    fn properties(&self) -> Properties {
+        self.inner.properties()
+    }
+
+    fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
+        if self.prepared.is_for(system, dt) {
+            return Ok(StepReport::default());
+        }
+        let mut checked = Prepared::default();
+        checked.check(self.inner.id(), system, dt)?;
+        self.prepared = Prepared::default();
+        self.limits.prepare(self.inner.id(), system, self.guard)?;
+        self.clamp.prepare(system);
+        self.parts = self.parts(system, dt)?;
+        let work = self.inner.prepare(system, dt / f64::from(self.parts))?;
+        self.prepared = checked;
+        Ok(work)
+    }
+
+    /// That of the method: the guard bounds the motion beyond it without making it right.
+    fn stable_step(&self, system: &dyn System) -> Result<StableStep, SetupError> {
+        self.inner.stable_step(system)
+    }
+
+    fn step(
+        &mut self,
+        system: &dyn System,
+        state: &mut State,
+        dt: f64,
+    ) -> Result<StepReport, StepError> {
+        let mut work = self.prepare(system, dt)?;
+        Prepared::check_state(self.inner.id(), system, state)?;
+        let start = self.start(system, state);
+        if self.limits.set_start(start) {
+            self.parts = self.parts(system, dt)?;
+        }
+        let part = dt / f64::from(self.parts);
+        let waiting = Unaccepted(system);
+        for _ in 0..self.parts {
+            self.clamp.remember(state);
+            let done = self.inner.step(&waiting, state, part)?;
+            let clamped = self.clamp.apply(self.limits.of_cells(), state, part);
+            system.accept(state);
+            work.add_part(StepReport {
+                saturated: done.saturated.max(clamped),
+                ..done
+            });
+        }
+        Ok(work)
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let mut facts = self.inner.facts();
+        if let Guard::Auto { .. } = self.guard {
+            facts.extend([
+                Fact {
+                    name: Self::LARGEST_LIMIT,
+                    value: self.limits.largest(),
+                },
+                Fact {
+                    name: Self::SUBSTEPS,
+                    value: f64::from(self.parts),
+                },
+            ]);
+        }
+        facts
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let mut remarks = self.inner.remarks();
+        if self.parts > 1 {
+            remarks.push(format!(
+                "the guard took each step in {} parts: whole, it is longer than the stable step of `{}`",
+                self.parts,
+                self.inner.id()
+            ));
+        }
+        remarks
+    }
+}

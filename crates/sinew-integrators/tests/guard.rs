@@ -1,0 +1,832 @@
+//! The option `saturation` as a guard.
+
+#![cfg(test)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
+mod common;
+
+use std::sync::Mutex;
+
+use common::body::{Body, bodies_up_to, fastest_time};
+use common::cube::{cube, mass_damping, paper_cube, problem, scene, springs};
+use common::{advance, build, diverged, largest, plain, relative_error, saturation, watch};
+use proptest::prelude::*;
+use sinew_core::spectrum::Spectrum;
+use sinew_core::{
+    EvaluationError, Integrator, LinearModel, LinearOperators, LinearSystem, Load, OptionValue,
+    Options, Ramp, Revision, Run, StableStep, State, System, Trial,
+};
+use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region};
+use sinew_integrators::explicit::{GuardOption, Guarded};
+use sinew_mesh::TetMesh;
+use sinew_mesh::structured::{self, Split};
+
+fn word(value: &str) -> Options {
+    plain().with("saturation", OptionValue::Text(value.into()))
+}
+
+fn auto() -> Options {
+    word("auto")
+}
+
+/// Methods that take a guard.
+fn guarded_ids() -> Vec<&'static str> {
+    let entries = sinew_integrators::entries().into_iter();
+    let guarded = entries.filter(|entry| entry.guard != GuardOption::None);
+    guarded.map(|entry| entry.id).collect()
+}
+
+/// A fact by name.
+fn fact(integrator: &dyn Integrator, name: &str) -> f64 {
+    let facts = integrator.facts();
+    let fact = facts.iter().find(|fact| fact.name == name);
+    fact.unwrap_or_else(|| panic!("no {name} in {facts:?}"))
+        .value
+}
+
+fn largest_limit(system: &dyn System, start: &State) -> f64 {
+    let mut integrator = build("central-difference", &auto());
+    integrator.step(system, &mut start.clone(), 1e-9).unwrap();
+    fact(&*integrator, Guarded::LARGEST_LIMIT)
+}
+
+fn bits(state: &State) -> Vec<u64> {
+    let times = [state.t, state.v_time, state.a_time];
+    let all = [&times, &state.u[..], &state.v, &state.a].concat();
+    all.iter().map(|value| value.to_bits()).collect()
+}
+
+fn oscillator(damping: f64) -> LinearModel {
+    LinearModel::new(LinearOperators::oscillator(0.1, 100.0, damping).unwrap())
+}
+
+fn loaded_oscillator(force: f64, ramp: Ramp) -> LinearModel {
+    let load = Load {
+        ramp,
+        entries: vec![(0, force)],
+    };
+    let operators = LinearOperators::oscillator(0.1, 100.0, 0.0).unwrap();
+    LinearModel::new(operators.with_loads(vec![load]).unwrap())
+}
+
+#[test]
+fn every_explicit_method_and_every_network_takes_one() {
+    let expected = [
+        "forward-euler",
+        "symplectic-euler",
+        "central-difference",
+        "rk4",
+        "modified-leapfrog",
+        "cnn",
+        "cnn-symplectic",
+        "cnn-stabilised",
+    ];
+    assert_eq!(guarded_ids(), expected);
+}
+
+#[test]
+fn bad_values_are_refused_by_each_method() {
+    let bad = [
+        OptionValue::Number(0.0),
+        OptionValue::Number(-4.0),
+        OptionValue::Number(f64::NAN),
+        OptionValue::Number(f64::INFINITY),
+        OptionValue::Text("of".into()),
+    ];
+    for id in guarded_ids() {
+        for value in &bad {
+            let options = plain().with("saturation", value.clone());
+            let refusal = sinew_integrators::build(id, &options).err().unwrap();
+            assert_eq!(
+                refusal.to_string(),
+                format!(
+                    "`{id}`: saturation = {value}: expected a number above 0 [m/s], \"auto\" or \"off\""
+                )
+            );
+        }
+    }
+}
+
+// The limits.
+
+/// 3 x 2p/(rho c_p): 500 Pa on springs whose Voigt modulus is 1.270 E, with nu 1/4.
+#[test]
+fn on_the_papers_cube_the_limit_is_that_of_the_loads_pressure() {
+    let model = paper_cube();
+    let (density, modulus) = (1060.0, 1.270 * 3500.0);
+    let wave_modulus = modulus * 0.75 / (1.25 * 0.5); // E (1 - nu)/((1 + nu)(1 - 2 nu))
+    let limit = 3.0 * 2.0 * 500.0 / f64::sqrt(density * wave_modulus);
+    let found = largest_limit(model, &State::at_rest(model.dofs()));
+    assert!((found / limit - 1.0).abs() < 1e-3, "{found} {limit}");
+}
+
+/// A cell without size is bounded by ten times the energy there can be.
+#[test]
+fn the_oscillators_limit_is_that_of_its_energy() {
+    let ten = 10.0_f64.sqrt();
+    let pushed = State::new(vec![0.0], vec![-5.0]);
+    assert_limit(&oscillator(1.0), &pushed, ten * 5.0);
+    let drawn = State::new(vec![0.1], vec![0.0]);
+    assert_limit(&oscillator(1.0), &drawn, ten * 0.1 * 1000.0_f64.sqrt());
+    // A constant force from rest: at its largest, v = F/sqrt(k m). Taken away again in the worst
+    // moment, twice that; but a short push gives no more than its impulse.
+    let rest = State::at_rest(1);
+    let fastest = 2.0 / f64::sqrt(100.0 * 0.1);
+    assert_limit(&loaded_oscillator(2.0, Ramp::Step), &rest, ten * fastest);
+    let rise = Ramp::Sin2 { rise: 0.2 };
+    assert_limit(&loaded_oscillator(2.0, rise), &rest, ten * fastest);
+    let pulse = |to| Ramp::Pulse { from: 0.0, to };
+    let long = loaded_oscillator(2.0, pulse(1.0));
+    assert_limit(&long, &rest, ten * 2.0 * fastest);
+    let short = loaded_oscillator(2.0, pulse(1e-3));
+    assert_limit(&short, &rest, ten * 2.0 / 0.1 * 1e-3);
+    // The motions of the start and of the load add up.
+    let loaded = loaded_oscillator(2.0, Ramp::Step);
+    assert_limit(&loaded, &pushed, ten * (fastest + 5.0));
+}
+
+#[track_caller]
+fn assert_limit(system: &dyn System, start: &State, expected: f64) {
+    let found = largest_limit(system, start);
+    assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+}
+
+/// A force that turns round at each zero of the velocity does the most work a force can.
+#[test]
+fn a_load_in_resonance_stays_within_the_limit_and_comes_near_it() {
+    let half_period = std::f64::consts::PI / 1000.0_f64.sqrt();
+    let turn = |n: usize| n as f64 * half_period;
+    let count = 20;
+    let times = (0..count).flat_map(|n| [turn(n) + 1e-6, turn(n + 1)]);
+    let sign = |n: usize| if n.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let values = (0..count).flat_map(|n| [sign(n); 2]);
+    let ramp = Ramp::Table {
+        times: times.collect(),
+        values: values.collect(),
+    };
+    let system = loaded_oscillator(2.0, ramp);
+    let limit = largest_limit(&system, &State::at_rest(1)) / 10.0_f64.sqrt();
+    let (mut rk4, mut state, mut fastest) = (build("rk4", &plain()), State::at_rest(1), 0.0);
+    let dt = half_period / 200.0;
+    for _ in 0..count * 200 {
+        rk4.step(&system, &mut state, dt).unwrap();
+        fastest = state.v[0].abs().max(fastest);
+    }
+    assert!(fastest < limit, "{fastest} {limit}");
+    assert!(fastest > 0.97 * limit, "{fastest} {limit}");
+}
+
+/// Springs along the diagonals of a plane wave: all cells of a body that moves as a whole have its speed.
+#[test]
+fn what_the_start_brings_is_its_speed_and_its_energy() {
+    let model = cube(4);
+    let mut state = State::at_rest(model.dofs());
+    state.v.chunks_exact_mut(3).for_each(|v| v[1] = 2.0);
+    let energy = model.energy(&state.u, &state.v).unwrap().total();
+    build("rk4", &auto())
+        .step(&model, &mut state, 1e-9)
+        .unwrap();
+    let start = state.start.unwrap();
+    assert!((start.speed - 2.0).abs() < 1e-12);
+    assert!((start.energy / energy - 1.0).abs() < 1e-12);
+    assert_eq!(start.system, model.revision());
+
+    let mut state = State::at_rest(model.dofs());
+    let waves = (0..).map(|dof| 1e-3 * f64::sin(0.7 * f64::from(dof)));
+    state
+        .u
+        .iter_mut()
+        .zip(waves)
+        .for_each(|(u, wave)| *u = wave);
+    let energy = model.energy(&state.u, &state.v).unwrap().total();
+    build("rk4", &auto())
+        .step(&model, &mut state, 1e-9)
+        .unwrap();
+    let found = state.start.unwrap().energy;
+    assert!((found / energy - 1.0).abs() < 1e-12);
+}
+
+/// Another system is another motion; the same one is the same, whoever integrates it.
+#[test]
+fn the_start_is_that_of_the_system_at_hand() {
+    let (first, second) = (cube(3), cube(3));
+    let mut state = State::at_rest(first.dofs());
+    let mut integrator = build("central-difference", &auto());
+    advance(&mut *integrator, &first, &mut state, 5, 1e-3);
+    assert_eq!(state.start.unwrap().energy, 0.0);
+    assert_eq!(state.start.unwrap().system, first.revision());
+    advance(&mut *integrator, &second, &mut state, 1, 1e-3);
+    let start = state.start.unwrap();
+    assert_eq!(start.system, second.revision());
+    assert!(start.energy > 0.0);
+}
+
+#[test]
+fn a_body_that_its_loads_carry_away_needs_a_number() {
+    let mut problem = Problem {
+        regions: vec![Region {
+            group: None,
+            density: 1060.0,
+            law: springs(0.0),
+        }],
+        loads: vec![top_load(Ramp::Step)],
+        ..Problem::default()
+    };
+    let mesh = structured::cube(3, 0.2, Split::Kuhn).unwrap();
+    let model = Model::build(&mesh, &problem).unwrap();
+    let refusal = build("rk4", &auto()).prepare(&model, 1e-3).unwrap_err();
+    assert_eq!(
+        refusal.to_string(),
+        "`rk4` needs a body held against its loads for saturation = \"auto\" (give a number instead), which this system does not offer"
+    );
+    assert!(build("rk4", &saturation(4.0)).prepare(&model, 1e-3).is_ok());
+    // A push ends.
+    problem.loads = vec![top_load(Ramp::Pulse { from: 0.0, to: 0.1 })];
+    let model = Model::build(&mesh, &problem).unwrap();
+    assert!(build("rk4", &auto()).prepare(&model, 1e-3).is_ok());
+}
+
+fn top_load(ramp: Ramp) -> LoadSpec {
+    LoadSpec {
+        group: "top".into(),
+        kind: LoadKind::Traction([0.0, 0.0, -500.0]),
+        ramp,
+    }
+}
+
+// Nothing changes while nothing saturates.
+
+/// Methods whose velocities stay near the exact ones up to nine tenths of their stable step.
+const SOUND: [&str; 4] = [
+    "symplectic-euler",
+    "central-difference",
+    "rk4",
+    "modified-leapfrog",
+];
+
+/// Follows a motion with the guard and without, in steps of nine tenths of the stable one.
+fn assert_untouched(model: &Model, start: &State, steps: usize) {
+    for id in SOUND {
+        let StableStep::UpTo(limit) = build(id, &plain()).stable_step(model).unwrap() else {
+            panic!("`{id}` has a stable step");
+        };
+        // Modes that hardly swing have no limit worth a name.
+        let dt = 0.9 * limit.min(1.0);
+        let (mut guarded, mut free) = (build(id, &auto()), build(id, &plain()));
+        let (mut one, mut other) = (start.clone(), start.clone());
+        for step in 0..steps {
+            let work = guarded.step(model, &mut one, dt).unwrap();
+            let expected = free.step(model, &mut other, dt).unwrap();
+            assert_eq!(work, expected, "`{id}`, step {step}");
+            assert!(bits(&one) == bits(&other), "`{id}`, step {step}");
+        }
+        assert_eq!(fact(&*guarded, Guarded::SUBSTEPS), 1.0);
+    }
+}
+
+/// The same body with what loads it for a while only, so that it need not be held.
+fn briefly_loaded(mut body: Body, time: f64) -> Body {
+    body.problem.gravity = None;
+    for load in &mut body.problem.loads {
+        load.ramp = Ramp::Pulse {
+            from: 0.0,
+            to: time,
+        };
+    }
+    body
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn any_body_on_the_ground_moves_as_without_a_guard(
+        body in bodies_up_to(4),
+        u in prop_oneof![Just(0.0), 1e-6..1e-2],
+        v in prop_oneof![Just(0.0), 1e-6..1.0],
+    ) {
+        let body = body.on_the_ground();
+        let model = body.model();
+        assert_untouched(&model, &body.state(&model, u, v), 200);
+    }
+
+    #[test]
+    fn any_floating_body_moves_as_without_a_guard(
+        body in bodies_up_to(4),
+        u in prop_oneof![Just(0.0), 1e-6..1e-2],
+        v in prop_oneof![Just(0.0), 1e-6..1.0],
+        share in 1.0..100.0,
+    ) {
+        let body = body.free();
+        let time = share * fastest_time(&body.model());
+        let body = briefly_loaded(body, time);
+        let model = body.model();
+        assert_untouched(&model, &body.state(&model, u, v), 200);
+    }
+}
+
+fn linear(poissons_ratio: f64) -> Law {
+    Law::Linear {
+        youngs_modulus: 3500.0,
+        poissons_ratio,
+    }
+}
+
+/// A beam ten times as long as thick, held at its foot.
+fn beam(traction: [f64; 3], gravity: Option<[f64; 3]>, poissons_ratio: f64) -> (TetMesh, Model) {
+    let mesh = structured::block([1, 1, 10], [0.01, 0.01, 0.1], Split::Kuhn).unwrap();
+    let problem = Problem {
+        regions: vec![Region {
+            group: None,
+            density: 1060.0,
+            law: linear(poissons_ratio),
+        }],
+        fixed: vec![Fixed {
+            group: "bottom".into(),
+            axes: [true; 3],
+        }],
+        loads: vec![LoadSpec {
+            group: "top".into(),
+            kind: LoadKind::Traction(traction),
+            ramp: Ramp::Step,
+        }],
+        gravity,
+        ..Problem::default()
+    };
+    let model = Model::build(&mesh, &problem).unwrap();
+    (mesh, model)
+}
+
+/// Waves of pressure are slow beside a beam's whip, and fast beside the shear of what is nearly
+/// incompressible.
+#[test]
+fn slender_and_incompressible_bodies_move_as_without_a_guard() {
+    for poissons_ratio in [0.3, 0.49] {
+        let at_rest = |model: &Model| State::at_rest(model.dofs());
+        let bent = beam([0.1, 0.0, 0.0], None, poissons_ratio).1;
+        assert_untouched(&bent, &at_rest(&bent), 1000);
+        let heavy = beam([0.0; 3], Some([1.0, 0.0, 0.0]), poissons_ratio).1;
+        assert_untouched(&heavy, &at_rest(&heavy), 1000);
+
+        let (mesh, unloaded) = beam([0.0; 3], None, poissons_ratio);
+        let height = |node: &u32| mesh.points[*node as usize][2];
+        let moved = |by: &dyn Fn(f64) -> [f64; 3]| -> Vec<f64> {
+            let nodes = unloaded.nodes().iter();
+            nodes.flat_map(|node| by(height(node))).collect()
+        };
+        let still = vec![0.0; unloaded.dofs()];
+        for start in [
+            State::new(still.clone(), moved(&|_| [1.0, 0.0, 0.0])),
+            State::new(moved(&|z| [0.0, 0.0, 0.1 * z]), still.clone()),
+            State::new(moved(&|z| [z * z, 0.0, 0.0]), still),
+        ] {
+            assert_untouched(&unloaded, &start, 1000);
+        }
+    }
+    for poissons_ratio in [0.45, 0.499] {
+        let model = scene(6, 0.1, linear(poissons_ratio), mass_damping(0.0));
+        assert_untouched(&model, &State::at_rest(model.dofs()), 1000);
+    }
+}
+
+/// Any number that is not reached changes nothing, at any step, whatever else the method does.
+#[test]
+fn a_number_that_is_not_reached_changes_nothing() {
+    let model = cube(3);
+    let waves = |size: f64, rate: f64| {
+        let wave = |dof| size * f64::sin(rate * f64::from(dof));
+        (0..model.dofs() as u32).map(wave).collect()
+    };
+    for id in guarded_ids() {
+        for dt in [1e-4, 5e-2] {
+            let mut one = State::new(waves(1e-3, 0.7), waves(0.1, 1.3));
+            let mut other = one.clone();
+            let (mut guarded, mut off) = (build(id, &saturation(1e300)), build(id, &word("off")));
+            for _ in 0..30 {
+                let work = guarded.step(&model, &mut one, dt).unwrap();
+                assert_eq!(work, off.step(&model, &mut other, dt).unwrap());
+                assert!(bits(&one) == bits(&other), "`{id}` at {dt}");
+            }
+        }
+    }
+}
+
+// Bounded whatever the step.
+
+/// The paper's cube under another pressure (Pa).
+fn paper_cube_under(pressure: f64) -> Model {
+    let mesh = structured::cube(10, 0.2, Split::Kuhn).unwrap();
+    let traction = [0.0, 0.0, -pressure];
+    Model::build(&mesh, &problem(springs(0.0), mass_damping(80.0), traction)).unwrap()
+}
+
+/// How a second went.
+#[derive(Debug)]
+struct Second {
+    /// The largest displacement (m); infinite where it passed a hundred times the size of the body.
+    size: f64,
+    /// Share of saturated (dof, step) pairs.
+    saturated: f64,
+    /// Parts of each step.
+    parts: f64,
+}
+
+fn one_second(model: &Model, id: &str, options: &Options, dt: f64) -> Second {
+    let run = Run::covering(1.0, dt).with_divergence_limit(20.0);
+    let mut integrator = build(id, options);
+    let mut size: f64 = 0.0;
+    let start = State::at_rest(model.dofs());
+    let (_, report) = watch(model, &mut *integrator, start, &run, |state| {
+        size = size.max(largest(&state.u));
+    });
+    let facts = integrator.facts();
+    let parts = facts.iter().find(|fact| fact.name == Guarded::SUBSTEPS);
+    Second {
+        size: if diverged(&report) {
+            f64::INFINITY
+        } else {
+            size
+        },
+        saturated: report.work.saturated as f64 / (report.steps * model.dofs()) as f64,
+        parts: parts.map_or(1.0, |fact| fact.value),
+    }
+}
+
+/// A step four and twenty times too long for any explicit method, and one five times as long as the critical.
+fn long_steps(model: &Model) -> [f64; 2] {
+    [0.02, 5.0 * Spectrum::of(model.operators()).critical_step()]
+}
+
+/// The largest displacement of the exact motion under this pressure, section 4.2 (m).
+fn exact_size(pressure: f64) -> f64 {
+    0.01695 * pressure / 500.0
+}
+
+#[test]
+fn at_any_step_every_method_stays_bounded_with_the_guard_and_none_without() {
+    for pressure in [500.0, 5.0] {
+        let model = paper_cube_under(pressure);
+        for dt in long_steps(&model) {
+            for id in guarded_ids()
+                .into_iter()
+                .filter(|id| *id != "cnn-stabilised")
+            {
+                let free = one_second(&model, id, &word("off"), dt);
+                assert_eq!(free.size, f64::INFINITY, "`{id}` at {dt}");
+                let guarded = one_second(&model, id, &auto(), dt);
+                let said = guarded.saturated > 0.0 || guarded.parts > 1.0;
+                assert!(said, "`{id}` at {dt}: {guarded:?}");
+                assert!(guarded.saturated <= 1.0);
+                let share = guarded.size / exact_size(pressure);
+                assert!(share < 10.0, "`{id}` at {dt}: {share} of the exact size");
+                // What is not saturated is a stable motion, step load and all.
+                let accurate = (share - 1.0).abs() < 0.01;
+                assert!(
+                    guarded.saturated > 0.0 || accurate,
+                    "`{id}` at {dt}: {share}"
+                );
+            }
+        }
+    }
+}
+
+/// Under 5 Pa no cell gets far in 20 ms, so that steps stay whole and cells are clamped.
+#[test]
+fn a_step_in_which_no_cell_gets_far_stays_whole_unless_clamped_cells_would_run_away() {
+    let model = paper_cube_under(5.0);
+    for dt in long_steps(&model) {
+        for id in [
+            "forward-euler",
+            "symplectic-euler",
+            "central-difference",
+            "cnn",
+            "cnn-symplectic",
+        ] {
+            let second = one_second(&model, id, &auto(), dt);
+            assert_eq!(second.parts, 1.0, "`{id}` at {dt}");
+            assert!(second.saturated > 0.5, "`{id}` at {dt}: {second:?}");
+        }
+        for id in ["rk4", "modified-leapfrog"] {
+            let second = one_second(&model, id, &auto(), dt);
+            assert!(second.parts > 1.0, "`{id}` at {dt}");
+            assert_eq!(second.saturated, 0.0, "`{id}` at {dt}");
+            // With a number, nothing is cut: they run away at it.
+            let limit = 0.0126;
+            let clamped = one_second(&model, id, &saturation(limit), dt).size;
+            assert!(clamped > 0.9 * limit * 1.0, "`{id}` at {dt}: {clamped}");
+        }
+    }
+}
+
+/// 500 Pa, Q = 1.26 m/s, h = 0.02 m: a fifth of h takes 3.17 ms.
+#[test]
+fn steps_are_cut_until_no_cell_passes_a_fifth_of_its_size_or_they_are_stable() {
+    let model = paper_cube();
+    let parts = |id: &str, dt: f64| {
+        let mut integrator = build(id, &auto());
+        let mut state = State::at_rest(model.dofs());
+        integrator.step(model, &mut state, dt).unwrap();
+        fact(&*integrator, Guarded::SUBSTEPS)
+    };
+    // Forward Euler is stable up to 1.25 ms.
+    for (ms, expected) in [
+        (1.2, 1.0),
+        (3.1, 1.0),
+        (3.2, 2.0),
+        (6.3, 2.0),
+        (6.4, 3.0),
+        (20.0, 7.0),
+    ] {
+        assert_eq!(parts("forward-euler", 1e-3 * ms), expected, "{ms} ms");
+    }
+    // Central difference up to 7.9 ms, of which nine tenths are 7.1 ms.
+    for (ms, expected) in [
+        (3.2, 1.0),
+        (7.85, 1.0),
+        (8.0, 2.0),
+        (14.0, 2.0),
+        (20.0, 3.0),
+    ] {
+        assert_eq!(parts("central-difference", 1e-3 * ms), expected, "{ms} ms");
+    }
+    // Below half of nine tenths of 1.25 ms every part is stable: as many as that takes.
+    assert_eq!(parts("forward-euler", 1.26e-3), 1.0);
+    assert_eq!(parts("cnn-stabilised", 20e-3), 1.0);
+}
+
+#[test]
+fn parts_and_guard_go_together() {
+    let model = paper_cube();
+    let both = auto().with("substeps", OptionValue::Text("auto".into()));
+    let only = plain().with("substeps", OptionValue::Text("auto".into()));
+    for id in ["forward-euler", "central-difference", "rk4", "cnn"] {
+        let off = only
+            .clone()
+            .with("saturation", OptionValue::Text("off".into()));
+        let only = if id == "cnn" { &off } else { &only };
+        let start = State::at_rest(model.dofs());
+        let (mut one, mut other) = (start.clone(), start);
+        let (mut guarded, mut free) = (build(id, &both), build(id, only));
+        for _ in 0..20 {
+            let work = guarded.step(model, &mut one, 0.02).unwrap();
+            assert_eq!(work, free.step(model, &mut other, 0.02).unwrap());
+            assert!(bits(&one) == bits(&other), "`{id}`");
+        }
+    }
+}
+
+// What a clamped step leaves behind.
+
+#[test]
+fn a_clamped_cell_keeps_its_direction_at_the_limit() {
+    let model = cube(3);
+    let q = 0.05;
+    for id in guarded_ids()
+        .into_iter()
+        .filter(|id| !id.starts_with("cnn"))
+    {
+        let mut guarded = build(id, &saturation(q));
+        let mut free = build(id, &plain());
+        let mut state = State::at_rest(model.dofs());
+        let dt = 1e-3;
+        let mut saturated = 0;
+        for _ in 0..40 {
+            let (before, mut unclamped) = (state.clone(), state.clone());
+            free.step(&model, &mut unclamped, dt).unwrap();
+            let work = guarded.step(&model, &mut state, dt).unwrap();
+            let mut cells = 0;
+            for cell in 0..model.dofs() / 3 {
+                let of = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|i| x[3 * cell + i]) };
+                let length = |x: [f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let apart = |a: &[f64], b: &[f64]| -> [f64; 3] {
+                    std::array::from_fn(|i| a[3 * cell + i] - b[3 * cell + i])
+                };
+                let (v, v_free) = (of(&state.v), of(&unclamped.v));
+                let (d, d_free) = (apart(&state.u, &before.u), apart(&unclamped.u, &before.u));
+                let mut touched = false;
+                for (vector, free, limit) in [(v, v_free, q), (d, d_free, q * dt)] {
+                    if length(free) > limit * (1.0 + 1e-9) {
+                        touched = true;
+                        assert!((length(vector) / limit - 1.0).abs() < 1e-8);
+                        let along: f64 = vector.iter().zip(&free).map(|(a, b)| a * b).sum();
+                        assert!((along / (limit * length(free)) - 1.0).abs() < 1e-8);
+                    } else {
+                        assert_eq!(vector, free);
+                    }
+                }
+                cells += u64::from(touched);
+            }
+            assert_eq!(work.saturated, 3 * cells, "`{id}`");
+            saturated += work.saturated;
+        }
+        assert!(saturated > 100, "`{id}`: {saturated}");
+    }
+}
+
+/// The kept acceleration leads from the velocity before to the clamped one.
+#[test]
+fn a_kept_acceleration_is_that_of_the_clamped_motion() {
+    let model = cube(4);
+    let dt = 0.02;
+    let options = saturation(0.05).with_number("s", 1.0);
+    let mut integrator = build("cnn-stabilised", &options);
+    let mut state = State::at_rest(model.dofs());
+    for step in 0..10 {
+        let before = state.clone();
+        let work = integrator.step(&model, &mut state, dt).unwrap();
+        assert!(step == 0 || work.saturated > 0);
+        assert_eq!(state.a_time, before.t);
+        let time = if step == 0 { dt / 2.0 } else { dt };
+        for ((a, v), v_before) in state.a.iter().zip(&state.v).zip(&before.v) {
+            assert!((v_before + time * a - v).abs() < 1e-14, "step {step}");
+        }
+    }
+}
+
+/// Continued by a fresh integrator from a clone, saturated or not, in parts or not.
+#[test]
+fn a_clone_continues_to_the_bit_while_cells_saturate() {
+    let model = paper_cube_under(5.0);
+    let moving = || {
+        let wave = |dof| 0.02 * f64::sin(0.7 * f64::from(dof));
+        let v = (0..model.dofs() as u32).map(wave).collect();
+        State::new(vec![0.0; model.dofs()], v)
+    };
+    for id in guarded_ids() {
+        for options in [auto(), saturation(0.01)] {
+            for start in [State::at_rest(model.dofs()), moving()] {
+                let (mut integrator, mut state) = (build(id, &options), start);
+                let dt = 0.02;
+                advance(&mut *integrator, &model, &mut state, 11, dt);
+                let mut clone = state.clone();
+                let mut fresh = build(id, &options);
+                for _ in 0..13 {
+                    let work = integrator.step(&model, &mut state, dt).unwrap();
+                    assert_eq!(
+                        work.saturated,
+                        fresh.step(&model, &mut clone, dt).unwrap().saturated
+                    );
+                }
+                assert_eq!(state, clone, "`{id}` {options:?}");
+            }
+        }
+    }
+}
+
+/// A system that keeps the states it was told of.
+struct Told {
+    inner: LinearModel,
+    states: Mutex<Vec<State>>,
+}
+
+impl System for Told {
+    fn dofs(&self) -> usize {
+        self.inner.dofs()
+    }
+    fn mass(&self) -> &[f64] {
+        self.inner.mass()
+    }
+    fn revision(&self) -> Revision {
+        self.inner.revision()
+    }
+    fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
+        self.inner.net_force(trial, out)
+    }
+    fn external_force(&self, t: f64, out: &mut [f64]) {
+        self.inner.external_force(t, out);
+    }
+    fn accept(&self, state: &mut State) {
+        self.states.lock().unwrap().push(state.clone());
+    }
+    fn as_linear(&self) -> Option<&dyn LinearSystem> {
+        self.inner.as_linear()
+    }
+}
+
+#[test]
+fn the_system_is_told_of_each_step_once_as_it_was_clamped() {
+    for id in guarded_ids() {
+        let system = Told {
+            inner: oscillator(1.0),
+            states: Mutex::default(),
+        };
+        let mut integrator = sinew_integrators::build(id, &saturation(1.0)).unwrap();
+        let mut state = State::new(vec![0.0], vec![-5.0]);
+        let mut seen = Vec::new();
+        for _ in 0..4 {
+            integrator.step(&system, &mut state, 1e-3).unwrap();
+            seen.push(state.clone());
+        }
+        assert_eq!(*system.states.lock().unwrap(), seen, "`{id}`");
+        let own = ["cnn", "cnn-symplectic"].contains(&id);
+        assert!(own || seen[0].v == [-1.0], "`{id}`");
+    }
+}
+
+// Directions.
+
+/// Rotation by an angle about an axis (unit).
+fn rotation(axis: [f64; 3], angle: f64) -> [[f64; 3]; 3] {
+    let [x, y, z] = axis;
+    let (s, c) = angle.sin_cos();
+    let cross = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            let same = f64::from(u8::from(i == j));
+            c * same + s * cross[i][j] + (1.0 - c) * axis[i] * axis[j]
+        })
+    })
+}
+
+fn turned(r: &[[f64; 3]; 3], x: [f64; 3]) -> [f64; 3] {
+    r.map(|row| row.iter().zip(x).map(|(r, x)| r * x).sum())
+}
+
+/// A cube under oblique traction, and the same turned.
+fn cube_and_turned(r: &[[f64; 3]; 3]) -> (Model, Model) {
+    let mesh = structured::cube(5, 0.2, Split::Kuhn).unwrap();
+    let mut other = mesh.clone();
+    for point in &mut other.points {
+        *point = turned(r, *point);
+    }
+    let model = |mesh, traction| {
+        Model::build(mesh, &problem(springs(0.0), mass_damping(80.0), traction)).unwrap()
+    };
+    let traction = [300.0, 100.0, -500.0];
+    (model(&mesh, traction), model(&other, turned(r, traction)))
+}
+
+/// How far the motion of a turned copy of the cube is from the turned motion, over its size, and
+/// the share of saturated pairs.
+fn difference_when_turned(id: &str, options: &Options, dt: f64, r: &[[f64; 3]; 3]) -> (f64, f64) {
+    let (model, other) = cube_and_turned(r);
+    let motion = |model: &Model| {
+        let (mut integrator, mut state) = (build(id, options), State::at_rest(model.dofs()));
+        let mut saturated = 0;
+        let mut motion = Vec::new();
+        for _ in 0..60 {
+            saturated += integrator.step(model, &mut state, dt).unwrap().saturated;
+            motion.push(state.u.clone());
+        }
+        (motion, saturated as f64 / (60 * model.dofs()) as f64)
+    };
+    let ((mut expected, share), (found, _)) = (motion(&model), motion(&other));
+    for u in expected.iter_mut().flat_map(|u| u.as_chunks_mut::<3>().0) {
+        *u = turned(r, *u);
+    }
+    (relative_error(&found, &expected), share)
+}
+
+#[test]
+fn a_guarded_motion_turns_with_the_scene_and_the_papers_clamp_does_not() {
+    let quarter = rotation([0.0, 0.0, 1.0], std::f64::consts::FRAC_PI_2);
+    let oblique = rotation([2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0], 0.7);
+    let q = saturation(0.05);
+    for r in [&quarter, &oblique] {
+        for id in guarded_ids()
+            .into_iter()
+            .filter(|id| !["cnn", "cnn-symplectic"].contains(id))
+        {
+            let (difference, share) = difference_when_turned(id, &q, 1e-3, r);
+            assert!(difference < 1e-10, "`{id}`: {difference:e}");
+            assert!(share > 0.1, "`{id}`: {share}");
+        }
+    }
+    for id in ["cnn", "cnn-symplectic"] {
+        let (difference, share) = difference_when_turned(id, &q, 1e-3, &oblique);
+        assert!(share > 0.1, "`{id}`: {share}");
+        assert!(difference > 1e-2, "`{id}`: {difference:e}");
+    }
+}
+
+#[test]
+fn the_limits_of_a_turned_scene_are_the_same() {
+    let oblique = rotation([2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0], 0.7);
+    let (model, other) = cube_and_turned(&oblique);
+    let wave = |dof| 1e-2 * f64::sin(0.7 * f64::from(dof));
+    let field: Vec<f64> = (0..model.dofs() as u32).map(wave).collect();
+    let vectors = field.as_chunks::<3>().0.iter();
+    let turned_field: Vec<f64> = vectors.flat_map(|v| turned(&oblique, *v)).collect();
+    let rest = || vec![0.0; model.dofs()];
+    for (start, turned_start) in [
+        (State::new(rest(), rest()), State::new(rest(), rest())),
+        (
+            State::new(field.clone(), rest()),
+            State::new(turned_field.clone(), rest()),
+        ),
+        (
+            State::new(rest(), field.clone()),
+            State::new(rest(), turned_field.clone()),
+        ),
+    ] {
+        let (limit, same) = (
+            largest_limit(&model, &start),
+            largest_limit(&other, &turned_start),
+        );
+        assert!((same / limit - 1.0).abs() < 1e-9, "{limit} {same}");
+    }
+}

@@ -1,0 +1,95 @@
+//! The guard on the repository's scenes: untouched where a run is sound, bounded and said so where
+//! its step is too long.
+
+#![expect(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
+use std::path::PathBuf;
+
+use sinew_core::{OptionValue, Options, Outcome, State, simulate};
+use sinew_measure::{Case, Effort, Method, Row, measure};
+use sinew_scene::{Scene, Simulation};
+
+const SCENES: [&str; 3] = ["paper-cube", "peers-cube", "paper-oscillator"];
+
+fn scene(name: &str) -> PathBuf {
+    let scenes = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    scenes.join(name).with_extension("toml")
+}
+
+fn with_word(options: Options, key: &str, word: &str) -> Options {
+    options.with(key, OptionValue::Text(word.into()))
+}
+
+/// The scene's run by central difference: how many were saturated, and every displacement and
+/// velocity on the way.
+fn run(simulation: &Simulation, options: &Options) -> (u64, Vec<u64>) {
+    let mut integrator = sinew_integrators::build("central-difference", options).unwrap();
+    let mut state = simulation.initial_state().clone();
+    let mut bits = Vec::new();
+    let mut recorder = |_: &dyn sinew_core::System, state: &State| {
+        let values = state.u.iter().chain(&state.v);
+        bits.extend(values.map(|value| value.to_bits()));
+        Ok(sinew_core::Verdict::Continue)
+    };
+    let report = simulate(
+        simulation.system(),
+        &mut *integrator,
+        &mut state,
+        &simulation.run(),
+        &mut recorder,
+    );
+    let report = report.unwrap();
+    assert_eq!(report.outcome, Outcome::Finished);
+    (report.work.saturated, bits)
+}
+
+#[test]
+fn a_sound_run_is_the_same_to_the_bit() {
+    for name in SCENES {
+        let simulation = Scene::load(scene(name)).unwrap().build().unwrap();
+        let parts = with_word(Options::new(), "substeps", "auto");
+        let (saturated, guarded) =
+            run(&simulation, &with_word(parts.clone(), "saturation", "auto"));
+        assert_eq!(saturated, 0, "{name}");
+        let (_, free) = run(&simulation, &parts);
+        assert!(guarded == free, "{name}");
+    }
+}
+
+fn row(case: &mut Case, integrator: &str, saturation: &str, dt: f64) -> Row {
+    let method = Method {
+        integrator: integrator.into(),
+        options: with_word(Options::new(), "saturation", saturation),
+    };
+    measure(case, &method, dt, Effort::QUICK).unwrap()
+}
+
+/// Those for which 20 ms or five critical steps are cut and still too long are guarded, the others
+/// are cut as far as their stable step.
+#[test]
+fn on_the_papers_cube_a_step_too_long_is_bounded_and_said_so() {
+    let mut case = Case::load(&scene("paper-cube")).unwrap();
+    let critical = case.critical_step().unwrap();
+    for dt in [0.02, 5.0 * critical] {
+        for (integrator, guarded) in [
+            ("forward-euler", true),
+            ("symplectic-euler", false),
+            ("central-difference", false),
+            ("rk4", false),
+            ("modified-leapfrog", false),
+            ("cnn", true),
+            ("cnn-symplectic", false),
+        ] {
+            let free = row(&mut case, integrator, "off", dt);
+            assert!(!free.bounded, "{integrator} at {dt}");
+            let row = row(&mut case, integrator, "auto", dt);
+            assert!(row.bounded, "{integrator} at {dt}: {:?}", row.max_u);
+            assert_eq!(row.guarded, guarded, "{integrator} at {dt}");
+            assert!(row.saturated <= 1.0);
+            assert!(row.facts["guard_substeps"] > 1.0, "{integrator} at {dt}");
+            // What was cut down to its stable step is as good as any stable run.
+            let error = row.error.unwrap();
+            assert!(guarded || error < 0.02, "{integrator} at {dt}: {error}");
+        }
+    }
+}
