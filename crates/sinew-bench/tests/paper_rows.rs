@@ -85,7 +85,9 @@ fn every_method_runs() {
     for kind in ["chebyshev 4", "chebyshev 8"] {
         expected.push(format!("cnn-stabilised {kind}"));
     }
-    expected.push("propagator krylov".into());
+    for kind in ["two-step", "two-step tolerance=0.001", "krylov"] {
+        expected.push(format!("propagator {kind}"));
+    }
     let mut found: Vec<String> = cube().rows.iter().map(Row::label).collect();
     assert_eq!(found.len(), 3 * expected.len());
     found.sort();

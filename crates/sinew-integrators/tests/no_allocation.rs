@@ -94,6 +94,11 @@ fn no_integrator_allocates_after_its_second_step() {
             // So low that it is reached.
             variants.push(plain().with_number("saturation", 1e-6));
         }
+        if entry.id == "propagator" {
+            for kind in ["two-step", "krylov"] {
+                variants.push(plain().with("kind", OptionValue::Text(kind.into())));
+            }
+        }
         if entry.options.iter().any(|option| option.key == "inner") {
             // Stabilised at the step below, which it would leave as it is by itself.
             let full = plain().with_number("s", 1.0);

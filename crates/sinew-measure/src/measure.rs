@@ -8,6 +8,7 @@ use sinew_core::{
     Integrator, OptionValue, Options, RecordError, Recorder, Run, RunReport, SimulateError, State,
     System, Verdict, simulate,
 };
+use sinew_scene::Simulation;
 
 use crate::case::Case;
 use crate::cpu_time::thread_cpu_time;
@@ -37,22 +38,34 @@ impl Method {
     /// every other its defaults. Those that saturate say at which voltage.
     #[must_use]
     pub fn on(case: &Case, integrator: &str) -> Self {
+        Self::of_scene(case.simulation(), integrator)
+    }
+
+    /// As [`Method::on`], where there is no case yet.
+    #[must_use]
+    pub fn of_scene(simulation: &Simulation, integrator: &str) -> Self {
         let mut method = Self::new(integrator);
-        let settings = case.simulation().settings();
+        let settings = simulation.settings();
         if settings.integrator == integrator {
             method.options = settings.options.clone();
         }
-        let entries = sinew_integrators::entries();
-        let options = entries.iter().filter(|entry| entry.id == integrator);
-        for help in options.flat_map(|entry| entry.options) {
-            if let (Some(default), None) = (help.shown_default, method.options.get(help.key)) {
-                method.options = method.options.with_number(help.key, default);
-            }
-        }
-        method
+        method.showing_defaults()
     }
 
-    /// Its name and options in short, as rows show them.
+    /// With those defaults written out that change what a run means.
+    #[must_use]
+    pub fn showing_defaults(mut self) -> Self {
+        let entries = sinew_integrators::entries();
+        let options = entries.iter().filter(|entry| entry.id == self.integrator);
+        for help in options.flat_map(|entry| entry.options) {
+            if let (Some(default), None) = (help.shown_default, self.options.get(help.key)) {
+                self.options.insert(help.key, OptionValue::Number(default));
+            }
+        }
+        self
+    }
+
+    /// Name and options, as in `cnn Q=4`.
     #[must_use]
     pub fn label(&self) -> String {
         label(&self.integrator, &json_options(&self.options))

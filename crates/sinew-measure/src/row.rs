@@ -198,6 +198,21 @@ impl Row {
         label(&self.integrator, &self.options)
     }
 
+    /// The error, where it means something: of a run that finished bounded with nothing saturated.
+    #[must_use]
+    pub fn sound_error(&self) -> Option<f64> {
+        match self.verdict() {
+            Verdict::Accurate | Verdict::Wrong => self.error,
+            Verdict::Guarded | Verdict::Unbounded | Verdict::Diverged => None,
+        }
+    }
+
+    /// CPU time (s) of set-up and of the steps that simulate `duration` (s).
+    #[must_use]
+    pub fn total_cpu_s(&self, duration: f64) -> f64 {
+        self.setup_cpu_s + self.cpu_s_per_s * duration
+    }
+
     /// The verdict in one word.
     #[must_use]
     pub fn verdict(&self) -> Verdict {

@@ -1,6 +1,6 @@
 //! What a case's Pareto front says, in sentences.
 
-use sinew_measure::{CaseInfo, Outcome, Row, Verdict};
+use sinew_measure::{CaseInfo, Row};
 
 use super::number;
 use crate::results::BenchResults;
@@ -136,23 +136,19 @@ pub fn paper_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String>
 /// How local methods stand against `modal` below 1 %, set-up included.
 #[must_use]
 pub fn modal_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String> {
-    let total = |row: &Row| row.setup_cpu_s + row.cpu_s_per_s * case.duration_s;
-    let trusted = |row: &&Row| {
-        row.outcome == Outcome::Finished && row.bounded && row.verdict() != Verdict::Guarded
-    };
-    let rows: Vec<&Row> = results.rows_of(&case.id).filter(trusted).collect();
-    let (modal, local): (Vec<&Row>, Vec<&Row>) = rows
-        .into_iter()
+    let total = |row: &Row| row.total_cpu_s(case.duration_s);
+    let (modal, local): (Vec<&Row>, Vec<&Row>) = results
+        .rows_of(&case.id)
         .partition(|row| row.integrator == NON_LOCAL);
     let mut ratios = Vec::new();
     let mut wins = Vec::new();
     for row in modal {
-        let Some(error) = row.error.filter(|error| *error < COMPARED_BELOW) else {
+        let Some(error) = row.sound_error().filter(|error| *error < COMPARED_BELOW) else {
             continue;
         };
         let as_good = local
             .iter()
-            .filter(|other| other.error.is_some_and(|e| e <= error));
+            .filter(|other| other.sound_error().is_some_and(|e| e <= error));
         let cheapest = as_good
             .map(|other| total(other))
             .fold(f64::INFINITY, f64::min);
