@@ -51,8 +51,8 @@ impl Majorant {
         let s = match blend {
             Blend::Full => 1.0,
             Blend::Auto => {
-                let share = FREE * critical_step(operators) / dt;
-                rounded_up((1.0 - share * share).max(0.0)).min(1.0)
+                let share = FREE * blunted(critical_step(operators)) / dt;
+                (1.0 - share * share).max(0.0)
             }
         };
         let (mass, stiffness) = (operators.mass(), operators.stiffness());
@@ -92,7 +92,7 @@ impl Majorant {
         blocks.add(&of_stiffness, s * dt * dt / 4.0 * gamma_stiffness);
         let inverse = blocks.inverse();
         Self {
-            floor: rounded_down(smallest_ratio(&of_mass, &blocks, layers.count())),
+            floor: blunted(smallest_ratio(&of_mass, &blocks, layers.count())),
             operators: operators.clone(),
             dt,
             s,
@@ -229,19 +229,11 @@ fn damping_matrix(operators: &LinearOperators) -> BlockMatrix {
     whole
 }
 
-/// Low bits of a bound that are given up: twenty of its binary digits stay. Estimated eigenvalues
-/// differ in their last digits with the order of nodes and the unit of length; bounds need not be
-/// sharp, and so they do not.
-const BLUR: u64 = (1 << 32) - 1;
-
-/// A bound from above, at least 0.
-fn rounded_up(bound: f64) -> f64 {
-    f64::from_bits((bound.to_bits() + BLUR) & !BLUR)
-}
-
-/// A bound from below, at least 0.
-fn rounded_down(bound: f64) -> f64 {
-    f64::from_bits(bound.to_bits() & !BLUR)
+/// Rounds a positive number down to 26 binary digits. Eigenvalues found by iteration differ in their
+/// last digits with the order of nodes and the unit of length, and would let the motion differ with
+/// them; where a smaller number is on the safe side those digits are given up.
+fn blunted(value: f64) -> f64 {
+    f64::from_bits(value.to_bits() & !((1 << 26) - 1))
 }
 
 fn gamma(
@@ -257,7 +249,8 @@ fn gamma(
             let largest =
                 largest_eigenvalue_of_pencil(n, multiply, |x, out| inverse.multiply(x, out));
             // A diagonal matrix has gamma 1.
-            rounded_up((largest * (1.0 + MARGIN)).max(1.0))
+            // The margin is far larger than what blunting takes.
+            blunted(largest * (1.0 + MARGIN)).max(1.0)
         }
         GammaRule::Gershgorin => gershgorin(matrix, &inverse),
     }

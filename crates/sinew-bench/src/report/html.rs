@@ -158,7 +158,6 @@ impl Page {
              how far a method can be trusted.</p>\n",
         );
         for map in maps {
-            self.put(format_args!("<h3>{}</h3>\n", Escaped(&map.title)));
             self.figure(&heat_map(map));
         }
         self.out.push_str("</section>\n");

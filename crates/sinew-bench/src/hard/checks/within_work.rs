@@ -18,7 +18,9 @@ pub(crate) fn check<'a>(
     let candidates: Vec<&Row> = rows
         .iter()
         .copied()
-        .filter(|row| row.work.solves == 0 && row.work.sweeps <= sweeps_a_step * row.steps)
+        .filter(|row| {
+            row.work.solves == 0 && row.work.sweeps <= sweeps_a_step.saturating_mul(row.steps)
+        })
         .collect();
     let error = |row: &Row| match row.error {
         Some(error) if row.bounded => error,
