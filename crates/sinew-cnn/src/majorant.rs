@@ -4,6 +4,7 @@ use sinew_core::spectrum::{critical_step, largest_eigenvalue_of_pencil};
 use sinew_core::{BlockMatrix, Damping, LinearOperators};
 
 use crate::blocks::{CellBlocks, largest_eigenvalue_of_block};
+use crate::damping_matrix::damping_matrix;
 
 /// By how much a factor found by iteration, which comes from below, is raised.
 const MARGIN: f64 = 1e-3;
@@ -204,29 +205,6 @@ impl Majorant {
     pub(crate) fn operators(&self) -> &LinearOperators {
         &self.operators
     }
-}
-
-/// D as one matrix, made once at set-up.
-fn damping_matrix(operators: &LinearOperators) -> BlockMatrix {
-    let damping = operators.damping();
-    let mut whole = BlockMatrix::clone(operators.stiffness());
-    whole.scale_rows(&vec![damping.stiffness; operators.dofs()]);
-    let layers = whole.layers().count();
-    for cell in 0..whole.pattern().cells() {
-        let mut diagonal = vec![0.0; layers * layers];
-        for layer in 0..layers {
-            diagonal[layer * (layers + 1)] = damping.mass * operators.mass()[cell * layers + layer];
-        }
-        let added = whole.add_block(cell as u32, cell as u32, &diagonal);
-        debug_assert_eq!(added, Ok(()));
-        if let Some(extra) = &damping.extra {
-            for (column, block) in extra.row_blocks(cell) {
-                let added = whole.add_block(cell as u32, column as u32, block);
-                debug_assert_eq!(added, Ok(()));
-            }
-        }
-    }
-    whole
 }
 
 /// Rounds a positive number down to 26 binary digits. Eigenvalues found by iteration differ in their
