@@ -2,7 +2,7 @@
 
 use sinew_measure::Method;
 
-use super::methods::{block, chebyshev, cnn, cut, gauss_seidel, patched};
+use super::methods::{block, chebyshev, cnn, cut, gauss_seidel, guarded, patched};
 
 /// A scene with its runs.
 pub(crate) struct HardCase {
@@ -35,6 +35,13 @@ fn rivals() -> Vec<Method> {
 fn rivals_and_patches() -> Vec<Method> {
     let mut methods = rivals();
     methods.push(patched());
+    methods
+}
+
+/// And those that a saturation of the scene's own guards.
+fn rivals_and_guards() -> Vec<Method> {
+    let mut methods = rivals();
+    methods.extend(["central-difference", "cnn", "cnn-symplectic"].map(guarded));
     methods
 }
 
@@ -98,7 +105,7 @@ pub(crate) fn all() -> Vec<HardCase> {
             &[0.005, 0.02],
         )),
         case("hard/nearly-free.toml", rivals(), &[0.01, 0.02]),
-        case("hard/impulsive-tool.toml", rivals(), &[0.02]),
+        case("hard/impulsive-tool.toml", rivals_and_guards(), &[0.02]),
         case("hard/released-bar.toml", conservative(), &[0.005, 0.02]),
         case("hard/long-run.toml", conservative(), &[0.005, 0.01]),
         slow(case("hard/symmetric-load.toml", rivals(), &[0.02])),

@@ -39,16 +39,22 @@ fn inner(kind: &str, sweeps: Option<u32>) -> Method {
 
 /// A method that cuts its step into stable parts.
 pub(crate) fn cut(integrator: &str) -> Method {
-    let mut method = Method::new(integrator);
-    let auto = OptionValue::Text("auto".into());
-    method.options = method.options.with("substeps", auto);
-    method
+    automatic(integrator, "substeps")
+}
+
+/// A method whose cells get no faster than the loads and the start of a scene can make them.
+pub(crate) fn guarded(integrator: &str) -> Method {
+    automatic(integrator, "saturation")
 }
 
 /// Central difference that solves the few elements which forbid its step as small blocks.
 pub(crate) fn patched() -> Method {
-    let mut method = Method::new("central-difference");
+    automatic("central-difference", "patches")
+}
+
+fn automatic(integrator: &str, option: &str) -> Method {
+    let mut method = Method::new(integrator);
     let auto = OptionValue::Text("auto".into());
-    method.options = method.options.with("patches", auto);
+    method.options = method.options.with(option, auto);
     method
 }
