@@ -52,7 +52,7 @@ impl Majorant {
             Blend::Full => 1.0,
             Blend::Auto => {
                 let share = FREE * critical_step(operators) / dt;
-                (1.0 - share * share).max(0.0)
+                rounded_up((1.0 - share * share).max(0.0)).min(1.0)
             }
         };
         let (mass, stiffness) = (operators.mass(), operators.stiffness());
@@ -92,7 +92,7 @@ impl Majorant {
         blocks.add(&of_stiffness, s * dt * dt / 4.0 * gamma_stiffness);
         let inverse = blocks.inverse();
         Self {
-            floor: smallest_ratio(&of_mass, &blocks, layers.count()),
+            floor: rounded_down(smallest_ratio(&of_mass, &blocks, layers.count())),
             operators: operators.clone(),
             dt,
             s,
@@ -229,6 +229,21 @@ fn damping_matrix(operators: &LinearOperators) -> BlockMatrix {
     whole
 }
 
+/// Low bits of a bound that are given up: twenty of its binary digits stay. Estimated eigenvalues
+/// differ in their last digits with the order of nodes and the unit of length; bounds need not be
+/// sharp, and so they do not.
+const BLUR: u64 = (1 << 32) - 1;
+
+/// A bound from above, at least 0.
+fn rounded_up(bound: f64) -> f64 {
+    f64::from_bits((bound.to_bits() + BLUR) & !BLUR)
+}
+
+/// A bound from below, at least 0.
+fn rounded_down(bound: f64) -> f64 {
+    f64::from_bits(bound.to_bits() & !BLUR)
+}
+
 fn gamma(
     rule: GammaRule,
     matrix: &BlockMatrix,
@@ -242,7 +257,7 @@ fn gamma(
             let largest =
                 largest_eigenvalue_of_pencil(n, multiply, |x, out| inverse.multiply(x, out));
             // A diagonal matrix has gamma 1.
-            (largest * (1.0 + MARGIN)).max(1.0)
+            rounded_up((largest * (1.0 + MARGIN)).max(1.0))
         }
         GammaRule::Gershgorin => gershgorin(matrix, &inverse),
     }

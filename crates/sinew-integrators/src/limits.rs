@@ -26,7 +26,7 @@ pub(crate) fn forward_euler(
 }
 
 /// The root h of `4 - 2 d h - w^2 h^2`, d being the damping that enters with the old velocity.
-fn lagged(w: f64, d: f64) -> f64 {
+pub(crate) fn lagged(w: f64, d: f64) -> f64 {
     // The rationalised form holds for w = 0 too.
     4.0 / (d + (d * d + 4.0 * w * w).sqrt())
 }

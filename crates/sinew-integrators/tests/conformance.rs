@@ -22,3 +22,9 @@ sinew_core::conformance!(propagator_krylov, || {
     let krylov = Propagator::with_tolerance(PropagatorKind::Krylov, 1e-11);
     Box::new(krylov) as Box<dyn sinew_core::Integrator>
 });
+
+sinew_core::conformance!(propagator_two_step, || {
+    use sinew_integrators::propagator::{Propagator, PropagatorKind};
+    let two_step = Propagator::with_tolerance(PropagatorKind::TwoStep, 1e-11);
+    Box::new(two_step) as Box<dyn sinew_core::Integrator>
+});

@@ -231,6 +231,7 @@ impl Case {
             max_u_m: track.max_u,
             late_amplitude_m: track.late_amplitude,
             critical_step_s: self.critical_step,
+            stable_steps_s: BTreeMap::new(),
         }
     }
 }

@@ -36,6 +36,9 @@ pub struct CaseInfo {
     /// Critical step `2 / omega_max` of the undamped system (s); none where there is no omega_max.
     #[serde(default)]
     pub critical_step_s: Option<f64>,
+    /// The largest stable step of each method that ran and has one (s), by its label.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub stable_steps_s: BTreeMap<String, f64>,
 }
 
 /// One run: a case, an integrator with its options, a step.
@@ -90,6 +93,17 @@ pub struct Row {
     /// degree of a propagator.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub facts: BTreeMap<String, f64>,
+    /// Step over the critical step 2/omega_max; of hard cases only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step_over_critical: Option<f64>,
+    /// Relative distance of the last displacement from equilibrium under the last loads, where the
+    /// reference comes to rest; of hard cases only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_error: Option<f64>,
+    /// Relative change of the method's energy in 1000 steps, where nothing damps or loads the
+    /// system; of hard cases only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub energy_drift: Option<f64>,
     /// No other run of the case is both as cheap and as accurate; see [`mark_pareto`].
     #[serde(default)]
     pub pareto: bool,

@@ -1,6 +1,6 @@
 //! Short runs that find which methods and steps are worth laps.
 
-use sinew_measure::search::{Candidate, CasePilots, Goal, Search};
+use sinew_measure::search::{CasePilots, Goal, Search, candidates};
 use sinew_measure::{Case, Effort, Method, Row, measure};
 
 /// An error and the run of ours that reaches it most cheaply.
@@ -8,6 +8,8 @@ use sinew_measure::{Case, Effort, Method, Row, measure};
 pub struct Target {
     /// Largest error (fraction); none for the run that is the other program's own method and step.
     pub error: Option<f64>,
+    /// The method.
+    pub method: Method,
     /// The run, as its pilot measured it.
     pub row: Row,
 }
@@ -28,10 +30,8 @@ pub fn pilots(
     let method = Method::on(case, same.0);
     let same = measure(case, &method, same.1, Effort::QUICK)?;
     // What cannot run here is no candidate; the bench lists why.
-    let candidates = integrators.iter().filter_map(|integrator| {
-        Candidate::of(case.simulation(), Method::on(case, integrator)).ok()
-    });
-    let candidates: Vec<Candidate> = candidates.collect();
+    let (mut candidates, _) = candidates(case.simulation(), &ERRORS);
+    candidates.retain(|candidate| integrators.contains(&candidate.method.integrator));
     let span = case.span();
     let mut search = Search::new(CasePilots::new(case), span, span.duration);
     candidates
@@ -39,6 +39,7 @@ pub fn pilots(
         .for_each(|candidate| search.add(candidate));
     let mut targets = vec![Target {
         error: None,
+        method,
         row: same,
     }];
     for error in ERRORS {
@@ -47,6 +48,7 @@ pub fn pilots(
         if let Some(pilot) = search.cheapest(goal) {
             targets.push(Target {
                 error: Some(error),
+                method: pilot.method.clone(),
                 row: pilot.row.clone(),
             });
         }

@@ -7,7 +7,10 @@
 mod axis;
 mod colour_map;
 mod columns;
+mod front;
+mod heat_map;
 mod html;
+mod marks;
 mod markup;
 mod peers;
 mod plot;
@@ -22,7 +25,10 @@ mod work_precision;
 mod write;
 
 pub use axis::{Axis, Scale};
+pub use front::{FrontMember, front_members, modal_sentence, paper_sentence};
+pub use heat_map::heat_map;
 pub use html::html;
+pub use marks::{markdown_marks, terminal_marks};
 pub(crate) use markup::escape;
 pub use plot::{Plot, Point, Rule, Series};
 pub use strip::strip;

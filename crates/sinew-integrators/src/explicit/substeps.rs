@@ -21,6 +21,15 @@ impl Substeps {
     /// The option's key.
     pub const KEY: &'static str = "substeps";
 
+    /// The fewest equal parts (from 1 on) of a step of `dt` (s) that are no longer than nine tenths
+    /// of `limit` (s), which is above 0.
+    #[must_use]
+    pub fn parts_of(dt: f64, limit: f64) -> u32 {
+        // The subtrahend keeps a quotient like 3.0000000000000004 from costing one part more.
+        let parts = (dt / (MARGIN * limit) - 1e-9).ceil();
+        parts.clamp(1.0, f64::from(u32::MAX)) as u32
+    }
+
     /// Takes the option out of the others; `None` where it is absent.
     ///
     /// # Errors
@@ -73,9 +82,8 @@ impl Substepped {
             Substeps::Fixed(parts) => Ok(parts),
             Substeps::Auto => match self.inner.stable_step(system)? {
                 StableStep::Any => Ok(1),
-                StableStep::UpTo(limit) if dt <= MARGIN * limit => Ok(1),
                 StableStep::UpTo(limit) if limit > 0.0 && dt.is_finite() => {
-                    Ok((dt / (MARGIN * limit)).ceil().min(f64::from(u32::MAX)) as u32)
+                    Ok(Substeps::parts_of(dt, limit))
                 }
                 StableStep::UpTo(_) | StableStep::Unknown => Err(SetupError::Lacks {
                     integrator: self.inner.id(),
@@ -137,5 +145,9 @@ impl Integrator for Substepped {
             });
         }
         facts
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.inner.remarks()
     }
 }

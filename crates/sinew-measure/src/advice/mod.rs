@@ -1,6 +1,5 @@
 //! Which method and step a scene should take, from short runs on the scene itself.
 
-mod candidates;
 mod horizon;
 mod question;
 mod run_table;
@@ -19,8 +18,7 @@ use crate::case::{Case, CaseError, Span};
 use crate::cpu_time::thread_cpu_time;
 use crate::measure::Method;
 use crate::one_thread::{ThreadError, on_one_thread};
-use crate::search::{CasePilots, Goal, Pilot, Search};
-use candidates::candidates;
+use crate::search::{CasePilots, Goal, Pilot, Search, candidates};
 use horizon::horizon;
 
 /// Share of the pilots' time that the reference may take.
@@ -150,7 +148,7 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
     let until = begun + Duration::from_secs_f64(question.pilot_seconds);
     let whole = Span::of(&simulation);
     let tolerances = [question.tolerance, question.tolerance / 10.0];
-    let (candidates, mut refused) = candidates(&simulation, tolerances);
+    let (candidates, mut refused) = candidates(&simulation, &tolerances);
     let prepared = thread_cpu_time();
     let left = until.saturating_sub(prepared).as_secs_f64();
     let measured = horizon(&simulation, FOR_THE_REFERENCE * left)?;
@@ -287,7 +285,7 @@ impl OwnRun {
         let settings = case.simulation().settings();
         Self {
             method: Method::on(case, &settings.integrator),
-            dt: settings.dt,
+            dt: case.simulation().dt(),
         }
     }
 

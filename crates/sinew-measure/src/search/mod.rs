@@ -2,14 +2,16 @@
 //!
 //! Each candidate is followed from its longest stable step to shorter ones, by the order it
 //! declares and the errors measured on the way, for as long as it can still become cheaper than
-//! the best run so far; the one that promises most goes first. Steps divide the time between two instants of the comparison, so that all errors are
-//! taken at the same instants.
+//! the best run so far; the one that promises most goes first. Steps divide the time between two
+//! instants of the comparison, so that all errors are taken at the same instants.
 
 mod candidate;
+mod candidates;
 mod pilots;
 mod trail;
 
 pub use candidate::Candidate;
+pub use candidates::candidates;
 pub use pilots::{CasePilots, Pilot, Pilots};
 
 use crate::measure::{Effort, Method};

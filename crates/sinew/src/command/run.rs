@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|error| Failure::Input(error.to_string()))?;
     let system = simulation.system();
     integrator
-        .prepare(system, simulation.settings().dt)
+        .prepare(system, simulation.dt())
         .map_err(|error| Failure::Input(error.to_string()))?;
     let mut csv = ProbeCsv::create(&path, simulation.probes()).map_err(cannot_write)?;
     let mut state = simulation.initial_state().clone();
@@ -43,6 +43,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let written = csv.finish().map_err(cannot_write)?;
 
     say(&summary(&simulation, &report));
+    for remark in integrator.remarks() {
+        say(&remark);
+    }
     for probe in simulation.probes() {
         let u: Vec<String> = probe
             .displacement(&state.u)
@@ -73,7 +76,7 @@ fn summary(simulation: &Simulation, report: &RunReport) -> String {
         "{}: {} steps of {} s by `{}`: {} sweeps, {} solves",
         simulation.scene().title(),
         report.steps,
-        settings.dt,
+        simulation.dt(),
         settings.integrator,
         work.sweeps,
         work.solves

@@ -5,15 +5,16 @@ use std::collections::BTreeMap;
 use sinew_core::{OptionValue, Options};
 use sinew_scene::Simulation;
 
+use super::Candidate;
 use crate::measure::Method;
-use crate::search::Candidate;
 
 /// Every integrator with its defaults, the scene's own also with the scene's options, and those
 /// that trade error for cost by an option set to fit each of `errors`. Those that cannot run on
 /// the scene come with the reason.
-pub(super) fn candidates(
+#[must_use]
+pub fn candidates(
     simulation: &Simulation,
-    errors: [f64; 2],
+    errors: &[f64],
 ) -> (Vec<Candidate>, Vec<(Method, String)>) {
     let own = &simulation.settings().integrator;
     let mut methods: Vec<Method> = Vec::new();
@@ -22,7 +23,7 @@ pub(super) fn candidates(
             methods.push(method);
         }
     };
-    for error in errors {
+    for &error in errors {
         for id in sinew_integrators::ids() {
             variants(id, error).into_iter().for_each(&mut add);
             if id == own {
@@ -58,9 +59,16 @@ fn variants(id: &str, error: f64) -> Vec<Method> {
             vec![default, chebyshev(4.0), chebyshev(8.0)]
         }
         "propagator" => {
-            let krylov = OptionValue::Text("krylov".into());
-            let krylov = loose.clone().with("kind", krylov);
-            vec![default, with(loose), with(krylov)]
+            let kind = |kind: &str| {
+                let kind = OptionValue::Text(kind.into());
+                with(loose.clone().with("kind", kind))
+            };
+            vec![
+                default,
+                with(loose.clone()),
+                kind("two-step"),
+                kind("krylov"),
+            ]
         }
         // Its error is the share of the response that it leaves out.
         "modal" => vec![with(Options::new().with_number("tolerance", error))],
