@@ -141,11 +141,7 @@ fn the_whole_grid_needs_no_fewer_sweeps_and_a_tighter_tolerance_never_less_work(
             best.label(),
             best.sweeps_per_s
         );
-        println!(
-            "{tolerance}: {} at {} sweeps/s",
-            best.label(),
-            best.sweeps_per_s
-        );
+        // Times decide, and sweeps follow them to a tenth.
         assert!(
             1.1 * best.sweeps_per_s >= last,
             "{tolerance}: {} at {} sweeps/s after {last}",
@@ -218,24 +214,28 @@ fn a_budget_filters_and_what_misses_it_comes_nearest() {
 }
 
 #[test]
-fn pilots_of_a_part_say_so() {
+fn where_time_is_short_a_first_part_of_the_scene_is_measured() {
+    // The reference of the whole second takes some 3 s of CPU time.
     let short = Question {
-        pilot_seconds: 0.4,
+        pilot_seconds: 1.0,
         ..question(1e-2)
     };
-    let advice = advise(simulation("peers-cube.toml"), short);
-    match advice {
-        Ok(advice) => {
-            assert!(advice.measured.duration < advice.whole.duration);
-            let ratio = advice.whole.interval() / advice.measured.interval();
-            assert!(
-                (ratio - ratio.round()).abs() < 1e-9,
-                "instants of the scene are met"
-            );
-        }
-        Err(AdviceError::NoTime { spent, .. }) => assert!(spent >= 0.4),
-        Err(other) => panic!("{other}"),
-    }
+    let advice = advise(simulation("peers-cube.toml"), short).unwrap();
+    assert!(advice.measured.duration < advice.whole.duration);
+    assert!(advice.measured.interval() <= advice.whole.interval() * (1.0 + 1e-9));
+    let ratio = advice.whole.interval() / advice.measured.interval();
+    assert!(
+        (ratio - ratio.round()).abs() < 1e-9,
+        "steps meet the scene's instants"
+    );
+    // The pilot that is under way when time runs out is finished.
+    assert!(advice.spent_s < 10.0, "{} s", advice.spent_s);
+    let best = advised(&advice);
+    assert!(
+        advice
+            .run_table(best)
+            .contains("duration = 1.0\nsamples = 100\n")
+    );
 }
 
 fn spring(oscillator: &str) -> Result<Advice, AdviceError> {

@@ -45,7 +45,7 @@ impl Goal {
 }
 
 /// Costs that differ by less than this share count as equal: times repeat no better.
-const NOISE: f64 = 0.05;
+const NOISE: f64 = 0.1;
 
 /// Most pilots of one candidate for one goal.
 const MOST_PILOTS: usize = 16;

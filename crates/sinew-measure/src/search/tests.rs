@@ -6,12 +6,13 @@ use std::collections::BTreeMap;
 use super::*;
 use crate::Work;
 
-/// `error = factor dt^order`, never below `floor`; one unit of cost a step.
+/// `error = factor dt^order`, never below `floor` nor above `cap`; one unit of cost a step.
 #[derive(Clone, Copy, Debug)]
 struct Law {
     order: u8,
     factor: f64,
     floor: f64,
+    cap: f64,
     setup: f64,
     step: f64,
     stable: f64,
@@ -22,6 +23,7 @@ const PLAIN: Law = Law {
     order: 2,
     factor: 100.0,
     floor: 0.0,
+    cap: f64::INFINITY,
     setup: 0.0,
     step: 1e-5,
     stable: f64::INFINITY,
@@ -75,7 +77,7 @@ impl Law {
         Row {
             integrator: integrator.into(),
             dt,
-            error: Some(error.max(self.floor)),
+            error: Some(error.max(self.floor).min(self.cap)),
             bounded: true,
             cpu_s_per_s: self.step / dt,
             sweeps_per_s: 1.0 / dt,
@@ -477,4 +479,45 @@ fn a_method_whose_first_step_is_too_short_to_win_is_never_begun() {
         "{:?}",
         laws.taken
     );
+}
+
+#[test]
+fn errors_that_begin_on_a_plateau_are_followed_to_the_same_step() {
+    // Waves that are out of phase are as wrong as they can be: no order shows before 2.4 ms.
+    let plateau = Law {
+        factor: 1e5,
+        cap: 0.6,
+        ..PLAIN
+    };
+    // 1e5 dt^2 at 20 ms / 29 and 20 ms / 200.
+    for (error, expected) in [(5e-2, 29.0), (1e-3, 200.0)] {
+        let mut laws = laws(&[("waves", plateau)]);
+        let mut search = search(&mut laws);
+        let goal = Goal::error(error);
+        search.seek(goal);
+        let parts = 0.02 / search.cheapest(goal).unwrap().row.dt;
+        assert!(
+            (expected - 0.1..=1.021 * expected).contains(&parts),
+            "{parts} parts"
+        );
+        assert!(search.count() <= 12, "{} pilots", search.count());
+    }
+}
+
+#[test]
+fn the_first_stable_step_may_cost_more_than_a_budget() {
+    let small = Law {
+        stable: 1e-3,
+        ..PLAIN
+    };
+    let mut laws = laws(&[("small", small)]);
+    let mut search = search(&mut laws);
+    let goal = Goal {
+        error: 1e-2,
+        budget: 5e-3,
+    };
+    search.seek(goal);
+    // Steps of 1 ms cost 0.01 s/s.
+    assert_eq!(search.cheapest(goal), None);
+    assert!(search.cheapest(Goal::error(1e-2)).is_some());
 }
