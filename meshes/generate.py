@@ -43,6 +43,10 @@ class Entry:
 
 COLLECTION = {
     "paper-cube": Entry("the paper's cube, all diagonals one way; written by `cargo xtask meshes`", 8000),
+    "sliver-20": Entry("one element 20 times thinner than the others; written by `cargo xtask meshes`", 1000),
+    "sliver-100": Entry("one element 100 times thinner than the others; written by `cargo xtask meshes`", 1000),
+    "sliver-1000": Entry("one element 1000 times thinner than the others; written by `cargo xtask meshes`", 1000),
+    "inclusion": Entry("a cube with a core of its own; written by `cargo xtask meshes`", 1000),
 }
 
 

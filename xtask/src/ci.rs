@@ -66,6 +66,17 @@ const STEPS: &[(&str, &[&str])] = &[
         "quick bench",
         &["xtask", "bench", "--quick", "--out", "target/ci-bench"],
     ),
+    (
+        "quick hard cases",
+        &[
+            "xtask",
+            "bench",
+            "--hard",
+            "--quick",
+            "--out",
+            "target/ci-hard",
+        ],
+    ),
 ];
 
 pub(crate) fn run() -> Result<(), Failure> {

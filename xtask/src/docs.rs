@@ -12,11 +12,22 @@ use crate::root;
 const CASE: &str = "paper-cube";
 /// Steps (ms) of its table.
 const STEPS: [f64; 2] = [20.0, 20.0 / 3.0];
+/// A stability map of the hard cases that the README shows.
+const MAP: &str = "map-poisson.svg";
 const BEGIN: &str = "<!-- bench -->\n";
 const END: &str = "<!-- end -->";
 
-/// Brings the README's table and picture up to the last bench.
+/// Brings the README's table and pictures up to the last bench and the last hard bench.
 pub(crate) fn run() -> Result<(), Failure> {
+    let map = root().join("target/bench-hard").join(MAP);
+    let map = std::fs::read_to_string(&map).map_err(|error| {
+        let path = map.display();
+        Failure::Input(format!(
+            "{path}: {error}; run `cargo xtask bench --hard` first"
+        ))
+    })?;
+    let shown_map = root().join("docs").join(MAP);
+    write_atomically(&shown_map, &map).map_err(Failure::chore)?;
     let results = root().join("target/bench/results.json");
     let text = std::fs::read_to_string(&results).map_err(|error| {
         let path = results.display();
@@ -48,6 +59,8 @@ pub(crate) fn run() -> Result<(), Failure> {
     write_atomically(&readme, &text).map_err(Failure::chore)?;
     let picture = root().join(format!("docs/work-precision-{CASE}.svg"));
     write_atomically(&picture, &work_precision(&results, CASE).svg()).map_err(Failure::chore)?;
-    say(&format!("{}\n{}", readme.display(), picture.display()));
+    for written in [readme, picture, shown_map] {
+        say(&written.display().to_string());
+    }
     Ok(())
 }

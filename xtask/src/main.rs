@@ -31,7 +31,7 @@ enum Chore {
     Reproduce(reproduce::Arguments),
     /// Write the meshes of the repository anew.
     Meshes,
-    /// Bring the README's table and picture up to the last bench.
+    /// Bring the README's table and pictures up to the last bench and the last hard bench.
     Docs,
     /// Everything that must hold before a change lands.
     Ci,

@@ -1,8 +1,9 @@
 //! `cargo xtask meshes`.
 
+use sinew_bench::hard::meshes::{inclusion_cube, sliver_cube};
 use sinew_bench::report::write_atomically;
 use sinew_mesh::structured::{Split, cube};
-use sinew_mesh::write_msh41_ascii;
+use sinew_mesh::{TetMesh, write_msh41_ascii};
 
 use crate::bench::say;
 use crate::failure::Failure;
@@ -13,12 +14,31 @@ const PAPER_CELLS: usize = 10;
 /// Edge (m). The paper gives none; at 0.2 m its three claims hold (see ARCHITECTURE.md).
 const PAPER_EDGE: f64 = 0.2;
 
+/// Cells a side and edge (m) of the cube with a sliver.
+const SLIVER_CUBE: (usize, f64) = (5, 0.1);
+/// How many times thinner the sliver is.
+const THINNESS: [u32; 3] = [20, 100, 1000];
+/// Cells a side, of which in the core, and edge (m) of the cube with an inclusion.
+const INCLUSION_CUBE: (usize, usize, f64) = (6, 2, 0.1);
+
 pub(crate) fn run() -> Result<(), Failure> {
-    let mesh = cube(PAPER_CELLS, PAPER_EDGE, Split::Kuhn).map_err(Failure::chore)?;
+    let paper = cube(PAPER_CELLS, PAPER_EDGE, Split::Kuhn).map_err(Failure::chore)?;
+    write("paper-cube", &paper)?;
+    for thinness in THINNESS {
+        let (cells, edge) = SLIVER_CUBE;
+        let mesh = sliver_cube(cells, edge, thinness.into()).map_err(Failure::chore)?;
+        write(&format!("sliver-{thinness}"), &mesh)?;
+    }
+    let (cells, core, edge) = INCLUSION_CUBE;
+    let mesh = inclusion_cube(cells, core, edge).map_err(Failure::chore)?;
+    write("inclusion", &mesh)
+}
+
+fn write(name: &str, mesh: &TetMesh) -> Result<(), Failure> {
     let mut bytes = Vec::new();
     write_msh41_ascii(&mesh.to_mesh(), &mut bytes).map_err(Failure::chore)?;
     let text = String::from_utf8(bytes).map_err(Failure::chore)?;
-    let path = root().join("meshes").join("paper-cube.msh");
+    let path = root().join("meshes").join(format!("{name}.msh"));
     write_atomically(&path, &text).map_err(Failure::chore)?;
     say(&format!(
         "{}: {} nodes, {} tetrahedra, {} bytes",

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use sinew_core::OptionError;
+use sinew_core::{OptionError, OptionValue, StableStep};
 
 use sinew_measure::{
     Case, CaseError, Effort, Method, ThreadError, mark_pareto, measure, on_one_thread,
@@ -36,6 +36,9 @@ pub enum BenchError {
     /// A scene.
     #[error(transparent)]
     Case(#[from] CaseError),
+    /// A stability map.
+    #[error("stability map: {0}")]
+    Map(String),
     /// No thread to measure on.
     #[error(transparent)]
     Thread(#[from] ThreadError),
@@ -105,37 +108,37 @@ impl Bench {
             });
             cases.push(Case::load(scene)?);
         }
-        let plan: Vec<(usize, &str, f64)> = cases
-            .iter()
-            .enumerate()
-            .flat_map(|(index, case)| {
-                let steps = self.steps_of(case);
-                methods.iter().flat_map(move |method| {
-                    let steps = steps.clone().into_iter();
-                    steps.map(move |dt| (index, method.as_str(), dt))
-                })
-            })
-            .collect();
         let mut results = BenchResults::new(revision, machine);
-        results.cases = cases.iter().map(Case::info).collect();
+        let mut plan: Vec<(usize, Method, f64)> = Vec::new();
+        for (index, case) in cases.iter().enumerate() {
+            let steps = self.steps_of(case);
+            let mut info = case.info();
+            for method in methods.iter().flat_map(|id| variants(case, id)) {
+                if let Some(limit) = stable_step(case, &method) {
+                    info.stable_steps_s.insert(method.label(), limit);
+                }
+                let runs = steps.iter().map(|dt| (index, method.clone(), *dt));
+                plan.extend(runs);
+            }
+            results.cases.push(info);
+        }
         let effort = if self.quick {
             Effort::QUICK
         } else {
             Effort::FULL
         };
-        for (done, &(index, integrator, dt)) in plan.iter().enumerate() {
-            let case = &mut cases[index];
+        for (done, (index, method, dt)) in plan.iter().enumerate() {
+            let (case, dt) = (&mut cases[*index], *dt);
             progress(Progress::Run {
                 done,
                 of: plan.len(),
-                what: format!("{}: {integrator}, {} ms", case.id(), round(dt * 1e3)),
+                what: format!("{}: {}, {} ms", case.id(), method.label(), round(dt * 1e3)),
             });
-            let method = Method::on(case, integrator);
-            match measure(case, &method, dt, effort) {
+            match measure(case, method, dt, effort) {
                 Ok(row) => results.rows.push(row),
                 Err(reason) => results.skipped.push(Skipped {
                     case: case.id().to_owned(),
-                    integrator: integrator.to_owned(),
+                    integrator: method.label(),
                     dt,
                     reason,
                 }),
@@ -165,10 +168,50 @@ impl Bench {
 
     fn steps_of(&self, case: &Case) -> Vec<f64> {
         if self.steps.is_empty() {
-            default_steps(case.simulation().settings().dt, self.quick)
+            default_steps(case.simulation().dt(), self.quick)
         } else {
             self.steps.clone()
         }
+    }
+}
+
+/// A method as it runs on a case, and its kinds that lead somewhere else on the front.
+fn variants(case: &Case, integrator: &str) -> Vec<Method> {
+    let plain = Method::on(case, integrator);
+    let text = |text: &str| OptionValue::Text(text.to_owned());
+    let with = |key: &str, value: OptionValue| {
+        let mut method = plain.clone();
+        method.options = method.options.with(key, value);
+        method
+    };
+    let chebyshev = |sweeps: f64| {
+        let entries = [
+            ("kind".to_owned(), text("chebyshev")),
+            ("sweeps".to_owned(), OptionValue::Number(sweeps)),
+        ];
+        OptionValue::Table(entries.into())
+    };
+    let mut variants = match integrator {
+        "cnn-stabilised" => vec![with("inner", chebyshev(4.0)), with("inner", chebyshev(8.0))],
+        "propagator" => {
+            let two_step = with("kind", text("two-step"));
+            let mut loose = two_step.clone();
+            loose.options = loose.options.with_number("tolerance", 1e-3);
+            vec![two_step, loose, with("kind", text("krylov"))]
+        }
+        _ => Vec::new(),
+    };
+    variants.retain(|variant| *variant != plain);
+    variants.insert(0, plain);
+    variants
+}
+
+/// The largest stable step (s) of a method on a case, where it has one.
+fn stable_step(case: &Case, method: &Method) -> Option<f64> {
+    let integrator = sinew_integrators::build(&method.integrator, &method.options).ok()?;
+    match integrator.stable_step(case.simulation().system()) {
+        Ok(StableStep::UpTo(limit)) if limit.is_finite() => Some(limit),
+        _ => None,
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod bench;
 pub mod beside;
+pub mod hard;
 mod machine;
 pub mod peers;
 pub mod report;

@@ -6,6 +6,8 @@
 use serde::{Deserialize, Serialize};
 use sinew_measure::{CaseInfo, Row};
 
+use crate::hard::{Mark, MarkVerdict, StabilityMap};
+
 mod json;
 
 pub use json::ResultsError;
@@ -32,6 +34,12 @@ pub struct BenchResults {
     /// Runs that were asked for and not made.
     #[serde(default)]
     pub skipped: Vec<Skipped>,
+    /// Pass marks of hard cases.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub marks: Vec<Mark>,
+    /// Stability maps.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub maps: Vec<StabilityMap>,
 }
 
 /// The machine a bench ran on.
@@ -76,7 +84,15 @@ impl BenchResults {
             cases: Vec::new(),
             rows: Vec::new(),
             skipped: Vec::new(),
+            marks: Vec::new(),
+            maps: Vec::new(),
         }
+    }
+
+    /// The marks that are not passed.
+    pub fn failed_marks(&self) -> impl Iterator<Item = &Mark> {
+        let failed = |mark: &&Mark| mark.verdict == MarkVerdict::Fail;
+        self.marks.iter().filter(failed)
     }
 
     /// The rows of a case, in their order.

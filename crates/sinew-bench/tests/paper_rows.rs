@@ -69,8 +69,31 @@ fn forward_euler_at_20_ms_diverges_and_the_bench_goes_on() {
     assert_eq!(row.error, None);
     assert!(!row.bounded && !row.settles);
     assert!(row.diverged_at_s.unwrap() < 0.5);
-    assert_eq!(cube().rows.len(), sinew_integrators::ids().len() * 3);
     assert_eq!(cube().skipped, []);
+}
+
+/// Every integrator, and those kinds of some that lead elsewhere on the front, in three steps each.
+#[test]
+fn every_method_runs() {
+    let mut expected: Vec<String> = sinew_integrators::ids()
+        .iter()
+        .map(|id| match *id {
+            "cnn" | "cnn-symplectic" => format!("{id} Q=4"),
+            id => id.to_owned(),
+        })
+        .collect();
+    for kind in ["chebyshev 4", "chebyshev 8"] {
+        expected.push(format!("cnn-stabilised {kind}"));
+    }
+    for kind in ["two-step", "two-step tolerance=0.001", "krylov"] {
+        expected.push(format!("propagator {kind}"));
+    }
+    let mut found: Vec<String> = cube().rows.iter().map(Row::label).collect();
+    assert_eq!(found.len(), 3 * expected.len());
+    found.sort();
+    found.dedup();
+    expected.sort();
+    assert_eq!(found, expected);
 }
 
 #[test]

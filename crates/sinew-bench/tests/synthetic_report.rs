@@ -192,6 +192,7 @@ fn cube_rows(case: &str, harder: f64) -> Vec<Row> {
                 setup_cpu_s: 0.011 + 0.083 * method.work.1,
                 facts: BTreeMap::new(),
                 pareto: false,
+                ..Row::default()
             }
         })
     });
@@ -260,6 +261,7 @@ fn case(id: &str, title: &str, dofs: usize, critical_step_s: f64) -> CaseInfo {
         max_u_m: 0.02,
         late_amplitude_m: 1.2e-5,
         critical_step_s: Some(critical_step_s),
+        stable_steps_s: BTreeMap::new(),
     }
 }
 

@@ -22,6 +22,7 @@
 //! ```
 
 mod blocks;
+mod damping_matrix;
 mod majorant;
 mod saturation;
 mod stabiliser;

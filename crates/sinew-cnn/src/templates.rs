@@ -2,6 +2,8 @@
 
 use sinew_core::{BlockMatrix, Layers, LinearOperators, LinearSystem};
 
+use crate::damping_matrix::damping_matrix;
+
 /// Why a system has no templates.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -78,23 +80,7 @@ impl Templates {
     /// The template C (1/s) of the damping, made anew.
     #[must_use]
     pub fn damping(&self) -> BlockMatrix {
-        let (mass, stiffness) = (self.operators.mass(), self.operators.stiffness());
-        let damping = self.operators.damping();
-        let mut template = BlockMatrix::clone(stiffness);
-        template.scale_rows(&vec![damping.stiffness; mass.len()]);
-        let layers = stiffness.layers().count();
-        for cell in 0..self.cells() {
-            let mut diagonal = vec![0.0; layers * layers];
-            for layer in 0..layers {
-                diagonal[layer * (layers + 1)] = damping.mass * mass[cell * layers + layer];
-            }
-            add(&mut template, cell, cell, &diagonal);
-            if let Some(extra) = &damping.extra {
-                for (column, block) in extra.row_blocks(cell) {
-                    add(&mut template, cell, column, block);
-                }
-            }
-        }
+        let mut template = damping_matrix(&self.operators);
         template.scale_rows(&self.control());
         template
     }
@@ -117,10 +103,4 @@ impl Templates {
             *value /= mass;
         }
     }
-}
-
-/// Adds a block at a place both matrices have, as they share the pattern.
-fn add(template: &mut BlockMatrix, row: usize, column: usize, block: &[f64]) {
-    let added = template.add_block(row as u32, column as u32, block);
-    debug_assert_eq!(added, Ok(()));
 }

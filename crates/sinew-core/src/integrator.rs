@@ -45,6 +45,11 @@ pub trait Integrator: Send {
     fn facts(&self) -> Vec<Fact> {
         Vec::new()
     }
+
+    /// What set-up found out that a user should read, a sentence each.
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// A number that set-up found out.

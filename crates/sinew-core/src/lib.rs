@@ -22,6 +22,7 @@
 
 pub mod closed_form;
 pub mod conformance;
+mod elements;
 mod integrator;
 mod linear;
 mod options;
@@ -32,6 +33,7 @@ pub mod spectrum;
 mod state;
 mod system;
 
+pub use elements::{ElementStiffness, Elements, element_omegas_squared};
 pub use integrator::{
     Accuracy, EnergyBehaviour, Fact, Integrator, Needs, Prepared, Properties, SetupError,
     StableStep, StepError, StepReport,

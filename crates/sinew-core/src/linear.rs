@@ -4,12 +4,17 @@ use std::sync::Arc;
 
 use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern};
 
-use crate::{Energy, EvaluationError, Ramp, RampError, Revision, System, Trial};
+use crate::{Elements, Energy, EvaluationError, Ramp, RampError, Revision, System, Trial};
 
 /// A [`System`] that shows its matrices.
 pub trait LinearSystem: System {
     /// M, D, K and the loads.
     fn operators(&self) -> &LinearOperators;
+
+    /// The elements that K is a sum of, where the system knows them.
+    fn elements(&self) -> Option<&dyn Elements> {
+        None
+    }
 }
 
 /// D = alpha M + beta K + extra.

@@ -86,7 +86,16 @@ fn add_moving_part(
     Ok(())
 }
 
-/// The springs of a region and what they are as a material, calibrated if asked.
+/// The springs of a region.
+pub(crate) struct RegionSprings {
+    pub(crate) springs: Vec<Spring>,
+    /// What they are as a material.
+    pub(crate) modulus: NetworkModulus,
+    /// What calibration multiplied them by.
+    pub(crate) calibration: f64,
+}
+
+/// The springs of a region, calibrated if asked.
 pub(crate) fn region_springs<'a>(
     points: &[[f64; 3]],
     tets: impl Iterator<Item = &'a [u32; 4]>,
@@ -94,21 +103,26 @@ pub(crate) fn region_springs<'a>(
     youngs_modulus: f64,
     rule: SpringRule,
     calibrate: bool,
-) -> (Vec<Spring>, NetworkModulus) {
+) -> RegionSprings {
     let mut springs = springs::springs(points, tets, youngs_modulus, rule);
     let mut modulus = springs::network_modulus(points, &springs, volume);
+    let mut calibration = 1.0;
     if calibrate && modulus.voigt > 0.0 {
-        let scale = youngs_modulus / modulus.voigt;
+        calibration = youngs_modulus / modulus.voigt;
         for spring in &mut springs {
-            spring.stiffness *= scale;
+            spring.stiffness *= calibration;
         }
         modulus = NetworkModulus {
-            voigt: modulus.voigt * scale,
-            softest: modulus.softest * scale,
-            stiffest: modulus.stiffest * scale,
+            voigt: modulus.voigt * calibration,
+            softest: modulus.softest * calibration,
+            stiffest: modulus.stiffest * calibration,
         };
     }
-    (springs, modulus)
+    RegionSprings {
+        springs,
+        modulus,
+        calibration,
+    }
 }
 
 /// The edges of all networks, each given with its gamma, and d = gamma 2 sqrt(k (m_i + m_j)) (N s/m)

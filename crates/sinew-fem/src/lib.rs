@@ -28,6 +28,7 @@
 mod assembly;
 mod cells;
 mod check;
+mod elements;
 mod error;
 mod loads;
 mod model;

@@ -3,12 +3,14 @@
 use std::sync::Arc;
 
 use sinew_core::{
-    BlockMatrix, Damping, Energy, EvaluationError, Layers, LinearOperators, LinearSystem, Pattern,
-    Revision, Scales, System, Trial,
+    BlockMatrix, Damping, ElementStiffness, Elements, Energy, EvaluationError, Layers,
+    LinearOperators, LinearSystem, Pattern, Revision, Scales, System, Trial,
 };
 use sinew_mesh::TetMesh;
 
+use crate::assembly::RegionSprings;
 use crate::cells::Cells;
+use crate::elements::{ElementLaw, Tetrahedra};
 use crate::error::{Cause, FemError, Item};
 use crate::report::{ModelReport, RegionFacts};
 use crate::scales::OwnedScales;
@@ -20,8 +22,7 @@ pub struct Model {
     operators: LinearOperators,
     cells: Cells,
     node_tags: Vec<u64>,
-    points: Vec<[f64; 3]>,
-    tets: Vec<[u32; 4]>,
+    tetrahedra: Tetrahedra,
     extent: f64,
     scales: OwnedScales,
     report: ModelReport,
@@ -42,6 +43,7 @@ impl Model {
         let pattern = pattern(mesh, &cells)?;
         let mut stiffness = BlockMatrix::zeros(Arc::clone(&pattern), Layers::Three);
         let mut networks = Vec::new();
+        let mut laws = Vec::with_capacity(problem.regions.len());
         let mut regions = Vec::with_capacity(problem.regions.len());
         for (index, region) in problem.regions.iter().enumerate() {
             let members = || (0..mesh.tets.len()).filter(|tet| region_of[*tet] == index);
@@ -54,6 +56,7 @@ impl Model {
                     let lame = tetra::lame(youngs_modulus, poissons_ratio);
                     let members: Vec<usize> = members().collect();
                     assembly::add_tetrahedra(&mut stiffness, mesh, &cells, &members, lame)?;
+                    laws.push(ElementLaw::Continuum { lame });
                     None
                 }
                 Law::Springs {
@@ -63,7 +66,11 @@ impl Model {
                     damping_ratio,
                 } => {
                     let tets = members().map(|tet| &mesh.tets[tet]);
-                    let (springs, modulus) = assembly::region_springs(
+                    let RegionSprings {
+                        springs,
+                        modulus,
+                        calibration,
+                    } = assembly::region_springs(
                         &mesh.points,
                         tets,
                         volume,
@@ -74,6 +81,10 @@ impl Model {
                     let rates = springs.iter().map(|spring| spring.stiffness);
                     assembly::add_edges(&mut stiffness, mesh, &cells, &springs, rates)?;
                     networks.push((damping_ratio, springs));
+                    laws.push(ElementLaw::Springs {
+                        youngs_modulus: youngs_modulus * calibration,
+                        rule,
+                    });
                     Some(modulus)
                 }
             };
@@ -146,8 +157,7 @@ impl Model {
             operators,
             cells,
             node_tags: mesh.node_tags.clone(),
-            points: mesh.points.clone(),
-            tets: mesh.tets.clone(),
+            tetrahedra: Tetrahedra::new(mesh, &region_of, laws),
             extent,
             scales,
             report,
@@ -233,13 +243,14 @@ impl System for Model {
 
     fn inverted_elements(&self, u: &[f64]) -> Option<usize> {
         let moved = |node: u32| {
-            let [x, y, z] = self.points[node as usize];
+            let [x, y, z] = self.tetrahedra.points[node as usize];
             let [ux, uy, uz] = self.node_displacement(u, node);
             [x + ux, y + uy, z + uz]
         };
         // Elements have positive volume at rest; one that is not a number counts as inverted.
         let upright = |tet: &&[u32; 4]| tetra::signed_volume(&tet.map(moved)) > 0.0;
-        Some(self.tets.len() - self.tets.iter().filter(upright).count())
+        let tets = &self.tetrahedra.tets;
+        Some(tets.len() - tets.iter().filter(upright).count())
     }
 
     fn extent(&self) -> Option<f64> {
@@ -271,5 +282,23 @@ impl System for Model {
 impl LinearSystem for Model {
     fn operators(&self) -> &LinearOperators {
         &self.operators
+    }
+
+    fn elements(&self) -> Option<&dyn Elements> {
+        Some(self)
+    }
+}
+
+impl Elements for Model {
+    fn count(&self) -> usize {
+        self.tetrahedra.tets.len()
+    }
+
+    fn name(&self, element: usize) -> String {
+        self.tetrahedra.name(element)
+    }
+
+    fn stiffness(&self, element: usize, out: &mut ElementStiffness) {
+        self.tetrahedra.stiffness(element, &self.cells, out);
     }
 }

@@ -32,26 +32,35 @@ pub fn springs<'a>(
     youngs_modulus: f64,
     rule: SpringRule,
 ) -> Vec<Spring> {
-    let mut parts = Vec::new();
-    for tet in tets {
-        let vertices = tet.map(|node| points[node as usize]);
-        let volume = tetra::signed_volume(&vertices).abs();
-        for [a, b] in EDGES {
-            let stiffness = match rule {
-                SpringRule::Lloyd => {
-                    let equivalent = (12.0 * volume / 2.0_f64.sqrt()).cbrt();
-                    2.0 * 2.0_f64.sqrt() / 25.0 * youngs_modulus * equivalent
-                }
-                SpringRule::VanGelder => {
-                    let length = Vector3::from(vertices[b]) - Vector3::from(vertices[a]);
-                    youngs_modulus * volume / length.norm_squared()
-                }
-            };
-            let nodes = [tet[a].min(tet[b]), tet[a].max(tet[b])];
-            parts.push(Spring { nodes, stiffness });
-        }
-    }
-    summed(parts)
+    summed(
+        tets.flat_map(|tet| of_tetrahedron(points, tet, youngs_modulus, rule))
+            .collect(),
+    )
+}
+
+/// What one tetrahedron adds to its six edges.
+pub(crate) fn of_tetrahedron(
+    points: &[[f64; 3]],
+    tet: &[u32; 4],
+    youngs_modulus: f64,
+    rule: SpringRule,
+) -> [Spring; 6] {
+    let vertices = tet.map(|node| points[node as usize]);
+    let volume = tetra::signed_volume(&vertices).abs();
+    EDGES.map(|[a, b]| {
+        let stiffness = match rule {
+            SpringRule::Lloyd => {
+                let equivalent = (12.0 * volume / 2.0_f64.sqrt()).cbrt();
+                2.0 * 2.0_f64.sqrt() / 25.0 * youngs_modulus * equivalent
+            }
+            SpringRule::VanGelder => {
+                let length = Vector3::from(vertices[b]) - Vector3::from(vertices[a]);
+                youngs_modulus * volume / length.norm_squared()
+            }
+        };
+        let nodes = [tet[a].min(tet[b]), tet[a].max(tet[b])];
+        Spring { nodes, stiffness }
+    })
 }
 
 /// One spring for each edge, in increasing order of their nodes.

@@ -22,11 +22,16 @@ pub(crate) fn forward_euler(
         creeping if creeping >= 0.0 => 2.0 / (d / 2.0 + creeping.sqrt()),
         _ => swinging,
     };
-    Ok(StableStep::UpTo(fastest.min(2.0 / alpha)))
+    let limit = fastest.min(2.0 / alpha);
+    // Dashpots alone may or may not damp every mode; their largest eigenvalue does not tell.
+    if limit == 0.0 && !spectrum.proportional {
+        return Ok(StableStep::Unknown);
+    }
+    Ok(StableStep::UpTo(limit))
 }
 
 /// The root h of `4 - 2 d h - w^2 h^2`, d being the damping that enters with the old velocity.
-fn lagged(w: f64, d: f64) -> f64 {
+pub(crate) fn lagged(w: f64, d: f64) -> f64 {
     // The rationalised form holds for w = 0 too.
     4.0 / (d + (d * d + 4.0 * w * w).sqrt())
 }
@@ -127,7 +132,9 @@ fn rk4_amplification(x: f64, y: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use sinew_core::{LinearModel, LinearOperators};
+    use std::sync::Arc;
+
+    use sinew_core::{BlockMatrix, Damping, Layers, LinearModel, LinearOperators, Pattern};
 
     use super::*;
 
@@ -149,6 +156,30 @@ mod tests {
         assert!((limit(forward_euler) - 0.01).abs() < 1e-9);
         assert!((limit(symplectic_euler) - 0.0540).abs() < 5e-5);
         assert!((limit(central_difference) - 0.0632).abs() < 5e-5);
+    }
+
+    /// Two masses between walls with a dashpot between them: forward Euler is stable up to some step
+    /// or none, depending on the mode that the dashpot leaves alone.
+    #[test]
+    fn forward_euler_does_not_guess_what_dashpots_do() {
+        let pattern = Arc::new(Pattern::from_elements(2, [[0, 1]]).unwrap());
+        let matrix = |entries: [f64; 4]| {
+            let mut matrix = BlockMatrix::zeros(Arc::clone(&pattern), Layers::One);
+            matrix.add_element(&[0, 1], &entries).unwrap();
+            matrix
+        };
+        let limit = |mass_damping: f64| {
+            let damping = Damping {
+                mass: mass_damping,
+                stiffness: 0.0,
+                extra: Some(Arc::new(matrix([1.0, -1.0, -1.0, 1.0]))),
+            };
+            let stiffness = matrix([200.0, -100.0, -100.0, 200.0]);
+            let operators = LinearOperators::new(vec![1.0; 2], stiffness, damping, vec![]);
+            forward_euler("test", &LinearModel::new(operators.unwrap())).unwrap()
+        };
+        assert_eq!(limit(0.0), StableStep::Unknown);
+        assert!(matches!(limit(1.0), StableStep::UpTo(limit) if limit > 0.0));
     }
 
     #[test]

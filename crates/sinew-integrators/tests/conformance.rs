@@ -23,6 +23,12 @@ sinew_core::conformance!(propagator_krylov, || {
     Box::new(krylov) as Box<dyn sinew_core::Integrator>
 });
 
+sinew_core::conformance!(propagator_two_step, || {
+    use sinew_integrators::propagator::{Propagator, PropagatorKind};
+    let two_step = Propagator::with_tolerance(PropagatorKind::TwoStep, 1e-11);
+    Box::new(two_step) as Box<dyn sinew_core::Integrator>
+});
+
 // A guard that nothing reaches leaves every law as it is.
 macro_rules! guarded_suites {
     ($($name:ident: $id:literal,)*) => {

@@ -98,6 +98,11 @@ fn no_integrator_allocates_after_its_second_step() {
                 variants.push(guarded);
             }
         }
+        if entry.id == "propagator" {
+            for kind in ["two-step", "krylov"] {
+                variants.push(plain().with("kind", OptionValue::Text(kind.into())));
+            }
+        }
         if entry.options.iter().any(|option| option.key == "inner") {
             // Stabilised at the step below, which it would leave as it is by itself.
             let full = plain().with_number("s", 1.0);
@@ -151,4 +156,13 @@ fn neither_do_loads_that_change_nor_other_damping() {
         let count = allocations_of_steps(&system, id, &plain(), 1e-3);
         assert_eq!(count, 0, "`{id}`");
     }
+}
+
+#[cfg(feature = "implicit")]
+#[test]
+fn neither_do_patches() {
+    use common::sliver::{MASS_DAMPING, auto, model, with_sliver};
+    let system = model(&with_sliver(1000.0), MASS_DAMPING);
+    let count = allocations_of_steps(&system, "central-difference", &auto(), 0.004);
+    assert_eq!(count, 0);
 }

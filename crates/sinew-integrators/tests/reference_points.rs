@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use common::cube::{mass_damping, paper_cube, run, scene, springs};
 use common::{build, inner, plain, relative_error, saturation};
 use sinew_core::spectrum::Spectrum;
-use sinew_core::{LinearSystem, Options, StepReport};
+use sinew_core::{LinearSystem, OptionValue, Options, StepReport};
 use sinew_fem::Model;
 
 /// A scene and its motion.
@@ -154,6 +154,13 @@ fn propagators_on_the_light_scene() {
     let scene = light();
     scene.check_within("propagator", &degree(12), 1, [0.0, 4e-8], 1250);
     scene.check_within("propagator", &degree(10), 1, [0.0, 1e-5], 1050);
+    let of_kind = |kind: &str| plain().with("kind", OptionValue::Text(kind.into()));
+    let krylov = of_kind("krylov").with_number("degree", 20.0);
+    // Twenty for the space and one for the residual.
+    scene.check_within("propagator", &krylov, 1, [0.0, 4e-6], 1050);
+    // No figure of others: what the two-step form takes for the same errors.
+    let two_step = of_kind("two-step").with_number("tolerance", 1e-6);
+    scene.check_within("propagator", &two_step, 1, [0.0, 4e-7], 758);
 }
 
 #[cfg(feature = "implicit")]

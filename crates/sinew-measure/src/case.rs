@@ -8,6 +8,7 @@ use sinew_core::Run;
 use sinew_core::spectrum::Spectrum;
 use sinew_scene::{Scene, SceneError, SceneModel, Simulation};
 
+use crate::cpu_time::thread_cpu_time;
 use crate::reference::{ReferenceError, Track, follow};
 use crate::row::CaseInfo;
 
@@ -20,10 +21,44 @@ const OSCILLATOR_LIMIT: f64 = 1e6;
 pub struct Case {
     id: String,
     simulation: Simulation,
+    span: Span,
     critical_step: Option<f64>,
+    reference_cpu_s: f64,
     samples: Arc<Track>,
     /// References at every step, for steps that do not meet the scene's instants.
     every_step: BTreeMap<(u64, usize), Arc<Track>>,
+}
+
+/// How much of a scene is compared, and how often.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// Simulated time (s), from 0 on.
+    pub duration: f64,
+    /// The error is taken at t = j duration/samples, j = 0..=samples.
+    pub samples: usize,
+}
+
+impl Span {
+    /// All of a scene, at its own instants.
+    #[must_use]
+    pub fn of(simulation: &Simulation) -> Self {
+        let settings = simulation.settings();
+        Self {
+            duration: settings.duration,
+            samples: settings.samples,
+        }
+    }
+
+    /// Time (s) from one instant to the next.
+    #[must_use]
+    pub fn interval(self) -> f64 {
+        self.duration / self.samples as f64
+    }
+
+    fn instants(self) -> Vec<f64> {
+        let instant = |j| j as f64 * self.duration / self.samples as f64;
+        (0..=self.samples).map(instant).collect()
+    }
 }
 
 /// Why a scene is no case.
@@ -59,13 +94,28 @@ impl Case {
     /// # Errors
     /// [`CaseError::Reference`].
     pub fn new(id: impl Into<String>, simulation: Simulation) -> Result<Self, CaseError> {
+        let span = Span::of(&simulation);
+        Self::over(id, simulation, span)
+    }
+
+    /// A case of a part of a built scene, for where a reference of all of it costs too much.
+    ///
+    /// # Errors
+    /// [`CaseError::Reference`].
+    pub fn over(
+        id: impl Into<String>,
+        simulation: Simulation,
+        span: Span,
+    ) -> Result<Self, CaseError> {
         let id = id.into();
-        let times: Vec<f64> = simulation.sample_times().collect();
+        let times = span.instants();
+        let before = thread_cpu_time();
         let samples = follow(simulation.system(), simulation.initial_state(), &times);
         let samples = samples.map_err(|source| CaseError::Reference {
             case: id.clone(),
             source,
         })?;
+        let reference_cpu_s = (thread_cpu_time() - before).as_secs_f64();
         let linear = simulation.system().as_linear();
         let critical_step = linear
             .map(|linear| Spectrum::of(linear.operators()).critical_step())
@@ -73,9 +123,11 @@ impl Case {
         Ok(Self {
             id,
             critical_step,
+            reference_cpu_s,
             samples: Arc::new(samples),
             every_step: BTreeMap::new(),
             simulation,
+            span,
         })
     }
 
@@ -91,37 +143,48 @@ impl Case {
         &self.simulation
     }
 
+    /// How much of the scene is compared.
+    #[must_use]
+    pub fn span(&self) -> Span {
+        self.span
+    }
+
     /// 2/omega_max (s), where something vibrates.
     #[must_use]
     pub fn critical_step(&self) -> Option<f64> {
         self.critical_step
     }
 
-    /// The reference at the scene's instants.
+    /// CPU time (s) that the reference took, its check included.
+    #[must_use]
+    pub fn reference_cpu_s(&self) -> f64 {
+        self.reference_cpu_s
+    }
+
+    /// The reference at the case's instants.
     #[must_use]
     pub fn samples(&self) -> &Arc<Track> {
         &self.samples
     }
 
-    /// The run that covers the scene's duration in steps of `dt` (s).
+    /// The run that covers the case's duration in steps of `dt` (s).
     #[must_use]
     pub fn run(&self, dt: f64) -> Run {
-        let run = Run::covering(self.simulation.settings().duration, dt);
+        let run = Run::covering(self.span.duration, dt);
         run.with_divergence_limit(match self.simulation.system().extent() {
             Some(extent) => 100.0 * extent,
             None => OSCILLATOR_LIMIT * self.samples.max_u,
         })
     }
 
-    /// What a run in steps of `dt` (s) is compared with: the reference at the scene's instants and
+    /// What a run in steps of `dt` (s) is compared with: the reference at the case's instants and
     /// the number of steps between them where dt meets them all, otherwise the reference after
     /// every step.
     ///
     /// # Errors
     /// As [`Case::reference_at_every_step`].
     pub fn reference_for(&mut self, dt: f64) -> Result<(Arc<Track>, usize), ReferenceError> {
-        let settings = self.simulation.settings();
-        let per_instant = settings.duration / settings.samples as f64 / dt;
+        let per_instant = self.span.interval() / dt;
         let whole = per_instant.round();
         if whole >= 1.0 && (per_instant - whole).abs() < 1e-9 * whole {
             return Ok((Arc::clone(&self.samples), whole as usize));
@@ -159,7 +222,7 @@ impl Case {
             id: self.id.clone(),
             title: self.simulation.scene().title().to_owned(),
             dofs: self.simulation.system().dofs(),
-            duration_s: self.simulation.settings().duration,
+            duration_s: self.span.duration,
             reference: format!(
                 "Taylor series of the {kind}'s motion in time, to rounding; checked against the same with other steps ({} sweeps in all)",
                 track.sweeps
@@ -168,6 +231,7 @@ impl Case {
             max_u_m: track.max_u,
             late_amplitude_m: track.late_amplitude,
             critical_step_s: self.critical_step,
+            stable_steps_s: BTreeMap::new(),
         }
     }
 }

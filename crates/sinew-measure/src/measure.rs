@@ -8,11 +8,12 @@ use sinew_core::{
     Integrator, OptionValue, Options, RecordError, Recorder, Run, RunReport, SimulateError, State,
     System, Verdict, simulate,
 };
+use sinew_scene::Simulation;
 
 use crate::case::Case;
 use crate::cpu_time::thread_cpu_time;
 use crate::reference::{ErrorNorm, LateRange, Track, largest};
-use crate::row::{Outcome, Row, Work, finite};
+use crate::row::{Outcome, Row, Work, finite, label};
 
 /// An integrator with its options.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,19 +38,37 @@ impl Method {
     /// every other its defaults. Those that saturate say at which voltage.
     #[must_use]
     pub fn on(case: &Case, integrator: &str) -> Self {
+        Self::of_scene(case.simulation(), integrator)
+    }
+
+    /// As [`Method::on`], where there is no case yet.
+    #[must_use]
+    pub fn of_scene(simulation: &Simulation, integrator: &str) -> Self {
         let mut method = Self::new(integrator);
-        let settings = case.simulation().settings();
+        let settings = simulation.settings();
         if settings.integrator == integrator {
             method.options = settings.options.clone();
         }
+        method.showing_defaults()
+    }
+
+    /// With those defaults written out that change what a run means.
+    #[must_use]
+    pub fn showing_defaults(mut self) -> Self {
         let entries = sinew_integrators::entries();
-        let options = entries.iter().filter(|entry| entry.id == integrator);
+        let options = entries.iter().filter(|entry| entry.id == self.integrator);
         for help in options.flat_map(|entry| entry.options) {
-            if let (Some(default), None) = (help.shown_default, method.options.get(help.key)) {
-                method.options = method.options.with_number(help.key, default);
+            if let (Some(default), None) = (help.shown_default, self.options.get(help.key)) {
+                self.options.insert(help.key, OptionValue::Number(default));
             }
         }
-        method
+        self
+    }
+
+    /// Name and options, as in `cnn Q=4`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        label(&self.integrator, &json_options(&self.options))
     }
 }
 
@@ -66,12 +85,17 @@ impl Effort {
     /// For results to be shown.
     pub const FULL: Self = Self {
         repeats: 5,
-        budget: 0.2,
+        budget: 0.12,
     };
     /// For checks that everything runs.
     pub const QUICK: Self = Self {
         repeats: 1,
         budget: 0.05,
+    };
+    /// Nothing is timed and the row's times are 0: for error and verdicts alone.
+    pub const UNTIMED: Self = Self {
+        repeats: 0,
+        budget: 0.0,
     };
 }
 
@@ -150,7 +174,7 @@ pub fn measure(case: &mut Case, method: &Method, dt: f64, effort: Effort) -> Res
         us_per_step: time_per_run / steps * 1e6,
         setup_cpu_s: setup_cpu.as_secs_f64(),
         facts,
-        pareto: false,
+        ..Row::default()
     })
 }
 
@@ -175,6 +199,9 @@ fn time_run(
 ) -> Result<f64, SimulateError> {
     // Long enough that neither the clock's resolution nor its cost shows.
     const LONG_ENOUGH: Duration = Duration::from_millis(2);
+    if effort == Effort::UNTIMED {
+        return Ok(0.0);
+    }
     let run = Run { steps, ..*run };
     let mut state = start.clone();
     let mut batch = |runs: u32| -> Result<Duration, SimulateError> {

@@ -8,6 +8,7 @@ use serde_json::Value;
 mod label;
 mod pareto;
 
+pub(crate) use label::label;
 pub use pareto::mark_pareto;
 
 /// Largest relative error that is called accurate.
@@ -35,6 +36,9 @@ pub struct CaseInfo {
     /// Critical step `2 / omega_max` of the undamped system (s); none where there is no omega_max.
     #[serde(default)]
     pub critical_step_s: Option<f64>,
+    /// The largest stable step of each method that ran and has one (s), by its label.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub stable_steps_s: BTreeMap<String, f64>,
 }
 
 /// One run: a case, an integrator with its options, a step.
@@ -89,6 +93,17 @@ pub struct Row {
     /// degree of a propagator.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub facts: BTreeMap<String, f64>,
+    /// Step over the critical step 2/omega_max; of hard cases only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step_over_critical: Option<f64>,
+    /// Relative distance of the last displacement from equilibrium under the last loads, where the
+    /// reference comes to rest; of hard cases only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_error: Option<f64>,
+    /// Relative change of the method's energy in 1000 steps, where nothing damps or loads the
+    /// system; of hard cases only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub energy_drift: Option<f64>,
     /// No other run of the case is both as cheap and as accurate; see [`mark_pareto`].
     #[serde(default)]
     pub pareto: bool,
@@ -180,7 +195,22 @@ impl Row {
     /// The integrator and its non-default options, as in `cnn Q=4`.
     #[must_use]
     pub fn label(&self) -> String {
-        label::label(&self.integrator, &self.options)
+        label(&self.integrator, &self.options)
+    }
+
+    /// The error, where it means something: of a run that finished bounded with nothing saturated.
+    #[must_use]
+    pub fn sound_error(&self) -> Option<f64> {
+        match self.verdict() {
+            Verdict::Accurate | Verdict::Wrong => self.error,
+            Verdict::Guarded | Verdict::Unbounded | Verdict::Diverged => None,
+        }
+    }
+
+    /// CPU time (s) of set-up and of the steps that simulate `duration` (s).
+    #[must_use]
+    pub fn total_cpu_s(&self, duration: f64) -> f64 {
+        self.setup_cpu_s + self.cpu_s_per_s * duration
     }
 
     /// The verdict in one word.

@@ -247,6 +247,12 @@ pub enum Fault {
     /// An oscillator that cannot be built.
     #[error(transparent)]
     Oscillator(#[from] sinew_core::OperatorError),
+    /// dt = "auto" where the integrator sets no step.
+    #[error("dt = \"auto\" needs an integrator with a largest stable step: {reason}")]
+    NoStableStep {
+        /// What the integrator says.
+        reason: String,
+    },
     /// A static state that cannot be solved for.
     #[error("no static state: {0}")]
     Static(#[from] sinew_integrators::StaticError),
@@ -267,6 +273,10 @@ impl Fault {
             Self::Integrator(OptionError::Unknown { key, known, .. }) => {
                 suggestion(nearest(key, known.iter().copied()))
             }
+            Self::NoStableStep { .. } => Some(
+                "give dt in s; `sinew plan --tolerance` finds one that is accurate enough"
+                    .to_owned(),
+            ),
             Self::UnknownLoad { name, known } => {
                 suggestion(nearest(name, known.iter().map(String::as_str)))
             }

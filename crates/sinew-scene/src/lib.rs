@@ -27,7 +27,7 @@
 //! let error = Scene::parse(SceneSource::new("spring.toml", wrong)).expect_err("a negative step");
 //! assert_eq!(
 //!     error.to_string(),
-//!     "spring.toml:11: [run]: dt = -0.02: expected a finite step above 0 s"
+//!     "spring.toml:11: [run]: dt = -0.02: expected a finite step above 0 s, or \"auto\""
 //! );
 //! # Ok::<(), sinew_scene::SceneError>(())
 //! ```
@@ -45,7 +45,9 @@ mod whole_file;
 pub use error::{Fault, SceneError};
 pub use plan::{Plan, PlanSection};
 pub use probe_csv::ProbeCsv;
-pub use scene::{Body, Initial, MeshSource, Oscillator, ProbePoint, RunSettings, Scene, Subject};
+pub use scene::{
+    Body, Initial, MeshSource, Oscillator, ProbePoint, RunSettings, Scene, Subject, TimeStep,
+};
 pub use simulation::{BodyModel, NearestNode, Probe, SceneModel, Simulation};
 pub use source::SceneSource;
 pub use whole_file::WholeFile;

@@ -15,17 +15,26 @@ use sinew_core::{OptionValue, Options, Ramp};
 use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule};
 use sinew_scene::{
     Body, Initial, MeshSource, Oscillator, ProbePoint, RunSettings, Scene, SceneSource, Subject,
+    TimeStep,
 };
 
 fn scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    let entries = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path());
-    let scenes = entries.filter(|path| path.extension().is_some_and(|end| end == "toml"));
-    let mut scenes: Vec<PathBuf> = scenes.collect();
+    let mut scenes = Vec::new();
+    collect(&folder, &mut scenes);
     scenes.sort();
     scenes
+}
+
+fn collect(folder: &Path, scenes: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            collect(&path, scenes);
+        } else if path.extension().is_some_and(|end| end == "toml") {
+            scenes.push(path);
+        }
+    }
 }
 
 fn scene(name: &str) -> Scene {
@@ -55,6 +64,36 @@ fn a_scene_means_the_same_in_any_layout() {
 }
 
 #[test]
+fn every_scene_can_be_built() {
+    let scenes = scenes();
+    let hard = |path: &&PathBuf| path.parent().is_some_and(|folder| folder.ends_with("hard"));
+    assert!(scenes.iter().filter(hard).count() >= 14);
+    for path in scenes {
+        let scene = Scene::load(&path).unwrap();
+        assert_ne!(scene.title(), "", "{}", path.display());
+        let simulation = scene.build().unwrap_or_else(|error| panic!("{error}"));
+        assert!(simulation.system().dofs() > 0);
+    }
+}
+
+#[test]
+fn a_scene_can_be_built_on_a_mesh_at_hand() {
+    let text = "[mesh]\ncube = { cells = 2, edge = 0.1 }\n[[region]]\ndensity = 1000.0\n\
+                model = \"springs\"\nyoungs_modulus = 1e4\nsprings = { rule = \"lloyd\" }\n\
+                [[fixed]]\ngroup = \"sides\"\n\
+                [run]\nduration = 1.0\nintegrator = \"newmark\"\ndt = 0.1\n";
+    let mesh = sinew_mesh::structured::cube(4, 0.2, sinew_mesh::structured::Split::Kuhn).unwrap();
+    let simulation = parse(text).build_on(mesh).unwrap();
+    assert_eq!(simulation.system().dofs(), 3 * 3 * 3 * 5);
+    assert_eq!(simulation.system().extent(), Some(0.2));
+    // A mesh without the scene's groups is refused where the scene names them.
+    let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let bare = sinew_mesh::TetMesh::new(corners, vec![[0, 1, 2, 3]]).unwrap();
+    let refusal = parse(text).build_on(bare).unwrap_err().to_string();
+    assert!(refusal.contains("sides"), "{refusal}");
+}
+
+#[test]
 fn the_papers_oscillator() {
     let scene = scene("paper-oscillator.toml");
     let expected = Oscillator {
@@ -72,7 +111,7 @@ fn the_papers_oscillator() {
             duration: 1.0,
             samples: 50,
             integrator: "cnn".into(),
-            dt: 0.02,
+            dt: TimeStep::Given(0.02),
             options: Options::new().with_number("saturation", 4.0),
         }
     );
@@ -118,7 +157,7 @@ fn the_papers_cube() {
     let scene = scene("paper-cube.toml");
     assert_eq!(scene.title(), "The paper's cube, reproduction scene");
     assert_eq!(scene.subject(), &Subject::Body(expected));
-    assert_eq!(scene.run().dt, 0.02);
+    assert_eq!(scene.run().dt, TimeStep::Given(0.02));
 }
 
 /// Every key that the paper's scenes do not use.

@@ -224,3 +224,24 @@ fn a_run_writes_its_probes() {
     assert_eq!(last[1..], at(&simulation, &state.u, [0.3; 3]));
     assert!(last[3] < 0.0, "it hangs down");
 }
+
+/// The paper's oscillator is stable under central difference up to 2/omega = .0632 s; nine tenths of
+/// that cover the 20 ms between two instants in one step, and 1 s in eighteen.
+#[test]
+fn an_automatic_step_is_stable_and_meets_the_instants() {
+    let scene = |samples: usize| {
+        let text = format!(
+            "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = -5.0\n\
+             [run]\nduration = 1.0\nsamples = {samples}\nintegrator = \"central-difference\"\n\
+             dt = \"auto\"\n"
+        );
+        let scene = Scene::parse(SceneSource::new("spring.toml", text)).unwrap();
+        scene.build().unwrap()
+    };
+    assert_eq!(scene(50).dt(), 0.02);
+    assert_eq!(scene(1).dt(), 1.0 / 18.0);
+    assert_eq!(scene(1).run().steps, 18);
+    let plan = scene(1).plan().to_string();
+    assert!(plan.contains("dt = \"auto\": 0.05556 s"), "{plan}");
+    assert_eq!(scene(1).plan().warnings, Vec::<String>::new());
+}

@@ -28,7 +28,7 @@
 
 pub use {
     sinew_cnn as cnn, sinew_core as core, sinew_fem as fem, sinew_integrators as integrators,
-    sinew_mesh as mesh, sinew_scene as scene, sinew_sparse as sparse,
+    sinew_measure as measure, sinew_mesh as mesh, sinew_scene as scene, sinew_sparse as sparse,
 };
 
 /// What most programs need.

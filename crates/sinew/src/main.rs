@@ -2,7 +2,6 @@
 
 mod command;
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -17,11 +16,9 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Say what a scene will build, what it leaves out and which steps are stable.
-    Plan {
-        /// The scene file.
-        scene: PathBuf,
-    },
+    /// Say what a scene will build, what it leaves out and which steps are stable; with
+    /// --tolerance also by which method and step it runs most cheaply.
+    Plan(command::plan::Arguments),
     /// Run a scene and write the motion of its probes.
     Run(command::run::Arguments),
     /// Look into, check and convert mesh files.
@@ -33,7 +30,7 @@ enum Command {
 
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
-        Command::Plan { scene } => command::plan::run(&scene),
+        Command::Plan(arguments) => command::plan::run(&arguments),
         Command::Run(arguments) => command::run::run(&arguments),
         Command::Mesh(arguments) => command::mesh::run(&arguments),
         Command::Integrators => command::integrators::run(),

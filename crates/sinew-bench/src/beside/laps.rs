@@ -120,7 +120,7 @@ fn run_here(
     let same = rival.same();
     let theirs = rival.displacements().map_err(LapError::Rival)?;
     let error = apart(&theirs, &case.samples().displacements);
-    let ours = Contender::new(case, same.0, same.1)?.displacements(case)?;
+    let ours = Contender::new(case, &Method::on(case, same.0), same.1)?.displacements(case)?;
     let difference = apart(&theirs, &ours);
     if difference.is_nan() || difference > ROUNDING {
         return Err(LapError::Apart {
@@ -133,7 +133,7 @@ fn run_here(
     let targets = pilots(case, integrators, same).map_err(LapError::Ours)?;
     let contenders = targets
         .iter()
-        .map(|target| Contender::new(case, &target.row.integrator, target.row.dt));
+        .map(|target| Contender::new(case, &target.method, target.row.dt));
     let mut contenders = contenders.collect::<Result<Vec<_>, _>>()?;
     let mut ratios = vec![Vec::with_capacity(rounds); contenders.len()];
     let mut laps = Vec::with_capacity(rounds * contenders.len());
@@ -175,8 +175,7 @@ struct Contender {
 }
 
 impl Contender {
-    fn new(case: &Case, integrator: &str, dt: f64) -> Result<Self, LapError> {
-        let method = Method::on(case, integrator);
+    fn new(case: &Case, method: &Method, dt: f64) -> Result<Self, LapError> {
         let built = sinew_integrators::build(&method.integrator, &method.options);
         let mut integrator = built.map_err(failed)?;
         integrator

@@ -10,4 +10,4 @@ mod table;
 
 pub use export::{ExportError, Exported, export};
 pub use laps::{Beside, LapError, Pair, Rival, Rounds, run_beside};
-pub use pilots::{LADDER, Target, pilots};
+pub use pilots::{Target, pilots};

@@ -88,13 +88,14 @@ fn short_percent(fraction: f64) -> String {
 mod tests {
     use super::super::Target;
     use super::*;
-    use sinew_measure::Row;
+    use sinew_measure::{Method, Row};
 
     #[test]
     fn a_ratio_stands_beside_both_errors() {
         let pair = Pair {
             target: Target {
                 error: Some(1e-6),
+                method: Method::new("rk4"),
                 row: Row {
                     integrator: "rk4".into(),
                     dt: 1e-4,

@@ -25,7 +25,7 @@ impl Column {
 }
 
 /// The error stands before the speeds and next to them.
-pub(super) const COLUMNS: [Column; 13] = [
+static COLUMNS: [Column; 13] = [
     Column {
         head: "method",
         unit: "",
@@ -119,6 +119,43 @@ pub(super) const COLUMNS: [Column; 13] = [
     },
 ];
 
+/// Figures that only hard cases have.
+static HARD_COLUMNS: [Column; 3] = [
+    Column {
+        head: "dt/crit.",
+        unit: "",
+        explained: "step over the critical step 2/omega of the fastest undamped mode",
+        cell: |row| {
+            row.step_over_critical
+                .map_or_else(String::new, number::three)
+        },
+        key: Some(|row| row.step_over_critical.unwrap_or(f64::INFINITY)),
+    },
+    Column {
+        head: "static err.",
+        unit: "%",
+        explained: "distance of the last displacement from K u = F, where the reference comes to rest",
+        cell: |row| row.static_error.map_or_else(String::new, number::percent),
+        key: Some(|row| row.static_error.unwrap_or(f64::INFINITY)),
+    },
+    Column {
+        head: "energy drift",
+        unit: "1/1000 steps",
+        explained: "relative change of the method's own energy in 1000 steps, where nothing damps or loads the body",
+        cell: |row| row.energy_drift.map_or_else(String::new, number::three),
+        key: Some(|row| row.energy_drift.unwrap_or(f64::INFINITY)),
+    },
+];
+
+/// The columns of a table of these rows: those of hard cases only where a row has such a figure.
+pub(super) fn columns_of(rows: &[&Row]) -> Vec<&'static Column> {
+    let filled = |column: &&Column| rows.iter().any(|row| !(column.cell)(row).is_empty());
+    COLUMNS
+        .iter()
+        .chain(HARD_COLUMNS.iter().filter(filled))
+        .collect()
+}
+
 fn sweeps(row: &Row) -> String {
     let sweeps = number::short(row.sweeps_per_s);
     if row.work.solves == 0 {
@@ -157,6 +194,21 @@ mod tests {
         assert_eq!(sweeps(&row(150, 0)), "150");
         assert_eq!(sweeps(&row(0, 50)), "50 solves");
         assert_eq!(sweeps(&row(50, 50)), "50 + 50 solves");
+    }
+
+    #[test]
+    fn figures_of_hard_cases_take_room_only_where_there_are_some() {
+        let plain = Row::default();
+        let hard = Row {
+            static_error: Some(1e-7),
+            ..Row::default()
+        };
+        assert_eq!(columns_of(&[&plain]).len(), COLUMNS.len());
+        let columns = columns_of(&[&plain, &hard]);
+        assert_eq!(columns.len(), COLUMNS.len() + 1);
+        let last = columns.last().unwrap();
+        assert_eq!((last.cell)(&hard), "1.00e-5");
+        assert_eq!((last.cell)(&plain), "");
     }
 
     #[test]

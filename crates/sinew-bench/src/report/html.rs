@@ -3,12 +3,15 @@
 use std::fmt::{self, Display, Write};
 
 use super::{
-    columns::{COLUMNS, Column},
+    columns::{Column, columns_of},
+    front::{self, front_members},
+    heat_map, marks,
     markup::{escape, slugs},
     number, peers, strip,
     summary::cheapest,
     verdict, work_precision,
 };
+use crate::hard::StabilityMap;
 use crate::results::{BenchResults, Skipped};
 use sinew_measure::{ACCURATE, CaseInfo, Row, Verdict};
 
@@ -27,7 +30,9 @@ pub fn html(results: &BenchResults) -> String {
     page.how_to_read();
     let ids = results.case_ids();
     let anchors = slugs(&ids);
+    page.out.push_str(&marks::section(&results.marks));
     page.summary(results, &ids, &anchors);
+    page.maps(&results.maps);
     for (id, anchor) in ids.iter().zip(&anchors) {
         page.case(results, id, anchor);
     }
@@ -141,6 +146,23 @@ impl Page {
         self.out.push_str("</tbody>\n</table></div>\n</section>\n");
     }
 
+    fn maps(&mut self, maps: &[StabilityMap]) {
+        if maps.is_empty() {
+            return;
+        }
+        self.out.push_str(
+            "<section>\n<h2 id=\"maps\">Where methods hold: step against one property of the scene</h2>\n\
+             <p>Every square is a run on a small cube, coloured by its error. The line is the largest \
+             stable step that each method computes from the matrices before it runs: theory, beside \
+             the runs. With dashpots it is a bound from below, for the paper's network 0. <b>Bounded is not accurate</b>: where there is no line, only the colour tells \
+             how far a method can be trusted.</p>\n",
+        );
+        for map in maps {
+            self.figure(&heat_map(map));
+        }
+        self.out.push_str("</section>\n");
+    }
+
     fn case(&mut self, results: &BenchResults, id: &str, anchor: &str) {
         let info = results.case(id);
         let title = info.map_or(id, |info| info.title.as_str());
@@ -158,6 +180,7 @@ impl Page {
             self.out.push_str("<p class=\"none\">No run.</p>\n");
         } else {
             self.figure(&work_precision(results, id).svg());
+            self.front(results, id);
             self.figure(&strip(results, id));
             self.runs(&rows);
             self.findings(&rows);
@@ -195,6 +218,23 @@ impl Page {
                 ),
             ),
         ]);
+    }
+
+    /// Who is on the front, and why.
+    fn front(&mut self, results: &BenchResults, id: &str) {
+        self.out.push_str("<h3>The front</h3>\n<ul>\n");
+        for member in front_members(results, id) {
+            self.put(format_args!(
+                "<li><b>{}</b>: {}. <small>{}</small></li>\n",
+                Escaped(&member.label),
+                Escaped(&member.says),
+                Escaped(&member.summary)
+            ));
+        }
+        self.out.push_str("</ul>\n");
+        for sentence in front::sentences(results, id) {
+            self.put(format_args!("<p>{}</p>\n", Escaped(&sentence)));
+        }
     }
 
     /// What methods found out at set-up, folded away.
@@ -237,9 +277,10 @@ impl Page {
     }
 
     fn runs(&mut self, rows: &[&Row]) {
+        let columns = columns_of(rows);
         self.out
             .push_str("<h3>All runs</h3>\n<div class=\"wide\"><table class=\"runs\">\n<thead><tr>");
-        for column in &COLUMNS {
+        for column in &columns {
             self.put(format_args!(
                 "<th{} title=\"{}\">{}<small>{}</small></th>",
                 class(column),
@@ -259,7 +300,7 @@ impl Page {
                 (false, false) => "",
             };
             self.put(format_args!("<tr{classes}>"));
-            for column in &COLUMNS {
+            for column in &columns {
                 self.cell(column, row);
             }
             self.out.push_str("</tr>\n");

@@ -7,9 +7,11 @@
 mod axis;
 mod colour_map;
 mod columns;
+mod front;
+mod heat_map;
 mod html;
+mod marks;
 mod markup;
-mod number;
 mod peers;
 mod plot;
 mod strip;
@@ -23,9 +25,11 @@ mod work_precision;
 mod write;
 
 pub use axis::{Axis, Scale};
+pub use front::{FrontMember, front_members, modal_sentence, paper_sentence};
+pub use heat_map::heat_map;
 pub use html::html;
+pub use marks::{markdown_marks, terminal_marks};
 pub(crate) use markup::escape;
-pub(crate) use number::{milliseconds, percent, short, three};
 pub use plot::{Plot, Point, Rule, Series};
 pub use strip::strip;
 pub use style::{Colour, Dash, Marker, Style};
@@ -33,3 +37,5 @@ pub use surface::Surface;
 pub use table::{markdown, markdown_rows, terminal, terminal_rows};
 pub use work_precision::work_precision;
 pub use write::{WriteError, Written, write_all, write_atomically};
+
+pub(crate) use sinew_measure::number::{self, milliseconds, percent, short, three};

@@ -3,32 +3,36 @@
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle, presets};
 
 use super::{
-    columns::{COLUMNS, Column},
+    columns::{Column, columns_of},
+    front,
+    marks::{markdown_marks, terminal_marks},
     number,
 };
+use crate::hard::Mark;
 use crate::results::BenchResults;
 use sinew_measure::Row;
 
 /// Lines cost width, which a terminal lacks.
-const RULED_HEAD: TableStyle =
+pub(super) const RULED_HEAD: TableStyle =
     TableStyle::new().header_separator(LineStyle::new('─', '─', '─', '─'));
 
 /// All rows for a terminal, by case, then the runs that were skipped.
 #[must_use]
 pub fn terminal(results: &BenchResults) -> String {
-    by_case(results, "", terminal_rows)
+    by_case(results, "", terminal_rows, terminal_marks)
 }
 
 /// All rows as Markdown, by case, then the runs that were skipped.
 #[must_use]
 pub fn markdown(results: &BenchResults) -> String {
-    by_case(results, "### ", markdown_rows)
+    by_case(results, "### ", markdown_rows, markdown_marks)
 }
 
 /// Some rows for a terminal.
 #[must_use]
 pub fn terminal_rows<'a>(rows: impl IntoIterator<Item = &'a Row>) -> String {
-    let mut table = table(rows, RULED_HEAD, |column| column.title("\n"), |cell| cell);
+    let rows: Vec<&Row> = rows.into_iter().collect();
+    let mut table = table(&rows, RULED_HEAD, |column| column.title("\n"), |cell| cell);
     for column in table.column_iter_mut() {
         column.set_padding((0, 1));
     }
@@ -41,14 +45,16 @@ pub fn terminal_rows<'a>(rows: impl IntoIterator<Item = &'a Row>) -> String {
 pub fn markdown_rows<'a>(rows: impl IntoIterator<Item = &'a Row>) -> String {
     let escape = |cell: String| cell.replace('|', "\\|").replace('\n', " ");
     let style = presets::ASCII_MARKDOWN;
-    let table = table(rows, style, |column| column.title(" "), escape);
-    align_right(&table.to_string())
+    let rows: Vec<&Row> = rows.into_iter().collect();
+    let table = table(&rows, style, |column| column.title(" "), escape);
+    align_right(&table.to_string(), &columns_of(&rows))
 }
 
 fn by_case<'a>(
     results: &'a BenchResults,
     heading: &str,
     table: impl Fn(Vec<&'a Row>) -> String,
+    marks: impl Fn(&[Mark]) -> String,
 ) -> String {
     let mut out = String::new();
     for id in results.case_ids() {
@@ -65,6 +71,13 @@ fn by_case<'a>(
         }
         let rows = results.rows.iter().filter(|row| row.case == id).collect();
         out.push_str(&format!("\n\n{}\n\n", table(rows)));
+        for line in front::lines(results, id) {
+            out.push_str(&format!("* {line}\n"));
+        }
+        out.push('\n');
+    }
+    if !results.marks.is_empty() {
+        out.push_str(&format!("{heading}marks\n\n{}\n\n", marks(&results.marks)));
     }
     if !results.skipped.is_empty() {
         out.push_str(&format!("{heading}not run\n\n"));
@@ -81,21 +94,22 @@ fn by_case<'a>(
     out
 }
 
-fn table<'a>(
-    rows: impl IntoIterator<Item = &'a Row>,
+fn table(
+    rows: &[&Row],
     style: TableStyle,
     title: fn(&Column) -> String,
     escape: fn(String) -> String,
 ) -> Table {
+    let columns = columns_of(rows);
     let mut table = Table::new();
     table
         .load_style(style)
         .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(COLUMNS.iter().map(title));
+        .set_header(columns.iter().map(|column| title(column)));
     for row in rows {
-        table.add_row(COLUMNS.iter().map(|column| escape((column.cell)(row))));
+        table.add_row(columns.iter().map(|column| escape((column.cell)(row))));
     }
-    for (column, described) in table.column_iter_mut().zip(&COLUMNS) {
+    for (column, described) in table.column_iter_mut().zip(columns) {
         if described.key.is_some() {
             column.set_cell_alignment(CellAlignment::Right);
         }
@@ -104,13 +118,13 @@ fn table<'a>(
 }
 
 /// Gives the rule under a Markdown head its colons.
-fn align_right(table: &str) -> String {
+fn align_right(table: &str, columns: &[&Column]) -> String {
     let mut lines: Vec<String> = table.lines().map(str::to_owned).collect();
     if let Some(rule) = lines.get_mut(1) {
         let cells: Vec<String> = rule
             .trim_matches('|')
             .split('|')
-            .zip(&COLUMNS)
+            .zip(columns)
             .map(|(dashes, column)| match column.key {
                 Some(_) => format!("{}:", dashes.get(1..).unwrap_or("--")),
                 None => dashes.to_owned(),
@@ -179,7 +193,7 @@ mod tests {
         let lines: Vec<&str> = text.lines().filter(|line| line.starts_with('|')).collect();
         assert_eq!(lines.len(), 4);
         let bars = |line: &str| line.replace("\\|", "").matches('|').count();
-        assert!(lines.iter().all(|l| bars(l) == COLUMNS.len() + 1), "{text}");
+        assert!(lines.iter().all(|l| bars(l) == 13 + 1), "{text}");
         assert!(lines[1].contains("-:|"));
         assert!(lines[2].contains("a\\|b"));
     }

@@ -7,7 +7,7 @@ use std::{
 
 use sinew_scene::WholeFile;
 
-use super::{html, markup::slugs, strip, work_precision};
+use super::{heat_map, html, markup::slugs, strip, work_precision};
 use crate::results::{BenchResults, ResultsError};
 
 /// What was written.
@@ -17,7 +17,8 @@ pub struct Written {
     pub results: PathBuf,
     /// `report.html`.
     pub report: PathBuf,
-    /// `work-precision-<case>.svg` and `stability-<case>.svg` of every case.
+    /// `work-precision-<case>.svg` and `stability-<case>.svg` of every case, `map-<id>.svg` of every
+    /// stability map.
     pub plots: Vec<PathBuf>,
 }
 
@@ -91,6 +92,9 @@ pub fn write_all(results: &BenchResults, dir: &Path) -> Result<Written, WriteErr
 fn plots(results: &BenchResults) -> Vec<(String, String)> {
     let ids = results.case_ids();
     let named = ids.iter().zip(slugs(&ids));
+    let map_ids: Vec<&str> = results.maps.iter().map(|map| map.id.as_str()).collect();
+    let maps = results.maps.iter().zip(slugs(&map_ids));
+    let maps = maps.map(|(map, name)| (format!("map-{name}.svg"), heat_map(map)));
     named
         .flat_map(|(id, name)| {
             [
@@ -101,6 +105,7 @@ fn plots(results: &BenchResults) -> Vec<(String, String)> {
                 (format!("stability-{name}.svg"), strip(results, id)),
             ]
         })
+        .chain(maps)
         .collect()
 }
 

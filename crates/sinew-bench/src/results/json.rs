@@ -99,12 +99,15 @@ fn required_numbers(row: &Row) -> [(&'static str, f64); 6] {
     ]
 }
 
-fn optional_numbers(row: &Row) -> [(&'static str, Option<f64>); 4] {
+fn optional_numbers(row: &Row) -> [(&'static str, Option<f64>); 7] {
     [
         ("error", row.error),
         ("max_u", row.max_u),
         ("late_amplitude", row.late_amplitude),
         ("diverged_at_s", row.diverged_at_s),
+        ("step_over_critical", row.step_over_critical),
+        ("static_error", row.static_error),
+        ("energy_drift", row.energy_drift),
     ]
 }
 

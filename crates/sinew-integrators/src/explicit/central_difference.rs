@@ -1,14 +1,14 @@
 //! `central-difference`: leapfrog with mass damping treated implicitly.
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties,
+    Accuracy, EnergyBehaviour, Fact, Integrator, Needs, OptionError, Options, Prepared, Properties,
     SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::GuardOption;
-use crate::Method;
+use super::patches::{self, AutoPatches};
 use crate::evaluate::{acceleration, prepare_buffers, synchronise};
-use crate::limits;
+use crate::{Method, OptionHelp, limits};
 
 /// `(1 + alpha dt/2) v+ = (1 - alpha dt/2) v- + dt M^-1 (F(t) - K u - D_rest v-)`, then
 /// `u += dt v+`, where the velocity stays half a step behind the displacement and D_rest is the
@@ -19,20 +19,29 @@ use crate::limits;
 /// than damping all of it implicitly or none.
 ///
 /// Order 2 with mass damping; other damping lags by half a step, which lowers it to 1.
+///
+/// With `patches = "auto"` (feature `implicit`) the few elements that forbid the step are solved
+/// as small blocks: stable up to the limit of all others, order 2, the elements named in
+/// [`Integrator::remarks`].
 #[derive(Debug, Default)]
 pub struct CentralDifference {
     prepared: Prepared,
     a: Vec<f64>,
+    patches: Option<AutoPatches>,
 }
 
 impl Method for CentralDifference {
     const ID: &'static str = "central-difference";
     const SUMMARY: &'static str = "explicit, order 2 with mass damping; stable up to 2/omega_max";
+    const OPTIONS: &'static [OptionHelp] = patches::OPTIONS;
     const SUBSTEPS: bool = true;
     const GUARD: GuardOption = GuardOption::Any { runs_away: false };
 
-    fn from_options(_options: &Options) -> Result<Self, OptionError> {
-        Ok(Self::default())
+    fn from_options(options: &Options) -> Result<Self, OptionError> {
+        Ok(Self {
+            patches: AutoPatches::from_options(options, Self::ID)?,
+            ..Self::default()
+        })
     }
 }
 
@@ -50,10 +59,23 @@ impl Integrator for CentralDifference {
     }
 
     fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
-        prepare_buffers(&mut self.prepared, Self::ID, system, dt, &mut [&mut self.a])
+        if self.prepared.is_for(system, dt) {
+            return Ok(StepReport::default());
+        }
+        let mut checked = Prepared::default();
+        prepare_buffers(&mut checked, Self::ID, system, dt, &mut [&mut self.a])?;
+        if let Some(patches) = &mut self.patches {
+            self.prepared = Prepared::default();
+            patches.prepare(system, Self::ID, dt)?;
+        }
+        self.prepared = checked;
+        Ok(StepReport::default())
     }
 
     fn stable_step(&self, system: &dyn System) -> Result<StableStep, SetupError> {
+        if let Some(patches) = &self.patches {
+            return patches.stable_step(system, Self::ID);
+        }
         limits::central_difference(Self::ID, system)
     }
 
@@ -75,6 +97,17 @@ impl Integrator for CentralDifference {
         work += acceleration(system, state, state.t, &mut self.a)?;
         // The net force holds alpha M v- already: v+ - v- = dt a/(1 + alpha dt/2).
         let alpha = system.mass_damping();
+        let patches = self.patches.as_mut().and_then(AutoPatches::made);
+        let patched = patches.is_some();
+        if let Some(patches) = patches {
+            if running {
+                patches.accelerate(&mut self.a);
+            } else {
+                patches.accelerate_start(&mut self.a, &state.v, alpha, dt);
+            }
+            work.solves += 1;
+            state.a.clone_from(&state.v);
+        }
         let implicit = 1.0 / (1.0 + alpha * dt / 2.0);
         for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&self.a) {
             *v += if running {
@@ -84,10 +117,31 @@ impl Integrator for CentralDifference {
             };
             *u += dt * *v;
         }
+        state.a_time = f64::NEG_INFINITY;
+        if patched {
+            // Kept so that the velocity at the displacement's time can be had: M^-1 of the force is
+            // not the acceleration of a patch.
+            let taken = if running { dt } else { dt / 2.0 };
+            for (a, v) in state.a.iter_mut().zip(&state.v) {
+                *a = (v - *a) / taken;
+            }
+            state.a_time = state.t;
+        }
         state.t += dt;
         state.v_time = state.t - dt / 2.0;
-        state.a_time = f64::NEG_INFINITY;
         system.accept(state);
         Ok(work)
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        self.patches
+            .as_ref()
+            .map_or_else(Vec::new, AutoPatches::facts)
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.patches
+            .as_ref()
+            .map_or_else(Vec::new, AutoPatches::remarks)
     }
 }

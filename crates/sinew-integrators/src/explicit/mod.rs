@@ -4,6 +4,11 @@ mod central_difference;
 mod forward_euler;
 mod guard;
 mod modified_leapfrog;
+#[cfg(feature = "implicit")]
+mod patches;
+#[cfg(not(feature = "implicit"))]
+#[path = "no_patches.rs"]
+mod patches;
 mod rk4;
 mod substeps;
 mod symplectic_euler;

@@ -21,6 +21,14 @@ impl Substeps {
     /// The option's key.
     pub const KEY: &'static str = "substeps";
 
+    /// The fewest equal parts (from 1 on) of a step of `dt` (s) that are no longer than nine tenths
+    /// of `limit` (s), which is above 0.
+    #[must_use]
+    pub fn parts_of(dt: f64, limit: f64) -> u32 {
+        // The subtrahend keeps a quotient like 3.0000000000000004 from costing one part more.
+        whole(dt / (MARGIN * limit) - 1e-9)
+    }
+
     /// Takes the option out of the others; `None` where it is absent.
     ///
     /// # Errors
@@ -44,16 +52,7 @@ impl Substeps {
     }
 }
 
-/// Parts of a step `dt` that are below nine tenths of the stable step `limit`.
-pub(super) fn parts_below(limit: f64, dt: f64) -> u32 {
-    if dt <= MARGIN * limit {
-        1
-    } else {
-        whole(dt / (MARGIN * limit))
-    }
-}
-
-/// The next whole number of parts.
+/// The next whole number of parts, from 1 on.
 pub(super) fn whole(parts: f64) -> u32 {
     parts.ceil().clamp(1.0, f64::from(u32::MAX)) as u32
 }
@@ -87,7 +86,9 @@ impl Substepped {
             Substeps::Fixed(parts) => Ok(parts),
             Substeps::Auto => match self.inner.stable_step(system)? {
                 StableStep::Any => Ok(1),
-                StableStep::UpTo(limit) if limit > 0.0 => Ok(parts_below(limit, dt)),
+                StableStep::UpTo(limit) if limit > 0.0 && dt.is_finite() => {
+                    Ok(Substeps::parts_of(dt, limit))
+                }
                 StableStep::UpTo(_) | StableStep::Unknown => Err(SetupError::Lacks {
                     integrator: self.inner.id(),
                     needs: "a stable step above 0 to choose sub-steps by",
@@ -148,5 +149,9 @@ impl Integrator for Substepped {
             });
         }
         facts
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.inner.remarks()
     }
 }

@@ -1,7 +1,7 @@
 //! Methods that solve a linear system in each step, by a sparse factor that is kept.
 
 mod engine;
-mod factor;
+pub(crate) mod factor;
 mod generalized_alpha;
 mod implicit_euler;
 mod modal;

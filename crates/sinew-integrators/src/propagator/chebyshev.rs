@@ -8,7 +8,7 @@ use super::series::{interpolate, nodes, tails};
 use super::{HIGHEST_DEGREE, ID, Resolution, load_not_smooth};
 
 /// By how much the largest eigenvalue, which Lanczos finds from below, is raised.
-const MARGIN: f64 = 1e-3;
+pub(super) const LARGEST_EIGENVALUE_MARGIN: f64 = 1e-3;
 /// Largest growth of a Chebyshev vector that rounding can explain. Outside the interval they grow
 /// like powers, so a wrong interval shows at once.
 const GROWTH: f64 = 1.05;
@@ -53,7 +53,7 @@ struct Series {
 impl Series {
     fn new(operators: &LinearOperators, dt: f64) -> Self {
         let spectrum = Spectrum::of(operators);
-        let interval = spectrum.omega_max.powi(2) * (1.0 + MARGIN);
+        let interval = spectrum.omega_max.powi(2) * (1.0 + LARGEST_EIGENVALUE_MARGIN);
         let (alpha, beta) = (spectrum.mass_damping, spectrum.stiffness_damping);
         let fastest = spectrum.omega_max + alpha + beta * interval;
         // Enough for coefficients that fall from degree omega dt/2 on; a strongly damped mode falls
@@ -219,31 +219,9 @@ impl Chebyshev {
                 needs: "proportional damping (D = alpha M + beta K, no dashpots); kind = \"krylov\" takes any",
             });
         }
-        let Resolution { tolerance, degree } = resolution;
         let mut series = Series::new(operators, dt);
         let left_out = series.left_out(dt);
-        let enough = left_out.iter().position(|left| *left <= tolerance);
-        let enough = enough.filter(|degree| *degree <= HIGHEST_DEGREE);
-        let meets = |degree: usize| left_out.get(degree).is_none_or(|left| *left <= tolerance);
-        let degree = match (degree, enough) {
-            (None, Some(degree)) => degree.max(1),
-            (Some(degree), _) if meets(degree) => degree.min(left_out.len() - 1),
-            (asked, enough) => {
-                let reason = match (asked, enough) {
-                    (Some(degree), Some(enough)) => format!(
-                        "degree {degree} leaves out {:.1e} of the motion over a step of {dt} s; take degree {enough} or leave it out",
-                        left_out[degree]
-                    ),
-                    _ => format!(
-                        "a step of {dt} s needs a degree above {HIGHEST_DEGREE}; take a shorter step"
-                    ),
-                };
-                return Err(SetupError::Unresolved {
-                    integrator: ID,
-                    reason,
-                });
-            }
-        };
+        let degree = resolution.degree_for(&left_out, dt)?;
         series.estimate = left_out[degree];
         series.cut(degree);
         let buffer = || vec![0.0; operators.dofs()];

@@ -5,6 +5,7 @@ mod dense;
 mod krylov;
 mod mode;
 mod series;
+mod two_step;
 
 use chebyshev::Chebyshev;
 use krylov::Krylov;
@@ -14,7 +15,9 @@ use sinew_core::{
     System,
 };
 
-use crate::evaluate::begin;
+use two_step::TwoStep;
+
+use crate::evaluate::{begin, synchronise};
 use crate::{Method, OptionHelp};
 
 const ID: &str = "propagator";
@@ -44,6 +47,9 @@ pub enum PropagatorKind {
     /// Chebyshev's, on the interval of the eigenvalues: proportional damping, any ramp.
     #[default]
     Chebyshev,
+    /// Chebyshev's for the step from two displacements to the next, in half the sweeps: mass damping,
+    /// loads that jump on steps and are constant between. The velocity is the mean over a step.
+    TwoStep,
     /// Those that fit the state at hand best: any damping, loads constant or linear over a step.
     Krylov,
 }
@@ -57,8 +63,37 @@ struct Resolution {
     degree: Option<usize>,
 }
 
+impl Resolution {
+    /// The degree to take, where cutting a series at each degree leaves out so much.
+    fn degree_for(self, left_out: &[f64], dt: f64) -> Result<usize, SetupError> {
+        let meets = |degree: usize| {
+            left_out
+                .get(degree)
+                .is_none_or(|left| *left <= self.tolerance)
+        };
+        let enough = (0..left_out.len()).find(|degree| meets(*degree));
+        let enough = enough.filter(|degree| *degree <= HIGHEST_DEGREE);
+        let reason = match (self.degree, enough) {
+            (None, Some(degree)) => return Ok(degree.max(1)),
+            (Some(degree), _) if meets(degree) => return Ok(degree.min(left_out.len() - 1)),
+            (Some(degree), Some(enough)) => format!(
+                "degree {degree} leaves out {:.1e} of the motion over a step of {dt} s; take degree {enough} or leave it out",
+                left_out[degree]
+            ),
+            _ => format!(
+                "a step of {dt} s needs a degree above {HIGHEST_DEGREE}; take a shorter step"
+            ),
+        };
+        Err(SetupError::Unresolved {
+            integrator: ID,
+            reason,
+        })
+    }
+}
+
 #[derive(Debug)]
 enum Engine {
+    TwoStep(Box<TwoStep>),
     Chebyshev(Box<Chebyshev>),
     Krylov(Box<Krylov>),
 }
@@ -108,7 +143,7 @@ impl Method for Propagator {
     const OPTIONS: &'static [OptionHelp] = &[
         OptionHelp {
             key: KIND,
-            help: "\"chebyshev\" (default; proportional damping, any ramp) or \"krylov\" (any damping)",
+            help: "\"chebyshev\" (default; proportional damping, any ramp), \"two-step\" (half the sweeps; mass damping, loads constant over each step) or \"krylov\" (any damping)",
             shown_default: None,
         },
         OptionHelp {
@@ -127,13 +162,14 @@ impl Method for Propagator {
         let kind = match options.get(KIND) {
             None => PropagatorKind::default(),
             Some(OptionValue::Text(word)) if word == "chebyshev" => PropagatorKind::Chebyshev,
+            Some(OptionValue::Text(word)) if word == "two-step" => PropagatorKind::TwoStep,
             Some(OptionValue::Text(word)) if word == "krylov" => PropagatorKind::Krylov,
             Some(found) => {
                 return Err(OptionError::Value {
                     integrator: ID.into(),
                     key: KIND.into(),
                     found: found.clone(),
-                    expected: "\"chebyshev\" or \"krylov\"",
+                    expected: "\"chebyshev\", \"two-step\" or \"krylov\"",
                 });
             }
         };
@@ -184,6 +220,9 @@ impl Integrator for Propagator {
             PropagatorKind::Chebyshev => {
                 Engine::Chebyshev(Box::new(Chebyshev::set_up(operators, dt, resolution)?))
             }
+            PropagatorKind::TwoStep => {
+                Engine::TwoStep(Box::new(TwoStep::set_up(operators, dt, resolution)?))
+            }
             PropagatorKind::Krylov => {
                 Engine::Krylov(Box::new(Krylov::set_up(operators, dt, resolution)?))
             }
@@ -202,12 +241,15 @@ impl Integrator for Propagator {
         state: &mut State,
         dt: f64,
     ) -> Result<StepReport, StepError> {
+        if self.kind == PropagatorKind::TwoStep {
+            return self.step_staggered(system, state, dt);
+        }
         let mut work = begin(self, system, state, dt)?;
         if let Some(operators) = system.as_linear().map(LinearSystem::operators) {
             match &mut self.engine {
                 Some(Engine::Chebyshev(engine)) => work += engine.step(operators, state, dt)?,
                 Some(Engine::Krylov(engine)) => work += engine.step(operators, state, dt)?,
-                None => {}
+                Some(Engine::TwoStep(_)) | None => {}
             }
         }
         state.advance_to(state.t + dt);
@@ -218,9 +260,31 @@ impl Integrator for Propagator {
     fn facts(&self) -> Vec<Fact> {
         match &self.engine {
             Some(Engine::Chebyshev(engine)) => engine.facts(),
+            Some(Engine::TwoStep(engine)) => engine.facts(),
             Some(Engine::Krylov(engine)) => engine.facts(),
             None => Vec::new(),
         }
+    }
+}
+
+impl Propagator {
+    fn step_staggered(
+        &mut self,
+        system: &dyn System,
+        state: &mut State,
+        dt: f64,
+    ) -> Result<StepReport, StepError> {
+        let mut work = self.prepare(system, dt)?;
+        Prepared::check_state(ID, system, state)?;
+        if !TwoStep::is_running(state, dt) {
+            work += synchronise(system, state)?;
+        }
+        let operators = system.as_linear().map(LinearSystem::operators);
+        if let (Some(operators), Some(Engine::TwoStep(engine))) = (operators, &mut self.engine) {
+            work += engine.step(operators, state, dt)?;
+        }
+        system.accept(state);
+        Ok(work)
     }
 }
 

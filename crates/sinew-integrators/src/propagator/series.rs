@@ -23,6 +23,18 @@ pub(super) fn interpolate(values: &[f64], coefficients: &mut [f64]) {
     }
 }
 
+/// The series at a point of 0..`length`, by Clenshaw's recurrence.
+pub(super) fn evaluate(coefficients: &[f64], x: f64, length: f64) -> f64 {
+    let x = 2.0 * x / length - 1.0;
+    let (mut next, mut after) = (0.0, 0.0);
+    for coefficient in coefficients.iter().skip(1).rev() {
+        (next, after) = (coefficient + 2.0 * x * next - after, next);
+    }
+    coefficients
+        .first()
+        .map_or(0.0, |first| first + x * next - after)
+}
+
 /// The sum of |coefficients| beyond each degree: what cutting the series there leaves out at most.
 pub(super) fn tails(coefficients: &[f64]) -> Vec<f64> {
     let mut tails = vec![0.0; coefficients.len()];
@@ -47,6 +59,9 @@ mod tests {
         interpolate(&values, &mut coefficients);
         for (found, expected) in coefficients.iter().zip([3.0, 0.5, -2.0, 0.0, 0.0]) {
             assert!((found - expected).abs() < 1e-14);
+        }
+        for x in [0.0, 0.3, 1.0, 1.7, 2.0] {
+            assert!((evaluate(&coefficients, x, 2.0) - function(x)).abs() < 1e-14);
         }
         let tails = tails(&coefficients);
         assert!((tails[0] - 2.5).abs() < 1e-13 && tails[2] < 1e-13);

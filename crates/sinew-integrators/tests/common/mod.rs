@@ -13,6 +13,8 @@ pub(crate) mod cube;
 #[path = "../../../sinew-cnn/tests/common/dense.rs"]
 pub(crate) mod dense;
 pub(crate) mod dense_methods;
+pub(crate) mod exponential;
+pub(crate) mod sliver;
 
 use std::collections::BTreeMap;
 

@@ -29,7 +29,12 @@ impl<'a> Taylor<'a> {
     /// For these matrices. `refinement` above 1 takes shorter steps, for a check by comparison.
     #[must_use]
     pub fn new(operators: &'a LinearOperators, refinement: f64) -> Self {
-        let spectrum = Spectrum::of(operators);
+        Self::within(operators, &Spectrum::of(operators), refinement)
+    }
+
+    /// As [`Taylor::new`], where the spectrum of the matrices is known.
+    #[must_use]
+    pub fn within(operators: &'a LinearOperators, spectrum: &Spectrum, refinement: f64) -> Self {
         let damping = spectrum.mass_damping + spectrum.damping_max;
         // |lambda|^2 <= d |lambda| + w^2 for every root.
         let half = damping / 2.0;
@@ -51,6 +56,12 @@ impl<'a> Taylor<'a> {
             next: vec![0.0; dofs],
             sweeps: 0,
         }
+    }
+
+    /// The longest step (s) it takes by itself.
+    #[must_use]
+    pub fn longest_step(&self) -> f64 {
+        self.longest_step
     }
 
     /// Moves `state`, whose velocity must hold at its time, to time `t` (s). `each_step` sees the

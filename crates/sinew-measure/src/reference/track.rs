@@ -1,6 +1,7 @@
 //! A reference at the instants a comparison needs.
 
-use sinew_core::{LinearOperators, State, System};
+use sinew_core::spectrum::Spectrum;
+use sinew_core::{State, System};
 
 use super::Taylor;
 
@@ -51,8 +52,10 @@ const ALLOWED: f64 = 1e-6;
 /// [`ReferenceError`] when the system is not linear or the two solutions differ by more than 1e-6.
 pub fn follow(system: &dyn System, start: &State, times: &[f64]) -> Result<Track, ReferenceError> {
     let linear = system.as_linear().ok_or(ReferenceError::NotLinear)?;
-    let mut track = solve(linear.operators(), start, times, 1.0);
-    let check = solve(linear.operators(), start, times, 1.5);
+    let operators = linear.operators();
+    let spectrum = Spectrum::of(operators);
+    let mut track = solve(Taylor::within(operators, &spectrum, 1.0), start, times);
+    let check = solve(Taylor::within(operators, &spectrum, 1.5), start, times);
     track.error = relative_difference(&check.displacements, &track.displacements);
     track.sweeps += check.sweeps;
     if track.error <= ALLOWED {
@@ -64,8 +67,7 @@ pub fn follow(system: &dyn System, start: &State, times: &[f64]) -> Result<Track
     })
 }
 
-fn solve(operators: &LinearOperators, start: &State, times: &[f64], refinement: f64) -> Track {
-    let mut taylor = Taylor::new(operators, refinement);
+fn solve(mut taylor: Taylor<'_>, start: &State, times: &[f64]) -> Track {
     let mut state = start.clone();
     let mut late = LateRange::new(start.u.len());
     let duration = times.last().copied().unwrap_or(0.0);

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 /// The integrator's id and its options, abbreviated where the field has a symbol or a usual phrase:
 /// `cnn Q=4`, `central-difference substeps=3`, `cnn-stabilised chebyshev 4`.
-pub(super) fn label(integrator: &str, options: &BTreeMap<String, Value>) -> String {
+pub(crate) fn label(integrator: &str, options: &BTreeMap<String, Value>) -> String {
     let mut label = integrator.to_owned();
     // The kind of a method comes before its figures.
     let (kinds, others): (Vec<_>, Vec<_>) = options.iter().partition(|(key, _)| *key == "kind");

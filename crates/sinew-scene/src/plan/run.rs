@@ -1,10 +1,10 @@
 //! The run: steps, and whether they are short enough.
 
-use sinew_core::StableStep;
+use sinew_core::{StableStep, element_omegas_squared};
 
 use super::Plan;
 use super::number::{count, short};
-use crate::scene::RunSettings;
+use crate::scene::{RunSettings, TimeStep};
 use crate::simulation::Simulation;
 
 pub(super) fn describe(simulation: &Simulation, plan: &mut Plan) {
@@ -12,15 +12,23 @@ pub(super) fn describe(simulation: &Simulation, plan: &mut Plan) {
         duration,
         samples,
         integrator: id,
-        dt,
+        dt: asked,
         options,
     } = simulation.settings();
+    let dt = &simulation.dt();
     let options: Vec<String> = options
         .iter()
         .map(|(key, value)| format!(", {key} = {value}"))
         .collect();
     let mut lines = vec![
-        format!("`{id}`, dt = {dt} s{}", options.concat()),
+        match asked {
+            TimeStep::Given(_) => format!("`{id}`, dt = {dt} s{}", options.concat()),
+            TimeStep::Auto => format!(
+                "`{id}`, dt = \"auto\": {} s{}",
+                short(*dt),
+                options.concat()
+            ),
+        },
         format!(
             "{} for {duration} s, error taken at {} instants",
             count(simulation.run().steps, "step"),
@@ -53,9 +61,20 @@ pub(super) fn describe(simulation: &Simulation, plan: &mut Plan) {
                     _ => format!("`{id}` is unstable on this scene at any dt"),
                 });
             }
+            if let StableStep::UpTo(limit) = stable_step
+                && limit > 0.0
+            {
+                lines.extend(stiffest_element(simulation));
+            }
             plan.stable_step = stable_step;
         }
         Err(error) => plan.warnings.push(error),
+    }
+    // A method that makes patches names the elements they hold.
+    if let Ok(mut integrator) = simulation.integrator()
+        && integrator.prepare(simulation.system(), *dt).is_ok()
+    {
+        lines.extend(integrator.remarks());
     }
     if dt > duration {
         plan.warnings.push(format!(
@@ -63,4 +82,35 @@ pub(super) fn describe(simulation: &Simulation, plan: &mut Plan) {
         ));
     }
     plan.add("run", lines);
+}
+
+/// Elements whose own step is shorter than half the usual stand out.
+const STANDS_OUT: f64 = 0.5;
+
+/// Which element sets the step, if one does.
+fn stiffest_element(simulation: &Simulation) -> Option<String> {
+    let linear = simulation.system().as_linear()?;
+    let elements = linear.elements()?;
+    let omegas = element_omegas_squared(elements, linear.operators().mass());
+    // Steps (s) that single elements would allow.
+    let step = |omega_squared: f64| 2.0 / omega_squared.max(0.0).sqrt();
+    let mut steps: Vec<(f64, usize)> = omegas.iter().map(|w2| step(*w2)).zip(0..).collect();
+    steps.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (&(shortest, worst), &(usual, _)) = (steps.first()?, steps.get(steps.len() / 2)?);
+    if shortest >= STANDS_OUT * usual {
+        return Some("no element sets the step alone: all allow about the same".to_owned());
+    }
+    let below = steps.partition_point(|(step, _)| *step < STANDS_OUT * usual);
+    Some(format!(
+        "{} sets the step: alone it would allow {} s, the usual element {} s; {} below half of \
+         that, for which `central-difference` has patches = \"auto\"",
+        elements.name(worst),
+        short(shortest),
+        short(usual),
+        if below == 1 {
+            "no other is".to_owned()
+        } else {
+            format!("{below} are")
+        },
+    ))
 }

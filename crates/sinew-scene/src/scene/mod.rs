@@ -21,7 +21,7 @@ pub use initial::Initial;
 pub use mesh::MeshSource;
 pub use oscillator::Oscillator;
 pub use probe::ProbePoint;
-pub use run::RunSettings;
+pub use run::{RunSettings, TimeStep};
 
 use crate::decode::value::{text, vector};
 use crate::decode::{Place, Table};
@@ -72,6 +72,7 @@ pub(crate) struct Places {
     pub(crate) fixed: Vec<Place>,
     pub(crate) loads: Vec<Place>,
     pub(crate) initial: Vec<Place>,
+    pub(crate) run: Place,
 }
 
 impl Places {
@@ -176,6 +177,7 @@ impl Scene {
             fixed: Vec::new(),
             loads: Vec::new(),
             initial: Vec::new(),
+            run: document.place().clone(),
         };
         document.exactly_one(&["mesh", "oscillator"])?;
         let subject = match document.table("oscillator", oscillator::KEYS)? {
@@ -190,10 +192,12 @@ impl Scene {
         let run = document
             .open_table("run", run::KEYS)?
             .ok_or_else(|| document.missing("run", "a table [run]"))?;
+        let settings = RunSettings::read(&run)?;
+        places.run = run.into_place();
         Ok(Self {
             title,
             subject,
-            run: RunSettings::read(&run)?,
+            run: settings,
             places,
         })
     }

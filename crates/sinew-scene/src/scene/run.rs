@@ -20,10 +20,20 @@ pub struct RunSettings {
     pub samples: usize,
     /// Id of the integrator.
     pub integrator: String,
-    /// Step (s).
-    pub dt: f64,
+    /// Step, as asked for.
+    pub dt: TimeStep,
     /// The integrator's own options.
     pub options: Options,
+}
+
+/// A step as a scene asks for it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TimeStep {
+    /// This one (s).
+    Given(f64),
+    /// The longest below nine tenths of the integrator's stable step that meets all instants at
+    /// which the error is taken.
+    Auto,
 }
 
 pub(super) const KEYS: &[&str] = &["duration", "samples", "integrator", "dt"];
@@ -32,30 +42,29 @@ const MOST_SAMPLES: usize = 1_000_000;
 
 impl RunSettings {
     pub(super) fn read(table: &Table<'_>) -> Result<Self, SceneError> {
+        let integrator = table.required("integrator", "the id of an integrator", text)?;
+        // Before the other keys, so that a misspelt key is not reported as a missing one.
+        let options = options(table)?;
+        sinew_integrators::build(&integrator, &options)
+            .map_err(|error| refused(error, table.place()))?;
         let samples = format!("a whole number from 1 to {MOST_SAMPLES}");
         let samples = table.optional("samples", &samples, count_up_to(MOST_SAMPLES))?;
-        let settings = Self {
+        Ok(Self {
             duration: table.required("duration", "a finite time above 0 s", above_zero)?,
             samples: samples.unwrap_or(50),
-            integrator: table.required("integrator", "the id of an integrator", text)?,
-            dt: step(table)?,
-            options: options(table)?,
-        };
-        sinew_integrators::build(&settings.integrator, &settings.options)
-            .map_err(|error| refused(error, table.place()))?;
-        Ok(settings)
+            integrator,
+            dt: table.required("dt", "a finite step above 0 s, or \"auto\"", step)?,
+            options,
+        })
     }
 }
 
-fn step(run: &Table<'_>) -> Result<f64, SceneError> {
-    run.required("dt", "a finite step above 0 s", above_zero)
-        .map_err(|error| match error.fault() {
-            Fault::Type { .. } => error.with_help(
-                "a scene always gives dt; with substeps = \"auto\" an explicit integrator cuts it \
-                 into stable parts",
-            ),
-            _ => error,
-        })
+fn step(value: &DeValue<'_>) -> Result<TimeStep, Misfit> {
+    match value.as_str() {
+        Some("auto") => Ok(TimeStep::Auto),
+        Some(_) => Err(Misfit::Value),
+        None => above_zero(value).map(TimeStep::Given),
+    }
 }
 
 fn refused(error: OptionError, run: &Place) -> SceneError {

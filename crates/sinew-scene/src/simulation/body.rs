@@ -1,16 +1,17 @@
 //! The mesh of a scene and the matrices on it.
 
 use sinew_fem::{Cause, FemError, Item, Model};
-use sinew_mesh::{TetMesh, UnknownGroup, structured};
+use sinew_mesh::{UnknownGroup, structured};
 
-use super::BodyModel;
-use crate::decode::Place;
+use super::{BodyModel, MeshAndWarnings};
 use crate::error::{Fault, SceneError};
 use crate::scene::{Body, GRAVITY, MeshSource, Places};
 
-pub(super) fn build(body: &Body, places: &Places) -> Result<BodyModel, SceneError> {
-    let place = places.mesh.as_ref().unwrap_or(&places.document);
-    let (mesh, mesh_warnings) = mesh(&body.mesh, place)?;
+pub(super) fn build(
+    body: &Body,
+    (mesh, mesh_warnings): MeshAndWarnings,
+    places: &Places,
+) -> Result<BodyModel, SceneError> {
     let model = Model::build(&mesh, &body.problem).map_err(|error| refused(error, places))?;
     Ok(BodyModel {
         mesh,
@@ -19,8 +20,10 @@ pub(super) fn build(body: &Body, places: &Places) -> Result<BodyModel, SceneErro
     })
 }
 
-fn mesh(source: &MeshSource, place: &Place) -> Result<(TetMesh, Vec<String>), SceneError> {
-    match source {
+/// Makes or reads the mesh that `[mesh]` names.
+pub(super) fn mesh(body: &Body, places: &Places) -> Result<MeshAndWarnings, SceneError> {
+    let place = places.mesh.as_ref().unwrap_or(&places.document);
+    match &body.mesh {
         MeshSource::Cube { cells, edge, split } => {
             let cube = structured::cube(*cells, *edge, *split);
             let mesh = cube.map_err(|error| place.value_fault("cube", error.into()))?;

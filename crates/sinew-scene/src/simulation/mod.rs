@@ -3,6 +3,7 @@
 mod body;
 mod probe;
 mod start;
+mod step;
 
 use sinew_core::{
     Integrator, LinearModel, LinearOperators, Load, OptionError, Ramp, Run, State, System,
@@ -14,7 +15,10 @@ pub use probe::{NearestNode, Probe};
 
 use crate::error::{Fault, SceneError};
 use crate::plan::Plan;
-use crate::scene::{Oscillator, RunSettings, Scene, Subject};
+use crate::scene::{Body, Oscillator, Places, RunSettings, Scene, Subject};
+
+/// A mesh and what its reader accepted but a user should know.
+type MeshAndWarnings = (TetMesh, Vec<String>);
 
 /// A scene made ready to run. All its files are read.
 #[derive(Debug)]
@@ -23,6 +27,7 @@ pub struct Simulation {
     model: SceneModel,
     initial: State,
     probes: Vec<Probe>,
+    dt: f64,
 }
 
 /// What moves, with its matrices.
@@ -71,9 +76,26 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with the line of the scene that asks for what cannot be had.
     pub fn build(self) -> Result<Simulation, SceneError> {
+        self.assemble(body::mesh)
+    }
+
+    /// As [`Scene::build`], on a mesh at hand (m) in place of the one that `[mesh]` names. An
+    /// oscillator has no use for it.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the line of the scene that asks for what this mesh does not have.
+    pub fn build_on(self, mesh: TetMesh) -> Result<Simulation, SceneError> {
+        self.assemble(|_, _| Ok((mesh, Vec::new())))
+    }
+
+    fn assemble(
+        self,
+        mesh: impl FnOnce(&Body, &Places) -> Result<MeshAndWarnings, SceneError>,
+    ) -> Result<Simulation, SceneError> {
         let (model, initial, probes) = match self.subject() {
             Subject::Body(body) => {
-                let model = body::build(body, self.places())?;
+                let mesh = mesh(body, self.places())?;
+                let model = body::build(body, mesh, self.places())?;
                 let initial = start::state(body, self.places(), &model)?;
                 let probes = probe::of_body(&body.probes, &model);
                 (SceneModel::Body(Box::new(model)), initial, probes)
@@ -92,7 +114,10 @@ impl Scene {
                 )
             }
         };
+        let dt = step::seconds(self.run(), model.system())
+            .map_err(|fault| self.places().run.value_fault("dt", fault))?;
         Ok(Simulation {
+            dt,
             scene: self,
             model,
             initial,
@@ -151,6 +176,12 @@ impl Simulation {
         self.scene.run()
     }
 
+    /// The step (s), also where the scene leaves it to the integrator.
+    #[must_use]
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
     /// Points whose motion is written down; of an oscillator, its mass.
     #[must_use]
     pub fn probes(&self) -> &[Probe] {
@@ -170,8 +201,7 @@ impl Simulation {
     /// times its size.
     #[must_use]
     pub fn run(&self) -> Run {
-        let settings = self.settings();
-        let run = Run::covering(settings.duration, settings.dt);
+        let run = Run::covering(self.settings().duration, self.dt);
         match self.system().extent() {
             Some(extent) => run.with_divergence_limit(100.0 * extent),
             None => run,

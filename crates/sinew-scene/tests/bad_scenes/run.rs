@@ -47,7 +47,7 @@ fn half_a_sample() {
 fn zero_step() {
     insta::assert_snapshot!(
         refusal(BODY, "dt = 0.02", "dt = 0.0"),
-        @"scene.toml:23: [run]: dt = 0.0: expected a finite step above 0 s"
+        @r#"scene.toml:23: [run]: dt = 0.0: expected a finite step above 0 s, or "auto""#
     );
 }
 
@@ -55,18 +55,56 @@ fn zero_step() {
 fn backwards_step() {
     insta::assert_snapshot!(
         refusal(BODY, "dt = 0.02", "dt = -0.02"),
-        @"scene.toml:23: [run]: dt = -0.02: expected a finite step above 0 s"
+        @r#"scene.toml:23: [run]: dt = -0.02: expected a finite step above 0 s, or "auto""#
     );
 }
 
 #[test]
-fn automatic_step() {
+fn automatic_step_of_a_method_without_a_limit() {
     insta::assert_snapshot!(
         refusal(BODY, "dt = 0.02", "dt = \"auto\""),
         @r#"
-    scene.toml:23: [run]: dt = "auto": expected a finite step above 0 s, found a string
-    help: a scene always gives dt; with substeps = "auto" an explicit integrator cuts it into stable parts
+    scene.toml:23: [run]: dt = "auto" needs an integrator with a largest stable step: `newmark` is stable at any step
+    help: give dt in s; `sinew plan --tolerance` finds one that is accurate enough
     "#
+    );
+}
+
+#[test]
+fn automatic_step_of_a_method_that_is_never_stable() {
+    let undamped = BODY.replace("mass = 80.0", "mass = 0.0");
+    let body = undamped.replace("\"newmark\"", "\"forward-euler\"");
+    insta::assert_snapshot!(
+        refusal(&body, "dt = 0.02", "dt = \"auto\""),
+        @r#"
+    scene.toml:23: [run]: dt = "auto" needs an integrator with a largest stable step: `forward-euler` is stable at no step on this scene
+    help: give dt in s; `sinew plan --tolerance` finds one that is accurate enough
+    "#
+    );
+}
+
+#[test]
+fn automatic_step_that_substeps_leave_nothing_to() {
+    let body = BODY.replace("\"newmark\"", "\"rk4\"\nsubsteps = \"auto\"");
+    insta::assert_snapshot!(refusal(&body, "dt = 0.02", "dt = \"auto\""), @r#"
+    scene.toml:24: [run]: dt = "auto" needs an integrator with a largest stable step: `rk4` is stable at any step
+    help: give dt in s; `sinew plan --tolerance` finds one that is accurate enough
+    "#);
+}
+
+#[test]
+fn a_word_that_is_no_step() {
+    insta::assert_snapshot!(
+        refusal(BODY, "dt = 0.02", "dt = \"fast\""),
+        @r#"scene.toml:23: [run]: dt = "fast": expected a finite step above 0 s, or "auto""#
+    );
+}
+
+#[test]
+fn a_misspelt_step_is_not_called_missing() {
+    insta::assert_snapshot!(
+        refusal(BODY, "dt = 0.02", "dtt = 0.02"),
+        @r#"scene.toml:23: [run]: `newmark` has no option `dtt`; it takes `beta`, `gamma`"#
     );
 }
 

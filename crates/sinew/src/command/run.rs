@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use sinew_core::{Integrator, Outcome, RunReport, simulate};
-use sinew_integrators::explicit::Guarded;
+use sinew_core::{Outcome, RunReport, simulate};
 use sinew_scene::{ProbeCsv, Scene, Simulation};
 
 use super::{Failure, say};
@@ -34,7 +33,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|error| Failure::Input(error.to_string()))?;
     let system = simulation.system();
     integrator
-        .prepare(system, simulation.settings().dt)
+        .prepare(system, simulation.dt())
         .map_err(|error| Failure::Input(error.to_string()))?;
     let mut csv = ProbeCsv::create(&path, simulation.probes()).map_err(cannot_write)?;
     let mut state = simulation.initial_state().clone();
@@ -43,7 +42,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|error| Failure::Run(error.to_string()))?;
     let written = csv.finish().map_err(cannot_write)?;
 
-    say(&summary(&simulation, &*integrator, &report));
+    say(&summary(&simulation, &report));
+    for remark in integrator.remarks() {
+        say(&remark);
+    }
     for probe in simulation.probes() {
         let u: Vec<String> = probe
             .displacement(&state.u)
@@ -66,7 +68,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-fn summary(simulation: &Simulation, integrator: &dyn Integrator, report: &RunReport) -> String {
+fn summary(simulation: &Simulation, report: &RunReport) -> String {
     let settings = simulation.settings();
     let pairs = report.steps as f64 * simulation.system().dofs() as f64;
     let work = report.work;
@@ -74,18 +76,11 @@ fn summary(simulation: &Simulation, integrator: &dyn Integrator, report: &RunRep
         "{}: {} steps of {} s by `{}`: {} sweeps, {} solves",
         simulation.scene().title(),
         report.steps,
-        settings.dt,
+        simulation.dt(),
         settings.integrator,
         work.sweeps,
         work.solves
     );
-    let mut facts = integrator.facts().into_iter();
-    if let Some(parts) = facts.find(|fact| fact.name == Guarded::SUBSTEPS && fact.value > 1.0) {
-        text.push_str(&format!(
-            "\nthe guard took each step in {} parts: whole, it is longer than the stable step of `{}`",
-            parts.value, settings.integrator
-        ));
-    }
     if work.saturated > 0 {
         let share = 100.0 * work.saturated as f64 / pairs;
         text.push_str(&format!(

@@ -12,7 +12,7 @@ use sinew_core::{
     StepReport, System,
 };
 
-use super::substeps;
+use super::substeps::{Substeps, whole};
 use clamp::Clamp;
 use limits::Limits;
 pub use option::{Guard, GuardOption};
@@ -85,14 +85,14 @@ impl Guarded {
             StableStep::Any => 1,
             StableStep::UpTo(limit) if dt <= limit => 1,
             StableStep::UpTo(limit) if limit > 0.0 => {
-                let stable = substeps::parts_below(limit, dt);
+                let stable = Substeps::parts_of(dt, limit);
                 if within_stable_step {
                     stable
                 } else {
-                    stable.min(substeps::whole(moved))
+                    stable.min(whole(moved))
                 }
             }
-            StableStep::UpTo(_) | StableStep::Unknown => substeps::whole(moved),
+            StableStep::UpTo(_) | StableStep::Unknown => whole(moved),
         })
     }
 }
@@ -168,5 +168,17 @@ impl Integrator for Guarded {
             ]);
         }
         facts
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let mut remarks = self.inner.remarks();
+        if self.parts > 1 {
+            remarks.push(format!(
+                "the guard took each step in {} parts: whole, it is longer than the stable step of `{}`",
+                self.parts,
+                self.inner.id()
+            ));
+        }
+        remarks
     }
 }

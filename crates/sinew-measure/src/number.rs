@@ -1,22 +1,26 @@
 //! Numbers as people read them.
 
 /// Three significant digits, trailing zeros kept: they are digits too.
-pub(crate) fn three(x: f64) -> String {
+#[must_use]
+pub fn three(x: f64) -> String {
     significant(x, 3)
 }
 
 /// Two significant digits: of figures that were published with no more.
-pub(crate) fn two(x: f64) -> String {
+#[must_use]
+pub fn two(x: f64) -> String {
     significant(x, 2)
 }
 
 /// A fraction in per cent, three significant digits, without the sign.
-pub(crate) fn percent(fraction: f64) -> String {
+#[must_use]
+pub fn percent(fraction: f64) -> String {
     three(100.0 * fraction)
 }
 
 /// A chosen number, such as a step, without trailing zeros.
-pub(crate) fn short(x: f64) -> String {
+#[must_use]
+pub fn short(x: f64) -> String {
     let text = significant(x, 4);
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, ""));
     let mantissa = if mantissa.contains('.') {
@@ -32,7 +36,8 @@ pub(crate) fn short(x: f64) -> String {
 }
 
 /// Seconds as milliseconds, without the unit.
-pub(crate) fn milliseconds(seconds: f64) -> String {
+#[must_use]
+pub fn milliseconds(seconds: f64) -> String {
     short(1e3 * seconds)
 }
 

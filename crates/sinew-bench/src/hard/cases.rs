@@ -1,0 +1,113 @@
+//! Which methods a hard case is given to, at which steps.
+
+use sinew_measure::Method;
+
+use super::methods::{block, chebyshev, cnn, cut, gauss_seidel, guarded, patched};
+
+/// A scene with its runs.
+pub(crate) struct HardCase {
+    /// The scene's file, from the folder of scenes.
+    pub(crate) scene: &'static str,
+    pub(crate) methods: Vec<Method>,
+    /// Steps (s).
+    pub(crate) steps: &'static [f64],
+    /// Left out of a quick run: its reference alone takes seconds.
+    pub(crate) slow: bool,
+}
+
+/// Everything that the cases of the paper's own kind are given to.
+fn rivals() -> Vec<Method> {
+    vec![
+        cnn(),
+        block(),
+        chebyshev(4),
+        chebyshev(8),
+        gauss_seidel(4),
+        Method::new("central-difference"),
+        cut("central-difference"),
+        cut("modified-leapfrog"),
+        Method::new("newmark"),
+        Method::new("implicit-euler"),
+    ]
+}
+
+/// And those that single out bad elements.
+fn rivals_and_patches() -> Vec<Method> {
+    let mut methods = rivals();
+    methods.push(patched());
+    methods
+}
+
+/// And those that a saturation of the scene's own guards.
+fn rivals_and_guards() -> Vec<Method> {
+    let mut methods = rivals();
+    methods.extend(["central-difference", "cnn", "cnn-symplectic"].map(guarded));
+    methods
+}
+
+/// Nothing of the network but its most and its least work; methods that keep their energy.
+fn conservative() -> Vec<Method> {
+    vec![
+        block(),
+        chebyshev(4),
+        chebyshev(8),
+        Method::new("central-difference"),
+        Method::new("newmark"),
+        Method::new("implicit-euler"),
+    ]
+}
+
+/// For damping that no explicit step can follow.
+fn stiffly_damped() -> Vec<Method> {
+    vec![
+        cnn(),
+        block(),
+        chebyshev(8),
+        chebyshev(16),
+        chebyshev(32),
+        Method::new("central-difference"),
+        cut("central-difference"),
+        Method::new("newmark"),
+        Method::new("implicit-euler"),
+    ]
+}
+
+/// In the order of the pass marks.
+pub(crate) fn all() -> Vec<HardCase> {
+    let case = |scene, methods, steps: &'static [f64]| HardCase {
+        scene,
+        methods,
+        steps,
+        slow: false,
+    };
+    let slow = |case: HardCase| HardCase { slow: true, ..case };
+    vec![
+        case("paper-cube.toml", rivals(), &[0.02]),
+        case("hard/undamped.toml", conservative(), &[0.05, 0.25, 2.5]),
+        slow(case("hard/critical-damping.toml", rivals(), &[0.02])),
+        case(
+            "hard/stiffness-damping-0.49.toml",
+            stiffly_damped(),
+            &[0.02],
+        ),
+        slow(case(
+            "hard/stiffness-damping-0.499.toml",
+            stiffly_damped(),
+            &[0.02],
+        )),
+        case("hard/no-sliver.toml", rivals_and_patches(), &[0.005]),
+        case("hard/sliver-20.toml", rivals_and_patches(), &[0.005]),
+        case("hard/sliver-100.toml", rivals_and_patches(), &[0.005]),
+        case("hard/sliver-1000.toml", rivals_and_patches(), &[0.005]),
+        slow(case(
+            "hard/stiff-inclusion.toml",
+            rivals_and_patches(),
+            &[0.005, 0.02],
+        )),
+        case("hard/nearly-free.toml", rivals(), &[0.01, 0.02]),
+        case("hard/impulsive-tool.toml", rivals_and_guards(), &[0.02]),
+        case("hard/released-bar.toml", conservative(), &[0.005, 0.02]),
+        case("hard/long-run.toml", conservative(), &[0.005, 0.01]),
+        slow(case("hard/symmetric-load.toml", rivals(), &[0.02])),
+    ]
+}

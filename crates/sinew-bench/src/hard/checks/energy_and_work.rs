@@ -1,0 +1,52 @@
+//! What a method adds to the energy beside the work of the loads.
+
+use sinew_measure::{Case, Method};
+
+use super::at;
+use crate::hard::hard_run::run_with_energies;
+use crate::hard::mark::{Asked, Mark, Worst};
+use crate::hard::methods::{block, chebyshev, cnn, gauss_seidel};
+use crate::report::three;
+
+/// The largest excess of the energy over E0 and the work so far, as a share of them, among the
+/// methods that promise there is none.
+pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
+    let dt = case.simulation().dt();
+    let critical = case.critical_step().ok_or("nothing vibrates")?;
+    let promising = [
+        (block(), dt),
+        (chebyshev(4), dt),
+        (chebyshev(8), dt),
+        (gauss_seidel(4), dt),
+        (Method::new("newmark"), dt),
+        (Method::new("central-difference"), 0.9 * critical),
+    ];
+    let mut worst = Worst::default();
+    let mut names = Vec::new();
+    for (method, dt) in &promising {
+        let excess = excess(case, method, *dt)?;
+        names.push(at(&method.label(), *dt));
+        worst.include(excess, at(&method.label(), *dt));
+    }
+    let paper = excess(case, &cnn(), dt)?;
+    let note = format!(
+        "largest of: {}; the paper's network at this step: {}",
+        names.join("; "),
+        without_bound_or(paper)
+    );
+    Ok(asked.measured(worst.figure, three, worst.by).noting(note))
+}
+
+/// An excess in words.
+fn without_bound_or(excess: f64) -> String {
+    if excess.is_finite() {
+        three(excess)
+    } else {
+        "beyond all bounds".into()
+    }
+}
+
+fn excess(case: &Case, method: &Method, dt: f64) -> Result<f64, String> {
+    let (_, energies) = run_with_energies(case, method, dt, case.run(dt).steps)?;
+    Ok(energies.excess)
+}

@@ -1,0 +1,104 @@
+//! A run on a hard case: a row with the figures that only hard cases have.
+
+use sinew_core::{Run, State, simulate};
+use sinew_integrators::static_solution;
+use sinew_measure::{Case, Effort, Method, Row, finite, measure};
+
+use super::energy::{Energies, Ledger};
+
+/// Distance from equilibrium (relative) below which a reference counts as come to rest.
+const AT_REST: f64 = 1e-3;
+
+/// Measures a method on a case, with its step over the critical one and, where they apply, its
+/// distance from equilibrium at the end and the drift of its energy.
+///
+/// # Errors
+/// A reason in words when the method cannot run on this case at all.
+pub(crate) fn hard_row(
+    case: &mut Case,
+    method: &Method,
+    dt: f64,
+    effort: Effort,
+) -> Result<Row, String> {
+    let mut row = measure(case, method, dt, effort)?;
+    row.step_over_critical = case.critical_step().map(|critical| dt / critical);
+    if row.error.is_none() {
+        return Ok(row);
+    }
+    let equilibrium = equilibrium(case);
+    let keeps_energy =
+        keeps_energy(case) && !method.options.iter().any(|(key, _)| key == "substeps");
+    if equilibrium.is_none() && !keeps_energy {
+        return Ok(row);
+    }
+    let (state, energies) = run_with_energies(case, method, dt, case.run(dt).steps)?;
+    row.static_error = equilibrium.and_then(|rest| finite(relative_distance(&state.u, &rest)));
+    if keeps_energy {
+        row.energy_drift = finite(energies.drift.abs() * 1000.0 / row.steps as f64);
+    }
+    Ok(row)
+}
+
+/// The last state and the energies of so many steps.
+pub(crate) fn run_with_energies(
+    case: &Case,
+    method: &Method,
+    dt: f64,
+    steps: usize,
+) -> Result<(State, Energies), String> {
+    let words = |error: &dyn std::fmt::Display| error.to_string();
+    let system = case.simulation().system();
+    let linear = system
+        .as_linear()
+        .ok_or("needs the matrices of a linear system")?;
+    let mut integrator = sinew_integrators::build(&method.integrator, &method.options)
+        .map_err(|error| words(&error))?;
+    integrator
+        .prepare(system, dt)
+        .map_err(|error| words(&error))?;
+    let mut ledger = Ledger::of(linear.operators(), &*integrator);
+    let mut state = case.simulation().initial_state().clone();
+    let run = Run {
+        steps,
+        ..case.run(dt)
+    };
+    simulate(system, &mut *integrator, &mut state, &run, &mut ledger)
+        .map_err(|error| words(&error))?;
+    Ok((state, ledger.found))
+}
+
+/// The displacement (m) at rest under the loads at the end, where the reference comes to rest
+/// there.
+pub(crate) fn equilibrium(case: &Case) -> Option<Vec<f64>> {
+    let linear = case.simulation().system().as_linear()?;
+    let mut force = vec![0.0; linear.operators().dofs()];
+    let end = case.simulation().settings().duration;
+    linear.operators().external_force(end, &mut force);
+    if force.iter().all(|force| *force == 0.0) {
+        return None;
+    }
+    let rest = static_solution(linear, &force).ok()?;
+    let last = case.samples().displacements.last()?;
+    (relative_distance(last, &rest) <= AT_REST).then_some(rest)
+}
+
+/// Whether nothing damps or loads the system.
+fn keeps_energy(case: &Case) -> bool {
+    case.simulation()
+        .system()
+        .as_linear()
+        .is_some_and(|linear| {
+            let operators = linear.operators();
+            let damping = operators.damping();
+            damping.mass == 0.0
+                && damping.stiffness == 0.0
+                && damping.extra.is_none()
+                && operators.loads().is_empty()
+        })
+}
+
+/// `||a - b|| / ||b||`.
+pub(crate) fn relative_distance(a: &[f64], b: &[f64]) -> f64 {
+    let norm = |terms: &mut dyn Iterator<Item = f64>| terms.map(|x| x * x).sum::<f64>().sqrt();
+    norm(&mut a.iter().zip(b).map(|(a, b)| a - b)) / norm(&mut b.iter().copied())
+}

@@ -1,0 +1,187 @@
+//! The stability maps: which scenes, parameters and steps.
+
+use sinew_measure::{Case, Method};
+use sinew_mesh::TetMesh;
+use sinew_mesh::structured::{Split, StructuredError, cube};
+use sinew_scene::{Scene, SceneSource};
+
+use super::meshes::{inclusion_cube, sliver_cube};
+use super::methods::{block, chebyshev, cnn};
+use super::stability_map::StabilityMap;
+
+/// Hexahedra along an edge (m) of the cube: small enough for thousands of runs.
+const CELLS: usize = 4;
+const EDGE: f64 = 0.1;
+
+/// Longest step (s); all others divide it.
+const LONGEST: f64 = 0.04;
+
+/// A parameter of the cube that is varied.
+struct Varied {
+    id: &'static str,
+    title: &'static str,
+    parameter: &'static str,
+    values: &'static [f64],
+    /// The longest step over each step.
+    divisors: &'static [u32],
+    /// Simulated time over the longest step.
+    samples: u32,
+    quick: bool,
+    /// Regions and damping in TOML.
+    body: fn(f64) -> String,
+    mesh: fn(f64) -> Result<TetMesh, StructuredError>,
+}
+
+const COARSE: &[u32] = &[1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
+const WIDE: &[u32] = &[1, 2, 4, 8, 16, 32, 64, 128, 256, 512];
+
+const VARIED: [Varied; 5] = [
+    Varied {
+        id: "poisson",
+        title: "Poisson's ratio",
+        parameter: "Poisson's ratio [1]",
+        values: &[0.0, 0.2, 0.3, 0.4, 0.45, 0.48, 0.49, 0.495, 0.499],
+        divisors: COARSE,
+        samples: 20,
+        quick: false,
+        body: |nu| format!("{}\n{}", linear("", 3500.0, nu), damping(20.0)),
+        mesh: plain,
+    },
+    Varied {
+        id: "stiffness-ratio",
+        title: "Stiffness of a core over that of the rest",
+        parameter: "E of the core / E of the rest [1]",
+        values: &[1.0, 4.0, 16.0, 64.0, 256.0, 1e3, 4e3, 1e4],
+        divisors: WIDE,
+        samples: 10,
+        quick: false,
+        body: |ratio| {
+            let outer = linear("group = \"tissue\"", 3500.0, 0.3);
+            let core = linear("group = \"inclusion\"", 3500.0 * ratio, 0.3);
+            format!("{outer}\n{core}\n{}", damping(20.0))
+        },
+        mesh: |_| inclusion_cube(CELLS, CELLS / 2, EDGE),
+    },
+    Varied {
+        id: "thinness",
+        title: "Thinness of one element (1: none is thin)",
+        parameter: "thickness, rest over one [1]",
+        values: &[1.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0],
+        divisors: COARSE,
+        samples: 20,
+        quick: false,
+        body: |_| format!("{}\n{}", linear("", 3500.0, 0.3), damping(20.0)),
+        mesh: |thinness| {
+            if thinness > 1.0 {
+                sliver_cube(CELLS, EDGE, thinness)
+            } else {
+                plain(thinness)
+            }
+        },
+    },
+    Varied {
+        id: "mass-damping",
+        title: "Damping in proportion to the mass",
+        parameter: "mass damping [1/s]",
+        values: &[1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0],
+        divisors: COARSE,
+        samples: 20,
+        quick: true,
+        body: |alpha| format!("{}\n{}", springs(0.0), damping(alpha)),
+        mesh: plain,
+    },
+    Varied {
+        id: "pair-damping",
+        title: "Dashpots beside the springs, by their share of each pair's critical damping",
+        parameter: "share of critical damping [1]",
+        values: &[0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0],
+        divisors: COARSE,
+        samples: 20,
+        quick: false,
+        body: |gamma| springs(gamma),
+        mesh: plain,
+    },
+];
+
+fn plain(_: f64) -> Result<TetMesh, StructuredError> {
+    cube(CELLS, EDGE, Split::Kuhn)
+}
+
+fn linear(group: &str, youngs_modulus: f64, nu: f64) -> String {
+    format!(
+        "[[region]]\n{group}\ndensity = 1060.0\nmodel = \"linear\"\n\
+         youngs_modulus = {youngs_modulus:e}\npoissons_ratio = {nu}\n"
+    )
+}
+
+fn springs(gamma: f64) -> String {
+    format!(
+        "[[region]]\ndensity = 1060.0\nmodel = \"springs\"\nyoungs_modulus = 3500.0\n\
+         springs = {{ rule = \"lloyd\", damping_ratio = {gamma} }}\n"
+    )
+}
+
+fn damping(alpha: f64) -> String {
+    format!("[damping]\nmass = {alpha}\n")
+}
+
+fn methods() -> [Method; 6] {
+    [
+        Method::new("central-difference"),
+        Method::new("symplectic-euler"),
+        Method::new("newmark"),
+        cnn(),
+        block(),
+        chebyshev(4),
+    ]
+}
+
+impl Varied {
+    fn case(&self, value: f64) -> Result<Case, String> {
+        let duration = LONGEST * f64::from(self.samples);
+        let text = format!(
+            "[mesh]\ncube = {{ cells = {CELLS}, edge = {EDGE} }}\n{}\n\
+             [[fixed]]\ngroup = \"sides\"\n\
+             [[load]]\ngroup = \"top\"\ntraction = [0.0, 0.0, -100.0]\n\
+             [run]\nduration = {duration}\nsamples = {}\nintegrator = \"newmark\"\ndt = {LONGEST}\n",
+            (self.body)(value),
+            self.samples
+        );
+        let source = SceneSource::new(format!("map {}", self.id), text);
+        let scene = Scene::parse(source).map_err(|error| error.to_string())?;
+        let mesh = (self.mesh)(value).map_err(|error| error.to_string())?;
+        let simulation = scene.build_on(mesh).map_err(|error| error.to_string())?;
+        Case::new(self.id, simulation).map_err(|error| error.to_string())
+    }
+
+    fn map(&self, quick: bool) -> Result<StabilityMap, String> {
+        let every = if quick { 3 } else { 1 };
+        let steps = self.divisors.iter().rev().step_by(every);
+        let mut map = StabilityMap {
+            id: self.id.into(),
+            title: self.title.into(),
+            parameter: self.parameter.into(),
+            steps: steps.map(|divisor| LONGEST / f64::from(*divisor)).collect(),
+            ..StabilityMap::default()
+        };
+        let methods = methods();
+        for &value in self.values.iter().step_by(every) {
+            map.add(value, &mut self.case(value)?, &methods)?;
+        }
+        Ok(map)
+    }
+}
+
+/// The maps, `begins` told of each. A quick run makes one of them, coarser.
+///
+/// # Errors
+/// A reason in words when a scene or method of a map does not hold together.
+pub(crate) fn all(quick: bool, mut begins: impl FnMut(&str)) -> Result<Vec<StabilityMap>, String> {
+    let wanted = VARIED.iter().filter(|varied| varied.quick || !quick);
+    wanted
+        .map(|varied| {
+            begins(varied.title);
+            varied.map(quick)
+        })
+        .collect()
+}

@@ -1,0 +1,179 @@
+//! What is asked of a hard case, what was measured, and whether that passes.
+
+use serde::{Deserialize, Serialize};
+
+/// A pass mark and the figure measured for it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Mark {
+    /// The case in words.
+    pub case: String,
+    /// What is asked, in words.
+    pub asked: String,
+    /// What was measured, in words with its unit, or why nothing was.
+    pub measured: String,
+    /// The measured figure; none where there is none or it is not finite.
+    #[serde(default)]
+    pub figure: Option<f64>,
+    /// The largest figure that passes.
+    #[serde(default)]
+    pub limit: Option<f64>,
+    /// The method and step that gave the figure.
+    pub by: String,
+    /// Whether it passes.
+    pub verdict: MarkVerdict,
+    /// What else should be known.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub note: String,
+}
+
+/// Whether a mark is passed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MarkVerdict {
+    /// The figure is within the limit.
+    Pass,
+    /// It is not, or could not be measured.
+    #[default]
+    Fail,
+    /// The mark is about something that does not exist here.
+    NotApplicable,
+}
+
+impl MarkVerdict {
+    /// As tables show it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Fail => "FAIL",
+            Self::NotApplicable => "not applicable",
+        }
+    }
+}
+
+/// A mark before it is measured.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked {
+    pub(crate) case: &'static str,
+    pub(crate) asked: &'static str,
+    pub(crate) limit: f64,
+}
+
+impl Asked {
+    /// The mark with its figure, which passes up to the limit; one that is not a number fails.
+    pub(crate) fn measured(
+        self,
+        figure: f64,
+        shown: impl Fn(f64) -> String,
+        by: impl Into<String>,
+    ) -> Mark {
+        Mark {
+            case: self.case.into(),
+            asked: self.asked.into(),
+            measured: shown(figure),
+            figure: figure.is_finite().then_some(figure),
+            limit: Some(self.limit),
+            by: by.into(),
+            verdict: if figure <= self.limit {
+                MarkVerdict::Pass
+            } else {
+                MarkVerdict::Fail
+            },
+            note: String::new(),
+        }
+    }
+
+    /// The mark failed for want of a figure.
+    pub(crate) fn not_measured(self, reason: impl Into<String>) -> Mark {
+        Mark {
+            case: self.case.into(),
+            asked: self.asked.into(),
+            measured: reason.into(),
+            limit: Some(self.limit),
+            ..Mark::default()
+        }
+    }
+
+    /// The mark that does not apply.
+    pub(crate) fn not_applicable(self, reason: impl Into<String>) -> Mark {
+        Mark {
+            verdict: MarkVerdict::NotApplicable,
+            ..self.not_measured(reason)
+        }
+    }
+}
+
+impl Mark {
+    /// With something that should be known beside the figure.
+    pub(crate) fn noting(self, note: impl Into<String>) -> Self {
+        let note = note.into();
+        Self { note, ..self }
+    }
+
+    /// Failed in any case where another condition is not met.
+    pub(crate) fn and(self, condition: bool) -> Self {
+        let verdict = if condition {
+            self.verdict
+        } else {
+            MarkVerdict::Fail
+        };
+        Self { verdict, ..self }
+    }
+}
+
+/// The largest of several figures and what gave it; one that is not a number is the largest of all.
+#[derive(Debug, Default)]
+pub(crate) struct Worst {
+    pub(crate) figure: f64,
+    pub(crate) by: String,
+}
+
+impl Worst {
+    pub(crate) fn include(&mut self, figure: f64, by: String) {
+        let figure = if figure.is_nan() {
+            f64::INFINITY
+        } else {
+            figure
+        };
+        if figure > self.figure || self.by.is_empty() {
+            *self = Self { figure, by };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::three;
+
+    #[test]
+    fn what_is_not_a_number_is_worst() {
+        let mut worst = Worst::default();
+        for (figure, by) in [(0.0, "a"), (2.0, "b"), (1.0, "c")] {
+            worst.include(figure, by.into());
+        }
+        assert_eq!((worst.figure, worst.by.as_str()), (2.0, "b"));
+        worst.include(f64::NAN, "d".into());
+        worst.include(3.0, "e".into());
+        assert_eq!((worst.figure, worst.by.as_str()), (f64::INFINITY, "d"));
+    }
+
+    #[test]
+    fn a_figure_passes_up_to_its_limit_and_nan_never_does() {
+        let asked = Asked {
+            case: "a case",
+            asked: "at most 0.1",
+            limit: 0.1,
+        };
+        let verdict = |figure| asked.measured(figure, three, "rk4").verdict;
+        assert_eq!(verdict(0.1), MarkVerdict::Pass);
+        assert_eq!(verdict(0.100001), MarkVerdict::Fail);
+        assert_eq!(verdict(f64::NAN), MarkVerdict::Fail);
+        assert_eq!(verdict(f64::INFINITY), MarkVerdict::Fail);
+        assert_eq!(
+            asked.measured(0.05, three, "rk4").and(false).verdict,
+            MarkVerdict::Fail
+        );
+        assert_eq!(asked.not_measured("no run").verdict, MarkVerdict::Fail);
+    }
+}

@@ -1,0 +1,213 @@
+//! All pass marks, in the order of the report.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use sinew_measure::{Case, Row};
+
+use super::checks::{
+    centre_of_mass, energy_and_work, energy_form, equilibrium, long_run, mirror, released_bar,
+    rotation, slivers, units, within_work,
+};
+use super::mark::{Asked, Mark};
+
+/// The cases and rows that marks are taken from.
+pub(crate) struct Measured<'a> {
+    pub(crate) cases: &'a BTreeMap<String, Case>,
+    pub(crate) rows: &'a [Row],
+    /// Where scenes are.
+    pub(crate) folders: [PathBuf; 2],
+    pub(crate) quick: bool,
+}
+
+impl Measured<'_> {
+    fn case(&self, id: &str) -> Result<&Case, String> {
+        self.cases
+            .get(id)
+            .ok_or_else(|| format!("{id} was not read"))
+    }
+
+    fn rows_of(&self, id: &str) -> Vec<&Row> {
+        self.rows.iter().filter(|row| row.case == id).collect()
+    }
+
+    /// Whether a mark on this case can be given. A quick run leaves out slow cases.
+    fn has(&self, id: &str) -> bool {
+        self.cases.contains_key(id)
+    }
+}
+
+fn asked(case: &'static str, asked: &'static str, limit: f64) -> Asked {
+    Asked { case, asked, limit }
+}
+
+/// Every mark that can be given, `done` told of each as it begins.
+pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<Mark> {
+    let mut marks = Vec::new();
+    let steps = |full, quick| if measured.quick { quick } else { full };
+    let mut give = |asked: Asked, mark: &mut dyn FnMut(Asked) -> Result<Mark, String>| {
+        begins(asked.case);
+        marks.push(mark(asked).unwrap_or_else(|reason| asked.not_measured(reason)));
+    };
+
+    let reproduction = asked(
+        "the reproduction scene at 20 ms",
+        "error at most 10 % at one sweep a step",
+        0.1,
+    );
+    give(reproduction, &mut |asked| {
+        Ok(within_work::check(
+            asked,
+            measured.rows_of("paper-cube"),
+            0.02,
+            1,
+        ))
+    });
+    // No figure is set for this one: that of the long run.
+    let undamped = asked(
+        "undamped network, 5 to 250 critical steps",
+        "energy form invariant (to 1e-10), bounded",
+        1e-10,
+    );
+    give(undamped, &mut |asked| {
+        energy_form::check(asked, measured.case("undamped")?, steps(1000, 200))
+    });
+    if measured.has("critical-damping") {
+        let critical = asked(
+            "pairwise critical damping, 20 ms",
+            "error at most 5 % at 8 sweeps a step or fewer",
+            0.05,
+        );
+        give(critical, &mut |asked| {
+            Ok(within_work::check(
+                asked,
+                measured.rows_of("critical-damping"),
+                0.02,
+                8,
+            ))
+        });
+    }
+    for (id, case) in [
+        (
+            "stiffness-damping-0.49",
+            "stiffness-proportional damping, nu .49, 20 ms",
+        ),
+        (
+            "stiffness-damping-0.499",
+            "stiffness-proportional damping, nu .499, 20 ms",
+        ),
+    ] {
+        if measured.has(id) {
+            let damped = asked(case, "bounded, error at most 15 %", 0.15);
+            give(damped, &mut |asked| {
+                Ok(within_work::check(
+                    asked,
+                    measured.rows_of(id),
+                    0.02,
+                    u64::MAX,
+                ))
+            });
+        }
+    }
+    for (id, case) in [
+        ("sliver-20", "one sliver 20 times thinner"),
+        ("sliver-100", "one sliver 100 times thinner"),
+        ("sliver-1000", "one sliver 1000 times thinner"),
+    ] {
+        let sliver = asked(case, "error within 2 times that of the uniform mesh", 2.0);
+        let (uniform, rows) = (measured.rows_of("no-sliver"), measured.rows_of(id));
+        give(sliver, &mut |asked| {
+            Ok(slivers::check(asked, &uniform, &rows))
+        });
+    }
+    if measured.has("stiff-inclusion") {
+        let inclusion = asked(
+            "stiff inclusion, E 1:10^4, density 1:10",
+            "bounded, static error at most 1e-6",
+            1e-6,
+        );
+        give(inclusion, &mut |asked| {
+            equilibrium::check(asked, measured.case("stiff-inclusion")?)
+        });
+    }
+    let free = asked("nearly free body, pulse", "centre of mass to 1 %", 0.01);
+    give(free, &mut |asked| {
+        centre_of_mass::check(asked, measured.case("nearly-free")?, &[0.01, 0.02])
+    });
+    let tool = asked(
+        "impulsive tool, 1 m/s, on/off every step",
+        "energy at most E0 + work (to rounding: 1e-12)",
+        1e-12,
+    );
+    give(tool, &mut |asked| {
+        energy_and_work::check(asked, measured.case("impulsive-tool")?)
+    });
+
+    let frequency = asked(
+        "sudden release of a stretched bar",
+        "first frequency to 1 % of the modal solution",
+        0.01,
+    );
+    let amplitude = asked(
+        "sudden release of a stretched bar",
+        "first amplitude to 1 % of the modal solution",
+        0.01,
+    );
+    let mut bar = match measured
+        .case("released-bar")
+        .and_then(|case| released_bar::check(frequency, amplitude, case, 0.005))
+    {
+        Ok([frequency, amplitude]) => [Ok(frequency), Ok(amplitude)],
+        Err(reason) => [Err(reason.clone()), Err(reason)],
+    }
+    .into_iter();
+    for part in [frequency, amplitude] {
+        give(part, &mut |_| {
+            bar.next().unwrap_or_else(|| Err("not measured".into()))
+        });
+    }
+
+    let energy = asked(
+        "1e5 steps at .95 critical steps",
+        "energy drift at most 1e-10 (f64)",
+        1e-10,
+    );
+    give(energy, &mut |asked| {
+        long_run::check(asked, measured.case("long-run")?, steps(100_000, 10_000))
+    });
+    let single = asked(
+        "1e5 steps at .95 critical steps",
+        "energy drift at most 1e-4 (f32)",
+        1e-4,
+    );
+    give(single, &mut |asked| {
+        Ok(asked.not_applicable("there is no f32 kernel"))
+    });
+    let rotated = asked(
+        "90 degree rotated copy of a scene",
+        "difference at most 1e-10",
+        1e-10,
+    );
+    give(rotated, &mut |asked| {
+        rotation::check(asked, measured.case("impulsive-tool")?)
+    });
+    let dimensionless = asked(
+        "every scene in m, mm, um",
+        "same dimensionless result (to 1e-12)",
+        1e-12,
+    );
+    give(dimensionless, &mut |asked| {
+        units::check(asked, &measured.folders)
+    });
+    if measured.has("symmetric-load") {
+        let symmetric = asked(
+            "symmetric load on the mirrored cube",
+            "lateral drift at most 1e-12",
+            1e-12,
+        );
+        give(symmetric, &mut |asked| {
+            mirror::check(asked, measured.case("symmetric-load")?)
+        });
+    }
+    marks
+}

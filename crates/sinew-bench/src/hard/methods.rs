@@ -1,0 +1,60 @@
+//! The methods that hard cases are given to.
+
+use std::collections::BTreeMap;
+
+use sinew_core::OptionValue;
+use sinew_measure::Method;
+
+/// The paper's network, Q = 4 m/s as in its own figures.
+pub(crate) fn cnn() -> Method {
+    let mut method = Method::new("cnn");
+    method.options = method.options.with_number("saturation", 4.0);
+    method
+}
+
+/// The stabilised network at one sweep a step.
+pub(crate) fn block() -> Method {
+    inner("block", None)
+}
+
+/// The stabilised network at so many sweeps a step.
+pub(crate) fn chebyshev(sweeps: u32) -> Method {
+    inner("chebyshev", Some(sweeps))
+}
+
+/// The stabilised network at so many symmetric passes, two sweeps each.
+pub(crate) fn gauss_seidel(passes: u32) -> Method {
+    inner("gauss-seidel", Some(passes))
+}
+
+fn inner(kind: &str, sweeps: Option<u32>) -> Method {
+    let mut entries = BTreeMap::from([("kind".to_owned(), OptionValue::Text(kind.into()))]);
+    if let Some(sweeps) = sweeps {
+        entries.insert("sweeps".into(), OptionValue::Number(f64::from(sweeps)));
+    }
+    let mut method = Method::new("cnn-stabilised");
+    method.options = method.options.with("inner", OptionValue::Table(entries));
+    method
+}
+
+/// A method that cuts its step into stable parts.
+pub(crate) fn cut(integrator: &str) -> Method {
+    automatic(integrator, "substeps")
+}
+
+/// A method whose cells get no faster than the loads and the start of a scene can make them.
+pub(crate) fn guarded(integrator: &str) -> Method {
+    automatic(integrator, "saturation")
+}
+
+/// Central difference that solves the few elements which forbid its step as small blocks.
+pub(crate) fn patched() -> Method {
+    automatic("central-difference", "patches")
+}
+
+fn automatic(integrator: &str, option: &str) -> Method {
+    let mut method = Method::new(integrator);
+    let auto = OptionValue::Text("auto".into());
+    method.options = method.options.with(option, auto);
+    method
+}

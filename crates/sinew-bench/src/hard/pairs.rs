@@ -1,0 +1,130 @@
+//! Copies of a scene in another frame or in other units.
+
+use sinew_core::{LinearModel, State, System};
+use sinew_fem::{Law, LoadKind, Model, Problem};
+use sinew_mesh::TetMesh;
+use sinew_scene::{BodyModel, Simulation, Subject};
+
+/// A system with the state it starts from.
+pub(crate) struct Twin {
+    pub(crate) system: Box<dyn System>,
+    pub(crate) start: State,
+}
+
+/// The mesh and the problem behind a scene's body.
+pub(crate) fn body(simulation: &Simulation) -> Option<(&BodyModel, &Problem)> {
+    match simulation.scene().subject() {
+        Subject::Body(body) => Some((simulation.model().body()?, &body.problem)),
+        Subject::Oscillator(_) => None,
+    }
+}
+
+/// A rotation by 90 degrees about a coordinate axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct QuarterTurn(
+    /// 0, 1, 2 for x, y, z.
+    pub(crate) usize,
+);
+
+impl QuarterTurn {
+    pub(crate) fn of(self, vector: [f64; 3]) -> [f64; 3] {
+        let (a, b) = ((self.0 + 1) % 3, (self.0 + 2) % 3);
+        let mut turned = vector;
+        turned[a] = -vector[b];
+        turned[b] = vector[a];
+        turned
+    }
+
+    /// Of every node's vector.
+    pub(crate) fn of_field(self, field: &[f64]) -> Vec<f64> {
+        let vectors = field.as_chunks::<3>().0.iter();
+        vectors.flat_map(|vector| self.of(*vector)).collect()
+    }
+
+    fn of_axes(self, held: [bool; 3]) -> [bool; 3] {
+        let (a, b) = ((self.0 + 1) % 3, (self.0 + 2) % 3);
+        let mut turned = held;
+        turned.swap(a, b);
+        turned
+    }
+}
+
+/// A body turned as a whole: mesh, supports, loads and start.
+pub(crate) fn turned(simulation: &Simulation, turn: QuarterTurn) -> Result<Twin, String> {
+    let (built, problem) = body(simulation).ok_or("an oscillator has no direction")?;
+    let mut mesh = built.mesh.clone();
+    for point in &mut mesh.points {
+        *point = turn.of(*point);
+    }
+    let mut problem = problem.clone();
+    for fixed in &mut problem.fixed {
+        fixed.axes = turn.of_axes(fixed.axes);
+    }
+    for load in &mut problem.loads {
+        load.kind = match load.kind {
+            LoadKind::Traction(traction) => LoadKind::Traction(turn.of(traction)),
+            LoadKind::Force(force) => LoadKind::Force(turn.of(force)),
+            pressure @ LoadKind::Pressure(_) => pressure,
+        };
+    }
+    problem.gravity = problem.gravity.map(|gravity| turn.of(gravity));
+    let start = simulation.initial_state();
+    let start = State::new(turn.of_field(&start.u), turn.of_field(&start.v));
+    twin(&mesh, &problem, start)
+}
+
+/// A body measured in another unit of length, `per_metre` of them a metre; kilograms and seconds
+/// stay.
+pub(crate) fn in_units(simulation: &Simulation, per_metre: f64) -> Result<Twin, String> {
+    let start = simulation.initial_state();
+    let scaled = |field: &[f64]| field.iter().map(|x| per_metre * x).collect();
+    let start = State::new(scaled(&start.u), scaled(&start.v));
+    let Some((built, problem)) = body(simulation) else {
+        return oscillator_in_units(simulation.system(), start, per_metre);
+    };
+    let mut mesh = built.mesh.clone();
+    mesh.points
+        .iter_mut()
+        .flatten()
+        .for_each(|x| *x *= per_metre);
+    let mut problem = problem.clone();
+    for region in &mut problem.regions {
+        region.density /= per_metre.powi(3);
+        let (Law::Linear { youngs_modulus, .. } | Law::Springs { youngs_modulus, .. }) =
+            &mut region.law;
+        *youngs_modulus /= per_metre;
+    }
+    let times = |vector: [f64; 3], factor: f64| vector.map(|x| factor * x);
+    for load in &mut problem.loads {
+        load.kind = match load.kind {
+            LoadKind::Traction(traction) => LoadKind::Traction(times(traction, 1.0 / per_metre)),
+            LoadKind::Pressure(pressure) => LoadKind::Pressure(pressure / per_metre),
+            LoadKind::Force(force) => LoadKind::Force(times(force, per_metre)),
+        };
+    }
+    problem.gravity = problem.gravity.map(|gravity| times(gravity, per_metre));
+    twin(&mesh, &problem, start)
+}
+
+/// Mass, stiffness and damping of an oscillator have no length in their units, its force has.
+fn oscillator_in_units(system: &dyn System, start: State, per_metre: f64) -> Result<Twin, String> {
+    let linear = system
+        .as_linear()
+        .ok_or("needs the matrices of a linear system")?;
+    let operators = linear.operators().clone();
+    let mut loads = operators.loads().to_vec();
+    for (_, force) in loads.iter_mut().flat_map(|load| &mut load.entries) {
+        *force *= per_metre;
+    }
+    let operators = operators
+        .with_loads(loads)
+        .map_err(|error| error.to_string())?;
+    let system = Box::new(LinearModel::new(operators));
+    Ok(Twin { system, start })
+}
+
+fn twin(mesh: &TetMesh, problem: &Problem, start: State) -> Result<Twin, String> {
+    let model = Model::build(mesh, problem).map_err(|error| error.to_string())?;
+    let system = Box::new(model);
+    Ok(Twin { system, start })
+}

@@ -1,0 +1,360 @@
+//! The propagator in two-step form.
+
+use sinew_core::spectrum::Spectrum;
+use sinew_core::{Fact, LinearOperators, Load, SetupError, State, StepError, StepReport};
+
+use super::chebyshev::{Chebyshev, LARGEST_EIGENVALUE_MARGIN};
+use super::mode::{Mode, quadrature};
+use super::series::{evaluate, interpolate, nodes, tails};
+use super::{HIGHEST_DEGREE, ID, Resolution};
+
+/// Points per degree among which the largest value of a polynomial is looked for.
+const POINTS_PER_DEGREE: usize = 32;
+
+/// The exact displacements of a mass-damped linear system under piecewise constant loads, for half
+/// the sweeps of the one-step form: `v+ = e^(-2 eta) v- + G(M^-1 K) M^-1 (F - K u)/dt`, `u+ = u + dt v+`, v being
+/// the mean velocity over a step. This is what any mode `q'' + alpha q' + lambda q = r` does from one
+/// step to the next (Gautschi, Numer. Math. 3, 1961; Hochbruck and Lubich, Numer. Math. 83, 1999,
+/// without damping), with `lambda G = (1 - e^-eta)^2 + 4 e^-eta sin^2(w dt/2)`, `w^2 = lambda - alpha^2/4` and
+/// `eta = alpha dt/2`.
+///
+/// Only `S = sin(w dt/2)/(w/2)` is replaced by a polynomial. With its square in G,
+/// `lambda G = (1 - e^-eta)^2 + e^-eta w^2 S^2` cannot fall below 0; S is scaled, by less than the
+/// tolerance, so that `|w S| <= 2` holds between its zeros too; and eta is taken from
+/// `sinh(eta/2) = alpha S(0)/4`, by which lambda divides G whatever S is. Every mode is then stable at
+/// any step and for any tolerance, which a polynomial for G itself is not.
+#[derive(Debug)]
+pub(super) struct TwoStep {
+    degree: usize,
+    left_out: f64,
+    interval: f64,
+    /// Series of S and of (S - S(0))/lambda.
+    s: Vec<f64>,
+    divided: Vec<f64>,
+    s_at_zero: f64,
+    alpha: f64,
+    decay: f64,
+    /// Series of what a jump of the load adds, for half the jump; empty without damping.
+    of_jump: Vec<f64>,
+    /// Takes the first step.
+    starter: Chebyshev,
+    r: Vec<f64>,
+    sum: Vec<f64>,
+    other_sum: Vec<f64>,
+    current: Vec<f64>,
+    previous: Vec<f64>,
+    product: Vec<f64>,
+}
+
+/// S of one mode.
+fn half_sine(lambda: f64, alpha: f64, dt: f64) -> f64 {
+    // An undamped mode of lambda - alpha^2/4 from 0 with velocity 1 over half a step is sin(w dt/2)/w.
+    let mode = Mode {
+        lambda: lambda - alpha * alpha / 4.0,
+        damping: 0.0,
+    };
+    2.0 * mode.impulse(dt / 2.0).0
+}
+
+impl TwoStep {
+    /// Chooses the degree and makes the coefficients.
+    pub(super) fn set_up(
+        operators: &LinearOperators,
+        dt: f64,
+        resolution: Resolution,
+    ) -> Result<Self, SetupError> {
+        let damping = operators.damping();
+        if damping.extra.is_some() || damping.stiffness != 0.0 {
+            return Err(SetupError::Lacks {
+                integrator: ID,
+                needs: "mass damping at most for kind = \"two-step\"; \"chebyshev\" takes \
+                        proportional damping, \"krylov\" any",
+            });
+        }
+        let alpha = damping.mass;
+        let omega = Spectrum::of(operators).omega_max;
+        let interval = omega.powi(2) * (1.0 + LARGEST_EIGENVALUE_MARGIN);
+        let count = (48.0 + 0.75 * omega * dt).min(2.0 * HIGHEST_DEGREE as f64) as usize;
+        let values: Vec<f64> = nodes(count, interval)
+            .into_iter()
+            .map(|lambda| half_sine(lambda, alpha, dt))
+            .collect();
+        let mut s = vec![0.0; count];
+        interpolate(&values, &mut s);
+        // Relative to S(0), which is about dt, and as much as |w S| may pass 2 by.
+        let scale = (1.0 / dt).max(interval.sqrt() / 2.0);
+        let left_out: Vec<f64> = tails(&s).into_iter().map(|tail| scale * tail).collect();
+        let degree = resolution.degree_for(&left_out, dt)?;
+        s.truncate(degree + 1);
+        let overshoot = largest_swing(&s, interval, alpha) / 2.0;
+        if overshoot > 1.0 {
+            s.iter_mut()
+                .for_each(|coefficient| *coefficient /= overshoot);
+        }
+
+        let s_at_zero = evaluate(&s, 0.0, interval);
+        let values: Vec<f64> = nodes(degree + 1, interval)
+            .into_iter()
+            .map(|lambda| (evaluate(&s, lambda, interval) - s_at_zero) / lambda)
+            .collect();
+        let mut divided = vec![0.0; degree + 1];
+        interpolate(&values, &mut divided);
+        let buffer = || vec![0.0; operators.dofs()];
+        Ok(Self {
+            degree,
+            left_out: left_out[degree],
+            interval,
+            s_at_zero,
+            alpha,
+            decay: (-4.0 * (alpha * s_at_zero / 4.0).asinh()).exp(),
+            of_jump: jump_series(operators, interval, dt, 2 * degree),
+            s,
+            divided,
+            starter: Chebyshev::set_up(
+                operators,
+                dt,
+                Resolution {
+                    degree: None,
+                    ..resolution
+                },
+            )?,
+            r: buffer(),
+            sum: buffer(),
+            other_sum: buffer(),
+            current: buffer(),
+            previous: buffer(),
+            product: buffer(),
+        })
+    }
+
+    /// Whether the state's velocity is this method's own.
+    pub(super) fn is_running(state: &State, dt: f64) -> bool {
+        (state.t - state.v_time - dt / 2.0).abs() <= 1e-6 * dt
+    }
+
+    /// Moves u and v over a step, times included.
+    pub(super) fn step(
+        &mut self,
+        operators: &LinearOperators,
+        state: &mut State,
+        dt: f64,
+    ) -> Result<StepReport, StepError> {
+        let before = if Self::is_running(state, dt) { dt } else { 0.0 };
+        for load in operators.loads() {
+            constant_load(load, state.t - before, state.t)?;
+            constant_load(load, state.t, state.t + dt)?;
+        }
+        state.a.resize(state.u.len(), 0.0);
+        state.a_time = state.t;
+        let work = if before == 0.0 {
+            self.start(operators, state, dt)?
+        } else {
+            self.go_on(operators, state, dt)
+        };
+        state.t += dt;
+        state.v_time = state.t - dt / 2.0;
+        Ok(work)
+    }
+
+    /// The first step, from a velocity that holds at the displacement's time.
+    fn start(
+        &mut self,
+        operators: &LinearOperators,
+        state: &mut State,
+        dt: f64,
+    ) -> Result<StepReport, StepError> {
+        self.sum.copy_from_slice(&state.u);
+        self.other_sum.copy_from_slice(&state.v);
+        let work = self.starter.step(operators, state, dt)?;
+        for (i, v) in state.v.iter_mut().enumerate() {
+            *v = (state.u[i] - self.sum[i]) / dt;
+            state.a[i] = 2.0 * (*v - self.other_sum[i]) / dt;
+        }
+        Ok(work)
+    }
+
+    fn go_on(&mut self, operators: &LinearOperators, state: &mut State, dt: f64) -> StepReport {
+        let mass = operators.mass();
+        // The mean of both loads where they jump at this instant.
+        self.r.fill(0.0);
+        let mut jumps = false;
+        for Load { ramp, entries } in operators.loads() {
+            let [before, after] = [-0.5, 0.5].map(|part| ramp.value(state.t + part * dt));
+            jumps |= before != after;
+            for &(dof, force) in entries {
+                self.r[dof as usize] += 0.5 * (before + after) * force;
+            }
+        }
+        operators
+            .stiffness()
+            .subtract_product(&state.u, &mut self.r);
+        for (r, mass) in self.r.iter_mut().zip(mass) {
+            *r /= mass;
+        }
+        let mut work = StepReport::ONE_FORCE;
+
+        // y = S r - alpha^2/4 (S - S0)/lambda r, then G r = e^-eta (S y - alpha^2/4 S0 (S - S0)/lambda r).
+        let quarter = self.alpha * self.alpha / 4.0;
+        self.current.copy_from_slice(&self.r);
+        self.sum.fill(0.0);
+        self.other_sum.fill(0.0);
+        work.sweeps += self.add_series(operators, Which::Both);
+        for i in 0..self.r.len() {
+            self.current[i] = self.sum[i] - quarter * self.other_sum[i];
+            self.sum[i] = -quarter * self.s_at_zero * self.other_sum[i];
+        }
+        work.sweeps += self.add_series(operators, Which::S);
+        let root = self.decay.sqrt();
+        self.sum.iter_mut().for_each(|sum| *sum *= root);
+
+        if jumps && !self.of_jump.is_empty() {
+            self.current.fill(0.0);
+            for Load { ramp, entries } in operators.loads() {
+                let [before, after] = [-0.5, 0.5].map(|part| ramp.value(state.t + part * dt));
+                for &(dof, force) in entries {
+                    let dof = dof as usize;
+                    self.current[dof] += 0.5 * (after - before) * force / mass[dof];
+                }
+            }
+            work.sweeps += self.add_series(operators, Which::Jump);
+        }
+        for (i, u) in state.u.iter_mut().enumerate() {
+            let v = self.decay * state.v[i] + self.sum[i] / dt;
+            state.a[i] = (v - state.v[i]) / dt;
+            state.v[i] = v;
+            *u += dt * v;
+        }
+        work
+    }
+
+    /// Adds series of the vector in `current` to the sums.
+    fn add_series(&mut self, operators: &LinearOperators, which: Which) -> u64 {
+        let series = match which {
+            Which::Both | Which::S => &self.s,
+            Which::Jump => &self.of_jump,
+        };
+        let scale = 2.0 / self.interval;
+        let mut sweeps = 0;
+        for (k, coefficient) in series.iter().enumerate() {
+            for (sum, x) in self.sum.iter_mut().zip(&self.current) {
+                *sum += coefficient * x;
+            }
+            if which == Which::Both {
+                for (sum, x) in self.other_sum.iter_mut().zip(&self.current) {
+                    *sum += self.divided[k] * x;
+                }
+            }
+            if k + 1 == series.len() {
+                break;
+            }
+            // As in the one-step form.
+            self.product.fill(0.0);
+            operators
+                .stiffness()
+                .subtract_scaled_product(-scale, &self.current, &mut self.product);
+            sweeps += 1;
+            for (i, mass) in operators.mass().iter().enumerate() {
+                let shifted = self.product[i] / mass - self.current[i];
+                let next = if k == 0 {
+                    shifted
+                } else {
+                    2.0 * shifted - self.previous[i]
+                };
+                self.previous[i] = self.current[i];
+                self.current[i] = next;
+            }
+        }
+        sweeps
+    }
+
+    pub(super) fn facts(&self) -> Vec<Fact> {
+        let fact = |name, value| Fact { name, value };
+        vec![
+            fact("degree", self.degree as f64),
+            fact("left_out", self.left_out),
+        ]
+    }
+}
+
+/// Which series are added.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Which {
+    /// S to the one sum, its divided difference to the other.
+    Both,
+    S,
+    Jump,
+}
+
+/// Series of `integral over a step of (1 - e^(-alpha t)) s(dt - t) dt`, s being a mode's impulse response:
+/// by how much half a jump at the beginning of a step does more than the same half at its end.
+fn jump_series(operators: &LinearOperators, interval: f64, dt: f64, degree: usize) -> Vec<f64> {
+    let alpha = operators.damping().mass;
+    if alpha == 0.0 {
+        return Vec::new();
+    }
+    let points = quadrature(dt, interval.sqrt() + alpha);
+    let values: Vec<f64> = nodes(2 * degree + 48, interval)
+        .into_iter()
+        .map(|lambda| {
+            let mode = Mode {
+                lambda,
+                damping: alpha,
+            };
+            let part =
+                |(t, weight): &(f64, f64)| weight * -(-alpha * t).exp_m1() * mode.impulse(dt - t).0;
+            points.iter().map(part).sum()
+        })
+        .collect();
+    let mut series = vec![0.0; degree + 1];
+    interpolate(&values, &mut series);
+    series
+}
+
+/// The largest `|w S|`, `w^2 = lambda - alpha^2/4 > 0`, over the interval.
+fn largest_swing(s: &[f64], interval: f64, alpha: f64) -> f64 {
+    let swing = |angle: f64| {
+        let lambda = 0.5 * interval * (1.0 + angle.cos());
+        let square = lambda - alpha * alpha / 4.0;
+        square.max(0.0).sqrt() * evaluate(s, lambda, interval).abs()
+    };
+    let points = POINTS_PER_DEGREE * (s.len() + 1);
+    let width = std::f64::consts::PI / points as f64;
+    let centre = (0..=points)
+        .map(|point| point as f64 * width)
+        .max_by(|a, b| swing(*a).total_cmp(&swing(*b)))
+        .unwrap_or(0.0);
+    // Golden section about the best point.
+    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+    let (mut low, mut high) = (centre - width, centre + width);
+    for _ in 0..80 {
+        let (left, right) = (high - golden * (high - low), low + golden * (high - low));
+        if swing(left) >= swing(right) {
+            high = right;
+        } else {
+            low = left;
+        }
+    }
+    // The square root of rounding is how well a maximum can be located, rounding its value.
+    swing(0.5 * (low + high)).max(swing(centre)) * (1.0 + 1e-14)
+}
+
+/// Refuses a load that changes between two instants.
+fn constant_load(load: &Load, from: f64, to: f64) -> Result<(), StepError> {
+    // Times that were added up miss the instants they stand for by rounding.
+    let margin = 1e-6 * (to - from);
+    let kink = load
+        .ramp
+        .kink_where(|time| time > from + margin && time < to - margin);
+    if from == to || (kink.is_none() && load.ramp.is_constant_between(from, to)) {
+        return Ok(());
+    }
+    Err(StepError::Inaccurate {
+        integrator: ID,
+        t: from,
+        reason: format!(
+            "a load changes between t = {from} s and {to} s; kind = \"two-step\" takes loads that \
+             are constant over each step: choose a dt that meets the instants at which they jump, \
+             or kind = \"chebyshev\""
+        ),
+    })
+}

@@ -1,0 +1,343 @@
+//! Which method and step a scene should take, from short runs on the scene itself.
+
+mod horizon;
+mod question;
+mod run_table;
+
+pub use question::{
+    DEFAULT_PILOT_SECONDS, Question, QuestionError, check_budget, check_pilot_seconds,
+    check_tolerance,
+};
+pub use run_table::run_table;
+
+use std::time::Duration;
+
+use sinew_scene::Simulation;
+
+use crate::case::{Case, CaseError, Span};
+use crate::cpu_time::thread_cpu_time;
+use crate::measure::Method;
+use crate::one_thread::{ThreadError, on_one_thread};
+use crate::search::{CasePilots, Goal, Pilot, Search, candidates};
+use horizon::horizon;
+
+/// Share of the pilots' time that the reference may take.
+const FOR_THE_REFERENCE: f64 = 0.5;
+
+/// Other integrators are followed to their own best while that may cost this many times the
+/// cheapest run.
+const RUNNERS_UP_WITHIN: f64 = 4.0;
+
+/// A tolerance, and a tenth of it, are told from the reference's own error where they are ten times
+/// larger.
+const TOLD_APART: f64 = 100.0;
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub struct Advice {
+    /// What was asked.
+    pub question: Question,
+    /// All of the scene.
+    pub whole: Span,
+    /// The part of it over which errors were measured.
+    pub measured: Span,
+    /// The run as the scene has it, or why it cannot be made.
+    pub written: Result<Pilot, String>,
+    /// The answer.
+    pub answer: Answer,
+    /// Candidates that could not run, with the reason.
+    pub refused: Vec<(Method, String)>,
+    /// Runs measured.
+    pub pilots: usize,
+    /// CPU time (s) of it all, the reference included.
+    pub spent_s: f64,
+    /// Whether the time for pilots ran out before every candidate for the answer was followed.
+    pub choice_cut_short: bool,
+    /// Whether it ran out before the others were taken to their own best.
+    pub others_cut_short: bool,
+}
+
+/// The runs that answer a question. Total cost is that of set-up and of the whole scene.
+#[derive(Clone, Debug)]
+pub enum Answer {
+    /// Something keeps to tolerance and budget.
+    Met {
+        /// The cheapest run of each integrator in total, the advised one first.
+        cheapest: Vec<Pilot>,
+        /// The cheapest run with a tenth of the error, at any cost.
+        tenfold: Option<Box<Pilot>>,
+    },
+    /// Nothing does.
+    Missed {
+        /// The cheapest run within the tolerance, at any cost.
+        within_tolerance: Option<Box<Pilot>>,
+        /// The run with the smallest error within the budget.
+        within_budget: Option<Box<Pilot>>,
+    },
+}
+
+/// Why there is no advice.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum AdviceError {
+    /// The question.
+    #[error(transparent)]
+    Question(#[from] QuestionError),
+    /// The scene has no reference.
+    #[error("no advice without a reference: {0}")]
+    Case(#[from] CaseError),
+    /// The scene is too fast for the time there is.
+    #[error(
+        "the scene moves too fast to be followed: {duration:e} s of it take {needed:.0e} s of CPU time; shorten [run] duration, look for a stiffness or mass in wrong units, or give --pilot-seconds more"
+    )]
+    TooFast {
+        /// The shortest part that would say something (s).
+        duration: f64,
+        /// CPU time (s) it takes.
+        needed: f64,
+    },
+    /// No time was left for pilots.
+    #[error(
+        "no run could be measured: making ready and the reference took {spent:.1} s of CPU time, and {given} s were given; give --pilot-seconds more, such as {:.0}",
+        10.0 * .spent.max(*.given)
+    )]
+    NoTime {
+        /// CPU time given (s).
+        given: f64,
+        /// CPU time taken (s).
+        spent: f64,
+    },
+    /// Errors are relative to the motion, and there is none.
+    #[error(
+        "nothing moves in the first {duration} s of the scene, so that no error can be told; {remedy}"
+    )]
+    NothingMoves {
+        /// How much of the scene was followed (s).
+        duration: f64,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// The reference is no better than the tolerance.
+    #[error(
+        "a tolerance of {tolerance:e} cannot be told from the reference's own error, {reference:.1e}; ask for {least:.0e} or more"
+    )]
+    BeyondReference {
+        /// What was asked.
+        tolerance: f64,
+        /// The reference's error (fraction).
+        reference: f64,
+        /// The smallest tolerance that can be told.
+        least: f64,
+    },
+    /// No thread to measure on.
+    #[error(transparent)]
+    Thread(#[from] ThreadError),
+}
+
+/// Looks for the cheapest method and step of a scene by pilot runs on one thread.
+///
+/// # Errors
+/// [`AdviceError`].
+pub fn advise(simulation: Simulation, question: Question) -> Result<Advice, AdviceError> {
+    question.check()?;
+    on_one_thread(|| advise_here(simulation, question))?
+}
+
+fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, AdviceError> {
+    let begun = thread_cpu_time();
+    let until = begun + Duration::from_secs_f64(question.pilot_seconds);
+    let whole = Span::of(&simulation);
+    let tolerances = [question.tolerance, question.tolerance / 10.0];
+    let (candidates, mut refused) = candidates(&simulation, &tolerances);
+    let prepared = thread_cpu_time();
+    let left = until.saturating_sub(prepared).as_secs_f64();
+    let measured = horizon(&simulation, FOR_THE_REFERENCE * left)?;
+    let mut case = Case::over("scene", simulation, measured)?;
+    check_reference(&case, whole, question.tolerance)?;
+
+    let own = OwnRun::of(&case);
+    let own_s = own.least_cpu_s(&case);
+    let pilots = CasePilots::new(&mut case).until(until);
+    let mut search = Search::new(pilots, measured, whole.duration);
+    let written = if own_s <= search.left() / 2.0 {
+        search.include(&own.method, own.dt)
+    } else {
+        Err("it would leave too little time for other pilots".to_owned())
+    };
+    // A step that misses the instants wants a reference of its own, which this run has had made.
+    let reference_is_there = written.is_ok() && own.misses_instants(measured);
+    let exact = candidates
+        .iter()
+        .filter(|candidate| candidate.order.is_none());
+    let exact: Vec<Method> = exact.map(|candidate| candidate.method.clone()).collect();
+    candidates
+        .into_iter()
+        .for_each(|candidate| search.add(candidate));
+    let (answer, choice_cut_short) = answer(&mut search, question, |search| {
+        for method in exact.iter().filter(|method| **method != own.method) {
+            if reference_is_there && search.left() > own_s {
+                // What refuses this step still runs at others.
+                let _ = search.include(method, own.dt);
+            }
+        }
+    });
+    let written = written.and_then(|()| {
+        let mut runs = search.runs();
+        let own = runs.find(|run| run.method == own.method && run.row.dt == own.dt);
+        own.cloned().ok_or_else(|| "it was not measured".to_owned())
+    });
+    let spent_s = (thread_cpu_time() - begun).as_secs_f64();
+    if search.runs().next().is_none() {
+        return Err(AdviceError::NoTime {
+            given: question.pilot_seconds,
+            spent: spent_s,
+        });
+    }
+    let never_ran = search.refused();
+    refused.extend(never_ran.map(|(method, reason)| (method.clone(), reason.to_owned())));
+    Ok(Advice {
+        question,
+        whole,
+        measured,
+        written,
+        answer,
+        refused,
+        pilots: search.count(),
+        spent_s,
+        choice_cut_short,
+        others_cut_short: search.cut_short(),
+    })
+}
+
+/// The answer, and whether the time ran out before it was found. `also` adds runs off the ladder.
+fn answer(
+    search: &mut Search<CasePilots<'_>>,
+    question: Question,
+    also: impl FnOnce(&mut Search<CasePilots<'_>>),
+) -> (Answer, bool) {
+    let any_cost = Goal::error(question.tolerance);
+    let tenth = Goal::error(question.tolerance / 10.0);
+    let goal = Goal {
+        budget: question.budget.unwrap_or(f64::INFINITY),
+        ..any_cost
+    };
+    search.seek(goal);
+    also(search);
+    search.confirm(goal);
+    if search.cheapest(goal).is_none() {
+        search.seek(any_cost);
+        let cut_short = search.cut_short();
+        search.spend(goal.budget);
+        let missed = Answer::Missed {
+            within_tolerance: boxed(search.cheapest(any_cost)),
+            within_budget: boxed(most_accurate(search, goal.budget)),
+        };
+        return (missed, cut_short);
+    }
+    search.seek(tenth);
+    let cut_short = search.cut_short();
+    search.survey(goal, RUNNERS_UP_WITHIN);
+    let cheapest = advised_first(search, goal);
+    let already = cheapest.first().filter(|best| tenth.is_met_by(&best.row));
+    let met = Answer::Met {
+        tenfold: boxed(already.or_else(|| search.cheapest(tenth))),
+        cheapest,
+    };
+    (met, cut_short)
+}
+
+fn boxed(pilot: Option<&Pilot>) -> Option<Box<Pilot>> {
+    pilot.cloned().map(Box::new)
+}
+
+fn check_reference(case: &Case, whole: Span, tolerance: f64) -> Result<(), AdviceError> {
+    let duration = case.span().duration;
+    if case.samples().max_u == 0.0 {
+        return Err(AdviceError::NothingMoves {
+            duration,
+            remedy: if duration < whole.duration {
+                "give --pilot-seconds more, so that pilots reach its motion"
+            } else {
+                "give it a load or an initial state"
+            },
+        });
+    }
+    let reference = case.samples().error;
+    let least = TOLD_APART * reference;
+    if tolerance >= least {
+        return Ok(());
+    }
+    Err(AdviceError::BeyondReference {
+        tolerance,
+        reference,
+        least,
+    })
+}
+
+/// The run that the scene asks for.
+struct OwnRun {
+    method: Method,
+    dt: f64,
+}
+
+impl OwnRun {
+    fn of(case: &Case) -> Self {
+        let settings = case.simulation().settings();
+        Self {
+            method: Method::on(case, &settings.integrator),
+            dt: case.simulation().dt(),
+        }
+    }
+
+    fn misses_instants(&self, span: Span) -> bool {
+        let parts = span.interval() / self.dt;
+        parts < 0.5 || (parts - parts.round()).abs() > 1e-9 * parts
+    }
+
+    /// CPU time (s) that a pilot of it takes at one sweep a step, and a reference of its own where
+    /// it needs one.
+    fn least_cpu_s(&self, case: &Case) -> f64 {
+        let steps = case.run(self.dt).steps as f64;
+        let reference = case.reference_cpu_s();
+        let sweep = reference / case.samples().sweeps.max(1) as f64;
+        let own_reference = f64::from(u8::from(self.misses_instants(case.span()))) * reference;
+        2.0 * steps * sweep + own_reference
+    }
+}
+
+/// The cheapest run of each integrator, the advised one first.
+fn advised_first(search: &Search<CasePilots<'_>>, goal: Goal) -> Vec<Pilot> {
+    let advised = search.cheapest(goal).into_iter();
+    let others = search.by_method(goal).into_iter();
+    let mut pilots: Vec<Pilot> = advised.cloned().collect();
+    for pilot in others {
+        if pilots
+            .iter()
+            .all(|p| p.method.integrator != pilot.method.integrator)
+        {
+            pilots.push(pilot.clone());
+        }
+    }
+    pilots
+}
+
+fn most_accurate<'a>(search: &'a Search<CasePilots<'_>>, budget: f64) -> Option<&'a Pilot> {
+    let within = Goal { error: 1.0, budget };
+    let runs = search.runs().filter(|pilot| within.is_met_by(&pilot.row));
+    let error = |pilot: &Pilot| pilot.row.error.unwrap_or(f64::INFINITY);
+    runs.min_by(|a, b| error(a).total_cmp(&error(b)))
+}
+
+impl Advice {
+    /// CPU time (s) of set-up and of the whole scene.
+    #[must_use]
+    pub fn total_cpu_s(&self, pilot: &Pilot) -> f64 {
+        pilot.row.total_cpu_s(self.whole.duration)
+    }
+
+    /// A run as the scene's table `[run]`, in TOML.
+    #[must_use]
+    pub fn run_table(&self, pilot: &Pilot) -> String {
+        run_table(self.whole, &pilot.method, pilot.row.dt)
+    }
+}

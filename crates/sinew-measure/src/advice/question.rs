@@ -1,0 +1,127 @@
+//! What is asked.
+
+/// Time for pilots (CPU s) unless another is given.
+pub const DEFAULT_PILOT_SECONDS: f64 = 10.0;
+
+/// An error that is to be met, and what it may cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Question {
+    /// Largest relative error (fraction).
+    pub tolerance: f64,
+    /// Most CPU seconds per simulated second, set-up apart.
+    pub budget: Option<f64>,
+    /// CPU time (s) after which no pilot is begun.
+    pub pilot_seconds: f64,
+}
+
+/// A question that has no answer.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum QuestionError {
+    /// The tolerance.
+    #[error(
+        "a tolerance of {0}: expected a fraction above 0 and below 1, such as 1e-2; returning zero has an error of 1"
+    )]
+    Tolerance(f64),
+    /// The budget.
+    #[error(
+        "a budget of {0}: expected finite CPU seconds per simulated second above 0; 1 is real time"
+    )]
+    Budget(f64),
+    /// The time for pilots.
+    #[error("{0} s for pilots: expected a finite time above 0 s and up to 1e9 s, such as 10")]
+    PilotSeconds(f64),
+}
+
+impl Question {
+    /// An error at any cost.
+    #[must_use]
+    pub fn new(tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            budget: None,
+            pilot_seconds: DEFAULT_PILOT_SECONDS,
+        }
+    }
+
+    pub(super) fn check(self) -> Result<(), QuestionError> {
+        check_tolerance(self.tolerance)?;
+        self.budget.map_or(Ok(()), check_budget)?;
+        check_pilot_seconds(self.pilot_seconds)
+    }
+}
+
+/// Whether a tolerance can be asked for.
+///
+/// # Errors
+/// [`QuestionError::Tolerance`].
+pub fn check_tolerance(tolerance: f64) -> Result<(), QuestionError> {
+    if tolerance > 0.0 && tolerance < 1.0 {
+        return Ok(());
+    }
+    Err(QuestionError::Tolerance(tolerance))
+}
+
+/// Whether a budget (CPU s per simulated s) can be kept to.
+///
+/// # Errors
+/// [`QuestionError::Budget`].
+pub fn check_budget(budget: f64) -> Result<(), QuestionError> {
+    if budget > 0.0 && budget.is_finite() {
+        return Ok(());
+    }
+    Err(QuestionError::Budget(budget))
+}
+
+/// Whether a time (CPU s) can be given to pilots.
+///
+/// # Errors
+/// [`QuestionError::PilotSeconds`].
+pub fn check_pilot_seconds(seconds: f64) -> Result<(), QuestionError> {
+    // A Duration holds it with room to spare.
+    if seconds > 0.0 && seconds <= 1e9 {
+        return Ok(());
+    }
+    Err(QuestionError::PilotSeconds(seconds))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cannot_be_asked_is_refused_with_what_can() {
+        for tolerance in [0.0, -1e-2, 1.0, 2.0, f64::NAN, f64::INFINITY] {
+            let message = Question::new(tolerance).check().unwrap_err().to_string();
+            assert!(message.contains("such as 1e-2"), "{message}");
+        }
+        for budget in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let budget = Some(budget);
+            let question = Question {
+                budget,
+                ..Question::new(1e-2)
+            };
+            let message = question.check().unwrap_err().to_string();
+            assert!(
+                message.contains("CPU seconds per simulated second"),
+                "{message}"
+            );
+        }
+        for pilot_seconds in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let question = Question {
+                pilot_seconds,
+                ..Question::new(1e-2)
+            };
+            assert!(matches!(
+                question.check(),
+                Err(QuestionError::PilotSeconds(_))
+            ));
+        }
+        let budget = Some(1e-3);
+        let question = Question {
+            budget,
+            ..Question::new(0.99)
+        };
+        assert_eq!(question.check(), Ok(()));
+    }
+}

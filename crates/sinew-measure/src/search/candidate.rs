@@ -1,0 +1,50 @@
+//! What a search may choose from.
+
+use sinew_core::{Accuracy, StableStep};
+use sinew_scene::Simulation;
+
+use crate::measure::Method;
+
+/// Integrators whose set-up factorises a matrix; known before the first of them has run.
+const FACTORISING: [&str; 4] = ["implicit-euler", "newmark", "generalized-alpha", "modal"];
+
+/// A method with what its search needs to know of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// The method.
+    pub method: Method,
+    /// The largest step (s) at which it is stable; infinite where it always is or cannot say, 0
+    /// where it never is.
+    pub stable_step: f64,
+    /// The highest order it declares; none where it is exact at any step.
+    pub order: Option<u8>,
+    /// Whether its set-up factorises a matrix, which on a large mesh costs more than many runs.
+    pub factorises: bool,
+}
+
+impl Candidate {
+    /// A method on a scene.
+    ///
+    /// # Errors
+    /// A reason in words when its options do not fit or the system lacks what it needs.
+    pub fn of(simulation: &Simulation, method: Method) -> Result<Self, String> {
+        let integrator = sinew_integrators::build(&method.integrator, &method.options)
+            .map_err(|error| error.to_string())?;
+        let stable_step = integrator
+            .stable_step(simulation.system())
+            .map_err(|error| error.to_string())?;
+        let order = match integrator.properties().accuracy {
+            Accuracy::Exact => None,
+            accuracy => accuracy.order(false).max(accuracy.order(true)),
+        };
+        Ok(Self {
+            stable_step: match stable_step {
+                StableStep::UpTo(limit) => limit,
+                StableStep::Any | StableStep::Unknown => f64::INFINITY,
+            },
+            order,
+            factorises: FACTORISING.contains(&method.integrator.as_str()),
+            method,
+        })
+    }
+}

@@ -1,0 +1,289 @@
+//! The cheapest runs for an error, found without measuring every method at every step.
+//!
+//! Each candidate is followed from its longest stable step to shorter ones, by the order it
+//! declares and the errors measured on the way, for as long as it can still become cheaper than
+//! the best run so far; the one that promises most goes first. Steps divide the time between two
+//! instants of the comparison, so that all errors are taken at the same instants.
+
+mod candidate;
+mod candidates;
+mod pilots;
+mod trail;
+
+pub use candidate::Candidate;
+pub use candidates::candidates;
+pub use pilots::{CasePilots, Pilot, Pilots};
+
+use crate::measure::{Effort, Method};
+use crate::{Row, Span};
+use trail::{Aim, Trail};
+
+/// What a run must keep to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// Largest relative error (fraction).
+    pub error: f64,
+    /// Most CPU seconds per simulated second, set-up apart; infinite where cost is no matter.
+    pub budget: f64,
+}
+
+impl Goal {
+    /// An error at any cost.
+    #[must_use]
+    pub fn error(error: f64) -> Self {
+        Self {
+            error,
+            budget: f64::INFINITY,
+        }
+    }
+
+    /// Whether a run keeps to it.
+    #[must_use]
+    pub fn is_met_by(self, row: &Row) -> bool {
+        row.cpu_s_per_s <= self.budget && row.sound_error().is_some_and(|e| e <= self.error)
+    }
+}
+
+/// Costs that differ by less than this share count as equal: times repeat no better.
+const NOISE: f64 = 0.1;
+
+/// Most pilots of one candidate for one goal.
+const MOST_PILOTS: usize = 16;
+
+/// A search over candidates; what it has measured for one goal serves the next.
+#[derive(Debug)]
+pub struct Search<P> {
+    pilots: P,
+    span: Span,
+    duration: f64,
+    trails: Vec<Trail>,
+    others: Vec<Pilot>,
+    count: usize,
+    cut_short: bool,
+}
+
+impl<P: Pilots> Search<P> {
+    /// A search by pilots over `span`, for runs over `duration` (s): set-up counts once a run.
+    pub fn new(pilots: P, span: Span, duration: f64) -> Self {
+        Self {
+            pilots,
+            span,
+            duration,
+            trails: Vec::new(),
+            others: Vec::new(),
+            count: 0,
+            cut_short: false,
+        }
+    }
+
+    /// Adds a candidate, unless its method is one already.
+    pub fn add(&mut self, candidate: Candidate) {
+        let known = |trail: &Trail| trail.candidate.method == candidate.method;
+        if !self.trails.iter().any(known) {
+            self.trails.push(Trail::new(candidate, self.span));
+        }
+    }
+
+    /// Follows all candidates towards a goal, always the one that promises to reach it at the
+    /// lowest cost.
+    pub fn seek(&mut self, goal: Goal) {
+        self.pursue(goal, |search, _| search.lowest_cost(goal, |_| true));
+    }
+
+    /// Follows every integrator to its own cheapest run for a goal, as long as that may cost less
+    /// than `times` the cheapest of all.
+    pub fn survey(&mut self, goal: Goal, times: f64) {
+        self.pursue(goal, |search, trail| {
+            let integrator = &trail.candidate.method.integrator;
+            let own = search.lowest_cost(goal, |pilot| pilot.method.integrator == *integrator);
+            own.min(times * search.lowest_cost(goal, |_| true))
+        });
+    }
+
+    /// Follows candidates towards a goal while they may cost less than a limit (s).
+    fn pursue(&mut self, goal: Goal, limit: impl Fn(&Self, &Trail) -> f64) {
+        let mut pilots_left = vec![MOST_PILOTS; self.trails.len()];
+        loop {
+            let step = |(index, trail): (usize, &Trail)| {
+                let aim = Aim {
+                    goal,
+                    best: limit(self, trail),
+                    duration: self.duration,
+                    least_step: self.pilots.least_step_cpu_s(),
+                };
+                if pilots_left[index] == 0 || self.begins_too_dear(trail, aim.best) {
+                    return None;
+                }
+                Some((index, trail.next(&aim)?))
+            };
+            let steps = self.trails.iter().enumerate().filter_map(step);
+            let Some((index, next)) =
+                steps.min_by(|(_, a), (_, b)| a.promise.total_cmp(&b.promise))
+            else {
+                return;
+            };
+            pilots_left[index] -= 1;
+            if !self.follow(index, next.parts) {
+                pilots_left[index] = 0;
+            }
+        }
+    }
+
+    /// Takes every candidate to the shortest step that a budget (CPU s per simulated s) allows.
+    pub fn spend(&mut self, budget: f64) {
+        for index in 0..self.trails.len() {
+            if let Some(parts) = self.trails[index].parts_within(budget) {
+                self.follow(index, parts);
+            }
+        }
+    }
+
+    /// Measures one more run, of any step (s).
+    ///
+    /// # Errors
+    /// A reason in words when the method cannot make it.
+    pub fn include(&mut self, method: &Method, dt: f64) -> Result<(), String> {
+        let row = self.pilots.measure(method, dt, Effort::QUICK)?;
+        self.count += 1;
+        self.others.push(Pilot {
+            method: method.clone(),
+            row,
+        });
+        Ok(())
+    }
+
+    /// Measures the cost of the cheapest runs for a goal again and longer, so that the choice
+    /// between them does not hang on one short time.
+    pub fn confirm(&mut self, goal: Goal) {
+        const EFFORT: Effort = Effort {
+            repeats: 5,
+            budget: 0.1,
+        };
+        const MOST: usize = 4;
+        let within = 1.5 * self.lowest_cost(goal, |_| true);
+        let duration = self.duration;
+        let close = self.by_method(goal).into_iter();
+        let close = close.filter(|pilot| pilot.row.total_cpu_s(duration) <= within);
+        let close: Vec<Pilot> = close.take(MOST).cloned().collect();
+        for pilot in close {
+            let row = &pilot.row;
+            let run = row.cpu_s_per_s * self.span.duration;
+            if row.setup_cpu_s + (2.0 * run).max(EFFORT.budget) > self.pilots.left() {
+                self.cut_short = true;
+                continue;
+            }
+            if let Ok(mut again) = self.pilots.measure(&pilot.method, row.dt, EFFORT) {
+                again.setup_cpu_s = again.setup_cpu_s.min(row.setup_cpu_s);
+                let trails = self.trails.iter_mut().flat_map(Trail::runs_mut);
+                for known in trails.chain(&mut self.others) {
+                    if known.method == pilot.method && known.row.dt == row.dt {
+                        known.row = again.clone();
+                    }
+                }
+            }
+        }
+    }
+
+    /// All runs so far.
+    pub fn runs(&self) -> impl Iterator<Item = &Pilot> {
+        self.trails.iter().flat_map(Trail::runs).chain(&self.others)
+    }
+
+    /// The cheapest run for a goal, set-up included; of several whose times do not tell them
+    /// apart, the one with the smallest error.
+    #[must_use]
+    pub fn cheapest(&self, goal: Goal) -> Option<&Pilot> {
+        let within = (1.0 + NOISE) * self.lowest_cost(goal, |_| true);
+        self.meeting(goal)
+            .filter(|pilot| pilot.row.total_cpu_s(self.duration) <= within)
+            .min_by(|a, b| {
+                let error = |pilot: &Pilot| pilot.row.error.unwrap_or(f64::INFINITY);
+                error(a).total_cmp(&error(b))
+            })
+    }
+
+    /// The cheapest run of each integrator for a goal, the cheapest first.
+    #[must_use]
+    pub fn by_method(&self, goal: Goal) -> Vec<&Pilot> {
+        let mut pilots: Vec<&Pilot> = self.meeting(goal).collect();
+        let cost = |pilot: &Pilot| pilot.row.total_cpu_s(self.duration);
+        pilots.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+        let mut seen: Vec<&str> = Vec::new();
+        pilots.retain(|pilot| {
+            let id = pilot.method.integrator.as_str();
+            let new = !seen.contains(&id);
+            seen.push(id);
+            new
+        });
+        pilots
+    }
+
+    /// Candidates that could not run at all, with the reason.
+    pub fn refused(&self) -> impl Iterator<Item = (&Method, &str)> {
+        let of = |trail: &'_ Trail| trail.runs().next().is_none();
+        self.trails
+            .iter()
+            .filter(move |trail| of(trail))
+            .filter_map(|trail| {
+                let reason = trail.reason.as_deref()?;
+                Some((&trail.candidate.method, reason))
+            })
+    }
+
+    /// How many runs were measured.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Whether a candidate was given up because the time for pilots had run out.
+    #[must_use]
+    pub fn cut_short(&self) -> bool {
+        self.cut_short
+    }
+
+    /// CPU time (s) left for pilots.
+    #[must_use]
+    pub fn left(&self) -> f64 {
+        self.pilots.left()
+    }
+
+    fn meeting(&self, goal: Goal) -> impl Iterator<Item = &Pilot> {
+        self.runs().filter(move |pilot| goal.is_met_by(&pilot.row))
+    }
+
+    fn lowest_cost(&self, goal: Goal, counts: impl Fn(&Pilot) -> bool) -> f64 {
+        self.meeting(goal)
+            .filter(|pilot| counts(pilot))
+            .map(|pilot| pilot.row.total_cpu_s(self.duration))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether the set-up alone of a candidate that factorises costs more than the best run, as
+    /// that of one that has run shows.
+    fn begins_too_dear(&self, trail: &Trail, best: f64) -> bool {
+        let dear =
+            |pilot: &Pilot| pilot.row.work.factorizations > 0 && pilot.row.setup_cpu_s > best;
+        trail.candidate.factorises && trail.runs().next().is_none() && self.runs().any(dear)
+    }
+
+    /// Measures a candidate in so many parts of the interval; false where no time is left for it.
+    fn follow(&mut self, index: usize, parts: u32) -> bool {
+        let trail = &mut self.trails[index];
+        let price = trail.price(parts, self.span.duration, self.pilots.least_step_cpu_s());
+        if price >= self.pilots.left() {
+            self.cut_short = true;
+            return false;
+        }
+        let dt = self.span.interval() / f64::from(parts);
+        let measured = self
+            .pilots
+            .measure(&trail.candidate.method, dt, Effort::QUICK);
+        self.count += usize::from(measured.is_ok());
+        trail.insert(parts, measured);
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests;

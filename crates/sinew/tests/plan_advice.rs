@@ -1,0 +1,165 @@
+//! `sinew plan --tolerance`, as a user meets it.
+
+#![cfg(test)]
+
+use std::path::Path;
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+const SPRING: &str = "title = \"a spring\"
+[oscillator]
+mass = 0.1
+stiffness = 100.0
+damping = 1.0
+velocity = -5.0
+[run]
+duration = 1.0
+integrator = \"cnn\"
+dt = 0.02
+saturation = 4.0
+";
+
+struct Said {
+    code: Option<i32>,
+    out: String,
+    err: String,
+}
+
+fn sinew(directory: &Path, arguments: &[&str]) -> Said {
+    let output = Command::cargo_bin("sinew")
+        .unwrap()
+        .current_dir(directory)
+        .args(arguments)
+        .output()
+        .unwrap();
+    Said {
+        code: output.status.code(),
+        out: String::from_utf8(output.stdout).unwrap(),
+        err: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// What the command says of a scene.
+fn plan(scene: &str, arguments: &[&str]) -> Said {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), scene).unwrap();
+    let arguments: Vec<&str> = ["plan", "scene.toml"]
+        .into_iter()
+        .chain(arguments.iter().copied())
+        .collect();
+    sinew(directory.path(), &arguments)
+}
+
+#[test]
+fn the_advice_runs_when_it_is_pasted_and_its_error_stands_beside_its_cost() {
+    let said = plan(SPRING, &["--tolerance", "1e-2"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let (plan, advice) = said
+        .out
+        .split_once("cheapest with an error of at most 1 %")
+        .unwrap();
+    assert!(plan.contains("`cnn` is stable up to dt = 0.01 s"), "{plan}");
+    let head = advice.lines().next().unwrap();
+    assert!(
+        head.contains(" % at ") && head.ends_with(" CPU s/s)"),
+        "{head}"
+    );
+    for part in [
+        "runner-up",
+        "as written",
+        "426",
+        "guarded",
+        "ten times better (0.1 %)",
+    ] {
+        assert!(advice.contains(part), "{part} is not in\n{advice}");
+    }
+
+    let table = &advice[advice.find("[run]").unwrap()..];
+    let table = &table[..table.find("\n\n").unwrap()];
+    let scene = format!("{}{table}\n", &SPRING[..SPRING.find("[run]").unwrap()]);
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("advised.toml"), &scene).unwrap();
+    let run = sinew(directory.path(), &["run", "advised.toml"]);
+    assert_eq!(run.code, Some(0), "{scene}\n{}", run.err);
+}
+
+#[test]
+fn as_json_it_is_one_object_with_the_same_run() {
+    let said = plan(SPRING, &["--tolerance", "1e-3", "--json"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let advice: Value = serde_json::from_str(&said.out).unwrap();
+    assert_eq!(advice["met"], true);
+    let error = advice["advised"]["row"]["error"].as_f64().unwrap();
+    assert!(error > 0.0 && error <= 1e-3);
+    let table = advice["advised"]["run_table"].as_str().unwrap();
+    assert!(table.starts_with("[run]\nduration = 1.0\nsamples = 50\nintegrator = "));
+    assert_eq!(advice["as_written"]["row"]["guarded"], true);
+}
+
+#[test]
+fn what_no_budget_buys_is_an_answer_too() {
+    let said = plan(SPRING, &["--tolerance", "1e-2", "--budget", "1e-12"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let answer = "nothing measured has an error of at most 1 % within 1e-12 CPU s/s; nearest: ";
+    assert!(said.out.contains(answer), "{}", said.out);
+    assert!(said.out.contains("no sound run is within the budget"));
+    assert!(!said.out.contains("\n[run]\n"), "nothing to paste");
+}
+
+#[test]
+fn a_question_without_an_answer_is_refused_with_what_to_ask() {
+    let tolerance = "expected a fraction above 0 and below 1, such as 1e-2";
+    let budget = "expected finite CPU seconds per simulated second above 0";
+    let cases: [(&[&str], &str); 11] = [
+        (&["--tolerance", "0"], tolerance),
+        (&["--tolerance", "-1e-2"], tolerance),
+        (&["--tolerance", "1"], tolerance),
+        (&["--tolerance", "nan"], tolerance),
+        (&["--tolerance", "small"], tolerance),
+        (&["--tolerance", "1e-2", "--budget", "0"], budget),
+        (&["--tolerance", "1e-2", "--budget", "-1"], budget),
+        (&["--tolerance", "1e-2", "--budget", "inf"], budget),
+        (&["--budget", "1"], "--tolerance <ERROR>"),
+        (&["--json"], "--tolerance <ERROR>"),
+        (
+            &["--tolerance", "1e-2", "--pilot-seconds", "0"],
+            "expected a finite time above 0 s",
+        ),
+    ];
+    for (arguments, expected) in cases {
+        let said = plan(SPRING, arguments);
+        assert_eq!(said.code, Some(2), "{arguments:?}");
+        assert!(said.err.contains(expected), "{arguments:?}: {}", said.err);
+        assert_eq!(said.err.matches("error:").count(), 1, "{}", said.err);
+        assert_eq!(said.out, "", "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_scene_without_a_reference_says_what_to_do() {
+    let cases = [
+        (
+            "velocity = -5.0",
+            "velocity = 0.0",
+            "give it a load or an initial state",
+        ),
+        (
+            "stiffness = 100.0",
+            "stiffness = 1e40",
+            "shorten [run] duration",
+        ),
+    ];
+    for (from, to, expected) in cases {
+        assert!(SPRING.contains(from));
+        let said = plan(
+            &SPRING.replace(from, to),
+            &["--tolerance", "1e-2", "--json"],
+        );
+        assert_eq!(said.code, Some(2), "{to}");
+        assert!(said.err.starts_with("error: scene.toml: "), "{}", said.err);
+        assert!(said.err.contains(expected), "{to}: {}", said.err);
+        assert_eq!(said.err.matches("error:").count(), 1, "{}", said.err);
+        assert_eq!(said.out, "", "{to}");
+    }
+}
