@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use sinew_core::{OptionError, OptionValue, StableStep};
+use sinew_core::{Accuracy, OptionError, OptionValue, StableStep};
 
 use sinew_measure::{
     Case, CaseError, Effort, Method, ThreadError, mark_pareto, measure, on_one_thread,
@@ -117,6 +117,10 @@ impl Bench {
                 if let Some(limit) = stable_step(case, &method) {
                     info.stable_steps_s.insert(method.label(), limit);
                 }
+                let mut steps = steps.as_slice();
+                if self.steps.is_empty() && is_exact(&method) {
+                    steps = &steps[..steps.len().min(STEPS_OF_EXACT_METHODS)];
+                }
                 let runs = steps.iter().map(|dt| (index, method.clone(), *dt));
                 plan.extend(runs);
             }
@@ -204,6 +208,16 @@ fn variants(case: &Case, integrator: &str) -> Vec<Method> {
     variants.retain(|variant| *variant != plain);
     variants.insert(0, plain);
     variants
+}
+
+/// Longest steps at which a method is measured that is exact over a step: shorter ones cost more
+/// and are no better.
+const STEPS_OF_EXACT_METHODS: usize = 4;
+
+/// Whether the error of a method does not depend on the step.
+fn is_exact(method: &Method) -> bool {
+    sinew_integrators::build(&method.integrator, &method.options)
+        .is_ok_and(|integrator| integrator.properties().accuracy == Accuracy::Exact)
 }
 
 /// The largest stable step (s) of a method on a case, where it has one.

@@ -85,7 +85,7 @@ impl Effort {
     /// For results to be shown.
     pub const FULL: Self = Self {
         repeats: 5,
-        budget: 0.12,
+        budget: 0.06,
     };
     /// For checks that everything runs.
     pub const QUICK: Self = Self {
