@@ -567,6 +567,24 @@ fn steps_are_cut_until_no_cell_passes_a_fifth_of_its_size_or_they_are_stable() {
     assert_eq!(parts("cnn-stabilised", 20.0), 1.0);
 }
 
+/// 5 Pa move no cell far; 0.2 m/s of all cells at the start make a limit of 1.2 m/s more.
+#[test]
+fn a_fast_start_cuts_steps_too_and_so_does_a_fresh_integrator_later() {
+    let model = paper_cube_under(5.0);
+    let mut state = State::at_rest(model.dofs());
+    state.v.chunks_exact_mut(3).for_each(|v| v[0] = 0.2);
+    let mut integrator = build("forward-euler", &auto());
+    integrator.prepare(&model, 0.02).unwrap();
+    assert_eq!(fact(&*integrator, Guarded::SUBSTEPS), 1.0);
+    for _ in 0..3 {
+        // (1.2 + 0.017) m/s in 20 ms over a fifth of 20 mm.
+        let work = integrator.step(&model, &mut state, 0.02).unwrap();
+        assert_eq!(work.sweeps, 7);
+        assert_eq!(fact(&*integrator, Guarded::SUBSTEPS), 7.0);
+        integrator = build("forward-euler", &auto());
+    }
+}
+
 #[test]
 fn parts_and_guard_go_together() {
     let model = paper_cube();
