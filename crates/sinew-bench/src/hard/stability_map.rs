@@ -28,8 +28,11 @@ pub struct MapPanel {
     /// The method with its options.
     pub method: String,
     /// The largest stable step (s) at each value of the parameter, as the method computes it from
-    /// the matrices; none where it is stable at any step.
+    /// the matrices; none where it is stable at any step or cannot tell.
     pub stable_steps: Vec<Option<f64>>,
+    /// Whether there is a value at which the method cannot tell its stable step.
+    #[serde(default)]
+    pub cannot_tell: bool,
     /// For each value of the parameter, the run at each step.
     pub runs: Vec<Vec<MapRun>>,
 }
@@ -88,7 +91,12 @@ impl StabilityMap {
             self.panels = methods.iter().map(panel).collect();
         }
         for (method, panel) in methods.iter().zip(&mut self.panels) {
-            panel.stable_steps.push(stable_step(case, method)?);
+            let stable = stable_step(case, method)?;
+            panel.cannot_tell |= stable == StableStep::Unknown;
+            panel.stable_steps.push(match stable {
+                StableStep::UpTo(limit) if limit.is_finite() => Some(limit),
+                StableStep::UpTo(_) | StableStep::Any | StableStep::Unknown => None,
+            });
             let steps = self.steps.iter();
             let runs = steps.map(|&dt| {
                 let row = measure(case, method, dt, Effort::UNTIMED)?;
@@ -100,15 +108,10 @@ impl StabilityMap {
     }
 }
 
-fn stable_step(case: &Case, method: &Method) -> Result<Option<f64>, String> {
+fn stable_step(case: &Case, method: &Method) -> Result<StableStep, String> {
     let integrator = sinew_integrators::build(&method.integrator, &method.options)
         .map_err(|error| error.to_string())?;
-    let stable = integrator
+    integrator
         .stable_step(case.simulation().system())
-        .map_err(|error| error.to_string())?;
-    Ok(match stable {
-        StableStep::UpTo(limit) if limit.is_finite() => Some(limit),
-        StableStep::UpTo(_) | StableStep::Any => None,
-        StableStep::Unknown => return Err(format!("{} has no stable step", method.label())),
-    })
+        .map_err(|error| error.to_string())
 }

@@ -104,9 +104,12 @@ fn draw_panel(svg: &mut Svg, map: &StabilityMap, panel: &MapPanel, frame: Frame,
             .sized(13.0)
             .bold(),
     );
-    let theory = match panel.stable_steps.iter().all(Option::is_none) {
-        true => "stable at any step",
-        false => "line: largest stable step, computed",
+    let computed = panel.stable_steps.iter().any(Option::is_some);
+    let theory = match (computed, panel.cannot_tell) {
+        (true, false) => "line: largest stable step, computed",
+        (true, true) => "line: largest stable step, where it can be told",
+        (false, false) => "stable at any step",
+        (false, true) => "cannot tell its stable step",
     };
     svg.text(
         &Text::new(frame.left, frame.top - 11.0, theory)
@@ -373,6 +376,7 @@ mod tests {
         let panel = |method: &str, stable_steps| MapPanel {
             method: method.into(),
             stable_steps,
+            cannot_tell: false,
             runs: vec![
                 vec![
                     run(Some(1e-3), true, false),
@@ -432,6 +436,9 @@ mod tests {
         let mut unlimited = map();
         unlimited.panels.remove(0);
         assert_eq!(lines(&unlimited), 0);
+        unlimited.panels[0].cannot_tell = true;
+        let svg = heat_map(&unlimited);
+        assert!(svg.contains("cannot tell its stable step") && !svg.contains("stable at any step"));
     }
 
     #[test]

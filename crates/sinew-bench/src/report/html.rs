@@ -154,8 +154,9 @@ impl Page {
             "<section>\n<h2 id=\"maps\">Where methods hold: step against one property of the scene</h2>\n\
              <p>Every square is a run on a small cube, coloured by its error. The line is the largest \
              stable step that each method computes from the matrices before it runs: theory, beside \
-             the runs. With dashpots it is a bound from below, for the paper's network 0. <b>Bounded is not accurate</b>: where there is no line, only the colour tells \
-             how far a method can be trusted.</p>\n",
+             the runs. With dashpots it is a bound from below, and the paper's network has none. \
+             <b>Bounded is not accurate</b>: where there is no line, only the colour tells how far a \
+             method can be trusted.</p>\n",
         );
         for map in maps {
             self.figure(&heat_map(map));
