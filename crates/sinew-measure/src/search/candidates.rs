@@ -52,26 +52,27 @@ fn variants(id: &str, error: f64) -> Vec<Method> {
     };
     let default = with(Options::new());
     // Errors of steps add up; a tenth leaves room for that and costs few degrees.
-    let loose = Options::new().with_number("tolerance", error / 10.0);
+    let tolerance = |share: f64| Options::new().with_number("tolerance", error * share);
     match id {
         "cnn-stabilised" => {
             let chebyshev = |sweeps| with(Options::new().with("inner", inner("chebyshev", sweeps)));
             vec![default, chebyshev(4.0), chebyshev(8.0)]
         }
         "propagator" => {
-            let kind = |kind: &str| {
+            let kind = |kind: &str, share: f64| {
                 let kind = OptionValue::Text(kind.into());
-                with(loose.clone().with("kind", kind))
+                with(tolerance(share).with("kind", kind))
             };
             vec![
                 default,
-                with(loose.clone()),
-                kind("two-step"),
-                kind("krylov"),
+                with(tolerance(0.1)),
+                // Its tolerance is one of frequencies: the phase runs away.
+                kind("two-step", 0.01),
+                kind("krylov", 0.1),
             ]
         }
         // Its error is the share of the response that it leaves out.
-        "modal" => vec![with(Options::new().with_number("tolerance", error))],
+        "modal" => vec![with(tolerance(1.0))],
         _ => vec![default],
     }
 }
