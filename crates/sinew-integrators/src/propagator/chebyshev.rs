@@ -5,6 +5,7 @@ use sinew_core::{Fact, LinearOperators, Ramp, SetupError, State, StepError, Step
 
 use super::mode::{Mode, quadrature};
 use super::series::{interpolate, nodes, tails};
+use super::vectors::ChebyshevVectors;
 use super::{HIGHEST_DEGREE, ID, Resolution, load_not_smooth};
 
 /// By how much the largest eigenvalue, which Lanczos finds from below, is raised.
@@ -26,9 +27,7 @@ const GROWTH: f64 = 1.05;
 pub(super) struct Chebyshev {
     series: Series,
     r: Vec<f64>,
-    current: Vec<f64>,
-    previous: Vec<f64>,
-    product: Vec<f64>,
+    vectors: ChebyshevVectors,
     sum_u: Vec<f64>,
     sum_v: Vec<f64>,
 }
@@ -151,47 +150,31 @@ impl Series {
 }
 
 impl Chebyshev {
-    /// Adds the two series of one vector, in `current`, to the sums: `sum_u += a(M^-1 K) x` and
+    /// Adds the two series of the vector that `vectors` were started with to the sums: `sum_u += a(M^-1 K) x` and
     /// `sum_v += b(M^-1 K) x`.
     fn add_series(
         &mut self,
         operators: &LinearOperators,
         pick: fn(&Series) -> (&[f64], &[f64]),
     ) -> Result<u64, Growth> {
-        let (stiffness, mass) = (operators.stiffness(), operators.mass());
-        let scale = 2.0 / self.series.interval;
+        let mass = operators.mass();
         let degree = self.series.degree();
-        let start = m_norm(mass, &self.current);
-        let mut sweeps = 0;
+        let start = m_norm(mass, self.vectors.current());
         for k in 0..=degree {
             let (of_u, of_v) = pick(&self.series);
             let (a, b) = (of_u[k], of_v[k]);
-            for (i, x) in self.current.iter().enumerate() {
+            for (i, x) in self.vectors.current().iter().enumerate() {
                 self.sum_u[i] += a * x;
                 self.sum_v[i] += b * x;
             }
-            if k == degree {
-                break;
-            }
-            // T_k+1 = 2 B T_k - T_k-1 with B = (2/Lambda) M^-1 K - 1, and T_1 = B T_0.
-            self.product.fill(0.0);
-            stiffness.subtract_scaled_product(-scale, &self.current, &mut self.product);
-            sweeps += 1;
-            for (i, mass) in mass.iter().enumerate() {
-                let shifted = self.product[i] / mass - self.current[i];
-                let next = if k == 0 {
-                    shifted
-                } else {
-                    2.0 * shifted - self.previous[i]
-                };
-                self.previous[i] = self.current[i];
-                self.current[i] = next;
+            if k < degree {
+                self.vectors.advance(operators);
             }
         }
-        let end = m_norm(mass, &self.current);
+        let end = m_norm(mass, self.vectors.current());
         // False for NaN too.
         if end <= GROWTH * start {
-            Ok(sweeps)
+            Ok(degree as u64)
         } else {
             Err(Growth(end / start))
         }
@@ -226,11 +209,9 @@ impl Chebyshev {
         series.cut(degree);
         let buffer = || vec![0.0; operators.dofs()];
         Ok(Self {
+            vectors: ChebyshevVectors::new(operators.dofs(), series.interval),
             series,
             r: buffer(),
-            current: buffer(),
-            previous: buffer(),
-            product: buffer(),
             sum_u: buffer(),
             sum_v: buffer(),
         })
@@ -264,11 +245,11 @@ impl Chebyshev {
                 "the series grew {factor:.2} times where it must not: the largest eigenvalue was underestimated"
             ),
         };
-        self.current.copy_from_slice(&state.v);
+        self.vectors.start().copy_from_slice(&state.v);
         work.sweeps += self
             .add_series(operators, |series| (&series.s, &series.s_rate))
             .map_err(grown)?;
-        self.current.copy_from_slice(&self.r);
+        self.vectors.start().copy_from_slice(&self.r);
         work.sweeps += self
             .add_series(operators, |series| (&series.g, &series.s))
             .map_err(grown)?;
@@ -278,9 +259,10 @@ impl Chebyshev {
                 continue;
             }
             self.series.follow(&load.ramp, t);
-            self.current.fill(0.0);
+            let of_load = self.vectors.start();
+            of_load.fill(0.0);
             for &(dof, force) in &load.entries {
-                self.current[dof as usize] += force / operators.mass()[dof as usize];
+                of_load[dof as usize] += force / operators.mass()[dof as usize];
             }
             work.sweeps += self
                 .add_series(operators, |series| (&series.of_load, &series.of_load_rate))

@@ -6,6 +6,7 @@ mod krylov;
 mod mode;
 mod series;
 mod two_step;
+mod vectors;
 
 use chebyshev::Chebyshev;
 use krylov::Krylov;

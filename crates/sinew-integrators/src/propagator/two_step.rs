@@ -6,6 +6,7 @@ use sinew_core::{Fact, LinearOperators, Load, SetupError, State, StepError, Step
 use super::chebyshev::{Chebyshev, LARGEST_EIGENVALUE_MARGIN};
 use super::mode::{Mode, quadrature};
 use super::series::{evaluate, interpolate, nodes, tails};
+use super::vectors::ChebyshevVectors;
 use super::{HIGHEST_DEGREE, ID, Resolution};
 
 /// Points per degree among which the largest value of a polynomial is looked for.
@@ -27,7 +28,6 @@ const POINTS_PER_DEGREE: usize = 32;
 pub(super) struct TwoStep {
     degree: usize,
     left_out: f64,
-    interval: f64,
     /// Series of S and of (S - S(0))/lambda.
     s: Vec<f64>,
     divided: Vec<f64>,
@@ -41,9 +41,7 @@ pub(super) struct TwoStep {
     r: Vec<f64>,
     sum: Vec<f64>,
     other_sum: Vec<f64>,
-    current: Vec<f64>,
-    previous: Vec<f64>,
-    product: Vec<f64>,
+    vectors: ChebyshevVectors,
 }
 
 /// S of one mode.
@@ -103,7 +101,6 @@ impl TwoStep {
         Ok(Self {
             degree,
             left_out: left_out[degree],
-            interval,
             s_at_zero,
             alpha,
             decay: (-4.0 * (alpha * s_at_zero / 4.0).asinh()).exp(),
@@ -121,9 +118,7 @@ impl TwoStep {
             r: buffer(),
             sum: buffer(),
             other_sum: buffer(),
-            current: buffer(),
-            previous: buffer(),
-            product: buffer(),
+            vectors: ChebyshevVectors::new(operators.dofs(), interval),
         })
     }
 
@@ -195,25 +190,27 @@ impl TwoStep {
 
         // y = S r - alpha^2/4 (S - S0)/lambda r, then G r = e^-eta (S y - alpha^2/4 S0 (S - S0)/lambda r).
         let quarter = self.alpha * self.alpha / 4.0;
-        self.current.copy_from_slice(&self.r);
+        self.vectors.start().copy_from_slice(&self.r);
         self.sum.fill(0.0);
         self.other_sum.fill(0.0);
         work.sweeps += self.add_series(operators, Which::Both);
-        for i in 0..self.r.len() {
-            self.current[i] = self.sum[i] - quarter * self.other_sum[i];
-            self.sum[i] = -quarter * self.s_at_zero * self.other_sum[i];
+        let y = self.vectors.start();
+        for ((y, sum), divided) in y.iter_mut().zip(&mut self.sum).zip(&self.other_sum) {
+            *y = *sum - quarter * divided;
+            *sum = -quarter * self.s_at_zero * divided;
         }
         work.sweeps += self.add_series(operators, Which::S);
         let root = self.decay.sqrt();
         self.sum.iter_mut().for_each(|sum| *sum *= root);
 
         if jumps && !self.of_jump.is_empty() {
-            self.current.fill(0.0);
+            let jump = self.vectors.start();
+            jump.fill(0.0);
             for Load { ramp, entries } in operators.loads() {
                 let [before, after] = [-0.5, 0.5].map(|part| ramp.value(state.t + part * dt));
                 for &(dof, force) in entries {
                     let dof = dof as usize;
-                    self.current[dof] += 0.5 * (after - before) * force / mass[dof];
+                    jump[dof] += 0.5 * (after - before) * force / mass[dof];
                 }
             }
             work.sweeps += self.add_series(operators, Which::Jump);
@@ -227,44 +224,26 @@ impl TwoStep {
         work
     }
 
-    /// Adds series of the vector in `current` to the sums.
+    /// Adds series of the vector that `vectors` were started with to the sums.
     fn add_series(&mut self, operators: &LinearOperators, which: Which) -> u64 {
         let series = match which {
             Which::Both | Which::S => &self.s,
             Which::Jump => &self.of_jump,
         };
-        let scale = 2.0 / self.interval;
-        let mut sweeps = 0;
         for (k, coefficient) in series.iter().enumerate() {
-            for (sum, x) in self.sum.iter_mut().zip(&self.current) {
+            if k > 0 {
+                self.vectors.advance(operators);
+            }
+            for (sum, x) in self.sum.iter_mut().zip(self.vectors.current()) {
                 *sum += coefficient * x;
             }
             if which == Which::Both {
-                for (sum, x) in self.other_sum.iter_mut().zip(&self.current) {
+                for (sum, x) in self.other_sum.iter_mut().zip(self.vectors.current()) {
                     *sum += self.divided[k] * x;
                 }
             }
-            if k + 1 == series.len() {
-                break;
-            }
-            // As in the one-step form.
-            self.product.fill(0.0);
-            operators
-                .stiffness()
-                .subtract_scaled_product(-scale, &self.current, &mut self.product);
-            sweeps += 1;
-            for (i, mass) in operators.mass().iter().enumerate() {
-                let shifted = self.product[i] / mass - self.current[i];
-                let next = if k == 0 {
-                    shifted
-                } else {
-                    2.0 * shifted - self.previous[i]
-                };
-                self.previous[i] = self.current[i];
-                self.current[i] = next;
-            }
         }
-        sweeps
+        series.len() as u64 - 1
     }
 
     pub(super) fn facts(&self) -> Vec<Fact> {
