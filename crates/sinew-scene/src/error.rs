@@ -271,7 +271,7 @@ impl Fault {
                 suggestion(nearest(id, known.iter().copied()))
             }
             Self::Integrator(OptionError::Unknown { key, known, .. }) => {
-                suggestion(nearest(key, known.iter().copied()))
+                takers(key).or_else(|| suggestion(nearest(key, known.iter().copied())))
             }
             Self::NoStableStep { .. } => Some(
                 "give dt in s; `sinew plan --tolerance` finds one that is accurate enough"
@@ -288,6 +288,14 @@ impl Fault {
 /// Whether a key belongs to the document, where TOML takes it for one of the table above it.
 fn stands_on_top(key: &str, known: &[&str]) -> bool {
     ["title", GRAVITY].contains(&key) && !known.contains(&key)
+}
+
+/// Which integrators take an option.
+fn takers(key: &str) -> Option<String> {
+    let entries = sinew_integrators::entries();
+    let takes = |entry: &&sinew_integrators::Entry| entry.options.iter().any(|o| o.key == key);
+    let takers: Vec<&str> = entries.iter().filter(takes).map(|entry| entry.id).collect();
+    (!takers.is_empty()).then(|| format!("`{key}` is an option of {}", quoted(&takers)))
 }
 
 fn suggestion(nearest: Option<&str>) -> Option<String> {

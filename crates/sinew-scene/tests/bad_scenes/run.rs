@@ -101,6 +101,17 @@ fn a_word_that_is_no_step() {
 }
 
 #[test]
+fn an_option_of_another_integrator() {
+    insta::assert_snapshot!(
+        refusal(BODY, "dt = 0.02", "dt = 0.02\npatches = \"auto\""),
+        @r"
+    scene.toml:24: [run]: `newmark` has no option `patches`; it takes `beta`, `gamma`
+    help: `patches` is an option of `central-difference`
+    "
+    );
+}
+
+#[test]
 fn a_misspelt_step_is_not_called_missing() {
     insta::assert_snapshot!(
         refusal(BODY, "dt = 0.02", "dtt = 0.02"),
