@@ -1,11 +1,15 @@
 //! `cargo xtask ci`.
 
+use std::ffi::OsStr;
 use std::process::Command;
-use std::time::Instant;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use crate::bench::say;
 use crate::failure::Failure;
 use crate::{root, rules};
+
+/// Name of the step that packs each crate and builds it from its package.
+const PACKAGES: &str = "packages";
 
 /// Arguments of cargo and what they check.
 const STEPS: &[(&str, &[&str])] = &[
@@ -50,7 +54,7 @@ const STEPS: &[(&str, &[&str])] = &[
         ],
     ),
     (
-        "packages",
+        PACKAGES,
         &[
             "package",
             "--workspace",
@@ -86,17 +90,34 @@ pub(crate) fn run() -> Result<(), Failure> {
     for (name, arguments) in STEPS {
         say(&format!("\n== {name}: cargo {}", arguments.join(" ")));
         let step = Instant::now();
+        let packaging = *name == PACKAGES;
+        // cargo unpacks each package once for a path and version, and would compile an older one
+        // that was packed at the same path before.
+        let own_target = packaging.then(|| {
+            let now = SystemTime::now().duration_since(UNIX_EPOCH);
+            let stamp = now.map_or(0, |now| now.as_millis());
+            root().join("target").join(format!("packages-{stamp}"))
+        });
+        let target = own_target.iter().flat_map(|target| {
+            let flag: [&OsStr; 2] = [OsStr::new("--target-dir"), target.as_os_str()];
+            flag
+        });
         let status = Command::new(env!("CARGO"))
             .args(*arguments)
+            .args(target)
             .current_dir(root())
             .env("RUSTDOCFLAGS", "-D warnings")
             // Packages are built once more, only to see that they build.
             .env(
                 "CARGO_PROFILE_DEV_OPT_LEVEL",
-                if *name == "packages" { "0" } else { "2" },
+                if packaging { "0" } else { "2" },
             )
             .status()
             .map_err(Failure::chore)?;
+        if let Some(target) = &own_target {
+            // What is left behind costs space and nothing else.
+            let _ = std::fs::remove_dir_all(target);
+        }
         if !status.success() {
             return Err(Failure::Chore(format!("{name}: {status}")));
         }
