@@ -73,7 +73,7 @@ fn uniform_error() -> f64 {
     })
 }
 
-/// The mark of numerics.md: the error of the uniform mesh, twice at most, at its step.
+/// The mark: at the uniform mesh's step at most twice its error.
 #[test]
 fn a_sliver_costs_neither_step_nor_accuracy() {
     for thinness in [20.0, 100.0, 1000.0] {
