@@ -114,7 +114,9 @@ impl Bench {
             let steps = self.steps_of(case);
             let mut info = case.info();
             for method in methods.iter().flat_map(|id| variants(case, id)) {
-                if let Some(limit) = stable_step(case, &method) {
+                if let Ok(StableStep::UpTo(limit)) = method.stable_step(case.simulation())
+                    && limit.is_finite()
+                {
                     info.stable_steps_s.insert(method.label(), limit);
                 }
                 let mut steps = steps.as_slice();
@@ -218,15 +220,6 @@ const STEPS_OF_EXACT_METHODS: usize = 4;
 fn is_exact(method: &Method) -> bool {
     sinew_integrators::build(&method.integrator, &method.options)
         .is_ok_and(|integrator| integrator.properties().accuracy == Accuracy::Exact)
-}
-
-/// The largest stable step (s) of a method on a case, where it has one.
-fn stable_step(case: &Case, method: &Method) -> Option<f64> {
-    let integrator = sinew_integrators::build(&method.integrator, &method.options).ok()?;
-    match integrator.stable_step(case.simulation().system()) {
-        Ok(StableStep::UpTo(limit)) if limit.is_finite() => Some(limit),
-        _ => None,
-    }
 }
 
 fn round(value: f64) -> f64 {

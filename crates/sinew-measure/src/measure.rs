@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use serde_json::{Number, Value};
 use sinew_core::{
-    Integrator, OptionValue, Options, RecordError, Recorder, Run, RunReport, SimulateError, State,
-    System, Verdict, simulate,
+    Integrator, OptionValue, Options, RecordError, Recorder, Run, RunReport, SimulateError,
+    StableStep, State, System, Verdict, simulate,
 };
 use sinew_scene::Simulation;
 
@@ -63,6 +63,17 @@ impl Method {
             }
         }
         self
+    }
+
+    /// Its largest stable step on a scene.
+    ///
+    /// # Errors
+    /// A reason in words when its options do not fit or the system lacks what it needs.
+    pub fn stable_step(&self, simulation: &Simulation) -> Result<StableStep, String> {
+        sinew_integrators::build(&self.integrator, &self.options)
+            .map_err(|error| error.to_string())?
+            .stable_step(simulation.system())
+            .map_err(|error| error.to_string())
     }
 
     /// Name and options, as in `cnn Q=4`.

@@ -2,34 +2,16 @@
 
 #![cfg(test)]
 
+mod common;
+
 use std::path::{Path, PathBuf};
 
-use assert_cmd::Command;
+use common::sinew;
 
 fn scene(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../scenes")
         .join(name)
-}
-
-struct Said {
-    code: Option<i32>,
-    out: String,
-    err: String,
-}
-
-fn sinew(directory: &Path, arguments: &[&str]) -> Said {
-    let output = Command::cargo_bin("sinew")
-        .unwrap()
-        .current_dir(directory)
-        .args(arguments)
-        .output()
-        .unwrap();
-    Said {
-        code: output.status.code(),
-        out: String::from_utf8(output.stdout).unwrap(),
-        err: String::from_utf8(output.stderr).unwrap(),
-    }
 }
 
 #[test]

@@ -2,9 +2,9 @@
 
 #![cfg(test)]
 
-use std::path::Path;
+mod common;
 
-use assert_cmd::Command;
+use common::{Said, sinew};
 use serde_json::Value;
 
 const SPRING: &str = "title = \"a spring\"
@@ -19,26 +19,6 @@ integrator = \"cnn\"
 dt = 0.02
 saturation = 4.0
 ";
-
-struct Said {
-    code: Option<i32>,
-    out: String,
-    err: String,
-}
-
-fn sinew(directory: &Path, arguments: &[&str]) -> Said {
-    let output = Command::cargo_bin("sinew")
-        .unwrap()
-        .current_dir(directory)
-        .args(arguments)
-        .output()
-        .unwrap();
-    Said {
-        code: output.status.code(),
-        out: String::from_utf8(output.stdout).unwrap(),
-        err: String::from_utf8(output.stderr).unwrap(),
-    }
-}
 
 /// What the command says of a scene.
 fn plan(scene: &str, arguments: &[&str]) -> Said {

@@ -91,7 +91,7 @@ impl StabilityMap {
             self.panels = methods.iter().map(panel).collect();
         }
         for (method, panel) in methods.iter().zip(&mut self.panels) {
-            let stable = stable_step(case, method)?;
+            let stable = method.stable_step(case.simulation())?;
             panel.cannot_tell |= stable == StableStep::Unknown;
             panel.stable_steps.push(match stable {
                 StableStep::UpTo(limit) if limit.is_finite() => Some(limit),
@@ -106,12 +106,4 @@ impl StabilityMap {
         }
         Ok(())
     }
-}
-
-fn stable_step(case: &Case, method: &Method) -> Result<StableStep, String> {
-    let integrator = sinew_integrators::build(&method.integrator, &method.options)
-        .map_err(|error| error.to_string())?;
-    integrator
-        .stable_step(case.simulation().system())
-        .map_err(|error| error.to_string())
 }

@@ -70,8 +70,12 @@ pub(super) fn describe(simulation: &Simulation, plan: &mut Plan) {
         }
         Err(error) => plan.warnings.push(error),
     }
-    // A method that makes patches names the elements they hold.
-    if let Ok(mut integrator) = simulation.integrator()
+    // A method that makes patches names the elements they hold. Methods without a largest stable
+    // step have nothing of the kind to say, and a set-up that is dear.
+    let entries = sinew_integrators::entries();
+    let has_limit = entries.iter().any(|entry| entry.id == id && entry.substeps);
+    if has_limit
+        && let Ok(mut integrator) = simulation.integrator()
         && integrator.prepare(simulation.system(), *dt).is_ok()
     {
         lines.extend(integrator.remarks());
