@@ -2,7 +2,7 @@
 
 use std::ops::AddAssign;
 
-use crate::{EvaluationError, Revision, State, System};
+use crate::{EvaluationError, LoadOverStep, Revision, State, System};
 
 /// A method that takes a state one step further.
 ///
@@ -70,6 +70,45 @@ pub struct Properties {
     pub needs: Needs,
     /// What happens to the energy of an undamped system within the stable step.
     pub energy: EnergyBehaviour,
+    /// How the error falls with dt while loads change.
+    pub changing_loads: ChangingLoads,
+}
+
+/// How the error of a method falls with dt while loads change.
+///
+/// The impulse of every load arrives, wherever its jumps and kinks fall: one that does so between two
+/// steps is moved within the step, or in leapfrog methods between two neighbouring steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangingLoads {
+    /// As powers of dt.
+    Order {
+        /// While loads change smoothly.
+        smooth: u8,
+        /// With loads that jump or have kinks, on steps or between them.
+        broken: u8,
+    },
+    /// Exact to the method's own tolerance where loads are such; others are refused.
+    Exact(LoadOverStep),
+}
+
+impl ChangingLoads {
+    /// The same order for all loads.
+    #[must_use]
+    pub fn order(order: u8) -> Self {
+        Self::Order {
+            smooth: order,
+            broken: order,
+        }
+    }
+
+    /// What the method needs loads to be over each step.
+    #[must_use]
+    pub fn needed(self) -> LoadOverStep {
+        match self {
+            Self::Order { .. } => LoadOverStep::Any,
+            Self::Exact(needed) => needed,
+        }
+    }
 }
 
 /// How the error of a method falls with dt.

@@ -10,7 +10,7 @@
 
 use std::fs;
 
-use sinew_core::{System, simulate};
+use sinew_core::{LoadTime, System, simulate};
 use sinew_scene::{ProbeCsv, Scene, SceneSource, Simulation};
 
 /// A cube of 3 x 3 x 3 cells of 0.1 m held at the bottom, with what is given put in place of the
@@ -190,7 +190,9 @@ fn an_oscillator_starts_as_written_and_feels_its_force() {
     let state = simulation.initial_state();
     assert_eq!((state.u[0], state.v[0]), (0.5, -1.0));
     let mut force = [0.0];
-    simulation.system().external_force(0.0, &mut force);
+    simulation
+        .system()
+        .external_force(LoadTime::at(0.0), &mut force);
     assert_eq!(force, [3.0]);
     assert!(simulation.model().body().is_none());
 }
@@ -220,7 +222,7 @@ fn a_run_writes_its_probes() {
         .split(',')
         .map(|cell| cell.parse().unwrap())
         .collect();
-    assert_eq!(last[0], state.t);
+    assert_eq!(last[0], state.t());
     assert_eq!(last[1..], at(&simulation, &state.u, [0.3; 3]));
     assert!(last[3] < 0.0, "it hangs down");
 }

@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "{}: u = ({}) m at t = {:.6} s",
             probe.name,
             u.join(", "),
-            state.t
+            state.t()
         ));
     }
     say(&format!("probes: {}", written.display()));

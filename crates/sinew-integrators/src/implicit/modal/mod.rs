@@ -9,9 +9,9 @@ mod search;
 mod small;
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Fact, Integrator, LinearOperators, LinearSystem, Needs, OptionError,
-    Options, Prepared, Properties, Ramp, Revision, SetupError, StableStep, State, StepError,
-    StepReport, System,
+    Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, LinearOperators, LinearSystem,
+    LoadOverStep, Needs, OptionError, Options, Prepared, Properties, Ramp, Revision, SetupError,
+    StableStep, State, StepError, StepReport, System,
 };
 
 use self::basis::{Basis, Choice, Failure, LoadCase};
@@ -78,8 +78,9 @@ const LOST_BY_CHOICE: f64 = 0.1;
 /// Share of a state that is taken for rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Breakpoints nearer to an end of a step than this share of it count as that end.
-const SNAP: f64 = 1e-9;
+/// Breakpoints nearer to an end of a step than this share of the time count as that end: steps are
+/// rounded so.
+const SNAP: f64 = 4.0 * f64::EPSILON;
 
 impl Modal {
     /// As many modes as the tolerance needs; see the type.
@@ -231,7 +232,7 @@ impl Modal {
         }
         Err(StepError::Inaccurate {
             integrator: Self::ID,
-            t: state.t,
+            t: state.t(),
             reason: format!(
                 "{:.3} % of the state lies outside the {} modes, which are those of the loads; {:.3} % may be dropped; take more `modes`, or use `central-difference`",
                 100.0 * lost,
@@ -369,6 +370,7 @@ impl Integrator for Modal {
         Properties {
             accuracy: Accuracy::Exact,
             needs: Needs::Matrices,
+            changing_loads: ChangingLoads::Exact(LoadOverStep::Any),
             energy: EnergyBehaviour::Conserved,
         }
     }
@@ -420,8 +422,9 @@ impl Integrator for Modal {
     ) -> Result<StepReport, StepError> {
         let mut work = begin(self, system, state, dt)?;
         work += self.project(system, state)?;
-        let (next, margin) = (state.t + dt, SNAP * dt);
-        let mut start = state.t;
+        let t = state.t();
+        let (next, mut start) = (t + dt, t);
+        let margin = SNAP * t.abs().max(next.abs());
         let first = self.breakpoints.partition_point(|t| *t <= start + margin);
         for at in first..self.breakpoints.len() {
             let end = self.breakpoints[at];
@@ -434,7 +437,7 @@ impl Integrator for Modal {
                 start = end;
             }
         }
-        let whole_step = start == state.t;
+        let whole_step = start == t;
         let rest = if whole_step { dt } else { next - start };
         self.advance(start, rest, whole_step);
         lift_two(
@@ -442,7 +445,7 @@ impl Integrator for Modal {
             (&self.q, &self.p),
             (&mut state.u, &mut state.v),
         );
-        state.advance_to(next);
+        state.advance(dt);
         work.sweeps += self.sweeps;
         system.accept(state);
         Ok(work)
