@@ -7,6 +7,9 @@ use crate::gauss::gauss_points;
 /// times are multiples of a step, rounded.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// Windows in a rise of a squared sine from which on it counts as smooth at both ends.
+const LONG_RISE: f64 = 2.0;
+
 /// The instant at which a step takes its loads, with the window of time they act for.
 ///
 /// A load that is smooth over the window is taken at the instant. One that jumps or has a kink
@@ -133,7 +136,10 @@ impl Ramp {
             }
         };
         if self.is_smooth_between(from, to) {
-            return self.value_within(from, to, t);
+            return match self {
+                Self::Sin2 { .. } => self.value(t),
+                _ => self.value_within(from, to, t),
+            };
         }
         let length = to - from;
         match window {
@@ -153,9 +159,16 @@ impl Ramp {
         }
     }
 
-    /// Whether no breakpoint lies between two instants (s), rounding of either apart.
+    /// Whether a step over `from`..`to` (s) may take the value as it finds it: no breakpoint lies
+    /// between, rounding of either instant apart, or only an end of a rise that is long beside the
+    /// step, where value and slope are continuous.
     #[must_use]
     pub fn is_smooth_between(&self, from: f64, to: f64) -> bool {
+        if let Self::Sin2 { rise } = self
+            && *rise >= LONG_RISE * (to - from)
+        {
+            return true;
+        }
         let slack = ROUNDING * from.abs().max(to.abs());
         self.breakpoint_between(from + slack, to - slack).is_none()
     }
@@ -230,6 +243,21 @@ mod tests {
     }
 
     #[test]
+    fn a_rise_within_a_step_arrives_whole() {
+        let (ramp, dt) = (Ramp::Sin2 { rise: 0.004 }, 0.05);
+        // The mean over the step is less by half the rise, that with falling weights by about all.
+        let mean = ramp.factor(LoadTime::start_of(0.0, dt));
+        assert!((mean - (1.0 - 0.002 / dt)).abs() < 1e-14);
+        let falling = ramp.factor(LoadTime::around(0.0, 0.0, dt));
+        let weight = |s: f64| 2.0 * (dt - s) / (dt * dt);
+        let fine = 100_000;
+        let h = 0.004 / f64::from(fine);
+        let lost = (0..fine).map(|n| (f64::from(n) + 0.5) * h);
+        let lost: f64 = lost.map(|s| h * weight(s) * (1.0 - ramp.value(s))).sum();
+        assert!((falling - (1.0 - lost)).abs() < 1e-10);
+    }
+
+    #[test]
     fn a_jump_at_the_instant_counts_half() {
         let ramp = pulse(0.1, 0.3);
         for n in [2, 6] {
@@ -261,6 +289,11 @@ mod tests {
             assert_eq!(ramp.factor(LoadTime::start_of(t, 0.05)), value);
             assert_eq!(ramp.factor(LoadTime::within(t - 0.025, 0.05, 0.5)), value);
         }
+        // The end of a long rise is smooth too.
+        let before = ramp.value(0.38);
+        assert_eq!(ramp.factor(LoadTime::around(0.38, 0.05, 0.05)), before);
+        assert_eq!(ramp.factor(LoadTime::around(0.42, 0.05, 0.05)), 1.0);
+        assert_eq!(ramp.factor(LoadTime::within(0.38, 0.05, 1.0)), 1.0);
     }
 
     #[test]

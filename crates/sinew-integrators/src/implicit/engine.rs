@@ -102,13 +102,13 @@ impl Engine {
     ) -> Result<StepReport, StepError> {
         let t = state.t();
         let load = LoadTime::within(t, dt, 0.0);
-        let (Acceleration::Same, Some(last)) = (state.acceleration, state.clock.last_step()) else {
+        if state.acceleration != Acceleration::Same {
             let work = acceleration(system, state, load, &mut self.a)?;
             state.a.clone_from(&self.a);
             state.acceleration = Acceleration::Same;
             return Ok(work);
-        };
-        if let Some(linear) = system.as_linear() {
+        }
+        if let (Some(last), Some(linear)) = (state.clock.last_step(), system.as_linear()) {
             let changed = [LoadTime::within(t - last, last, 1.0), load];
             self.a.fill(0.0);
             let operators = linear.operators();
