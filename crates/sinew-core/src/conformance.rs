@@ -32,6 +32,10 @@ macro_rules! conformance {
             $crate::conformance!(@laws $make;
                 rest_stays_at_rest
                 observed_order_is_declared_order
+                order_with_changing_loads_is_as_declared
+                the_impulse_of_a_load_arrives_wherever_it_falls
+                time_does_not_drift_over_a_million_steps
+                loads_act_alike_at_any_time
                 checkpoint_continues_bit_identically
                 energy_behaves_as_declared
                 stable_step_is_as_declared
@@ -53,6 +57,13 @@ macro_rules! conformance {
     };
 }
 
+mod changing_loads;
+
+pub use changing_loads::{
+    loads_act_alike_at_any_time, order_with_changing_loads_is_as_declared,
+    the_impulse_of_a_load_arrives_wherever_it_falls, time_does_not_drift_over_a_million_steps,
+};
+
 const MASS: f64 = 0.5;
 const SPRING: f64 = 200.0;
 const FORCE: f64 = 3.0;
@@ -60,7 +71,12 @@ const FORCE: f64 = 3.0;
 /// wall - mass - mass - wall with equal springs: modes (1, 1) at sqrt(k/m) and (1, -1) at
 /// sqrt(3k/m); a force on the first mass from t = 0.
 fn chain(damping: f64, force: f64, masses: [f64; 2]) -> LinearModel {
-    let build = || {
+    chain_under(Ramp::Step, damping, force, masses)
+}
+
+/// The same under a force that changes.
+fn chain_under(ramp: Ramp, damping: f64, force: f64, masses: [f64; 2]) -> LinearModel {
+    let build = move || {
         let pattern = Arc::new(Pattern::from_elements(2, [[0, 1]])?);
         let mut stiffness = BlockMatrix::zeros(pattern, Layers::One);
         let element = [2.0 * SPRING, -SPRING, -SPRING, 2.0 * SPRING];
@@ -70,7 +86,7 @@ fn chain(damping: f64, force: f64, masses: [f64; 2]) -> LinearModel {
             ..Damping::default()
         };
         let load = Load {
-            ramp: Ramp::Step,
+            ramp,
             entries: vec![(0, force)],
         };
         LinearOperators::new(masses.to_vec(), stiffness, damping, vec![load])
