@@ -101,6 +101,30 @@ impl ChangingLoads {
         }
     }
 
+    /// In words.
+    #[must_use]
+    pub fn describe(self) -> String {
+        match self {
+            Self::Order { smooth, broken } if smooth == broken => {
+                format!("order {smooth} while loads change, jumps and kinks included")
+            }
+            Self::Order { smooth, broken } => format!(
+                "order {smooth} while loads change smoothly, {broken} where they jump or have kinks"
+            ),
+            Self::Exact(LoadOverStep::Any) => "exact while loads change, wherever they jump".into(),
+            Self::Exact(needed) => format!(
+                "exact where loads are {}; others are refused",
+                needed.describe()
+            ),
+        }
+    }
+
+    /// Whether the error does not depend on the step.
+    #[must_use]
+    pub fn is_exact(self) -> bool {
+        matches!(self, Self::Exact(_))
+    }
+
     /// What the method needs loads to be over each step.
     #[must_use]
     pub fn needed(self) -> LoadOverStep {

@@ -77,20 +77,20 @@ pub fn step_that_meets<'a>(
     let points = ramps.into_iter().flat_map(Ramp::breakpoints);
     // Euclid's algorithm on decimals: what remains below a billionth is rounding.
     let rounding = 1e-9 * dt.min(to);
-    let common =
-        points
-            .filter(|time| *time > rounding && *time < to)
-            .fold(0.0, |mut a: f64, mut b: f64| {
-                while b > rounding {
-                    let rest = a % b;
-                    let rest = if b - rest < rounding { 0.0 } else { rest };
-                    (a, b) = (b, rest);
-                }
-                a
-            });
+    let (mut common, mut last) = (0.0_f64, 0.0_f64);
+    for time in points.filter(|time| *time > rounding && *time < to) {
+        let mut rest = time;
+        while rest > rounding {
+            let left = common % rest;
+            (common, rest) = (rest, if rest - left < rounding { 0.0 } else { left });
+        }
+        last = last.max(time);
+    }
     if common == 0.0 {
         return Some(dt);
     }
+    // Remainders lose digits; the last instant has them all.
+    let common = last / (last / common).round();
     (common >= SHORTEST * to).then(|| common / (common / dt - MISS).ceil().max(1.0))
 }
 
@@ -163,6 +163,9 @@ mod tests {
         };
         close(step(&[pulse(0.0131, 0.0137)], 0.005), 1e-4);
         close(step(&[pulse(0.1, 0.3)], 0.08), 0.05);
+        let found = step(&[pulse(0.9, 0.913)], 0.02).unwrap();
+        let broken = LoadOverStep::Constant.first_broken(&pulse(0.9, 0.913), 0.0, found, 1.0);
+        assert_eq!((found, broken), (0.001, None));
         close(step(&[pulse(0.1, 0.3), pulse(0.25, 7.0)], 1.0), 0.05);
         close(step(&[Ramp::Step], 0.02), 0.02);
         assert_eq!(step(&[pulse(0.1, std::f64::consts::PI / 10.0)], 0.02), None);

@@ -202,7 +202,7 @@ pub fn order_with_changing_loads_is_as_declared(make: &dyn Fn() -> Boxed) {
                     broken,
                 } => {
                     let order = f64::from(if smooth { of_smooth } else { broken });
-                    let errors = [8, 32].map(|refinement| error(refinement));
+                    let errors = [8, 32].map(error);
                     let [Some(larger), Some(smaller)] = errors else {
                         unreachable!("{what}: refused");
                     };
