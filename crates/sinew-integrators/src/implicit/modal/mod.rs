@@ -37,7 +37,9 @@ use crate::{Method, OptionHelp};
 ///   one basis to the next larger by a third. Then the modes of the smallest static response
 ///   |phi' F|/omega^2 are left out as far as the tolerance allows. Both shares together are
 ///   [`Modal::estimated_error`], which is kept below four fifths of the tolerance. Where that takes a basis of more than half of the degrees of
-///   freedom, set-up fails. Damping is left out of the estimate.
+///   freedom, set-up fails. Damping is left out of the estimate. It holds for loads that are applied
+///   suddenly and stay: pulses shorter than the slowest periods and loads that switch excite fast
+///   modes more, and may lose several times the share.
 /// * `modes = N`: rigid motions and the most excited modes of a basis of 2 N, or of `basis = P`.
 ///   Without loads, the slowest modes, all converged.
 ///
@@ -315,7 +317,7 @@ impl Method for Modal {
     const OPTIONS: &'static [OptionHelp] = &[
         OptionHelp {
             key: "tolerance",
-            help: "share of the response that may be lost, above 0 and below 1; default 0.01",
+            help: "share of the response to suddenly applied, constant loads that may be lost, above 0 and below 1; default 0.01. Short pulses and loads that switch excite faster modes and may lose several times as much",
             shown_default: None,
         },
         OptionHelp {
