@@ -1,18 +1,20 @@
 //! `sinew integrators`.
 
-use super::{Failure, say};
+use sinew_scene::output::say;
+
+use super::Failure;
 
 pub(crate) fn run() -> Result<(), Failure> {
     for entry in sinew_integrators::entries() {
-        say(&format!("{:20} {}", entry.id, entry.summary));
+        say(&format!("{:20} {}", entry.id, entry.summary))?;
         for option in entry.options.iter().copied().chain(entry.guard.help()) {
-            say(&format!("{:20}   {}: {}", "", option.key, option.help));
+            say(&format!("{:20}   {}: {}", "", option.key, option.help))?;
         }
         if entry.substeps {
             say(&format!(
                 "{:20}   substeps: parts each step is cut into, or \"auto\"; default 1",
                 ""
-            ));
+            ))?;
         }
     }
     Ok(())

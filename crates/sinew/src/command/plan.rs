@@ -9,8 +9,9 @@ use sinew_measure::advice::{
     check_tolerance,
 };
 use sinew_scene::Scene;
+use sinew_scene::output::say;
 
-use super::{Failure, say};
+use super::Failure;
 
 /// A scene, and the error it is to run with.
 #[derive(clap::Args)]
@@ -48,7 +49,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let simulation = Scene::load(&arguments.scene)?.build()?;
     if !arguments.json {
-        say(simulation.plan().to_string().trim_end());
+        say(simulation.plan().to_string().trim_end())?;
     }
     let Some(tolerance) = arguments.tolerance else {
         return Ok(());
@@ -62,9 +63,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let advice = advice
         .map_err(|error| Failure::Input(format!("{}: {error}", arguments.scene.display())))?;
     if arguments.json {
-        say(&advice::as_json(&advice).to_string());
+        say(&advice::as_json(&advice).to_string())?;
     } else {
-        say(&format!("\n{}", advice::text(&advice)));
+        say(&format!("\n{}", advice::text(&advice)))?;
     }
     Ok(())
 }
