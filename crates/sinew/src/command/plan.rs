@@ -1,6 +1,7 @@
 //! `sinew plan`.
 
 mod advice;
+mod advice_json;
 
 use std::path::PathBuf;
 
@@ -41,7 +42,7 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     pilot_seconds: f64,
-    /// The advice as one JSON object, without the plan
+    /// The advice as one JSON object, without the plan; each null in it is explained in `missing`
     #[arg(long, requires = "tolerance")]
     json: bool,
 }
@@ -62,12 +63,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let advice = advise(simulation, question);
     let advice = advice
         .map_err(|error| Failure::Input(format!("{}: {error}", arguments.scene.display())))?;
-    if arguments.json {
-        say(&advice::as_json(&advice).to_string())?;
-    } else {
+    if !arguments.json {
         say(&format!("\n{}", advice::text(&advice)))?;
+        return Ok(());
     }
-    Ok(())
+    let advice = advice_json::as_json(&advice);
+    say(&advice.object.to_string())?;
+    if advice.gaps.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::Run(format!(
+        "missing from the advice: {}",
+        advice.gaps.join("; ")
+    )))
 }
 
 fn tolerance(text: &str) -> Result<f64, QuestionError> {
