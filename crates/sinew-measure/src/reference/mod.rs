@@ -3,6 +3,7 @@
 //! A linear system under loads that are smooth between breakpoints is solved by its Taylor series
 //! in time, to rounding; no method under test is involved.
 
+mod peak;
 mod taylor;
 mod track;
 

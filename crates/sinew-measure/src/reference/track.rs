@@ -4,6 +4,7 @@ use sinew_core::spectrum::Spectrum;
 use sinew_core::{State, System};
 
 use super::Taylor;
+use super::peak::peak_between;
 
 /// A reference solution at some instants, with what the verdicts need of the whole run.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,9 +77,7 @@ fn solve(mut taylor: Taylor<'_>, start: &State, times: &[f64]) -> Track {
     let mut displacements = Vec::with_capacity(times.len());
     for &time in times {
         taylor.advance(&mut state, time, |state| {
-            max_u = max_u
-                .max(largest(&state.u))
-                .max(peak_between(&before, state));
+            max_u = peak_between(&before, state, max_u.max(largest(&state.u)));
             before.clone_from(state);
             if state.t() > 0.8 * duration {
                 late.include(&state.u);
@@ -94,28 +93,6 @@ fn solve(mut taylor: Taylor<'_>, start: &State, times: &[f64]) -> Track {
         error: 0.0,
         sweeps: taylor.sweeps,
     }
-}
-
-/// Largest |component| inside a step: of the cubic through displacements and velocities at its
-/// ends, where the velocity changes sign between them.
-fn peak_between(before: &State, after: &State) -> f64 {
-    let h = after.t() - before.t();
-    let mut peak = 0.0_f64;
-    for i in 0..before.u.len() {
-        let (v0, v1) = (before.v[i], after.v[i]);
-        if v0 * v1 >= 0.0 {
-            continue;
-        }
-        // Derivative over s = 0..1 of the Hermite cubic: v0 h + 2 b s + 3 c s^2.
-        let rise = after.u[i] - before.u[i];
-        let b = 3.0 * rise - h * (2.0 * v0 + v1);
-        let c = h * (v0 + v1) - 2.0 * rise;
-        let root = (b * b - 3.0 * c * h * v0).max(0.0).sqrt();
-        // The root between 0 and 1, in the form that does not cancel.
-        let s = -h * v0 / if v0 > 0.0 { b - root } else { b + root };
-        peak = peak.max((before.u[i] + s * (h * v0 + s * (b + s * c))).abs());
-    }
-    peak
 }
 
 /// Largest |component|; infinite where one is not a number.
