@@ -1,6 +1,7 @@
 //! `propagator`: the exact motion over a step, as a polynomial in the network.
 
 mod chebyshev;
+mod cut;
 mod dense;
 mod krylov;
 mod mode;
@@ -65,23 +66,36 @@ struct Resolution {
 }
 
 impl Resolution {
-    /// The degree to take, where cutting a series at each degree leaves out so much.
-    fn degree_for(self, left_out: &[f64], dt: f64) -> Result<usize, SetupError> {
-        let meets = |degree: usize| {
-            left_out
-                .get(degree)
-                .is_none_or(|left| *left <= self.tolerance)
-        };
-        let enough = (0..left_out.len()).find(|degree| meets(*degree));
-        let enough = enough.filter(|degree| *degree <= HIGHEST_DEGREE);
-        let reason = match (self.degree, enough) {
-            (None, Some(degree)) => return Ok(degree.max(1)),
-            (Some(degree), _) if meets(degree) => return Ok(degree.min(left_out.len() - 1)),
+    /// The degree to take: the given one, or the smallest whose error meets the tolerance. `left_out`
+    /// holds an estimate of the error for each degree, from which the search begins.
+    fn degree_for(
+        self,
+        left_out: &[f64],
+        dt: f64,
+        error: impl Fn(usize) -> f64,
+    ) -> Result<usize, SetupError> {
+        let highest = HIGHEST_DEGREE.min(left_out.len() - 1);
+        let meets = |degree: usize| error(degree) <= self.tolerance;
+        let given = self.degree.map(|degree| degree.min(highest));
+        if let Some(degree) = given
+            && meets(degree)
+        {
+            return Ok(degree);
+        }
+        let estimated = left_out.iter().position(|left| *left <= self.tolerance);
+        let enough =
+            estimated.and_then(|from| (from.max(1)..=highest).find(|degree| meets(*degree)));
+        let enough = enough.map(|enough| {
+            let fewer = (1..enough).rev().take_while(|degree| meets(*degree));
+            fewer.last().unwrap_or(enough)
+        });
+        let reason = match (given, enough) {
+            (None, Some(degree)) => return Ok(degree),
             (Some(degree), Some(enough)) => format!(
                 "degree {degree} leaves out {:.1e} of the motion over a step of {dt} s; take degree {enough} or leave it out",
-                left_out[degree]
+                error(degree)
             ),
-            _ => format!(
+            (_, None) => format!(
                 "a step of {dt} s needs a degree above {HIGHEST_DEGREE}; take a shorter step"
             ),
         };

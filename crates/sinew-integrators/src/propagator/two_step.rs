@@ -82,7 +82,7 @@ impl TwoStep {
         // Relative to S(0), which is about dt, and as much as |w S| may pass 2 by.
         let scale = (1.0 / dt).max(interval.sqrt() / 2.0);
         let left_out: Vec<f64> = tails(&s).into_iter().map(|tail| scale * tail).collect();
-        let degree = resolution.degree_for(&left_out, dt)?;
+        let degree = resolution.degree_for(&left_out, dt, |degree| left_out[degree])?;
         s.truncate(degree + 1);
         let overshoot = largest_swing(&s, interval, alpha) / 2.0;
         if overshoot > 1.0 {
