@@ -1,7 +1,7 @@
 //! The propagator in a Krylov space.
 
 use sinew_core::spectrum::Spectrum;
-use sinew_core::{Fact, LinearOperators, SetupError, State, StepError, StepReport};
+use sinew_core::{BlockMatrix, Fact, LinearOperators, SetupError, State, StepError, StepReport};
 
 use super::dense::Exponential;
 use super::{HIGHEST_DEGREE, ID, Resolution, load_not_smooth};
@@ -32,6 +32,8 @@ pub(super) struct Krylov {
     resolution: Resolution,
     capacity: usize,
     weight: f64,
+    /// Diagonal of K (N/m).
+    diagonal: Vec<f64>,
     /// Orthonormal vectors of length 2n: displacement part, then velocity part.
     basis: Vec<Vec<f64>>,
     /// Upper Hessenberg, row-major with `capacity` columns.
@@ -84,6 +86,7 @@ impl Krylov {
             resolution,
             capacity,
             weight,
+            diagonal: diagonal(operators.stiffness()),
             basis: vec![vec![0.0; 2 * n]; capacity + 1],
             hessenberg: vec![0.0; (capacity + 1) * capacity],
             exponential: Exponential::with_capacity(capacity + CHAIN),
@@ -322,22 +325,17 @@ impl Krylov {
         self.load.fill(0.0);
         operators.subtract_damping(&self.middle, &mut self.load);
         *sweeps += product;
-        let (mut both, mut square, mut moved) = (0.0, 0.0, 0.0);
-        let (mut size_du, mut size_dv, mut size_u, mut size_v) = (0.0, 0.0, 0.0, 0.0);
+        let (mut both, mut square, mut rounding) = (0.0, 0.0, 0.0);
         for i in 0..n {
             let half = 0.5 * self.acceleration_change[i];
             both +=
                 mass[i] * (dv[i] * self.middle[i] - du[i] * (a[i] + half)) + du[i] * self.load[i];
             square += mass[i] * (0.5 * dv[i] * dv[i] - du[i] * half);
-            size_du += mass[i] * du[i] * du[i];
-            size_dv += mass[i] * dv[i] * dv[i];
-            size_u += mass[i] * state.u[i] * state.u[i];
-            size_v += mass[i] * state.v[i] * state.v[i];
+            // K u and its likes are no better than this.
+            let stretched = self.diagonal[i] * (state.u[i].abs() + du[i].abs());
+            let moving = mass[i] * (state.v[i].abs() + dv[i].abs());
+            rounding += f64::EPSILON * (du[i].abs() * stretched + dv[i].abs() * moving);
         }
-        let [du_norm, dv_norm, u_norm, v_norm] = [size_du, size_dv, size_u, size_v].map(f64::sqrt);
-        // K u and its likes are no better than this.
-        let rounding = f64::EPSILON
-            * (dv_norm * (v_norm + dv_norm) + self.weight * du_norm * (u_norm + du_norm));
         if both <= rounding {
             return 1.0;
         }
@@ -345,9 +343,8 @@ impl Krylov {
         operators.subtract_damping(dv, &mut self.load);
         *sweeps += product;
         for (du, force) in du.iter().zip(&self.load) {
-            moved += 0.5 * du * force;
+            square += 0.5 * du * force;
         }
-        let square = square + moved;
         // No energy in the change itself: no part of it will do.
         if square > 0.0 {
             (1.0 - both / square).max(0.0)
@@ -404,6 +401,16 @@ impl Krylov {
     fn norm(&self, operators: &LinearOperators, y: &[f64]) -> f64 {
         norm(self.weight, operators.mass(), y)
     }
+}
+
+fn diagonal(stiffness: &BlockMatrix) -> Vec<f64> {
+    let layers = stiffness.layers().count();
+    let entry = |dof: usize| {
+        let (cell, layer) = (dof / layers, dof % layers);
+        let block = stiffness.block(cell, cell);
+        block.map_or(0.0, |block| block[layer * (layers + 1)])
+    };
+    (0..stiffness.dofs()).map(entry).collect()
 }
 
 fn divide(values: &mut [f64], mass: &[f64]) {
