@@ -35,8 +35,8 @@ mod system;
 
 pub use elements::{ElementStiffness, Elements, element_omegas_squared};
 pub use integrator::{
-    Accuracy, EnergyBehaviour, Fact, Integrator, Needs, Prepared, Properties, SetupError,
-    StableStep, StepError, StepReport,
+    Accuracy, EnergyBehaviour, Fact, Integrator, Needs, OtherDamping, Prepared, Properties,
+    SetupError, StableStep, StepError, StepReport,
 };
 pub use linear::{Damping, LinearModel, LinearOperators, LinearSystem, Load, OperatorError};
 pub use options::{OptionError, OptionValue, Options};

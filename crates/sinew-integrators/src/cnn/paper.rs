@@ -2,8 +2,8 @@
 
 use sinew_cnn::Saturation;
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, OptionValue, Options, Properties,
-    SetupError, StableStep, State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, OptionValue, Options, OtherDamping,
+    Properties, SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::network::{self, Network};
@@ -60,6 +60,7 @@ impl Integrator for Cnn {
             accuracy: Accuracy::Order(1),
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Grows,
+            other_damping: OtherDamping::order(1),
         }
     }
 

@@ -1,8 +1,8 @@
 //! `central-difference`: leapfrog with mass damping treated implicitly.
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Fact, Integrator, Needs, OptionError, Options, Prepared, Properties,
-    SetupError, StableStep, State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Fact, Integrator, Needs, OptionError, Options, OtherDamping,
+    Prepared, Properties, SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::GuardOption;
@@ -55,6 +55,7 @@ impl Integrator for CentralDifference {
             accuracy: Accuracy::Order(2),
             needs: Needs::Forces,
             energy: EnergyBehaviour::Bounded,
+            other_damping: OtherDamping::order(1),
         }
     }
 

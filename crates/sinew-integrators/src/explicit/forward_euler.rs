@@ -1,8 +1,8 @@
 //! `forward-euler`: both halves from the old state.
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties,
-    SetupError, StableStep, State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, OtherDamping, Prepared,
+    Properties, SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::GuardOption;
@@ -41,6 +41,7 @@ impl Integrator for ForwardEuler {
             accuracy: Accuracy::Order(1),
             needs: Needs::Forces,
             energy: EnergyBehaviour::Grows,
+            other_damping: OtherDamping::order(1),
         }
     }
 

@@ -2,7 +2,8 @@
 
 use sinew_core::{
     Accuracy, EnergyBehaviour, Integrator, LinearOperators, LinearSystem, Needs, OptionError,
-    Options, Prepared, Properties, SetupError, StableStep, State, StepError, StepReport, System,
+    Options, OtherDamping, Prepared, Properties, SetupError, StableStep, State, StepError,
+    StepReport, System,
 };
 
 use super::GuardOption;
@@ -132,6 +133,7 @@ impl Integrator for ModifiedLeapfrog {
             },
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Bounded,
+            other_damping: OtherDamping::order(1),
         }
     }
 

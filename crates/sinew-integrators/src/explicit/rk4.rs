@@ -1,8 +1,8 @@
 //! `rk4`: the classical Runge-Kutta method.
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties,
-    SetupError, StableStep, State, StepError, StepReport, System, Trial,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, OtherDamping, Prepared,
+    Properties, SetupError, StableStep, State, StepError, StepReport, System, Trial,
 };
 
 use super::GuardOption;
@@ -50,6 +50,7 @@ impl Integrator for Rk4 {
             accuracy: Accuracy::Order(4),
             needs: Needs::Forces,
             energy: EnergyBehaviour::Falls,
+            other_damping: OtherDamping::order(4),
         }
     }
 

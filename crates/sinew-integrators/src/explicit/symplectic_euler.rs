@@ -1,8 +1,8 @@
 //! `symplectic-euler`: velocity first, then displacement from the new velocity.
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, Prepared, Properties,
-    SetupError, StableStep, State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, OtherDamping, Prepared,
+    Properties, SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::GuardOption;
@@ -39,6 +39,7 @@ impl Integrator for SymplecticEuler {
             accuracy: Accuracy::Order(1),
             needs: Needs::Forces,
             energy: EnergyBehaviour::Bounded,
+            other_damping: OtherDamping::order(1),
         }
     }
 

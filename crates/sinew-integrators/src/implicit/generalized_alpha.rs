@@ -1,8 +1,8 @@
 //! `generalized-alpha`: implicit, with damping of what the step does not resolve.
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, OptionValue, Options, Properties,
-    SetupError, StableStep, State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, OptionValue, Options, OtherDamping,
+    Properties, SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::engine::Engine;
@@ -110,6 +110,7 @@ impl Integrator for GeneralizedAlpha {
             } else {
                 EnergyBehaviour::Falls
             },
+            other_damping: OtherDamping::order(2),
         }
     }
 

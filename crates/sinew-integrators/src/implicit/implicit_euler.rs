@@ -1,8 +1,8 @@
 //! `implicit-euler`: both halves from the new state.
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, Properties, SetupError,
-    StableStep, State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, OtherDamping, Properties,
+    SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::engine::Engine;
@@ -36,6 +36,7 @@ impl Integrator for ImplicitEuler {
             accuracy: Accuracy::Order(1),
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Falls,
+            other_damping: OtherDamping::order(1),
         }
     }
 

@@ -2,8 +2,8 @@
 
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, Properties, SetupError,
-    StableStep, State, StepError, StepReport, System,
+    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, OtherDamping, Properties,
+    SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::engine::Engine;
@@ -83,6 +83,7 @@ impl Integrator for Newmark {
                 (_, gamma) if gamma > 0.5 => EnergyBehaviour::Falls,
                 _ => EnergyBehaviour::Grows,
             },
+            other_damping: OtherDamping::order(if self.gamma == 0.5 { 2 } else { 1 }),
         }
     }
 

@@ -12,8 +12,8 @@ use chebyshev::Chebyshev;
 use krylov::Krylov;
 use sinew_core::{
     Accuracy, EnergyBehaviour, Fact, Integrator, LinearSystem, Needs, OptionError, OptionValue,
-    Options, Prepared, Properties, Ramp, SetupError, StableStep, State, StepError, StepReport,
-    System,
+    Options, OtherDamping, Prepared, Properties, Ramp, SetupError, StableStep, State, StepError,
+    StepReport, System,
 };
 
 use two_step::TwoStep;
@@ -202,6 +202,10 @@ impl Integrator for Propagator {
             needs: Needs::Matrices,
             // Conserved but for the part that is left out.
             energy: EnergyBehaviour::Bounded,
+            other_damping: OtherDamping {
+                stiffness: (self.kind != PropagatorKind::TwoStep).then_some(Accuracy::Exact),
+                dashpots: (self.kind == PropagatorKind::Krylov).then_some(Accuracy::Exact),
+            },
         }
     }
 

@@ -10,8 +10,8 @@ mod small;
 
 use sinew_core::{
     Accuracy, EnergyBehaviour, Fact, Integrator, LinearOperators, LinearSystem, Needs, OptionError,
-    Options, Prepared, Properties, Ramp, Revision, SetupError, StableStep, State, StepError,
-    StepReport, System,
+    Options, OtherDamping, Prepared, Properties, Ramp, Revision, SetupError, StableStep, State,
+    StepError, StepReport, System,
 };
 
 use self::basis::{Basis, Choice, Failure, LoadCase};
@@ -370,6 +370,10 @@ impl Integrator for Modal {
             accuracy: Accuracy::Exact,
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Conserved,
+            other_damping: OtherDamping {
+                stiffness: Some(Accuracy::Exact),
+                dashpots: None,
+            },
         }
     }
 
