@@ -1,6 +1,6 @@
 //! The templates of a network.
 
-use sinew_core::{BlockMatrix, Layers, LinearOperators, LinearSystem};
+use sinew_core::{BlockMatrix, Layers, LinearOperators, LinearSystem, LoadTime};
 
 use crate::damping_matrix::damping_matrix;
 
@@ -95,10 +95,11 @@ impl Templates {
             .collect()
     }
 
-    /// `out = A y - C x + B F(t)` (m/s^2) for every cell: one sweep of the network. `y` is the
-    /// output (displacement (m)), `x` the state (velocity (m/s)).
-    pub fn sweep(&self, t: f64, y: &[f64], x: &[f64], out: &mut [f64]) {
-        self.operators.net_force(t, y, x, out);
+    /// `out = A y - C x + B F` (m/s^2) for every cell: one sweep of the network, under the loads of
+    /// an instant (s) or as a step takes them. `y` is the output (displacement (m)), `x` the state
+    /// (velocity (m/s)).
+    pub fn sweep(&self, when: impl Into<LoadTime>, y: &[f64], x: &[f64], out: &mut [f64]) {
+        self.operators.net_force(when, y, x, out);
         for (value, mass) in out.iter_mut().zip(self.operators.mass()) {
             *value /= mass;
         }

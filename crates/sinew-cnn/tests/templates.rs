@@ -12,8 +12,8 @@ use common::dense::{ROUNDING, dense, dense_damping, row_product};
 use proptest::prelude::*;
 use sinew_cnn::Templates;
 use sinew_core::{
-    BlockMatrix, Damping, Layers, LinearModel, LinearOperators, LinearSystem, Pattern, State,
-    System, Trial,
+    BlockMatrix, Damping, Layers, LinearModel, LinearOperators, LinearSystem, LoadTime, Pattern,
+    State, System, Trial,
 };
 use sinew_fem::{Fixed, Law, Model, Problem, Region};
 use sinew_mesh::structured::{self, Split};
@@ -45,7 +45,7 @@ proptest! {
         let (k, d) = (dense(operators.stiffness()), dense_damping(operators));
         let State { u: y, v: x, .. } = body.state(&model, 1e-3, 1.0);
         let mut force = vec![0.0; model.dofs()];
-        model.external_force(t, &mut force);
+        model.external_force(LoadTime::at(t), &mut force);
         let mut sweep = vec![0.0; model.dofs()];
         templates.sweep(t, &y, &x, &mut sweep);
         for (i, mass) in operators.mass().iter().enumerate() {
@@ -65,7 +65,7 @@ proptest! {
         let model = body.model();
         let State { u, v, .. } = body.state(&model, 1e-3, 1.0);
         let mut force = vec![0.0; model.dofs()];
-        model.net_force(&Trial { t, dt: 0.0, u: &u, v: &v }, &mut force).unwrap();
+        model.net_force(&Trial { load: LoadTime::at(t), dt: 0.0, u: &u, v: &v }, &mut force).unwrap();
         let mut sweep = vec![0.0; model.dofs()];
         templates(&model).sweep(t, &u, &v, &mut sweep);
         for ((sweep, force), mass) in sweep.iter().zip(&force).zip(model.mass()) {

@@ -2,7 +2,7 @@
 
 use std::ops::AddAssign;
 
-use crate::{EvaluationError, Revision, State, System};
+use crate::{EvaluationError, LoadOverStep, Revision, State, System};
 
 /// A method that takes a state one step further.
 ///
@@ -72,6 +72,69 @@ pub struct Properties {
     pub energy: EnergyBehaviour,
     /// How the error falls with dt under damping that is not proportional to the mass.
     pub other_damping: OtherDamping,
+    /// How the error falls with dt while loads change.
+    pub changing_loads: ChangingLoads,
+}
+
+/// How the error of a method falls with dt while loads change.
+///
+/// The impulse of every load arrives, wherever its jumps and kinks fall: one that does so between two
+/// steps is moved within the step, or in leapfrog methods between two neighbouring steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangingLoads {
+    /// As powers of dt.
+    Order {
+        /// While loads change smoothly.
+        smooth: u8,
+        /// With loads that jump or have kinks, on steps or between them.
+        broken: u8,
+    },
+    /// Exact to the method's own tolerance where loads are such; others are refused.
+    Exact(LoadOverStep),
+}
+
+impl ChangingLoads {
+    /// The same order for all loads.
+    #[must_use]
+    pub fn order(order: u8) -> Self {
+        Self::Order {
+            smooth: order,
+            broken: order,
+        }
+    }
+
+    /// In words.
+    #[must_use]
+    pub fn describe(self) -> String {
+        match self {
+            Self::Order { smooth, broken } if smooth == broken => {
+                format!("order {smooth} while loads change, jumps and kinks included")
+            }
+            Self::Order { smooth, broken } => format!(
+                "order {smooth} while loads change smoothly, {broken} where they jump or have kinks"
+            ),
+            Self::Exact(LoadOverStep::Any) => "exact while loads change, wherever they jump".into(),
+            Self::Exact(needed) => format!(
+                "exact where loads are {}; others are refused",
+                needed.describe()
+            ),
+        }
+    }
+
+    /// Whether the error does not depend on the step.
+    #[must_use]
+    pub fn is_exact(self) -> bool {
+        matches!(self, Self::Exact(_))
+    }
+
+    /// What the method needs loads to be over each step.
+    #[must_use]
+    pub fn needed(self) -> LoadOverStep {
+        match self {
+            Self::Order { .. } => LoadOverStep::Any,
+            Self::Exact(needed) => needed,
+        }
+    }
 }
 
 /// How the error of a method falls with dt.
@@ -121,6 +184,24 @@ impl OtherDamping {
         Self {
             stiffness: Some(Accuracy::Order(order)),
             dashpots: Some(Accuracy::Order(order)),
+        }
+    }
+
+    /// In words.
+    #[must_use]
+    pub fn describe(self) -> String {
+        let words = |accuracy: Option<Accuracy>| match accuracy {
+            None => "refused".to_owned(),
+            Some(accuracy) => match accuracy.order(true) {
+                Some(order) => format!("order {order}"),
+                None => "exact".to_owned(),
+            },
+        };
+        let (stiffness, dashpots) = (words(self.stiffness), words(self.dashpots));
+        if stiffness == dashpots {
+            format!("with stiffness damping or dashpots: {stiffness}")
+        } else {
+            format!("with stiffness damping: {stiffness}; with dashpots: {dashpots}")
         }
     }
 }

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern};
 
-use crate::{Elements, Energy, EvaluationError, Ramp, RampError, Revision, System, Trial};
+use crate::{
+    Elements, Energy, EvaluationError, LoadTime, Ramp, RampError, Revision, System, Trial,
+};
 
 /// A [`System`] that shows its matrices.
 pub trait LinearSystem: System {
@@ -198,17 +200,38 @@ impl LinearOperators {
         self.mass.len()
     }
 
-    /// `out = F(t)` (N).
-    pub fn external_force(&self, t: f64, out: &mut [f64]) {
+    /// `out = F` (N) as a step takes it, or at an instant (s).
+    pub fn external_force(&self, when: impl Into<LoadTime>, out: &mut [f64]) {
+        let when = when.into();
         out.fill(0.0);
         for Load { ramp, entries } in self.loads.iter() {
-            let factor = ramp.value(t);
+            let factor = ramp.factor(when);
             if factor != 0.0 {
                 for &(dof, force) in entries {
                     out[dof as usize] += factor * force;
                 }
             }
         }
+    }
+
+    /// `out += F(after) - F(before)` (N) of the loads that are not smooth between two instants
+    /// `from` and `to` (s); whether there are any.
+    pub fn add_load_change(
+        &self,
+        [before, after]: [LoadTime; 2],
+        [from, to]: [f64; 2],
+        out: &mut [f64],
+    ) -> bool {
+        let broken = |load: &&Load| !load.ramp.is_smooth_between(from, to);
+        let mut any = false;
+        for Load { ramp, entries } in self.loads.iter().filter(broken) {
+            any = true;
+            let change = ramp.factor(after) - ramp.factor(before);
+            for &(dof, force) in entries {
+                out[dof as usize] += change * force;
+            }
+        }
+        any
     }
 
     /// `out -= K u + D v` (N): one sweep. Damping that a system does not have costs nothing, and
@@ -244,9 +267,9 @@ impl LinearOperators {
         }
     }
 
-    /// `out = F(t) - K u - D v` (N).
-    pub fn net_force(&self, t: f64, u: &[f64], v: &[f64], out: &mut [f64]) {
-        self.external_force(t, out);
+    /// `out = F - K u - D v` (N).
+    pub fn net_force(&self, when: impl Into<LoadTime>, u: &[f64], v: &[f64], out: &mut [f64]) {
+        self.external_force(when, out);
         self.subtract_internal_force(u, v, out);
     }
 
@@ -291,12 +314,12 @@ impl System for LinearModel {
     }
 
     fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
-        self.operators.net_force(trial.t, trial.u, trial.v, out);
+        self.operators.net_force(trial.load, trial.u, trial.v, out);
         Ok(())
     }
 
-    fn external_force(&self, t: f64, out: &mut [f64]) {
-        self.operators.external_force(t, out);
+    fn external_force(&self, when: LoadTime, out: &mut [f64]) {
+        self.operators.external_force(when, out);
     }
 
     fn mass_damping(&self) -> f64 {

@@ -12,8 +12,7 @@ pub enum Ramp {
         /// Time of the rise (s).
         rise: f64,
     },
-    /// 1 for `from <= t < to` (s), 0 elsewhere. A time short of either by a billionth of their
-    /// distance counts as there: times are sums of steps, and .1 added up eight times is below .8.
+    /// 1 for `from <= t < to` (s), 0 elsewhere.
     Pulse {
         /// First instant (s).
         from: f64,
@@ -92,20 +91,31 @@ impl Ramp {
         }
     }
 
-    /// The factor at time `t` (s).
+    /// The factor at time `t` (s); at a jump, that after it.
     #[must_use]
     pub fn value(&self, t: f64) -> f64 {
+        self.value_of_piece(t, t)
+    }
+
+    /// The factor at time `t` (s), continued smoothly from what holds in the middle of `from`..`to`
+    /// (s): that before a jump at `to`, that after a jump at `from`, whatever rounding made of
+    /// either.
+    #[must_use]
+    pub fn value_within(&self, from: f64, to: f64, t: f64) -> f64 {
+        self.value_of_piece(0.5 * (from + to), t)
+    }
+
+    /// The smooth piece that holds at `at` (s), at time `t` (s).
+    fn value_of_piece(&self, at: f64, t: f64) -> f64 {
         match self {
-            Self::Step => f64::from(t >= 0.0),
-            Self::Sin2 { rise } => {
+            Self::Step => f64::from(at >= 0.0),
+            Self::Sin2 { rise } if (0.0..*rise).contains(&at) => {
                 let angle = PI / 2.0 * (t / rise).clamp(0.0, 1.0);
                 angle.sin().powi(2)
             }
-            Self::Pulse { from, to } => {
-                let t = t + 1e-9 * (to - from);
-                f64::from(*from <= t && t < *to)
-            }
-            Self::Table { times, values } => match times.partition_point(|&time| time <= t) {
+            Self::Sin2 { rise } => f64::from(at >= *rise),
+            Self::Pulse { from, to } => f64::from(*from <= at && at < *to),
+            Self::Table { times, values } => match times.partition_point(|&time| time <= at) {
                 0 => values[0],
                 next if next == times.len() => values[next - 1],
                 next => {
@@ -165,10 +175,15 @@ impl Ramp {
         self.at_breakpoints(<[f64]>::to_vec)
     }
 
-    /// The first breakpoint (s) for which `wanted` holds. Allocates nothing.
+    /// The first breakpoint (s) after `from` and before `to` (s). Allocates nothing.
     #[must_use]
-    pub fn kink_where(&self, wanted: impl Fn(f64) -> bool) -> Option<f64> {
-        self.at_breakpoints(|points| points.iter().copied().find(|time| wanted(*time)))
+    pub fn breakpoint_between(&self, from: f64, to: f64) -> Option<f64> {
+        let next = self.at_breakpoints(|points| {
+            points
+                .get(points.partition_point(|time| *time <= from))
+                .copied()
+        });
+        next.filter(|time| *time < to)
     }
 
     fn at_breakpoints<R>(&self, look: impl FnOnce(&[f64]) -> R) -> R {
@@ -257,10 +272,38 @@ mod tests {
         assert!((at(0.2)[1] - 0.5).abs() < 1e-15);
         assert!((at(0.15)[3] - 2.0).abs() < 1e-12);
         assert_eq!(at(0.3)[2], 0.0, "a pulse ends just before its last instant");
-        let added_up: f64 = std::iter::repeat_n(0.1, 8).sum();
-        assert!(added_up < 0.8);
-        assert_eq!(Ramp::Pulse { from: 0.0, to: 0.8 }.value(added_up), 0.0);
         assert_eq!(at(9.0), [1.0, 1.0, 0.0, -1.0]);
+    }
+
+    #[test]
+    fn a_piece_is_what_holds_between_two_breakpoints() {
+        let within = |from: f64, to: f64, t: f64| -> Vec<f64> {
+            let ramps = ramps();
+            let values = ramps.iter().map(|ramp| ramp.value_within(from, to, t));
+            values.collect()
+        };
+        let close = |found: Vec<f64>, expected: [f64; 4]| {
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+            }
+        };
+        let sin2 = |t: f64| (PI / 2.0 * t / 0.4).sin().powi(2);
+        close(within(0.2, 0.3, 0.3), [1.0, sin2(0.3), 1.0, 5.0 / 3.0]);
+        close(within(0.05, 0.1, 0.1), [1.0, sin2(0.1), 0.0, 1.0]);
+        close(within(0.1, 0.2, 0.1), [1.0, sin2(0.1), 1.0, 1.0]);
+    }
+
+    #[test]
+    fn breakpoints_are_found_between_two_instants() {
+        let between = |from: f64, to: f64| -> Vec<Option<f64>> {
+            let ramps = ramps();
+            let found = ramps.iter().map(|ramp| ramp.breakpoint_between(from, to));
+            found.collect()
+        };
+        let (first, second) = (Some(0.1), Some(0.2));
+        assert_eq!(between(0.05, 0.15), [None, None, first, first]);
+        assert_eq!(between(0.1, 0.25), [None, None, None, second]);
+        assert_eq!(between(-0.1, 0.1), [Some(0.0), Some(0.0), None, None]);
     }
 
     #[test]

@@ -95,7 +95,7 @@ pub fn simulate(
         work: StepReport::default(),
     };
     let mut show = |system: &dyn System, state: &State, step| {
-        if recorder.wants(step, state.t) {
+        if recorder.wants(step, state.t()) {
             recorder.record(system, state)
         } else {
             Ok(Verdict::Continue)
@@ -109,7 +109,7 @@ pub fn simulate(
         report.work += integrator.step(system, state, run.dt)?;
         report.steps += 1;
         if let Some(cell) = beyond(&state.u, run.divergence_limit) {
-            report.outcome = Outcome::Diverged { t: state.t, cell };
+            report.outcome = Outcome::Diverged { t: state.t(), cell };
             return Ok(report);
         }
         if show(system, state, report.steps)? == Verdict::Stop {

@@ -1,6 +1,6 @@
 //! The state of a simulation.
 
-use crate::{EvaluationError, Revision, System, Trial};
+use crate::{Clock, EvaluationError, LoadTime, Revision, System, Trial};
 
 /// Where a system is and how it moves, free degrees of freedom only, node-major (x y z).
 ///
@@ -8,23 +8,41 @@ use crate::{EvaluationError, Revision, System, Trial};
 /// integrator is bit-identical. It therefore carries everything a method must remember.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Time of `u` (s).
-    pub t: f64,
-    /// Displacement at `t` (m).
+    /// Time of `u`.
+    pub clock: Clock,
+    /// Displacement (m).
     pub u: Vec<f64>,
-    /// Velocity at `v_time` (m/s).
+    /// Velocity (m/s), at the time that `velocity` says.
     pub v: Vec<f64>,
-    /// Time at which `v` holds (s); staggered methods keep it half a step behind `t`.
-    pub v_time: f64,
-    /// Acceleration at `a_time` (m/s^2), empty unless a method keeps one.
+    /// When `v` holds.
+    pub velocity: VelocityTime,
+    /// Acceleration (m/s^2), of the kind that `acceleration` says; room to work in otherwise.
     pub a: Vec<f64>,
-    /// Time at which `a` holds (s); minus infinity when none is kept. It is up to date only
-    /// when it equals `t`. Staggered methods that keep none set it to that, those that keep one
-    /// have it half a step behind the velocity.
-    pub a_time: f64,
+    /// Which acceleration `a` is.
+    pub acceleration: Acceleration,
     /// What the motion began with, where a guarded method bounds velocities by it; `None` until
     /// then. Set it to `None` after changing `u` or `v` by hand.
     pub start: Option<Start>,
+}
+
+/// When the velocity of a state holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VelocityTime {
+    /// At the displacement's time.
+    Same,
+    /// In the middle of the last step: of staggered methods.
+    MiddleOfStep,
+}
+
+/// Which acceleration a state keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Acceleration {
+    /// None.
+    None,
+    /// That at the displacement's time, under the loads at the end of the last step.
+    Same,
+    /// That of the last kick, which led to a velocity in the middle of the last step.
+    Kick,
 }
 
 /// What a motion began with, as far as its velocities are bounded by it.
@@ -49,21 +67,45 @@ impl State {
     #[must_use]
     pub fn new(u: Vec<f64>, v: Vec<f64>) -> Self {
         Self {
-            t: 0.0,
+            clock: Clock::at(0.0),
             u,
             v,
-            v_time: 0.0,
+            velocity: VelocityTime::Same,
             a: Vec::new(),
-            a_time: f64::NEG_INFINITY,
+            acceleration: Acceleration::None,
             start: None,
         }
     }
 
-    /// Writes the velocity at `t` (m/s) into `out` (length of `u`).
+    /// Time of the displacement (s).
+    #[must_use]
+    pub fn t(&self) -> f64 {
+        self.clock.time()
+    }
+
+    /// Whether a staggered method has taken the last step, of `dt` (s), and can go on with another.
+    #[must_use]
+    pub fn is_staggered_by(&self, dt: f64) -> bool {
+        self.velocity == VelocityTime::MiddleOfStep && self.clock.last_step() == Some(dt)
+    }
+
+    /// Ends a step of `dt` (s) that moved `u` and `v` to the same time and keeps no acceleration.
+    pub fn advance(&mut self, dt: f64) {
+        self.end_step(dt, VelocityTime::Same, Acceleration::None);
+    }
+
+    /// Ends a step of `dt` (s).
+    pub fn end_step(&mut self, dt: f64, velocity: VelocityTime, acceleration: Acceleration) {
+        self.clock.advance(dt);
+        self.velocity = velocity;
+        self.acceleration = acceleration;
+    }
+
+    /// Writes the velocity at the displacement's time (m/s) into `out` (length of `u`).
     ///
-    /// A staggered velocity is brought to `t` with the acceleration that led to it, where the method
+    /// A staggered velocity is brought there with the acceleration of the last kick, where the method
     /// keeps one (its mass may be another than the system's), and otherwise with the acceleration at
-    /// `t`, which takes a force evaluation. Either is accurate to second order in the distance.
+    /// that time, which takes a force evaluation. Either is accurate to second order in the step.
     ///
     /// # Errors
     /// [`EvaluationError`] when the system refuses the state.
@@ -72,37 +114,33 @@ impl State {
         system: &dyn System,
         out: &mut [f64],
     ) -> Result<(), EvaluationError> {
-        let distance = self.t - self.v_time;
-        if distance == 0.0 {
+        let (VelocityTime::MiddleOfStep, Some(dt)) = (self.velocity, self.clock.last_step()) else {
             out.copy_from_slice(&self.v);
             return Ok(());
-        }
-        // One that a staggered method keeps is as far behind the velocity as that behind t.
-        let kept = self.a.len() == self.v.len()
-            && self.a_time < self.v_time
-            && self.v_time - self.a_time <= 1.5 * distance;
-        if kept {
+        };
+        if self.acceleration == Acceleration::Kick {
             for ((value, v), a) in out.iter_mut().zip(&self.v).zip(&self.a) {
-                *value = v + distance * a;
+                *value = v + dt / 2.0 * a;
             }
             return Ok(());
         }
         let trial = Trial {
-            t: self.t,
-            dt: distance,
+            // Loads that come later do not matter yet.
+            load: LoadTime::around(self.t(), dt, 0.0),
+            dt: dt / 2.0,
             u: &self.u,
             v: &self.v,
         };
         system.net_force(&trial, out)?;
         let acceleration = out.iter_mut().zip(system.mass());
         for ((value, mass), v) in acceleration.zip(&self.v) {
-            *value = v + distance * *value / mass;
+            *value = v + dt / 2.0 * *value / mass;
         }
         Ok(())
     }
 
-    /// Moves a staggered velocity to `t`, so that any method can go on from here. `work` has the
-    /// length of `u`.
+    /// Moves a staggered velocity to the displacement's time, so that any method can go on from
+    /// here; whether it had to. `work` has the length of `u`.
     ///
     /// # Errors
     /// As [`State::velocity_at_t`].
@@ -111,18 +149,13 @@ impl State {
         system: &dyn System,
         work: &mut [f64],
     ) -> Result<bool, EvaluationError> {
-        if self.v_time == self.t {
+        if self.velocity == VelocityTime::Same {
             return Ok(false);
         }
         self.velocity_at_t(system, work)?;
         self.v.copy_from_slice(work);
-        self.v_time = self.t;
+        self.velocity = VelocityTime::Same;
+        self.acceleration = Acceleration::None;
         Ok(true)
-    }
-
-    /// Sets the time of all that is stored at `t` after a step that moved `u` and `v` together.
-    pub fn advance_to(&mut self, t: f64) {
-        self.t = t;
-        self.v_time = t;
     }
 }

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use sinew_sparse::Layers;
 
-use crate::{LinearSystem, State};
+use crate::{LinearSystem, LoadTime, State};
 
 /// Identity of a system's matrices and laws, unique in the process.
 ///
@@ -26,8 +26,8 @@ impl Revision {
 /// A point at which a system is evaluated without being changed.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<'a> {
-    /// Time at which the load is taken (s).
-    pub t: f64,
+    /// When loads are taken.
+    pub load: LoadTime,
     /// Step that led here (s); laws with memory need it.
     pub dt: f64,
     /// Displacement (m).
@@ -95,8 +95,8 @@ pub trait System: Send + Sync {
     /// [`EvaluationError`] when a law is outside its domain; `out` is then unspecified.
     fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError>;
 
-    /// `out = f_ext(t)` (N).
-    fn external_force(&self, t: f64, out: &mut [f64]);
+    /// `out = f_ext` (N) as a step takes it.
+    fn external_force(&self, when: LoadTime, out: &mut [f64]);
 
     /// The rate alpha (1/s) of that part of `f_int` which is `alpha M v`; central difference
     /// treats it implicitly at no cost.

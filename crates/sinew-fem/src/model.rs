@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use sinew_core::{
     BlockMatrix, Damping, ElementStiffness, Elements, Energy, EvaluationError, Layers,
-    LinearOperators, LinearSystem, Pattern, Revision, Scales, System, Trial,
+    LinearOperators, LinearSystem, LoadTime, Pattern, Revision, Scales, System, Trial,
 };
 use sinew_mesh::TetMesh;
 
@@ -225,12 +225,12 @@ impl System for Model {
     }
 
     fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
-        self.operators.net_force(trial.t, trial.u, trial.v, out);
+        self.operators.net_force(trial.load, trial.u, trial.v, out);
         Ok(())
     }
 
-    fn external_force(&self, t: f64, out: &mut [f64]) {
-        self.operators.external_force(t, out);
+    fn external_force(&self, when: LoadTime, out: &mut [f64]) {
+        self.operators.external_force(when, out);
     }
 
     fn mass_damping(&self) -> f64 {

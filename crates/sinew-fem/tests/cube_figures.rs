@@ -10,7 +10,7 @@ use common::{
 };
 use nalgebra::Vector3;
 use sinew_core::spectrum::Spectrum;
-use sinew_core::{LinearSystem, System};
+use sinew_core::{LinearSystem, LoadTime, System};
 use sinew_fem::springs::springs as network;
 use sinew_fem::{Law, LoadKind, Model, SpringRule};
 use sinew_mesh::TetMesh;
@@ -94,7 +94,7 @@ fn the_papers_cube() {
     figure("load asked for (N)", facts.asked[2], -20.0, 1e-12);
     figure("load that acts (N)", facts.acting[2], -16.2, 1e-12);
     let mut acting = vec![0.0; model.dofs()];
-    model.external_force(0.0, &mut acting);
+    model.external_force(LoadTime::at(0.0), &mut acting);
     figure(
         "load on the moving nodes (N)",
         acting.iter().sum(),

@@ -8,7 +8,7 @@ use common::{
     add_node_group, at_most, body, build, equilibrium, figure, held_along, jitter, linear, load,
     on_cells, relative_difference,
 };
-use sinew_core::{System, Trial};
+use sinew_core::{LoadTime, System, Trial};
 use sinew_fem::{Law, LoadKind, Model, SpringRule};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
@@ -92,7 +92,7 @@ fn held_components_are_counted_and_never_pushed() {
     let u = vec![1e-3; model.dofs()];
     let mut force = vec![f64::NAN; model.dofs()];
     let trial = Trial {
-        t: 0.0,
+        load: LoadTime::at(0.0),
         dt: 1e-3,
         u: &u,
         v: &u,

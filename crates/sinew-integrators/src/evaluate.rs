@@ -1,6 +1,9 @@
 //! Evaluations that integrators share.
 
-use sinew_core::{Integrator, Prepared, SetupError, State, StepError, StepReport, System, Trial};
+use sinew_core::{
+    Integrator, LoadTime, Prepared, SetupError, State, StepError, StepReport, System, Trial,
+    VelocityTime,
+};
 
 /// `out = f_ext - f_int` at a trial point, counted.
 pub(crate) fn net_force(
@@ -11,19 +14,22 @@ pub(crate) fn net_force(
     system
         .net_force(trial, out)
         .map(|()| StepReport::ONE_FORCE)
-        .map_err(|source| StepError::Refused { t: trial.t, source })
+        .map_err(|source| StepError::Refused {
+            t: trial.load.t(),
+            source,
+        })
 }
 
-/// `out = M^-1 (f_ext(t) - f_int)` in a state, counted. Dividing, as the network's templates do,
+/// `out = M^-1 (f_ext - f_int)` in a state, counted. Dividing, as the network's templates do,
 /// keeps the explicit methods and the network equal to the last bit.
 pub(crate) fn acceleration(
     system: &dyn System,
     state: &State,
-    t: f64,
+    load: LoadTime,
     out: &mut [f64],
 ) -> Result<StepReport, StepError> {
     let trial = Trial {
-        t,
+        load,
         dt: 0.0,
         u: &state.u,
         v: &state.v,
@@ -52,11 +58,11 @@ pub(crate) fn begin(
 /// Brings a staggered velocity to the state's time. Only the first step after another method
 /// took the state does so, so it may allocate.
 pub(crate) fn synchronise(system: &dyn System, state: &mut State) -> Result<StepReport, StepError> {
-    if state.v_time == state.t {
+    if state.velocity == VelocityTime::Same {
         return Ok(StepReport::default());
     }
     let mut buffer = vec![0.0; state.u.len()];
-    let t = state.t;
+    let t = state.t();
     state
         .synchronise(system, &mut buffer)
         .map(|_| StepReport::ONE_FORCE)

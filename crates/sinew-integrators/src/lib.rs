@@ -8,7 +8,7 @@
 //! let mut state = State::new(vec![0.0], vec![-5.0]);
 //! let mut integrator = sinew_integrators::build("central-difference", &Options::new())?;
 //! simulate(&model, &mut *integrator, &mut state, &Run::covering(1.0, 0.001), &mut ())?;
-//! assert!((state.t - 1.0).abs() < 1e-12);
+//! assert_eq!(state.t(), 1.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -18,7 +18,7 @@ const PAIRS: [(&str, &str); 2] = [
 ];
 
 fn bits(state: &State) -> Vec<u64> {
-    let all = [&[state.t, state.v_time], &state.u[..], &state.v[..]].concat();
+    let all = [&[state.t()], &state.u[..], &state.v[..]].concat();
     all.iter().map(|value| value.to_bits()).collect()
 }
 

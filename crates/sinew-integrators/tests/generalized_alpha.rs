@@ -11,7 +11,8 @@ use common::cube::{altered, cube, mass_damping, scene, springs};
 use common::{advance, build, largest, plain, relative_error};
 use nalgebra::DMatrix;
 use sinew_core::{
-    LinearModel, LinearOperators, LinearSystem, Load, OptionValue, Options, Ramp, State, System,
+    Acceleration, LinearModel, LinearOperators, LinearSystem, Load, OptionValue, Options, Ramp,
+    State, System,
 };
 
 fn rho(value: f64) -> Options {
@@ -95,7 +96,7 @@ fn amplification(options: &Options) -> DMatrix<f64> {
         let unit = |row| f64::from(u8::from(row == column));
         let mut state = State::new(vec![unit(0)], vec![unit(1) / dt]);
         state.a = vec![unit(2) / (dt * dt)];
-        state.a_time = state.t;
+        state.acceleration = Acceleration::Same;
         build("generalized-alpha", options)
             .step(&system, &mut state, dt)
             .unwrap();

@@ -12,7 +12,8 @@ use common::dense_methods::{Dense, STEPS};
 use common::{advance, build, largest, plain};
 use proptest::prelude::*;
 use sinew_core::{
-    LinearModel, LinearOperators, LinearSystem, Load, Ramp, StableStep, State, StepReport, System,
+    LinearModel, LinearOperators, LinearSystem, Load, LoadTime, Ramp, StableStep, State,
+    StepReport, System,
 };
 use sinew_integrators::static_solution;
 
@@ -68,7 +69,7 @@ proptest! {
         let body = body.on_the_ground();
         let model = body.model();
         let mut load = vec![0.0; model.dofs()];
-        model.external_force(1.0, &mut load);
+        model.external_force(LoadTime::at(1.0), &mut load);
         let u = static_solution(&model, &load).unwrap();
         let mut force = vec![0.0; model.dofs()];
         model.operators().stiffness().multiply(&u, &mut force);
@@ -81,7 +82,7 @@ proptest! {
         let body = body.free();
         let model = body.model();
         let mut load = vec![0.0; model.dofs()];
-        model.external_force(1.0, &mut load);
+        model.external_force(LoadTime::at(1.0), &mut load);
         // Whether rounding lets the factorisation pass is a matter of luck.
         let refusal = static_solution(&model, &load).unwrap_err();
         let (message, hint) = (refusal.to_string(), "is the body held against all rigid motions?");
@@ -172,7 +173,7 @@ fn what_a_factor_was_used_for_before_leaves_no_trace() {
 fn damped_motion_ends_at_the_static_solution() {
     let model = cube(4);
     let mut load = vec![0.0; model.dofs()];
-    model.external_force(1.0, &mut load);
+    model.external_force(LoadTime::at(1.0), &mut load);
     let expected = static_solution(&model, &load).unwrap();
     for id in sinew_integrators::ids() {
         let mut integrator = build(id, &plain());

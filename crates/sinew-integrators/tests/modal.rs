@@ -13,7 +13,7 @@ use common::{advance, build, largest, plain, relative_error};
 use sinew_core::closed_form::DampedOscillator;
 use sinew_core::{
     BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
-    OptionValue, Options, Pattern, Ramp, State, System,
+    LoadTime, OptionValue, Options, Pattern, Ramp, State, System,
 };
 use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule};
 use sinew_integrators::Method;
@@ -445,7 +445,7 @@ fn a_floating_body_flies() {
     let mut state = start.clone();
     advance(&mut modal, &model, &mut state, 10, 0.03);
     let mut force = vec![0.0; model.dofs()];
-    model.external_force(0.0, &mut force);
+    model.external_force(LoadTime::at(0.0), &mut force);
     for axis in 0..3 {
         let sum = |values: &mut dyn Iterator<Item = f64>| values.skip(axis).step_by(3).sum::<f64>();
         let mass = sum(&mut model.mass().iter().copied());

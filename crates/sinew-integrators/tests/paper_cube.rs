@@ -7,7 +7,7 @@ mod common;
 use common::cube::{INSTANT, error, paper_cube, reference, rk4, run};
 use common::{assert_prints, build, largest, plain, relative_error, saturation};
 use sinew_core::spectrum::Spectrum;
-use sinew_core::{LinearSystem, Options, State, System};
+use sinew_core::{LinearSystem, LoadTime, Options, State, System};
 
 /// The error at so many steps for every 20 ms.
 fn error_of(id: &str, options: &Options, steps_per_instant: usize) -> f64 {
@@ -36,7 +36,7 @@ fn the_scene_is_the_one_described() {
 fn it_settles_at_its_static_solution() {
     let model = paper_cube();
     let mut load = vec![0.0; model.dofs()];
-    model.external_force(1.0, &mut load);
+    model.external_force(LoadTime::at(1.0), &mut load);
     let at_rest = sinew_integrators::static_solution(model, &load).unwrap();
     assert_prints(largest(&at_rest), "0.01695");
 }

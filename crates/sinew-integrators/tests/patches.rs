@@ -154,7 +154,7 @@ fn steps_solve_their_equation() {
     let force = |state: &State| {
         let mut out = vec![0.0; n];
         let operators = model.operators();
-        operators.net_force(state.t, &state.u, &state.v, &mut out);
+        operators.net_force(state.t(), &state.u, &state.v, &mut out);
         out
     };
     let check = |change: &[f64], expected: &[f64]| {

@@ -360,7 +360,7 @@ fn a_kink_within_a_step_is_refused_with_its_instant() {
         assert_eq!(
             refusal.to_string(),
             format!(
-                "`propagator` at t = 0.04 s: a load is not smooth at t = {kink} s, inside the step; choose a dt that meets that instant"
+                "`propagator` at t = 0.04 s: a load changes at t = {kink} s, and is not smooth over each step of 0.02 s; choose a dt that meets that instant"
             )
         );
     }

@@ -15,8 +15,8 @@ use nalgebra::{DMatrix, DVector};
 use sinew_cnn::{Blend, DampingShare, GammaRule, Inner, Stabiliser};
 use sinew_core::spectrum::critical_step;
 use sinew_core::{
-    Damping, Integrator, LinearModel, LinearOperators, LinearSystem, OptionValue, Options,
-    StableStep, State, System,
+    Damping, Integrator, LinearModel, LinearOperators, LinearSystem, LoadTime, OptionValue,
+    Options, StableStep, State, System,
 };
 #[cfg(feature = "implicit")]
 use sinew_core::{Load, Ramp};
@@ -257,7 +257,7 @@ fn every_inner_iteration_comes_to_rest_where_stiffness_carries_the_load() {
         (scene(3, 0.2, springs(0.3), mass_damping(30.0)), 0.1),
     ] {
         let mut load = vec![0.0; model.dofs()];
-        model.external_force(1.0, &mut load);
+        model.external_force(LoadTime::at(1.0), &mut load);
         let expected = sinew_integrators::static_solution(&model, &load).unwrap();
         for inner in INNERS {
             for blend in [Blend::Auto, Blend::Full] {

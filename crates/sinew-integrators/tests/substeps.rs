@@ -140,7 +140,7 @@ fn where_no_step_is_stable_automatic_parts_are_refused() {
                 "`{id}` needs a stable step above 0 to choose sub-steps by, which this system does not offer"
             )
         );
-        assert_eq!(state.t, 0.0);
+        assert_eq!(state.t(), 0.0);
         assert_eq!(
             build(id, &auto()).stable_step(&undamped),
             Ok(StableStep::UpTo(0.0))

@@ -91,7 +91,7 @@ fn the_force_is_shared_equally_by_the_81_nodes_of_the_top_that_move() {
         let body = simulation.model().body().unwrap();
         let height = |dof: usize| body.mesh.points[body.model.nodes()[dof / 3] as usize][2];
         let mut force = vec![0.0; linear.dofs()];
-        linear.external_force(0.0, &mut force);
+        linear.external_force(sinew_core::LoadTime::at(0.0), &mut force);
         let loaded: Vec<usize> = (0..force.len()).filter(|i| force[*i] != 0.0).collect();
         assert_eq!(loaded.len(), 81);
         assert!(loaded.iter().all(|&i| (height(i) - 0.1).abs() < 1e-12));

@@ -43,7 +43,7 @@ impl ProbeCsv {
     }
 
     fn write(&mut self, state: &State) -> io::Result<()> {
-        write!(self.file, "{:?}", state.t)?;
+        write!(self.file, "{:?}", state.t())?;
         for probe in &self.probes {
             for value in probe.displacement(&state.u) {
                 write!(self.file, ",{value:?}")?;
@@ -62,7 +62,7 @@ impl Recorder for ProbeCsv {
         match self.write(state) {
             Ok(()) => Ok(Verdict::Continue),
             Err(error) => Err(RecordError {
-                t: state.t,
+                t: state.t(),
                 source: error.into(),
             }),
         }

@@ -124,6 +124,40 @@ fn bad_input_gives_one_error_with_file_and_line_and_writes_nothing() {
 }
 
 #[test]
+fn a_run_that_would_end_at_a_jump_is_refused_before_it_begins() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = r#"
+title = "a late tap"
+[mesh]
+cube = { cells = 2, edge = 0.1 }
+[[region]]
+density = 1060.0
+model = "linear"
+youngs_modulus = 3500.0
+poissons_ratio = 0.3
+[[fixed]]
+group = "bottom"
+[[load]]
+name = "tap"
+group = "top"
+traction = [0.0, 0.0, -100.0]
+ramp = { kind = "pulse", from = 0.9, to = 0.913 }
+[run]
+duration = 1.0
+integrator = "propagator"
+kind = "two-step"
+dt = 0.02
+"#;
+    std::fs::write(directory.path().join("tap.toml"), scene).unwrap();
+    let said = sinew(directory.path(), &["run", "tap.toml"]);
+    assert_eq!(said.code, Some(2), "{}", said.out);
+    let expected = "`propagator` takes loads that are constant over each step, and [[load]] \"tap\" changes at t = 0.913 s, in steps of 0.02 s; dt = 0.001 s would do";
+    assert!(said.err.contains(expected), "{}", said.err);
+    assert_eq!(said.err.matches("error:").count(), 1);
+    assert!(!directory.path().join("tap.csv").exists());
+}
+
+#[test]
 fn a_missing_scene_is_named() {
     let directory = tempfile::tempdir().unwrap();
     let said = sinew(directory.path(), &["plan", "nowhere.toml"]);

@@ -1,7 +1,7 @@
 //! The energy of a run, step by step, in the form that its method keeps.
 
 use sinew_core::{
-    Integrator, LinearOperators, RecordError, Recorder, State, System, Verdict as GoOn,
+    Integrator, LinearOperators, LoadTime, RecordError, Recorder, State, System, Verdict as GoOn,
 };
 
 /// Which energy is kept.
@@ -30,7 +30,6 @@ pub(crate) struct Ledger<'a> {
     before: Option<State>,
     /// P v.
     momentum: Vec<f64>,
-    force_before: Vec<f64>,
     work: f64,
     start: f64,
     first: f64,
@@ -68,7 +67,6 @@ impl<'a> Ledger<'a> {
             lagging,
             before: None,
             momentum: Vec::new(),
-            force_before: Vec::new(),
             work: 0.0,
             start: 0.0,
             first: 0.0,
@@ -76,9 +74,9 @@ impl<'a> Ledger<'a> {
         }
     }
 
-    fn external_force(&self, t: f64) -> Vec<f64> {
+    fn external_force(&self, when: LoadTime) -> Vec<f64> {
         let mut force = vec![0.0; self.operators.dofs()];
-        self.operators.external_force(t, &mut force);
+        self.operators.external_force(when, &mut force);
         force
     }
 
@@ -90,19 +88,21 @@ impl<'a> Ledger<'a> {
     }
 
     fn add(&mut self, before: &State, state: &State) {
-        let force = self.external_force(state.t);
+        let (t, dt) = (before.t(), state.t() - before.t());
         let energy = if self.form == Form::Physical {
             let moved = state.u.iter().zip(&before.u);
-            let loads = force.iter().zip(&self.force_before);
+            let [start, end] =
+                [0.0, 1.0].map(|share| self.external_force(LoadTime::within(t, dt, share)));
+            let loads = start.iter().zip(&end);
             let work = moved
                 .zip(loads)
-                .map(|((u, before), (f, f_before))| 0.5 * (f + f_before) * (u - before));
+                .map(|((u, before), (start, end))| 0.5 * (start + end) * (u - before));
             self.work += work.sum::<f64>();
             self.operators.energy(&state.u, &state.v).total()
         } else {
             self.leapfrog(before, state)
         };
-        let first_step = before.t == 0.0;
+        let first_step = t == 0.0;
         if first_step {
             self.first = energy;
         }
@@ -115,20 +115,20 @@ impl<'a> Ledger<'a> {
             let excess = (energy - allowed) / found.largest_allowed;
             found.excess = largest(found.excess, excess);
         }
-        self.force_before = force;
     }
 
     /// The energy of the step between two displacements, and the work up to its middle.
     fn leapfrog(&mut self, before: &State, state: &State) -> f64 {
-        let dt = state.t - before.t;
+        let (t, dt) = (before.t(), state.t() - before.t());
         let n = state.u.len();
-        let mut force = self.force_before.clone();
+        let start = t == 0.0;
+        let load = self.external_force(LoadTime::around(t, if start { 0.0 } else { dt }, dt));
+        let mut force = load.clone();
         let mut damping = vec![0.0; n];
         self.operators
             .stiffness()
             .subtract_product(&before.u, &mut force);
         self.operators.subtract_damping(&before.v, &mut damping);
-        let start = before.t == 0.0;
         // The first velocity is reached within half a step, which for the stabilised form knows
         // only the damping that lags.
         let share = if start { 0.5 * dt } else { dt };
@@ -152,10 +152,7 @@ impl<'a> Ledger<'a> {
         }
         let velocities = state.v.iter().zip(&before.v);
         let moved = velocities.map(|(v, before)| 0.5 * share * (v + before));
-        self.work += moved
-            .zip(&self.force_before)
-            .map(|(d, f)| d * f)
-            .sum::<f64>();
+        self.work += moved.zip(&load).map(|(d, f)| d * f).sum::<f64>();
 
         if self.form == Form::CentralDifference {
             let factor = 1.0 + 0.5 * dt * self.operators.damping().mass;
@@ -191,7 +188,6 @@ impl Recorder for Ledger<'_> {
             None => {
                 self.start = self.operators.energy(&state.u, &state.v).total();
                 self.found.largest_allowed = self.start;
-                self.force_before = self.external_force(state.t);
                 self.before = Some(state.clone());
             }
             Some(mut before) => {

@@ -160,7 +160,7 @@ fn follow(
 ) -> Result<Vec<(f64, f64)>, ReproduceError> {
     let mut points = Vec::new();
     let mut keep = |_: &dyn sinew_core::System, state: &State| {
-        points.push((state.t, state.u[0]));
+        points.push((state.t(), state.u[0]));
         Ok(sinew_core::Verdict::Continue)
     };
     run(case, method, &Run::covering(duration, dt), &mut keep)?;
@@ -179,7 +179,7 @@ fn snapshot(
     let state = state_after(case, method, dt, duration, limit)?;
     let inverted = case.simulation().system().inverted_elements(&state.u);
     Ok(Snapshot {
-        t: state.t,
+        t: state.t(),
         u: state.u,
         inverted: inverted.unwrap_or(0),
         row,

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses some of these")]
 
-use sinew_core::{LinearSystem, Ramp, System};
+use sinew_core::{LinearSystem, LoadTime, Ramp, System};
 use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
 use sinew_integrators::static_solution;
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -137,7 +137,7 @@ pub(crate) fn solve(model: &Model, force: &[f64]) -> Vec<f64> {
 /// The equilibrium under the model's loads at full value.
 pub(crate) fn equilibrium(model: &Model) -> Vec<f64> {
     let mut force = vec![0.0; model.dofs()];
-    model.external_force(0.0, &mut force);
+    model.external_force(LoadTime::at(0.0), &mut force);
     solve(model, &force)
 }
 

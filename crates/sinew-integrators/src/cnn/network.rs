@@ -2,7 +2,8 @@
 
 use sinew_cnn::{Saturation, Templates};
 use sinew_core::{
-    Needs, OptionError, OptionValue, Options, Prepared, SetupError, State, StepReport, System,
+    LoadTime, Needs, OptionError, OptionValue, Options, Prepared, SetupError, State, StepReport,
+    System,
 };
 
 use crate::OptionHelp;
@@ -64,10 +65,11 @@ impl Network {
         Ok(StepReport::default())
     }
 
-    /// One sweep over all cells.
-    pub(super) fn sweep(&mut self, state: &State) -> StepReport {
+    /// One sweep over all cells, at the beginning of a step of `dt` (s).
+    pub(super) fn sweep(&mut self, state: &State, dt: f64) -> StepReport {
         if let Some(templates) = &self.templates {
-            templates.sweep(state.t, &state.u, &state.v, &mut self.rate);
+            let load = LoadTime::start_of(state.t(), dt);
+            templates.sweep(load, &state.u, &state.v, &mut self.rate);
         }
         StepReport::ONE_FORCE
     }

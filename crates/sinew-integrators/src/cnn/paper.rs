@@ -2,8 +2,8 @@
 
 use sinew_cnn::Saturation;
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, OptionValue, Options, OtherDamping,
-    Properties, SetupError, StableStep, State, StepError, StepReport, System,
+    Accuracy, ChangingLoads, EnergyBehaviour, Integrator, Needs, OptionError, OptionValue, Options,
+    OtherDamping, Properties, SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::network::{self, Network};
@@ -60,6 +60,7 @@ impl Integrator for Cnn {
             accuracy: Accuracy::Order(1),
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Grows,
+            changing_loads: ChangingLoads::order(1),
             other_damping: OtherDamping::order(1),
         }
     }
@@ -80,14 +81,14 @@ impl Integrator for Cnn {
         dt: f64,
     ) -> Result<StepReport, StepError> {
         let mut work = begin(self, system, state, dt)?;
-        work += self.network.sweep(state);
+        work += self.network.sweep(state, dt);
         let f = self.saturation;
         for ((y, x), rate) in state.u.iter_mut().zip(&mut state.v).zip(&self.network.rate) {
             work.saturated += u64::from(f.saturates(*x));
             *y += dt * f.output(*x);
             *x += dt * rate;
         }
-        state.advance_to(state.t + dt);
+        state.advance(dt);
         system.accept(state);
         Ok(work)
     }

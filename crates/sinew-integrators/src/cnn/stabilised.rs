@@ -2,9 +2,9 @@
 
 use sinew_cnn::{Blend, DampingShare, GammaRule, Inner, Stabiliser};
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Fact, Integrator, LinearSystem, Needs, OptionError, OptionValue,
-    Options, OtherDamping, Prepared, Properties, SetupError, StableStep, State, StepError,
-    StepReport, System, Trial,
+    Acceleration, Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, LinearSystem,
+    LoadTime, Needs, OptionError, OptionValue, Options, OtherDamping, Prepared, Properties,
+    SetupError, StableStep, State, StepError, StepReport, System, Trial, VelocityTime,
 };
 
 use crate::evaluate::{net_force, synchronise};
@@ -171,6 +171,7 @@ impl Integrator for CnnStabilised {
             accuracy: Accuracy::Order(2),
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Bounded,
+            changing_loads: ChangingLoads::order(2),
             other_damping: OtherDamping::order(match self.inner.damping_share() {
                 DampingShare::AsStiffness => 1,
                 DampingShare::Whole => 2,
@@ -225,18 +226,14 @@ impl Integrator for CnnStabilised {
             Some(SetUp::Plain(plain)) => return plain.step(system, state, dt),
             None => return Ok(work),
         };
-        let running = (state.t - state.v_time - dt / 2.0).abs() <= 1e-6 * dt;
+        let running = state.is_staggered_by(dt);
         if !running {
             work += synchronise(system, state)?;
         }
-        let (velocity_in_force, weight) = if running {
-            (true, dt)
-        } else {
-            (false, dt / 2.0)
-        };
+        let weight = if running { dt } else { dt / 2.0 };
         // Only the damping that P does not hold lags in the first half step.
         let lagging = 1.0 - stabiliser.majorant().damping_share();
-        work += residual(system, state, velocity_in_force, lagging, &mut self.force)?;
+        work += residual(system, state, dt, lagging, &mut self.force)?;
         for ((force, mass), v) in self.force.iter_mut().zip(system.mass()).zip(&state.v) {
             *force = weight * *force + if running { 0.0 } else { mass * v };
         }
@@ -245,7 +242,6 @@ impl Integrator for CnnStabilised {
         // Kept so that the velocity at the displacement's time can be had: M^-1 of the force is not
         // the acceleration of this motion.
         state.a.resize(state.u.len(), 0.0);
-        state.a_time = state.t;
         let moving = state.u.iter_mut().zip(&mut state.v).zip(&mut state.a);
         for (((u, v), a), change) in moving.zip(&self.change) {
             let before = *v;
@@ -253,8 +249,7 @@ impl Integrator for CnnStabilised {
             *a = (*v - before) / weight;
             *u += dt * *v;
         }
-        state.t += dt;
-        state.v_time = state.t - dt / 2.0;
+        state.end_step(dt, VelocityTime::MiddleOfStep, Acceleration::Kick);
         system.accept(state);
         Ok(work)
     }
@@ -274,27 +269,27 @@ impl Integrator for CnnStabilised {
     }
 }
 
-/// `out = F(t) - K u - D v`; at the start with the share `lagging` of the damping other than alpha M
-/// in place of D.
+/// `out = F - K u - D v` before a step of `dt` (s); at the start with the share `lagging` of the
+/// damping other than alpha M in place of D.
 fn residual(
     system: &dyn System,
     state: &State,
-    with_damping: bool,
+    dt: f64,
     lagging: f64,
     out: &mut [f64],
 ) -> Result<StepReport, StepError> {
-    let trial = Trial {
-        t: state.t,
-        dt: 0.0,
-        u: &state.u,
-        v: &state.v,
-    };
-    if with_damping {
+    if state.is_staggered_by(dt) {
+        let trial = Trial {
+            load: LoadTime::around(state.t(), dt, dt),
+            dt: 0.0,
+            u: &state.u,
+            v: &state.v,
+        };
         return net_force(system, &trial, out);
     }
     if let Some(linear) = system.as_linear() {
         let operators = linear.operators();
-        operators.external_force(state.t, out);
+        operators.external_force(LoadTime::around(state.t(), 0.0, dt), out);
         let damping = operators.damping();
         let of_stiffness = lagging * damping.stiffness;
         if of_stiffness == 0.0 {

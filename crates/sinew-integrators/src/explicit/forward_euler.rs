@@ -1,8 +1,9 @@
 //! `forward-euler`: both halves from the old state.
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, OtherDamping, Prepared,
-    Properties, SetupError, StableStep, State, StepError, StepReport, System,
+    Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs, OptionError, Options,
+    OtherDamping, Prepared, Properties, SetupError, StableStep, State, StepError, StepReport,
+    System,
 };
 
 use super::GuardOption;
@@ -41,6 +42,7 @@ impl Integrator for ForwardEuler {
             accuracy: Accuracy::Order(1),
             needs: Needs::Forces,
             energy: EnergyBehaviour::Grows,
+            changing_loads: ChangingLoads::order(1),
             other_damping: OtherDamping::order(1),
         }
     }
@@ -60,12 +62,17 @@ impl Integrator for ForwardEuler {
         dt: f64,
     ) -> Result<StepReport, StepError> {
         let mut work = begin(self, system, state, dt)?;
-        work += acceleration(system, state, state.t, &mut self.a)?;
+        work += acceleration(
+            system,
+            state,
+            LoadTime::start_of(state.t(), dt),
+            &mut self.a,
+        )?;
         for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&self.a) {
             *u += dt * *v;
             *v += dt * a;
         }
-        state.advance_to(state.t + dt);
+        state.advance(dt);
         system.accept(state);
         Ok(work)
     }

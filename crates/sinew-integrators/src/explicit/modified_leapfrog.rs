@@ -1,9 +1,9 @@
 //! `modified-leapfrog`: leapfrog with the modified equation's correction.
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, LinearOperators, LinearSystem, Needs, OptionError,
-    Options, OtherDamping, Prepared, Properties, SetupError, StableStep, State, StepError,
-    StepReport, System,
+    Acceleration, Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LinearOperators,
+    LinearSystem, LoadTime, Needs, OptionError, Options, OtherDamping, Prepared, Properties,
+    SetupError, StableStep, State, StepError, StepReport, System, VelocityTime,
 };
 
 use super::GuardOption;
@@ -16,7 +16,7 @@ use crate::limits;
 /// 1986): two sweeps a step, order 4, stable up to 3.46/omega_max. Mass damping enters at the
 /// middle of the step and lowers the order to 2 with a small constant; other damping lags.
 ///
-/// Loads are taken constant over a step: a load that changes within it costs order 2.
+/// The correction takes loads as constant, so that loads that change cost order 2.
 ///
 /// Started from the Taylor series: `v_half = v0 + dt/2 a0 + dt^2/6 j0 + dt^3/24 q0` with
 /// `a0 = M^-1 (F - K u0 - D v0)`, `j0 = -M^-1 (K v0 + D a0)`, `q0 = -M^-1 K a0`.
@@ -47,7 +47,12 @@ impl ModifiedLeapfrog {
                 *value /= mass;
             }
         };
-        operators.net_force(state.t, &state.u, &state.v, &mut self.a);
+        operators.net_force(
+            LoadTime::around(state.t(), 0.0, dt),
+            &state.u,
+            &state.v,
+            &mut self.a,
+        );
         divide(&mut self.a);
         self.correction.fill(0.0);
         operators
@@ -78,7 +83,7 @@ impl ModifiedLeapfrog {
     /// The velocity one step further.
     fn kick(&mut self, operators: &LinearOperators, state: &mut State, dt: f64) -> StepReport {
         let mass = operators.mass();
-        operators.external_force(state.t, &mut self.a);
+        operators.external_force(LoadTime::around(state.t(), dt, dt), &mut self.a);
         operators
             .stiffness()
             .subtract_product(&state.u, &mut self.a);
@@ -133,6 +138,7 @@ impl Integrator for ModifiedLeapfrog {
             },
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Bounded,
+            changing_loads: ChangingLoads::order(2),
             other_damping: OtherDamping::order(1),
         }
     }
@@ -157,7 +163,7 @@ impl Integrator for ModifiedLeapfrog {
     ) -> Result<StepReport, StepError> {
         let mut work = self.prepare(system, dt)?;
         Prepared::check_state(Self::ID, system, state)?;
-        let running = (state.t - state.v_time - dt / 2.0).abs() <= 1e-6 * dt;
+        let running = state.is_staggered_by(dt);
         if !running {
             work += synchronise(system, state)?;
         }
@@ -171,9 +177,7 @@ impl Integrator for ModifiedLeapfrog {
         for (u, v) in state.u.iter_mut().zip(&state.v) {
             *u += dt * v;
         }
-        state.t += dt;
-        state.v_time = state.t - dt / 2.0;
-        state.a_time = f64::NEG_INFINITY;
+        state.end_step(dt, VelocityTime::MiddleOfStep, Acceleration::None);
         system.accept(state);
         Ok(work)
     }

@@ -11,7 +11,7 @@ const MARGIN: f64 = 0.9;
 /// Into how many parts a step is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Substeps {
-    /// Always so many.
+    /// This many parts, always.
     Fixed(u32),
     /// As many as bring a part below nine tenths of the stable step.
     Auto,
@@ -22,11 +22,22 @@ impl Substeps {
     pub const KEY: &'static str = "substeps";
 
     /// The fewest equal parts (from 1 on) of a step of `dt` (s) that are no longer than nine tenths
-    /// of `limit` (s), which is above 0.
+    /// of `limit` (s), which is above 0; at most `u32::MAX`.
     #[must_use]
     pub fn parts_of(dt: f64, limit: f64) -> u32 {
+        Self::parts(dt, limit).min(f64::from(u32::MAX)) as u32
+    }
+
+    /// Length (s) of the longest equal parts of a time of `length` (s) that are no longer than nine
+    /// tenths of `limit` (s), which is above 0, however many they are.
+    #[must_use]
+    pub fn longest_part(length: f64, limit: f64) -> f64 {
+        length / Self::parts(length, limit)
+    }
+
+    fn parts(dt: f64, limit: f64) -> f64 {
         // The subtrahend keeps a quotient like 3.0000000000000004 from costing one part more.
-        whole(dt / (MARGIN * limit) - 1e-9)
+        (dt / (MARGIN * limit) - 1e-9).ceil().max(1.0)
     }
 
     /// Takes the option out of the others; `None` where it is absent.
@@ -87,7 +98,17 @@ impl Substepped {
             Substeps::Auto => match self.inner.stable_step(system)? {
                 StableStep::Any => Ok(1),
                 StableStep::UpTo(limit) if limit > 0.0 && dt.is_finite() => {
-                    Ok(Substeps::parts_of(dt, limit))
+                    let parts = Substeps::parts_of(dt, limit);
+                    if dt / f64::from(parts) <= limit {
+                        return Ok(parts);
+                    }
+                    Err(SetupError::Unresolved {
+                        integrator: self.inner.id(),
+                        reason: format!(
+                            "dt = {dt} s is {:.1e} times the stable step, too many for substeps = \"auto\"; take a shorter dt",
+                            dt / limit
+                        ),
+                    })
                 }
                 StableStep::UpTo(_) | StableStep::Unknown => Err(SetupError::Lacks {
                     integrator: self.inner.id(),

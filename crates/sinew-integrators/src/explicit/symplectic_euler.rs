@@ -1,8 +1,9 @@
 //! `symplectic-euler`: velocity first, then displacement from the new velocity.
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, OtherDamping, Prepared,
-    Properties, SetupError, StableStep, State, StepError, StepReport, System,
+    Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs, OptionError, Options,
+    OtherDamping, Prepared, Properties, SetupError, StableStep, State, StepError, StepReport,
+    System,
 };
 
 use super::GuardOption;
@@ -39,6 +40,7 @@ impl Integrator for SymplecticEuler {
             accuracy: Accuracy::Order(1),
             needs: Needs::Forces,
             energy: EnergyBehaviour::Bounded,
+            changing_loads: ChangingLoads::order(1),
             other_damping: OtherDamping::order(1),
         }
     }
@@ -58,12 +60,17 @@ impl Integrator for SymplecticEuler {
         dt: f64,
     ) -> Result<StepReport, StepError> {
         let mut work = begin(self, system, state, dt)?;
-        work += acceleration(system, state, state.t, &mut self.a)?;
+        work += acceleration(
+            system,
+            state,
+            LoadTime::start_of(state.t(), dt),
+            &mut self.a,
+        )?;
         for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&self.a) {
             *v += dt * a;
             *u += dt * *v;
         }
-        state.advance_to(state.t + dt);
+        state.advance(dt);
         system.accept(state);
         Ok(work)
     }

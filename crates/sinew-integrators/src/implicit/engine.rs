@@ -1,7 +1,8 @@
 //! What one-step implicit methods share: an acceleration from a factor of M + d D + k K.
 
 use sinew_core::{
-    LinearSystem, Needs, Prepared, SetupError, State, StepError, StepReport, System, Trial,
+    Acceleration, LinearSystem, LoadTime, Needs, Prepared, SetupError, State, StepError,
+    StepReport, System, Trial,
 };
 
 use super::factor::{Combination, Factor};
@@ -64,15 +65,15 @@ impl Engine {
         })
     }
 
-    /// The right-hand side, in `a`: the net force at the prediction under the load at time `t`.
+    /// The right-hand side, in `a`: the net force at the prediction.
     pub(crate) fn evaluate(
         &mut self,
         system: &dyn System,
-        t: f64,
+        load: LoadTime,
         dt: f64,
     ) -> Result<StepReport, StepError> {
         let trial = Trial {
-            t,
+            load,
             dt,
             u: &self.u,
             v: &self.v,
@@ -90,18 +91,33 @@ impl Engine {
         work
     }
 
-    /// Gives the state the acceleration at its time, `M^-1` of the net force, unless it keeps one.
+    /// Gives the state the acceleration at the beginning of a step of `dt` (s): `M^-1` of the net
+    /// force, or the one that it keeps from the end of the last step, changed by as much as loads
+    /// jump between the two.
     pub(crate) fn keep_acceleration(
         &mut self,
         system: &dyn System,
         state: &mut State,
+        dt: f64,
     ) -> Result<StepReport, StepError> {
-        if state.a_time == state.t && state.a.len() == state.u.len() {
-            return Ok(StepReport::default());
+        let t = state.t();
+        let load = LoadTime::within(t, dt, 0.0);
+        if state.acceleration != Acceleration::Same {
+            let work = acceleration(system, state, load, &mut self.a)?;
+            state.a.clone_from(&self.a);
+            state.acceleration = Acceleration::Same;
+            return Ok(work);
         }
-        let work = acceleration(system, state, state.t, &mut self.a)?;
-        state.a.clone_from(&self.a);
-        state.a_time = state.t;
-        Ok(work)
+        if let (Some(last), Some(linear)) = (state.clock.last_step(), system.as_linear()) {
+            let changed = [LoadTime::within(t - last, last, 1.0), load];
+            self.a.fill(0.0);
+            let operators = linear.operators();
+            if operators.add_load_change(changed, [t - last, t + dt], &mut self.a) {
+                for ((a, force), mass) in state.a.iter_mut().zip(&self.a).zip(system.mass()) {
+                    *a += force / mass;
+                }
+            }
+        }
+        Ok(StepReport::default())
     }
 }

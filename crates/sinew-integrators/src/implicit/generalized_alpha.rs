@@ -1,8 +1,9 @@
 //! `generalized-alpha`: implicit, with damping of what the step does not resolve.
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, OptionValue, Options, OtherDamping,
-    Properties, SetupError, StableStep, State, StepError, StepReport, System,
+    Acceleration, Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs,
+    OptionError, OptionValue, Options, OtherDamping, Properties, SetupError, StableStep, State,
+    StepError, StepReport, System, VelocityTime,
 };
 
 use super::engine::Engine;
@@ -105,6 +106,7 @@ impl Integrator for GeneralizedAlpha {
         Properties {
             accuracy: Accuracy::Order(2),
             needs: Needs::Matrices,
+            changing_loads: ChangingLoads::order(2),
             energy: if self.beta() == 0.25 && self.gamma() == 0.5 {
                 EnergyBehaviour::Conserved
             } else {
@@ -134,19 +136,19 @@ impl Integrator for GeneralizedAlpha {
         let mut work = begin(self, system, state, dt)?;
         let (beta, gamma) = (self.beta(), self.gamma());
         let (old, new) = (self.of_forces, 1.0 - self.of_forces);
-        work += self.engine.keep_acceleration(system, state)?;
+        work += self.engine.keep_acceleration(system, state, dt)?;
         for i in 0..state.u.len() {
             let (u, v, a) = (state.u[i], state.v[i], state.a[i]);
             let predicted = u + dt * v + dt * dt * (0.5 - beta) * a;
             self.engine.u[i] = new * predicted + old * u;
             self.engine.v[i] = new * (v + dt * (1.0 - gamma) * a) + old * v;
         }
-        let next = state.t + dt;
-        work += self.engine.evaluate(system, next, dt)?;
+        let [start, end] = [0.0, 1.0].map(|share| LoadTime::within(state.t(), dt, share));
+        work += self.engine.evaluate(system, end, dt)?;
         if old != 0.0 {
             // The load was taken at t + dt whole; a share of it belongs to t.
-            for (time, sign) in [(state.t, old), (next, -old)] {
-                system.external_force(time, &mut self.load);
+            for (when, sign) in [(start, old), (end, -old)] {
+                system.external_force(when, &mut self.load);
                 for (force, load) in self.engine.a.iter_mut().zip(&self.load) {
                     *force += sign * load;
                 }
@@ -163,8 +165,7 @@ impl Integrator for GeneralizedAlpha {
             state.v[i] += dt * ((1.0 - gamma) * before + gamma * a);
             state.a[i] = *a;
         }
-        state.advance_to(next);
-        state.a_time = next;
+        state.end_step(dt, VelocityTime::Same, Acceleration::Same);
         system.accept(state);
         Ok(work)
     }

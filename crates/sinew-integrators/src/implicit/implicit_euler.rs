@@ -1,8 +1,8 @@
 //! `implicit-euler`: both halves from the new state.
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, OtherDamping, Properties,
-    SetupError, StableStep, State, StepError, StepReport, System,
+    Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs, OptionError, Options,
+    OtherDamping, Properties, SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::engine::Engine;
@@ -35,6 +35,7 @@ impl Integrator for ImplicitEuler {
         Properties {
             accuracy: Accuracy::Order(1),
             needs: Needs::Matrices,
+            changing_loads: ChangingLoads::order(1),
             energy: EnergyBehaviour::Falls,
             other_damping: OtherDamping::order(1),
         }
@@ -59,14 +60,14 @@ impl Integrator for ImplicitEuler {
             *predicted = u + dt * v;
         }
         self.engine.v.copy_from_slice(&state.v);
-        let next = state.t + dt;
-        work += self.engine.evaluate(system, next, dt)?;
+        let load = LoadTime::end_of(state.t(), dt);
+        work += self.engine.evaluate(system, load, dt)?;
         work += self.engine.solve();
         for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&self.engine.a) {
             *v += dt * a;
             *u += dt * *v;
         }
-        state.advance_to(next);
+        state.advance(dt);
         system.accept(state);
         Ok(work)
     }

@@ -2,8 +2,9 @@
 
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Integrator, Needs, OptionError, Options, OtherDamping, Properties,
-    SetupError, StableStep, State, StepError, StepReport, System,
+    Acceleration, Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs,
+    OptionError, Options, OtherDamping, Properties, SetupError, StableStep, State, StepError,
+    StepReport, System, VelocityTime,
 };
 
 use super::engine::Engine;
@@ -77,6 +78,7 @@ impl Integrator for Newmark {
         Properties {
             accuracy: Accuracy::Order(if self.gamma == 0.5 { 2 } else { 1 }),
             needs: Needs::Matrices,
+            changing_loads: ChangingLoads::order(if self.gamma == 0.5 { 2 } else { 1 }),
             energy: match (self.beta, self.gamma) {
                 (0.25, 0.5) => EnergyBehaviour::Conserved,
                 (_, 0.5) => EnergyBehaviour::Bounded,
@@ -114,22 +116,22 @@ impl Integrator for Newmark {
     ) -> Result<StepReport, StepError> {
         let mut work = begin(self, system, state, dt)?;
         let (beta, gamma) = (self.beta, self.gamma);
-        work += self.engine.keep_acceleration(system, state)?;
+        work += self.engine.keep_acceleration(system, state, dt)?;
         for i in 0..state.u.len() {
             let (u, v, a) = (state.u[i], state.v[i], state.a[i]);
             self.engine.u[i] = u + dt * v + dt * dt * (0.5 - beta) * a;
             self.engine.v[i] = v + dt * (1.0 - gamma) * a;
         }
-        let next = state.t + dt;
-        work += self.engine.evaluate(system, next, dt)?;
+        work += self
+            .engine
+            .evaluate(system, LoadTime::within(state.t(), dt, 1.0), dt)?;
         work += self.engine.solve();
         for (i, a) in self.engine.a.iter().enumerate() {
             state.u[i] = self.engine.u[i] + beta * dt * dt * a;
             state.v[i] = self.engine.v[i] + gamma * dt * a;
             state.a[i] = *a;
         }
-        state.advance_to(next);
-        state.a_time = next;
+        state.end_step(dt, VelocityTime::Same, Acceleration::Same);
         system.accept(state);
         Ok(work)
     }

@@ -1,12 +1,14 @@
 //! The propagator by Chebyshev polynomials.
 
 use sinew_core::spectrum::Spectrum;
-use sinew_core::{Fact, LinearOperators, Ramp, SetupError, State, StepError, StepReport};
+use sinew_core::{
+    Fact, LinearOperators, LoadOverStep, LoadTime, Ramp, SetupError, State, StepError, StepReport,
+};
 
 use super::mode::{Mode, quadrature};
 use super::series::{interpolate, nodes, tails};
 use super::vectors::ChebyshevVectors;
-use super::{HIGHEST_DEGREE, ID, Resolution, load_not_smooth};
+use super::{HIGHEST_DEGREE, ID, Resolution, refuse_loads};
 
 /// By how much the largest eigenvalue, which Lanczos finds from below, is raised.
 pub(super) const LARGEST_EIGENVALUE_MARGIN: f64 = 1e-3;
@@ -124,12 +126,13 @@ impl Series {
     }
 
     /// Coefficients of what a ramp's change since `t` brings by t + dt.
-    fn follow(&mut self, ramp: &Ramp, t: f64) {
-        let start = ramp.value(t);
+    fn follow(&mut self, ramp: &Ramp, t: f64, dt: f64) {
+        let ramp_at = |time: f64| ramp.value_within(t, t + dt, time);
+        let start = ramp_at(t);
         for (value, kernel) in self.values.iter_mut().zip(&self.kernels) {
             *value = (0.0, 0.0);
             for (time, (s, rate)) in self.times.iter().zip(kernel) {
-                let change = ramp.value(t + time) - start;
+                let change = ramp_at(t + time) - start;
                 value.0 += s * change;
                 value.1 += rate * change;
             }
@@ -225,8 +228,10 @@ impl Chebyshev {
         dt: f64,
     ) -> Result<StepReport, StepError> {
         let mut work = StepReport::default();
-        let (t, next) = (state.t, state.t + dt);
-        operators.external_force(t, &mut self.r);
+        let t = state.t();
+        let remedy = "choose a dt that meets that instant";
+        refuse_loads(operators.loads(), LoadOverStep::Smooth, t, dt, remedy)?;
+        operators.external_force(LoadTime::smooth_in(t, t, dt), &mut self.r);
         operators
             .stiffness()
             .subtract_product(&state.u, &mut self.r);
@@ -254,11 +259,10 @@ impl Chebyshev {
             .add_series(operators, |series| (&series.g, &series.s))
             .map_err(grown)?;
         for load in operators.loads() {
-            load_not_smooth(&load.ramp, t, dt)?;
-            if load.ramp.is_constant_between(t, next) {
+            if load.ramp.is_constant_between(t, t + dt) {
                 continue;
             }
-            self.series.follow(&load.ramp, t);
+            self.series.follow(&load.ramp, t, dt);
             let of_load = self.vectors.start();
             of_load.fill(0.0);
             for &(dof, force) in &load.entries {

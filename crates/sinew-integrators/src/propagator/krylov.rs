@@ -1,10 +1,12 @@
 //! The propagator in a Krylov space.
 
 use sinew_core::spectrum::Spectrum;
-use sinew_core::{Fact, LinearOperators, SetupError, State, StepError, StepReport};
+use sinew_core::{
+    Fact, LinearOperators, LoadOverStep, LoadTime, SetupError, State, StepError, StepReport,
+};
 
 use super::dense::Exponential;
-use super::{HIGHEST_DEGREE, ID, Resolution, load_not_smooth};
+use super::{HIGHEST_DEGREE, ID, Resolution, refuse_loads};
 
 /// Columns beyond the Hessenberg matrix that hold e1 and the chain of the phi functions.
 const CHAIN: usize = 3;
@@ -93,34 +95,27 @@ impl Krylov {
     ) -> Result<StepReport, StepError> {
         let mass = operators.mass();
         let n = mass.len();
-        let t = state.t;
-        for load in operators.loads() {
-            load_not_smooth(&load.ramp, t, dt)?;
-            if !load.ramp.is_linear_between(t, t + dt) {
-                return Err(StepError::Inaccurate {
-                    integrator: ID,
-                    t,
-                    reason: "a load is neither constant nor linear over the step; kind = \"chebyshev\" takes any ramp".into(),
-                });
-            }
-        }
+        let t = state.t();
+        let remedy =
+            "choose a dt that meets that instant, or kind = \"chebyshev\" for curved ramps";
+        refuse_loads(operators.loads(), LoadOverStep::Linear, t, dt, remedy)?;
         let mut work = StepReport::ONE_FORCE;
         self.change.fill(0.0);
 
         // w0 = L y + b: velocity and acceleration.
         let (of_u, of_v) = self.start.split_at_mut(n);
         of_u.copy_from_slice(&state.v);
-        operators.net_force(t, &state.u, &state.v, of_v);
+        let start = LoadTime::smooth_in(t, t, dt);
+        operators.net_force(start, &state.u, &state.v, of_v);
         divide(of_v, mass);
         work.sweeps += self.add_phi(operators, t, dt, 1)?;
 
-        // w1: the rate of the load. The end of the step is seen from inside, so that a jump there is
-        // the next step's.
-        let inside = 0.5;
+        // w1: the rate of the load.
+        let end = LoadTime::smooth_in(t + dt, t, dt);
         self.load.fill(0.0);
         let mut changes = false;
         for load in operators.loads() {
-            let rate = (load.ramp.value(t + inside * dt) - load.ramp.value(t)) / (inside * dt);
+            let rate = (load.ramp.factor(end) - load.ramp.factor(start)) / dt;
             if rate != 0.0 {
                 changes = true;
                 for &(dof, force) in &load.entries {

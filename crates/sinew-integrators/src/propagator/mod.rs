@@ -11,9 +11,9 @@ mod vectors;
 use chebyshev::Chebyshev;
 use krylov::Krylov;
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Fact, Integrator, LinearSystem, Needs, OptionError, OptionValue,
-    Options, OtherDamping, Prepared, Properties, Ramp, SetupError, StableStep, State, StepError,
-    StepReport, System,
+    Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, LinearSystem, Load, LoadOverStep,
+    Needs, OptionError, OptionValue, Options, OtherDamping, Prepared, Properties, Ramp, SetupError,
+    StableStep, State, StepError, StepReport, System,
 };
 
 use two_step::TwoStep;
@@ -53,6 +53,17 @@ pub enum PropagatorKind {
     TwoStep,
     /// Those that fit the state at hand best: any damping, loads constant or linear over a step.
     Krylov,
+}
+
+impl PropagatorKind {
+    /// What it needs loads to be over each step.
+    fn needed_of_loads(self) -> LoadOverStep {
+        match self {
+            Self::Chebyshev => LoadOverStep::Smooth,
+            Self::TwoStep => LoadOverStep::Constant,
+            Self::Krylov => LoadOverStep::Linear,
+        }
+    }
 }
 
 /// How well a step is resolved.
@@ -200,6 +211,7 @@ impl Integrator for Propagator {
         Properties {
             accuracy: Accuracy::Exact,
             needs: Needs::Matrices,
+            changing_loads: ChangingLoads::Exact(self.kind.needed_of_loads()),
             // Conserved but for the part that is left out.
             energy: EnergyBehaviour::Bounded,
             other_damping: OtherDamping {
@@ -257,7 +269,7 @@ impl Integrator for Propagator {
                 Some(Engine::TwoStep(_)) | None => {}
             }
         }
-        state.advance_to(state.t + dt);
+        state.advance(dt);
         system.accept(state);
         Ok(work)
     }
@@ -281,7 +293,7 @@ impl Propagator {
     ) -> Result<StepReport, StepError> {
         let mut work = self.prepare(system, dt)?;
         Prepared::check_state(ID, system, state)?;
-        if !TwoStep::is_running(state, dt) {
+        if !state.is_staggered_by(dt) {
             work += synchronise(system, state)?;
         }
         let operators = system.as_linear().map(LinearSystem::operators);
@@ -293,18 +305,23 @@ impl Propagator {
     }
 }
 
-/// Refuses a ramp with a kink or jump inside the step.
-fn load_not_smooth(ramp: &Ramp, t: f64, dt: f64) -> Result<(), StepError> {
-    // Times that were added up miss the instants they stand for by rounding.
-    let margin = 1e-6 * dt;
-    let inside = |time: f64| time > t + margin && time < t + dt - margin;
-    match ramp.kink_where(inside) {
+/// Refuses loads that are not what a kind needs them to be over a step of `dt` (s) from `t` (s).
+fn refuse_loads(
+    loads: &[Load],
+    needed: LoadOverStep,
+    t: f64,
+    dt: f64,
+    remedy: &str,
+) -> Result<(), StepError> {
+    let broken = |load: &Load| needed.first_broken(&load.ramp, t, dt, t + dt);
+    match loads.iter().find_map(broken) {
         None => Ok(()),
-        Some(kink) => Err(StepError::Inaccurate {
+        Some(instant) => Err(StepError::Inaccurate {
             integrator: ID,
             t,
             reason: format!(
-                "a load is not smooth at t = {kink} s, inside the step; choose a dt that meets that instant"
+                "a load changes at t = {instant} s, and is not {} of {dt} s; {remedy}",
+                needed.describe()
             ),
         }),
     }

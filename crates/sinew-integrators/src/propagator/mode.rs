@@ -1,5 +1,7 @@
 //! One mode of a proportionally damped system, solved exactly.
 
+use sinew_core::gauss_points;
+
 /// q'' + d q' + lambda q = r(t), d = alpha + beta lambda.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Mode {
@@ -39,20 +41,9 @@ impl Mode {
 /// Nodes and weights of Gauss and Legendre's rule with 8 points on panels of 0..`length` short
 /// enough for motions up to angular frequency or decay `fastest`.
 pub(super) fn quadrature(length: f64, fastest: f64) -> Vec<(f64, f64)> {
-    // Abramowitz and Stegun, table 25.4.
-    const RULE: [(f64, f64); 4] = [
-        (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-        (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-        (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
-        (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
-    ];
     let panels = (fastest * length / 2.0).ceil().clamp(1.0, 1e4) as usize;
-    let half = length / panels as f64 / 2.0;
-    let points = (0..panels).flat_map(|panel| {
-        let centre = (2 * panel + 1) as f64 * half;
-        RULE.into_iter()
-            .flat_map(move |(x, w)| [(centre - half * x, half * w), (centre + half * x, half * w)])
-    });
+    let edge = |panel: usize| length * panel as f64 / panels as f64;
+    let points = (0..panels).flat_map(|panel| gauss_points(edge(panel), edge(panel + 1)));
     points.collect()
 }
 

@@ -1,13 +1,16 @@
 //! The propagator in two-step form.
 
 use sinew_core::spectrum::Spectrum;
-use sinew_core::{Fact, LinearOperators, Load, SetupError, State, StepError, StepReport};
+use sinew_core::{
+    Acceleration, Fact, LinearOperators, Load, LoadOverStep, SetupError, State, StepError,
+    StepReport, VelocityTime,
+};
 
 use super::chebyshev::{Chebyshev, LARGEST_EIGENVALUE_MARGIN};
 use super::mode::{Mode, quadrature};
 use super::series::{evaluate, interpolate, nodes, tails};
 use super::vectors::ChebyshevVectors;
-use super::{HIGHEST_DEGREE, ID, Resolution};
+use super::{HIGHEST_DEGREE, ID, Resolution, refuse_loads};
 
 /// Points per degree among which the largest value of a polynomial is looked for.
 const POINTS_PER_DEGREE: usize = 32;
@@ -122,11 +125,6 @@ impl TwoStep {
         })
     }
 
-    /// Whether the state's velocity is this method's own.
-    pub(super) fn is_running(state: &State, dt: f64) -> bool {
-        (state.t - state.v_time - dt / 2.0).abs() <= 1e-6 * dt
-    }
-
     /// Moves u and v over a step, times included.
     pub(super) fn step(
         &mut self,
@@ -134,20 +132,23 @@ impl TwoStep {
         state: &mut State,
         dt: f64,
     ) -> Result<StepReport, StepError> {
-        let before = if Self::is_running(state, dt) { dt } else { 0.0 };
-        for load in operators.loads() {
-            constant_load(load, state.t - before, state.t)?;
-            constant_load(load, state.t, state.t + dt)?;
+        let running = state.is_staggered_by(dt);
+        let refuse = |from: f64| {
+            let remedy =
+                "choose a dt that meets the instants at which loads jump, or kind = \"chebyshev\"";
+            refuse_loads(operators.loads(), LoadOverStep::Constant, from, dt, remedy)
+        };
+        refuse(state.t())?;
+        if running {
+            refuse(state.t() - dt)?;
         }
         state.a.resize(state.u.len(), 0.0);
-        state.a_time = state.t;
-        let work = if before == 0.0 {
-            self.start(operators, state, dt)?
-        } else {
+        let work = if running {
             self.go_on(operators, state, dt)
+        } else {
+            self.start(operators, state, dt)?
         };
-        state.t += dt;
-        state.v_time = state.t - dt / 2.0;
+        state.end_step(dt, VelocityTime::MiddleOfStep, Acceleration::Kick);
         Ok(work)
     }
 
@@ -174,7 +175,7 @@ impl TwoStep {
         self.r.fill(0.0);
         let mut jumps = false;
         for Load { ramp, entries } in operators.loads() {
-            let [before, after] = [-0.5, 0.5].map(|part| ramp.value(state.t + part * dt));
+            let [before, after] = [-0.5, 0.5].map(|part| ramp.value(state.t() + part * dt));
             jumps |= before != after;
             for &(dof, force) in entries {
                 self.r[dof as usize] += 0.5 * (before + after) * force;
@@ -207,7 +208,7 @@ impl TwoStep {
             let jump = self.vectors.start();
             jump.fill(0.0);
             for Load { ramp, entries } in operators.loads() {
-                let [before, after] = [-0.5, 0.5].map(|part| ramp.value(state.t + part * dt));
+                let [before, after] = [-0.5, 0.5].map(|part| ramp.value(state.t() + part * dt));
                 for &(dof, force) in entries {
                     let dof = dof as usize;
                     jump[dof] += 0.5 * (after - before) * force / mass[dof];
@@ -315,25 +316,4 @@ fn largest_swing(s: &[f64], interval: f64, alpha: f64) -> f64 {
     }
     // The square root of rounding is how well a maximum can be located, rounding its value.
     swing(0.5 * (low + high)).max(swing(centre)) * (1.0 + 1e-14)
-}
-
-/// Refuses a load that changes between two instants.
-fn constant_load(load: &Load, from: f64, to: f64) -> Result<(), StepError> {
-    // Times that were added up miss the instants they stand for by rounding.
-    let margin = 1e-6 * (to - from);
-    let kink = load
-        .ramp
-        .kink_where(|time| time > from + margin && time < to - margin);
-    if from == to || (kink.is_none() && load.ramp.is_constant_between(from, to)) {
-        return Ok(());
-    }
-    Err(StepError::Inaccurate {
-        integrator: ID,
-        t: from,
-        reason: format!(
-            "a load changes between t = {from} s and {to} s; kind = \"two-step\" takes loads that \
-             are constant over each step: choose a dt that meets the instants at which they jump, \
-             or kind = \"chebyshev\""
-        ),
-    })
 }

@@ -1,7 +1,7 @@
 //! Implicit methods in dense arithmetic, by other formulas than those tested.
 
 use nalgebra::{DMatrix, DVector};
-use sinew_core::{LinearSystem, State, System};
+use sinew_core::{LinearSystem, LoadTime, State, System};
 use sinew_fem::Model;
 
 use super::dense::{dense, dense_damping};
@@ -38,7 +38,7 @@ impl Dense {
 
     fn force(&self, t: f64) -> DVector<f64> {
         let mut force = vec![0.0; self.model.dofs()];
-        self.model.external_force(t, &mut force);
+        self.model.external_force(LoadTime::at(t), &mut force);
         DVector::from_vec(force)
     }
 

@@ -80,7 +80,7 @@ fn solve(mut taylor: Taylor<'_>, start: &State, times: &[f64]) -> Track {
                 .max(largest(&state.u))
                 .max(peak_between(&before, state));
             before.clone_from(state);
-            if state.t > 0.8 * duration {
+            if state.t() > 0.8 * duration {
                 late.include(&state.u);
             }
         });
@@ -99,7 +99,7 @@ fn solve(mut taylor: Taylor<'_>, start: &State, times: &[f64]) -> Track {
 /// Largest |component| inside a step: of the cubic through displacements and velocities at its
 /// ends, where the velocity changes sign between them.
 fn peak_between(before: &State, after: &State) -> f64 {
-    let h = after.t - before.t;
+    let h = after.t() - before.t();
     let mut peak = 0.0_f64;
     for i in 0..before.u.len() {
         let (v0, v1) = (before.v[i], after.v[i]);

@@ -66,6 +66,12 @@ pub(super) fn describe(simulation: &Simulation, plan: &mut Plan) {
             {
                 lines.extend(stiffest_element(simulation));
             }
+            if stable_step == StableStep::Unknown {
+                plan.warnings.push(format!(
+                    "nothing is known about the step up to which `{id}` is stable here: its motion may grow at \
+                     dt = {dt} s; `central-difference` knows its step"
+                ));
+            }
             plan.stable_step = stable_step;
         }
         Err(error) => plan.warnings.push(error),
@@ -80,6 +86,8 @@ pub(super) fn describe(simulation: &Simulation, plan: &mut Plan) {
     {
         lines.extend(integrator.remarks());
     }
+    plan.warnings.extend(simulation.refused_load());
+    plan.warnings.extend(simulation.unresolved_load());
     if dt > duration {
         plan.warnings.push(format!(
             "dt = {dt} s is longer than the duration, {duration} s"

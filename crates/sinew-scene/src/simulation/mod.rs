@@ -1,6 +1,7 @@
 //! From a scene to a system that integrators can move.
 
 mod body;
+mod loads;
 mod probe;
 mod start;
 mod step;

@@ -21,7 +21,7 @@ fn automatic(settings: &RunSettings, system: &dyn System) -> Result<f64, Fault> 
     match integrator.stable_step(system) {
         Ok(StableStep::UpTo(limit)) if limit > 0.0 && limit.is_finite() => {
             let between = settings.duration / settings.samples as f64;
-            Ok(between / f64::from(Substeps::parts_of(between, limit)))
+            Ok(Substeps::longest_part(between, limit))
         }
         Ok(StableStep::UpTo(limit)) if limit > 0.0 => {
             refused(format!("nothing in this scene limits the step of `{id}`"))

@@ -1,6 +1,6 @@
 //! `sinew integrators`.
 
-use sinew_core::{Accuracy, Options, Properties};
+use sinew_core::Options;
 
 use super::{Failure, say};
 
@@ -8,8 +8,13 @@ pub(crate) fn run() -> Result<(), Failure> {
     for entry in sinew_integrators::entries() {
         say(&format!("{:20} {}", entry.id, entry.summary));
         if let Ok(integrator) = entry.build(&Options::new()) {
-            let other = other_damping(integrator.properties());
-            say(&format!("{:20}   {other}", ""));
+            let properties = integrator.properties();
+            for words in [
+                properties.other_damping.describe(),
+                properties.changing_loads.describe(),
+            ] {
+                say(&format!("{:20}   {words}", ""));
+            }
         }
         for option in entry.options.iter().copied().chain(entry.guard.help()) {
             say(&format!("{:20}   {}: {}", "", option.key, option.help));
@@ -22,22 +27,4 @@ pub(crate) fn run() -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// Its order with damping that is not proportional to the mass, as a phrase.
-fn other_damping(properties: Properties) -> String {
-    let words = |accuracy| match accuracy {
-        Some(Accuracy::Exact) => "exact".to_owned(),
-        Some(accuracy) => accuracy
-            .order(true)
-            .map_or_else(String::new, |order| format!("order {order}")),
-        None => "refused".to_owned(),
-    };
-    let of = properties.other_damping;
-    let (stiffness, dashpots) = (words(of.stiffness), words(of.dashpots));
-    if stiffness == dashpots {
-        format!("with stiffness damping or dashpots: {stiffness}")
-    } else {
-        format!("with stiffness damping: {stiffness}; with dashpots: {dashpots}")
-    }
 }

@@ -19,6 +19,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let simulation = Scene::load(&arguments.scene)?.build()?;
+    if let Some(refused) = simulation.refused_load() {
+        return Err(Failure::Input(refused));
+    }
     let plan = simulation.plan();
     for warning in &plan.warnings {
         eprintln!("warning: {warning}");
@@ -55,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "{}: u = ({}) m at t = {:.6} s",
             probe.name,
             u.join(", "),
-            state.t
+            state.t()
         ));
     }
     say(&format!("probes: {}", written.display()));

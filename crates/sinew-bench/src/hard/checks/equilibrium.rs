@@ -74,7 +74,7 @@ fn settle(
             .map_err(|error| error.to_string())?;
         settled.bounded = !matches!(report.outcome, Outcome::Diverged { .. });
         settled.distance = relative_distance(&state.u, rest);
-        settled.time = state.t;
+        settled.time = state.t();
         if !settled.bounded || settled.distance <= 1e-2 * limit {
             break;
         }

@@ -1,6 +1,6 @@
 //! Clamping the vectors of cells.
 
-use sinew_core::{State, System};
+use sinew_core::{Acceleration, State, System};
 
 /// A vector this much (relative) above its limit still counts as within: clamping rounds.
 const ROUNDING: f64 = 1e-9;
@@ -11,8 +11,7 @@ pub(super) struct Clamp {
     layers: usize,
     u: Vec<f64>,
     v: Vec<f64>,
-    t: f64,
-    v_time: f64,
+    under_way: bool,
 }
 
 impl Clamp {
@@ -22,10 +21,10 @@ impl Clamp {
         self.v.resize(system.dofs(), 0.0);
     }
 
-    /// Keeps what the step to come is measured by.
-    pub(super) fn remember(&mut self, state: &State) {
+    /// Keeps what the step of `dt` (s) to come is measured by.
+    pub(super) fn remember(&mut self, state: &State, dt: f64) {
         self.u.copy_from_slice(&state.u);
-        (self.t, self.v_time) = (state.t, state.v_time);
+        self.under_way = state.is_staggered_by(dt);
     }
 
     /// Bounds each cell's velocity by its limit (m/s) and its displacement since the beginning by
@@ -63,13 +62,10 @@ impl Clamp {
     /// ([`State::velocity_at_t`] asks for it): what the clamp took from the velocity it takes from
     /// this too, by the time between the step's two velocities.
     fn correct_acceleration(&self, state: &mut State, dt: f64) {
-        let kept = state.a_time == self.t && state.a.len() == state.v.len();
-        if !kept || state.v_time == state.t {
+        if state.acceleration != Acceleration::Kick {
             return;
         }
-        // As the methods see it: half a step behind means under way, anything else a start at t.
-        let under_way = (self.t - self.v_time - dt / 2.0).abs() <= 1e-6 * dt;
-        let time = if under_way { dt } else { dt / 2.0 };
+        let time = if self.under_way { dt } else { dt / 2.0 };
         for ((a, v), unclamped) in state.a.iter_mut().zip(&state.v).zip(&self.v) {
             if v != unclamped {
                 *a += (v - unclamped) / time;

@@ -141,7 +141,7 @@ impl Integrator for Guarded {
         let part = dt / f64::from(self.parts);
         let waiting = Unaccepted(system);
         for _ in 0..self.parts {
-            self.clamp.remember(state);
+            self.clamp.remember(state, part);
             let done = self.inner.step(&waiting, state, part)?;
             let clamped = self.clamp.apply(self.limits.of_cells(), state, part);
             system.accept(state);

@@ -1,7 +1,7 @@
 //! A system that is told of no step yet.
 
 use sinew_core::{
-    Energy, EvaluationError, Layers, LinearSystem, Revision, Scales, State, System, Trial,
+    Energy, EvaluationError, Layers, LinearSystem, LoadTime, Revision, Scales, State, System, Trial,
 };
 
 /// The same system, except that it is not told of accepted steps: the guard tells it once the
@@ -25,8 +25,8 @@ impl System for Unaccepted<'_> {
         self.0.net_force(trial, out)
     }
 
-    fn external_force(&self, t: f64, out: &mut [f64]) {
-        self.0.external_force(t, out);
+    fn external_force(&self, when: LoadTime, out: &mut [f64]) {
+        self.0.external_force(when, out);
     }
 
     fn mass_damping(&self) -> f64 {

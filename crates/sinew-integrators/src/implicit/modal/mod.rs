@@ -9,9 +9,9 @@ mod search;
 mod small;
 
 use sinew_core::{
-    Accuracy, EnergyBehaviour, Fact, Integrator, LinearOperators, LinearSystem, Needs, OptionError,
-    Options, OtherDamping, Prepared, Properties, Ramp, Revision, SetupError, StableStep, State,
-    StepError, StepReport, System,
+    Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, LinearOperators, LinearSystem,
+    LoadOverStep, Needs, OptionError, Options, OtherDamping, Prepared, Properties, Ramp, Revision,
+    SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use self::basis::{Basis, Choice, Failure, LoadCase};
@@ -37,7 +37,9 @@ use crate::{Method, OptionHelp};
 ///   one basis to the next larger by a third. Then the modes of the smallest static response
 ///   |phi' F|/omega^2 are left out as far as the tolerance allows. Both shares together are
 ///   [`Modal::estimated_error`], which is kept below four fifths of the tolerance. Where that takes a basis of more than half of the degrees of
-///   freedom, set-up fails. Damping is left out of the estimate.
+///   freedom, set-up fails. Damping is left out of the estimate. It holds for loads that are applied
+///   suddenly and stay: pulses shorter than the slowest periods and loads that switch excite fast
+///   modes more, and may lose several times the share.
 /// * `modes = N`: rigid motions and the most excited modes of a basis of 2 N, or of `basis = P`.
 ///   Without loads, the slowest modes, all converged.
 ///
@@ -78,8 +80,9 @@ const LOST_BY_CHOICE: f64 = 0.1;
 /// Share of a state that is taken for rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Breakpoints nearer to an end of a step than this share of it count as that end.
-const SNAP: f64 = 1e-9;
+/// Breakpoints nearer to an end of a step than this share of the time count as that end: steps are
+/// rounded so.
+const SNAP: f64 = 4.0 * f64::EPSILON;
 
 impl Modal {
     /// As many modes as the tolerance needs; see the type.
@@ -231,7 +234,7 @@ impl Modal {
         }
         Err(StepError::Inaccurate {
             integrator: Self::ID,
-            t: state.t,
+            t: state.t(),
             reason: format!(
                 "{:.3} % of the state lies outside the {} modes, which are those of the loads; {:.3} % may be dropped; take more `modes`, or use `central-difference`",
                 100.0 * lost,
@@ -314,7 +317,7 @@ impl Method for Modal {
     const OPTIONS: &'static [OptionHelp] = &[
         OptionHelp {
             key: "tolerance",
-            help: "share of the response that may be lost, above 0 and below 1; default 0.01",
+            help: "share of the response to suddenly applied, constant loads that may be lost, above 0 and below 1; default 0.01. Short pulses and loads that switch excite faster modes and may lose several times as much",
             shown_default: None,
         },
         OptionHelp {
@@ -369,6 +372,7 @@ impl Integrator for Modal {
         Properties {
             accuracy: Accuracy::Exact,
             needs: Needs::Matrices,
+            changing_loads: ChangingLoads::Exact(LoadOverStep::Any),
             energy: EnergyBehaviour::Conserved,
             other_damping: OtherDamping {
                 stiffness: Some(Accuracy::Exact),
@@ -424,8 +428,9 @@ impl Integrator for Modal {
     ) -> Result<StepReport, StepError> {
         let mut work = begin(self, system, state, dt)?;
         work += self.project(system, state)?;
-        let (next, margin) = (state.t + dt, SNAP * dt);
-        let mut start = state.t;
+        let t = state.t();
+        let (next, mut start) = (t + dt, t);
+        let margin = SNAP * t.abs().max(next.abs());
         let first = self.breakpoints.partition_point(|t| *t <= start + margin);
         for at in first..self.breakpoints.len() {
             let end = self.breakpoints[at];
@@ -438,7 +443,7 @@ impl Integrator for Modal {
                 start = end;
             }
         }
-        let whole_step = start == state.t;
+        let whole_step = start == t;
         let rest = if whole_step { dt } else { next - start };
         self.advance(start, rest, whole_step);
         lift_two(
@@ -446,7 +451,7 @@ impl Integrator for Modal {
             (&self.q, &self.p),
             (&mut state.u, &mut state.v),
         );
-        state.advance_to(next);
+        state.advance(dt);
         work.sweeps += self.sweeps;
         system.accept(state);
         Ok(work)

@@ -1,0 +1,361 @@
+//! Laws on loads that change and on the time at which they do.
+
+use std::f64::consts::PI;
+
+use super::{Boxed, FORCE, MASS, OMEGA_MAX, SPRING, chain, chain_under, exact, gentle_step};
+use crate::closed_form::DampedOscillator;
+use crate::{
+    ChangingLoads, Clock, Integrator, LinearModel, LinearOperators, Load, LoadOverStep, Ramp,
+    SetupError, StableStep, State, StepError, System,
+};
+
+const DAMPING: f64 = 2.0;
+
+/// What a run does where loads may be refused.
+enum Taken {
+    /// All steps.
+    All,
+    /// None beyond a load that the method refuses.
+    Refused,
+}
+
+fn advance(
+    integrator: &mut dyn Integrator,
+    system: &dyn System,
+    state: &mut State,
+    steps: usize,
+    dt: f64,
+) -> Taken {
+    for _ in 0..steps {
+        match integrator.step(system, state, dt) {
+            Ok(_) => {}
+            Err(StepError::Inaccurate { .. }) => return Taken::Refused,
+            Err(error) => unreachable!("`{}` refused a sound step: {error}", integrator.id()),
+        }
+    }
+    Taken::All
+}
+
+/// Displacements (m) at time `t` (s) of the chain from rest, by its two modes: `response(omega)` is that
+/// of a mode to the load on the first mass divided by sqrt 2 and the mass.
+fn from_modes(response: impl Fn(f64) -> f64) -> [f64; 2] {
+    let (slow, fast) = (response((SPRING / MASS).sqrt()), response(OMEGA_MAX));
+    [0.5 * (slow + fast), 0.5 * (slow - fast)]
+}
+
+/// The motion after a load of FORCE has acted from t = 0 on for `t` (s); at rest before.
+fn after_step(damping: f64, t: f64) -> [f64; 2] {
+    if t <= 0.0 {
+        return [0.0; 2];
+    }
+    exact(damping, &State::at_rest(2), t)
+}
+
+/// The motion under a load that rises linearly by FORCE a second from t = 0 on: the integral of that
+/// after a step.
+fn after_slope(damping: f64, t: f64) -> [f64; 2] {
+    if t <= 0.0 {
+        return [0.0; 2];
+    }
+    // q'' + c q' + w^2 q = g t has the particular solution g (t - c/w^2)/w^2.
+    from_modes(|omega| {
+        let g = FORCE / MASS;
+        let w2 = omega * omega;
+        let particular = |t: f64| g * (t - damping / w2) / w2;
+        let free = DampedOscillator {
+            omega,
+            damping,
+            load: 0.0,
+            displacement: -particular(0.0),
+            velocity: -g / w2,
+        };
+        particular(t) + free.at(t).0
+    })
+}
+
+/// The motion under FORCE (1 - cos(rate t))/2 from rest.
+fn after_sine(damping: f64, rate: f64, t: f64) -> [f64; 2] {
+    from_modes(|omega| {
+        let g = FORCE / MASS / 2.0;
+        let (w2, c) = (omega * omega, damping);
+        // q'' + c q' + w^2 q = -g cos(r t): q = a cos(r t) + b sin(r t).
+        let (p, s) = (w2 - rate * rate, c * rate);
+        let (a, b) = (-g * p / (p * p + s * s), -g * s / (p * p + s * s));
+        let free = DampedOscillator {
+            omega,
+            damping,
+            load: g,
+            displacement: -a,
+            velocity: -b * rate,
+        };
+        a * (rate * t).cos() + b * (rate * t).sin() + free.at(t).0
+    })
+}
+
+fn difference(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+/// A ramp with the motion of the chain that it leads to, from rest.
+struct Motion {
+    ramp: Ramp,
+    exact: Box<dyn Fn(f64) -> [f64; 2]>,
+    smooth: bool,
+}
+
+fn pulse(from: f64, to: f64, damping: f64) -> Motion {
+    Motion {
+        ramp: Ramp::Pulse { from, to },
+        exact: Box::new(move |t| {
+            difference(after_step(damping, t - from), after_step(damping, t - to))
+        }),
+        smooth: false,
+    }
+}
+
+/// A triangle of height 1.
+fn triangle(from: f64, to: f64, damping: f64) -> Motion {
+    let (middle, slope) = (0.5 * (from + to), 2.0 / (to - from));
+    Motion {
+        ramp: Ramp::Table {
+            times: vec![from, middle, to],
+            values: vec![0.0, 1.0, 0.0],
+        },
+        exact: Box::new(move |t| {
+            let after = |t: f64| after_slope(damping, t);
+            let (rise, top, end) = (after(t - from), after(t - middle), after(t - to));
+            std::array::from_fn(|i| slope * (rise[i] - 2.0 * top[i] + end[i]))
+        }),
+        smooth: false,
+    }
+}
+
+fn sine(rise: f64, damping: f64) -> Motion {
+    Motion {
+        ramp: Ramp::Sin2 { rise },
+        exact: Box::new(move |t| after_sine(damping, PI / rise, t)),
+        smooth: true,
+    }
+}
+
+/// The error falls as declared, and no slower, while loads change smoothly, jump on steps, jump
+/// between steps or have kinks there; a method that is exact is so wherever it does not refuse.
+pub fn order_with_changing_loads_is_as_declared(make: &dyn Fn() -> Boxed) {
+    let declared = make().properties().changing_loads;
+    for damping in [DAMPING, 0.0] {
+        let quiet = chain(damping, 0.0, [MASS; 2]);
+        if matches!(make().stable_step(&quiet), Ok(StableStep::UpTo(limit)) if limit <= 0.0) {
+            continue;
+        }
+        let duration = 0.4;
+        let gentle = gentle_step(&*make(), &quiet).min(duration / 20.0);
+        let coarse = (duration / gentle).ceil() as usize;
+        let interval = duration / coarse as f64;
+        let on = |n: f64| n * interval;
+        // A third of a step from the next one: so it is after four times as many steps, too.
+        let between = |n: f64| (n + 1.0 / 3.0) * interval;
+        let motions = [
+            sine(duration, damping),
+            pulse(on(4.0), on(11.0), damping),
+            pulse(between(4.0), between(11.0), damping),
+            triangle(on(3.0), on(13.0), damping),
+            triangle(between(3.0), between(12.0), damping),
+        ];
+        for Motion {
+            ramp,
+            exact,
+            smooth,
+        } in motions
+        {
+            let system = chain_under(ramp.clone(), damping, FORCE, [MASS; 2]);
+            let error = |refinement: usize| {
+                let dt = interval / refinement as f64;
+                let (mut integrator, mut state) = (make(), State::at_rest(2));
+                let (mut sum, mut size) = (0.0, 0.0);
+                for step in 1..=coarse {
+                    if let Taken::Refused =
+                        advance(&mut *integrator, &system, &mut state, refinement, dt)
+                    {
+                        return None;
+                    }
+                    for (u, expected) in state.u.iter().zip(exact(step as f64 * interval)) {
+                        sum += (u - expected).powi(2);
+                        size += expected * expected;
+                    }
+                }
+                Some(f64::sqrt(sum / size))
+            };
+            let what = format!("{ramp:?}, c = {damping}, declared {declared:?}");
+            match declared {
+                ChangingLoads::Exact(needed) => {
+                    let Some(error) = error(1) else {
+                        let refused = needed.first_broken(&ramp, 0.0, interval, duration);
+                        assert!(refused.is_some(), "{what}: refused");
+                        continue;
+                    };
+                    assert!(error <= 1e-9, "{what}: error {error:.1e}");
+                    let refused = needed.first_broken(&ramp, 0.0, interval, duration);
+                    assert_eq!(refused, None, "{what}: taken, though it is not such");
+                }
+                ChangingLoads::Order {
+                    smooth: of_smooth,
+                    broken,
+                } => {
+                    let order = f64::from(if smooth { of_smooth } else { broken });
+                    let errors = [8, 32].map(error);
+                    let [Some(larger), Some(smaller)] = errors else {
+                        unreachable!("{what}: refused");
+                    };
+                    let observed = (larger / smaller).log2() / 2.0;
+                    assert!(
+                        observed >= order - 0.1,
+                        "{what}: observed {observed:.3}, errors {errors:?}"
+                    );
+                    // From rest, symplectic methods of order 1 do better.
+                    if smooth && of_smooth > 1 {
+                        assert!(observed <= order + 0.1, "{what}: observed {observed:.3}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Soft enough not to matter, stiff enough to be a spring: 1e-9 N/m.
+fn almost_free(ramp: Ramp) -> LinearModel {
+    let load = Load {
+        ramp,
+        entries: vec![(0, FORCE)],
+    };
+    let build = LinearOperators::oscillator(MASS, 1e-9, 0.0);
+    match build.and_then(|operators| operators.with_loads(vec![load])) {
+        Ok(operators) => LinearModel::new(operators),
+        Err(error) => unreachable!("the mass is sound: {error}"),
+    }
+}
+
+/// A mass that nothing holds gets the velocity that the impulse gives it, however short the load
+/// and wherever it falls between two steps; a method that cannot take the load refuses it.
+pub fn the_impulse_of_a_load_arrives_wherever_it_falls(make: &dyn Fn() -> Boxed) {
+    let dt = 0.005;
+    let (short, long) = (0.12 * dt, 3.4 * dt);
+    for share in [0.0, 0.01, 0.3, 0.62, 0.94, 1.0] {
+        for width in [1e-6 * dt, short, dt, long] {
+            let from = (7.0 + share) * dt;
+            let to = from + width;
+            let triangle = Ramp::Table {
+                times: vec![from, 0.5 * (from + to), to],
+                values: vec![0.0, 2.0, 0.0],
+            };
+            for ramp in [Ramp::Pulse { from, to }, triangle] {
+                let needed = make().properties().changing_loads.needed();
+                let system = almost_free(ramp.clone());
+                let (mut integrator, mut state) = (make(), State::at_rest(1));
+                if let Ok(StableStep::UpTo(limit)) = integrator.stable_step(&system)
+                    && limit < dt
+                {
+                    return; // never stable: the mass would not keep its velocity
+                }
+                let taken = advance(&mut *integrator, &system, &mut state, 60, dt);
+                let what = format!("{ramp:?} in steps of {dt} s");
+                if let Taken::Refused = taken {
+                    let broken = needed.first_broken(&ramp, 0.0, dt, 60.0 * dt);
+                    assert!(needed != LoadOverStep::Any && broken.is_some(), "{what}");
+                    continue;
+                }
+                let mut velocity = [0.0];
+                assert!(state.velocity_at_t(&system, &mut velocity).is_ok());
+                let expected = FORCE * width / MASS;
+                let off = (velocity[0] / expected - 1.0).abs();
+                assert!(off < 1e-6, "{what}: {} for {expected}", velocity[0]);
+            }
+        }
+    }
+}
+
+/// After a million steps the time is a million times the step.
+pub fn time_does_not_drift_over_a_million_steps(make: &dyn Fn() -> Boxed) {
+    let system = almost_free(Ramp::Step);
+    let dt = 1e-3;
+    let mut state = State::at_rest(1);
+    let mut integrator = make();
+    for _ in 0..1000 {
+        if integrator.step(&system, &mut state, dt).is_err() {
+            unreachable!("`{}` refused a sound step", integrator.id());
+        }
+    }
+    // The rest by the clock alone, which is all that knows the time.
+    let mut clock = Clock::at(0.0);
+    (0..1000).for_each(|_| clock.advance(dt));
+    assert_eq!(state.clock, clock);
+    (0..999_000).for_each(|_| clock.advance(dt));
+    assert_eq!(clock.time(), 1e6 * dt);
+}
+
+/// A load does the same after a million steps as after a few hundred: a jump that falls on a step
+/// falls on it however late, and a checkpoint or a change of dt on the way changes nothing.
+pub fn loads_act_alike_at_any_time(make: &dyn Fn() -> Boxed) {
+    let dt = 1e-3;
+    let shifted = |late: f64| -> Vec<(Ramp, LinearModel)> {
+        let table = Ramp::Table {
+            times: [0.0, 0.004, 0.006, 0.013].map(|t| late + t).to_vec(),
+            values: vec![0.0, 1.0, 1.0, 0.0],
+        };
+        let pulse = Ramp::Pulse {
+            from: late,
+            to: late + 0.002,
+        };
+        let ramps = [pulse, table];
+        let with = |ramp: &Ramp| chain_under(ramp.clone(), 40.0, FORCE, [MASS; 2]);
+        ramps
+            .iter()
+            .map(|ramp| (ramp.clone(), with(ramp)))
+            .collect()
+    };
+    // Whole numbers of steps whose times are rounded: 13.6 s and 0.6 s.
+    let (early, late) = (shifted(0.6), shifted(13.6));
+    let mut refused_by_set_up = make();
+    if matches!(
+        refused_by_set_up.prepare(&early[0].1, dt),
+        Err(SetupError::Unresolved { .. })
+    ) {
+        return;
+    }
+    for ((ramp, early), (_, late)) in early.iter().zip(&late) {
+        let motion = |system: &LinearModel, start: f64, before: usize, change: bool| {
+            let (mut integrator, mut state) = (make(), State::at_rest(2));
+            state.clock = Clock::at(start);
+            let mut taken = advance(&mut *integrator, system, &mut state, before / 2, dt);
+            if change {
+                // Two half steps for one, then a fresh integrator from a clone.
+                taken = advance(&mut *integrator, system, &mut state, 20, dt / 2.0);
+                integrator = make();
+                state = state.clone();
+            }
+            let rest = before - before / 2 - if change { 10 } else { 0 };
+            for steps in [rest, 30] {
+                if let Taken::All = taken {
+                    taken = advance(&mut *integrator, system, &mut state, steps, dt);
+                }
+            }
+            matches!(taken, Taken::All).then_some(state)
+        };
+        let Some(expected) = motion(early, 0.0, 600, false) else {
+            continue; // refused, wherever it falls
+        };
+        let size = expected.u.iter().fold(0.0, |max: f64, u| max.max(u.abs()));
+        assert!(size > 0.0, "{ramp:?}: nothing moved");
+        for (steps, start, change) in [(13_600, 0.0, false), (600, 13.0, false), (600, 13.0, true)]
+        {
+            let Some(found) = motion(late, start, steps, change) else {
+                unreachable!("{ramp:?} later is refused, {steps} steps from {start} s");
+            };
+            for (u, expected) in found.u.iter().zip(&expected.u) {
+                assert!(
+                    (u - expected).abs() <= 1e-9 * size,
+                    "{ramp:?} later, {steps} steps from {start} s: {u} for {expected}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,323 @@
+//! When, and over how long a time, a step takes its loads.
+
+use crate::Ramp;
+use crate::gauss::gauss_points;
+
+/// Breakpoints nearer to the end of a window than this share of its times count as that end: such
+/// times are multiples of a step, rounded.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Windows in a rise of a squared sine from which on it counts as smooth at both ends.
+const LONG_RISE: f64 = 2.0;
+
+/// The instant at which a step takes its loads, with the window of time they act for.
+///
+/// A load that is smooth over the window is taken at the instant. One that jumps or has a kink
+/// inside is replaced by a mean over the window, weighted so that its impulse arrives whatever it
+/// does between two instants, and so that a method keeps the order that it has for smooth loads, up
+/// to order 2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadTime {
+    t: f64,
+    window: Window,
+}
+
+/// The window, and what takes the place of a load that is not smooth in it. Times in s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Window {
+    /// None: loads are taken at the instant.
+    Instant,
+    /// Loads are taken as smooth, as in the middle of the window.
+    Smooth { from: f64, to: f64 },
+    /// The mean over the window.
+    Mean { from: f64, to: f64 },
+    /// The line with the same mean and first moment over the window.
+    Line { from: f64, to: f64 },
+    /// The mean with weights that fall linearly from the instant to 0 at both ends.
+    Hat { from: f64, to: f64 },
+}
+
+impl LoadTime {
+    /// The loads at an instant (s); at a jump, those after it.
+    #[must_use]
+    pub fn at(t: f64) -> Self {
+        Self {
+            t,
+            window: Window::Instant,
+        }
+    }
+
+    /// The loads at the beginning of a step from `t` (s) to `t + dt`, or their mean over the step: of
+    /// methods that take loads as constant over a step. Tables always enter by their mean.
+    #[must_use]
+    pub fn start_of(t: f64, dt: f64) -> Self {
+        Self {
+            t,
+            window: Window::Mean {
+                from: t,
+                to: t + dt,
+            },
+        }
+    }
+
+    /// The loads at the end of a step from `t` (s) to `t + dt`, or their mean over the step.
+    #[must_use]
+    pub fn end_of(t: f64, dt: f64) -> Self {
+        Self {
+            t: t + dt,
+            ..Self::start_of(t, dt)
+        }
+    }
+
+    /// The loads at `t + share dt` within a step from `t` (s) to `t + dt`, or the line over the step
+    /// with the same impulse and first moment: of methods that take loads at several instants of a
+    /// step.
+    #[must_use]
+    pub fn within(t: f64, dt: f64, share: f64) -> Self {
+        Self {
+            t: t + share * dt,
+            window: Window::Line {
+                from: t,
+                to: t + dt,
+            },
+        }
+    }
+
+    /// The loads at `t` (s), or their mean over `t - before`..`t + after` (s) with weights that fall
+    /// linearly to both ends: of leapfrog methods, for which
+    /// `u(t + dt) - 2 u(t) + u(t - dt) = dt^2` times that mean of the acceleration.
+    #[must_use]
+    pub fn around(t: f64, before: f64, after: f64) -> Self {
+        Self {
+            t,
+            window: Window::Hat {
+                from: t - before,
+                to: t + after,
+            },
+        }
+    }
+
+    /// The loads at `t` (s) as they are throughout a step from `from` to `from + dt` (s), in which
+    /// they are known to be smooth.
+    #[must_use]
+    pub fn smooth_in(t: f64, from: f64, dt: f64) -> Self {
+        Self {
+            t,
+            window: Window::Smooth {
+                from,
+                to: from + dt,
+            },
+        }
+    }
+
+    /// The instant (s).
+    #[must_use]
+    pub fn t(self) -> f64 {
+        self.t
+    }
+}
+
+impl From<f64> for LoadTime {
+    fn from(t: f64) -> Self {
+        Self::at(t)
+    }
+}
+
+impl Ramp {
+    /// The factor that a step takes.
+    #[must_use]
+    pub fn factor(&self, when: LoadTime) -> f64 {
+        let LoadTime { t, window } = when;
+        let (from, to) = match window {
+            Window::Instant => return self.value(t),
+            Window::Smooth { from, to } => return self.value_within(from, to, t),
+            Window::Mean { from, to } | Window::Line { from, to } | Window::Hat { from, to } => {
+                (from, to)
+            }
+        };
+        if self.is_smooth_between(from, to) {
+            return match (self, window) {
+                (Self::Sin2 { .. }, _) => self.value(t),
+                // The mean of a line. Taken at one end, it would not fit the means on both sides of a
+                // kink, and the impulse of a table would depend on where its kinks fall.
+                (Self::Table { .. }, Window::Mean { .. }) => {
+                    self.value_within(from, to, 0.5 * (from + to))
+                }
+                _ => self.value_within(from, to, t),
+            };
+        }
+        let length = to - from;
+        match window {
+            Window::Line { .. } => {
+                let middle = 0.5 * (from + to);
+                let mean = self.integral(from, to, |_| 1.0) / length;
+                let moment = self.integral(from, to, |s| s - middle);
+                mean + 12.0 * moment / length.powi(3) * (t - middle)
+            }
+            Window::Hat { .. } => {
+                let (before, after) = (t - from, to - t);
+                let rising = self.integral(from, t, |s| (s - from) / before);
+                let falling = self.integral(t, to, |s| (to - s) / after);
+                2.0 * (rising + falling) / length
+            }
+            _ => self.integral(from, to, |_| 1.0) / length,
+        }
+    }
+
+    /// Whether a step over `from`..`to` (s) may take the value as it finds it: no breakpoint lies
+    /// between, rounding of either instant apart, or only an end of a rise that is long beside the
+    /// step, where value and slope are continuous.
+    #[must_use]
+    pub fn is_smooth_between(&self, from: f64, to: f64) -> bool {
+        if let Self::Sin2 { rise } = self
+            && *rise >= LONG_RISE * (to - from)
+        {
+            return true;
+        }
+        let slack = ROUNDING * from.abs().max(to.abs());
+        self.breakpoint_between(from + slack, to - slack).is_none()
+    }
+
+    /// The integral of the value times a linear weight between two instants (s), by pieces between
+    /// breakpoints: exact but for that of a sine, which is to rounding.
+    fn integral(&self, from: f64, to: f64, weight: impl Fn(f64) -> f64) -> f64 {
+        let (mut sum, mut start) = (0.0, from);
+        while start < to {
+            let end = self.breakpoint_between(start, to).unwrap_or(to);
+            let terms = gauss_points(start, end)
+                .map(|(s, share)| share * weight(s) * self.value_within(start, end, s));
+            sum += terms.sum::<f64>();
+            start = end;
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pulse(from: f64, to: f64) -> Ramp {
+        Ramp::Pulse { from, to }
+    }
+
+    /// The triangle of height 1 between two instants.
+    fn triangle(from: f64, to: f64) -> Ramp {
+        Ramp::Table {
+            times: vec![from, 0.5 * (from + to), to],
+            values: vec![0.0, 1.0, 0.0],
+        }
+    }
+
+    /// Ramps that come and go within 0..1, with the time integral of each.
+    fn transient() -> Vec<(Ramp, f64)> {
+        vec![
+            (pulse(0.131, 0.137), 0.006),
+            (pulse(0.3, 0.7), 0.4),
+            (pulse(0.05, 0.15), 0.1),
+            (triangle(0.211, 0.219), 0.004),
+            (triangle(0.2, 0.6), 0.2),
+        ]
+    }
+
+    #[test]
+    fn every_window_passes_on_the_whole_impulse() {
+        let dt = 0.05;
+        for (ramp, impulse) in transient() {
+            let sum = |taken: &dyn Fn(f64) -> f64| -> f64 {
+                (0..20).map(|n| dt * taken(f64::from(n) * dt)).sum()
+            };
+            let factor = |when: LoadTime| ramp.factor(when);
+            let sums = [
+                sum(&|t| factor(LoadTime::start_of(t, dt))),
+                sum(&|t| factor(LoadTime::end_of(t, dt))),
+                sum(&|t| {
+                    let [start, end] =
+                        [0.0, 1.0].map(|share| factor(LoadTime::within(t, dt, share)));
+                    0.5 * (start + end)
+                }),
+                sum(&|t| factor(LoadTime::around(t, dt, dt))),
+            ];
+            for (window, found) in sums.into_iter().enumerate() {
+                let off = (found / impulse - 1.0).abs();
+                assert!(off < 1e-12, "{ramp:?}, window {window}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_rise_within_a_step_arrives_whole() {
+        let (ramp, dt) = (Ramp::Sin2 { rise: 0.004 }, 0.05);
+        // The mean over the step is less by half the rise, that with falling weights by about all.
+        let mean = ramp.factor(LoadTime::start_of(0.0, dt));
+        assert!((mean - (1.0 - 0.002 / dt)).abs() < 1e-14);
+        let falling = ramp.factor(LoadTime::around(0.0, 0.0, dt));
+        let weight = |s: f64| 2.0 * (dt - s) / (dt * dt);
+        let fine = 100_000;
+        let h = 0.004 / f64::from(fine);
+        let lost = (0..fine).map(|n| (f64::from(n) + 0.5) * h);
+        let lost: f64 = lost.map(|s| h * weight(s) * (1.0 - ramp.value(s))).sum();
+        assert!((falling - (1.0 - lost)).abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_jump_at_the_instant_counts_half() {
+        let ramp = pulse(0.1, 0.3);
+        for n in [2, 6] {
+            let t = f64::from(n) * 0.05;
+            assert!((ramp.factor(LoadTime::around(t, 0.05, 0.05)) - 0.5).abs() < 1e-12);
+        }
+        assert_eq!(ramp.factor(LoadTime::around(0.2, 0.05, 0.05)), 1.0);
+    }
+
+    #[test]
+    fn one_sided_windows_see_their_side_of_a_jump_only() {
+        let ramp = pulse(0.1, 0.3);
+        assert_eq!(ramp.factor(LoadTime::around(0.1, 0.0, 0.05)), 1.0);
+        assert_eq!(ramp.factor(LoadTime::around(0.1, 0.05, 0.0)), 0.0);
+        assert_eq!(ramp.factor(LoadTime::start_of(0.1, 0.05)), 1.0);
+        assert_eq!(ramp.factor(LoadTime::end_of(0.05, 0.05)), 0.0);
+        assert_eq!(ramp.factor(LoadTime::within(0.05, 0.05, 1.0)), 0.0);
+        assert_eq!(ramp.factor(LoadTime::within(0.3, 0.05, 0.0)), 0.0);
+        // The beginning of a load counts whole, so that a body is loaded from t = 0 on.
+        assert_eq!(Ramp::Step.factor(LoadTime::around(0.0, 0.0, 0.05)), 1.0);
+    }
+
+    #[test]
+    fn where_nothing_changes_loads_are_sampled() {
+        let ramp = Ramp::Sin2 { rise: 0.4 };
+        for t in [0.05, 0.1, 0.2, 0.35] {
+            let value = ramp.value(t);
+            assert_eq!(ramp.factor(LoadTime::around(t, 0.05, 0.05)), value);
+            assert_eq!(ramp.factor(LoadTime::start_of(t, 0.05)), value);
+            assert_eq!(ramp.factor(LoadTime::within(t - 0.025, 0.05, 0.5)), value);
+        }
+        // The end of a long rise is smooth too.
+        let before = ramp.value(0.38);
+        assert_eq!(ramp.factor(LoadTime::around(0.38, 0.05, 0.05)), before);
+        assert_eq!(ramp.factor(LoadTime::around(0.42, 0.05, 0.05)), 1.0);
+        assert_eq!(ramp.factor(LoadTime::within(0.38, 0.05, 1.0)), 1.0);
+    }
+
+    #[test]
+    fn jumps_are_matched_to_steps_however_late() {
+        // 13602 steps of 1 ms are 13.602 s but for rounding.
+        let (dt, ramp) = (1e-3, pulse(13.6, 13.602));
+        for n in 13_590_i32..13_610 {
+            let t = f64::from(n) * dt;
+            let expected = f64::from((13_600..13_602).contains(&n));
+            assert_eq!(ramp.factor(LoadTime::start_of(t, dt)), expected, "step {n}");
+            let end = ramp.factor(LoadTime::within(t, dt, 1.0));
+            assert_eq!(end, expected, "step {n}");
+        }
+    }
+
+    #[test]
+    fn the_line_has_the_moments_of_what_it_replaces() {
+        // A jump at a third of the step: mean 2/3, first moment about the middle 1/9.
+        let ramp = pulse(1.0 / 3.0, 9.0);
+        let at = |share: f64| ramp.factor(LoadTime::within(0.0, 1.0, share));
+        assert!((at(0.5) - 2.0 / 3.0).abs() < 1e-14);
+        assert!((at(1.0) - at(0.0) - 12.0 / 9.0).abs() < 1e-13);
+    }
+}
