@@ -28,7 +28,7 @@ mod saturation;
 mod stabiliser;
 mod templates;
 
-pub use majorant::{Blend, GammaRule, Majorant};
+pub use majorant::{Blend, DampingShare, GammaRule, Majorant};
 pub use saturation::{Saturation, SaturationError};
 pub use stabiliser::{Inner, Stabiliser};
 pub use templates::{TemplateError, Templates};

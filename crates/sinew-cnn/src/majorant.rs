@@ -1,21 +1,22 @@
 //! A block-diagonal matrix that lies above what a large step needs.
 
-use sinew_core::spectrum::{critical_step, largest_eigenvalue_of_pencil};
-use sinew_core::{BlockMatrix, Damping, LinearOperators};
+use sinew_core::spectrum::{critical_step, largest_eigenvalue, largest_eigenvalue_of_pencil};
+use sinew_core::{BlockMatrix, LinearOperators};
 
 use crate::blocks::{CellBlocks, largest_eigenvalue_of_block};
-use crate::damping_matrix::damping_matrix;
+use crate::damping_matrix::stiffness_and_dashpots;
 
 /// By how much a factor found by iteration, which comes from below, is raised.
 const MARGIN: f64 = 1e-3;
 
-/// Share of the critical step up to which nothing is added to M.
+/// Share of the limit up to which nothing is added to M.
 const FREE: f64 = 0.99;
 
-/// How the factor gamma in `K <= gamma blockdiag(K)` is found.
+/// How the factor gamma in `W <= gamma blockdiag(W)` is found, W being the weighted sum of K and
+/// dashpots that is added to M.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GammaRule {
-    /// The largest eigenvalue of `blockdiag(K)^-1 K` by iteration, with a margin.
+    /// The largest eigenvalue of `blockdiag(W)^-1 W` by iteration, with a margin.
     #[default]
     Power,
     /// Block Gershgorin circles: a bound that needs no iteration and is a little larger.
@@ -25,22 +26,43 @@ pub enum GammaRule {
 /// How much of `dt^2/4 K` is added to M.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Blend {
-    /// `s = max(0, 1 - (.99 dt_c/dt)^2)` with dt_c = 2/omega_max: nothing below the critical step.
+    /// As much as the step needs: nothing below .99 of central difference's limit.
     #[default]
     Auto,
     /// s = 1 at every step.
     Full,
 }
 
-/// `P1 = M + dt/2 gamma_D blockdiag(D) + s dt^2/4 gamma_K blockdiag(K)`: one block per cell, above
-/// `A = M + dt/2 D + s dt^2/4 K`.
+/// How much of `dt/2 D'` is added to M, D' being the damping other than alpha M.
+///
+/// The force `F - K u - D' v` is taken with the velocity half a step behind the displacement; the
+/// share of `dt/2 D'` in P brings that share of the damping to the middle of the step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DampingShare {
+    /// s, as of `dt^2/4 K`. The rest lags by half a step as it does in central difference.
+    AsStiffness,
+    /// All of it, at every step.
+    Whole,
+}
+
+/// `P1 = M' + gamma blockdiag(W)`: one block per cell, above `A = M' + W`, where
+/// `M' = (1 + alpha dt/2) M` and W is the part of `G = dt/2 D' + dt^2/4 K` that is added, D' being the
+/// damping other than alpha M.
+///
+/// A step needs `P > dt/2 alpha M + G`. With mu the largest eigenvalue of `M^-1 G`, M' alone
+/// suffices up to mu = 1, the limit of central difference; P1 is then M'. Beyond,
+///
+/// * [`DampingShare::AsStiffness`]: `W = s G`, `s = 1 - .99^2/mu`, since `(1 - s) G <= .99^2 M`;
+/// * [`DampingShare::Whole`]: `W = dt/2 D' + s dt^2/4 K` with mu that of `dt^2/4 K` alone, which is
+///   `(dt omega_max/2)^2`.
 #[derive(Clone, Debug)]
 pub struct Majorant {
     operators: LinearOperators,
     dt: f64,
     s: f64,
-    gamma_stiffness: f64,
-    gamma_damping: f64,
+    damping_share: f64,
+    mass_suffices: bool,
+    gamma: f64,
     inverse: CellBlocks,
     floor: f64,
 }
@@ -48,59 +70,68 @@ pub struct Majorant {
 impl Majorant {
     /// For these matrices and a step of `dt` (s).
     #[must_use]
-    pub fn new(operators: &LinearOperators, dt: f64, rule: GammaRule, blend: Blend) -> Self {
-        let s = match blend {
-            Blend::Full => 1.0,
+    pub fn new(
+        operators: &LinearOperators,
+        dt: f64,
+        rule: GammaRule,
+        blend: Blend,
+        damping: DampingShare,
+    ) -> Self {
+        let (s, mass_suffices) = match blend {
+            Blend::Full => (1.0, false),
             Blend::Auto => {
-                let share = FREE * blunted(critical_step(operators)) / dt;
-                (1.0 - share * share).max(0.0)
+                let undamped = critical_step(operators);
+                let needed = share_beyond(with_damping(operators, undamped, dt), dt);
+                match damping {
+                    DampingShare::AsStiffness => (needed, needed == 0.0),
+                    DampingShare::Whole => (share_beyond(undamped, dt), needed == 0.0),
+                }
             }
         };
-        let (mass, stiffness) = (operators.mass(), operators.stiffness());
-        let layers = stiffness.layers();
-        let empty = || CellBlocks::of_mass(layers, mass, 0.0);
-        let mut of_stiffness = empty();
-        of_stiffness.add_diagonal(stiffness, 1.0);
-        let mut of_damping = CellBlocks::of_mass(layers, mass, operators.damping().mass);
-        let Damping {
-            stiffness: beta,
-            extra,
-            ..
-        } = operators.damping();
-        of_damping.add(&of_stiffness, *beta);
-        if let Some(extra) = extra {
-            of_damping.add_diagonal(extra, 1.0);
-        }
-
-        let gamma_stiffness = if s > 0.0 {
-            gamma(rule, stiffness, &of_stiffness, |x, out| {
-                stiffness.multiply(x, out);
-            })
-        } else {
-            1.0
+        let damping_share = match damping {
+            DampingShare::AsStiffness => s,
+            DampingShare::Whole => 1.0,
         };
-        let proportional_to_mass = *beta == 0.0 && extra.is_none();
-        let gamma_damping = if proportional_to_mass {
-            1.0
-        } else {
-            let whole = damping_matrix(operators);
-            gamma(rule, &whole, &of_damping, |x, out| whole.multiply(x, out))
-        };
-
+        let (mass, layers) = (operators.mass(), operators.stiffness().layers());
         let of_mass = CellBlocks::of_mass(layers, mass, 1.0);
         let mut blocks = of_mass.clone();
-        blocks.add(&of_damping, dt / 2.0 * gamma_damping);
-        blocks.add(&of_stiffness, s * dt * dt / 4.0 * gamma_stiffness);
-        let inverse = blocks.inverse();
-        Self {
-            floor: blunted(smallest_ratio(&of_mass, &blocks, layers.count())),
+        let mass_damping = CellBlocks::of_mass(layers, mass, operators.damping().mass);
+        blocks.add(&mass_damping, dt / 2.0);
+        let mut majorant = Self {
             operators: operators.clone(),
             dt,
             s,
-            gamma_stiffness,
-            gamma_damping,
-            inverse,
+            damping_share,
+            mass_suffices,
+            gamma: 0.0,
+            inverse: CellBlocks::of_mass(layers, mass, 0.0),
+            floor: 1.0,
+        };
+        if !mass_suffices {
+            majorant.gamma = majorant.add_majorant_of_w(rule, &mut blocks);
         }
+        majorant.inverse = blocks.inverse();
+        majorant.floor = blunted(smallest_ratio(&of_mass, &blocks, layers.count()));
+        majorant
+    }
+
+    /// Finds gamma and adds `gamma blockdiag(W)`.
+    fn add_majorant_of_w(&self, rule: GammaRule, blocks: &mut CellBlocks) -> f64 {
+        let operators = &self.operators;
+        let of_stiffness = self.stiffness_weight();
+        let sum;
+        // Without dashpots W is a multiple of K, and gamma that of K to the last digit.
+        let (matrix, weight) = if operators.damping().extra.is_none() {
+            (operators.stiffness().as_ref(), of_stiffness)
+        } else {
+            sum = stiffness_and_dashpots(operators, of_stiffness, self.dashpot_weight());
+            (&sum, 1.0)
+        };
+        let mut diagonal = CellBlocks::of_mass(matrix.layers(), operators.mass(), 0.0);
+        diagonal.add_diagonal(matrix, 1.0);
+        let gamma = gamma(rule, matrix, &diagonal);
+        blocks.add(&diagonal, weight * gamma);
+        gamma
     }
 
     /// The share s of `dt^2/4 K` that is in it.
@@ -109,16 +140,28 @@ impl Majorant {
         self.s
     }
 
-    /// gamma_K.
+    /// The share of `dt/2 D'` that is in it, D' being the damping other than alpha M.
     #[must_use]
-    pub fn gamma_stiffness(&self) -> f64 {
-        self.gamma_stiffness
+    pub fn damping_share(&self) -> f64 {
+        self.damping_share
     }
 
-    /// gamma_D.
+    /// The factor gamma in `W <= gamma blockdiag(W)`; 0 where M' suffices.
     #[must_use]
-    pub fn gamma_damping(&self) -> f64 {
-        self.gamma_damping
+    pub fn gamma(&self) -> f64 {
+        self.gamma
+    }
+
+    /// Whether the step is below .99 of central difference's limit, so that P1 is M'.
+    #[must_use]
+    pub fn mass_suffices(&self) -> bool {
+        self.mass_suffices
+    }
+
+    /// Whether W is 0: the step is then central difference's.
+    #[must_use]
+    pub fn adds_nothing(&self) -> bool {
+        self.stiffness_weight() == 0.0 && self.dashpot_weight() == 0.0
     }
 
     /// The smallest eigenvalue of `P1^-1 M` over all cells, a lower bound of `P1^-1 A`.
@@ -138,7 +181,7 @@ impl Majorant {
         self.inverse.multiply(x, out);
     }
 
-    /// `out -= A x` with `A = M + dt/2 D + s dt^2/4 K`: one sweep.
+    /// `out -= A x`: one sweep.
     pub fn subtract_target(&self, x: &[f64], out: &mut [f64]) {
         let damping = self.operators.damping();
         let of_mass = 1.0 + self.dt / 2.0 * damping.mass;
@@ -151,7 +194,7 @@ impl Majorant {
             .stiffness()
             .subtract_scaled_product(of_stiffness, x, out);
         if let Some(extra) = &damping.extra {
-            extra.subtract_scaled_product(self.dt / 2.0, x, out);
+            extra.subtract_scaled_product(self.dashpot_weight(), x, out);
         }
     }
 
@@ -171,9 +214,18 @@ impl Majorant {
         }
     }
 
+    /// The factor of K in W.
     fn stiffness_weight(&self) -> f64 {
         let half = self.dt / 2.0;
-        self.s * half * half + half * self.operators.damping().stiffness
+        self.s * half * half + self.damping_share * half * self.operators.damping().stiffness
+    }
+
+    /// The factor of the dashpots in W.
+    fn dashpot_weight(&self) -> f64 {
+        match self.operators.damping().extra {
+            Some(_) => self.damping_share * self.dt / 2.0,
+            None => 0.0,
+        }
     }
 
     /// The row of A that belongs to a cell, as (column, entry of K's weight applied) for sweeps in
@@ -181,7 +233,7 @@ impl Majorant {
     pub(crate) fn target_row(&self, cell: usize, mut each: impl FnMut(usize, &[f64; 9])) {
         let damping = self.operators.damping();
         let layers = self.operators.stiffness().layers().count();
-        let weight = self.stiffness_weight();
+        let (weight, of_dashpots) = (self.stiffness_weight(), self.dashpot_weight());
         let mut extra_row = damping.extra.as_ref().map(|extra| extra.row_blocks(cell));
         for (column, of_stiffness) in self.operators.stiffness().row_blocks(cell) {
             let of_extra = extra_row.as_mut().and_then(Iterator::next);
@@ -189,7 +241,7 @@ impl Majorant {
             for (k, (entry, value)) in block.iter_mut().zip(of_stiffness).enumerate() {
                 *entry = weight * value;
                 if let Some((_, extra)) = of_extra {
-                    *entry += self.dt / 2.0 * extra[k];
+                    *entry += of_dashpots * extra[k];
                 }
             }
             if column == cell {
@@ -214,18 +266,36 @@ fn blunted(value: f64) -> f64 {
     f64::from_bits(value.to_bits() & !((1 << 26) - 1))
 }
 
-fn gamma(
-    rule: GammaRule,
-    matrix: &BlockMatrix,
-    diagonal: &CellBlocks,
-    multiply: impl FnMut(&[f64], &mut [f64]),
-) -> f64 {
+/// `max(0, 1 - (.99 limit/dt)^2)`.
+fn share_beyond(limit: f64, dt: f64) -> f64 {
+    let share = FREE * blunted(limit) / dt;
+    (1.0 - share * share).max(0.0)
+}
+
+/// `dt/sqrt mu`, mu being the largest eigenvalue of `M^-1 (dt/2 D' + dt^2/4 K)`, where `undamped` is
+/// 2/omega_max.
+fn with_damping(operators: &LinearOperators, undamped: f64, dt: f64) -> f64 {
+    let damping = operators.damping();
+    // dt^2/4 (of_stiffness K + 2/dt extra).
+    let of_stiffness = 1.0 + 2.0 * damping.stiffness / dt;
+    if damping.extra.is_none() {
+        return undamped / of_stiffness.sqrt();
+    }
+    let sum = stiffness_and_dashpots(operators, of_stiffness, 2.0 / dt);
+    let largest = largest_eigenvalue(operators.mass(), |x, out| sum.multiply(x, out));
+    2.0 / largest.max(0.0).sqrt()
+}
+
+fn gamma(rule: GammaRule, matrix: &BlockMatrix, diagonal: &CellBlocks) -> f64 {
     let inverse = diagonal.inverse();
     match rule {
         GammaRule::Power => {
             let n = matrix.dofs();
-            let largest =
-                largest_eigenvalue_of_pencil(n, multiply, |x, out| inverse.multiply(x, out));
+            let largest = largest_eigenvalue_of_pencil(
+                n,
+                |x, out| matrix.multiply(x, out),
+                |x, out| inverse.multiply(x, out),
+            );
             // A diagonal matrix has gamma 1.
             // The margin is far larger than what blunting takes.
             blunted(largest * (1.0 + MARGIN)).max(1.0)

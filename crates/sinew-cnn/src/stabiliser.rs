@@ -4,10 +4,19 @@ use sinew_core::LinearOperators;
 use sinew_core::spectrum::largest_eigenvalue_of_pencil;
 
 use crate::blocks::CellBlocks;
-use crate::majorant::{Blend, GammaRule, Majorant};
+use crate::majorant::{Blend, DampingShare, GammaRule, Majorant};
 
-/// How P is built from a [`Majorant`] P1 and `A = M + dt/2 D + s dt^2/4 K`. All start cold: truncated
-/// iterations that start from the last step's result are not a fixed P, and blow up.
+/// How P is built from a [`Majorant`] P1 and its A. All start cold: truncated iterations that start
+/// from the last step's result are not a fixed P, and blow up.
+///
+/// One iteration leaves no room for the whole damping, which would add `gamma blockdiag` of it to the
+/// inertia: it takes [`DampingShare::AsStiffness`]. More iterations take [`DampingShare::Whole`], so
+/// that damping is centred in time.
+///
+/// Where M' suffices ([`Majorant::mass_suffices`]) every kind is the Neumann series about M' with as
+/// many products: `P = A (I - (I - M'^-1 A)^p)^-1`. With `X = M'^-1 dt/2 D' < I` each mode of X has
+/// `P = M' (1 + X)/(1 - (-X)^p) >= M'`, and is off from A by X^p where lagging damping is off by X;
+/// iterations about blocks would move the slowest modes by more than that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Inner {
     /// P = P1: one block per cell, no sweep beside the step's own.
@@ -31,6 +40,19 @@ pub enum Inner {
 }
 
 impl Inner {
+    /// The share of the damping that is in A.
+    #[must_use]
+    pub fn damping_share(self) -> DampingShare {
+        match self {
+            Self::Block | Self::Jacobi { sweeps: 1 } | Self::Chebyshev { sweeps: 1 } => {
+                DampingShare::AsStiffness
+            }
+            Self::Jacobi { .. } | Self::Chebyshev { .. } | Self::GaussSeidel { .. } => {
+                DampingShare::Whole
+            }
+        }
+    }
+
     /// Sweeps of the network that one solution takes.
     #[must_use]
     pub fn sweeps(self) -> u64 {
@@ -44,7 +66,7 @@ impl Inner {
     }
 }
 
-/// A symmetric positive definite P with `P >= A` and its inverse.
+/// A symmetric positive definite P, above A or above M' where M' suffices, and its inverse.
 ///
 /// With `P > dt/2 D + dt^2/4 K` the leapfrog step `P (v+ - v-) = dt (F - K u - D v-)`, `u += dt v+`
 /// never gains energy, whatever the step (see [`Stabiliser::certificate`]).
@@ -69,7 +91,7 @@ impl Stabiliser {
         blend: Blend,
         inner: Inner,
     ) -> Self {
-        let majorant = Majorant::new(operators, dt, rule, blend);
+        let majorant = Majorant::new(operators, dt, rule, blend, inner.damping_share());
         let n = operators.dofs();
         let pivots = matches!(inner, Inner::GaussSeidel { .. }).then(|| {
             let layers = operators.stiffness().layers();
@@ -101,9 +123,12 @@ impl Stabiliser {
 
     /// `out = P^-1 r`. Allocates nothing.
     pub fn solve(&mut self, r: &[f64], out: &mut [f64]) {
+        if self.majorant.mass_suffices() {
+            return self.jacobi(r, out, self.inner.sweeps() + 1);
+        }
         match self.inner {
             Inner::Block => self.majorant.apply_inverse(r, out),
-            Inner::Jacobi { sweeps } => self.jacobi(r, out, sweeps),
+            Inner::Jacobi { sweeps } => self.jacobi(r, out, u64::from(sweeps)),
             Inner::Chebyshev { sweeps } => self.chebyshev(r, out, sweeps),
             Inner::GaussSeidel { sweeps } => self.gauss_seidel(r, out, sweeps),
         }
@@ -122,8 +147,8 @@ impl Stabiliser {
         )
     }
 
-    /// `P_p = A (I - (I - P1^-1 A)^p)^-1`, above A for every p.
-    fn jacobi(&mut self, r: &[f64], out: &mut [f64], sweeps: u32) {
+    /// `P_p = A (I - (I - P1^-1 A)^p)^-1`, above A for every p where P1 is above A.
+    fn jacobi(&mut self, r: &[f64], out: &mut [f64], sweeps: u64) {
         self.majorant.apply_inverse(r, out);
         for _ in 1..sweeps {
             self.residual.copy_from_slice(r);

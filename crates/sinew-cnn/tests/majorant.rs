@@ -10,7 +10,7 @@ use common::body::{Body, bodies_up_to};
 use common::dense::{dense, dense_damping};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
-use sinew_cnn::{Blend, GammaRule, Inner, Majorant, Stabiliser};
+use sinew_cnn::{Blend, DampingShare, GammaRule, Inner, Majorant, Stabiliser};
 use sinew_core::spectrum::critical_step;
 use sinew_core::{LinearOperators, LinearSystem, System};
 use sinew_fem::{Fixed, Law, Model, Problem, Region, SpringRule};
@@ -34,6 +34,29 @@ fn stiffness(operators: &LinearOperators) -> DMatrix<f64> {
 
 fn damping(operators: &LinearOperators) -> DMatrix<f64> {
     matrix(dense_damping(operators))
+}
+
+/// D - alpha M.
+fn other_damping(operators: &LinearOperators) -> DMatrix<f64> {
+    damping(operators) - mass(operators) * operators.damping().mass
+}
+
+/// (1 + alpha dt/2) M.
+fn mass_with_damping(operators: &LinearOperators, dt: f64) -> DMatrix<f64> {
+    mass(operators) * (1.0 + dt / 2.0 * operators.damping().mass)
+}
+
+/// What a majorant adds to that.
+fn added(operators: &LinearOperators, dt: f64, majorant: &Majorant) -> DMatrix<f64> {
+    other_damping(operators) * (majorant.damping_share() * dt / 2.0)
+        + stiffness(operators) * (majorant.s() * dt * dt / 4.0)
+}
+
+/// The largest eigenvalue of `M^-1 (dt/2 D' + dt^2/4 K)` by dense arithmetic.
+fn dense_need(operators: &LinearOperators, dt: f64) -> f64 {
+    let root = mass(operators).map(|m| if m > 0.0 { m.sqrt().recip() } else { 0.0 });
+    let need = other_damping(operators) * (dt / 2.0) + stiffness(operators) * (dt * dt / 4.0);
+    extremes(&(&root * need * &root)).1
 }
 
 /// The part of a matrix within cells of three.
@@ -96,6 +119,20 @@ fn tight_gamma(s: &DMatrix<f64>) -> f64 {
 fn dense_critical_step(operators: &LinearOperators) -> f64 {
     let root = mass(operators).map(|m| if m > 0.0 { m.sqrt().recip() } else { 0.0 });
     2.0 / extremes(&(&root * stiffness(operators) * &root)).1.sqrt()
+}
+
+/// The step at which `dt/2 D' + dt^2/4 K` reaches M, by dense arithmetic.
+fn damped_limit(operators: &LinearOperators) -> f64 {
+    let (mut low, mut high) = (0.0, dense_critical_step(operators));
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if dense_need(operators, middle) < 1.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
 }
 
 /// Each kind with its own number of sweeps.
@@ -174,6 +211,10 @@ fn blends() -> impl Strategy<Value = Blend> {
     prop_oneof![Just(Blend::Auto), Just(Blend::Full)]
 }
 
+fn damping_shares() -> impl Strategy<Value = DampingShare> {
+    prop_oneof![Just(DampingShare::AsStiffness), Just(DampingShare::Whole)]
+}
+
 /// .1 to 1000 times the critical step.
 fn shares() -> impl Strategy<Value = f64> {
     (-1.0..3.0).prop_map(|power| 10.0_f64.powf(power))
@@ -186,6 +227,7 @@ proptest! {
     fn p_is_symmetric_above_a_and_certified(
         body in bodies_up_to(2),
         damped in damped(),
+        of_damped in any::<bool>(),
         share in shares(),
         rule in rules(),
         blend in blends(),
@@ -193,13 +235,18 @@ proptest! {
     ) {
         let model = damped.model(body);
         let operators = model.operators();
-        let (n, dt) = (operators.dofs(), share * critical_step(operators));
+        // Steps about the limit under this damping matter as much as those about the undamped one.
+        let undamped = critical_step(operators);
+        let dt = share * if of_damped { damped_limit(operators) } else { undamped };
+        let n = operators.dofs();
         let (k, d) = (stiffness(operators), damping(operators));
         let required = &d * (dt / 2.0) + &k * (dt * dt / 4.0);
         for inner in inners(sweeps) {
             let mut p = Stabiliser::new(operators, dt, rule, blend, inner);
-            let s = p.majorant().s();
-            let a = mass(operators) + &d * (dt / 2.0) + &k * (s * dt * dt / 4.0);
+            let mut a = mass_with_damping(operators, dt);
+            if !p.majorant().mass_suffices() {
+                a += added(operators, dt, p.majorant());
+            }
             let inverse = columns(n, |x, out| p.solve(x, out));
             let asymmetry = (&inverse - inverse.transpose()).amax() / inverse.amax();
             prop_assert!(asymmetry <= 1e-10, "{inner:?}: {asymmetry:e}");
@@ -223,23 +270,20 @@ proptest! {
         share in shares(),
         rule in rules(),
         blend in blends(),
+        of_damping in damping_shares(),
     ) {
         let model = damped.model(body);
         let operators = model.operators();
         let (n, dt) = (operators.dofs(), share * critical_step(operators));
-        let majorant = Majorant::new(operators, dt, rule, blend);
-        let p = mass(operators)
-            + blockdiag(&damping(operators)) * (dt / 2.0 * majorant.gamma_damping())
-            + blockdiag(&stiffness(operators))
-                * (majorant.s() * dt * dt / 4.0 * majorant.gamma_stiffness());
+        let majorant = Majorant::new(operators, dt, rule, blend, of_damping);
+        let p = mass_with_damping(operators, dt)
+            + blockdiag(&added(operators, dt, &majorant)) * majorant.gamma();
         let inverse = columns(n, |x, out| majorant.apply_inverse(x, out));
         let off = (inverse * &p - DMatrix::identity(n, n)).amax();
         prop_assert!(off <= 1e-8, "{off:e}");
         let least = extremes(&(mass(operators) - &p * majorant.floor())).0;
         prop_assert!(least >= -1e-9 * p.amax() * majorant.floor(), "{least:e}");
-        if !damped.stiffness && !damped.dashpots {
-            prop_assert_eq!(majorant.gamma_damping(), 1.0);
-        }
+        prop_assert_eq!(majorant.gamma() == 0.0, majorant.mass_suffices());
     }
 
     /// The iteration is raised by a thousandth, so that it may pass the circles by as much.
@@ -247,27 +291,19 @@ proptest! {
     fn circles_bound_the_iteration_and_both_bound_the_eigenvalue(
         body in bodies_up_to(2),
         damped in damped(),
+        of_damping in damping_shares(),
     ) {
         let model = damped.model(body);
         let operators = model.operators();
         let dt = 2.0 * critical_step(operators);
-        let of = |rule| {
-            let majorant = Majorant::new(operators, dt, rule, Blend::Full);
-            (majorant.gamma_stiffness(), majorant.gamma_damping())
-        };
+        let of = |rule| Majorant::new(operators, dt, rule, Blend::Auto, of_damping);
         let (power, circles) = (of(GammaRule::Power), of(GammaRule::Gershgorin));
-        let check = |power: f64, circles: f64, full: DMatrix<f64>| {
-            let tight = tight_gamma(&full).max(1.0);
-            prop_assert!(power >= tight, "{power} {tight}");
-            prop_assert!(power <= 1.0011 * tight, "{power} {tight}");
-            prop_assert!(circles >= tight * (1.0 - 1e-12), "{circles} {tight}");
-            prop_assert!(circles * 1.001 >= power * (1.0 - 1e-9), "{circles} {power}");
-            Ok(())
-        };
-        check(power.0, circles.0, stiffness(operators))?;
-        if damped.stiffness || damped.dashpots {
-            check(power.1, circles.1, damping(operators))?;
-        }
+        let tight = tight_gamma(&added(operators, dt, &power)).max(1.0);
+        let (power, circles) = (power.gamma(), circles.gamma());
+        prop_assert!(power >= tight, "{power} {tight}");
+        prop_assert!(power <= 1.0011 * tight, "{power} {tight}");
+        prop_assert!(circles >= tight * (1.0 - 1e-12), "{circles} {tight}");
+        prop_assert!(circles * 1.001 >= power * (1.0 - 1e-9), "{circles} {power}");
     }
 
     #[test]
@@ -301,20 +337,34 @@ proptest! {
     }
 
     #[test]
-    fn nothing_is_added_below_99_hundredths_of_the_critical_step(
+    fn nothing_is_added_below_99_hundredths_of_the_limit(
         body in bodies_up_to(2),
+        damped in damped(),
         share in shares(),
     ) {
-        let model = body.model();
+        let model = damped.model(body);
         let operators = model.operators();
-        let critical = dense_critical_step(operators);
-        let s = |dt| Majorant::new(operators, dt, GammaRule::Power, Blend::Auto).s();
-        prop_assert_eq!(s(0.9899 * critical), 0.0);
-        prop_assert!(s(0.9901 * critical) > 0.0);
-        let expected = (1.0 - (0.99 / share).powi(2)).max(0.0);
-        prop_assert!((s(share * critical) - expected).abs() <= 1e-6, "{expected}");
-        let full = Majorant::new(operators, share * critical, GammaRule::Power, Blend::Full);
-        prop_assert_eq!(full.s(), 1.0);
+        let limit = damped_limit(operators);
+        let of = |dt, damping| Majorant::new(operators, dt, GammaRule::Power, Blend::Auto, damping);
+        let block = |dt| of(dt, DampingShare::AsStiffness);
+        // At .99 of the limit dt/2 D' needs .99, dt^2/4 K .99^2 of M.
+        prop_assert!(block(0.98 * limit).adds_nothing());
+        prop_assert!(!block(0.9901 * limit).adds_nothing());
+        let dt = share * limit;
+        let expected = (1.0 - 0.99 * 0.99 / dense_need(operators, dt)).max(0.0);
+        prop_assert!((block(dt).s() - expected).abs() <= 1e-6, "{expected}");
+        prop_assert_eq!(block(dt).damping_share(), block(dt).s());
+        let whole = of(dt, DampingShare::Whole);
+        prop_assert_eq!(whole.mass_suffices(), block(dt).mass_suffices());
+        let undamped = dense_critical_step(operators);
+        let expected = (1.0 - (0.99 * undamped / dt).powi(2)).max(0.0);
+        prop_assert!((whole.s() - expected).abs() <= 1e-6, "{expected}");
+        prop_assert_eq!(whole.damping_share(), 1.0);
+        for damping in [DampingShare::AsStiffness, DampingShare::Whole] {
+            let full = Majorant::new(operators, dt, GammaRule::Power, Blend::Full, damping);
+            prop_assert_eq!((full.s(), full.damping_share()), (1.0, 1.0));
+            prop_assert!(!full.mass_suffices());
+        }
     }
 }
 
@@ -357,7 +407,10 @@ fn gamma_of_the_paper_s_cube() {
         (linear(0.49), 2.862),
     ] {
         let model = cube(10, law, [true; 3]);
-        let of = |rule| Majorant::new(model.operators(), 0.02, rule, Blend::Full).gamma_stiffness();
+        let of = |rule| {
+            let damping = DampingShare::AsStiffness;
+            Majorant::new(model.operators(), 0.02, rule, Blend::Full, damping).gamma()
+        };
         let power = of(GammaRule::Power);
         assert!(
             (power / 1.001 - expected).abs() <= 1e-3,

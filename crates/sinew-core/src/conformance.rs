@@ -32,6 +32,7 @@ macro_rules! conformance {
             $crate::conformance!(@laws $make;
                 rest_stays_at_rest
                 observed_order_is_declared_order
+                observed_order_under_other_damping_is_declared_order
                 order_with_changing_loads_is_as_declared
                 the_impulse_of_a_load_arrives_wherever_it_falls
                 time_does_not_drift_over_a_million_steps
@@ -76,14 +77,35 @@ fn chain(damping: f64, force: f64, masses: [f64; 2]) -> LinearModel {
 
 /// The same under a force that changes.
 fn chain_under(ramp: Ramp, damping: f64, force: f64, masses: [f64; 2]) -> LinearModel {
+    let damping = ChainDamping {
+        mass: damping,
+        ..ChainDamping::default()
+    };
+    damped_chain(ramp, damping, force, masses)
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct ChainDamping {
+    /// alpha (1/s).
+    mass: f64,
+    /// beta (s).
+    stiffness: f64,
+    /// Between the wall and the first mass (N s/m), which mixes the modes.
+    dashpot: f64,
+}
+
+fn damped_chain(ramp: Ramp, damping: ChainDamping, force: f64, masses: [f64; 2]) -> LinearModel {
     let build = move || {
         let pattern = Arc::new(Pattern::from_elements(2, [[0, 1]])?);
-        let mut stiffness = BlockMatrix::zeros(pattern, Layers::One);
+        let mut stiffness = BlockMatrix::zeros(Arc::clone(&pattern), Layers::One);
         let element = [2.0 * SPRING, -SPRING, -SPRING, 2.0 * SPRING];
         stiffness.add_element(&[0, 1], &element)?;
+        let mut dashpots = BlockMatrix::zeros(pattern, Layers::One);
+        dashpots.add_block(0, 0, &[damping.dashpot])?;
         let damping = Damping {
-            mass: damping,
-            ..Damping::default()
+            mass: damping.mass,
+            stiffness: damping.stiffness,
+            extra: (damping.dashpot > 0.0).then(|| Arc::new(dashpots)),
         };
         let load = Load {
             ramp,
@@ -115,6 +137,33 @@ fn exact(damping: f64, start: &State, t: f64) -> [f64; 2] {
     let slow = mode(1.0, (SPRING / MASS).sqrt());
     let fast = mode(-1.0, OMEGA_MAX);
     [(slow + fast) * FRAC_1_SQRT_2, (slow - fast) * FRAC_1_SQRT_2]
+}
+
+/// The displacements at `t` by the Taylor series of the motion in steps far below 1/omega_max.
+fn by_series(system: &LinearModel, start: &State, t: f64) -> [f64; 2] {
+    let operators = system.operators();
+    let parts = (t / 0.01).ceil().max(1.0);
+    let (mut u, mut v) = ([start.u[0], start.u[1]], [start.v[0], start.v[1]]);
+    for _ in 0..parts as usize {
+        // The derivatives number k and k + 1, and h^k/k!.
+        let (mut low, mut high, mut weight) = (u, v, 1.0);
+        (u, v) = ([0.0; 2], [0.0; 2]);
+        for k in 0..25 {
+            let mut next = [0.0; 2];
+            if k == 0 {
+                operators.external_force(0.0, &mut next);
+            }
+            operators.subtract_internal_force(&low, &high, &mut next);
+            for dof in 0..2 {
+                u[dof] += weight * low[dof];
+                v[dof] += weight * high[dof];
+                next[dof] /= operators.mass()[dof];
+            }
+            (low, high) = (high, next);
+            weight *= t / parts / f64::from(k + 1);
+        }
+    }
+    u
 }
 
 fn moving() -> State {
@@ -197,6 +246,71 @@ pub fn observed_order_is_declared_order(make: &dyn Fn() -> Boxed) {
         assert!(
             (observed - f64::from(order)).abs() <= 0.1,
             "c = {damping}: declared order {order}, observed {observed:.3} (errors {errors:?})"
+        );
+    }
+}
+
+/// As [`observed_order_is_declared_order`], under beta K and under a dashpot. A kind of damping for
+/// which no order is declared is refused at set-up.
+pub fn observed_order_under_other_damping_is_declared_order(make: &dyn Fn() -> Boxed) {
+    let declared = make().properties().other_damping;
+    let stiffness = ChainDamping {
+        stiffness: 0.01,
+        ..ChainDamping::default()
+    };
+    let dashpot = ChainDamping {
+        dashpot: 4.0,
+        ..ChainDamping::default()
+    };
+    let (start, duration) = (moving(), 0.5);
+    for (damping, accuracy) in [
+        (stiffness, declared.stiffness),
+        (dashpot, declared.dashpots),
+    ] {
+        let system = damped_chain(Ramp::Step, damping, FORCE, [MASS; 2]);
+        let Some(accuracy) = accuracy else {
+            let refusal = make().prepare(&system, 0.01);
+            assert!(
+                matches!(refusal, Err(SetupError::Lacks { .. })),
+                "{damping:?}: declared to be refused, not {refusal:?}"
+            );
+            continue;
+        };
+        let order = accuracy.order(true);
+        let dt = match order {
+            Some(_) => gentle_step(&*make(), &system),
+            None => 0.07,
+        };
+        let coarse = (duration / dt).ceil() as usize;
+        let instants: Vec<[f64; 2]> = (1..=coarse)
+            .map(|step| by_series(&system, &start, step as f64 * duration / coarse as f64))
+            .collect();
+        let error = |refinement: usize| {
+            let dt = duration / (coarse * refinement) as f64;
+            let (mut integrator, mut state) = (make(), start.clone());
+            let (mut sum, mut size) = (0.0, 0.0);
+            for expected in &instants {
+                advance(&mut *integrator, &system, &mut state, refinement, dt);
+                for (u, expected) in state.u.iter().zip(expected) {
+                    sum += (u - expected).powi(2);
+                    size += expected * expected;
+                }
+            }
+            f64::sqrt(sum / size)
+        };
+        let Some(order) = order else {
+            let error = error(1);
+            assert!(
+                error <= 1e-9,
+                "{damping:?}: declared exact, error {error:.1e}"
+            );
+            continue;
+        };
+        let errors: Vec<f64> = [16, 32].into_iter().map(error).collect();
+        let observed = (errors[0] / errors[1]).log2();
+        assert!(
+            (observed - f64::from(order)).abs() <= 0.1,
+            "{damping:?}: declared order {order}, observed {observed:.3} (errors {errors:?})"
         );
     }
 }
@@ -436,4 +550,20 @@ pub fn another_system_is_noticed(make: &dyn Fn() -> Boxed) {
     advance(&mut *used, &second, &mut state, 5, 1e-3);
     advance(&mut *make(), &second, &mut fresh_state, 5, 1e-3);
     assert_eq!(state, fresh_state);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_series_is_the_closed_form_under_mass_damping() {
+        let (system, start) = (chain(2.0, FORCE, [MASS; 2]), moving());
+        for t in [0.003, 0.1, 0.47] {
+            let expected = exact(2.0, &start, t);
+            for (u, expected) in by_series(&system, &start, t).iter().zip(expected) {
+                assert!((u - expected).abs() <= 1e-14, "{u} {expected} at {t}");
+            }
+        }
+    }
 }

@@ -70,6 +70,8 @@ pub struct Properties {
     pub needs: Needs,
     /// What happens to the energy of an undamped system within the stable step.
     pub energy: EnergyBehaviour,
+    /// How the error falls with dt under damping that is not proportional to the mass.
+    pub other_damping: OtherDamping,
     /// How the error falls with dt while loads change.
     pub changing_loads: ChangingLoads,
 }
@@ -161,6 +163,45 @@ impl Accuracy {
                 Some(if damping { damped } else { undamped })
             }
             Self::Exact => None,
+        }
+    }
+}
+
+/// How the error of a method falls with dt under each kind of damping other than alpha M; `None`
+/// where set-up refuses that kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OtherDamping {
+    /// Under beta K.
+    pub stiffness: Option<Accuracy>,
+    /// Under dashpots, a damping matrix proportional to neither M nor K.
+    pub dashpots: Option<Accuracy>,
+}
+
+impl OtherDamping {
+    /// This power of dt under both kinds.
+    #[must_use]
+    pub fn order(order: u8) -> Self {
+        Self {
+            stiffness: Some(Accuracy::Order(order)),
+            dashpots: Some(Accuracy::Order(order)),
+        }
+    }
+
+    /// In words.
+    #[must_use]
+    pub fn describe(self) -> String {
+        let words = |accuracy: Option<Accuracy>| match accuracy {
+            None => "refused".to_owned(),
+            Some(accuracy) => match accuracy.order(true) {
+                Some(order) => format!("order {order}"),
+                None => "exact".to_owned(),
+            },
+        };
+        let (stiffness, dashpots) = (words(self.stiffness), words(self.dashpots));
+        if stiffness == dashpots {
+            format!("with stiffness damping or dashpots: {stiffness}")
+        } else {
+            format!("with stiffness damping: {stiffness}; with dashpots: {dashpots}")
         }
     }
 }

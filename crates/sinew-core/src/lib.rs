@@ -41,8 +41,8 @@ pub use clock::Clock;
 pub use elements::{ElementStiffness, Elements, element_omegas_squared};
 pub use gauss::gauss_points;
 pub use integrator::{
-    Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, Needs, Prepared, Properties,
-    SetupError, StableStep, StepError, StepReport,
+    Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, Needs, OtherDamping, Prepared,
+    Properties, SetupError, StableStep, StepError, StepReport,
 };
 pub use linear::{Damping, LinearModel, LinearOperators, LinearSystem, Load, OperatorError};
 pub use load_over_step::{LoadOverStep, step_that_meets};

@@ -29,6 +29,26 @@ sinew_core::conformance!(propagator_two_step, || {
     Box::new(two_step) as Box<dyn sinew_core::Integrator>
 });
 
+// More than one sweep centres the damping, which is another order.
+macro_rules! inner_suites {
+    ($($name:ident: $inner:expr,)*) => {
+        $(
+            sinew_core::conformance!($name, || {
+                use sinew_cnn::{Blend, GammaRule, Inner};
+                let method =
+                    sinew_integrators::cnn::CnnStabilised::new($inner, GammaRule::Power, Blend::Auto);
+                Box::new(method) as Box<dyn sinew_core::Integrator>
+            });
+        )*
+    };
+}
+
+inner_suites! {
+    cnn_stabilised_jacobi_2: Inner::Jacobi { sweeps: 2 },
+    cnn_stabilised_chebyshev_3: Inner::Chebyshev { sweeps: 3 },
+    cnn_stabilised_gauss_seidel_1: Inner::GaussSeidel { sweeps: 1 },
+}
+
 // A guard that nothing reaches leaves every law as it is.
 macro_rules! guarded_suites {
     ($($name:ident: $id:literal,)*) => {

@@ -12,7 +12,8 @@ use common::{build, largest, plain};
 use proptest::prelude::*;
 use sinew_core::spectrum::critical_step;
 use sinew_core::{
-    Damping, Integrator, LinearModel, LinearSystem, Load, OptionValue, Options, Ramp, State, System,
+    Damping, Integrator, LinearModel, LinearSystem, Load, LoadTime, OptionValue, Options, Ramp,
+    State, System,
 };
 use sinew_fem::{Fixed, Law, Model, Problem, Rayleigh, Region};
 use sinew_mesh::structured::{self, Split};
@@ -216,7 +217,7 @@ fn equilibria_are_exact_at_any_tolerance() {
             let mut force = vec![0.0; state.u.len()];
             system
                 .operators()
-                .net_force(state.t, &state.u, &state.v, &mut force);
+                .net_force(state.t(), &state.u, &state.v, &mut force);
             let what = format!("{kind} {tolerance:e}: {:e}", largest(&force));
             assert!(largest(&force) <= 1e-12 * 1e-3, "{what}");
         }
@@ -313,7 +314,7 @@ proptest! {
         let loads = if loaded { vec![load] } else { vec![] };
         let system = altered(&model, damping, loads);
         let mut force = vec![0.0; model.dofs()];
-        system.external_force(0.0, &mut force);
+        system.external_force(LoadTime::at(0.0), &mut force);
         let work = |state: &State| -> f64 { force.iter().zip(&state.u).map(|(f, u)| f * u).sum() };
         for kind in KINDS {
             let mut integrator = build("propagator", &options(kind, tolerance));

@@ -174,4 +174,11 @@ fn every_integrator_is_listed() {
     }
     let guards = said.out.matches("saturation: guard").count();
     assert_eq!(guards, 6, "{}", said.out);
+    let orders = said
+        .out
+        .matches("with stiffness damping or dashpots: order")
+        .count();
+    assert_eq!(orders, 11, "{}", said.out);
+    let refused = "with stiffness damping: exact; with dashpots: refused";
+    assert!(said.out.contains(refused), "{}", said.out);
 }

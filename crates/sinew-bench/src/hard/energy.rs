@@ -25,6 +25,8 @@ enum Form {
 pub(crate) struct Ledger<'a> {
     operators: &'a LinearOperators,
     form: Form,
+    /// The share of the damping beside alpha M that lags in the first half step.
+    lagging: f64,
     before: Option<State>,
     /// P v.
     momentum: Vec<f64>,
@@ -51,17 +53,18 @@ pub(crate) struct Energies {
 impl<'a> Ledger<'a> {
     /// For a method that is set up.
     pub(crate) fn of(operators: &'a LinearOperators, integrator: &dyn Integrator) -> Self {
-        let stabilised = || integrator.facts().iter().any(|fact| fact.name == "s");
-        let form = match integrator.id() {
-            "central-difference" => Form::CentralDifference,
-            // Below the critical step it is central difference and has no facts.
-            "cnn-stabilised" if stabilised() => Form::Stabilised,
-            "cnn-stabilised" => Form::CentralDifference,
-            _ => Form::Physical,
+        let facts = integrator.facts();
+        let centred = facts.iter().find(|fact| fact.name == "s_d");
+        let (form, lagging) = match (integrator.id(), centred) {
+            // Where nothing is added to M it is central difference and has no facts.
+            ("central-difference", _) | ("cnn-stabilised", None) => (Form::CentralDifference, 0.0),
+            ("cnn-stabilised", Some(centred)) => (Form::Stabilised, 1.0 - centred.value),
+            _ => (Form::Physical, 0.0),
         };
         Self {
             operators,
             form,
+            lagging,
             before: None,
             momentum: Vec::new(),
             work: 0.0,
@@ -127,7 +130,7 @@ impl<'a> Ledger<'a> {
             .subtract_product(&before.u, &mut force);
         self.operators.subtract_damping(&before.v, &mut damping);
         // The first velocity is reached within half a step, which for the stabilised form knows
-        // no damping.
+        // only the damping that lags.
         let share = if start { 0.5 * dt } else { dt };
         if start {
             self.momentum = before
@@ -137,8 +140,14 @@ impl<'a> Ledger<'a> {
                 .map(|(v, m)| m * v)
                 .collect();
         }
+        let mass_damping = self.operators.damping().mass;
         for i in 0..n {
-            let damping = if start { 0.0 } else { damping[i] };
+            let damping = if start {
+                let of_mass = mass_damping * self.operators.mass()[i] * before.v[i];
+                self.lagging * (damping[i] + of_mass)
+            } else {
+                damping[i]
+            };
             self.momentum[i] += share * (force[i] + damping);
         }
         let velocities = state.v.iter().zip(&before.v);

@@ -3,7 +3,7 @@
 use sinew_cnn::Saturation;
 use sinew_core::{
     Accuracy, ChangingLoads, EnergyBehaviour, Integrator, Needs, OptionError, OptionValue, Options,
-    Properties, SetupError, StableStep, State, StepError, StepReport, System,
+    OtherDamping, Properties, SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::network::{self, Network};
@@ -61,6 +61,7 @@ impl Integrator for Cnn {
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Grows,
             changing_loads: ChangingLoads::order(1),
+            other_damping: OtherDamping::order(1),
         }
     }
 

@@ -1,10 +1,10 @@
 //! `cnn-stabilised`: the network with a stabilising matrix in template B.
 
-use sinew_cnn::{Blend, GammaRule, Inner, Stabiliser};
+use sinew_cnn::{Blend, DampingShare, GammaRule, Inner, Stabiliser};
 use sinew_core::{
     Acceleration, Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, LinearSystem,
-    LoadTime, Needs, OptionError, OptionValue, Options, Prepared, Properties, SetupError,
-    StableStep, State, StepError, StepReport, System, Trial, VelocityTime,
+    LoadTime, Needs, OptionError, OptionValue, Options, OtherDamping, Prepared, Properties,
+    SetupError, StableStep, State, StepError, StepReport, System, Trial, VelocityTime,
 };
 
 use crate::evaluate::{net_force, synchronise};
@@ -12,14 +12,23 @@ use crate::explicit::{CentralDifference, GuardOption};
 use crate::{Method, OptionHelp};
 
 /// `P (v+ - v-) = dt (F(t) - K u - D v-)`, `u += dt v+`, the velocity half a step behind, started with
-/// `P v_half = M v0 + dt/2 (F(0) - K u0)`: the network's sweep with `B = P^-1` in place of `M^-1`.
+/// `P v_half = M v0 + dt/2 (F(0) - K u0 - D_lag v0)`, D_lag being the part of D that is not in P: the
+/// network's sweep with `B = P^-1` in place of `M^-1`.
 ///
 /// With `P > dt/2 D + dt^2/4 K`, `E = v'(P - dt/2 D - dt^2/4 K) v/2 + u' K u/2`, u the mean of two
 /// displacements, falls by `dt v' D v` a step: stable at any step, with the exact equilibrium
 /// K u = F. (Multiply the step by the mean of both velocities; the products with K telescope. The
 /// idea of adding stiffness to the mass is that of Chen and Ricles, J. Eng. Mech. 134, 2008, and of
-/// mass scaling.) Below .99 of the critical step P is M and the method is central difference with
-/// mass damping; as the inner iteration grows it becomes Newmark's method with beta = s/4.
+/// mass scaling.) Below .99 of central difference's limit nothing has to be added to M. Beyond it, as
+/// the inner iteration grows, it becomes Newmark's method with beta = s/4.
+///
+/// Order 2 undamped and with mass damping. With stiffness damping or dashpots:
+///
+/// * one block per cell (the default; also one iteration of `jacobi` or `chebyshev`): order 1. Within
+///   .99 of central difference's limit it *is* central difference, whose damping lags by half a step;
+///   beyond, the share `s = 1 - .99^2/mu` of `dt/2 D' + dt^2/4 K` is added and the rest lags, D' being
+///   that damping and mu the largest eigenvalue of `M^-1 (dt/2 D' + dt^2/4 K)`.
+/// * more sweeps: order 2, the damping being centred at every step.
 #[derive(Debug, Default)]
 pub struct CnnStabilised {
     inner: Inner,
@@ -68,22 +77,21 @@ const S: &str = "s";
 
 impl Method for CnnStabilised {
     const ID: &'static str = "cnn-stabilised";
-    const SUMMARY: &'static str =
-        "cellular network, order 2, stable at any step; one sweep a step, more with `inner`";
+    const SUMMARY: &'static str = "cellular network, order 2 with mass damping, stable at any step; one sweep a step, more with `inner`";
     const OPTIONS: &'static [OptionHelp] = &[
         OptionHelp {
             key: INNER,
-            help: "{ kind = \"block\" | \"jacobi\" | \"chebyshev\" | \"gauss-seidel\", sweeps = p }; default { kind = \"block\" }",
+            help: "{ kind = \"block\" | \"jacobi\" | \"chebyshev\" | \"gauss-seidel\", sweeps = p }; default { kind = \"block\" }; two or more sweeps are of order 2 with any damping",
             shown_default: None,
         },
         OptionHelp {
             key: GAMMA,
-            help: "how the bound of K is found: \"power\" (default) or \"gershgorin\"",
+            help: "how the bound of what is added to M is found: \"power\" (default) or \"gershgorin\"",
             shown_default: None,
         },
         OptionHelp {
             key: S,
-            help: "share of dt^2/4 K added to M: \"auto\" (default), or 1 for all of it at every step",
+            help: "share of dt^2/4 K (and of lagging damping) added to M: \"auto\" (default), or 1 for all of it at every step",
             shown_default: None,
         },
     ];
@@ -164,6 +172,10 @@ impl Integrator for CnnStabilised {
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Bounded,
             changing_loads: ChangingLoads::order(2),
+            other_damping: OtherDamping::order(match self.inner.damping_share() {
+                DampingShare::AsStiffness => 1,
+                DampingShare::Whole => 2,
+            }),
         }
     }
 
@@ -186,9 +198,7 @@ impl Integrator for CnnStabilised {
             buffer.resize(system.dofs(), 0.0);
         }
         let stabiliser = Stabiliser::new(operators, dt, self.gamma, self.blend, self.inner);
-        let damping = operators.damping();
-        let mass_damping_only = damping.stiffness == 0.0 && damping.extra.is_none();
-        self.set_up = Some(if stabiliser.majorant().s() == 0.0 && mass_damping_only {
+        self.set_up = Some(if stabiliser.majorant().adds_nothing() {
             let mut plain = CentralDifference::default();
             plain.prepare(system, dt)?;
             SetUp::Plain(plain)
@@ -221,7 +231,9 @@ impl Integrator for CnnStabilised {
             work += synchronise(system, state)?;
         }
         let weight = if running { dt } else { dt / 2.0 };
-        work += residual(system, state, dt, &mut self.force)?;
+        // Only the damping that P does not hold lags in the first half step.
+        let lagging = 1.0 - stabiliser.majorant().damping_share();
+        work += residual(system, state, dt, lagging, &mut self.force)?;
         for ((force, mass), v) in self.force.iter_mut().zip(system.mass()).zip(&state.v) {
             *force = weight * *force + if running { 0.0 } else { mass * v };
         }
@@ -250,18 +262,20 @@ impl Integrator for CnnStabilised {
         let fact = |name, value| Fact { name, value };
         vec![
             fact("s", majorant.s()),
-            fact("gamma_k", majorant.gamma_stiffness()),
-            fact("gamma_d", majorant.gamma_damping()),
+            fact("s_d", majorant.damping_share()),
+            fact("gamma", majorant.gamma()),
             fact("certificate", stabiliser.certificate()),
         ]
     }
 }
 
-/// `out = F - K u - D v` before a step of `dt` (s), without D v at the start.
+/// `out = F - K u - D v` before a step of `dt` (s); at the start with the share `lagging` of the
+/// damping other than alpha M in place of D.
 fn residual(
     system: &dyn System,
     state: &State,
     dt: f64,
+    lagging: f64,
     out: &mut [f64],
 ) -> Result<StepReport, StepError> {
     if state.is_staggered_by(dt) {
@@ -276,7 +290,18 @@ fn residual(
     if let Some(linear) = system.as_linear() {
         let operators = linear.operators();
         operators.external_force(LoadTime::around(state.t(), 0.0, dt), out);
-        operators.stiffness().subtract_product(&state.u, out);
+        let damping = operators.damping();
+        let of_stiffness = lagging * damping.stiffness;
+        if of_stiffness == 0.0 {
+            operators.stiffness().subtract_product(&state.u, out);
+        } else {
+            operators
+                .stiffness()
+                .subtract_product_combined(&state.u, of_stiffness, &state.v, out);
+        }
+        if let Some(extra) = &damping.extra {
+            extra.subtract_scaled_product(lagging, &state.v, out);
+        }
     }
     Ok(StepReport::ONE_FORCE)
 }

@@ -3,7 +3,7 @@
 use sinew_cnn::Saturation;
 use sinew_core::{
     Accuracy, ChangingLoads, EnergyBehaviour, Integrator, Needs, OptionError, OptionValue, Options,
-    Properties, SetupError, StableStep, State, StepError, StepReport, System,
+    OtherDamping, Properties, SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::network::{self, Network};
@@ -57,6 +57,7 @@ impl Integrator for CnnSymplectic {
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Bounded,
             changing_loads: ChangingLoads::order(1),
+            other_damping: OtherDamping::order(1),
         }
     }
 

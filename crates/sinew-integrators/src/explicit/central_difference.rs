@@ -2,8 +2,8 @@
 
 use sinew_core::{
     Acceleration, Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, LoadTime, Needs,
-    OptionError, Options, Prepared, Properties, SetupError, StableStep, State, StepError,
-    StepReport, System, VelocityTime,
+    OptionError, Options, OtherDamping, Prepared, Properties, SetupError, StableStep, State,
+    StepError, StepReport, System, VelocityTime,
 };
 
 use super::GuardOption;
@@ -58,6 +58,7 @@ impl Integrator for CentralDifference {
             needs: Needs::Forces,
             energy: EnergyBehaviour::Bounded,
             changing_loads: ChangingLoads::order(2),
+            other_damping: OtherDamping::order(1),
         }
     }
 

@@ -2,7 +2,8 @@
 
 use sinew_core::{
     Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs, OptionError, Options,
-    Prepared, Properties, SetupError, StableStep, State, StepError, StepReport, System,
+    OtherDamping, Prepared, Properties, SetupError, StableStep, State, StepError, StepReport,
+    System,
 };
 
 use super::GuardOption;
@@ -42,6 +43,7 @@ impl Integrator for ForwardEuler {
             needs: Needs::Forces,
             energy: EnergyBehaviour::Grows,
             changing_loads: ChangingLoads::order(1),
+            other_damping: OtherDamping::order(1),
         }
     }
 

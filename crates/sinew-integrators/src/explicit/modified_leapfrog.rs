@@ -2,8 +2,8 @@
 
 use sinew_core::{
     Acceleration, Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LinearOperators,
-    LinearSystem, LoadTime, Needs, OptionError, Options, Prepared, Properties, SetupError,
-    StableStep, State, StepError, StepReport, System, VelocityTime,
+    LinearSystem, LoadTime, Needs, OptionError, Options, OtherDamping, Prepared, Properties,
+    SetupError, StableStep, State, StepError, StepReport, System, VelocityTime,
 };
 
 use super::GuardOption;
@@ -139,6 +139,7 @@ impl Integrator for ModifiedLeapfrog {
             needs: Needs::Matrices,
             energy: EnergyBehaviour::Bounded,
             changing_loads: ChangingLoads::order(2),
+            other_damping: OtherDamping::order(1),
         }
     }
 

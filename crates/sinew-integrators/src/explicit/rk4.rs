@@ -2,7 +2,8 @@
 
 use sinew_core::{
     Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs, OptionError, Options,
-    Prepared, Properties, SetupError, StableStep, State, StepError, StepReport, System, Trial,
+    OtherDamping, Prepared, Properties, SetupError, StableStep, State, StepError, StepReport,
+    System, Trial,
 };
 
 use super::GuardOption;
@@ -57,6 +58,7 @@ impl Integrator for Rk4 {
                 smooth: 4,
                 broken: 2,
             },
+            other_damping: OtherDamping::order(4),
         }
     }
 

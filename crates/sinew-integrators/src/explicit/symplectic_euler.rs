@@ -2,7 +2,8 @@
 
 use sinew_core::{
     Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs, OptionError, Options,
-    Prepared, Properties, SetupError, StableStep, State, StepError, StepReport, System,
+    OtherDamping, Prepared, Properties, SetupError, StableStep, State, StepError, StepReport,
+    System,
 };
 
 use super::GuardOption;
@@ -40,6 +41,7 @@ impl Integrator for SymplecticEuler {
             needs: Needs::Forces,
             energy: EnergyBehaviour::Bounded,
             changing_loads: ChangingLoads::order(1),
+            other_damping: OtherDamping::order(1),
         }
     }
 

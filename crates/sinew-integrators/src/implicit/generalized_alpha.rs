@@ -2,8 +2,8 @@
 
 use sinew_core::{
     Acceleration, Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs,
-    OptionError, OptionValue, Options, Properties, SetupError, StableStep, State, StepError,
-    StepReport, System, VelocityTime,
+    OptionError, OptionValue, Options, OtherDamping, Properties, SetupError, StableStep, State,
+    StepError, StepReport, System, VelocityTime,
 };
 
 use super::engine::Engine;
@@ -112,6 +112,7 @@ impl Integrator for GeneralizedAlpha {
             } else {
                 EnergyBehaviour::Falls
             },
+            other_damping: OtherDamping::order(2),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use sinew_core::{
     Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs, OptionError, Options,
-    Properties, SetupError, StableStep, State, StepError, StepReport, System,
+    OtherDamping, Properties, SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use super::engine::Engine;
@@ -37,6 +37,7 @@ impl Integrator for ImplicitEuler {
             needs: Needs::Matrices,
             changing_loads: ChangingLoads::order(1),
             energy: EnergyBehaviour::Falls,
+            other_damping: OtherDamping::order(1),
         }
     }
 

@@ -3,8 +3,8 @@
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
     Acceleration, Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs,
-    OptionError, Options, Properties, SetupError, StableStep, State, StepError, StepReport, System,
-    VelocityTime,
+    OptionError, Options, OtherDamping, Properties, SetupError, StableStep, State, StepError,
+    StepReport, System, VelocityTime,
 };
 
 use super::engine::Engine;
@@ -85,6 +85,7 @@ impl Integrator for Newmark {
                 (_, gamma) if gamma > 0.5 => EnergyBehaviour::Falls,
                 _ => EnergyBehaviour::Grows,
             },
+            other_damping: OtherDamping::order(if self.gamma == 0.5 { 2 } else { 1 }),
         }
     }
 

@@ -13,8 +13,8 @@ use chebyshev::Chebyshev;
 use krylov::Krylov;
 use sinew_core::{
     Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, LinearSystem, Load, LoadOverStep,
-    Needs, OptionError, OptionValue, Options, Prepared, Properties, SetupError, StableStep, State,
-    StepError, StepReport, System,
+    Needs, OptionError, OptionValue, Options, OtherDamping, Prepared, Properties, SetupError,
+    StableStep, State, StepError, StepReport, System,
 };
 
 use two_step::TwoStep;
@@ -250,6 +250,10 @@ impl Integrator for Propagator {
             // Conserved but for the part that is left out, by which it falls or, in two-step form,
             // oscillates.
             energy: EnergyBehaviour::Bounded,
+            other_damping: OtherDamping {
+                stiffness: (self.kind != PropagatorKind::TwoStep).then_some(Accuracy::Exact),
+                dashpots: (self.kind == PropagatorKind::Krylov).then_some(Accuracy::Exact),
+            },
         }
     }
 

@@ -9,8 +9,13 @@ pub(crate) fn run() -> Result<(), Failure> {
     for entry in sinew_integrators::entries() {
         say(&format!("{:20} {}", entry.id, entry.summary))?;
         if let Ok(integrator) = entry.build(&Options::new()) {
-            let changing_loads = integrator.properties().changing_loads;
-            say(&format!("{:20}   {}", "", changing_loads.describe()))?;
+            let properties = integrator.properties();
+            for words in [
+                properties.other_damping.describe(),
+                properties.changing_loads.describe(),
+            ] {
+                say(&format!("{:20}   {words}", ""))?;
+            }
         }
         for option in entry.options.iter().copied().chain(entry.guard.help()) {
             say(&format!("{:20}   {}: {}", "", option.key, option.help))?;

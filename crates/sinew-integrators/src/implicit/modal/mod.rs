@@ -10,8 +10,8 @@ mod small;
 
 use sinew_core::{
     Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, LinearOperators, LinearSystem,
-    LoadOverStep, Needs, OptionError, Options, Prepared, Properties, Ramp, Revision, SetupError,
-    StableStep, State, StepError, StepReport, System,
+    LoadOverStep, Needs, OptionError, Options, OtherDamping, Prepared, Properties, Ramp, Revision,
+    SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use self::basis::{Basis, Choice, Failure, LoadCase};
@@ -374,6 +374,10 @@ impl Integrator for Modal {
             needs: Needs::Matrices,
             changing_loads: ChangingLoads::Exact(LoadOverStep::Any),
             energy: EnergyBehaviour::Conserved,
+            other_damping: OtherDamping {
+                stiffness: Some(Accuracy::Exact),
+                dashpots: None,
+            },
         }
     }
 
