@@ -379,10 +379,13 @@ const STABLE_UP_TO: [&str; 7] = [
 
 #[test]
 fn a_step_is_cut_beyond_the_stable_one_into_the_fewest_parts_of_nine_tenths_of_it() {
-    let model = cube(4);
-    let rest = State::at_rest(model.dofs());
-    for id in STABLE_UP_TO {
-        let limit = match build(id, &plain()).stable_step(&model).unwrap() {
+    let models = [0.01, 1.0, 100.0, 500.0].map(paper_cube_under);
+    let rest = State::at_rest(models[0].dofs());
+    for (id, model) in STABLE_UP_TO
+        .iter()
+        .flat_map(|id| models.iter().map(move |model| (id, model)))
+    {
+        let limit = match build(id, &plain()).stable_step(model).unwrap() {
             StableStep::UpTo(limit) => limit,
             other => panic!("`{id}`: {other:?}"),
         };
@@ -395,27 +398,30 @@ fn a_step_is_cut_beyond_the_stable_one_into_the_fewest_parts_of_nine_tenths_of_i
             (3.15, 4.0),
             (9.5, 11.0),
         ] {
-            let found = parts(&model, id, share * limit, &rest);
+            let found = parts(model, id, share * limit, &rest);
             assert_eq!(found, expected, "`{id}` at {share}");
         }
     }
-    assert_eq!(parts(&model, "cnn-stabilised", 0.02, &rest), 1.0);
+    assert_eq!(parts(&models[3], "cnn-stabilised", 0.02, &rest), 1.0);
 }
 
 #[test]
 fn a_cut_step_is_so_many_substeps_to_the_bit() {
-    let model = cube(6);
-    let dt = 3.15 * Spectrum::of(model.operators()).critical_step();
-    let (mut guarded, mut free) = (
-        build("central-difference", &auto()),
-        build("central-difference", &plain().with_number("substeps", 4.0)),
-    );
-    let rest = State::at_rest(model.dofs());
-    let (mut one, mut other) = (rest.clone(), rest);
-    for step in 0..40 {
-        let work = guarded.step(&model, &mut one, dt).unwrap();
-        assert_eq!(work, free.step(&model, &mut other, dt).unwrap());
-        assert!(bits(&one) == bits(&other), "step {step}");
+    let dt = 3.15 * Spectrum::of(paper_cube().operators()).critical_step();
+    for pressure in [1.0, 100.0, 500.0] {
+        let model = paper_cube_under(pressure);
+        let (mut guarded, mut free) = (
+            build("central-difference", &auto()),
+            build("central-difference", &plain().with_number("substeps", 4.0)),
+        );
+        let rest = State::at_rest(model.dofs());
+        let (mut one, mut other) = (rest.clone(), rest);
+        for step in 0..40 {
+            let work = guarded.step(&model, &mut one, dt).unwrap();
+            let expected = free.step(&model, &mut other, dt).unwrap();
+            assert_eq!(work, expected, "{pressure} Pa, step {step}");
+            assert!(bits(&one) == bits(&other), "{pressure} Pa, step {step}");
+        }
     }
 }
 
@@ -443,7 +449,23 @@ fn where_no_step_is_stable_parts_are_chosen_by_size_and_the_motion_stays_bounded
     }
 }
 
-/// All cells of 0.2 m/s at the start move the lightest further than the load alone would.
+/// Cells of a thousandth of the width weigh a millionth: a fifth of their size would take millions of parts.
+#[test]
+fn parts_by_size_are_a_thousand_at_most() {
+    let mut mesh = structured::block([1, 1, 20], [0.02, 0.02, 0.2], Split::Kuhn).unwrap();
+    for [x, y, z] in &mut mesh.points {
+        let width = 1000.0_f64.powf(-*z / 0.2);
+        (*x, *y) = (*x * width, *y * width);
+    }
+    let mut problem = problem(springs(0.0), mass_damping(0.0), [0.0, 0.0, -5.0]);
+    problem.fixed[0].group = "bottom".into();
+    problem.gravity = Some([0.0, 0.0, -9.81]);
+    let model = Model::build(&mesh, &problem).unwrap();
+    let rest = State::at_rest(model.dofs());
+    assert_eq!(parts(&model, "forward-euler", 0.02, &rest), 1000.0);
+}
+
+/// Cells that start at 2 m/s raise the limits, and with them the number of parts.
 #[test]
 fn a_fast_start_cuts_steps_too_and_so_does_a_fresh_integrator_later() {
     let model = scene(3, 0.2, springs(0.0), mass_damping(0.0));

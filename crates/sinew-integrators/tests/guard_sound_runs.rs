@@ -114,12 +114,12 @@ fn shaped(cells: [usize; 3], edges: [f64; 3], width: impl Fn(f64) -> f64) -> Tet
     mesh
 }
 
-/// A bar 0.3 m long and 0.06 m thick at its foot, free, under a pulse on the foot.
+/// A bar 0.3 m long and 15 mm thick at its foot, free, under a pulse on the foot.
 fn whip(width: impl Fn(f64) -> f64) -> Model {
-    let mesh = shaped([2, 2, 30], [0.06, 0.06, 0.3], width);
+    let mesh = shaped([1, 1, 30], [0.015, 0.015, 0.3], width);
     let problem = Problem {
         regions: vec![tissue()],
-        loads: vec![pulse("bottom", [0.0, 0.0, 500.0], 0.02)],
+        loads: vec![pulse("bottom", [0.0, 0.0, 100.0], 0.015)],
         ..Problem::default()
     };
     Model::build(&mesh, &problem).unwrap()
@@ -133,11 +133,16 @@ fn horn(ratio: f64) -> impl Fn(f64) -> f64 {
     move |height| ratio.powf(-height)
 }
 
+/// Until the pulse has come back from the tip: waves run at 1.82 m/s.
 #[test]
 fn cones_and_horns_whip_as_without_a_guard() {
+    let time = 1.3 * 0.3 / 1.82;
     for model in [whip(cone(10.0)), whip(cone(20.0)), whip(horn(20.0))] {
         let start = State::at_rest(model.dofs());
-        assert_untouched(&model, &start, &[0.5, 0.9, 1.0], 400);
+        for share in [0.5, 0.9, 1.0] {
+            let dt = share * stable_step("central-difference", &model);
+            assert_untouched(&model, &start, &[share], (time / dt) as usize);
+        }
     }
 }
 
@@ -299,7 +304,7 @@ proptest! {
         let start = body.start(&model);
         for id in METHODS {
             let limit = stable_step(id, &model);
-            for share in [0.7, 0.95, 1.0] {
+            for share in [0.95, 1.0] {
                 let (mut guarded, mut state) = (build(id, &auto()), start.clone());
                 for step in 0..120 {
                     let work = guarded.step(&model, &mut state, share * limit).unwrap();
@@ -408,7 +413,7 @@ fn slender_and_incompressible_bodies_move_as_without_a_guard() {
 
 // One mode with all the energy, and whips without a body.
 
-/// Damping of an oscillator of frequency 1/s.
+/// An oscillator of 1 rad/s under a load of 1 N.
 fn oscillator(damping: Damping, ramp: Ramp) -> LinearModel {
     let operators = LinearOperators::oscillator(1.0, 1.0, 0.0).unwrap();
     let matrix = operators.stiffness().as_ref().clone();
@@ -487,8 +492,8 @@ fn tapered_chain(masses: u32, lightest: f64) -> LinearModel {
     LinearModel::new(LinearOperators::new(mass, stiffness, Damping::default(), vec![load]).unwrap())
 }
 
-/// In the exact motion, here rk4 at a twentieth of its stable step, each mass keeps a tenth of its limit: the tenfold is
-/// room for what methods compute. The lightest gets many times faster than the first.
+/// In the exact motion, here rk4 at a twentieth of its stable step, each mass stays below a tenth of its limit: the
+/// rest is room for what methods compute. The lightest gets many times faster than the first.
 #[test]
 fn the_limit_is_ten_times_a_bound_of_exact_motion_in_each_cell_of_a_whip() {
     for lightest in [0.1, 1e-3, 1e-6] {

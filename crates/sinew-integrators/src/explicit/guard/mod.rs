@@ -19,6 +19,9 @@ use limits::Limits;
 pub use option::{Guard, GuardOption};
 use unaccepted::Unaccepted;
 
+/// Most parts of a step where none is stable: a light cell's limit would ask for millions.
+const MOST_PARTS_BY_SIZE: u32 = 1000;
+
 /// An integrator whose velocities and displacements are clamped after each step: `|v_i| <= Q_i`
 /// and `|u_i(t + dt) - u_i(t)| <= Q_i dt` for the vectors of each cell i, so that the result does not
 /// depend on the axes' directions. Not a bit changes while nothing saturates.
@@ -27,7 +30,7 @@ use unaccepted::Unaccepted;
 /// at most nine tenths of it. The limits Q_i are those of the energy that the loads and the start of the motion
 /// bring, with room for what a stable method makes of it, so that a stable step, or part of one, is never
 /// clamped. Where a method knows no stable step, as forward Euler without damping, parts are so short that no
-/// cell passes a fifth of its size in one, and the limits are what bounds the motion.
+/// cell passes a fifth of its size in one, or a thousandth of the step, and the limits are what bounds the motion.
 ///
 /// [`Guard::At`] clamps and does nothing else.
 ///
@@ -48,7 +51,8 @@ pub struct Guarded {
 impl Guarded {
     /// Name of the fact that tells into how many parts a step is cut.
     pub const SUBSTEPS: &'static str = "guard_substeps";
-    /// Name of the fact that tells the largest of all limits (m/s).
+    /// Name of the fact that tells the largest of all limits (m/s), which rises without end where a step nears the
+    /// method's stable one.
     pub const LARGEST_LIMIT: &'static str = "guard_q_max";
 
     /// Guards `inner`.
@@ -102,7 +106,7 @@ impl Guarded {
             StableStep::UpTo(_) | StableStep::Unknown => {
                 self.limits.set_step(dt, LEAST_ROOM);
                 let passed = dt * self.limits.largest_rate();
-                self.parts = whole(passed / Limits::SHARE_OF_SIZE);
+                self.parts = whole(passed / Limits::SHARE_OF_SIZE).min(MOST_PARTS_BY_SIZE);
                 return Ok(());
             }
         };
@@ -196,8 +200,8 @@ impl Integrator for Guarded {
                     "the guard took each step in {parts} parts: whole, it is longer than the stable step of `{id}`"
                 ),
                 _ => format!(
-                    "the guard took each step in {parts} parts, in which no cell passes a fifth of its size: \
-                     `{id}` knows no stable step here, and parts are bounded, not stable"
+                    "the guard took each step in {parts} parts, so that cells pass little of their size in one: \
+                     `{id}` knows no stable step here, and the motion is bounded, not accurate"
                 ),
             });
         }

@@ -38,7 +38,7 @@ impl GuardOption {
     pub fn help(self) -> Option<OptionHelp> {
         matches!(self, Self::Any).then_some(OptionHelp {
             key: KEY,
-            help: "guard: largest speed of a cell [m/s], \"auto\" for limits of the scene's own, or \"off\"; default \"off\"",
+            help: "guard: largest speed of a cell [m/s], \"auto\" to cut steps beyond the stable one and limit speeds by the energy there is, or \"off\"; default \"off\"",
             shown_default: None,
         })
     }
