@@ -96,7 +96,7 @@ impl Method for CnnStabilised {
         },
     ];
 
-    const GUARD: GuardOption = GuardOption::Any { runs_away: false };
+    const GUARD: GuardOption = GuardOption::Any;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
         let refused = |key: &str, found: &OptionValue, expected| {
