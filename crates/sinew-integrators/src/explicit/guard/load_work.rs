@@ -32,7 +32,7 @@ impl LoadStrength {
     /// With the equilibrium u_s under the load of the moment, `r(t) F`, and `e^2 = v'Mv + (u - u_s)'K(u - u_s)`,
     /// `de/dt <= |dr/dt| sqrt(F'K^-1 F)`, since damping takes energy away: e is at most the ramp's variation
     /// times `sqrt(F'K^-1 F)`. The power of the load gives another bound, `d sqrt(v'Mv + u'Ku)/dt <= |r|
-    /// sqrt(F'M^-1 F)`, which holds for floating bodies too. Steps see the load at their instants only: a
+    /// sqrt(F'M^-1 F)`, which holds for floating bodies too. Steps take a smooth load at their instants: a
     /// sum of values times dt exceeds the integral by at most dt times the variation.
     pub(super) fn at(&self, dt: f64) -> f64 {
         let by_impulse = (self.impulse + dt * self.variation) * self.rate;
