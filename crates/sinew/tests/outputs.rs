@@ -290,7 +290,8 @@ fn a_full_standard_output_is_an_error_of_every_command() {
     };
     let folder = Folder::new();
     for arguments in [
-        &["integrators"][..],
+        &["--help"][..],
+        &["integrators"],
         &["plan", "spring.toml"],
         &["run", "spring.toml"],
         &["run", "spring.toml", "--probes", "-"],

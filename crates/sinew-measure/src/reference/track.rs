@@ -4,6 +4,7 @@ use sinew_core::spectrum::Spectrum;
 use sinew_core::{State, System};
 
 use super::Taylor;
+use super::error_norm::ErrorNorm;
 use super::peak::peak_between;
 
 /// A reference solution at some instants, with what the verdicts need of the whole run.
@@ -115,32 +116,6 @@ fn relative_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
         norms.include(a, b);
     }
     norms.relative()
-}
-
-/// Sums for a relative L2 error.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ErrorNorm {
-    difference: f64,
-    reference: f64,
-}
-
-impl ErrorNorm {
-    /// Includes the displacement at one instant.
-    pub fn include(&mut self, u: &[f64], reference: &[f64]) {
-        for (u, reference) in u.iter().zip(reference) {
-            self.difference += (u - reference).powi(2);
-            self.reference += reference * reference;
-        }
-    }
-
-    /// The relative error; where the reference never moves, 0 or infinite.
-    #[must_use]
-    pub fn relative(self) -> f64 {
-        if self.difference == 0.0 {
-            return 0.0;
-        }
-        (self.difference / self.reference).sqrt()
-    }
 }
 
 /// Range of each degree of freedom over some states.
