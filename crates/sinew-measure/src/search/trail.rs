@@ -78,7 +78,9 @@ impl Trail {
             candidate,
             interval: span.interval(),
             unit,
-            first: first.filter(|_| reason.is_none()),
+            first: first
+                .filter(|_| reason.is_none())
+                .and_then(|parts| parts.checked_next_multiple_of(unit)),
             reason,
             runs: BTreeMap::new(),
             refused: BTreeSet::new(),

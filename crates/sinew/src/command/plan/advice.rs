@@ -227,7 +227,7 @@ fn provenance(advice: &Advice) -> String {
             format!("; no pilot saw what the loads do from {changes} on")
         });
         lines.push(format!(
-            "errors and costs are those of the first {} s of {} s, all that the time for pilots allows; \
+            "errors, costs and verdicts are those of the first {} s of {} s, all that the time for pilots allows; \
              expected errors let phase errors grow on to {} s{unseen}: --pilot-seconds follows more",
             short(measured),
             short(whole),
