@@ -32,8 +32,7 @@ pub trait Pilots {
     ///
     /// # Errors
     /// A reason in words when it takes them at no step that is worth a pilot.
-    fn parts_for_loads(&self, method: &Method, interval: f64) -> Result<u32, String> {
-        let _ = (method, interval);
+    fn parts_for_loads(&self, _method: &Method, _interval: f64) -> Result<u32, String> {
         Ok(1)
     }
 
@@ -92,7 +91,7 @@ impl Pilots for CasePilots<'_> {
             }
         }
         Err(format!(
-            "{refused}, nor of any longer that meet the instants of the error"
+            "{refused}, nor of a longer one that meets the instants of the error"
         ))
     }
 

@@ -83,8 +83,13 @@ fn answer(advice: &Advice) -> String {
         format!("nothing measured has {asked}")
     } else {
         format!(
-            "nothing measured{} can be expected to have {asked}",
-            up_to(advice)
+            "nothing measured{}{} can be expected to have {asked}",
+            up_to(advice),
+            if advice.unseen_changes.is_empty() {
+                ""
+            } else {
+                ","
+            }
         )
     };
     match &advice.answer {
@@ -152,7 +157,7 @@ fn up_to(advice: &Advice) -> String {
 /// The instants after the part that was followed at which loads change.
 fn unseen_changes(advice: &Advice) -> Option<String> {
     let instants = advice.unseen_changes.iter();
-    let mut listed: Vec<String> = instants.map(|t| format!("{} s", short(*t))).collect();
+    let mut listed: Vec<String> = instants.map(|t| format!("{t} s")).collect();
     if listed.len() > LISTED_CHANGES {
         let more = listed.len() - LISTED_CHANGES;
         listed.truncate(LISTED_CHANGES);
@@ -174,9 +179,14 @@ fn run(advice: &Advice, pilot: &Pilot) -> String {
     };
     if row.expected_error.is_some() {
         error = format!(
-            "{error}, {} % expected by {} s,",
+            "{error}, {} % expected by {} s{},",
             expected(row),
-            short(advice.whole.duration)
+            short(advice.whole.duration),
+            if advice.unseen_changes.is_empty() {
+                ""
+            } else {
+                " but for later loads"
+            }
         );
     }
     format!(
