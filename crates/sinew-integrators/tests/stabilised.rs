@@ -21,7 +21,6 @@ use sinew_core::{
     LoadTime, OptionValue, Options, Pattern, Ramp, StableStep, State, System,
 };
 #[cfg(feature = "implicit")]
-use sinew_core::{Load, Ramp};
 use sinew_fem::{Law, Rayleigh};
 use sinew_integrators::cnn::CnnStabilised;
 

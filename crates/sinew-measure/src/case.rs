@@ -155,6 +155,18 @@ impl Case {
         self.span
     }
 
+    /// How much of the scene there is.
+    #[must_use]
+    pub fn whole(&self) -> Span {
+        Span::of(&self.simulation)
+    }
+
+    /// Whether all of the scene is compared.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.span.duration >= self.whole().duration
+    }
+
     /// 2/omega_max (s), where something vibrates.
     #[must_use]
     pub fn critical_step(&self) -> Option<f64> {

@@ -7,6 +7,7 @@
 pub mod advice;
 mod case;
 mod cpu_time;
+mod growth;
 mod measure;
 pub mod number;
 mod one_thread;

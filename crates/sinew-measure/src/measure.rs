@@ -12,6 +12,7 @@ use sinew_scene::Simulation;
 
 use crate::case::Case;
 use crate::cpu_time::thread_cpu_time;
+use crate::growth::ErrorHistory;
 use crate::reference::{ErrorNorm, LateRange, Track, largest};
 use crate::row::{Outcome, Row, Work, finite, label};
 
@@ -132,6 +133,7 @@ pub fn measure(case: &mut Case, method: &Method, dt: f64, effort: Effort) -> Res
     let setup_cpu = thread_cpu_time() - before;
 
     let mut comparison = Comparison::new(&track, stride, &run);
+    comparison.history = (!case.is_whole()).then(ErrorHistory::default);
     let mut state = start.clone();
     let report = simulate(system, &mut *integrator, &mut state, &run, &mut comparison)
         .map_err(|error| error.to_string())?;
@@ -171,6 +173,13 @@ pub fn measure(case: &mut Case, method: &Method, dt: f64, effort: Effort) -> Res
         error: match diverged_at {
             None => finite(comparison.norm.relative()),
             Some(_) => None,
+        },
+        expected_error: match (diverged_at, &comparison.history) {
+            (None, Some(history)) => {
+                let expected = history.expected_over(case.whole().duration);
+                Some(expected.max(comparison.norm.relative()))
+            }
+            _ => None,
         },
         max_u: finite(comparison.max_u),
         late_amplitude: diverged_at
@@ -249,6 +258,8 @@ struct Comparison<'a> {
     steps: usize,
     step: usize,
     norm: ErrorNorm,
+    /// Where the error beyond the last instant is asked for.
+    history: Option<ErrorHistory>,
     max_u: f64,
     late: LateRange,
 }
@@ -262,6 +273,7 @@ impl<'a> Comparison<'a> {
             steps: run.steps,
             step: 0,
             norm: ErrorNorm::default(),
+            history: None,
             max_u: 0.0,
             late: LateRange::new(dofs),
         }
@@ -279,6 +291,9 @@ impl Recorder for Comparison<'_> {
             && let Some(reference) = self.track.displacements.get(self.step / self.stride)
         {
             self.norm.include(&state.u, reference);
+            if let Some(history) = &mut self.history {
+                history.include(state.t(), &state.u, reference);
+            }
         }
         self.max_u = self.max_u.max(largest(&state.u));
         if 5 * self.step > 4 * self.steps {

@@ -82,6 +82,11 @@ pub struct Row {
     /// Relative L2 error of the displacement (fraction, 1 = as wrong as returning zero); none only
     /// when diverged.
     pub error: Option<f64>,
+    /// Relative L2 error to expect over the whole scene (fraction), with phase errors that grow on
+    /// and without loads that change later, never less than the measured one; only where a first part
+    /// of the scene was compared.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expected_error: Option<f64>,
     /// Largest |component| of the displacement over the run (m); none where not finite.
     pub max_u: Option<f64>,
     /// Half the range of the worst dof over the last fifth of the steps (m); none where not finite.
@@ -225,6 +230,14 @@ impl Row {
             Verdict::Accurate | Verdict::Wrong => self.error,
             Verdict::Guarded | Verdict::Unbounded | Verdict::Diverged => None,
         }
+    }
+
+    /// As [`Row::sound_error`], over the whole scene: the error to expect where only a first part
+    /// was compared.
+    #[must_use]
+    pub fn sound_error_over_scene(&self) -> Option<f64> {
+        let error = self.sound_error()?;
+        Some(self.expected_error.unwrap_or(error))
     }
 
     /// CPU time (s) of set-up and of the steps that simulate `duration` (s).

@@ -8,9 +8,10 @@
 
 use std::path::PathBuf;
 
+use sinew_core::{LoadOverStep, Run, simulate};
 use sinew_measure::search::Pilot;
 use sinew_measure::{
-    Advice, AdviceError, Answer, Case, Effort, Method, Question, Row, advise, measure,
+    Advice, AdviceError, Answer, Case, Effort, Method, Question, Row, Span, advise, measure,
     on_one_thread,
 };
 use sinew_scene::{Scene, SceneSource, Simulation};
@@ -41,6 +42,55 @@ fn small_cube() -> Simulation {
     let cube = "cube = { cells = 5, edge = 0.2, split = \"kuhn\" }";
     let source = SceneSource::new(path, text.replace(file, cube));
     Scene::parse(source).unwrap().build().unwrap()
+}
+
+/// A cube in 3 x 3 x 3 cells that is pressed, with whatever else stands at the end of its scene.
+fn pressed_cube(rest: &str) -> Simulation {
+    let text = format!(
+        "[mesh]
+cube = {{ cells = 3, edge = 0.1 }}
+[[region]]
+group = \"tissue\"
+density = 1060.0
+model = \"linear\"
+youngs_modulus = 3500.0
+poissons_ratio = 0.3
+[[fixed]]
+group = \"sides\"
+[[load]]
+group = \"top\"
+traction = [0.0, 0.0, -20.0]
+ramp = {{ kind = \"step\" }}
+{rest}"
+    );
+    let scene = Scene::parse(SceneSource::new("pressed.toml", text)).unwrap();
+    scene.build().unwrap()
+}
+
+/// It settles, and is pressed ten times as hard long after the pilots' time is up.
+fn pressed_late() -> Simulation {
+    pressed_cube(
+        "[damping]
+mass = 2.0
+[[load]]
+group = \"top\"
+traction = [0.0, 0.0, -200.0]
+ramp = { kind = \"pulse\", from = 300.13, to = 300.33 }
+[run]
+duration = 400.0
+samples = 4000
+integrator = \"propagator\"
+dt = 0.1
+",
+    )
+}
+
+/// Time for pilots in which only a small part of a long scene can be followed.
+fn hasty(tolerance: f64) -> Question {
+    Question {
+        pilot_seconds: 0.2,
+        ..Question::new(tolerance)
+    }
 }
 
 fn advised(advice: &Advice) -> &Pilot {
@@ -228,6 +278,8 @@ fn where_time_is_short_a_first_part_of_the_scene_is_measured() {
         (ratio - ratio.round()).abs() < 1e-9,
         "steps meet the scene's instants"
     );
+    let row = &advised(&advice).row;
+    assert!(row.expected_error.unwrap() <= 1e-2 && row.expected_error >= row.error);
     // The pilot that is under way when time runs out is finished.
     assert!(advice.spent_s < 10.0, "{} s", advice.spent_s);
     let best = advised(&advice);
@@ -236,6 +288,85 @@ fn where_time_is_short_a_first_part_of_the_scene_is_measured() {
             .run_table(best)
             .contains("duration = 1.0\nsamples = 100\n")
     );
+}
+
+#[test]
+fn loads_that_change_after_the_part_that_was_measured_are_named() {
+    let advice = advise(pressed_late(), hasty(1e-2)).unwrap();
+    assert!(advice.measured.duration < 300.0);
+    assert!(!advice.covers_the_scene());
+    assert_eq!(advice.unseen_changes, [300.13, 300.33]);
+    assert_eq!(advice.met_until(), Some(advice.measured.duration));
+
+    let all = advise(small_cube(), question(1e-2)).unwrap();
+    assert!(all.covers_the_scene());
+    assert!(all.unseen_changes.is_empty());
+    assert_eq!(all.met_until(), Some(1.0));
+    assert_eq!(advised(&all).row.expected_error, None);
+}
+
+#[test]
+fn no_run_is_named_that_a_later_load_would_end() {
+    let advice = advise(pressed_late(), hasty(1e-4)).unwrap();
+    let Answer::Met { cheapest, tenfold } = &advice.answer else {
+        panic!("{:?}", advice.answer);
+    };
+    let mut exact = 0;
+    for pilot in cheapest.iter().chain(tenfold.as_deref()) {
+        let simulation = pressed_late();
+        let Method {
+            integrator,
+            options,
+        } = &pilot.method;
+        let mut integrator = sinew_integrators::build(integrator, options).unwrap();
+        exact += usize::from(integrator.properties().changing_loads.needed() != LoadOverStep::Any);
+        let run = Run::covering(400.0, pilot.row.dt);
+        let mut state = simulation.initial_state().clone();
+        let ran = simulate(
+            simulation.system(),
+            &mut *integrator,
+            &mut state,
+            &run,
+            &mut (),
+        );
+        let ran = ran.unwrap_or_else(|error| panic!("{}: {error}", pilot.row.label()));
+        assert_eq!(ran.outcome, sinew_core::Outcome::Finished);
+    }
+    assert!(exact > 0, "steps of 10 ms meet the load: {cheapest:?}");
+    // As written it steps over the load.
+    let reason = advice.written.unwrap_err();
+    assert!(
+        reason.contains("a load changes at t = 300.13 s"),
+        "{reason}"
+    );
+}
+
+#[test]
+fn phase_errors_are_expected_to_grow_beyond_the_part_that_was_measured() {
+    let undamped = || {
+        pressed_cube("[run]\nduration = 12.0\nsamples = 600\nintegrator = \"rk4\"\ndt = 0.004\n")
+    };
+    let mut whole = Case::new("whole", undamped()).unwrap();
+    for (duration, samples) in [(0.4, 20), (1.0, 50), (3.0, 150)] {
+        let span = Span { duration, samples };
+        let mut part = Case::over("part", undamped(), span).unwrap();
+        for integrator in [
+            "central-difference",
+            "symplectic-euler",
+            "newmark",
+            "implicit-euler",
+            "cnn-stabilised",
+        ] {
+            let method = Method::new(integrator);
+            let over = |case: &mut Case| measure(case, &method, 5e-4, Effort::UNTIMED).unwrap();
+            let (seen, truth) = (over(&mut part), over(&mut whole).error.unwrap());
+            let expected = seen.expected_error.unwrap();
+            assert!(
+                expected >= truth && expected >= seen.error.unwrap(),
+                "{integrator} from {duration} s: {expected} expected, {truth} found"
+            );
+        }
+    }
 }
 
 fn spring(oscillator: &str) -> Result<Advice, AdviceError> {

@@ -80,6 +80,79 @@ fn as_json_it_is_one_object_with_the_same_run() {
     assert_eq!(budget.unwrap()["reason"], "no budget was asked for");
 }
 
+/// A cube that settles, and is pressed ten times as hard long after the pilots' time is up.
+const PRESSED_LATE: &str = "title = \"pressed late\"
+[mesh]
+cube = { cells = 3, edge = 0.1 }
+[[region]]
+group = \"tissue\"
+density = 1060.0
+model = \"linear\"
+youngs_modulus = 3500.0
+poissons_ratio = 0.3
+[damping]
+mass = 2.0
+[[fixed]]
+group = \"sides\"
+[[load]]
+group = \"top\"
+traction = [0.0, 0.0, -20.0]
+ramp = { kind = \"sin2\", rise = 0.5 }
+[[load]]
+group = \"top\"
+traction = [0.0, 0.0, -200.0]
+ramp = { kind = \"pulse\", from = 300.0, to = 300.13 }
+[run]
+duration = 400.0
+samples = 4000
+integrator = \"central-difference\"
+dt = 0.005
+";
+
+const HASTY: [&str; 4] = ["--tolerance", "1e-2", "--pilot-seconds", "0.2"];
+
+#[test]
+fn where_loads_change_after_the_pilots_the_first_line_says_up_to_when_the_advice_holds() {
+    let said = plan(PRESSED_LATE, &HASTY);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let advice = &said.out[said.out.find("\ncheapest with ").unwrap()..];
+    let first = advice.trim_start().lines().next().unwrap();
+    let start = "cheapest with an error of at most 1 % up to t = ";
+    let end = " s of 400 s, before loads change at t = 300 s and 300.13 s: ";
+    assert!(first.starts_with(start) && first.contains(end), "{first}");
+    assert!(
+        first.contains(" % expected by 400 s but for later loads, at "),
+        "{first}"
+    );
+    for part in [
+        "expected",
+        "no pilot saw what the loads do from t = 300 s and 300.13 s on",
+    ] {
+        assert!(advice.contains(part), "{part} is not in\n{advice}");
+    }
+}
+
+#[test]
+fn met_is_true_only_where_the_whole_scene_was_followed() {
+    let said = plan(PRESSED_LATE, &[&HASTY[..], &["--json"]].concat());
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let part: Value = serde_json::from_str(&said.out).unwrap();
+    assert_eq!(part["met"], false);
+    assert_eq!(part["duration_s"], 400.0);
+    assert!(part["advised"]["run_table"].is_string());
+    let until = part["met_until_s"].as_f64().unwrap();
+    assert!(0.0 < until && until < 300.0, "{until}");
+    assert_eq!(part["unseen_load_changes_s"][0], 300.0);
+    let row = &part["advised"]["row"];
+    assert!(row["expected_error"].as_f64() >= row["error"].as_f64());
+
+    let said = plan(SPRING, &["--tolerance", "1e-2", "--json"]);
+    let whole: Value = serde_json::from_str(&said.out).unwrap();
+    assert_eq!(whole["met"], true);
+    assert_eq!(whole["met_until_s"], whole["duration_s"]);
+    assert_eq!(whole["unseen_load_changes_s"].as_array().unwrap().len(), 0);
+}
+
 #[test]
 fn what_no_budget_buys_is_an_answer_too() {
     let said = plan(SPRING, &["--tolerance", "1e-2", "--budget", "1e-12"]);

@@ -29,6 +29,9 @@ pub(super) fn horizon(simulation: &Simulation, seconds: f64) -> Result<Span, Adv
     }
     let interval = whole.interval();
     let intervals = (affordable / interval).floor();
+    if intervals >= whole.samples as f64 {
+        return Ok(whole);
+    }
     if intervals >= 1.0 {
         return Ok(Span {
             duration: intervals * interval,

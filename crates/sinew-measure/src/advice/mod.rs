@@ -12,13 +12,14 @@ pub use run_table::run_table;
 
 use std::time::Duration;
 
+use sinew_core::Ramp;
 use sinew_scene::Simulation;
 
 use crate::case::{Case, CaseError, Span};
 use crate::cpu_time::thread_cpu_time;
 use crate::measure::Method;
 use crate::one_thread::{ThreadError, on_one_thread};
-use crate::search::{CasePilots, Goal, Pilot, Search, candidates};
+use crate::search::{CasePilots, Goal, Pilot, Search, candidates, ramps};
 use horizon::horizon;
 
 /// Share of the pilots' time that the reference may take.
@@ -39,8 +40,11 @@ pub struct Advice {
     pub question: Question,
     /// All of the scene.
     pub whole: Span,
-    /// The part of it over which errors were measured.
+    /// The part of it, from t = 0 on, over which errors were measured.
     pub measured: Span,
+    /// Instants (s) after that part at which loads jump or have kinks, increasing; no run saw what
+    /// follows.
+    pub unseen_changes: Vec<f64>,
     /// The run as the scene has it, or why it cannot be made.
     pub written: Result<Pilot, String>,
     /// The answer.
@@ -57,7 +61,9 @@ pub struct Advice {
     pub others_cut_short: bool,
 }
 
-/// The runs that answer a question. Total cost is that of set-up and of the whole scene.
+/// The runs that answer a question. Total cost is that of set-up and of the whole scene; errors are
+/// those over the whole scene, as they were measured or, where [`Advice::covers_the_scene`] is
+/// false, as they are to be expected ([`Row::expected_error`](crate::Row::expected_error)).
 #[derive(Clone, Debug)]
 pub enum Answer {
     /// Something keeps to tolerance and budget.
@@ -152,6 +158,7 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
     let prepared = thread_cpu_time();
     let left = until.saturating_sub(prepared).as_secs_f64();
     let measured = horizon(&simulation, FOR_THE_REFERENCE * left)?;
+    let unseen_changes = changes_after(&simulation, measured);
     let mut case = Case::over("scene", simulation, measured)?;
     check_reference(&case, whole, question.tolerance)?;
 
@@ -199,6 +206,7 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
         question,
         whole,
         measured,
+        unseen_changes,
         written,
         answer,
         refused,
@@ -248,6 +256,17 @@ fn answer(
 
 fn boxed(pilot: Option<&Pilot>) -> Option<Box<Pilot>> {
     pilot.cloned().map(Box::new)
+}
+
+/// Instants (s) of a scene, increasing, at which loads jump or have kinks after the part that is
+/// followed.
+fn changes_after(simulation: &Simulation, followed: Span) -> Vec<f64> {
+    let unseen = followed.duration..simulation.settings().duration;
+    let mut changes: Vec<f64> = ramps(simulation).flat_map(Ramp::breakpoints).collect();
+    changes.retain(|instant| unseen.contains(instant));
+    changes.sort_by(f64::total_cmp);
+    changes.dedup();
+    changes
 }
 
 fn check_reference(case: &Case, whole: Span, tolerance: f64) -> Result<(), AdviceError> {
@@ -324,11 +343,27 @@ fn advised_first(search: &Search<CasePilots<'_>>, goal: Goal) -> Vec<Pilot> {
 fn most_accurate<'a>(search: &'a Search<CasePilots<'_>>, budget: f64) -> Option<&'a Pilot> {
     let within = Goal { error: 1.0, budget };
     let runs = search.runs().filter(|pilot| within.is_met_by(&pilot.row));
-    let error = |pilot: &Pilot| pilot.row.error.unwrap_or(f64::INFINITY);
+    let error = |pilot: &Pilot| pilot.row.sound_error_over_scene().unwrap_or(f64::INFINITY);
     runs.min_by(|a, b| error(a).total_cmp(&error(b)))
 }
 
 impl Advice {
+    /// Whether errors were measured over the whole scene.
+    #[must_use]
+    pub fn covers_the_scene(&self) -> bool {
+        self.measured.duration >= self.whole.duration
+    }
+
+    /// Up to when (s) an advised run is known to keep to the tolerance, from t = 0 on; none where
+    /// nothing is advised.
+    #[must_use]
+    pub fn met_until(&self) -> Option<f64> {
+        match self.answer {
+            Answer::Met { .. } => Some(self.measured.duration),
+            Answer::Missed { .. } => None,
+        }
+    }
+
     /// CPU time (s) of set-up and of the whole scene.
     #[must_use]
     pub fn total_cpu_s(&self, pilot: &Pilot) -> f64 {

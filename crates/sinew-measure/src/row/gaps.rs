@@ -75,6 +75,7 @@ impl Row {
             bounded: _,
             settles: _,
             error,
+            expected_error,
             max_u,
             late_amplitude,
             saturated,
@@ -95,6 +96,7 @@ impl Row {
         gaps.number("sweeps_per_s", *sweeps_per_s);
         gaps.maybe("diverged_at_s", *diverged_at_s);
         gaps.finished("error", *error, *outcome);
+        gaps.maybe("expected_error", *expected_error);
         gaps.finished("max_u", *max_u, *outcome);
         gaps.finished("late_amplitude", *late_amplitude, *outcome);
         gaps.number("saturated", *saturated);

@@ -3,7 +3,8 @@
 //! Each candidate is followed from its longest stable step to shorter ones, by the order it
 //! declares and the errors measured on the way, for as long as it can still become cheaper than
 //! the best run so far; the one that promises most goes first. Steps divide the time between two
-//! instants of the comparison, so that all errors are taken at the same instants.
+//! instants of the comparison, so that all errors are taken at the same instants; those of methods
+//! that need loads to change between steps meet these changes too, anywhere in the scene.
 
 mod candidate;
 mod candidates;
@@ -12,6 +13,7 @@ mod trail;
 
 pub use candidate::Candidate;
 pub use candidates::candidates;
+pub(crate) use pilots::ramps;
 pub use pilots::{CasePilots, Pilot, Pilots};
 
 use crate::measure::{Effort, Method};
@@ -21,7 +23,8 @@ use trail::{Aim, Trail};
 /// What a run must keep to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
-    /// Largest relative error (fraction).
+    /// Largest relative error over the whole scene (fraction), to be expected where not all of it
+    /// is compared.
     pub error: f64,
     /// Most CPU seconds per simulated second, set-up apart; infinite where cost is no matter.
     pub budget: f64,
@@ -40,7 +43,10 @@ impl Goal {
     /// Whether a run keeps to it.
     #[must_use]
     pub fn is_met_by(self, row: &Row) -> bool {
-        row.cpu_s_per_s <= self.budget && row.sound_error().is_some_and(|e| e <= self.error)
+        row.cpu_s_per_s <= self.budget
+            && row
+                .sound_error_over_scene()
+                .is_some_and(|e| e <= self.error)
     }
 }
 
@@ -80,7 +86,10 @@ impl<P: Pilots> Search<P> {
     pub fn add(&mut self, candidate: Candidate) {
         let known = |trail: &Trail| trail.candidate.method == candidate.method;
         if !self.trails.iter().any(known) {
-            self.trails.push(Trail::new(candidate, self.span));
+            let unit = self
+                .pilots
+                .parts_for_loads(&candidate.method, self.span.interval());
+            self.trails.push(Trail::new(candidate, self.span, unit));
         }
     }
 
@@ -197,7 +206,8 @@ impl<P: Pilots> Search<P> {
         self.meeting(goal)
             .filter(|pilot| pilot.row.total_cpu_s(self.duration) <= within)
             .min_by(|a, b| {
-                let error = |pilot: &Pilot| pilot.row.error.unwrap_or(f64::INFINITY);
+                let error =
+                    |pilot: &Pilot| pilot.row.sound_error_over_scene().unwrap_or(f64::INFINITY);
                 error(a).total_cmp(&error(b))
             })
     }

@@ -35,6 +35,8 @@ struct Laws {
     laws: BTreeMap<String, Law>,
     /// Parts of a kink: steps that do not divide it are refused.
     kink: Option<f64>,
+    /// What loads ask of the parts of an interval, where they ask anything.
+    for_loads: Option<Result<u32, String>>,
     guarded: Vec<&'static str>,
     left: RefCell<f64>,
     least_step: f64,
@@ -60,6 +62,10 @@ impl Pilots for &mut Laws {
             guarded: self.guarded.contains(&method.integrator.as_str()),
             ..row
         })
+    }
+
+    fn parts_for_loads(&self, _: &Method, _: f64) -> Result<u32, String> {
+        self.for_loads.clone().unwrap_or(Ok(1))
     }
 
     fn left(&self) -> f64 {
@@ -405,6 +411,37 @@ fn steps_that_miss_a_kink_are_passed_over() {
     let goal = Goal::error(1e-3);
     search.seek(goal);
     assert_eq!(search.cheapest(goal).unwrap().row.dt, 0.01);
+}
+
+#[test]
+fn steps_meet_the_loads_on_the_way_to_a_goal() {
+    for error in [1e-2, 1e-3, 3e-5] {
+        let mut laws = laws(&[("exact", PLAIN)]);
+        laws.for_loads = Some(Ok(7));
+        let mut search = search(&mut laws);
+        let goal = Goal::error(error);
+        search.seek(goal);
+        let found = 0.02 / search.cheapest(goal).unwrap().row.dt;
+        // 100 dt^2 = error, in the next multiple of 7 parts.
+        let enough = 0.02 / (error / 100.0).sqrt();
+        let parts = 7.0 * (enough / 7.0 - 1e-9).ceil();
+        assert!((found - parts).abs() < 1e-6, "{error}: {found}, {parts}");
+        for (_, dt) in &laws.taken {
+            let sevenths = 0.02 / dt / 7.0;
+            assert!((sevenths - sevenths.round()).abs() < 1e-9, "{dt}");
+        }
+    }
+}
+
+#[test]
+fn a_method_that_takes_the_loads_at_no_step_is_never_begun() {
+    let mut laws = laws(&[("exact", PLAIN)]);
+    laws.for_loads = Some(Err("a load that is never constant".into()));
+    let mut search = search(&mut laws);
+    search.seek(Goal::error(1e-2));
+    let refused: Vec<_> = search.refused().map(|(_, reason)| reason).collect();
+    assert_eq!(refused, ["a load that is never constant"]);
+    assert!(laws.taken.is_empty());
 }
 
 #[test]

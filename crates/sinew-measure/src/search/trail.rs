@@ -5,8 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{Candidate, Goal, Pilot};
 use crate::{Row, Span};
 
-/// Parts of the interval that are tried after the longest steps were refused, as by methods that
-/// must meet the kinks of loads.
+/// Parts of the interval that are tried after the longest steps were refused.
 const RUNGS: [u32; 15] = [1, 2, 3, 4, 5, 6, 8, 10, 13, 16, 20, 32, 50, 64, 100];
 
 /// Refusals after which a candidate is left alone.
@@ -56,22 +55,33 @@ pub(super) struct Trail {
     /// Why it was refused last.
     pub(super) reason: Option<String>,
     interval: f64,
+    /// Every number of parts is a multiple of this one.
+    unit: u32,
     first: Option<u32>,
     runs: BTreeMap<u32, Pilot>,
     refused: BTreeSet<u32>,
 }
 
 impl Trail {
-    pub(super) fn new(candidate: Candidate, span: Span) -> Self {
+    /// A candidate whose steps are the interval in multiples of `unit` parts, or why it has none.
+    pub(super) fn new(candidate: Candidate, span: Span, unit: Result<u32, String>) -> Self {
         // The subtrahend as in `Run::covering`.
         let parts = (span.interval() / candidate.stable_step - 1e-9)
             .ceil()
             .max(1.0);
+        let first = (parts <= f64::from(u32::MAX)).then_some(parts as u32);
+        let (unit, reason) = match unit {
+            Ok(unit) => (unit, None),
+            Err(reason) => (1, Some(reason)),
+        };
         Self {
             candidate,
-            reason: None,
             interval: span.interval(),
-            first: (parts <= f64::from(u32::MAX)).then_some(parts as u32),
+            unit,
+            first: first
+                .filter(|_| reason.is_none())
+                .and_then(|parts| parts.checked_next_multiple_of(unit)),
+            reason,
             runs: BTreeMap::new(),
             refused: BTreeSet::new(),
         }
@@ -123,6 +133,7 @@ impl Trail {
         let (&at, pilot) = self.runs.iter().rfind(affordable)?;
         // A little below, so that the run keeps to the budget when its time repeats.
         let parts = (0.95 * f64::from(at) * budget / pilot.row.cpu_s_per_s) as u32;
+        let parts = parts - parts % self.unit;
         let new = parts > at && !self.runs.contains_key(&parts) && !self.refused.contains(&parts);
         new.then_some(parts)
     }
@@ -130,7 +141,7 @@ impl Trail {
     /// The step to try next; none where the candidate has done what it can for this aim.
     pub(super) fn next(&self, aim: &Aim) -> Option<Next> {
         let met = |(_, pilot): &(&u32, &Pilot)| {
-            let error = pilot.row.sound_error();
+            let error = pilot.row.sound_error_over_scene();
             error.is_some_and(|error| error <= aim.goal.error)
         };
         let enough = self.runs.iter().find(met);
@@ -144,8 +155,9 @@ impl Trail {
             (Some(short), None) => self.shorter(short, aim)?,
             (Some(short), Some(enough)) => between(short, enough, aim)?,
         };
+        next.parts = next.parts.checked_next_multiple_of(self.unit)?;
         while self.refused.contains(&next.parts) {
-            next.parts += 1;
+            next.parts = next.parts.checked_add(self.unit)?;
         }
         (next.parts < below && self.refused.len() < MOST_REFUSALS).then_some(next)
     }
@@ -155,7 +167,10 @@ impl Trail {
     fn start(&self, aim: &Aim) -> Option<Next> {
         let parts = match self.refused.last() {
             None => self.first?,
-            Some(last) => RUNGS.into_iter().find(|rung| rung > last)?,
+            Some(last) => {
+                let mut rungs = RUNGS.into_iter().map(|rung| rung * self.unit);
+                rungs.find(|rung| rung > last)?
+            }
         };
         let cost = self.least_cost(parts, aim.least_step);
         let total = cost * aim.duration;
@@ -174,14 +189,14 @@ impl Trail {
 
     /// The step by which the error should be met, going no further at once than can be foreseen.
     fn shorter(&self, (at, row): (u32, &Row), aim: &Aim) -> Option<Next> {
-        let Some(error) = row.sound_error() else {
+        let Some(error) = row.sound_error_over_scene() else {
             let parts = at.checked_mul(2)?;
             let promise = aim.promise(row, at, f64::from(parts))?;
             return Some(Next { parts, promise });
         };
         let longer = self.runs.range(..at).next_back();
         let observed = longer.and_then(|(&parts, pilot)| {
-            let before = pilot.row.sound_error()?;
+            let before = pilot.row.sound_error_over_scene()?;
             Some((before / error).ln() / (f64::from(at) / f64::from(parts)).ln())
         });
         let declared = f64::from(self.candidate.order.unwrap_or(2));
@@ -213,7 +228,8 @@ fn between(short: (u32, &Row), enough: (u32, &Row), aim: &Aim) -> Option<Next> {
         return None;
     }
     let promise = aim.promise(enough.1, high, f64::from(least))?;
-    let errors = short.1.sound_error().zip(enough.1.sound_error());
+    let errors = short.1.sound_error_over_scene();
+    let errors = errors.zip(enough.1.sound_error_over_scene());
     let parts = errors.map_or(f64::from(low.midpoint(high)), |(larger, smaller)| {
         let ratio = f64::from(high) / f64::from(low);
         let order = (larger / smaller).ln() / ratio.ln();

@@ -20,7 +20,8 @@ pub(crate) struct Arguments {
     /// The scene file.
     scene: PathBuf,
     /// Name the cheapest method and step whose relative error is at most this fraction, such as
-    /// 1e-2, from short runs on the scene
+    /// 1e-2, from short runs on the scene; where they do not cover it, the answer says up to when it
+    /// holds
     #[arg(long, value_name = "ERROR", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Most CPU seconds per simulated second, set-up apart; 1 is real time

@@ -8,17 +8,24 @@ use sinew_measure::{Advice, Answer, Outcome, Row};
 const RULED_HEAD: TableStyle =
     TableStyle::new().header_separator(LineStyle::new('─', '─', '─', '─'));
 
-const HEAD: [&str; 9] = [
+/// Head of the column that is shown where only a part of the scene was followed.
+const EXPECTED: &str = "expected\n[%]";
+
+const HEAD: [&str; 10] = [
     "",
     "method",
     "dt\n[ms]",
     "error\n[%]",
+    EXPECTED,
     "CPU\n[s/s]",
     "set-up\n[s]",
     "in all\n[s]",
     "work\n[sweeps/s]",
     "verdicts",
 ];
+
+/// Instants at which loads change that are listed one by one.
+const LISTED_CHANGES: usize = 3;
 
 /// Rows of other integrators beneath the advised one.
 const RUNNERS_UP: usize = 3;
@@ -71,14 +78,28 @@ pub(super) fn text(advice: &Advice) -> String {
 
 fn answer(advice: &Advice) -> String {
     let asked = asked(advice);
+    let nothing = if advice.covers_the_scene() {
+        format!("nothing measured has {asked}")
+    } else {
+        format!(
+            "nothing measured{}{} can be expected to have {asked}",
+            up_to(advice),
+            if advice.unseen_changes.is_empty() {
+                ""
+            } else {
+                ","
+            }
+        )
+    };
     match &advice.answer {
         Answer::Met { cheapest, .. } => match cheapest.first() {
             Some(best) => format!(
-                "cheapest with {asked}: {}\n\n{}",
-                run(best),
+                "cheapest with {asked}{}: {}\n\n{}",
+                up_to(advice),
+                run(advice, best),
                 advice.run_table(best).trim_end()
             ),
-            None => format!("nothing measured has {asked}"),
+            None => nothing,
         },
         Answer::Missed {
             within_tolerance,
@@ -88,15 +109,12 @@ fn answer(advice: &Advice) -> String {
             let mut nearest: Vec<String> = nearest
                 .into_iter()
                 .flatten()
-                .map(|pilot| run(pilot))
+                .map(|pilot| run(advice, pilot))
                 .collect();
             nearest.dedup();
             let text = match nearest.len() {
-                0 => format!("nothing measured has {asked}"),
-                _ => format!(
-                    "nothing measured has {asked}; nearest: {}",
-                    nearest.join(" or ")
-                ),
+                0 => nothing,
+                _ => format!("{nothing}; nearest: {}", nearest.join(" or ")),
             };
             match within_budget {
                 Some(_) => text,
@@ -118,27 +136,70 @@ fn asked(advice: &Advice) -> String {
     }
 }
 
+/// The part of the scene that was followed, with the loads that change after it; nothing where that
+/// is all of it.
+fn up_to(advice: &Advice) -> String {
+    if advice.covers_the_scene() {
+        return String::new();
+    }
+    let part = format!(
+        " up to t = {} s of {} s",
+        short(advice.measured.duration),
+        short(advice.whole.duration)
+    );
+    match unseen_changes(advice) {
+        Some(changes) => format!("{part}, before loads change at {changes}"),
+        None => part,
+    }
+}
+
+/// The instants after the part that was followed at which loads change.
+fn unseen_changes(advice: &Advice) -> Option<String> {
+    let instants = advice.unseen_changes.iter();
+    let mut listed: Vec<String> = instants.map(|t| format!("{t} s")).collect();
+    if listed.len() > LISTED_CHANGES {
+        let more = listed.len() - LISTED_CHANGES;
+        listed.truncate(LISTED_CHANGES);
+        listed.push(format!("{more} later instants"));
+    }
+    let (last, before) = listed.split_last()?;
+    Some(match before {
+        [] => format!("t = {last}"),
+        before => format!("t = {} and {last}", before.join(", ")),
+    })
+}
+
 /// A run with its error and its cost.
-fn run(pilot: &Pilot) -> String {
+fn run(advice: &Advice, pilot: &Pilot) -> String {
     let row = &pilot.row;
+    let mut error = match row.error {
+        Some(error) => format!("{} %", percent(error)),
+        None => "none".to_owned(),
+    };
+    if row.expected_error.is_some() {
+        error = format!(
+            "{error}, {} % expected by {} s{},",
+            expected(row),
+            short(advice.whole.duration),
+            if advice.unseen_changes.is_empty() {
+                ""
+            } else {
+                " but for later loads"
+            }
+        );
+    }
     format!(
-        "{}, dt = {} ms (error {} at {} CPU s/s)",
+        "{}, dt = {} ms (error {error} at {} CPU s/s)",
         row.label(),
         milliseconds(row.dt),
-        error_with_unit(row),
         three(row.cpu_s_per_s)
     )
 }
 
-fn error_with_unit(row: &Row) -> String {
-    match row.error {
-        Some(_) => format!("{} %", error(row)),
-        None => error(row),
-    }
-}
-
-fn error(row: &Row) -> String {
-    row.error.map_or_else(|| "none".to_owned(), percent)
+/// The error to expect over the whole scene, in per cent.
+fn expected(row: &Row) -> String {
+    let expected = row.expected_error;
+    expected.map_or_else(|| "none".to_owned(), percent)
 }
 
 fn ten_times_better(advice: &Advice, best: &Pilot, tenfold: Option<&Pilot>) -> String {
@@ -157,7 +218,7 @@ fn ten_times_better(advice: &Advice, best: &Pilot, tenfold: Option<&Pilot>) -> S
     format!(
         "ten times better ({error}) costs {} times as much{beyond}: {}",
         three(ratio),
-        run(tenfold)
+        run(advice, tenfold)
     )
 }
 
@@ -170,11 +231,15 @@ fn provenance(advice: &Advice) -> String {
         three(advice.spent_s),
         short(whole)
     )];
-    if measured < whole {
+    if !advice.covers_the_scene() {
+        let unseen = unseen_changes(advice).map_or_else(String::new, |changes| {
+            format!("; no pilot saw what the loads do from {changes} on")
+        });
         lines.push(format!(
-            "errors and costs are those of the first {} s of {} s, all that the time for pilots allows; \
-             phase errors grow with time, and later loads are not in them: --pilot-seconds follows more",
+            "errors, costs and verdicts are those of the first {} s of {} s, all that the time for pilots allows; \
+             expected errors let phase errors grow on to {} s{unseen}: --pilot-seconds follows more",
             short(measured),
+            short(whole),
             short(whole)
         ));
     }
@@ -197,27 +262,34 @@ fn provenance(advice: &Advice) -> String {
 
 fn table(advice: &Advice, rows: &[(&str, &Pilot)]) -> String {
     let mut table = Table::new();
+    let shown = |cells: [String; HEAD.len()]| {
+        let cells = HEAD.into_iter().zip(cells);
+        let cells = cells.filter(|(head, _)| *head != EXPECTED || !advice.covers_the_scene());
+        cells.map(|(_, cell)| cell).collect::<Vec<String>>()
+    };
     table
         .load_style(RULED_HEAD)
         .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(HEAD);
+        .set_header(shown(HEAD.map(str::to_owned)));
     for (label, pilot) in rows {
         let row = &pilot.row;
-        table.add_row([
+        table.add_row(shown([
             (*label).to_owned(),
             row.label(),
             milliseconds(row.dt),
-            error(row),
+            row.error.map_or_else(|| "none".to_owned(), percent),
+            expected(row),
             three(row.cpu_s_per_s),
             three(row.setup_cpu_s),
             three(advice.total_cpu_s(pilot)),
             work(row),
             verdicts(row),
-        ]);
+        ]));
     }
+    let last = table.column_count().saturating_sub(1);
     for (index, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, 2));
-        if (2..8).contains(&index) {
+        if (2..last).contains(&index) {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }

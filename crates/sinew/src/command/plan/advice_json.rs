@@ -81,6 +81,9 @@ impl Missing {
     }
 }
 
+/// The advice. `met` is true only where the advised run was seen to keep to the tolerance over the
+/// whole scene; up to when it was stands in `met_until_s`, and what loads do after that in
+/// `unseen_load_changes_s`.
 pub(super) fn as_json(advice: &Advice) -> AdviceJson {
     let mut missing = Missing::default();
     let refused = advice.refused.iter();
@@ -89,6 +92,10 @@ pub(super) fn as_json(advice: &Advice) -> AdviceJson {
         .collect();
     if advice.question.budget.is_none() {
         missing.explain("budget_cpu_s_per_s", "no budget was asked for");
+    }
+    let met_until = advice.met_until();
+    if met_until.is_none() {
+        missing.explain("met_until_s", "nothing measured keeps to what was asked");
     }
     let reason = advice.written.as_ref().err().map_or("", String::as_str);
     let written = advice.written.as_ref().ok();
@@ -100,7 +107,7 @@ pub(super) fn as_json(advice: &Advice) -> AdviceJson {
                 .map(|(index, pilot)| missing.run(&format!("runners_up.{index}"), advice, pilot))
                 .collect();
             json!({
-                "met": true,
+                "met": advice.covers_the_scene(),
                 "advised": missing.maybe(
                     "advised",
                     advice,
@@ -140,6 +147,8 @@ pub(super) fn as_json(advice: &Advice) -> AdviceJson {
         "budget_cpu_s_per_s": advice.question.budget,
         "duration_s": advice.whole.duration,
         "measured_s": advice.measured.duration,
+        "met_until_s": met_until,
+        "unseen_load_changes_s": advice.unseen_changes,
         "pilots": advice.pilots,
         "spent_cpu_s": advice.spent_s,
         "choice_cut_short": advice.choice_cut_short,
@@ -188,6 +197,7 @@ mod tests {
             },
             whole: span,
             measured: span,
+            unseen_changes: Vec::new(),
             written,
             answer,
             refused: Vec::new(),

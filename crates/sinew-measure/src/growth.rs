@@ -1,0 +1,146 @@
+//! The error to expect beyond the part of a scene that was compared.
+
+/// Sizes of error and displacement at the instants of a comparison, equally far apart from t = 0 on.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ErrorHistory {
+    instants: Vec<Instant>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Instant {
+    /// Time (s).
+    t: f64,
+    /// Sum of squared differences (m^2).
+    difference: f64,
+    /// Sum of squared displacements of the reference (m^2).
+    reference: f64,
+}
+
+/// Fewest instants of which quarters are compared too.
+const FOR_QUARTERS: usize = 16;
+
+/// What one or two periods show of the growth of a squared error may be this much too little.
+const MARGIN: f64 = 1.5;
+
+impl ErrorHistory {
+    /// Includes the displacement at one more instant (s).
+    pub(crate) fn include(&mut self, t: f64, u: &[f64], reference: &[f64]) {
+        let pairs = u.iter().zip(reference);
+        self.instants.push(Instant {
+            t,
+            difference: pairs.map(|(u, reference)| (u - reference).powi(2)).sum(),
+            reference: reference.iter().map(|u| u * u).sum(),
+        });
+    }
+
+    /// The relative L2 error to expect over `duration` (s), under the loads that act at the end of
+    /// the history.
+    ///
+    /// A wrong frequency shifts an undamped motion by an angle that grows as t, so that the squared
+    /// error grows at most as t^2. Its growth between the first and the last half, or the first and
+    /// the last quarter, is continued so, with a margin; an error that falls stays as it is in the
+    /// last half, and so does the size of the motion. No error grows beyond that of a motion that is
+    /// out of phase.
+    pub(crate) fn expected_over(&self, duration: f64) -> f64 {
+        let all = &self.instants;
+        let (first, last) = all.split_at(all.len().div_ceil(2));
+        let (Some(end), [_, ..]) = (all.last().map(|instant| instant.t), last) else {
+            return f64::INFINITY;
+        };
+        let beyond = (duration / end - 1.0).max(0.0) * (all.len() - 1) as f64;
+        let difference = |instant: &Instant| instant.difference;
+        let reference = |instant: &Instant| instant.reference;
+        let square_of_time = |instant: &Instant| instant.t.powi(2);
+        let growth = |early: &[Instant], late: &[Instant]| {
+            let growth = mean(late, difference) - mean(early, difference);
+            growth / (mean(late, square_of_time) - mean(early, square_of_time))
+        };
+        let mut rate = growth(first, last).max(0.0);
+        if all.len() >= FOR_QUARTERS {
+            let quarter = all.len() / 4;
+            rate = rate.max(growth(&all[..quarter], &all[all.len() - quarter..]));
+        }
+        let later = (end * end + end * duration + duration * duration) / 3.0;
+        let later = MARGIN * rate * (later - mean(last, square_of_time));
+        // Two motions of the same size that have nothing in common.
+        let largest = mean(last, difference).max(2.0 * mean(last, reference));
+        let later = (mean(last, difference) + later).min(largest);
+        let sum = |of: fn(&Instant) -> f64| all.iter().map(of).sum::<f64>();
+        let difference = sum(difference) + beyond * later;
+        let reference = sum(reference) + beyond * mean(last, reference);
+        if difference == 0.0 {
+            return 0.0;
+        }
+        (difference / reference).sqrt()
+    }
+}
+
+fn mean(instants: &[Instant], of: impl Fn(&Instant) -> f64) -> f64 {
+    instants.iter().map(of).sum::<f64>() / instants.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The history of `motion` against `reference`, functions of time, over `duration` (s).
+    fn history(
+        duration: f64,
+        motion: impl Fn(f64) -> f64,
+        reference: impl Fn(f64) -> f64,
+    ) -> ErrorHistory {
+        let mut history = ErrorHistory::default();
+        for j in 0..=(50.0 * duration) as u32 {
+            let t = f64::from(j) / 50.0;
+            history.include(t, &[motion(t)], &[reference(t)]);
+        }
+        history
+    }
+
+    /// Error expected over 20 s from a part of it, over the error over all of it.
+    fn over_truth(part: f64, motion: impl Fn(f64) -> f64, reference: impl Fn(f64) -> f64) -> f64 {
+        let seen = history(part, &motion, &reference);
+        let all = history(20.0, motion, reference);
+        seen.expected_over(20.0) / all.expected_over(20.0)
+    }
+
+    #[test]
+    fn a_wrong_frequency_costs_more_the_longer_it_runs() {
+        for part in [0.7, 1.0, 2.0, 5.0, 19.0] {
+            let ratio = over_truth(part, |t| (10.001 * t).cos(), |t| (10.0 * t).cos());
+            assert!((0.95..1.3).contains(&ratio), "{part} s: {ratio}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_frequency_shows_behind_a_wrong_amplitude() {
+        for part in [2.0, 5.0] {
+            let ratio = over_truth(part, |t| 1.002 * (10.001 * t).cos(), |t| (10.0 * t).cos());
+            assert!((0.95..1.3).contains(&ratio), "{part} s: {ratio}");
+        }
+    }
+
+    #[test]
+    fn an_error_that_dies_out_is_not_continued() {
+        let motion = |t: f64| 1.0 - (-5.0 * t).exp() * (10.1 * t).cos();
+        let reference = |t: f64| 1.0 - (-5.0 * t).exp() * (10.0 * t).cos();
+        let ratio = over_truth(3.0, motion, reference);
+        assert!((1.0..1.01).contains(&ratio), "{ratio}");
+    }
+
+    #[test]
+    fn an_error_that_stays_stays() {
+        let ratio = over_truth(2.0, |_| 1.01, |_| 1.0);
+        assert!((ratio - 1.0).abs() < 1e-9, "{ratio}");
+        assert_eq!(history(2.0, |_| 1.0, |_| 1.0).expected_over(20.0), 0.0);
+    }
+
+    #[test]
+    fn one_instant_after_the_start_is_enough() {
+        let mut history = ErrorHistory::default();
+        history.include(0.0, &[1.0], &[1.0]);
+        assert_eq!(history.expected_over(2.0), f64::INFINITY);
+        history.include(1.0, &[1.01], &[1.0]);
+        assert!(history.expected_over(2.0) > 1e-2);
+    }
+}
