@@ -12,7 +12,7 @@ use chebyshev::Chebyshev;
 use krylov::Krylov;
 use sinew_core::{
     Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, LinearSystem, Load, LoadOverStep,
-    Needs, OptionError, OptionValue, Options, OtherDamping, Prepared, Properties, Ramp, SetupError,
+    Needs, OptionError, OptionValue, Options, OtherDamping, Prepared, Properties, SetupError,
     StableStep, State, StepError, StepReport, System,
 };
 
