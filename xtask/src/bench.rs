@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use sinew_bench::hard::HardBench;
-use sinew_bench::report::{terminal, write_all};
+use sinew_bench::output::{OutputFolder, say};
+use sinew_bench::report::{WriteError, terminal, write_all};
 use sinew_bench::results::BenchResults;
 use sinew_bench::{Bench, machine, revision};
 
@@ -35,7 +36,8 @@ pub(crate) struct Arguments {
     /// Fewer steps and repeats: does everything run?
     #[arg(long)]
     quick: bool,
-    /// Where results.json, report.html and the plots go [default: target/bench, target/bench-hard]
+    /// The folder for results.json, report.html and the plots, checked before anything is measured
+    /// [default: target/bench, target/bench-hard]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// The hard cases under scenes/hard instead: what fails where, stability maps, and pass marks; exits
@@ -67,67 +69,88 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(program) = arguments.beside {
         return beside::run(program, &bench);
     }
+    let folder = folder(arguments, "bench", &bench.input_files());
+    bench.check().map_err(Failure::input)?;
+    folder.check(&bench.output_files())?;
     let bar = Bar::new();
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();
     let results = results.map_err(Failure::input)?;
-    write(&results, arguments, "bench")
+    conclude(&results, &folder)
 }
 
-/// The hard cases. Everything is written before a failed mark fails the command.
+/// The hard cases.
 fn run_hard(arguments: &Arguments) -> Result<(), Failure> {
     let bench = HardBench {
         scenes: root().join("scenes"),
         quick: arguments.quick,
     };
+    let folder = folder(arguments, "bench-hard", &bench.input_files());
+    folder.check(&bench.output_files())?;
     let bar = Bar::new();
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();
     let results = results.map_err(Failure::input)?;
-    conclude(&results, arguments)
+    conclude(&results, &folder)
 }
 
-fn conclude(results: &BenchResults, arguments: &Arguments) -> Result<(), Failure> {
-    write(results, arguments, "bench-hard")?;
-    marks_passed(results)
+fn folder(arguments: &Arguments, default: &str, inputs: &[PathBuf]) -> OutputFolder {
+    let out = arguments.out.clone();
+    let out = out.unwrap_or_else(|| root().join("target").join(default));
+    OutputFolder::new(out, inputs)
 }
 
-/// A failure that names the marks that are not passed, where there are any.
-fn marks_passed(results: &BenchResults) -> Result<(), Failure> {
+/// Everything is written before a failed mark or something missing fails the command.
+fn conclude(results: &BenchResults, folder: &OutputFolder) -> Result<(), Failure> {
+    write(results, folder)?;
+    let failures: Vec<String> = [failed_marks(results), missing(results)]
+        .into_iter()
+        .flatten()
+        .collect();
+    if failures.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::Chore(failures.join("; ")))
+    }
+}
+
+/// The marks that are not passed, where there are any.
+fn failed_marks(results: &BenchResults) -> Option<String> {
     let failed: Vec<String> = results
         .failed_marks()
         .map(|mark| format!("{} ({}, measured {})", mark.case, mark.asked, mark.measured))
         .collect();
-    if failed.is_empty() {
-        return Ok(());
-    }
     let (count, list) = (failed.len(), failed.join("; "));
-    Err(Failure::Chore(format!("{count} marks not passed: {list}")))
+    (count > 0).then(|| format!("{count} marks not passed: {list}"))
 }
 
-fn write(results: &BenchResults, arguments: &Arguments, folder: &str) -> Result<(), Failure> {
-    let out = arguments.out.clone();
-    let out = out.unwrap_or_else(|| root().join("target").join(folder));
-    let written = write_all(results, &out).map_err(Failure::input)?;
-    say(&terminal(results));
+/// What is missing from the results, where anything is.
+fn missing(results: &BenchResults) -> Option<String> {
+    let missing = results.all_missing();
+    let list: Vec<String> = missing.iter().map(ToString::to_string).collect();
+    let (count, list) = (list.len(), list.join("; "));
+    (count > 0).then(|| format!("{count} missing from the results: {list}"))
+}
+
+fn write(results: &BenchResults, folder: &OutputFolder) -> Result<(), Failure> {
+    let written = write_all(results, folder).map_err(|error| match error {
+        WriteError::Output(error) => error.into(),
+        error => Failure::chore(error),
+    })?;
+    say(&terminal(results))?;
     say(&format!(
         "results: {}\nreport:  {}\nplots:   {}",
         written.results.display(),
         written.report.display(),
-        out.display()
-    ));
+        folder.path().display()
+    ))?;
     Ok(())
-}
-
-/// Writes to standard output; a reader that went away is no failure.
-pub(crate) fn say(text: &str) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stdout(), "{text}");
 }
 
 #[cfg(test)]
 mod tests {
     use sinew_bench::hard::{Mark, MarkVerdict};
+    use sinew_measure::CaseInfo;
 
     use super::*;
 
@@ -145,12 +168,8 @@ mod tests {
 
     fn concluded(verdict: MarkVerdict) -> (Result<(), Failure>, String) {
         let directory = tempfile::tempdir().unwrap();
-        let arguments = Arguments {
-            hard: true,
-            out: Some(directory.path().to_owned()),
-            ..Arguments::default()
-        };
-        let outcome = conclude(&results(verdict), &arguments);
+        let folder = OutputFolder::new(directory.path(), &[]);
+        let outcome = conclude(&results(verdict), &folder);
         let page = std::fs::read_to_string(directory.path().join("report.html")).unwrap();
         assert!(directory.path().join("results.json").exists());
         (outcome, page)
@@ -167,6 +186,28 @@ mod tests {
         assert!(message.contains("a hard case (at most 5 %, measured 7.31 %)"));
         let code = format!("{:?}", failure.report());
         assert_eq!(code, format!("{:?}", std::process::ExitCode::from(1)));
+    }
+
+    #[test]
+    fn a_number_that_cannot_be_shown_is_written_in_its_place_and_exits_with_1() {
+        let directory = tempfile::tempdir().unwrap();
+        let folder = OutputFolder::new(directory.path(), &[]);
+        let mut results = results(MarkVerdict::Pass);
+        results.cases.push(CaseInfo {
+            id: "deep-cube".into(),
+            max_u_m: f64::INFINITY,
+            ..CaseInfo::default()
+        });
+        let failure = conclude(&results, &folder).unwrap_err();
+        let Failure::Chore(message) = &failure else {
+            panic!("{failure:?}");
+        };
+        assert_eq!(
+            message,
+            "1 missing from the results: deep-cube: max_u_m = inf: it is not a finite number"
+        );
+        assert!(directory.path().join("results.json").exists());
+        assert!(directory.path().join("report.html").exists());
     }
 
     #[test]

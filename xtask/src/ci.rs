@@ -4,7 +4,8 @@ use std::ffi::OsStr;
 use std::process::Command;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
-use crate::bench::say;
+use sinew_bench::output::say;
+
 use crate::failure::Failure;
 use crate::{root, rules};
 
@@ -86,9 +87,9 @@ const STEPS: &[(&str, &[&str])] = &[
 pub(crate) fn run() -> Result<(), Failure> {
     let start = Instant::now();
     rules::check().map_err(Failure::chore)?;
-    say("rules: kept");
+    say("rules: kept")?;
     for (name, arguments) in STEPS {
-        say(&format!("\n== {name}: cargo {}", arguments.join(" ")));
+        say(&format!("\n== {name}: cargo {}", arguments.join(" ")))?;
         let step = Instant::now();
         let packaging = *name == PACKAGES;
         // cargo unpacks each package once for a path and version, and would compile an older one
@@ -124,8 +125,8 @@ pub(crate) fn run() -> Result<(), Failure> {
         say(&format!(
             "== {name}: fine after {} s",
             step.elapsed().as_secs()
-        ));
+        ))?;
     }
-    say(&format!("\nall fine after {} s", start.elapsed().as_secs()));
-    Ok(())
+    let seconds = start.elapsed().as_secs();
+    Ok(say(&format!("\nall fine after {seconds} s"))?)
 }

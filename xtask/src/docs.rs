@@ -1,10 +1,10 @@
 //! `cargo xtask docs`.
 
-use sinew_bench::report::{markdown_rows, work_precision, write_atomically};
+use sinew_bench::output::{Destination, OutputError, say};
+use sinew_bench::report::{markdown_rows, work_precision};
 use sinew_bench::results::BenchResults;
 use sinew_measure::Row;
 
-use crate::bench::say;
 use crate::failure::Failure;
 use crate::root;
 
@@ -19,17 +19,18 @@ const END: &str = "<!-- end -->";
 
 /// Brings the README's table and pictures up to the last bench and the last hard bench.
 pub(crate) fn run() -> Result<(), Failure> {
-    let map = root().join("target/bench-hard").join(MAP);
-    let map = std::fs::read_to_string(&map).map_err(|error| {
+    let inputs = [
+        root().join("target/bench-hard").join(MAP),
+        root().join("target/bench/results.json"),
+    ];
+    let [map, results] = &inputs;
+    let map = std::fs::read_to_string(map).map_err(|error| {
         let path = map.display();
         Failure::Input(format!(
             "{path}: {error}; run `cargo xtask bench --hard` first"
         ))
     })?;
-    let shown_map = root().join("docs").join(MAP);
-    write_atomically(&shown_map, &map).map_err(Failure::chore)?;
-    let results = root().join("target/bench/results.json");
-    let text = std::fs::read_to_string(&results).map_err(|error| {
+    let text = std::fs::read_to_string(results).map_err(|error| {
         let path = results.display();
         Failure::Input(format!("{path}: {error}; run `cargo xtask bench` first"))
     })?;
@@ -56,11 +57,25 @@ pub(crate) fn run() -> Result<(), Failure> {
         machine.os,
         machine.arch
     );
-    write_atomically(&readme, &text).map_err(Failure::chore)?;
-    let picture = root().join(format!("docs/work-precision-{CASE}.svg"));
-    write_atomically(&picture, &work_precision(&results, CASE).svg()).map_err(Failure::chore)?;
-    for written in [readme, picture, shown_map] {
-        say(&written.display().to_string());
+    let picture = work_precision(&results, CASE).svg();
+    let outputs = [
+        (readme, text),
+        (
+            root().join(format!("docs/work-precision-{CASE}.svg")),
+            picture,
+        ),
+        (root().join("docs").join(MAP), map),
+    ];
+    // All are looked at before one is written.
+    let outputs = outputs.into_iter().map(|(path, text)| {
+        let destination = Destination::new(path, &inputs)?;
+        Ok((destination, text))
+    });
+    let outputs: Vec<(Destination, String)> = outputs.collect::<Result<_, OutputError>>()?;
+    for (destination, text) in outputs {
+        let path = destination.path().display().to_string();
+        let _ = destination.write(text.as_bytes())?;
+        say(&path)?;
     }
     Ok(())
 }

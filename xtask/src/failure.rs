@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use sinew_bench::output::{OutputError, complain};
+
 /// A chore that did not succeed.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -9,6 +11,16 @@ pub(crate) enum Failure {
     Input(String),
     /// The chore itself failed: exit code 1.
     Chore(String),
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        if error.is_refusal() {
+            Self::input(error)
+        } else {
+            Self::chore(error)
+        }
+    }
 }
 
 impl Failure {
@@ -28,7 +40,7 @@ impl Failure {
             Self::Input(message) => (message, 2),
             Self::Chore(message) => (message, 1),
         };
-        eprintln!("error: {message}");
+        complain(&format!("error: {message}"));
         ExitCode::from(code)
     }
 }

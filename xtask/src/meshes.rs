@@ -1,11 +1,10 @@
 //! `cargo xtask meshes`.
 
 use sinew_bench::hard::meshes::{inclusion_cube, sliver_cube};
-use sinew_bench::report::write_atomically;
+use sinew_bench::output::{Destination, say};
 use sinew_mesh::structured::{Split, cube};
 use sinew_mesh::{TetMesh, write_msh41_ascii};
 
-use crate::bench::say;
 use crate::failure::Failure;
 use crate::root;
 
@@ -37,15 +36,14 @@ pub(crate) fn run() -> Result<(), Failure> {
 fn write(name: &str, mesh: &TetMesh) -> Result<(), Failure> {
     let mut bytes = Vec::new();
     write_msh41_ascii(&mesh.to_mesh(), &mut bytes).map_err(Failure::chore)?;
-    let text = String::from_utf8(bytes).map_err(Failure::chore)?;
     let path = root().join("meshes").join(format!("{name}.msh"));
-    write_atomically(&path, &text).map_err(Failure::chore)?;
+    let _ = Destination::new(&path, &[])?.write(&bytes)?;
     say(&format!(
         "{}: {} nodes, {} tetrahedra, {} bytes",
         path.display(),
         mesh.points.len(),
         mesh.tets.len(),
-        text.len()
-    ));
+        bytes.len()
+    ))?;
     Ok(())
 }

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use sinew_bench::reproduce::reproduce;
+use sinew_bench::output::{OutputFolder, say};
+use sinew_bench::reproduce::{Reproduction, reproduce};
+use sinew_bench::scene_files;
 use sinew_measure::Case;
 
-use crate::bench::say;
 use crate::failure::Failure;
 use crate::root;
 
@@ -18,25 +19,30 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let case = |name: &str| Case::load(&root().join("scenes").join(name)).map_err(Failure::input);
-    let mut oscillator = case("paper-oscillator.toml")?;
-    let mut cube = case("paper-cube.toml")?;
-    let reproduction = reproduce(&mut oscillator, &mut cube).map_err(Failure::chore)?;
+    let scene = |name: &str| root().join("scenes").join(name);
+    let scenes = [scene("paper-oscillator.toml"), scene("paper-cube.toml")];
     let out = arguments.out.clone();
     let out = out.unwrap_or_else(|| root().join("target").join("reproduce"));
-    let written = reproduction.write(&out).map_err(Failure::input)?;
+    let folder = OutputFolder::new(out, &scene_files(&scenes));
+    folder.check(&Reproduction::output_files())?;
+    let [mut oscillator, mut cube] = {
+        let [oscillator, cube] = scenes.map(|scene| Case::load(&scene).map_err(Failure::input));
+        [oscillator?, cube?]
+    };
+    let reproduction = reproduce(&mut oscillator, &mut cube).map_err(Failure::chore)?;
+    let written = reproduction.write(&folder)?;
     for claim in &reproduction.claims {
         let (place, says, verdict) = (claim.place, claim.says, claim.holds.word());
         say(&format!(
             "{place}: {says}\n    {verdict}: {}",
             claim.measured
-        ));
+        ))?;
     }
     say(&format!(
         "page:    {}\ntable:   {}\nfigures: {}",
         written.page.display(),
         written.claims.display(),
-        out.display()
-    ));
+        folder.path().display()
+    ))?;
     Ok(())
 }

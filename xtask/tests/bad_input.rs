@@ -133,6 +133,134 @@ fn a_missing_scene_is_named() {
 }
 
 #[test]
+fn a_scene_that_cannot_be_measured_costs_the_others_nothing() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = |name: &str, text: &str| {
+        let path = directory.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    let cases = [
+        (CUBE.replace("1060.0", "0.0"), "density = 0.0"),
+        (CUBE.replace("3500.0", "3.5e300"), "reference"),
+        ("title = ".to_owned(), "not TOML"),
+    ];
+    let good = scene("good.toml", CUBE);
+    for (text, reason) in cases {
+        let bad = scene("bad.toml", &text);
+        let out = directory.path().join("out");
+        let mut command = bench(&bad, &out);
+        command
+            .arg("--scene")
+            .arg(&good)
+            .args(["--integrator", "newmark"]);
+        let output = command.output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert_eq!(said.trim_end().lines().count(), 1, "{said}");
+        assert!(said.contains("1 missing from the results"), "{said}");
+        let shown = String::from_utf8(output.stdout).unwrap();
+        let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+        for told in [&said, &shown, &page] {
+            assert!(told.contains("bad.toml") && told.contains(reason), "{told}");
+        }
+        assert!(shown.contains("newmark"), "{shown}");
+        let json = std::fs::read_to_string(out.join("results.json")).unwrap();
+        let results: serde_json::Value = serde_json::from_str(&json).unwrap();
+        assert_eq!(results["cases"][0]["id"], "good");
+        assert!(!results["rows"].as_array().unwrap().is_empty());
+        let missing = &results["missing"][0];
+        assert!(missing["scene"].as_str().unwrap().ends_with("bad.toml"));
+        assert!(
+            missing["reason"].as_str().unwrap().contains(reason),
+            "{missing}"
+        );
+    }
+}
+
+#[test]
+fn where_no_scene_can_be_measured_each_is_named() {
+    let directory = tempfile::tempdir().unwrap();
+    let out = directory.path().join("out");
+    let mut command = bench(Path::new("nowhere.toml"), &out);
+    let output = command.args(["--scene", "neither.toml"]).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        said.contains("nowhere.toml") && said.contains("neither.toml"),
+        "{said}"
+    );
+    assert!(!out.exists());
+}
+
+#[test]
+#[cfg(unix)]
+fn an_output_that_would_destroy_something_is_refused_before_anything_is_measured() {
+    use std::os::unix::fs::FileTypeExt;
+    let directory = tempfile::tempdir().unwrap();
+    let path = |name: &str| directory.path().join(name);
+    std::fs::write(path("scene.toml"), CUBE).unwrap();
+    std::fs::write(path("file"), "old").unwrap();
+    std::fs::create_dir_all(path("taken/report.html")).unwrap();
+    std::fs::create_dir(path("linked")).unwrap();
+    std::fs::hard_link(path("scene.toml"), path("linked/results.json")).unwrap();
+    std::fs::create_dir(path("kept")).unwrap();
+    std::fs::write(path("kept/stability-scene.svg"), "old").unwrap();
+    let mut permissions = std::fs::metadata(path("kept/stability-scene.svg"))
+        .unwrap()
+        .permissions();
+    permissions.set_readonly(true);
+    std::fs::set_permissions(path("kept/stability-scene.svg"), permissions).unwrap();
+    for (out, expected) in [
+        (path("file"), "file: it is no folder"),
+        (path("file/out"), "file: it is no folder"),
+        ("/dev/null".into(), "/dev/null: it is no folder"),
+        (path("taken"), "taken/report.html: it is a folder"),
+        (path("linked"), "linked/results.json: this run reads it as "),
+        (path("kept"), "kept/stability-scene.svg: it is read-only"),
+    ] {
+        let output = bench(&path("scene.toml"), &out).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(expected), "{said}");
+        assert_eq!(said.trim_end().lines().count(), 1, "{said}");
+        assert_eq!(output.stdout, b"");
+    }
+    assert_eq!(std::fs::read_to_string(path("scene.toml")).unwrap(), CUBE);
+    assert_eq!(std::fs::read_to_string(path("file")).unwrap(), "old");
+    assert_eq!(std::fs::read_dir(path("taken")).unwrap().count(), 1);
+    let null = std::fs::metadata("/dev/null").unwrap();
+    assert!(null.file_type().is_char_device());
+}
+
+#[test]
+#[cfg(unix)]
+fn a_full_standard_output_is_an_error_once_the_files_are_written() {
+    let Ok(full) = std::fs::File::options().write(true).open("/dev/full") else {
+        return;
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let scene = directory.path().join("scene.toml");
+    std::fs::write(&scene, CUBE).unwrap();
+    let out = directory.path().join("out");
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_xtask"));
+    command.args(["bench", "--quick", "--integrator", "newmark", "--scene"]);
+    let command = command.arg(&scene).arg("--out").arg(&out).stdout(full);
+    let output = command
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let output = output.wait_with_output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("writing standard output failed: No space left"),
+        "{said}"
+    );
+    assert!(out.join("results.json").exists());
+}
+
+#[test]
 fn a_method_that_cannot_run_is_listed_with_its_reason_and_the_others_run() {
     let directory = tempfile::tempdir().unwrap();
     let scene = directory.path().join("scene.toml");

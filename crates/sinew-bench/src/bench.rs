@@ -8,7 +8,10 @@ use sinew_measure::{
     Case, CaseError, Effort, Method, ThreadError, mark_pareto, measure, on_one_thread,
 };
 
-use crate::results::{BenchResults, Machine, Skipped};
+use sinew_scene::Scene;
+
+use crate::report::file_names;
+use crate::results::{BenchResults, Machine, Missing, Skipped};
 
 /// What to measure.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,15 +36,17 @@ pub enum BenchError {
     /// A step that is no time.
     #[error("--dt {0}: expected a finite step above 0 s")]
     Step(f64),
-    /// A scene.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// A stability map.
-    #[error("stability map: {0}")]
-    Map(String),
+    /// Every scene.
+    #[error("{}", in_one_line(.0))]
+    Cases(Vec<CaseError>),
     /// No thread to measure on.
     #[error(transparent)]
     Thread(#[from] ThreadError),
+}
+
+fn in_one_line(errors: &[CaseError]) -> String {
+    let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    errors.join("; ")
 }
 
 /// How far a bench has come.
@@ -77,20 +82,20 @@ pub fn default_steps(dt: f64, quick: bool) -> Vec<f64> {
 
 impl Bench {
     /// Measures everything on one thread. A run that diverges is a row like any other; one that
-    /// cannot be made is listed with its reason.
+    /// cannot be made is listed with its reason, and so is a scene that cannot be read or has no
+    /// reference: the others are measured.
     ///
     /// # Errors
-    /// [`BenchError`] for mistakes in what was asked for, before anything is measured.
+    /// [`BenchError`] for mistakes in what was asked for, before anything is measured, and where
+    /// no scene can be measured.
     pub fn run(
         &self,
         revision: String,
         machine: Machine,
         mut progress: impl FnMut(Progress) + Send,
     ) -> Result<BenchResults, BenchError> {
+        self.check()?;
         let methods = self.methods()?;
-        if let Some(&step) = self.steps.iter().find(|dt| !(dt.is_finite() && **dt > 0.0)) {
-            return Err(BenchError::Step(step));
-        }
         on_one_thread(|| self.run_here(&methods, revision, machine, &mut progress))?
     }
 
@@ -101,14 +106,24 @@ impl Bench {
         machine: Machine,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<BenchResults, BenchError> {
-        let mut cases = Vec::new();
+        let mut results = BenchResults::new(revision, machine);
+        let (mut cases, mut errors) = (Vec::new(), Vec::new());
         for scene in &self.scenes {
             progress(Progress::Reference {
                 scene: scene.clone(),
             });
-            cases.push(Case::load(scene)?);
+            match Case::load(scene) {
+                Ok(case) => cases.push(case),
+                Err(error) => {
+                    let scene = scene.display().to_string();
+                    results.missing.push(Missing::scene(scene, &error));
+                    errors.push(error);
+                }
+            }
         }
-        let mut results = BenchResults::new(revision, machine);
+        if cases.is_empty() && !errors.is_empty() {
+            return Err(BenchError::Cases(errors));
+        }
         let mut plan: Vec<(usize, Method, f64)> = Vec::new();
         for (index, case) in cases.iter().enumerate() {
             let steps = self.steps_of(case);
@@ -154,6 +169,31 @@ impl Bench {
         Ok(results)
     }
 
+    /// Looks for mistakes in the arguments themselves.
+    ///
+    /// # Errors
+    /// [`BenchError::Integrator`] and [`BenchError::Step`].
+    pub fn check(&self) -> Result<(), BenchError> {
+        self.methods()?;
+        match self.steps.iter().find(|dt| !(dt.is_finite() && **dt > 0.0)) {
+            Some(&step) => Err(BenchError::Step(step)),
+            None => Ok(()),
+        }
+    }
+
+    /// The files that the bench reads, as far as its scenes can be read: no output may be one of
+    /// them.
+    #[must_use]
+    pub fn input_files(&self) -> Vec<PathBuf> {
+        scene_files(&self.scenes)
+    }
+
+    /// The names of the files that [`write_all`](crate::report::write_all) writes of the results.
+    #[must_use]
+    pub fn output_files(&self) -> Vec<String> {
+        file_names(&case_ids(&self.scenes), &[])
+    }
+
     /// The integrators to measure.
     ///
     /// # Errors
@@ -179,6 +219,21 @@ impl Bench {
             self.steps.clone()
         }
     }
+}
+
+/// Scene files and the files they name, as far as the scenes can be read.
+#[must_use]
+pub fn scene_files(scenes: &[PathBuf]) -> Vec<PathBuf> {
+    let files = |scene: &PathBuf| match Scene::load(scene) {
+        Ok(scene) => scene.input_files(),
+        Err(_) => vec![scene.clone()],
+    };
+    scenes.iter().flat_map(files).collect()
+}
+
+/// The ids that the cases of these scenes will have.
+pub(crate) fn case_ids(scenes: &[PathBuf]) -> Vec<String> {
+    scenes.iter().map(|scene| Case::id_of(scene)).collect()
 }
 
 /// A method as it runs on a case, and its kinds that lead somewhere else on the front.

@@ -12,5 +12,7 @@ pub mod report;
 pub mod reproduce;
 pub mod results;
 
-pub use bench::{Bench, BenchError, Progress, default_steps};
+pub use sinew_scene::output;
+
+pub use bench::{Bench, BenchError, Progress, default_steps, scene_files};
 pub use machine::{machine, revision};

@@ -1,7 +1,8 @@
 //! Results of a bench: what `results.json` holds.
 //!
-//! JSON has no NaN and no infinity. A figure that may be missing is an `Option`; every other
-//! number must be finite, and [`BenchResults::to_json`] refuses one that is not.
+//! JSON has no NaN and no infinity. A figure that need not be there is an `Option`; any other number
+//! that is not finite is written as `null`, read as NaN, and named with its reason in the list
+//! `missing`, so that it costs nothing but itself.
 
 use serde::{Deserialize, Serialize};
 use sinew_measure::{CaseInfo, Row};
@@ -9,8 +10,10 @@ use sinew_measure::{CaseInfo, Row};
 use crate::hard::{Mark, MarkVerdict, StabilityMap};
 
 mod json;
+mod missing;
 
 pub use json::ResultsError;
+pub use missing::Missing;
 
 /// Version of the format this crate writes and reads.
 pub const SCHEMA: u32 = 1;
@@ -34,6 +37,10 @@ pub struct BenchResults {
     /// Runs that were asked for and not made.
     #[serde(default)]
     pub skipped: Vec<Skipped>,
+    /// Scenes and maps that are missing. What is written holds the numbers that cannot be shown as
+    /// well; [`BenchResults::all_missing`] tells both.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub missing: Vec<Missing>,
     /// Pass marks of hard cases.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub marks: Vec<Mark>,
@@ -84,6 +91,7 @@ impl BenchResults {
             cases: Vec::new(),
             rows: Vec::new(),
             skipped: Vec::new(),
+            missing: Vec::new(),
             marks: Vec::new(),
             maps: Vec::new(),
         }

@@ -84,3 +84,48 @@ fn the_quick_marks_are_passed_and_tell_what_they_measured() {
     let json = results.to_json().unwrap();
     assert_eq!(BenchResults::from_json(&json).unwrap(), results);
 }
+
+/// A folder with the quick hard scenes, apart from one.
+fn scenes_without(missing: &str) -> tempfile::TempDir {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let folder = tempfile::tempdir().unwrap();
+    for from in ["scenes", "scenes/hard", "meshes"] {
+        let to = folder.path().join(from);
+        std::fs::create_dir_all(&to).unwrap();
+        for entry in std::fs::read_dir(root.join(from)).unwrap() {
+            let entry = entry.unwrap();
+            if entry.file_type().unwrap().is_file() && entry.file_name() != missing {
+                std::fs::copy(entry.path(), to.join(entry.file_name())).unwrap();
+            }
+        }
+    }
+    folder
+}
+
+#[test]
+fn a_hard_scene_that_cannot_be_read_fails_its_own_marks_only() {
+    let folder = scenes_without("nearly-free.toml");
+    let bench = HardBench {
+        scenes: folder.path().join("scenes"),
+        quick: true,
+    };
+    let results = bench.run("test".into(), machine(), |_| ()).unwrap();
+    let missing = results.all_missing();
+    assert_eq!(missing.len(), 1, "{missing:#?}");
+    assert!(missing[0].scene.ends_with("nearly-free.toml"));
+    let failed: Vec<&Mark> = results.failed_marks().collect();
+    assert_eq!(failed.len(), 1, "{failed:#?}");
+    assert_eq!(failed[0].case, "nearly free body, pulse");
+    assert_eq!(failed[0].measured, "nearly-free was not read");
+    assert_eq!(results.maps.len(), 1);
+}
+
+#[test]
+fn without_any_hard_scene_there_are_no_results() {
+    let folder = tempfile::tempdir().unwrap();
+    let bench = HardBench {
+        scenes: folder.path().to_owned(),
+        quick: true,
+    };
+    assert!(bench.run("test".into(), machine(), |_| ()).is_err());
+}

@@ -4,7 +4,8 @@
 
 use std::path::PathBuf;
 
-use sinew_bench::reproduce::{Holds, reproduce};
+use sinew_bench::output::OutputFolder;
+use sinew_bench::reproduce::{Holds, Reproduction, reproduce};
 use sinew_measure::Case;
 
 fn case(name: &str) -> Case {
@@ -46,8 +47,16 @@ fn every_figure_and_every_claim() {
     assert!(claim("4.2, Fig. 4c", "unstable").measured.contains("e30 m"));
 
     let directory = tempfile::tempdir().unwrap();
-    let written = reproduction.write(directory.path()).unwrap();
+    let folder = OutputFolder::new(directory.path(), &[]);
+    let written = reproduction.write(&folder).unwrap();
     assert_eq!(written.figures.len(), 8);
+    let entries = std::fs::read_dir(directory.path()).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.collect();
+    let mut known = Reproduction::output_files();
+    names.sort();
+    known.sort();
+    assert_eq!(names, known);
     let table = std::fs::read_to_string(written.claims).unwrap();
     assert_eq!(table.lines().count(), 2 + reproduction.claims.len());
 }

@@ -7,7 +7,8 @@ use std::{collections::BTreeMap, fs, path::Path};
 
 use serde_json::{Value, json};
 use sinew_bench::{
-    report::{Axis, Plot, Series, Style, Surface, markdown, terminal, write_all, write_atomically},
+    output::OutputFolder,
+    report::{Axis, Plot, Series, Style, Surface, markdown, terminal, write_all},
     results::{BenchResults, Machine, Skipped},
 };
 use sinew_measure::{CaseInfo, Outcome, Row, Verdict, Work, mark_pareto};
@@ -315,7 +316,7 @@ fn directory() -> &'static Path {
 #[test]
 fn everything_is_written() {
     let results = results();
-    let written = write_all(&results, directory()).unwrap();
+    let written = write_all(&results, &OutputFolder::new(directory(), &[])).unwrap();
     println!("look at {}", written.report.display());
 
     let json = fs::read_to_string(&written.results).unwrap();
@@ -369,7 +370,7 @@ fn the_table_tells_what_happened() {
     assert!(text.lines().any(|l| l.contains("unbounded (4.00e5)")));
 
     let markdown = markdown(&results);
-    write_atomically(&directory().join("../table.md"), &markdown).unwrap();
+    fs::write(directory().join("../table.md"), &markdown).unwrap();
     assert_eq!(
         markdown
             .lines()
@@ -413,7 +414,7 @@ fn displacement_over_time() {
     let svg = plot.svg();
     assert!(svg.contains("forward Euler leaves the frame"));
     fs::create_dir_all(directory()).unwrap();
-    write_atomically(&directory().join("../time.svg"), &svg).unwrap();
+    fs::write(directory().join("../time.svg"), &svg).unwrap();
 }
 
 #[test]
@@ -457,7 +458,7 @@ fn a_deformed_cube() {
     );
     surface.outline = Some([[0.0; 3], [edge; 3]]);
     fs::create_dir_all(directory()).unwrap();
-    write_atomically(&directory().join("../cube.svg"), &surface.svg()).unwrap();
+    fs::write(directory().join("../cube.svg"), surface.svg()).unwrap();
 
     let wild: Vec<[f64; 3]> = points
         .iter()
@@ -469,5 +470,5 @@ fn a_deformed_cube() {
         .collect();
     surface.points = &wild;
     surface.title = "The same, paper's CNN Q=4 (same colours)".into();
-    write_atomically(&directory().join("../wild.svg"), &surface.svg()).unwrap();
+    fs::write(directory().join("../wild.svg"), surface.svg()).unwrap();
 }

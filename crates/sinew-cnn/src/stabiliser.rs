@@ -22,17 +22,18 @@ pub enum Inner {
     /// P = P1: one block per cell, no sweep beside the step's own.
     #[default]
     Block,
-    /// So many block Jacobi iterations; the first needs no sweep.
+    /// Block Jacobi iterations; the first needs no sweep.
     Jacobi {
         /// Iterations, at least 1.
         sweeps: u32,
     },
-    /// So many Chebyshev iterations; the first needs no sweep.
+    /// Chebyshev iterations; the first needs no sweep.
     Chebyshev {
         /// Iterations, at least 1.
         sweeps: u32,
     },
-    /// So many symmetric block Gauss-Seidel iterations.
+    /// Symmetric block Gauss-Seidel iterations, in the order of the nodes: in steps far beyond the
+    /// critical one the motion depends on how nodes are numbered.
     GaussSeidel {
         /// Iterations, at least 1.
         sweeps: u32,

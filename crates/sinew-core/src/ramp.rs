@@ -127,15 +127,6 @@ impl Ramp {
         }
     }
 
-    /// The largest size of the value at any time.
-    #[must_use]
-    pub fn largest(&self) -> f64 {
-        match self {
-            Self::Step | Self::Sin2 { .. } | Self::Pulse { .. } => 1.0,
-            Self::Table { values, .. } => values.iter().fold(0.0, |max, v| v.abs().max(max)),
-        }
-    }
-
     /// How far the value goes up and down in all, from 0 before the start on.
     #[must_use]
     pub fn variation(&self) -> f64 {
@@ -333,8 +324,6 @@ mod tests {
             let values: Vec<f64> = (0..=20_000)
                 .map(|n| ramp.value(f64::from(n) * dt))
                 .collect();
-            let largest = values.iter().fold(0.0, |max: f64, v| v.abs().max(max));
-            assert!((ramp.largest() - largest).abs() < 1e-9, "{ramp:?}");
             let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
             let variation = values[0].abs() + steps.sum::<f64>();
             assert!((ramp.variation() - variation).abs() < 1e-2, "{ramp:?}");

@@ -52,8 +52,6 @@ pub struct Start {
     pub system: Revision,
     /// Kinetic and elastic energy (J).
     pub energy: f64,
-    /// The largest velocity (m/s) that a cell has when all energy at it is kinetic.
-    pub speed: f64,
 }
 
 impl State {

@@ -53,16 +53,11 @@ impl Energy {
     }
 }
 
-/// Sizes by which a guard judges velocities.
+/// Sizes by which a guard cuts steps where a method knows no stable one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales<'a> {
     /// Shortest distance from each cell to a neighbour (m), one entry a cell.
     pub cell_size: &'a [f64],
-    /// Density times the speed of the waves by which a pressed surface yields (kg/(m^2 s)), of the
-    /// material in which it is least: pressure waves, or shear waves where those are far slower.
-    pub impedance: f64,
-    /// Bound of the pressure that all loads together put on the body at any time (Pa).
-    pub pressure: f64,
 }
 
 /// A law was asked outside its domain.
@@ -123,7 +118,7 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// Sizes by which a guard judges velocities, where the system has cells in space.
+    /// Sizes by which a guard cuts steps, where the system has cells in space.
     fn scales(&self) -> Option<Scales<'_>> {
         None
     }

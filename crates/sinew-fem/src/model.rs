@@ -13,7 +13,7 @@ use crate::cells::Cells;
 use crate::elements::{ElementLaw, Tetrahedra};
 use crate::error::{Cause, FemError, Item};
 use crate::report::{ModelReport, RegionFacts};
-use crate::scales::OwnedScales;
+use crate::scales::cell_sizes;
 use crate::{Law, Problem, assembly, check, loads, tetra};
 
 /// A linear model of a body: M, D, K over its moving nodes, loads, and the geometry behind them.
@@ -24,7 +24,7 @@ pub struct Model {
     node_tags: Vec<u64>,
     tetrahedra: Tetrahedra,
     extent: f64,
-    scales: OwnedScales,
+    cell_size: Vec<f64>,
     report: ModelReport,
 }
 
@@ -122,7 +122,7 @@ impl Model {
 
         let (low, high) = mesh.bounding_box();
         let extent = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
-        let scales = OwnedScales::new(mesh, &cells, problem, &regions, &core_loads, extent);
+        let cell_size = cell_sizes(mesh, &cells);
 
         let damping = Damping {
             mass: problem.damping.mass,
@@ -159,7 +159,7 @@ impl Model {
             node_tags: mesh.node_tags.clone(),
             tetrahedra: Tetrahedra::new(mesh, &region_of, laws),
             extent,
-            scales,
+            cell_size,
             report,
         })
     }
@@ -259,9 +259,7 @@ impl System for Model {
 
     fn scales(&self) -> Option<Scales<'_>> {
         Some(Scales {
-            cell_size: &self.scales.cell_size,
-            impedance: self.scales.impedance,
-            pressure: self.scales.pressure,
+            cell_size: &self.cell_size,
         })
     }
 

@@ -5,6 +5,8 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use std::collections::BTreeMap;
 
 use common::cube::{altered, cube, mass_damping, run, scene, springs};
@@ -15,8 +17,8 @@ use nalgebra::{DMatrix, DVector};
 use sinew_cnn::{Blend, DampingShare, GammaRule, Inner, Stabiliser};
 use sinew_core::spectrum::critical_step;
 use sinew_core::{
-    Damping, Integrator, LinearModel, LinearOperators, LinearSystem, LoadTime, OptionValue,
-    Options, StableStep, State, System,
+    BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
+    LoadTime, OptionValue, Options, Pattern, Ramp, StableStep, State, System,
 };
 #[cfg(feature = "implicit")]
 use sinew_core::{Load, Ramp};
@@ -740,4 +742,56 @@ fn the_velocity_at_the_time_of_the_displacement_is_of_the_size_of_its_neighbours
             );
         }
     }
+}
+
+/// A chain of masses between walls, numbered from one end or in a shuffled order, loaded at one mass; returns
+/// the displacement of each mass along the chain.
+fn chain_numbered_by(order: [u32; 9], inner: Inner) -> Vec<f64> {
+    let pairs: Vec<[u32; 2]> = order.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+    let pattern = Arc::new(Pattern::from_elements(9, &pairs).unwrap());
+    let mut stiffness = BlockMatrix::zeros(pattern, Layers::One);
+    for pair in &pairs {
+        let spring = [100.0, -100.0, -100.0, 100.0];
+        stiffness.add_element(pair, &spring).unwrap();
+    }
+    for end in [order[0], order[8]] {
+        stiffness.add_block(end, end, &[100.0]).unwrap();
+    }
+    let load = Load {
+        ramp: Ramp::Step,
+        entries: vec![(order[2], 1.0)],
+    };
+    let damping = Damping {
+        mass: 2.0,
+        ..Damping::default()
+    };
+    let operators = LinearOperators::new(vec![0.1; 9], stiffness, damping, vec![load]).unwrap();
+    let system = LinearModel::new(operators);
+    let mut state = State::at_rest(9);
+    let mut integrator = method(inner, Blend::Auto);
+    // Five times the critical step.
+    for _ in 0..10 {
+        integrator.step(&system, &mut state, 0.16).unwrap();
+    }
+    order.iter().map(|cell| state.u[*cell as usize]).collect()
+}
+
+#[test]
+fn only_gauss_seidel_depends_on_the_numbering_of_the_nodes() {
+    let difference = |inner| {
+        let plain = chain_numbered_by([0, 1, 2, 3, 4, 5, 6, 7, 8], inner);
+        let shuffled = chain_numbered_by([4, 0, 7, 2, 8, 1, 6, 3, 5], inner);
+        let size = plain.iter().fold(0.0, |max: f64, u| max.max(u.abs()));
+        let differences = plain.iter().zip(&shuffled).map(|(a, b)| (a - b).abs());
+        differences.fold(0.0, f64::max) / size
+    };
+    for inner in [
+        Inner::Block,
+        Inner::Jacobi { sweeps: 3 },
+        Inner::Chebyshev { sweeps: 3 },
+    ] {
+        assert!(difference(inner) < 1e-12, "{inner:?}");
+    }
+    let of_gauss_seidel = difference(Inner::GaussSeidel { sweeps: 2 });
+    assert!(of_gauss_seidel > 0.01, "{of_gauss_seidel}");
 }

@@ -85,8 +85,14 @@ impl Case {
     /// [`CaseError`].
     pub fn load(path: &Path) -> Result<Self, CaseError> {
         let simulation = Scene::load(path)?.build()?;
+        Self::new(Self::id_of(path), simulation)
+    }
+
+    /// The id of the case that a scene file makes.
+    #[must_use]
+    pub fn id_of(path: &Path) -> String {
         let stem = path.file_stem().unwrap_or(path.as_os_str());
-        Self::new(stem.to_string_lossy(), simulation)
+        stem.to_string_lossy().into_owned()
     }
 
     /// A case from a built scene.

@@ -19,4 +19,4 @@ pub use case::{Case, CaseError, Span};
 pub use cpu_time::thread_cpu_time;
 pub use measure::{Effort, Method, measure};
 pub use one_thread::{ThreadError, on_one_thread};
-pub use row::{ACCURATE, CaseInfo, Outcome, Row, Verdict, Work, finite, mark_pareto};
+pub use row::{ACCURATE, CaseInfo, Gap, Outcome, Row, Verdict, Work, finite, mark_pareto};

@@ -5,9 +5,11 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+mod gaps;
 mod label;
 mod pareto;
 
+pub use gaps::Gap;
 pub(crate) use label::label;
 pub use pareto::mark_pareto;
 
@@ -24,24 +26,33 @@ pub struct CaseInfo {
     /// Free degrees of freedom.
     pub dofs: usize,
     /// Simulated time (s).
+    #[serde(deserialize_with = "gaps::null_is_nan")]
     pub duration_s: f64,
     /// How the reference was made.
     pub reference: String,
     /// The reference's own estimated relative error (fraction).
+    #[serde(deserialize_with = "gaps::null_is_nan")]
     pub reference_error: f64,
     /// Largest |component| of the displacement in the reference (m).
+    #[serde(deserialize_with = "gaps::null_is_nan")]
     pub max_u_m: f64,
     /// Half the range of the reference's worst dof over the last fifth of the run (m).
+    #[serde(deserialize_with = "gaps::null_is_nan")]
     pub late_amplitude_m: f64,
     /// Critical step `2 / omega_max` of the undamped system (s); none where there is no omega_max.
     #[serde(default)]
     pub critical_step_s: Option<f64>,
     /// The largest stable step of each method that ran and has one (s), by its label.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(
+        default,
+        skip_serializing_if = "BTreeMap::is_empty",
+        deserialize_with = "gaps::nulls_are_nan"
+    )]
     pub stable_steps_s: BTreeMap<String, f64>,
 }
 
-/// One run: a case, an integrator with its options, a step.
+/// One run: a case, an integrator with its options, a step. A number that could not be shown is NaN;
+/// [`Row::gaps`] names them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Id of the case.
@@ -52,10 +63,12 @@ pub struct Row {
     #[serde(default)]
     pub options: BTreeMap<String, Value>,
     /// Step (s).
+    #[serde(deserialize_with = "gaps::null_is_nan")]
     pub dt: f64,
     /// Steps taken.
     pub steps: u64,
     /// Sweeps per simulated second (1/s).
+    #[serde(deserialize_with = "gaps::null_is_nan")]
     pub sweeps_per_s: f64,
     /// How the run ended.
     pub outcome: Outcome,
@@ -74,6 +87,7 @@ pub struct Row {
     /// Half the range of the worst dof over the last fifth of the steps (m); none where not finite.
     pub late_amplitude: Option<f64>,
     /// Share of the (dof, step) pairs that were saturated (fraction).
+    #[serde(deserialize_with = "gaps::null_is_nan")]
     pub saturated: f64,
     /// Some cells were saturated: bounded by the guard, not by the physics.
     #[serde(default)]
@@ -83,15 +97,21 @@ pub struct Row {
     /// Work counts over the run; they reproduce, seconds do not.
     pub work: Work,
     /// CPU seconds per simulated second (thread CPU time, median of the repeats).
+    #[serde(deserialize_with = "gaps::null_is_nan")]
     pub cpu_s_per_s: f64,
     /// CPU time per step (microseconds).
+    #[serde(deserialize_with = "gaps::null_is_nan")]
     pub us_per_step: f64,
     /// CPU time of the set-up (s), in none of the other times.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "gaps::null_is_nan")]
     pub setup_cpu_s: f64,
     /// What the method's set-up found out, by name: the certificate of a stabilised network, the
     /// degree of a propagator.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(
+        default,
+        skip_serializing_if = "BTreeMap::is_empty",
+        deserialize_with = "gaps::nulls_are_nan"
+    )]
     pub facts: BTreeMap<String, f64>,
     /// Step over the critical step 2/omega_max; of hard cases only.
     #[serde(default, skip_serializing_if = "Option::is_none")]

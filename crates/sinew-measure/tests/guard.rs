@@ -64,32 +64,29 @@ fn row(case: &mut Case, integrator: &str, saturation: &str, dt: f64) -> Row {
     measure(case, &method, dt, Effort::QUICK).unwrap()
 }
 
-/// Those for which 20 ms or five critical steps are cut and still too long are guarded, the others
-/// are cut as far as their stable step.
+/// A step that is cut as far as the method's stable one is as good as any stable run.
 #[test]
-fn on_the_papers_cube_a_step_too_long_is_bounded_and_said_so() {
+fn on_the_papers_cube_a_step_too_long_is_cut_and_said_so() {
     let mut case = Case::load(&scene("paper-cube")).unwrap();
     let critical = case.critical_step().unwrap();
     for dt in [0.02, 5.0 * critical] {
-        for (integrator, guarded) in [
-            ("forward-euler", true),
-            ("symplectic-euler", false),
-            ("central-difference", false),
-            ("rk4", false),
-            ("modified-leapfrog", false),
-            ("cnn", true),
-            ("cnn-symplectic", false),
+        for integrator in [
+            "forward-euler",
+            "symplectic-euler",
+            "central-difference",
+            "rk4",
+            "modified-leapfrog",
+            "cnn",
+            "cnn-symplectic",
         ] {
             let free = row(&mut case, integrator, "off", dt);
             assert!(!free.bounded, "{integrator} at {dt}");
             let row = row(&mut case, integrator, "auto", dt);
             assert!(row.bounded, "{integrator} at {dt}: {:?}", row.max_u);
-            assert_eq!(row.guarded, guarded, "{integrator} at {dt}");
-            assert!(row.saturated <= 1.0);
             assert!(row.facts["guard_substeps"] > 1.0, "{integrator} at {dt}");
-            // What was cut down to its stable step is as good as any stable run.
+            assert!(!row.guarded, "{integrator} at {dt}");
             let error = row.error.unwrap();
-            assert!(guarded || error < 0.02, "{integrator} at {dt}: {error}");
+            assert!(error < 0.02, "{integrator} at {dt}: {error}");
         }
     }
 }

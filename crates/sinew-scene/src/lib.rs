@@ -35,12 +35,12 @@
 mod decode;
 mod error;
 mod nearest;
+pub mod output;
 mod plan;
 mod probe_csv;
 mod scene;
 mod simulation;
 mod source;
-mod whole_file;
 
 pub use error::{Fault, SceneError};
 pub use plan::{Plan, PlanSection};
@@ -50,4 +50,3 @@ pub use scene::{
 };
 pub use simulation::{BodyModel, NearestNode, Probe, SceneModel, Simulation};
 pub use source::SceneSource;
-pub use whole_file::WholeFile;

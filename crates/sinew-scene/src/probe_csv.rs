@@ -1,55 +1,56 @@
 //! The motion of probes as a CSV file.
 
 use std::io::{self, Write};
-use std::path::PathBuf;
 
 use sinew_core::{RecordError, Recorder, State, System, Verdict};
 
-use crate::WholeFile;
+use crate::output::{Delivery, Output, OutputError};
 use crate::simulation::Probe;
 
 /// Writes the displacement of probes after every step: columns `t_s`, then `<probe>_u_x_m`,
 /// `<probe>_u_y_m`, `<probe>_u_z_m` of each probe (`<probe>_u_m` for an oscillator). Numbers
 /// are written so that reading them gives the same bits.
 ///
-/// The file has another name until [`ProbeCsv::finish`], so that a file with its own name is
-/// always whole; dropped before that, it leaves nothing behind.
+/// A file has another name until [`ProbeCsv::finish`], so that a file with its own name is
+/// always whole; dropped before that, it leaves nothing behind. Where the output is a pipe whose
+/// reader goes away, the run is stopped.
 #[derive(Debug)]
 pub struct ProbeCsv {
     probes: Vec<Probe>,
-    file: WholeFile,
+    output: Output,
 }
 
 impl ProbeCsv {
-    /// Starts a file that will be called `path`.
+    /// Writes the head of the columns.
     ///
     /// # Errors
-    /// When no file can be written there.
-    pub fn create(path: impl Into<PathBuf>, probes: &[Probe]) -> io::Result<Self> {
-        let mut file = WholeFile::create(path)?;
-        writeln!(file, "{}", columns(probes).join(","))?;
-        Ok(Self {
-            probes: probes.to_vec(),
-            file,
-        })
+    /// [`OutputError::Failed`].
+    pub fn new(mut output: Output, probes: &[Probe]) -> Result<Self, OutputError> {
+        match writeln!(output, "{}", columns(probes).join(",")) {
+            Ok(()) => Ok(Self {
+                probes: probes.to_vec(),
+                output,
+            }),
+            Err(source) => Err(output.failed(source)),
+        }
     }
 
-    /// Completes the file and gives it its name, replacing one of that name.
+    /// Completes the output; see [`Output::finish`].
     ///
     /// # Errors
-    /// When it cannot be written or renamed.
-    pub fn finish(self) -> io::Result<PathBuf> {
-        self.file.finish()
+    /// [`OutputError`] when it cannot be written or may no longer have its name.
+    pub fn finish(self) -> Result<Delivery, OutputError> {
+        self.output.finish()
     }
 
     fn write(&mut self, state: &State) -> io::Result<()> {
-        write!(self.file, "{:?}", state.t())?;
+        write!(self.output, "{:?}", state.t())?;
         for probe in &self.probes {
             for value in probe.displacement(&state.u) {
-                write!(self.file, ",{value:?}")?;
+                write!(self.output, ",{value:?}")?;
             }
         }
-        writeln!(self.file)
+        writeln!(self.output)
     }
 }
 
@@ -60,10 +61,11 @@ impl Recorder for ProbeCsv {
 
     fn record(&mut self, _system: &dyn System, state: &State) -> Result<Verdict, RecordError> {
         match self.write(state) {
+            Ok(()) if self.output.reader_left() => Ok(Verdict::Stop),
             Ok(()) => Ok(Verdict::Continue),
             Err(error) => Err(RecordError {
                 t: state.t(),
-                source: error.into(),
+                source: self.output.failed(error).into(),
             }),
         }
     }
@@ -85,6 +87,12 @@ mod tests {
     use std::fs;
 
     use super::*;
+    use crate::output::Destination;
+
+    fn csv(path: &std::path::Path) -> ProbeCsv {
+        let output = Destination::new(path, &[]).unwrap().open().unwrap();
+        ProbeCsv::new(output, &probes()).unwrap()
+    }
 
     fn probes() -> Vec<Probe> {
         let probe = |name: &str, dofs: &[Option<usize>]| Probe {
@@ -106,10 +114,10 @@ mod tests {
     fn rows_hold_the_probes_in_order() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run.csv");
-        let mut csv = ProbeCsv::create(&path, &probes()).unwrap();
+        let mut csv = csv(&path);
         csv.write(&state()).unwrap();
         assert!(!path.exists(), "unfinished files have another name");
-        assert_eq!(csv.finish().unwrap(), path);
+        assert_eq!(csv.finish().unwrap(), Delivery::Whole);
         assert_eq!(
             fs::read_to_string(&path).unwrap(),
             "t_s,tip_u_x_m,tip_u_y_m,tip_u_z_m,mass_u_m\n0.0,1e-7,0.0,0.3,0.1\n"
@@ -122,16 +130,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run.csv");
         fs::write(&path, "old").unwrap();
-        let mut csv = ProbeCsv::create(&path, &probes()).unwrap();
+        let mut csv = csv(&path);
         csv.write(&state()).unwrap();
         drop(csv);
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn a_path_without_a_file_name_is_refused() {
-        assert!(ProbeCsv::create("..", &probes()).is_err());
-        assert!(ProbeCsv::create("/no/such/folder/run.csv", &probes()).is_err());
     }
 }

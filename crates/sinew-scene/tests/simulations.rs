@@ -11,6 +11,7 @@
 use std::fs;
 
 use sinew_core::{LoadTime, System, simulate};
+use sinew_scene::output::{Delivery, Destination};
 use sinew_scene::{ProbeCsv, Scene, SceneSource, Simulation};
 
 /// A cube of 3 x 3 x 3 cells of 0.1 m held at the bottom, with what is given put in place of the
@@ -202,7 +203,8 @@ fn a_run_writes_its_probes() {
     let simulation = cube(HELD, "[[probe]]\nname = \"tip\"\npoint = [0.3, 0.3, 0.3]");
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("probes.csv");
-    let mut csv = ProbeCsv::create(&path, simulation.probes()).unwrap();
+    let output = Destination::new(&path, &[]).unwrap().open().unwrap();
+    let mut csv = ProbeCsv::new(output, simulation.probes()).unwrap();
     let mut state = simulation.initial_state().clone();
     let mut integrator = simulation.integrator().unwrap();
     simulate(
@@ -213,7 +215,7 @@ fn a_run_writes_its_probes() {
         &mut csv,
     )
     .unwrap();
-    csv.finish().unwrap();
+    assert_eq!(csv.finish().unwrap(), Delivery::Whole);
     let text = fs::read_to_string(&path).unwrap();
     let rows: Vec<&str> = text.lines().collect();
     assert_eq!(rows[0], "t_s,tip_u_x_m,tip_u_y_m,tip_u_z_m");

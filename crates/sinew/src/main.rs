@@ -2,9 +2,12 @@
 
 mod command;
 
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+use command::Failure;
 
 /// Soft-tissue dynamics: scenes planned and run.
 #[derive(Parser)]
@@ -29,7 +32,11 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let outcome = match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(said) => return answer(&said),
+    };
+    let outcome = match arguments.command {
         Command::Plan(arguments) => command::plan::run(&arguments),
         Command::Run(arguments) => command::run::run(&arguments),
         Command::Mesh(arguments) => command::mesh::run(&arguments),
@@ -38,5 +45,15 @@ fn main() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
+    }
+}
+
+/// Prints help, the version or a mistake in the arguments.
+fn answer(said: &clap::Error) -> ExitCode {
+    match said.print() {
+        Err(error) if !said.use_stderr() && error.kind() != ErrorKind::BrokenPipe => {
+            Failure::Run(format!("writing standard output failed: {error}")).report()
+        }
+        _ => ExitCode::from(u8::try_from(said.exit_code()).unwrap_or(2)),
     }
 }

@@ -49,9 +49,9 @@ fn run_says_into_how_many_parts_the_guard_cut_each_step() {
     std::fs::write(directory.path().join("guarded.toml"), &text).unwrap();
     let said = sinew(directory.path(), &["run", "guarded.toml"]);
     assert_eq!(said.code, Some(0), "{}", said.err);
-    let cut = "the guard took each step in 9 parts: whole, it is longer than the stable step of `forward-euler`";
+    let cut = "the guard took each step in 18 parts: whole, it is longer than the stable step of `forward-euler`";
     assert!(said.out.contains(cut), "{}", said.out);
-    assert!(said.out.contains("guarded: 35.96"), "{}", said.out);
+    assert!(!said.out.contains("guarded:"), "{}", said.out);
     // Whole steps are nothing to speak of.
     let text = text.replace("dt = 0.02", "dt = 0.001");
     std::fs::write(directory.path().join("guarded.toml"), text).unwrap();

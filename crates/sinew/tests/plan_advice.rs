@@ -75,6 +75,9 @@ fn as_json_it_is_one_object_with_the_same_run() {
     let table = advice["advised"]["run_table"].as_str().unwrap();
     assert!(table.starts_with("[run]\nduration = 1.0\nsamples = 50\nintegrator = "));
     assert_eq!(advice["as_written"]["row"]["guarded"], true);
+    let missing = advice["missing"].as_array().unwrap();
+    let budget = missing.iter().find(|m| m["field"] == "budget_cpu_s_per_s");
+    assert_eq!(budget.unwrap()["reason"], "no budget was asked for");
 }
 
 #[test]

@@ -3,11 +3,11 @@
 mod python;
 mod scipy;
 
-use sinew_bench::beside::{Rounds, export, run_beside};
-use sinew_bench::{Bench, peers};
+use sinew_bench::beside::{ExportError, Exported, Rounds, export, run_beside};
+use sinew_bench::output::{OutputFolder, say};
+use sinew_bench::{Bench, peers, scene_files};
 use sinew_measure::Case;
 
-use crate::bench::say;
 use crate::failure::Failure;
 use crate::root;
 use python::Python;
@@ -24,14 +24,20 @@ pub(crate) enum Program {
 pub(crate) fn run(Program::Scipy: Program, bench: &Bench) -> Result<(), Failure> {
     let integrators = bench.methods().map_err(Failure::input)?;
     let target = root().join("target");
-    let python = Python::with_scipy(&target)?;
     let scene = root().join("scenes").join(format!("{}.toml", peers::CASE));
+    let inputs = scene_files(std::slice::from_ref(&scene));
+    let folder = OutputFolder::new(target.join("beside"), &inputs);
+    folder.check(&Exported::output_files())?;
+    let python = Python::with_scipy(&target)?;
     let mut case = Case::load(&scene).map_err(Failure::input)?;
-    let exported = export(&case, &target.join("beside")).map_err(Failure::input)?;
+    let exported = export(&case, &folder).map_err(|error| match error {
+        ExportError::Output(error) => error.into(),
+        error => Failure::input(error),
+    })?;
     let mut scipy = Scipy::start(&python, &exported).map_err(Failure::Chore)?;
     let rounds = Rounds(if bench.quick { 3 } else { 15 });
-    say("looking for our cheapest runs ...");
+    say("looking for our cheapest runs ...")?;
     let beside = run_beside(&mut case, &integrators, &mut scipy, rounds).map_err(Failure::chore)?;
-    say(&format!("\n{beside}"));
+    say(&format!("\n{beside}"))?;
     Ok(())
 }

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use crate::bench::say;
+use sinew_bench::output::say;
+
 use crate::failure::Failure;
 
 /// Names a Python goes by.
@@ -70,7 +71,7 @@ fn install(program: &str, packages: &Path) -> Result<(), Failure> {
             last_line(&there)
         )));
     }
-    say("installing numpy and scipy into target/ ...");
+    say("installing numpy and scipy into target/ ...")?;
     let partial = packages.with_extension(format!("{}.tmp", std::process::id()));
     let installed = pip(&["install", "--quiet", "--disable-pip-version-check"])
         .args(["--only-binary", ":all:", "numpy", "scipy", "--target"])

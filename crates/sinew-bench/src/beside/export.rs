@@ -1,12 +1,22 @@
 //! A case as plain arrays, for programs that are not ours.
 
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde_json::json;
 use sinew_core::{LinearOperators, Ramp};
 
 use sinew_measure::Case;
+use sinew_scene::output::{OutputError, OutputFolder};
+
+/// Names of the files, the head last.
+const FILES: [&str; 6] = [
+    "row-starts.i32",
+    "columns.i32",
+    "values.f64",
+    "mass.f64",
+    "force.f64",
+    "system.json",
+];
 
 /// Files of an exported case: little-endian arrays without heads, and `system.json`, which holds
 /// their lengths, the duration (s) and the number of samples.
@@ -39,20 +49,23 @@ pub enum ExportError {
         what: &'static str,
     },
     /// A file cannot be written.
-    #[error("cannot write {}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    Output(#[from] OutputError),
 }
 
-/// Writes a case into `directory`, which is made if need be.
+impl Exported {
+    /// The names of the files that [`export`] writes.
+    #[must_use]
+    pub fn output_files() -> Vec<String> {
+        FILES.map(str::to_owned).into()
+    }
+}
+
+/// Writes a case into a folder.
 ///
 /// # Errors
 /// [`ExportError`].
-pub fn export(case: &Case, directory: &Path) -> Result<Exported, ExportError> {
+pub fn export(case: &Case, folder: &OutputFolder) -> Result<Exported, ExportError> {
     let simulation = case.simulation();
     let unfit = |what| ExportError::Unfit {
         case: case.id().to_owned(),
@@ -84,23 +97,20 @@ pub fn export(case: &Case, directory: &Path) -> Result<Exported, ExportError> {
         "samples": settings.samples,
     });
 
-    let write = |path: PathBuf, bytes: &[u8]| {
-        std::fs::write(&path, bytes).map_err(|source| ExportError::File { path, source })
-    };
-    std::fs::create_dir_all(directory).map_err(|source| ExportError::File {
-        path: directory.to_owned(),
-        source,
-    })?;
-    let file = |name: &str| directory.join(name);
-    write(file("row-starts.i32"), &integers(&rows.starts))?;
-    write(file("columns.i32"), &integers(&rows.columns))?;
-    write(file("values.f64"), &reals(&rows.values))?;
-    write(file("mass.f64"), &reals(operators.mass()))?;
-    write(file("force.f64"), &reals(&force))?;
-    // Last, so that a head never stands beside parts of another case.
-    write(file("system.json"), head.to_string().as_bytes())?;
+    let contents = [
+        integers(&rows.starts),
+        integers(&rows.columns),
+        reals(&rows.values),
+        reals(operators.mass()),
+        reals(&force),
+        // Last, so that a head never stands beside parts of another case.
+        head.to_string().into_bytes(),
+    ];
+    for (name, content) in FILES.iter().zip(&contents) {
+        folder.write(name, content)?;
+    }
     Ok(Exported {
-        directory: directory.to_owned(),
+        directory: folder.path().to_owned(),
         dofs: operators.dofs(),
     })
 }
@@ -192,7 +202,7 @@ dt = 0.01
     fn the_rows_written_multiply_as_the_matrix_does() {
         let case = case(CUBE);
         let directory = tempfile::tempdir().unwrap();
-        let exported = export(&case, directory.path()).unwrap();
+        let exported = export(&case, &OutputFolder::new(directory.path(), &[])).unwrap();
         let file = |name: &str| directory.path().join(name);
         let starts = numbers(file("row-starts.i32"), i32::from_le_bytes);
         let columns = numbers(file("columns.i32"), i32::from_le_bytes);
@@ -226,7 +236,8 @@ dt = 0.01
         ] {
             let directory = tempfile::tempdir().unwrap();
             let out = directory.path().join("out");
-            let said = export(&case(&text), &out).unwrap_err().to_string();
+            let folder = OutputFolder::new(&out, &[]);
+            let said = export(&case(&text), &folder).unwrap_err().to_string();
             assert!(said.contains(expected), "{said}");
             assert!(!out.exists());
         }

@@ -8,6 +8,7 @@ use sinew_scene::{Scene, SceneSource};
 use super::meshes::{inclusion_cube, sliver_cube};
 use super::methods::{block, chebyshev, cnn};
 use super::stability_map::StabilityMap;
+use crate::results::Missing;
 
 /// Hexahedra along an edge (m) of the cube: small enough for thousands of runs.
 const CELLS: usize = 4;
@@ -154,7 +155,8 @@ impl Varied {
         Case::new(self.id, simulation).map_err(|error| error.to_string())
     }
 
-    fn map(&self, quick: bool) -> Result<StabilityMap, String> {
+    /// The map over the values at which there is one, and the others.
+    fn map(&self, quick: bool) -> (StabilityMap, Vec<Missing>) {
         let every = if quick { 3 } else { 1 };
         let steps = self.divisors.iter().rev().step_by(every);
         let mut map = StabilityMap {
@@ -164,24 +166,45 @@ impl Varied {
             steps: steps.map(|divisor| LONGEST / f64::from(*divisor)).collect(),
             ..StabilityMap::default()
         };
+        let mut missing = Vec::new();
         let methods = methods();
         for &value in self.values.iter().step_by(every) {
-            map.add(value, &mut self.case(value)?, &methods)?;
+            let mut longer = map.clone();
+            let added = self
+                .case(value)
+                .and_then(|mut case| longer.add(value, &mut case, &methods));
+            match added {
+                Ok(()) => map = longer,
+                Err(reason) => missing.push(Missing {
+                    row: Some(format!("{} = {value}", self.parameter)),
+                    ..Missing::scene(format!("map {}", self.id), reason)
+                }),
+            }
         }
-        Ok(map)
+        (map, missing)
     }
 }
 
-/// The maps, `begins` told of each. A quick run makes one of them, coarser.
-///
-/// # Errors
-/// A reason in words when a scene or method of a map does not hold together.
-pub(crate) fn all(quick: bool, mut begins: impl FnMut(&str)) -> Result<Vec<StabilityMap>, String> {
-    let wanted = VARIED.iter().filter(|varied| varied.quick || !quick);
-    wanted
-        .map(|varied| {
-            begins(varied.title);
-            varied.map(quick)
-        })
-        .collect()
+fn wanted(quick: bool) -> impl Iterator<Item = &'static Varied> {
+    VARIED.iter().filter(move |varied| varied.quick || !quick)
+}
+
+/// The ids of the maps.
+pub(crate) fn ids(quick: bool) -> Vec<&'static str> {
+    wanted(quick).map(|varied| varied.id).collect()
+}
+
+/// The maps, `begins` told of each, and what is missing of them with its reason. A quick run makes
+/// one of them, coarser.
+pub(crate) fn all(quick: bool, mut begins: impl FnMut(&str)) -> (Vec<StabilityMap>, Vec<Missing>) {
+    let (mut maps, mut missing) = (Vec::new(), Vec::new());
+    for varied in wanted(quick) {
+        begins(varied.title);
+        let (map, without) = varied.map(quick);
+        if !map.values.is_empty() {
+            maps.push(map);
+        }
+        missing.extend(without);
+    }
+    (maps, missing)
 }

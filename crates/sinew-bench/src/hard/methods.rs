@@ -42,7 +42,7 @@ pub(crate) fn cut(integrator: &str) -> Method {
     automatic(integrator, "substeps")
 }
 
-/// A method whose cells get no faster than the loads and the start of a scene can make them.
+/// A method that cuts its step into stable parts and limits speeds by the energy that loads and start bring.
 pub(crate) fn guarded(integrator: &str) -> Method {
     automatic(integrator, "saturation")
 }

@@ -17,8 +17,11 @@ use std::path::PathBuf;
 
 use sinew_measure::{Case, Effort, mark_pareto, on_one_thread};
 
-use crate::results::{BenchResults, Machine, Skipped};
+use crate::bench::{case_ids, scene_files};
+use crate::report::file_names;
+use crate::results::{BenchResults, Machine, Missing, Skipped};
 use crate::{BenchError, Progress};
+use cases::HardCase;
 use hard_run::hard_row;
 pub use mark::{Mark, MarkVerdict};
 pub use stability_map::{MapPanel, MapRun, StabilityMap};
@@ -35,10 +38,11 @@ pub struct HardBench {
 impl HardBench {
     /// Measures every case on one thread and gives the marks. A run that diverges is a row like
     /// any other, one that cannot be made is listed with its reason, and a mark that is not passed
-    /// stands in the results as such.
+    /// stands in the results as such. So do marks on a scene that cannot be read, which is listed
+    /// too.
     ///
     /// # Errors
-    /// [`BenchError`] for a scene that cannot be read.
+    /// [`BenchError`] where no scene can be read.
     pub fn run(
         &self,
         revision: String,
@@ -46,6 +50,31 @@ impl HardBench {
         mut progress: impl FnMut(Progress) + Send,
     ) -> Result<BenchResults, BenchError> {
         on_one_thread(|| self.run_here(revision, machine, &mut progress))?
+    }
+
+    fn plan(&self) -> Vec<HardCase> {
+        let mut plan = cases::all();
+        plan.retain(|case| !(self.quick && case.slow));
+        plan
+    }
+
+    fn scenes(&self) -> Vec<PathBuf> {
+        let plan = self.plan();
+        plan.iter()
+            .map(|case| self.scenes.join(case.scene))
+            .collect()
+    }
+
+    /// The files that the bench reads: no output may be one of them.
+    #[must_use]
+    pub fn input_files(&self) -> Vec<PathBuf> {
+        scene_files(&self.scenes())
+    }
+
+    /// The names of the files that [`write_all`](crate::report::write_all) writes of the results.
+    #[must_use]
+    pub fn output_files(&self) -> Vec<String> {
+        file_names(&case_ids(&self.scenes()), &maps::ids(self.quick))
     }
 
     fn run_here(
@@ -56,11 +85,8 @@ impl HardBench {
     ) -> Result<BenchResults, BenchError> {
         let mut results = BenchResults::new(revision, machine);
         let mut cases = BTreeMap::new();
-        let plan = cases::all();
-        let plan: Vec<_> = plan
-            .iter()
-            .filter(|case| !(self.quick && case.slow))
-            .collect();
+        let mut errors = Vec::new();
+        let plan = self.plan();
         let of = plan
             .iter()
             .map(|case| case.methods.len() * case.steps.len())
@@ -71,12 +97,21 @@ impl HardBench {
         } else {
             Effort::FULL
         };
-        for planned in plan {
+        for planned in &plan {
             let scene = self.scenes.join(planned.scene);
             progress(Progress::Reference {
                 scene: scene.clone(),
             });
-            let mut case = Case::load(&scene)?;
+            let mut case = match Case::load(&scene) {
+                Ok(case) => case,
+                Err(error) => {
+                    done += planned.methods.len() * planned.steps.len();
+                    let scene = scene.display().to_string();
+                    results.missing.push(Missing::scene(scene, &error));
+                    errors.push(error);
+                    continue;
+                }
+            };
             results.cases.push(case.info());
             for method in &planned.methods {
                 for &dt in planned.steps {
@@ -96,9 +131,14 @@ impl HardBench {
             }
             cases.insert(case.id().to_owned(), case);
         }
+        if cases.is_empty() {
+            return Err(BenchError::Cases(errors));
+        }
         mark_pareto(&mut results.rows);
+        let planned = case_ids(&self.scenes());
         let measured = marks::Measured {
             cases: &cases,
+            planned: &planned,
             rows: &results.rows,
             folders: [self.scenes.clone(), self.scenes.join("hard")],
             quick: self.quick,
@@ -108,11 +148,12 @@ impl HardBench {
             progress(Progress::Run { done, of, what });
         });
         results.marks = marks;
-        results.maps = maps::all(self.quick, |title| {
+        let (maps, missing) = maps::all(self.quick, |title| {
             let what = format!("map: {title}");
             progress(Progress::Run { done, of, what });
-        })
-        .map_err(BenchError::Map)?;
+        });
+        results.maps = maps;
+        results.missing.extend(missing);
         Ok(results)
     }
 }

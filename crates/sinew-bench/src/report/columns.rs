@@ -1,6 +1,6 @@
 //! The columns of every table of runs.
 
-use super::{number, verdict};
+use super::{missing::shown, number, verdict};
 use sinew_measure::Row;
 
 /// A column: its head, what stands in it, what it is sorted by.
@@ -37,7 +37,7 @@ static COLUMNS: [Column; 13] = [
         head: "dt",
         unit: "ms",
         explained: "time step",
-        cell: |row| number::milliseconds(row.dt),
+        cell: |row| shown(row.dt, number::milliseconds),
         key: Some(|row| row.dt),
     },
     Column {
@@ -65,14 +65,14 @@ static COLUMNS: [Column; 13] = [
         head: "CPU",
         unit: "s/s",
         explained: "CPU seconds per simulated second, without the set-up",
-        cell: |row| number::three(row.cpu_s_per_s),
+        cell: |row| shown(row.cpu_s_per_s, number::three),
         key: Some(|row| row.cpu_s_per_s),
     },
     Column {
         head: "step",
         unit: "µs",
         explained: "CPU time per step",
-        cell: |row| number::three(row.us_per_step),
+        cell: |row| shown(row.us_per_step, number::three),
         key: Some(|row| row.us_per_step),
     },
     Column {
@@ -100,7 +100,7 @@ static COLUMNS: [Column; 13] = [
         head: "saturated",
         unit: "%",
         explained: "share of the (dof, step) pairs that were saturated",
-        cell: |row| number::percent(row.saturated),
+        cell: |row| shown(row.saturated, number::percent),
         key: Some(|row| row.saturated),
     },
     Column {
@@ -114,7 +114,7 @@ static COLUMNS: [Column; 13] = [
         head: "set-up",
         unit: "ms",
         explained: "CPU time of the set-up, in none of the other times",
-        cell: |row| number::three(1e3 * row.setup_cpu_s),
+        cell: |row| shown(1e3 * row.setup_cpu_s, number::three),
         key: Some(|row| row.setup_cpu_s),
     },
 ];
@@ -127,7 +127,7 @@ static HARD_COLUMNS: [Column; 3] = [
         explained: "step over the critical step 2/omega of the fastest undamped mode",
         cell: |row| {
             row.step_over_critical
-                .map_or_else(String::new, number::three)
+                .map_or_else(String::new, |x| shown(x, number::three))
         },
         key: Some(|row| row.step_over_critical.unwrap_or(f64::INFINITY)),
     },
@@ -135,14 +135,20 @@ static HARD_COLUMNS: [Column; 3] = [
         head: "static err.",
         unit: "%",
         explained: "distance of the last displacement from K u = F, where the reference comes to rest",
-        cell: |row| row.static_error.map_or_else(String::new, number::percent),
+        cell: |row| {
+            row.static_error
+                .map_or_else(String::new, |x| shown(x, number::percent))
+        },
         key: Some(|row| row.static_error.unwrap_or(f64::INFINITY)),
     },
     Column {
         head: "energy drift",
         unit: "1/1000 steps",
         explained: "relative change of the method's own energy in 1000 steps, where nothing damps or loads the body",
-        cell: |row| row.energy_drift.map_or_else(String::new, number::three),
+        cell: |row| {
+            row.energy_drift
+                .map_or_else(String::new, |x| shown(x, number::three))
+        },
         key: Some(|row| row.energy_drift.unwrap_or(f64::INFINITY)),
     },
 ];
@@ -157,11 +163,12 @@ pub(super) fn columns_of(rows: &[&Row]) -> Vec<&'static Column> {
 }
 
 fn sweeps(row: &Row) -> String {
-    let sweeps = number::short(row.sweeps_per_s);
+    let sweeps = shown(row.sweeps_per_s, number::short);
     if row.work.solves == 0 {
         return sweeps;
     }
-    let solves = number::short(row.work.solves as f64 / (row.steps as f64 * row.dt));
+    let solves = row.work.solves as f64 / (row.steps as f64 * row.dt);
+    let solves = shown(solves, number::short);
     if row.work.sweeps == 0 {
         format!("{solves} solves")
     } else {

@@ -139,6 +139,7 @@ pub fn modal_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String>
     let total = |row: &Row| row.total_cpu_s(case.duration_s);
     let (modal, local): (Vec<&Row>, Vec<&Row>) = results
         .rows_of(&case.id)
+        .filter(|row| total(row).is_finite())
         .partition(|row| row.integrator == NON_LOCAL);
     let mut ratios = Vec::new();
     let mut wins = Vec::new();

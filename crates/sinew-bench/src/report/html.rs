@@ -7,6 +7,7 @@ use super::{
     front::{self, front_members},
     heat_map, marks,
     markup::{escape, slugs},
+    missing::{self, shown},
     number, peers, strip,
     summary::cheapest,
     verdict, work_precision,
@@ -26,7 +27,8 @@ pub fn html(results: &BenchResults) -> String {
         Escaped(&results.revision),
         include_str!("report.css")
     ));
-    page.header(results);
+    let missing = results.all_missing();
+    page.header(results, missing.len());
     page.how_to_read();
     let ids = results.case_ids();
     let anchors = slugs(&ids);
@@ -37,6 +39,7 @@ pub fn html(results: &BenchResults) -> String {
         page.case(results, id, anchor);
     }
     page.skipped(&results.skipped);
+    page.out.push_str(&missing::section(&missing));
     page.put(format_args!(
         "<script>\n{}</script>\n</body>\n</html>\n",
         include_str!("sort.js")
@@ -55,7 +58,7 @@ impl Page {
         let _ = self.out.write_fmt(arguments);
     }
 
-    fn header(&mut self, results: &BenchResults) {
+    fn header(&mut self, results: &BenchResults, missing: usize) {
         let machine = &results.machine;
         self.out
             .push_str("<header>\n<h1>What accuracy costs: methods, steps, verdicts</h1>\n");
@@ -67,7 +70,7 @@ impl Page {
             ("threads", machine.threads.to_string()),
             ("system", system.trim().to_owned()),
             ("compiler", machine.compiler.clone().unwrap_or_default()),
-            ("runs", runs(results)),
+            ("runs", runs(results, missing)),
         ]);
         self.out.push_str("</header>\n");
     }
@@ -193,22 +196,26 @@ impl Page {
     }
 
     fn case_facts(&mut self, info: &CaseInfo) {
-        let metres = |x: f64| format!("{} mm", number::three(1e3 * x));
+        let metres = |x: f64| shown(1e3 * x, |mm| format!("{} mm", number::three(mm)));
         let critical = info.critical_step_s.map(|dt| {
-            let dt = number::three(1e3 * dt);
-            format!("{dt} ms (2/ω of the fastest mode, undamped)")
+            shown(1e3 * dt, |dt| {
+                let dt = number::three(dt);
+                format!("{dt} ms (2/ω of the fastest mode, undamped)")
+            })
         });
         self.facts(&[
             ("free degrees of freedom", info.dofs.to_string()),
             (
                 "simulated time",
-                format!("{} s", number::short(info.duration_s)),
+                shown(info.duration_s, |s| format!("{} s", number::short(s))),
             ),
             ("critical step", critical.unwrap_or_default()),
             ("reference", info.reference.clone()),
             (
                 "its own estimated error",
-                format!("{} %", number::percent(info.reference_error)),
+                shown(100.0 * info.reference_error, |x| {
+                    format!("{} %", number::three(x))
+                }),
             ),
             ("largest |u| in it", metres(info.max_u_m)),
             (
@@ -252,7 +259,7 @@ impl Page {
         for row in telling {
             let facts = row.facts.iter();
             let facts: Vec<String> = facts
-                .map(|(name, value)| format!("{name} {}", number::short(*value)))
+                .map(|(name, value)| format!("{name} {}", shown(*value, number::short)))
                 .collect();
             self.put(format_args!(
                 "<li>{}, {} ms: {}</li>\n",
@@ -383,13 +390,17 @@ fn class(column: &Column) -> &'static str {
     }
 }
 
-fn runs(results: &BenchResults) -> String {
+fn runs(results: &BenchResults, missing: usize) -> String {
     let (cases, rows) = (results.case_ids().len(), results.rows.len());
     let skipped = match results.skipped.len() {
         0 => String::new(),
         n => format!(", {n} not run (listed at the end)"),
     };
-    format!("{rows} in {cases} cases{skipped}")
+    let missing = match missing {
+        0 => String::new(),
+        n => format!(", {n} things missing (listed at the end)"),
+    };
+    format!("{rows} in {cases} cases{skipped}{missing}")
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ mod heat_map;
 mod html;
 mod marks;
 mod markup;
+mod missing;
 mod peers;
 mod plot;
 mod strip;
@@ -36,6 +37,7 @@ pub use style::{Colour, Dash, Marker, Style};
 pub use surface::Surface;
 pub use table::{markdown, markdown_rows, terminal, terminal_rows};
 pub use work_precision::work_precision;
-pub use write::{WriteError, Written, write_all, write_atomically};
+pub(crate) use write::file_names;
+pub use write::{WriteError, Written, write_all};
 
 pub(crate) use sinew_measure::number::{self, milliseconds, percent, short, three};

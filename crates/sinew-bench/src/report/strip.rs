@@ -3,6 +3,7 @@
 use sinew_measure::{Outcome, Row, Verdict};
 
 use super::{
+    missing::shown,
     number,
     style::Dash,
     svg::{Anchor, Frame, Paint, Stroke, Svg, Text, text_width},
@@ -166,7 +167,7 @@ fn note(run: &Row) -> String {
         number::milliseconds(run.dt),
         run.verdict().word(),
         verdict::error_with_unit(run),
-        number::percent(run.saturated),
+        shown(run.saturated, number::percent),
     )
 }
 
@@ -187,7 +188,10 @@ fn draw_cell(svg: &mut Svg, frame: Frame, run: &Row) {
     );
     // The symbol already says "unbounded" and "diverged".
     let text = match (run.outcome, run.error, run.diverged_at_s) {
-        (Outcome::Finished, Some(error), _) => format!("{} %", number::percent(error)),
+        (Outcome::Finished, Some(error), _) => {
+            shown(100.0 * error, |x| format!("{} %", number::three(x)))
+        }
+        (Outcome::Finished, None, _) => "n/a".to_owned(),
         (Outcome::Diverged, _, Some(t)) => format!("at {} s", number::short(t)),
         _ => String::new(),
     };

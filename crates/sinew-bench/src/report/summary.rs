@@ -10,6 +10,7 @@ pub(super) fn cheapest<'a>(
     rows.into_iter()
         .filter(|row| row.verdict() == Verdict::Accurate)
         .filter(|row| row.error.is_some_and(|error| error <= largest_error))
+        .filter(|row| row.cpu_s_per_s.is_finite())
         .min_by(|a, b| a.cpu_s_per_s.total_cmp(&b.cpu_s_per_s))
 }
 
@@ -30,6 +31,7 @@ mod tests {
             row(1.0, 0.01, 0.5),
             row(2.0, 0.04, 0.0),
             row(3.0, 0.01, 0.0),
+            row(-f64::NAN, 0.001, 0.0),
         ];
         assert_eq!(cheapest(&rows, 0.05), Some(&rows[1]));
         assert_eq!(cheapest(&rows, 0.01), Some(&rows[2]));

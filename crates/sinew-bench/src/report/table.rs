@@ -6,6 +6,7 @@ use super::{
     columns::{Column, columns_of},
     front,
     marks::{markdown_marks, terminal_marks},
+    missing::{self, shown},
     number,
 };
 use crate::hard::Mark;
@@ -16,13 +17,13 @@ use sinew_measure::Row;
 pub(super) const RULED_HEAD: TableStyle =
     TableStyle::new().header_separator(LineStyle::new('─', '─', '─', '─'));
 
-/// All rows for a terminal, by case, then the runs that were skipped.
+/// All rows for a terminal, by case, then the runs that were skipped and what is missing.
 #[must_use]
 pub fn terminal(results: &BenchResults) -> String {
     by_case(results, "", terminal_rows, terminal_marks)
 }
 
-/// All rows as Markdown, by case, then the runs that were skipped.
+/// All rows as Markdown, by case, then the runs that were skipped and what is missing.
 #[must_use]
 pub fn markdown(results: &BenchResults) -> String {
     by_case(results, "### ", markdown_rows, markdown_marks)
@@ -60,9 +61,11 @@ fn by_case<'a>(
     for id in results.case_ids() {
         out.push_str(&format!("{heading}{id}"));
         if let Some(case) = results.case(id) {
-            let error = number::percent(case.reference_error);
+            let error = shown(100.0 * case.reference_error, |x| {
+                format!("{} %", number::three(x))
+            });
             out.push_str(&format!(
-                ": {} (free dofs: {}, time: {} s; reference: {}, itself within {error} %)",
+                ": {} (free dofs: {}, time: {} s; reference: {}, itself within {error})",
                 case.title,
                 case.dofs,
                 number::short(case.duration_s),
@@ -89,6 +92,13 @@ fn by_case<'a>(
             run.integrator,
             number::milliseconds(run.dt),
             run.reason
+        ));
+    }
+    let missing = results.all_missing();
+    if !missing.is_empty() {
+        out.push_str(&format!(
+            "\n{heading}missing\n\n{}",
+            missing::lines(&missing)
         ));
     }
     out
@@ -138,7 +148,7 @@ fn align_right(table: &str, columns: &[&Column]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{Machine, Skipped};
+    use crate::results::{Machine, Missing, Skipped};
     use sinew_measure::Outcome;
 
     fn results() -> BenchResults {
@@ -185,6 +195,26 @@ mod tests {
         assert_eq!(cells[error + 1], "0.00400");
         assert!(text.contains("diverged at t=0.34 s"));
         assert!(text.contains("- cube, modal, dt = 20 ms: needs modes"));
+    }
+
+    #[test]
+    fn what_is_missing_stands_in_its_place_and_in_a_list() {
+        let mut results = results();
+        results.rows[0].cpu_s_per_s = f64::NAN;
+        results
+            .missing
+            .push(Missing::scene("gone.toml", "no such file"));
+        let text = terminal(&results);
+        let run = text.lines().find(|line| line.contains("a|b")).unwrap();
+        assert!(run.contains("n/a (NaN)"), "{run}");
+        assert!(
+            text.contains("- gone.toml: all of it: no such file"),
+            "{text}"
+        );
+        assert!(
+            text.contains("- cube, a|b, dt = 0.02 s: cpu_s_per_s = NaN: it is not"),
+            "{text}"
+        );
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use sinew_measure::{Outcome, Row, Verdict};
 
-use super::{number, style::Colour};
+use super::{missing::shown, number, style::Colour};
 
 /// What a verdict says of a run.
 pub(super) fn meaning(verdict: Verdict) -> &'static str {
@@ -33,15 +33,18 @@ pub(super) fn error(row: &Row) -> String {
             Some(t) => format!("diverged at t={} s", number::short(t)),
             None => "diverged".to_owned(),
         },
-        (Outcome::Finished, Some(error)) if row.bounded => number::percent(error),
-        (Outcome::Finished, Some(error)) => format!("unbounded ({})", number::percent(error)),
-        (Outcome::Finished, None) => "unknown".to_owned(),
+        (Outcome::Finished, Some(error)) if row.bounded => shown(error, number::percent),
+        (Outcome::Finished, Some(error)) => {
+            format!("unbounded ({})", shown(error, number::percent))
+        }
+        (Outcome::Finished, None) => "n/a".to_owned(),
     }
 }
 
 /// The error with its unit where it is a number.
 pub(super) fn error_with_unit(row: &Row) -> String {
     match (row.outcome, row.bounded) {
+        (Outcome::Finished, _) if row.error.is_none_or(|error| !error.is_finite()) => error(row),
         (Outcome::Finished, true) => format!("{} %", error(row)),
         (Outcome::Finished, false) => error(row).replace(')', " %)"),
         (Outcome::Diverged, _) => error(row),
@@ -67,6 +70,10 @@ mod tests {
         let unbounded = row(Outcome::Finished, false, Some(4e30), None);
         assert_eq!(error(&unbounded), "unbounded (4.00e32)");
         assert_eq!(error_with_unit(&unbounded), "unbounded (4.00e32 %)");
+        let nothing = row(Outcome::Finished, true, None, None);
+        assert_eq!(error_with_unit(&nothing), "n/a");
+        let infinite = row(Outcome::Finished, true, Some(f64::INFINITY), None);
+        assert_eq!(error_with_unit(&infinite), "n/a (inf)");
         let diverged = row(Outcome::Diverged, false, None, Some(0.34));
         assert_eq!(error(&diverged), "diverged at t=0.34 s");
         assert_eq!(error_with_unit(&diverged), "diverged at t=0.34 s");

@@ -2,6 +2,7 @@
 
 use super::{
     axis::Axis,
+    missing::shown,
     number,
     plot::{Plot, Point, Series},
     style::{Colour, Dash, Style},
@@ -100,7 +101,7 @@ fn point(row: &Row) -> Point {
             row.label(),
             number::milliseconds(row.dt),
             verdict::error_with_unit(row),
-            number::three(row.cpu_s_per_s),
+            shown(row.cpu_s_per_s, number::three),
             row.verdict().word(),
         ),
         ringed: row.pareto,

@@ -1,14 +1,14 @@
 //! Files of a bench, each there as a whole or not at all.
 
-use std::{
-    fs, io,
-    path::{Path, PathBuf},
-};
+use std::path::PathBuf;
 
-use sinew_scene::WholeFile;
+use sinew_scene::output::{OutputError, OutputFolder};
 
 use super::{heat_map, html, markup::slugs, strip, work_precision};
 use crate::results::{BenchResults, ResultsError};
+
+const RESULTS: &str = "results.json";
+const REPORT: &str = "report.html";
 
 /// What was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,58 +34,53 @@ pub enum WriteError {
         /// Why.
         source: ResultsError,
     },
-    /// The directory cannot be made.
-    #[error("cannot make the directory {}: {source}", path.display())]
-    Directory {
-        /// The directory.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// A file cannot be written.
-    #[error("cannot write {}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
+    /// The folder or a file in it cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
 }
 
-/// Writes results, page and plots into `dir`, which is made if need be. Everything is drawn before
-/// the first file is touched.
+/// The names of all files that a bench of these cases and stability maps writes.
+pub(crate) fn file_names(cases: &[String], maps: &[&str]) -> Vec<String> {
+    let cases: Vec<&str> = cases.iter().map(String::as_str).collect();
+    let of_cases = slugs(&cases).into_iter().flat_map(of_case);
+    let of_maps = slugs(maps).into_iter().map(|name| of_map(&name));
+    let fixed = [RESULTS, REPORT].map(str::to_owned);
+    fixed.into_iter().chain(of_cases).chain(of_maps).collect()
+}
+
+fn of_case(slug: String) -> [String; 2] {
+    [
+        format!("work-precision-{slug}.svg"),
+        format!("stability-{slug}.svg"),
+    ]
+}
+
+fn of_map(slug: &str) -> String {
+    format!("map-{slug}.svg")
+}
+
+/// Writes results, page and plots into a folder. Everything is drawn before the first file is
+/// touched.
 ///
 /// # Errors
-/// [`WriteError`] when the results cannot be JSON, or a file cannot be written. Files written before
-/// the one that failed stay.
-pub fn write_all(results: &BenchResults, dir: &Path) -> Result<Written, WriteError> {
-    let written = Written {
-        results: dir.join("results.json"),
-        report: dir.join("report.html"),
-        plots: Vec::new(),
-    };
+/// [`WriteError`] when a file cannot be written. Files written before the one that failed stay.
+pub fn write_all(results: &BenchResults, folder: &OutputFolder) -> Result<Written, WriteError> {
     let json = results.to_json().map_err(|source| WriteError::Results {
-        path: written.results.clone(),
+        path: folder.path().join(RESULTS),
         source,
     })?;
     let page = html(results);
     let plots = plots(results);
 
-    fs::create_dir_all(dir).map_err(|source| WriteError::Directory {
-        path: dir.to_owned(),
-        source,
-    })?;
-    write_atomically(&written.results, &json)?;
-    write_atomically(&written.report, &page)?;
-    let mut paths = Vec::with_capacity(plots.len());
-    for (name, svg) in plots {
-        let path = dir.join(name);
-        write_atomically(&path, &svg)?;
-        paths.push(path);
-    }
+    let results = folder.write(RESULTS, json.as_bytes())?;
+    let report = folder.write(REPORT, page.as_bytes())?;
+    let plots = plots
+        .iter()
+        .map(|(name, svg)| folder.write(name, svg.as_bytes()));
     Ok(Written {
-        plots: paths,
-        ..written
+        results,
+        report,
+        plots: plots.collect::<Result<_, _>>()?,
     })
 }
 
@@ -94,75 +89,82 @@ fn plots(results: &BenchResults) -> Vec<(String, String)> {
     let named = ids.iter().zip(slugs(&ids));
     let map_ids: Vec<&str> = results.maps.iter().map(|map| map.id.as_str()).collect();
     let maps = results.maps.iter().zip(slugs(&map_ids));
-    let maps = maps.map(|(map, name)| (format!("map-{name}.svg"), heat_map(map)));
+    let maps = maps.map(|(map, name)| (of_map(&name), heat_map(map)));
     named
         .flat_map(|(id, name)| {
+            let [precision, stability] = of_case(name);
             [
-                (
-                    format!("work-precision-{name}.svg"),
-                    work_precision(results, id).svg(),
-                ),
-                (format!("stability-{name}.svg"), strip(results, id)),
+                (precision, work_precision(results, id).svg()),
+                (stability, strip(results, id)),
             ]
         })
         .chain(maps)
         .collect()
 }
 
-/// Writes a file as a whole or not at all.
-///
-/// # Errors
-/// [`WriteError::File`]; the old file is then as it was.
-pub fn write_atomically(path: &Path, content: &str) -> Result<(), WriteError> {
-    WholeFile::write(path, content.as_bytes())
-        .map(|_| ())
-        .map_err(|source| WriteError::File {
-            path: path.to_owned(),
-            source,
-        })
-}
-
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use crate::results::Machine;
-    use sinew_measure::Row;
+    use sinew_measure::{CaseInfo, Row};
 
-    fn names(dir: &Path) -> Vec<String> {
-        let mut names: Vec<String> = fs::read_dir(dir)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
-            .collect();
-        names.sort();
-        names
-    }
-
-    #[test]
-    fn a_failure_leaves_nothing_half_written() {
-        let dir = tempfile::tempdir().unwrap();
-        // A directory cannot be replaced by a file.
-        let path = dir.path().join("taken");
-        fs::create_dir(&path).unwrap();
-        let error = write_atomically(&path, "new").unwrap_err();
-        assert!(error.to_string().contains("taken"), "{error}");
-        assert_eq!(names(dir.path()), ["taken"]);
-
-        let missing = dir.path().join("missing").join("a.txt");
-        assert!(write_atomically(&missing, "new").is_err());
-        assert_eq!(names(dir.path()), ["taken"]);
-    }
-
-    #[test]
-    fn results_that_cannot_be_json_touch_no_file() {
-        let dir = tempfile::tempdir().unwrap();
+    fn results() -> BenchResults {
         let mut results = BenchResults::new("r", Machine::default());
+        for id in ["a", "A b"] {
+            results.cases.push(CaseInfo {
+                id: id.into(),
+                max_u_m: f64::INFINITY,
+                ..CaseInfo::default()
+            });
+        }
         results.rows.push(Row {
+            case: "a".into(),
+            integrator: "rk4".into(),
+            dt: 0.01,
+            steps: 10,
             cpu_s_per_s: f64::NAN,
             error: Some(0.1),
+            max_u: Some(0.1),
+            late_amplitude: Some(0.1),
+            bounded: true,
             ..Row::default()
         });
-        let error = write_all(&results, &dir.path().join("out")).unwrap_err();
-        assert!(error.to_string().contains("results.json"), "{error}");
-        assert!(names(dir.path()).is_empty());
+        results
+    }
+
+    #[test]
+    fn a_number_that_cannot_be_shown_costs_nothing_but_itself() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputFolder::new(folder.path().join("out"), &[]);
+        let written = write_all(&results(), &out).unwrap();
+        for path in written.plots.iter().chain([&written.report]) {
+            let text = fs::read_to_string(path).unwrap();
+            let drawn = text.replace("cpu_s_per_s = NaN", "");
+            let drawn = drawn.replace("max_u_m = inf", "").replace("n/a (", "(");
+            let wrong = ["NaN", "\"inf", "inf\""];
+            for wrong in wrong {
+                assert!(!drawn.replace("(NaN)", "").contains(wrong), "{path:?}");
+            }
+        }
+        let page = fs::read_to_string(&written.report).unwrap();
+        assert!(page.contains("n/a (NaN)") && page.contains("n/a (inf)"));
+        assert!(page.contains("cpu_s_per_s = NaN") && page.contains("max_u_m = inf"));
+        assert!(page.contains("it is not a finite number"));
+    }
+
+    #[test]
+    fn the_files_are_known_beforehand() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputFolder::new(folder.path(), &[]);
+        write_all(&results(), &out).unwrap();
+        let entries = fs::read_dir(folder.path()).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<String> = names.collect();
+        let mut known = file_names(&["a".into(), "A b".into()], &[]);
+        names.sort();
+        known.sort();
+        assert_eq!(names, known);
     }
 }

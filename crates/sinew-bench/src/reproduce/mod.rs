@@ -8,14 +8,12 @@ mod figures;
 mod page;
 mod runs;
 
-use std::path::Path;
-
 pub use claims::{Claim, Holds};
 pub use figures::Figure;
 pub use page::WrittenReproduction;
 
-use crate::report::WriteError;
 use sinew_measure::Case;
+use sinew_scene::output::{OutputError, OutputFolder};
 
 /// Figures and claims.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,11 +59,17 @@ pub fn reproduce(oscillator: &mut Case, cube: &mut Case) -> Result<Reproduction,
 }
 
 impl Reproduction {
-    /// Writes `fig-*.svg`, `claims.md` and `reproduction.html` into `directory`.
+    /// Writes `fig-*.svg`, `claims.md` and `reproduction.html` into a folder.
     ///
     /// # Errors
-    /// [`WriteError`].
-    pub fn write(&self, directory: &Path) -> Result<WrittenReproduction, WriteError> {
-        page::write(self, directory)
+    /// [`OutputError`].
+    pub fn write(&self, folder: &OutputFolder) -> Result<WrittenReproduction, OutputError> {
+        page::write(self, folder)
+    }
+
+    /// The names of the files that [`Reproduction::write`] writes.
+    #[must_use]
+    pub fn output_files() -> Vec<String> {
+        page::file_names()
     }
 }

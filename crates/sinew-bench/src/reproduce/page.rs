@@ -1,10 +1,25 @@
 //! The reproduction as files.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use sinew_scene::output::{OutputError, OutputFolder};
+
+use super::figures::NUMBERS;
 use super::{Claim, Reproduction};
-use crate::report::{WriteError, escape, write_atomically};
+use crate::report::escape;
+
+const CLAIMS: &str = "claims.md";
+const PAGE: &str = "reproduction.html";
+
+/// The names of all files of a reproduction.
+pub(super) fn file_names() -> Vec<String> {
+    let fixed = [CLAIMS, PAGE].map(str::to_owned);
+    fixed.into_iter().chain(NUMBERS.map(of_figure)).collect()
+}
+
+fn of_figure(number: &str) -> String {
+    format!("fig-{number}.svg")
+}
 
 /// What was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,26 +34,16 @@ pub struct WrittenReproduction {
 
 pub(super) fn write(
     reproduction: &Reproduction,
-    directory: &Path,
-) -> Result<WrittenReproduction, WriteError> {
-    fs::create_dir_all(directory).map_err(|source| WriteError::Directory {
-        path: directory.to_owned(),
-        source,
-    })?;
-    let mut figures = Vec::with_capacity(reproduction.figures.len());
-    for figure in &reproduction.figures {
-        let path = directory.join(format!("fig-{}.svg", figure.number));
-        write_atomically(&path, &figure.svg)?;
-        figures.push(path);
-    }
-    let claims = directory.join("claims.md");
-    write_atomically(&claims, &markdown(&reproduction.claims))?;
-    let page = directory.join("reproduction.html");
-    write_atomically(&page, &html(reproduction))?;
+    folder: &OutputFolder,
+) -> Result<WrittenReproduction, OutputError> {
+    let figures = reproduction.figures.iter().map(|figure| {
+        let name = of_figure(figure.number);
+        folder.write(&name, figure.svg.as_bytes())
+    });
     Ok(WrittenReproduction {
-        page,
-        claims,
-        figures,
+        figures: figures.collect::<Result<_, _>>()?,
+        claims: folder.write(CLAIMS, markdown(&reproduction.claims).as_bytes())?,
+        page: folder.write(PAGE, html(reproduction).as_bytes())?,
     })
 }
 

@@ -1,7 +1,6 @@
 //! Results as JSON, which has no NaN and no infinity.
 
 use serde::Deserialize;
-use sinew_measure::{CaseInfo, Outcome, Row};
 
 use super::{BenchResults, SCHEMA};
 
@@ -9,22 +8,6 @@ use super::{BenchResults, SCHEMA};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ResultsError {
-    /// A number that JSON cannot hold.
-    #[error("{of}: {field} is {value}, which JSON cannot hold")]
-    NotFinite {
-        /// The case or the run.
-        of: String,
-        /// The field.
-        field: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// A run that finished must have an error.
-    #[error("{of}: finished without an error")]
-    FinishedWithoutError {
-        /// The run.
-        of: String,
-    },
     /// Another version of the format.
     #[error("results have schema {found}, this program knows {SCHEMA}")]
     Schema {
@@ -37,13 +20,17 @@ pub enum ResultsError {
 }
 
 impl BenchResults {
-    /// Pretty JSON with a final newline.
+    /// Pretty JSON with a final newline. Numbers that are not finite are `null`, and named in
+    /// `missing`.
     ///
     /// # Errors
-    /// [`ResultsError`] when a number is not finite or a finished run has no error.
+    /// [`ResultsError::Json`], which no results are known to give.
     pub fn to_json(&self) -> Result<String, ResultsError> {
-        self.check()?;
-        let mut json = serde_json::to_string_pretty(self)?;
+        let written = Self {
+            missing: self.all_missing(),
+            ..self.clone()
+        };
+        let mut json = serde_json::to_string_pretty(&written)?;
         json.push('\n');
         Ok(json)
     }
@@ -63,78 +50,6 @@ impl BenchResults {
         }
         Ok(serde_json::from_str(json)?)
     }
-
-    fn check(&self) -> Result<(), ResultsError> {
-        for case in &self.cases {
-            check_finite(case_numbers(case), || format!("case {}", case.id))?;
-        }
-        for row in &self.rows {
-            let name = || format!("{}, {}, dt = {} s", row.case, row.label(), row.dt);
-            check_finite(
-                required_numbers(row).map(|(field, x)| (field, Some(x))),
-                name,
-            )?;
-            check_finite(optional_numbers(row), name)?;
-            if row.outcome == Outcome::Finished && row.error.is_none() {
-                return Err(ResultsError::FinishedWithoutError { of: name() });
-            }
-        }
-        for run in &self.skipped {
-            check_finite([("dt", Some(run.dt))], || {
-                format!("skipped {}, {}", run.case, run.integrator)
-            })?;
-        }
-        Ok(())
-    }
-}
-
-fn required_numbers(row: &Row) -> [(&'static str, f64); 6] {
-    [
-        ("dt", row.dt),
-        ("sweeps_per_s", row.sweeps_per_s),
-        ("saturated", row.saturated),
-        ("cpu_s_per_s", row.cpu_s_per_s),
-        ("us_per_step", row.us_per_step),
-        ("setup_cpu_s", row.setup_cpu_s),
-    ]
-}
-
-fn optional_numbers(row: &Row) -> [(&'static str, Option<f64>); 7] {
-    [
-        ("error", row.error),
-        ("max_u", row.max_u),
-        ("late_amplitude", row.late_amplitude),
-        ("diverged_at_s", row.diverged_at_s),
-        ("step_over_critical", row.step_over_critical),
-        ("static_error", row.static_error),
-        ("energy_drift", row.energy_drift),
-    ]
-}
-
-fn case_numbers(case: &CaseInfo) -> [(&'static str, Option<f64>); 5] {
-    [
-        ("duration_s", Some(case.duration_s)),
-        ("reference_error", Some(case.reference_error)),
-        ("max_u_m", Some(case.max_u_m)),
-        ("late_amplitude_m", Some(case.late_amplitude_m)),
-        ("critical_step_s", case.critical_step_s),
-    ]
-}
-
-fn check_finite<const N: usize>(
-    numbers: [(&'static str, Option<f64>); N],
-    of: impl Fn() -> String,
-) -> Result<(), ResultsError> {
-    for (field, value) in numbers {
-        if let Some(value) = value.filter(|x| !x.is_finite()) {
-            return Err(ResultsError::NotFinite {
-                of: of(),
-                field,
-                value,
-            });
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -145,7 +60,7 @@ mod tests {
 
     use super::*;
     use crate::results::{Machine, Skipped};
-    use sinew_measure::{Verdict, Work, finite};
+    use sinew_measure::{CaseInfo, Outcome, Row, Verdict, Work, finite};
 
     fn row() -> Row {
         Row {
@@ -242,33 +157,44 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_is_not_finite_is_refused_by_name() {
+    fn a_number_that_is_not_finite_is_null_and_named_with_its_reason() {
         let bad = Row {
             cpu_s_per_s: f64::NAN,
-            ..row()
-        };
-        let message = results(vec![bad]).to_json().unwrap_err().to_string();
-        assert_eq!(
-            message,
-            "paper-cube, cnn Q=4, dt = 0.02 s: cpu_s_per_s is NaN, which JSON cannot hold"
-        );
-        let bad = Row {
             max_u: Some(f64::INFINITY),
-            ..row()
-        };
-        assert!(results(vec![bad]).to_json().is_err());
-    }
-
-    #[test]
-    fn a_finished_run_has_an_error() {
-        let bad = Row {
             error: None,
             ..row()
         };
-        assert!(matches!(
-            results(vec![bad]).to_json(),
-            Err(ResultsError::FinishedWithoutError { .. })
-        ));
+        let mut written = results(vec![row(), bad]);
+        written.cases.push(CaseInfo {
+            id: "paper-cube".into(),
+            max_u_m: f64::INFINITY,
+            ..CaseInfo::default()
+        });
+        let json = written.to_json().unwrap();
+        let value: Value = serde_json::from_str(&json).unwrap();
+        assert_eq!(value["cases"][0]["max_u_m"], Value::Null);
+        assert_eq!(value["rows"][1]["cpu_s_per_s"], Value::Null);
+        assert_eq!(value["rows"][0]["cpu_s_per_s"], 0.0009);
+        let not_finite = "it is not a finite number";
+        let run = "cnn Q=4, dt = 0.02 s";
+        assert_eq!(
+            value["missing"],
+            json!([
+                { "scene": "paper-cube", "field": "max_u_m", "value": "inf", "reason": not_finite },
+                { "scene": "paper-cube", "row": run, "field": "error",
+                  "reason": "the run finished and no finite number came of it" },
+                { "scene": "paper-cube", "row": run, "field": "max_u", "value": "inf",
+                  "reason": not_finite },
+                { "scene": "paper-cube", "row": run, "field": "cpu_s_per_s", "value": "NaN",
+                  "reason": not_finite },
+            ])
+        );
+
+        // Read again, it tells the same.
+        let read = BenchResults::from_json(&json).unwrap();
+        assert!(read.cases[0].max_u_m.is_nan() && read.rows[1].cpu_s_per_s.is_nan());
+        assert_eq!(read.all_missing(), written.all_missing());
+        assert_eq!(read.to_json().unwrap(), json);
     }
 
     #[test]

@@ -14,7 +14,7 @@ const PAPER_Q: f64 = 4.0;
 
 pub(super) const SATURATION: OptionHelp = OptionHelp {
     key: "saturation",
-    help: "saturation voltage Q [m/s] above 0, \"auto\" for a guard in its place, or \"off\"; default 4, the paper's",
+    help: "saturation voltage Q [m/s] above 0, \"auto\" for a guard in its place (steps beyond the stable one are cut, speeds limited by the energy there is), or \"off\"; default 4, the paper's",
     shown_default: Some(PAPER_Q),
 };
 

@@ -81,7 +81,7 @@ impl Method for CnnStabilised {
     const OPTIONS: &'static [OptionHelp] = &[
         OptionHelp {
             key: INNER,
-            help: "{ kind = \"block\" | \"jacobi\" | \"chebyshev\" | \"gauss-seidel\", sweeps = p }; default { kind = \"block\" }; two or more sweeps are of order 2 with any damping",
+            help: "{ kind = \"block\" | \"jacobi\" | \"chebyshev\" | \"gauss-seidel\", sweeps = p }; default { kind = \"block\" }; two or more sweeps are of order 2 with any damping; in long steps \"gauss-seidel\" depends on the numbering of the nodes",
             shown_default: None,
         },
         OptionHelp {
@@ -96,7 +96,7 @@ impl Method for CnnStabilised {
         },
     ];
 
-    const GUARD: GuardOption = GuardOption::Any { runs_away: false };
+    const GUARD: GuardOption = GuardOption::Any;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
         let refused = |key: &str, found: &OptionValue, expected| {

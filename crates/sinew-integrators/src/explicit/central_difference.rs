@@ -37,7 +37,7 @@ impl Method for CentralDifference {
     const SUMMARY: &'static str = "explicit, order 2 with mass damping; stable up to 2/omega_max";
     const OPTIONS: &'static [OptionHelp] = patches::OPTIONS;
     const SUBSTEPS: bool = true;
-    const GUARD: GuardOption = GuardOption::Any { runs_away: false };
+    const GUARD: GuardOption = GuardOption::Any;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
         Ok(Self {

@@ -25,7 +25,7 @@ impl Method for ForwardEuler {
     const ID: &'static str = "forward-euler";
     const SUMMARY: &'static str = "explicit, order 1; what the paper calls explicit integration";
     const SUBSTEPS: bool = true;
-    const GUARD: GuardOption = GuardOption::Any { runs_away: false };
+    const GUARD: GuardOption = GuardOption::Any;
 
     fn from_options(_options: &Options) -> Result<Self, OptionError> {
         Ok(Self::default())

@@ -31,7 +31,7 @@ impl Method for ModifiedLeapfrog {
     const ID: &'static str = "modified-leapfrog";
     const SUMMARY: &'static str = "explicit, order 4 where damping is small, two sweeps a step";
     const SUBSTEPS: bool = true;
-    const GUARD: GuardOption = GuardOption::Any { runs_away: true };
+    const GUARD: GuardOption = GuardOption::Any;
 
     fn from_options(_options: &Options) -> Result<Self, OptionError> {
         Ok(Self::default())

@@ -37,7 +37,7 @@ impl Method for Rk4 {
     const ID: &'static str = "rk4";
     const SUMMARY: &'static str = "explicit, order 4, four sweeps a step";
     const SUBSTEPS: bool = true;
-    const GUARD: GuardOption = GuardOption::Any { runs_away: true };
+    const GUARD: GuardOption = GuardOption::Any;
 
     fn from_options(_options: &Options) -> Result<Self, OptionError> {
         Ok(Self::default())

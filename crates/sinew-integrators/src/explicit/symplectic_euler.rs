@@ -23,7 +23,7 @@ impl Method for SymplecticEuler {
     const ID: &'static str = "symplectic-euler";
     const SUMMARY: &'static str = "explicit, order 1, keeps the energy of undamped motion bounded";
     const SUBSTEPS: bool = true;
-    const GUARD: GuardOption = GuardOption::Any { runs_away: false };
+    const GUARD: GuardOption = GuardOption::Any;
 
     fn from_options(_options: &Options) -> Result<Self, OptionError> {
         Ok(Self::default())

@@ -5,8 +5,9 @@ use sinew_core::{
     Fact, LinearOperators, LoadOverStep, LoadTime, Ramp, SetupError, State, StepError, StepReport,
 };
 
+use super::cut::{Cut, Motion};
 use super::mode::{Mode, quadrature};
-use super::series::{interpolate, nodes, tails};
+use super::series::{interpolate, nodes};
 use super::vectors::ChebyshevVectors;
 use super::{HIGHEST_DEGREE, ID, Resolution, refuse_loads};
 
@@ -23,8 +24,9 @@ const GROWTH: f64 = 1.05;
 /// With r = M^-1 (F(t) - K u), `u+ = u + s v + g r` and `v+ = s' v + s r`, where s is a mode's impulse
 /// response and g its integral; what the loads change within the step is integrated too, for any
 /// ramp, as long as its kinks and jumps fall on steps. Two sweeps per degree and one for r; one more
-/// per degree for each load that changes. The degree, about omega_max dt/2 + 5, is the smallest that
-/// brings the part of the series left out below the tolerance.
+/// per degree for each load that changes. The polynomials are cut so that under constant loads no step
+/// takes the state farther from its equilibrium, in the energy norm, than it was ([`super::cut`]). The
+/// degree, about omega_max dt/2 + 5, is the smallest at which the error of a step meets the tolerance.
 #[derive(Debug)]
 pub(super) struct Chebyshev {
     series: Series,
@@ -35,13 +37,10 @@ pub(super) struct Chebyshev {
 }
 
 /// Coefficients for a system and a step.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Series {
     interval: f64,
-    estimate: f64,
-    s: Vec<f64>,
-    s_rate: Vec<f64>,
-    g: Vec<f64>,
+    cut: Cut,
     /// Times of the quadrature over a step (s).
     times: Vec<f64>,
     /// For each node the weighted impulse response and its rate at each of these times.
@@ -52,7 +51,11 @@ struct Series {
 }
 
 impl Series {
-    fn new(operators: &LinearOperators, dt: f64) -> Self {
+    fn new(
+        operators: &LinearOperators,
+        dt: f64,
+        resolution: Resolution,
+    ) -> Result<Self, SetupError> {
         let spectrum = Spectrum::of(operators);
         let interval = spectrum.omega_max.powi(2) * (1.0 + LARGEST_EIGENVALUE_MARGIN);
         let (alpha, beta) = (spectrum.mass_damping, spectrum.stiffness_damping);
@@ -89,40 +92,25 @@ impl Series {
         let g = kernels
             .iter()
             .map(|kernel| kernel.iter().map(|(s, _)| s).sum());
-        Self {
+        let motion = Motion {
             interval,
-            estimate: 0.0,
+            dt,
+            damping: (alpha, beta),
             s: coefficients(s.collect()),
             s_rate: coefficients(s_rate.collect()),
             g: coefficients(g.collect()),
+        };
+        let cut = motion.cut(resolution)?;
+        let terms = cut.degree() + 1;
+        Ok(Self {
+            interval,
+            cut,
             times: points.into_iter().map(|(t, _)| t).collect(),
             kernels,
             values: vec![(0.0, 0.0); count],
-            of_load: Vec::new(),
-            of_load_rate: Vec::new(),
-        }
-    }
-
-    /// What cutting at each degree leaves out, relative to the scales dt, 1 and dt^2/2 of the three
-    /// functions.
-    fn left_out(&self, dt: f64) -> Vec<f64> {
-        let (s, s_rate, g) = (tails(&self.s), tails(&self.s_rate), tails(&self.g));
-        let degrees = 0..self.s.len();
-        degrees
-            .map(|k| (s[k] / dt).max(s_rate[k]).max(2.0 * g[k] / (dt * dt)))
-            .collect()
-    }
-
-    fn cut(&mut self, degree: usize) {
-        for coefficients in [&mut self.s, &mut self.s_rate, &mut self.g] {
-            coefficients.truncate(degree + 1);
-        }
-        self.of_load.resize(degree + 1, 0.0);
-        self.of_load_rate.resize(degree + 1, 0.0);
-    }
-
-    fn degree(&self) -> usize {
-        self.s.len().saturating_sub(1)
+            of_load: vec![0.0; terms],
+            of_load_rate: vec![0.0; terms],
+        })
     }
 
     /// Coefficients of what a ramp's change since `t` brings by t + dt.
@@ -161,7 +149,7 @@ impl Chebyshev {
         pick: fn(&Series) -> (&[f64], &[f64]),
     ) -> Result<u64, Growth> {
         let mass = operators.mass();
-        let degree = self.series.degree();
+        let degree = self.series.cut.degree();
         let start = m_norm(mass, self.vectors.current());
         for k in 0..=degree {
             let (of_u, of_v) = pick(&self.series);
@@ -205,11 +193,7 @@ impl Chebyshev {
                 needs: "proportional damping (D = alpha M + beta K, no dashpots); kind = \"krylov\" takes any",
             });
         }
-        let mut series = Series::new(operators, dt);
-        let left_out = series.left_out(dt);
-        let degree = resolution.degree_for(&left_out, dt)?;
-        series.estimate = left_out[degree];
-        series.cut(degree);
+        let series = Series::new(operators, dt, resolution)?;
         let buffer = || vec![0.0; operators.dofs()];
         Ok(Self {
             vectors: ChebyshevVectors::new(operators.dofs(), series.interval),
@@ -252,11 +236,11 @@ impl Chebyshev {
         };
         self.vectors.start().copy_from_slice(&state.v);
         work.sweeps += self
-            .add_series(operators, |series| (&series.s, &series.s_rate))
+            .add_series(operators, |series| (&series.cut.s, &series.cut.s_rate))
             .map_err(grown)?;
         self.vectors.start().copy_from_slice(&self.r);
         work.sweeps += self
-            .add_series(operators, |series| (&series.g, &series.s))
+            .add_series(operators, |series| (&series.cut.g, &series.cut.s))
             .map_err(grown)?;
         for load in operators.loads() {
             if load.ramp.is_constant_between(t, t + dt) {
@@ -280,8 +264,9 @@ impl Chebyshev {
     pub(super) fn facts(&self) -> Vec<Fact> {
         let fact = |name, value| Fact { name, value };
         vec![
-            fact("degree", self.series.degree() as f64),
-            fact("left_out", self.series.estimate),
+            fact("degree", self.series.cut.degree() as f64),
+            fact("step_error", self.series.cut.error),
+            fact("relaxation", self.series.cut.relaxation),
         ]
     }
 }

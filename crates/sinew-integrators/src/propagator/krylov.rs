@@ -2,7 +2,8 @@
 
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    Fact, LinearOperators, LoadOverStep, LoadTime, SetupError, State, StepError, StepReport,
+    BlockMatrix, Fact, LinearOperators, LoadOverStep, LoadTime, SetupError, State, StepError,
+    StepReport,
 };
 
 use super::dense::Exponential;
@@ -17,18 +18,25 @@ const NOTHING: f64 = 1e-140;
 /// Change between two looks at the solution above which the estimate is not believed: in a space far
 /// too small for the step both the solution and its estimate mean nothing.
 const STEADY: f64 = 1e-2;
+/// Part of a step below which it is not shortened: the space grows instead.
+const SHORTEST: f64 = 0.5;
 
 /// `y' = L y + b` for y = (u, v) over a step: `y+ = y + dt phi_1(dt L) w0 + dt^2 phi_2(dt L) w1` with
 /// `w0 = L y + b(t)` and w1 the rate of b, each product taken in the Krylov space of its vector by the
 /// Arnoldi process (Saad, SIAM J. Numer. Anal. 29, 1992; Sidje, ACM TOMS 24, 1998). The space grows
-/// until Saad's estimate of what it leaves out meets the tolerance.
+/// until Saad's estimate of what it leaves out, relative to the change over the step, meets the
+/// tolerance.
 ///
 /// Inner products weigh velocities by M and displacements by omega_max^2 M, so that both count alike.
+/// The energy weighs displacements by K, so that what is left out may bring energy in. A step that does
+/// is shortened: `y + theta (y+ - y)` has no more energy than y for the theta of [`Krylov::part_without_gain`].
 #[derive(Debug)]
 pub(super) struct Krylov {
     resolution: Resolution,
     capacity: usize,
     weight: f64,
+    /// Diagonal of K (N/m).
+    diagonal: Vec<f64>,
     /// Orthonormal vectors of length 2n: displacement part, then velocity part.
     basis: Vec<Vec<f64>>,
     /// Upper Hessenberg, row-major with `capacity` columns.
@@ -39,6 +47,12 @@ pub(super) struct Krylov {
     load: Vec<f64>,
     /// Coefficients in the basis when they were last looked at.
     before: Vec<f64>,
+    /// Coefficients of the change in the basis.
+    coefficients: Vec<f64>,
+    /// Velocity part of L times the change.
+    acceleration_change: Vec<f64>,
+    /// Velocity in the middle of the change.
+    middle: Vec<f64>,
     largest: usize,
     estimate: f64,
 }
@@ -75,6 +89,7 @@ impl Krylov {
             resolution,
             capacity,
             weight,
+            diagonal: diagonal(operators.stiffness()),
             basis: vec![vec![0.0; 2 * n]; capacity + 1],
             hessenberg: vec![0.0; (capacity + 1) * capacity],
             exponential: Exponential::with_capacity(capacity + CHAIN),
@@ -82,6 +97,9 @@ impl Krylov {
             change: vec![0.0; 2 * n],
             load: vec![0.0; n],
             before: vec![0.0; capacity],
+            coefficients: vec![0.0; capacity],
+            acceleration_change: vec![0.0; n],
+            middle: vec![0.0; n],
             largest: 0,
             estimate: 0.0,
         })
@@ -108,7 +126,7 @@ impl Krylov {
         let start = LoadTime::smooth_in(t, t, dt);
         operators.net_force(start, &state.u, &state.v, of_v);
         divide(of_v, mass);
-        work.sweeps += self.add_phi(operators, t, dt, 1)?;
+        work.sweeps += self.add_phi(operators, state, dt, 1)?;
 
         // w1: the rate of the load.
         let end = LoadTime::smooth_in(t + dt, t, dt);
@@ -128,7 +146,7 @@ impl Krylov {
             of_u.fill(0.0);
             of_v.copy_from_slice(&self.load);
             divide(of_v, mass);
-            work.sweeps += self.add_phi(operators, t, dt, 2)?;
+            work.sweeps += self.add_phi(operators, state, dt, 2)?;
         }
         let (of_u, of_v) = self.change.split_at(n);
         for (u, change) in state.u.iter_mut().zip(of_u) {
@@ -148,11 +166,12 @@ impl Krylov {
         ]
     }
 
-    /// `change += dt^order phi_order(dt L) start`; returns the sweeps it took.
+    /// `change += dt^order phi_order(dt L) start`; returns the sweeps it took. For order 1 the change is
+    /// the motion under constant loads, which brings no energy in.
     fn add_phi(
         &mut self,
         operators: &LinearOperators,
-        t: f64,
+        state: &State,
         dt: f64,
         order: usize,
     ) -> Result<u64, StepError> {
@@ -169,10 +188,12 @@ impl Krylov {
             *vector = value / length;
         }
         self.before.fill(0.0);
+        let mut sweeps = 0;
         let capacity = self.capacity;
         let fixed = self.resolution.degree.is_some();
         for m in 1..=capacity {
             let next = self.expand(operators, m);
+            sweeps += 1;
             let complete = next == 0.0 || m == self.start.len();
             let last = m == capacity;
             let looked_at = if fixed {
@@ -208,35 +229,124 @@ impl Krylov {
             // A space with only one look at it has nothing to compare with.
             let steady = change <= STEADY || capacity <= EVERY;
             let met = complete || (steady && estimate <= self.resolution.tolerance);
+            for (row, coefficient) in self.coefficients[..m].iter_mut().enumerate() {
+                *coefficient = scale * length * phi(row, order);
+            }
+            before
+                .iter_mut()
+                .zip(rows())
+                .for_each(|(before, now)| *before = now);
             if !(met || last) {
-                before
-                    .iter_mut()
-                    .zip(rows())
-                    .for_each(|(before, now)| *before = now);
                 continue;
             }
+            let inaccurate = |left_out: f64| StepError::Inaccurate {
+                integrator: ID,
+                t: state.t(),
+                reason: format!(
+                    "a space of {m} dimensions leaves out {left_out:.1e} of the motion over a step of {dt} s; take a shorter step{}",
+                    if fixed { " or a higher degree" } else { "" }
+                ),
+            };
             if !met {
-                return Err(StepError::Inaccurate {
-                    integrator: ID,
-                    t,
-                    reason: format!(
-                        "a space of {m} dimensions leaves out {:.1e} of the motion over a step of {dt} s; take a shorter step{}",
-                        estimate.max(change),
-                        if fixed { " or a higher degree" } else { "" }
-                    ),
-                });
+                return Err(inaccurate(estimate.max(change)));
             }
-            for (row, vector) in self.basis.iter().take(m).enumerate() {
-                let factor = scale * length * phi(row, order);
-                for (change, value) in self.change.iter_mut().zip(vector) {
-                    *change += factor * value;
+            self.add_change(m);
+            if order == 1 && !complete {
+                let theta = self.part_without_gain(operators, state, m, next, &mut sweeps);
+                if theta < SHORTEST {
+                    if last {
+                        return Err(inaccurate(1.0 - theta));
+                    }
+                    self.change.fill(0.0);
+                    continue;
                 }
+                self.change.iter_mut().for_each(|change| *change *= theta);
             }
             self.largest = self.largest.max(m);
             self.estimate = self.estimate.max(if complete { 0.0 } else { estimate });
-            return Ok(m as u64);
+            return Ok(sweeps);
         }
-        Ok(0)
+        Ok(sweeps)
+    }
+
+    fn add_change(&mut self, m: usize) {
+        for (factor, vector) in self.coefficients.iter().zip(&self.basis).take(m) {
+            for (change, value) in self.change.iter_mut().zip(vector) {
+                *change += factor * value;
+            }
+        }
+    }
+
+    /// The part theta of the change, at most 1, that brings no energy in under constant loads.
+    ///
+    /// With `P = v'M v/2 + u'K u/2 - F'u` and a change c, `P(y + theta c) - P(y) = theta p + theta^2 q`, where
+    /// `q = dv'M dv/2 + du'K du/2`; exactly moved, `p + q` is what damping takes, at most 0. Where it is above,
+    /// theta = -p/q. K du follows from the Arnoldi relation, `-M (L c)_v = K du + D dv`, without a sweep.
+    fn part_without_gain(
+        &mut self,
+        operators: &LinearOperators,
+        state: &State,
+        m: usize,
+        next: f64,
+        sweeps: &mut u64,
+    ) -> f64 {
+        let mass = operators.mass();
+        let n = mass.len();
+        self.acceleration_change.fill(0.0);
+        for row in 0..=m {
+            let factor = if row < m {
+                let first = row.saturating_sub(1);
+                (first..m)
+                    .map(|k| self.hessenberg[row * self.capacity + k] * self.coefficients[k])
+                    .sum()
+            } else {
+                next * self.coefficients[m - 1]
+            };
+            for (sum, value) in self
+                .acceleration_change
+                .iter_mut()
+                .zip(&self.basis[row][n..])
+            {
+                *sum += factor * value;
+            }
+        }
+        let (du, dv) = self.change.split_at(n);
+        let (_, a) = self.start.split_at(n);
+        for ((middle, v), dv) in self.middle.iter_mut().zip(&state.v).zip(dv) {
+            *middle = v + 0.5 * dv;
+        }
+        // -D v in the middle, then -D dv.
+        let damping = operators.damping();
+        let product = u64::from(damping.stiffness != 0.0 || damping.extra.is_some());
+        self.load.fill(0.0);
+        operators.subtract_damping(&self.middle, &mut self.load);
+        *sweeps += product;
+        let (mut both, mut square, mut rounding) = (0.0, 0.0, 0.0);
+        for i in 0..n {
+            let half = 0.5 * self.acceleration_change[i];
+            both +=
+                mass[i] * (dv[i] * self.middle[i] - du[i] * (a[i] + half)) + du[i] * self.load[i];
+            square += mass[i] * (0.5 * dv[i] * dv[i] - du[i] * half);
+            // K u and its likes are no better than this.
+            let stretched = self.diagonal[i] * (state.u[i].abs() + du[i].abs());
+            let moving = mass[i] * (state.v[i].abs() + dv[i].abs());
+            rounding += f64::EPSILON * (du[i].abs() * stretched + dv[i].abs() * moving);
+        }
+        if both <= rounding {
+            return 1.0;
+        }
+        self.load.fill(0.0);
+        operators.subtract_damping(dv, &mut self.load);
+        *sweeps += product;
+        for (du, force) in du.iter().zip(&self.load) {
+            square += 0.5 * du * force;
+        }
+        // No energy in the change itself: no part of it will do.
+        if square > 0.0 {
+            (1.0 - both / square).max(0.0)
+        } else {
+            0.0
+        }
     }
 
     /// The m-th column of the Hessenberg matrix and the next basis vector by modified Gram-Schmidt;
@@ -287,6 +397,16 @@ impl Krylov {
     fn norm(&self, operators: &LinearOperators, y: &[f64]) -> f64 {
         norm(self.weight, operators.mass(), y)
     }
+}
+
+fn diagonal(stiffness: &BlockMatrix) -> Vec<f64> {
+    let layers = stiffness.layers().count();
+    let entry = |dof: usize| {
+        let (cell, layer) = (dof / layers, dof % layers);
+        let block = stiffness.block(cell, cell);
+        block.map_or(0.0, |block| block[layer * (layers + 1)])
+    };
+    (0..stiffness.dofs()).map(entry).collect()
 }
 
 fn divide(values: &mut [f64], mass: &[f64]) {

@@ -3,9 +3,12 @@
 //! A linear system under loads that are smooth between breakpoints is solved by its Taylor series
 //! in time, to rounding; no method under test is involved.
 
+mod error_norm;
+mod peak;
 mod taylor;
 mod track;
 
+pub use error_norm::ErrorNorm;
 pub use taylor::Taylor;
 pub(crate) use track::LateRange;
-pub use track::{ErrorNorm, ReferenceError, Track, follow, largest};
+pub use track::{ReferenceError, Track, follow, largest};

@@ -4,6 +4,8 @@ use sinew_core::spectrum::Spectrum;
 use sinew_core::{State, System};
 
 use super::Taylor;
+use super::error_norm::ErrorNorm;
+use super::peak::peak_between;
 
 /// A reference solution at some instants, with what the verdicts need of the whole run.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,9 +78,7 @@ fn solve(mut taylor: Taylor<'_>, start: &State, times: &[f64]) -> Track {
     let mut displacements = Vec::with_capacity(times.len());
     for &time in times {
         taylor.advance(&mut state, time, |state| {
-            max_u = max_u
-                .max(largest(&state.u))
-                .max(peak_between(&before, state));
+            max_u = peak_between(&before, state, max_u.max(largest(&state.u)));
             before.clone_from(state);
             if state.t() > 0.8 * duration {
                 late.include(&state.u);
@@ -94,28 +94,6 @@ fn solve(mut taylor: Taylor<'_>, start: &State, times: &[f64]) -> Track {
         error: 0.0,
         sweeps: taylor.sweeps,
     }
-}
-
-/// Largest |component| inside a step: of the cubic through displacements and velocities at its
-/// ends, where the velocity changes sign between them.
-fn peak_between(before: &State, after: &State) -> f64 {
-    let h = after.t() - before.t();
-    let mut peak = 0.0_f64;
-    for i in 0..before.u.len() {
-        let (v0, v1) = (before.v[i], after.v[i]);
-        if v0 * v1 >= 0.0 {
-            continue;
-        }
-        // Derivative over s = 0..1 of the Hermite cubic: v0 h + 2 b s + 3 c s^2.
-        let rise = after.u[i] - before.u[i];
-        let b = 3.0 * rise - h * (2.0 * v0 + v1);
-        let c = h * (v0 + v1) - 2.0 * rise;
-        let root = (b * b - 3.0 * c * h * v0).max(0.0).sqrt();
-        // The root between 0 and 1, in the form that does not cancel.
-        let s = -h * v0 / if v0 > 0.0 { b - root } else { b + root };
-        peak = peak.max((before.u[i] + s * (h * v0 + s * (b + s * c))).abs());
-    }
-    peak
 }
 
 /// Largest |component|; infinite where one is not a number.
@@ -138,32 +116,6 @@ fn relative_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
         norms.include(a, b);
     }
     norms.relative()
-}
-
-/// Sums for a relative L2 error.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ErrorNorm {
-    difference: f64,
-    reference: f64,
-}
-
-impl ErrorNorm {
-    /// Includes the displacement at one instant.
-    pub fn include(&mut self, u: &[f64], reference: &[f64]) {
-        for (u, reference) in u.iter().zip(reference) {
-            self.difference += (u - reference).powi(2);
-            self.reference += reference * reference;
-        }
-    }
-
-    /// The relative error; where the reference never moves, 0 or infinite.
-    #[must_use]
-    pub fn relative(self) -> f64 {
-        if self.difference == 0.0 {
-            return 0.0;
-        }
-        (self.difference / self.reference).sqrt()
-    }
 }
 
 /// Range of each degree of freedom over some states.

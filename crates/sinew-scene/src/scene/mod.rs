@@ -11,7 +11,7 @@ mod ramp;
 mod region;
 mod run;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use sinew_fem::Problem;
@@ -162,6 +162,22 @@ impl Scene {
     #[must_use]
     pub fn source(&self) -> &SceneSource {
         self.places.document.scene()
+    }
+
+    /// The files that the scene is made from: its own and the mesh it names. No output of a run may
+    /// be one of them.
+    #[must_use]
+    pub fn input_files(&self) -> Vec<PathBuf> {
+        let source = self.source();
+        let mut files = vec![source.path().to_owned()];
+        if let Subject::Body(Body {
+            mesh: MeshSource::File(written),
+            ..
+        }) = &self.subject
+        {
+            files.push(source.resolve(written));
+        }
+        files
     }
 
     fn read(document: &Table<'_>) -> Result<Self, SceneError> {

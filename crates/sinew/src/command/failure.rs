@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use miette::{LabeledSpan, NamedSource, Report, miette};
 use sinew_scene::SceneError;
+use sinew_scene::output::{OutputError, complain};
 
 /// A command that did not succeed.
 #[derive(Debug)]
@@ -24,24 +25,34 @@ impl From<SceneError> for Failure {
     }
 }
 
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        if error.is_refusal() {
+            Self::Input(error.to_string())
+        } else {
+            Self::Run(error.to_string())
+        }
+    }
+}
+
 impl Failure {
     /// Says so on standard error.
     pub(crate) fn report(self) -> ExitCode {
         match self {
             Self::Scene(error) => {
-                eprintln!("error: {error}");
+                complain(&format!("error: {error}"));
                 if let Some(report) = excerpt(&error) {
-                    eprintln!("{report:?}");
+                    complain(&format!("{report:?}"));
                 }
                 ExitCode::from(2)
             }
             Self::Input(message) => {
-                eprintln!("error: {message}");
+                complain(&format!("error: {message}"));
                 ExitCode::from(2)
             }
             Self::Findings => ExitCode::from(1),
             Self::Run(message) => {
-                eprintln!("error: {message}");
+                complain(&format!("error: {message}"));
                 ExitCode::from(1)
             }
         }

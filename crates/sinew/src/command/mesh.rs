@@ -7,9 +7,9 @@ use serde_json::json;
 use sinew_mesh::info::MeshInfo;
 use sinew_mesh::vtu::{VtuEncoding, write_vtu};
 use sinew_mesh::{Finding, Mesh, MeshCheck, MshEncoding, MshVersion, read_msh_file, write_msh};
-use sinew_scene::WholeFile;
+use sinew_scene::output::{Destination, Voice, complain, say};
 
-use super::{Failure, say};
+use super::Failure;
 
 /// What to do with a mesh file.
 #[derive(Subcommand)]
@@ -32,11 +32,12 @@ pub(crate) enum Command {
         /// Repair before looking, and write the result to another file; may be given several times.
         #[arg(long, value_name = "WHAT")]
         fix: Vec<Fix>,
-        /// Where the repaired mesh goes [default: FILE with .fixed.msh]
+        /// Where the repaired mesh goes, - for standard output [default: FILE with .fixed.msh]
         #[arg(long, value_name = "OUT", requires = "fix")]
         out: Option<PathBuf>,
     },
-    /// Write a gmsh file in another version, encoding or format: .msh or .vtu by the name of OUT.
+    /// Write a gmsh file in another version, encoding or format: .msh or .vtu by the name of
+    /// OUTPUT, .msh where it is a device, a pipe or - for standard output.
     Convert {
         /// The .msh file.
         input: PathBuf,
@@ -102,8 +103,7 @@ fn read(file: &Path) -> Result<Mesh, Failure> {
 fn info(file: &Path, json: bool) -> Result<(), Failure> {
     let info = MeshInfo::of(&read(file)?);
     if json {
-        say(&info.to_json());
-        return Ok(());
+        return Ok(say(&info.to_json())?);
     }
     let [low, high] = info.bbox;
     let cells: Vec<String> = info
@@ -111,13 +111,13 @@ fn info(file: &Path, json: bool) -> Result<(), Failure> {
         .iter()
         .map(|(kind, count)| format!("{count} {kind}"))
         .collect();
-    say(&format!("{}", file.display()));
+    say(&format!("{}", file.display()))?;
     say(&format!(
         "points   {}, from {low:?} to {high:?}",
         info.num_points
-    ));
-    say(&format!("cells    {}", cells.join(", ")));
-    say(&format!("volume   {:.6e} in tetrahedra", info.tet_volume));
+    ))?;
+    say(&format!("cells    {}", cells.join(", ")))?;
+    say(&format!("volume   {:.6e} in tetrahedra", info.tet_volume))?;
     for group in &info.physical {
         let cells: Vec<String> = group
             .cells
@@ -128,7 +128,7 @@ fn info(file: &Path, json: bool) -> Result<(), Failure> {
         say(&format!(
             "group    `{name}` (dimension {dim}, tag {tag}): {}",
             cells.join(", ")
-        ));
+        ))?;
     }
     for (count, what) in [
         (
@@ -145,16 +145,31 @@ fn info(file: &Path, json: bool) -> Result<(), Failure> {
         if count > 0 {
             say(&format!(
                 "note     {count} {what}; `sinew mesh check` names them"
-            ));
+            ))?;
         }
     }
     for warning in &info.warnings {
-        say(&format!("warning  {warning}"));
+        say(&format!("warning  {warning}"))?;
     }
     Ok(())
 }
 
 fn check(file: &Path, json: bool, fixes: &[Fix], out: Option<&Path>) -> Result<(), Failure> {
+    let default = file.with_extension("fixed.msh");
+    let path = out.unwrap_or(&default);
+    let destination = match fixes {
+        [] => None,
+        _ => Some(Destination::new(path, &[file.to_owned()])?),
+    };
+    let voice = destination
+        .as_ref()
+        .map_or(Voice::StandardOutput, Voice::beside);
+    if json && voice == Voice::StandardError {
+        return Err(Failure::Input(format!(
+            "--json and --out {} both go to standard output; name a file with --out",
+            path.display()
+        )));
+    }
     let mut mesh = read(file)?;
     let mut fixed = Vec::new();
     for fix in fixes {
@@ -165,28 +180,25 @@ fn check(file: &Path, json: bool, fixes: &[Fix], out: Option<&Path>) -> Result<(
         };
         fixed.push((count, what));
     }
-    let written = if fixes.is_empty() {
-        None
-    } else {
-        let default = file.with_extension("fixed.msh");
-        let path = out.unwrap_or(&default);
+    let written = destination.is_some().then_some(path);
+    if let Some(destination) = destination {
         let mut bytes = Vec::new();
         write_msh(&mesh, MshVersion::V41, MshEncoding::Text, &mut bytes)
             .map_err(|error| cannot_write(path, &error))?;
-        let path = WholeFile::write(path, &bytes).map_err(|error| cannot_write(path, &error))?;
-        Some(path)
-    };
+        // A reader that left wants no more; what was found is still to be told.
+        let _ = destination.write(&bytes)?;
+    }
     let check = mesh.check();
     if json {
-        say(&as_json(&check, &fixed, written.as_deref()).to_string());
+        say(&as_json(&check, &fixed, written).to_string())?;
     } else {
         for (count, what) in &fixed {
-            say(&format!("fixed    {count} {what}"));
+            voice.say(&format!("fixed    {count} {what}"))?;
         }
-        if let Some(path) = &written {
-            say(&format!("written  {}", path.display()));
+        if let Some(path) = written {
+            voice.say(&format!("written  {}", path.display()))?;
         }
-        report(&check);
+        report(&check, voice)?;
     }
     if check.is_clean() {
         Ok(())
@@ -195,35 +207,36 @@ fn check(file: &Path, json: bool, fixes: &[Fix], out: Option<&Path>) -> Result<(
     }
 }
 
-fn report(check: &MeshCheck) {
-    say(&format!(
+fn report(check: &MeshCheck, voice: Voice) -> Result<(), Failure> {
+    voice.say(&format!(
         "checked  {} tetrahedra in {} part(s)",
         check.tets, check.part_count
-    ));
+    ))?;
     if let Some(extreme) = &check.least_dihedral {
         let (value, tag) = (extreme.value, extreme.element_tag);
-        say(&format!(
+        voice.say(&format!(
             "angle    least between two faces {value:.3} degrees, in tetrahedron {tag}"
-        ));
+        ))?;
     }
     if let Some(extreme) = &check.least_radius_ratio {
         let (value, tag) = (extreme.value, extreme.element_tag);
-        say(&format!(
+        voice.say(&format!(
             "shape    least radius ratio {value:.4}, in tetrahedron {tag}"
-        ));
+        ))?;
     }
     if let Some(edges) = &check.edges {
-        say(&format!(
+        voice.say(&format!(
             "edges    from {:.4e} to {:.4e}",
             edges.shortest, edges.longest
-        ));
+        ))?;
     }
     for problem in check.problems() {
-        say(&format!("problem  {problem}"));
+        voice.say(&format!("problem  {problem}"))?;
     }
     if check.is_clean() {
-        say("nothing found that needs attention");
+        voice.say("nothing found that needs attention")?;
     }
+    Ok(())
 }
 
 fn as_json(
@@ -275,43 +288,48 @@ fn convert(
     ascii: bool,
     binary: bool,
 ) -> Result<(), Failure> {
+    let destination = Destination::new(output, &[input.to_owned()])?;
     let extension = output.extension().and_then(|extension| extension.to_str());
+    let extension = match extension.map(str::to_ascii_lowercase) {
+        // Their names say nothing of a format.
+        None if destination.is_stream() => "msh".to_owned(),
+        extension => extension.unwrap_or_default(),
+    };
+    if !["msh", "vtu"].contains(&extension.as_str()) {
+        return Err(Failure::Input(format!(
+            "{}: expected a name that ends in .msh or .vtu",
+            output.display()
+        )));
+    }
     let mesh = read(input)?;
     let mut bytes = Vec::new();
-    match extension.map(str::to_ascii_lowercase).as_deref() {
-        Some("msh") => {
-            let version = match version {
-                Version::V22 => MshVersion::V22,
-                Version::V41 => MshVersion::V41,
-            };
-            let encoding = if binary {
-                MshEncoding::Binary
-            } else {
-                MshEncoding::Text
-            };
-            write_msh(&mesh, version, encoding, &mut bytes)
-                .map_err(|error| cannot_write(output, &error))?;
-        }
-        Some("vtu") => {
-            let encoding = if ascii {
-                VtuEncoding::Base64
-            } else {
-                VtuEncoding::RawAppended
-            };
-            write_vtu(&mesh, encoding, &mut bytes).map_err(|error| cannot_write(output, &error))?;
-        }
-        _ => {
-            return Err(Failure::Input(format!(
-                "{}: expected a name that ends in .msh or .vtu",
-                output.display()
-            )));
-        }
+    if extension == "vtu" {
+        let encoding = if ascii {
+            VtuEncoding::Base64
+        } else {
+            VtuEncoding::RawAppended
+        };
+        write_vtu(&mesh, encoding, &mut bytes).map_err(|error| cannot_write(output, &error))?;
+    } else {
+        let version = match version {
+            Version::V22 => MshVersion::V22,
+            Version::V41 => MshVersion::V41,
+        };
+        let encoding = if binary {
+            MshEncoding::Binary
+        } else {
+            MshEncoding::Text
+        };
+        write_msh(&mesh, version, encoding, &mut bytes)
+            .map_err(|error| cannot_write(output, &error))?;
     }
-    let written = WholeFile::write(output, &bytes).map_err(|error| cannot_write(output, &error))?;
+    let voice = Voice::beside(&destination);
+    // A reader that left asked for no more.
+    let _ = destination.write(&bytes)?;
     for warning in &mesh.warnings {
-        eprintln!("warning: {}: {warning}", input.display());
+        complain(&format!("warning: {}: {warning}", input.display()));
     }
-    say(&format!("{}: {} bytes", written.display(), bytes.len()));
+    voice.say(&format!("{}: {} bytes", output.display(), bytes.len()))?;
     Ok(())
 }
 

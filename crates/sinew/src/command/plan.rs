@@ -1,6 +1,7 @@
 //! `sinew plan`.
 
 mod advice;
+mod advice_json;
 
 use std::path::PathBuf;
 
@@ -9,8 +10,9 @@ use sinew_measure::advice::{
     check_tolerance,
 };
 use sinew_scene::Scene;
+use sinew_scene::output::say;
 
-use super::{Failure, say};
+use super::Failure;
 
 /// A scene, and the error it is to run with.
 #[derive(clap::Args)]
@@ -40,7 +42,7 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     pilot_seconds: f64,
-    /// The advice as one JSON object, without the plan
+    /// The advice as one JSON object, without the plan; each null in it is explained in `missing`
     #[arg(long, requires = "tolerance")]
     json: bool,
 }
@@ -48,7 +50,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let simulation = Scene::load(&arguments.scene)?.build()?;
     if !arguments.json {
-        say(simulation.plan().to_string().trim_end());
+        say(simulation.plan().to_string().trim_end())?;
     }
     let Some(tolerance) = arguments.tolerance else {
         return Ok(());
@@ -61,12 +63,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let advice = advise(simulation, question);
     let advice = advice
         .map_err(|error| Failure::Input(format!("{}: {error}", arguments.scene.display())))?;
-    if arguments.json {
-        say(&advice::as_json(&advice).to_string());
-    } else {
-        say(&format!("\n{}", advice::text(&advice)));
+    if !arguments.json {
+        say(&format!("\n{}", advice::text(&advice)))?;
+        return Ok(());
     }
-    Ok(())
+    let advice = advice_json::as_json(&advice);
+    say(&advice.object.to_string())?;
+    if advice.gaps.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::Run(format!(
+        "missing from the advice: {}",
+        advice.gaps.join("; ")
+    )))
 }
 
 fn tolerance(text: &str) -> Result<f64, QuestionError> {

@@ -3,34 +3,38 @@
 use std::path::PathBuf;
 
 use sinew_core::{Outcome, RunReport, simulate};
+use sinew_scene::output::{Delivery, Destination, Voice, complain};
 use sinew_scene::{ProbeCsv, Scene, Simulation};
 
-use super::{Failure, say};
+use super::Failure;
 
 /// A scene and where its probes go.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The scene file.
     scene: PathBuf,
-    /// Where the motion of the probes goes, as CSV [default: the scene's name with .csv, here]
+    /// Where the motion of the probes goes, as CSV: a new file, a writable file that is no input, a
+    /// device or a pipe, or - for standard output [default: the scene's name with .csv, here]
     #[arg(long, value_name = "FILE")]
     probes: Option<PathBuf>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let simulation = Scene::load(&arguments.scene)?.build()?;
+    let scene = Scene::load(&arguments.scene)?;
+    let stem = arguments.scene.file_stem().unwrap_or_default();
+    let default = PathBuf::from(stem).with_extension("csv");
+    let path = arguments.probes.clone().unwrap_or(default);
+    let destination = Destination::new(&path, &scene.input_files())?;
+    let voice = Voice::beside(&destination);
+
+    let simulation = scene.build()?;
     if let Some(refused) = simulation.refused_load() {
         return Err(Failure::Input(refused));
     }
     let plan = simulation.plan();
     for warning in &plan.warnings {
-        eprintln!("warning: {warning}");
+        complain(&format!("warning: {warning}"));
     }
-    let stem = arguments.scene.file_stem().unwrap_or_default();
-    let default = PathBuf::from(stem).with_extension("csv");
-    let path = arguments.probes.clone().unwrap_or(default);
-    let cannot_write = |error| Failure::Input(format!("cannot write {}: {error}", path.display()));
-
     let mut integrator = simulation
         .integrator()
         .map_err(|error| Failure::Input(error.to_string()))?;
@@ -38,30 +42,31 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     integrator
         .prepare(system, simulation.dt())
         .map_err(|error| Failure::Input(error.to_string()))?;
-    let mut csv = ProbeCsv::create(&path, simulation.probes()).map_err(cannot_write)?;
+    let mut csv = ProbeCsv::new(destination.open()?, simulation.probes())?;
     let mut state = simulation.initial_state().clone();
     let settings = simulation.run();
     let report = simulate(system, &mut *integrator, &mut state, &settings, &mut csv)
         .map_err(|error| Failure::Run(error.to_string()))?;
-    let written = csv.finish().map_err(cannot_write)?;
-
-    say(&summary(&simulation, &report));
-    for remark in integrator.remarks() {
-        say(&remark);
+    // Nobody is left to read of the run where the reader of its motion went away.
+    if csv.finish()? == Delivery::Whole {
+        voice.say(&summary(&simulation, &report))?;
+        for remark in integrator.remarks() {
+            voice.say(&remark)?;
+        }
+        for probe in simulation.probes() {
+            let u: Vec<String> = probe
+                .displacement(&state.u)
+                .map(|u| format!("{u:.6e}"))
+                .collect();
+            voice.say(&format!(
+                "{}: u = ({}) m at t = {:.6} s",
+                probe.name,
+                u.join(", "),
+                state.t()
+            ))?;
+        }
+        voice.say(&format!("probes: {}", path.display()))?;
     }
-    for probe in simulation.probes() {
-        let u: Vec<String> = probe
-            .displacement(&state.u)
-            .map(|u| format!("{u:.6e}"))
-            .collect();
-        say(&format!(
-            "{}: u = ({}) m at t = {:.6} s",
-            probe.name,
-            u.join(", "),
-            state.t()
-        ));
-    }
-    say(&format!("probes: {}", written.display()));
     match report.outcome {
         Outcome::Diverged { t, cell } => Err(Failure::Run(format!(
             "the run diverged at t = {t:.6} s, first at {}; `sinew plan` names the stable step",

@@ -5,7 +5,7 @@ use sinew_core::{Revision, SetupError, Start, System};
 use super::Guard;
 use super::bound::Bound;
 
-/// Limits for the system and the start at hand.
+/// Limits for the system, the start and the step at hand.
 #[derive(Debug, Default)]
 pub(super) struct Limits {
     /// Q of each cell (m/s).
@@ -13,12 +13,14 @@ pub(super) struct Limits {
     /// What they are computed from, and for which system; `None` where they are the user's.
     bound: Option<(Revision, Bound)>,
     start: Option<Start>,
+    /// The step (s), and the factor by which velocities computed at it may exceed the bound of exact motion.
+    step: (f64, f64),
     /// The largest of Q over the cell's size (1/s).
     largest_rate: f64,
 }
 
 impl Limits {
-    /// Share of its size that a cell may pass in a step.
+    /// Share of its size that a cell may pass in a part of a step where no part is known to be stable.
     pub(super) const SHARE_OF_SIZE: f64 = 0.2;
 
     /// Limits for a motion from rest.
@@ -34,7 +36,7 @@ impl Limits {
                 self.of_cells.clear();
                 self.of_cells.resize(cells, limit);
             }
-            Guard::Auto { .. } => {
+            Guard::Auto => {
                 let known = self.bound.as_ref();
                 if known.is_none_or(|(revision, _)| *revision != system.revision()) {
                     let bound = Bound::new(integrator, system)?;
@@ -58,9 +60,19 @@ impl Limits {
         true
     }
 
+    /// Takes into account the step (s) and by what factor velocities computed at it may exceed the bound of exact
+    /// motion.
+    pub(super) fn set_step(&mut self, dt: f64, room: f64) {
+        if self.step != (dt, room) {
+            self.step = (dt, room);
+            self.update();
+        }
+    }
+
     fn update(&mut self) {
         if let Some((_, bound)) = &self.bound {
-            self.largest_rate = bound.limits(self.start, &mut self.of_cells);
+            let (dt, room) = self.step;
+            self.largest_rate = bound.limits(self.start, dt, room, &mut self.of_cells);
         }
     }
 

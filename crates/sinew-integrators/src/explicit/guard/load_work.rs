@@ -1,4 +1,4 @@
-//! The most energy that loads can put into a body.
+//! The most that loads can do to a body.
 
 use sinew_core::LinearOperators;
 
@@ -11,30 +11,54 @@ const RESIDUAL: f64 = 1e-5;
 /// Stiffness of a motion, relative to that of moving each cell by itself, which is rounding of zero.
 const UNRESISTED: f64 = 1e-12;
 
-/// Bound of the energy (J) that the loads have put into the system, kinetic and elastic about the
-/// equilibrium of the moment, at any time after a start at rest; infinite where they can go on for ever.
-///
-/// For `e^2 = v'Mv + (u - u_s)'K(u - u_s)`, u_s the equilibrium under the load of the moment `r(t) F`,
-/// `de/dt <= |dr/dt| sqrt(F'K^-1 F)`, since damping takes energy away: e is at most the ramp's variation
-/// times `sqrt(F'K^-1 F)`. The power of a load gives another bound, `d sqrt(v'Mv + u'Ku)/dt <= |r|
-/// sqrt(F'M^-1 F)`, which holds for floating bodies too. The loads' bounds of e add up.
-pub(super) fn load_work(operators: &LinearOperators) -> f64 {
+/// Bounds of `e = sqrt(v'Mv + w'Kw)` that a load can bring about at any time after a start at rest, w being the
+/// displacement from the equilibrium of the moment or, for the second, from that without loads.
+#[derive(Debug)]
+pub(super) struct LoadStrength {
+    /// By the load's changes (J^1/2); infinite where nothing holds the body against it.
+    by_changes: f64,
+    /// `sqrt(F'M^-1 F)` (J^1/2/s), F being the load at full value.
+    rate: f64,
+    /// Of the ramp (s).
+    impulse: f64,
+    /// Of the ramp.
+    variation: f64,
+}
+
+impl LoadStrength {
+    /// The bound (J^1/2) for motion computed in steps of `dt` (s); infinite where the load can go on moving the
+    /// body for ever.
+    ///
+    /// With the equilibrium u_s under the load of the moment, `r(t) F`, and `e^2 = v'Mv + (u - u_s)'K(u - u_s)`,
+    /// `de/dt <= |dr/dt| sqrt(F'K^-1 F)`, since damping takes energy away: e is at most the ramp's variation
+    /// times `sqrt(F'K^-1 F)`. The power of the load gives another bound, `d sqrt(v'Mv + u'Ku)/dt <= |r|
+    /// sqrt(F'M^-1 F)`, which holds for floating bodies too. Steps take a smooth load at their instants: a
+    /// sum of values times dt exceeds the integral by at most dt times the variation.
+    pub(super) fn at(&self, dt: f64) -> f64 {
+        let by_impulse = (self.impulse + dt * self.variation) * self.rate;
+        self.by_changes.min(by_impulse)
+    }
+}
+
+/// The strengths of all loads that push anything; those of loads that act together add up.
+pub(super) fn load_strengths(operators: &LinearOperators) -> Vec<LoadStrength> {
     let mut force = vec![0.0; operators.dofs()];
-    let strengths = operators.loads().iter().map(|load| {
+    let strengths = operators.loads().iter().filter_map(|load| {
         force.fill(0.0);
         for &(dof, value) in &load.entries {
             force[dof as usize] += value;
         }
         let pushed = force.iter().zip(operators.mass());
-        let pushed = pushed.map(|(f, mass)| f * f / mass).sum::<f64>().sqrt();
-        if pushed == 0.0 {
-            return 0.0;
-        }
-        let by_impulse = load.ramp.impulse() * pushed;
-        let by_work = load.ramp.variation() * compliance(operators, &force).sqrt();
-        by_impulse.min(by_work)
+        let rate = pushed.map(|(f, mass)| f * f / mass).sum::<f64>().sqrt();
+        let variation = load.ramp.variation();
+        (rate > 0.0 && variation > 0.0).then(|| LoadStrength {
+            by_changes: variation * compliance(operators, &force).sqrt(),
+            rate,
+            impulse: load.ramp.impulse(),
+            variation,
+        })
     });
-    strengths.sum::<f64>().powi(2) / 2.0
+    strengths.collect()
 }
 
 /// `F'K^-1 F` (J) by conjugate gradients, preconditioned by one number for each cell, which does not depend

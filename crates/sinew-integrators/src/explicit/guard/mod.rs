@@ -8,24 +8,31 @@ mod option;
 mod unaccepted;
 
 use sinew_core::{
-    Fact, Integrator, Prepared, Properties, SetupError, StableStep, Start, State, StepError,
-    StepReport, System,
+    Fact, Integrator, Prepared, Properties, Revision, SetupError, StableStep, Start, State,
+    StepError, StepReport, System,
 };
 
 use super::substeps::{Substeps, whole};
+use bound::{LEAST_ROOM, room};
 use clamp::Clamp;
 use limits::Limits;
 pub use option::{Guard, GuardOption};
 use unaccepted::Unaccepted;
 
+/// Most parts of a step where none is stable: a light cell's limit would ask for millions.
+const MOST_PARTS_BY_SIZE: u32 = 1000;
+
 /// An integrator whose velocities and displacements are clamped after each step: `|v_i| <= Q_i`
 /// and `|u_i(t + dt) - u_i(t)| <= Q_i dt` for the vectors of each cell i, so that the result does not
 /// depend on the axes' directions. Not a bit changes while nothing saturates.
 ///
-/// With [`Guard::Auto`] the limits Q_i are those of the system, its loads and the start of the motion,
-/// and a step that is longer than the method's stable one is cut into equal parts: so many that no
-/// cell passes a fifth of its size in a part, or that a part is stable, whichever are fewer.
-/// A number clamps and does nothing else.
+/// With [`Guard::Auto`] a step longer than the method's stable one is cut into the fewest equal parts that are
+/// at most nine tenths of it. The limits Q_i are those of the energy that the loads and the start of the motion
+/// bring, with room for what a stable method makes of it, so that a stable step, or part of one, is never
+/// clamped. Where a method knows no stable step, as forward Euler without damping, parts are so short that no
+/// cell passes a fifth of its size in one, or a thousandth of the step, and the limits are what bounds the motion.
+///
+/// [`Guard::At`] clamps and does nothing else.
 ///
 /// Where a method moves displacements with its new velocity, both clamps are the same; where with
 /// the old one, that was clamped a step before. Staggered velocities stay where the method has
@@ -36,13 +43,16 @@ pub struct Guarded {
     prepared: Prepared,
     limits: Limits,
     clamp: Clamp,
+    /// The method's stable step on the system at hand.
+    stable: Option<(Revision, StableStep)>,
     parts: u32,
 }
 
 impl Guarded {
     /// Name of the fact that tells into how many parts a step is cut.
     pub const SUBSTEPS: &'static str = "guard_substeps";
-    /// Name of the fact that tells the largest of all limits (m/s).
+    /// Name of the fact that tells the largest of all limits (m/s), which rises without end where a step nears the
+    /// method's stable one.
     pub const LARGEST_LIMIT: &'static str = "guard_q_max";
 
     /// Guards `inner`.
@@ -54,6 +64,7 @@ impl Guarded {
             prepared: Prepared::default(),
             limits: Limits::default(),
             clamp: Clamp::default(),
+            stable: None,
             parts: 1,
         }
     }
@@ -71,29 +82,39 @@ impl Guarded {
         state.start
     }
 
-    /// Parts of a step within which no cell passes a fifth of its size, as far as the method's
-    /// stable step asks for them.
-    fn parts(&self, system: &dyn System, dt: f64) -> Result<u32, SetupError> {
-        let Guard::Auto { within_stable_step } = self.guard else {
-            return Ok(1);
-        };
-        let moved = dt * self.limits.largest_rate() / Limits::SHARE_OF_SIZE;
-        if moved <= 1.0 && !within_stable_step {
-            return Ok(1);
+    /// The method's stable step, found once for each system.
+    fn stable(&mut self, system: &dyn System) -> Result<StableStep, SetupError> {
+        if let Some((revision, stable)) = self.stable
+            && revision == system.revision()
+        {
+            return Ok(stable);
         }
-        Ok(match self.inner.stable_step(system)? {
-            StableStep::Any => 1,
-            StableStep::UpTo(limit) if dt <= limit => 1,
-            StableStep::UpTo(limit) if limit > 0.0 => {
-                let stable = Substeps::parts_of(dt, limit);
-                if within_stable_step {
-                    stable
-                } else {
-                    stable.min(whole(moved))
-                }
+        let stable = self.inner.stable_step(system)?;
+        self.stable = Some((system.revision(), stable));
+        Ok(stable)
+    }
+
+    /// Chooses the parts of a step, and limits that leave room for what the method makes of them.
+    fn cut(&mut self, system: &dyn System, dt: f64) -> Result<(), SetupError> {
+        if let Guard::At(_) = self.guard {
+            return Ok(());
+        }
+        let (parts, limit) = match self.stable(system)? {
+            StableStep::Any => (1, f64::INFINITY),
+            StableStep::UpTo(limit) if dt <= limit => (1, limit),
+            StableStep::UpTo(limit) if limit > 0.0 => (Substeps::parts_of(dt, limit), limit),
+            StableStep::UpTo(_) | StableStep::Unknown => {
+                self.limits.set_step(dt, LEAST_ROOM);
+                let passed = dt * self.limits.largest_rate();
+                self.parts = whole(passed / Limits::SHARE_OF_SIZE).min(MOST_PARTS_BY_SIZE);
+                return Ok(());
             }
-            StableStep::UpTo(_) | StableStep::Unknown => whole(moved),
-        })
+        };
+        let part = dt / f64::from(parts);
+        self.parts = parts;
+        let room = room(part / limit, part * system.mass_damping());
+        self.limits.set_step(part, room);
+        Ok(())
     }
 }
 
@@ -115,7 +136,7 @@ impl Integrator for Guarded {
         self.prepared = Prepared::default();
         self.limits.prepare(self.inner.id(), system, self.guard)?;
         self.clamp.prepare(system);
-        self.parts = self.parts(system, dt)?;
+        self.cut(system, dt)?;
         let work = self.inner.prepare(system, dt / f64::from(self.parts))?;
         self.prepared = checked;
         Ok(work)
@@ -136,7 +157,7 @@ impl Integrator for Guarded {
         Prepared::check_state(self.inner.id(), system, state)?;
         let start = self.start(system, state);
         if self.limits.set_start(start) {
-            self.parts = self.parts(system, dt)?;
+            self.cut(system, dt)?;
         }
         let part = dt / f64::from(self.parts);
         let waiting = Unaccepted(system);
@@ -155,7 +176,7 @@ impl Integrator for Guarded {
 
     fn facts(&self) -> Vec<Fact> {
         let mut facts = self.inner.facts();
-        if let Guard::Auto { .. } = self.guard {
+        if let Guard::Auto = self.guard {
             facts.extend([
                 Fact {
                     name: Self::LARGEST_LIMIT,
@@ -173,11 +194,16 @@ impl Integrator for Guarded {
     fn remarks(&self) -> Vec<String> {
         let mut remarks = self.inner.remarks();
         if self.parts > 1 {
-            remarks.push(format!(
-                "the guard took each step in {} parts: whole, it is longer than the stable step of `{}`",
-                self.parts,
-                self.inner.id()
-            ));
+            let (parts, id) = (self.parts, self.inner.id());
+            remarks.push(match self.stable {
+                Some((_, StableStep::UpTo(limit))) if limit > 0.0 => format!(
+                    "the guard took each step in {parts} parts: whole, it is longer than the stable step of `{id}`"
+                ),
+                _ => format!(
+                    "the guard took each step in {parts} parts, so that cells pass little of their size in one: \
+                     `{id}` knows no stable step here, and the motion is bounded, not accurate"
+                ),
+            });
         }
         remarks
     }

@@ -9,12 +9,9 @@ use crate::OptionHelp;
 pub enum Guard {
     /// One limit for all cells (m/s).
     At(f64),
-    /// Limits by the system, its loads and the start of the motion; long steps are cut.
-    Auto {
-        /// Whether parts are always as short as the method's stable step, see
-        /// [`GuardOption::Any`].
-        within_stable_step: bool,
-    },
+    /// Limits by the energy that the loads and the start of the motion bring; steps longer than the method's
+    /// stable one are cut.
+    Auto,
 }
 
 /// What the option `saturation` means to a method.
@@ -23,12 +20,7 @@ pub enum GuardOption {
     /// It has no such option.
     None,
     /// A number or "auto" guards it, "off" or nothing does not.
-    Any {
-        /// Whether steps beyond the stable one turn the restoring force round, so that a clamped
-        /// cell runs away at its limit instead of coming back. An automatic guard then cuts such
-        /// steps down to the stable one.
-        runs_away: bool,
-    },
+    Any,
     /// The option is its own; "auto" switches its own saturation off and guards it.
     OwnOrAuto,
 }
@@ -44,9 +36,9 @@ impl GuardOption {
     /// The option in words, where the method does not list it itself.
     #[must_use]
     pub fn help(self) -> Option<OptionHelp> {
-        matches!(self, Self::Any { .. }).then_some(OptionHelp {
+        matches!(self, Self::Any).then_some(OptionHelp {
             key: KEY,
-            help: "guard: largest speed of a cell [m/s], \"auto\" for limits of the scene's own, or \"off\"; default \"off\"",
+            help: "guard: largest speed of a cell [m/s], \"auto\" to cut steps beyond the stable one and limit speeds by the energy there is, or \"off\"; default \"off\"",
             shown_default: None,
         })
     }
@@ -63,16 +55,14 @@ impl GuardOption {
         let word = |value: &OptionValue, wanted| matches!(value, OptionValue::Text(text) if text == wanted);
         let given = options.get(KEY).cloned();
         match (self, given) {
-            (Self::Any { .. } | Self::OwnOrAuto, Some(value)) if word(&value, AUTO) => {
+            (Self::Any | Self::OwnOrAuto, Some(value)) if word(&value, AUTO) => {
                 options.remove(KEY);
                 if self == Self::OwnOrAuto {
                     options.insert(KEY, OptionValue::Text(OFF.into()));
                 }
-                Ok(Some(Guard::Auto {
-                    within_stable_step: self == Self::Any { runs_away: true },
-                }))
+                Ok(Some(Guard::Auto))
             }
-            (Self::Any { .. }, Some(value)) => {
+            (Self::Any, Some(value)) => {
                 options.remove(KEY);
                 match value {
                     OptionValue::Number(limit) if limit.is_finite() && limit > 0.0 => {

@@ -1,7 +1,6 @@
-//! Advice in words, and as JSON.
+//! Advice in words.
 
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
-use serde_json::{Value, json};
 use sinew_measure::number::{milliseconds, percent, short, three};
 use sinew_measure::search::Pilot;
 use sinew_measure::{Advice, Answer, Outcome, Row};
@@ -255,52 +254,4 @@ fn verdicts(row: &Row) -> String {
         words.push("guarded");
     }
     words.join(", ")
-}
-
-/// The advice as programs read it.
-pub(super) fn as_json(advice: &Advice) -> Value {
-    let run = |pilot: &Pilot| {
-        json!({
-            "row": pilot.row,
-            "total_cpu_s": advice.total_cpu_s(pilot),
-            "run_table": advice.run_table(pilot),
-        })
-    };
-    let maybe = |pilot: &Option<Box<Pilot>>| pilot.as_deref().map(run);
-    let refused = advice.refused.iter();
-    let refused: Vec<Value> = refused
-        .map(|(method, reason)| json!({ "method": method.label(), "reason": reason }))
-        .collect();
-    let mut object = json!({
-        "tolerance": advice.question.tolerance,
-        "budget_cpu_s_per_s": advice.question.budget,
-        "duration_s": advice.whole.duration,
-        "measured_s": advice.measured.duration,
-        "pilots": advice.pilots,
-        "spent_cpu_s": advice.spent_s,
-        "choice_cut_short": advice.choice_cut_short,
-        "others_cut_short": advice.others_cut_short,
-        "refused": refused,
-        "as_written": advice.written.as_ref().ok().map(run),
-    });
-    let answer = match &advice.answer {
-        Answer::Met { cheapest, tenfold } => json!({
-            "met": true,
-            "advised": cheapest.first().map(run),
-            "runners_up": cheapest.iter().skip(1).map(run).collect::<Vec<_>>(),
-            "ten_times_better": maybe(tenfold),
-        }),
-        Answer::Missed {
-            within_tolerance,
-            within_budget,
-        } => json!({
-            "met": false,
-            "within_tolerance": maybe(within_tolerance),
-            "within_budget": maybe(within_budget),
-        }),
-    };
-    if let (Some(object), Value::Object(answer)) = (object.as_object_mut(), answer) {
-        object.extend(answer);
-    }
-    object
 }

@@ -1,50 +1,38 @@
 //! Files that are there as a whole or not at all.
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::fs::{self, File, Metadata};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::place::folder_of;
 
 /// A file under a temporary name beside its own until [`WholeFile::finish`]: readers see the old
 /// file or the new one, never a part. Dropped before that, it leaves nothing behind.
 #[derive(Debug)]
-pub struct WholeFile {
+pub(super) struct WholeFile {
     path: PathBuf,
     temporary: PathBuf,
     file: Option<BufWriter<File>>,
 }
 
 impl WholeFile {
-    /// Starts a file that will be called `path`.
-    ///
-    /// # Errors
-    /// When no file can be written there.
-    pub fn create(path: impl Into<PathBuf>) -> io::Result<Self> {
-        let path = path.into();
-        let temporary = beside(&path)?;
-        let file = BufWriter::new(File::create_new(&temporary)?);
-        Ok(Self {
-            path,
+    /// Starts a file that will be called `path`, with the mode of the one that is there.
+    pub(super) fn create(path: &Path) -> io::Result<Self> {
+        let (temporary, file) = temporary_in(folder_of(path))?;
+        let started = Self {
+            path: path.to_owned(),
             temporary,
-            file: Some(file),
-        })
-    }
-
-    /// Writes a whole file at once.
-    ///
-    /// # Errors
-    /// When it cannot be written or renamed; the old file is then as it was.
-    pub fn write(path: impl Into<PathBuf>, content: &[u8]) -> io::Result<PathBuf> {
-        let mut file = Self::create(path)?;
-        file.write_all(content)?;
-        file.finish()
+            file: Some(BufWriter::new(file)),
+        };
+        if let (Ok(old), Some(file)) = (fs::metadata(path), &started.file) {
+            keep_access(&old, file.get_ref());
+        }
+        Ok(started)
     }
 
     /// Completes the file and gives it its name, replacing one of that name.
-    ///
-    /// # Errors
-    /// When it cannot be completed or renamed; the old file is then as it was.
-    pub fn finish(mut self) -> io::Result<PathBuf> {
+    pub(super) fn finish(mut self) -> io::Result<()> {
         if let Some(file) = self.file.take() {
             let written = file.into_inner().map_err(io::IntoInnerError::into_error);
             let named = written
@@ -56,7 +44,7 @@ impl WholeFile {
             }
             named?;
         }
-        Ok(self.path.clone())
+        Ok(())
     }
 }
 
@@ -82,16 +70,34 @@ impl Drop for WholeFile {
     }
 }
 
-/// A name in the same directory, so that renaming never copies, that no other writer uses.
-fn beside(path: &Path) -> io::Result<PathBuf> {
+/// A new file in the same folder, so that renaming never copies, under a name that no other writer
+/// uses and that is short however long the file's own is.
+fn temporary_in(folder: &Path) -> io::Result<(PathBuf, File)> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let name = path.file_name().ok_or_else(|| {
-        let message = format!("{} names no file", path.display());
-        io::Error::new(io::ErrorKind::InvalidInput, message)
-    })?;
-    let name = name.to_string_lossy();
-    Ok(path.with_file_name(format!(".{name}.{}-{count}.tmp", std::process::id())))
+    loop {
+        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        let path = folder.join(format!(".sinew-{}-{count}.tmp", std::process::id()));
+        match File::create_new(&path) {
+            // Left by a process of this number that was killed.
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            created => return created.map(|file| (path, file)),
+        }
+    }
+}
+
+/// Gives a file the owner and the mode of the one that it will replace, as far as we may.
+#[cfg(unix)]
+fn keep_access(old: &Metadata, file: &File) {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
+    /// Who may read, write and run: without set-user-id and its like, which new content must earn.
+    const ACCESS: u32 = 0o777;
+    let _ = fchown(file, Some(old.uid()), Some(old.gid()));
+    let _ = file.set_permissions(fs::Permissions::from_mode(old.mode() & ACCESS));
+}
+
+#[cfg(not(unix))]
+fn keep_access(old: &Metadata, file: &File) {
+    let _ = file.set_permissions(old.permissions());
 }
 
 #[cfg(test)]
@@ -110,7 +116,7 @@ mod tests {
     fn a_file_is_replaced_as_a_whole() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.txt");
-        WholeFile::write(&path, b"old").unwrap();
+        fs::write(&path, b"old").unwrap();
         let mut file = WholeFile::create(&path).unwrap();
         file.write_all(b"new").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"old");
@@ -122,7 +128,7 @@ mod tests {
     #[test]
     fn a_file_that_is_not_finished_leaves_nothing() {
         let directory = tempfile::tempdir().unwrap();
-        let mut file = WholeFile::create(directory.path().join("a.txt")).unwrap();
+        let mut file = WholeFile::create(&directory.path().join("a.txt")).unwrap();
         file.write_all(b"half").unwrap();
         assert_eq!(names(directory.path()).len(), 1);
         drop(file);
@@ -135,8 +141,30 @@ mod tests {
         // A directory cannot be replaced by a file.
         let path = directory.path().join("taken");
         fs::create_dir(&path).unwrap();
-        assert!(WholeFile::write(&path, b"new").is_err());
+        let file = WholeFile::create(&path).unwrap();
+        assert!(file.finish().is_err());
         assert_eq!(names(directory.path()), ["taken"]);
-        assert!(WholeFile::write(directory.path().join("no").join("a"), b"").is_err());
+        assert!(WholeFile::create(&directory.path().join("no").join("a")).is_err());
+    }
+
+    #[test]
+    fn a_name_as_long_as_names_may_be_is_written() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("n".repeat(255));
+        WholeFile::create(&path).unwrap().finish().unwrap();
+        assert!(path.exists());
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn the_mode_of_the_old_file_stays() {
+        use std::os::unix::fs::PermissionsExt;
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.txt");
+        fs::write(&path, b"old").unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
+        WholeFile::create(&path).unwrap().finish().unwrap();
+        let mode = fs::metadata(&path).unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o640);
     }
 }

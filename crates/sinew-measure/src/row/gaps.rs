@@ -1,0 +1,218 @@
+//! Numbers that should be there and cannot be shown: JSON has no NaN and no infinity.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Deserializer};
+
+use super::{CaseInfo, Outcome, Row};
+
+/// A number that should be there and is none.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Gap {
+    /// The field it should stand in.
+    pub field: String,
+    /// What stands there instead, as in `inf`; none where nothing does.
+    pub value: Option<String>,
+    /// Why it cannot be shown.
+    pub reason: &'static str,
+}
+
+/// Gaps in the order of the fields.
+#[derive(Default)]
+struct Gaps(Vec<Gap>);
+
+impl Gaps {
+    fn number(&mut self, field: &str, value: f64) {
+        if !value.is_finite() {
+            self.0.push(Gap {
+                field: field.to_owned(),
+                value: Some(value.to_string()),
+                reason: "it is not a finite number",
+            });
+        }
+    }
+
+    /// A number that need not be there.
+    fn maybe(&mut self, field: &str, value: Option<f64>) {
+        if let Some(value) = value {
+            self.number(field, value);
+        }
+    }
+
+    /// A number that every finished run has.
+    fn finished(&mut self, field: &str, value: Option<f64>, outcome: Outcome) {
+        match (value, outcome) {
+            (None, Outcome::Finished) => self.0.push(Gap {
+                field: field.to_owned(),
+                value: None,
+                reason: "the run finished and no finite number came of it",
+            }),
+            _ => self.maybe(field, value),
+        }
+    }
+
+    fn named(&mut self, field: &str, values: &BTreeMap<String, f64>) {
+        for (name, value) in values {
+            self.number(&format!("{field}.{name}"), *value);
+        }
+    }
+}
+
+impl Row {
+    /// The numbers of the run that should be there and cannot be shown.
+    #[must_use]
+    pub fn gaps(&self) -> Vec<Gap> {
+        // All fields by name, so that a new one is not forgotten here.
+        let Self {
+            case: _,
+            integrator: _,
+            options: _,
+            dt,
+            steps: _,
+            sweeps_per_s,
+            outcome,
+            diverged_at_s,
+            bounded: _,
+            settles: _,
+            error,
+            max_u,
+            late_amplitude,
+            saturated,
+            guarded: _,
+            inverted: _,
+            work: _,
+            cpu_s_per_s,
+            us_per_step,
+            setup_cpu_s,
+            facts,
+            step_over_critical,
+            static_error,
+            energy_drift,
+            pareto: _,
+        } = self;
+        let mut gaps = Gaps::default();
+        gaps.number("dt", *dt);
+        gaps.number("sweeps_per_s", *sweeps_per_s);
+        gaps.maybe("diverged_at_s", *diverged_at_s);
+        gaps.finished("error", *error, *outcome);
+        gaps.finished("max_u", *max_u, *outcome);
+        gaps.finished("late_amplitude", *late_amplitude, *outcome);
+        gaps.number("saturated", *saturated);
+        gaps.number("cpu_s_per_s", *cpu_s_per_s);
+        gaps.number("us_per_step", *us_per_step);
+        gaps.number("setup_cpu_s", *setup_cpu_s);
+        gaps.named("facts", facts);
+        gaps.maybe("step_over_critical", *step_over_critical);
+        gaps.maybe("static_error", *static_error);
+        gaps.maybe("energy_drift", *energy_drift);
+        gaps.0
+    }
+}
+
+impl CaseInfo {
+    /// The numbers of the case that should be there and cannot be shown.
+    #[must_use]
+    pub fn gaps(&self) -> Vec<Gap> {
+        let Self {
+            id: _,
+            title: _,
+            dofs: _,
+            duration_s,
+            reference: _,
+            reference_error,
+            max_u_m,
+            late_amplitude_m,
+            critical_step_s,
+            stable_steps_s,
+        } = self;
+        let mut gaps = Gaps::default();
+        gaps.number("duration_s", *duration_s);
+        gaps.number("reference_error", *reference_error);
+        gaps.number("max_u_m", *max_u_m);
+        gaps.number("late_amplitude_m", *late_amplitude_m);
+        gaps.maybe("critical_step_s", *critical_step_s);
+        gaps.named("stable_steps_s", stable_steps_s);
+        gaps.0
+    }
+}
+
+/// Reads a number, NaN for the `null` that stands in the place of one that could not be shown.
+pub(super) fn null_is_nan<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
+}
+
+/// As [`null_is_nan`], for numbers with names.
+pub(super) fn nulls_are_nan<'de, D>(from: D) -> Result<BTreeMap<String, f64>, D::Error>
+where
+    D: Deserializer<'de>,
+{
+    let numbers: BTreeMap<String, Option<f64>> = Deserialize::deserialize(from)?;
+    let numbers = numbers.into_iter();
+    Ok(numbers
+        .map(|(name, number)| (name, number.unwrap_or(f64::NAN)))
+        .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_finite_is_named_and_what_may_be_missing_is_not() {
+        let fine = Row {
+            error: Some(0.1),
+            max_u: Some(0.1),
+            late_amplitude: Some(0.0),
+            ..Row::default()
+        };
+        assert_eq!(fine.gaps(), []);
+        let bad = Row {
+            cpu_s_per_s: f64::NAN,
+            max_u: Some(f64::INFINITY),
+            error: None,
+            facts: [("degree".to_owned(), f64::NEG_INFINITY)].into(),
+            ..fine.clone()
+        };
+        let gaps = bad.gaps();
+        let named: Vec<(&str, Option<&str>)> = gaps
+            .iter()
+            .map(|gap| (gap.field.as_str(), gap.value.as_deref()))
+            .collect();
+        assert_eq!(
+            named,
+            [
+                ("error", None),
+                ("max_u", Some("inf")),
+                ("cpu_s_per_s", Some("NaN")),
+                ("facts.degree", Some("-inf")),
+            ]
+        );
+        let diverged = Row {
+            outcome: Outcome::Diverged,
+            error: None,
+            max_u: None,
+            late_amplitude: None,
+            ..fine
+        };
+        assert_eq!(diverged.gaps(), []);
+    }
+
+    #[test]
+    fn a_null_is_read_as_nan() {
+        let row = Row {
+            us_per_step: f64::INFINITY,
+            facts: [("degree".to_owned(), f64::NAN)].into(),
+            ..Row::default()
+        };
+        let json = serde_json::to_string(&row).unwrap();
+        let read: Row = serde_json::from_str(&json).unwrap();
+        assert!(read.us_per_step.is_nan() && read.facts["degree"].is_nan());
+        let case = CaseInfo {
+            max_u_m: f64::INFINITY,
+            ..CaseInfo::default()
+        };
+        let json = serde_json::to_string(&case).unwrap();
+        let read: CaseInfo = serde_json::from_str(&json).unwrap();
+        assert!(read.max_u_m.is_nan());
+    }
+}

@@ -1,0 +1,97 @@
+//! Why an output cannot be written.
+
+use std::io;
+use std::path::PathBuf;
+
+/// An output that is refused, or that failed while it was written. Every message names the path.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum OutputError {
+    /// A path without the name of a file.
+    #[error("cannot write \"{}\": expected the name of a file", path.display())]
+    NoName {
+        /// The path.
+        path: PathBuf,
+    },
+    /// A folder where a file belongs.
+    #[error("cannot write {}: it is a folder; name a file in it", path.display())]
+    Folder {
+        /// The path.
+        path: PathBuf,
+    },
+    /// A file in a folder that does not exist.
+    #[error("cannot write {}: there is no folder {}; make it, or name another file", path.display(), folder.display())]
+    NoFolder {
+        /// The path.
+        path: PathBuf,
+        /// The folder it would be in.
+        folder: PathBuf,
+    },
+    /// A file or a device where a folder belongs.
+    #[error("cannot write into {}: it is no folder; name a folder, which is made if need be", path.display())]
+    NotAFolder {
+        /// The path.
+        path: PathBuf,
+    },
+    /// A file that this run reads.
+    #[error("cannot write {}: this run reads it{}; name another file", path.display(), as_input(path, input))]
+    Input {
+        /// The path.
+        path: PathBuf,
+        /// The input that is the same file.
+        input: PathBuf,
+    },
+    /// A file without a write bit.
+    #[error("cannot write {}: it is read-only; make it writable, or name another file", path.display())]
+    ReadOnly {
+        /// The path.
+        path: PathBuf,
+    },
+    /// Neither a file nor something that takes a stream.
+    #[error("cannot write {}: it is {kind}; expected a new name, a file, a pipe, a character device or - for standard output", path.display())]
+    Unsuitable {
+        /// The path.
+        path: PathBuf,
+        /// Its kind in words.
+        kind: &'static str,
+    },
+    /// A path that is something else than it was when the run began.
+    #[error("cannot write {}: it was changed by others while the run went on; name another file and run again", path.display())]
+    Changed {
+        /// The path.
+        path: PathBuf,
+    },
+    /// A path that the system does not open for writing.
+    #[error("cannot write {}: {source}; name another file", path.display())]
+    NotOpened {
+        /// The path.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// Writing that failed after it had begun, for instance for want of room.
+    #[error("writing {} failed: {source}", path.display())]
+    Failed {
+        /// The path.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+}
+
+impl OutputError {
+    /// Whether the path was refused, so that another one helps; otherwise writing failed.
+    #[must_use]
+    pub fn is_refusal(&self) -> bool {
+        !matches!(self, Self::Failed { .. })
+    }
+}
+
+/// The other name under which a run reads the file, where it has one.
+fn as_input(path: &PathBuf, input: &PathBuf) -> String {
+    if path == input {
+        String::new()
+    } else {
+        format!(" as {}", input.display())
+    }
+}

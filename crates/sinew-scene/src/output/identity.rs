@@ -1,0 +1,76 @@
+//! Files told apart by what they are rather than by how their paths are spelt.
+
+use std::fs::{self, File, Metadata};
+use std::path::{Path, PathBuf};
+
+/// Device and inode of a file, which all links to it and all spellings of its path share.
+#[cfg(unix)]
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Identity(u64, u64);
+
+/// The resolved path of a file, where there are no inodes to compare.
+#[cfg(not(unix))]
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Identity(PathBuf);
+
+impl Identity {
+    /// That of the file which a path leads to; `None` where it leads to none.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        let metadata = fs::metadata(path).ok()?;
+        Self::from_metadata(&metadata, path)
+    }
+
+    #[cfg(unix)]
+    fn from_metadata(metadata: &Metadata, _path: &Path) -> Option<Self> {
+        use std::os::unix::fs::MetadataExt;
+        Some(Self(metadata.dev(), metadata.ino()))
+    }
+
+    #[cfg(not(unix))]
+    fn from_metadata(_metadata: &Metadata, path: &Path) -> Option<Self> {
+        fs::canonicalize(path).ok().map(Self)
+    }
+
+    /// That of standard output, where it is a file or a pipe. A device is not told from another use
+    /// of the same device.
+    #[cfg(unix)]
+    pub(super) fn of_standard_output() -> Option<Self> {
+        use std::os::fd::AsFd;
+        use std::os::unix::fs::FileTypeExt;
+        let descriptor = std::io::stdout().as_fd().try_clone_to_owned().ok()?;
+        let metadata = File::from(descriptor).metadata().ok()?;
+        if metadata.file_type().is_char_device() {
+            return None;
+        }
+        Self::from_metadata(&metadata, Path::new("-"))
+    }
+
+    #[cfg(not(unix))]
+    pub(super) fn of_standard_output() -> Option<Self> {
+        None
+    }
+}
+
+/// A file that a run reads.
+#[derive(Debug, Clone)]
+pub(super) struct Input {
+    pub(super) path: PathBuf,
+    identity: Identity,
+}
+
+impl Input {
+    /// Those of the paths that lead somewhere.
+    pub(super) fn all(paths: &[PathBuf]) -> Vec<Self> {
+        let input = |path: &PathBuf| {
+            let identity = Identity::of(path)?;
+            let path = path.clone();
+            Some(Self { path, identity })
+        };
+        paths.iter().filter_map(input).collect()
+    }
+
+    /// The input that is this file, where one is.
+    pub(super) fn same<'a>(inputs: &'a [Self], identity: &Identity) -> Option<&'a Self> {
+        inputs.iter().find(|input| input.identity == *identity)
+    }
+}

@@ -1,0 +1,225 @@
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::*;
+
+fn write(path: &Path, inputs: &[PathBuf]) -> Result<(), String> {
+    let destination = Destination::new(path, inputs).map_err(|error| error.to_string())?;
+    let delivery = destination.write(b"new");
+    delivery.map(|_| ()).map_err(|error| error.to_string())
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn new_names_and_writable_files_are_written_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    write(&path, &[]).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"new");
+    fs::write(&path, "old").unwrap();
+    let mut output = Destination::new(&path, &[]).unwrap().open().unwrap();
+    output.write_all(b"newer").unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    assert_eq!(output.finish().unwrap(), Delivery::Whole);
+    assert_eq!(fs::read(&path).unwrap(), b"newer");
+    assert_eq!(names(folder.path()), ["a.csv"]);
+}
+
+#[test]
+fn inputs_are_refused_by_every_spelling_and_stay() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let input = path("scene.toml");
+    fs::write(&input, "scene").unwrap();
+    fs::create_dir(path("sub")).unwrap();
+    fs::hard_link(&input, path("hard.toml")).unwrap();
+    let mut spellings = vec![
+        input.clone(),
+        path("sub/../scene.toml"),
+        path("./scene.toml"),
+    ];
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("scene.toml", path("link.toml")).unwrap();
+        spellings.extend([path("link.toml"), path("hard.toml")]);
+    }
+    for spelling in spellings {
+        let said = write(&spelling, std::slice::from_ref(&input)).unwrap_err();
+        assert!(said.contains("this run reads it"), "{said}");
+        assert!(said.contains(spelling.to_str().unwrap()), "{said}");
+        assert_eq!(fs::read(&input).unwrap(), b"scene");
+    }
+}
+
+#[test]
+fn folders_read_only_files_and_missing_folders_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let read_only = folder.path().join("kept.csv");
+    fs::write(&read_only, "old").unwrap();
+    let mut permissions = fs::metadata(&read_only).unwrap().permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(&read_only, permissions).unwrap();
+    for (path, expected) in [
+        (read_only.clone(), "it is read-only; make it writable"),
+        (
+            folder.path().to_owned(),
+            "it is a folder; name a file in it",
+        ),
+        (folder.path().join("no/a.csv"), "there is no folder"),
+        (folder.path().join("new/"), "expected the name of a file"),
+        (PathBuf::new(), "expected the name of a file"),
+        (PathBuf::from(".."), "it is a folder"),
+    ] {
+        let said = write(&path, &[]).unwrap_err();
+        assert!(said.contains(expected), "{said}");
+        assert!(said.contains(path.to_str().unwrap()), "{said}");
+    }
+    assert_eq!(fs::read(&read_only).unwrap(), b"old");
+    assert_eq!(names(folder.path()), ["kept.csv"]);
+}
+
+#[test]
+fn what_became_something_else_during_the_run_is_left_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    let output = Destination::new(&path, &[]).unwrap().open().unwrap();
+    fs::create_dir(&path).unwrap();
+    assert!(output.finish().unwrap_err().is_refusal());
+    assert_eq!(names(folder.path()), ["a.csv"]);
+
+    let input = folder.path().join("scene.toml");
+    fs::write(&input, "scene").unwrap();
+    let path = folder.path().join("b.csv");
+    let output = Destination::new(&path, std::slice::from_ref(&input));
+    let output = output.unwrap().open().unwrap();
+    fs::hard_link(&input, &path).unwrap();
+    let said = output.finish().unwrap_err().to_string();
+    assert!(said.contains("this run reads it"), "{said}");
+    assert_eq!(fs::read(&input).unwrap(), b"scene");
+}
+
+#[test]
+fn a_folder_is_checked_with_the_files_in_it_and_made_when_it_is_needed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let new = OutputFolder::new(path("deep/out"), &[]);
+    new.check(&["a.svg".into()]).unwrap();
+    assert!(names(folder.path()).is_empty(), "a check makes nothing");
+    new.write("a.svg", b"new").unwrap();
+    assert_eq!(fs::read(path("deep/out/a.svg")).unwrap(), b"new");
+
+    fs::write(path("file"), "old").unwrap();
+    for below in ["file", "file/out"] {
+        let said = OutputFolder::new(path(below), &[]).check(&[]).unwrap_err();
+        assert!(said.to_string().contains("it is no folder"), "{said}");
+    }
+    let input = path("deep/out/a.svg");
+    let same = OutputFolder::new(path("deep/out"), std::slice::from_ref(&input));
+    let said = same.check(&["a.svg".into()]).unwrap_err().to_string();
+    assert!(said.contains("this run reads it"), "{said}");
+    assert!(same.write("a.svg", b"").is_err());
+    assert_eq!(fs::read(input).unwrap(), b"new");
+}
+
+#[cfg(unix)]
+mod unix {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    use std::os::unix::net::UnixListener;
+    use std::process::Command;
+
+    use super::*;
+
+    #[test]
+    fn a_link_stays_and_its_target_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::create_dir(path("data")).unwrap();
+        fs::write(path("data/there.csv"), "old").unwrap();
+        symlink("data/there.csv", path("there")).unwrap();
+        symlink("data/not-yet.csv", path("dangling")).unwrap();
+        symlink("dangling", path("twice")).unwrap();
+        for (link, target) in [
+            ("there", "data/there.csv"),
+            ("dangling", "data/not-yet.csv"),
+            ("twice", "data/not-yet.csv"),
+        ] {
+            write(&path(link), &[]).unwrap();
+            assert_eq!(fs::read(path(target)).unwrap(), b"new", "{link}");
+            assert!(path(link).is_symlink(), "{link}");
+        }
+        assert_eq!(names(&path("data")), ["not-yet.csv", "there.csv"]);
+        symlink("ring", path("ring")).unwrap();
+        assert!(write(&path("ring"), &[]).is_err());
+        symlink("/no/such/folder/a", path("nowhere")).unwrap();
+        let said = write(&path("nowhere"), &[]).unwrap_err();
+        assert!(
+            said.contains("there is no folder /no/such/folder"),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn devices_take_streams_and_stay_devices() {
+        let null = Path::new("/dev/null");
+        write(null, &[]).unwrap();
+        assert!(fs::metadata(null).unwrap().file_type().is_char_device());
+        let full = Path::new("/dev/full");
+        if full.exists() {
+            let error = Destination::new(full, &[]).unwrap().write(b"new");
+            let error = error.unwrap_err();
+            assert!(!error.is_refusal());
+            assert!(error.to_string().contains("writing /dev/full failed"));
+            assert!(fs::metadata(full).unwrap().file_type().is_char_device());
+        }
+    }
+
+    #[test]
+    fn a_named_pipe_is_written_to_its_reader_and_a_socket_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let socket = folder.path().join("socket");
+        let _listener = UnixListener::bind(&socket).unwrap();
+        let said = write(&socket, &[]).unwrap_err();
+        assert!(said.contains("it is a socket"), "{said}");
+
+        let pipe = folder.path().join("pipe");
+        let made = Command::new("mkfifo").arg(&pipe).status();
+        if !made.is_ok_and(|status| status.success()) {
+            return;
+        }
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || fs::read(pipe).unwrap()
+        });
+        write(&pipe, &[]).unwrap();
+        assert_eq!(reader.join().unwrap(), b"new");
+        assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
+        assert_eq!(names(folder.path()), ["pipe", "socket"]);
+    }
+
+    #[test]
+    fn a_pipe_whose_reader_left_is_no_failure() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        let made = Command::new("mkfifo").arg(&pipe).status();
+        if !made.is_ok_and(|status| status.success()) {
+            return;
+        }
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || drop(fs::File::open(pipe).unwrap())
+        });
+        let mut output = Destination::new(&pipe, &[]).unwrap().open().unwrap();
+        reader.join().unwrap();
+        output.write_all(&[0; 1 << 17]).unwrap();
+        assert!(output.reader_left());
+        assert_eq!(output.finish().unwrap(), Delivery::ReaderLeft);
+    }
+}
