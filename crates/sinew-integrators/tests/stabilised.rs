@@ -20,8 +20,6 @@ use sinew_core::{
     BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
     LoadTime, OptionValue, Options, Pattern, Ramp, StableStep, State, System,
 };
-#[cfg(feature = "implicit")]
-use sinew_core::{Load, Ramp};
 use sinew_fem::{Law, Rayleigh};
 use sinew_integrators::cnn::CnnStabilised;
 
