@@ -20,7 +20,6 @@ use sinew_core::{
     BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
     LoadTime, OptionValue, Options, Pattern, Ramp, StableStep, State, System,
 };
-#[cfg(feature = "implicit")]
 use sinew_fem::{Law, Rayleigh};
 use sinew_integrators::cnn::CnnStabilised;
 
