@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use sinew_core::Run;
 use sinew_core::spectrum::Spectrum;
+use sinew_core::{Run, State, System};
 use sinew_scene::{Scene, SceneError, SceneModel, Simulation};
 
 use crate::cpu_time::thread_cpu_time;
@@ -16,12 +16,16 @@ use crate::row::CaseInfo;
 /// counts as diverged at a hundred times its size.
 const OSCILLATOR_LIMIT: f64 = 1e6;
 
+/// Follows a system from a state through instants (s), increasing.
+pub(crate) type Follow = fn(&dyn System, &State, &[f64]) -> Result<Track, ReferenceError>;
+
 /// A scene with its reference solution.
 #[derive(Debug)]
 pub struct Case {
     id: String,
     simulation: Simulation,
     span: Span,
+    follow: Follow,
     critical_step: Option<f64>,
     reference_cpu_s: f64,
     samples: Arc<Track>,
@@ -113,6 +117,19 @@ impl Case {
         simulation: Simulation,
         span: Span,
     ) -> Result<Self, CaseError> {
+        Self::followed_by(follow, id, simulation, span)
+    }
+
+    /// As [`Case::over`], with a reference of another making.
+    ///
+    /// # Errors
+    /// [`CaseError::Reference`].
+    pub(crate) fn followed_by(
+        follow: Follow,
+        id: impl Into<String>,
+        simulation: Simulation,
+        span: Span,
+    ) -> Result<Self, CaseError> {
         let id = id.into();
         let times = span.instants();
         let before = thread_cpu_time();
@@ -134,6 +151,7 @@ impl Case {
             every_step: BTreeMap::new(),
             simulation,
             span,
+            follow,
         })
     }
 
@@ -222,7 +240,7 @@ impl Case {
         }
         let times: Vec<f64> = (0..=steps).map(|step| step as f64 * dt).collect();
         let simulation = &self.simulation;
-        let track = follow(simulation.system(), simulation.initial_state(), &times)?;
+        let track = (self.follow)(simulation.system(), simulation.initial_state(), &times)?;
         let track = Arc::new(track);
         self.every_step.insert(key, Arc::clone(&track));
         Ok(track)

@@ -1,11 +1,14 @@
 //! How much of a scene its pilots can follow.
 
+use sinew_core::LinearSystem;
+use sinew_core::spectrum::Spectrum;
 use sinew_scene::Simulation;
 
 use super::AdviceError;
-use crate::case::Span;
+use super::long_steps::{REFINEMENT, follow_in_long_steps};
+use crate::case::{Follow, Span};
 use crate::cpu_time::thread_cpu_time;
-use crate::reference::Taylor;
+use crate::reference::{Taylor, follow};
 
 /// The reference is solved twice, the second time in steps of two thirds: 1 + 3/2 solutions.
 const SOLUTIONS: f64 = 2.5;
@@ -19,14 +22,34 @@ const INSTANTS: usize = 10;
 /// Smallest share of an interval that still says something about the scene.
 const SMALLEST_SHARE: f64 = 1e-3;
 
-/// The longest part of a scene, from t = 0, whose reference takes at most so much CPU time (s):
-/// all of it, or some of its intervals, or a whole fraction of the first.
-pub(super) fn horizon(simulation: &Simulation, seconds: f64) -> Result<Span, AdviceError> {
+/// The part of a scene that is followed, from t = 0 on, and how.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Horizon {
+    pub(super) span: Span,
+    pub(super) follow: Follow,
+}
+
+/// The longest part of a scene whose reference takes at most so much CPU time (s): all of it, in
+/// long steps where the full reference takes longer, or some of its intervals, or a whole fraction
+/// of the first.
+pub(super) fn horizon(simulation: &Simulation, seconds: f64) -> Result<Horizon, AdviceError> {
     let whole = Span::of(simulation);
-    let affordable = seconds / reference_cost(simulation);
-    if affordable >= whole.duration {
-        return Ok(whole);
+    let cost = ReferenceCost::new(simulation);
+    if seconds >= whole.duration * cost.per_second(1.0) {
+        return Ok(Horizon {
+            span: whole,
+            follow,
+        });
     }
+    Ok(Horizon {
+        span: longest_part(whole, seconds, cost.per_second(REFINEMENT))?,
+        follow: follow_in_long_steps,
+    })
+}
+
+/// The longest part at a cost (CPU s per simulated s) that takes at most so much CPU time (s).
+fn longest_part(whole: Span, seconds: f64, cost: f64) -> Result<Span, AdviceError> {
+    let affordable = seconds / cost;
     let interval = whole.interval();
     let intervals = (affordable / interval).floor();
     if intervals >= whole.samples as f64 {
@@ -52,22 +75,40 @@ pub(super) fn horizon(simulation: &Simulation, seconds: f64) -> Result<Span, Adv
     })
 }
 
-/// CPU time (s) per simulated second of a checked reference, from its first steps.
-fn reference_cost(simulation: &Simulation) -> f64 {
-    let Some(linear) = simulation.system().as_linear() else {
-        // The reference says what is missing.
-        return 0.0;
-    };
-    let mut taylor = Taylor::new(linear.operators(), 1.0);
-    let trial = TRIAL_STEPS * taylor.longest_step();
-    if trial == 0.0 {
-        return f64::INFINITY;
+/// Tells what a reference costs from its first steps.
+struct ReferenceCost<'a> {
+    simulation: &'a Simulation,
+    spectrum: Option<Spectrum>,
+}
+
+impl<'a> ReferenceCost<'a> {
+    fn new(simulation: &'a Simulation) -> Self {
+        let linear = simulation.system().as_linear();
+        Self {
+            simulation,
+            spectrum: linear.map(|linear| Spectrum::of(linear.operators())),
+        }
     }
-    if trial.is_infinite() {
-        return 0.0;
+
+    /// CPU time (s) per simulated second of a checked reference, its steps cut by `refinement`.
+    fn per_second(&self, refinement: f64) -> f64 {
+        let linear = self.simulation.system().as_linear();
+        let operators = linear.map(LinearSystem::operators);
+        let (Some(operators), Some(spectrum)) = (operators, &self.spectrum) else {
+            // The reference says what is missing.
+            return 0.0;
+        };
+        let mut taylor = Taylor::within(operators, spectrum, refinement);
+        let trial = TRIAL_STEPS * taylor.longest_step();
+        if trial == 0.0 {
+            return f64::INFINITY;
+        }
+        if trial.is_infinite() {
+            return 0.0;
+        }
+        let mut state = self.simulation.initial_state().clone();
+        let before = thread_cpu_time();
+        taylor.advance(&mut state, trial, |_| {});
+        SOLUTIONS * (thread_cpu_time() - before).as_secs_f64() / trial
     }
-    let mut state = simulation.initial_state().clone();
-    let before = thread_cpu_time();
-    taylor.advance(&mut state, trial, |_| {});
-    SOLUTIONS * (thread_cpu_time() - before).as_secs_f64() / trial
 }

@@ -1,6 +1,7 @@
 //! Which method and step a scene should take, from short runs on the scene itself.
 
 mod horizon;
+mod long_steps;
 mod question;
 mod run_table;
 
@@ -157,9 +158,10 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
     let (candidates, mut refused) = candidates(&simulation, &tolerances);
     let prepared = thread_cpu_time();
     let left = until.saturating_sub(prepared).as_secs_f64();
-    let measured = horizon(&simulation, FOR_THE_REFERENCE * left)?;
+    let horizon = horizon(&simulation, FOR_THE_REFERENCE * left)?;
+    let measured = horizon.span;
     let unseen_changes = changes_after(&simulation, measured);
-    let mut case = Case::over("scene", simulation, measured)?;
+    let mut case = Case::followed_by(horizon.follow, "scene", simulation, measured)?;
     check_reference(&case, whole, question.tolerance)?;
 
     let own = OwnRun::of(&case);
