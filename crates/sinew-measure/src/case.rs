@@ -4,20 +4,17 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use sinew_core::Run;
 use sinew_core::spectrum::Spectrum;
-use sinew_core::{Run, State, System};
 use sinew_scene::{Scene, SceneError, SceneModel, Simulation};
 
 use crate::cpu_time::thread_cpu_time;
-use crate::reference::{ReferenceError, Track, follow};
+use crate::reference::{Pace, ReferenceError, Track, follow_at};
 use crate::row::CaseInfo;
 
 /// Displacement over the reference's largest at which an oscillator counts as diverged; a body
 /// counts as diverged at a hundred times its size.
 const OSCILLATOR_LIMIT: f64 = 1e6;
-
-/// Follows a system from a state through instants (s), increasing.
-pub(crate) type Follow = fn(&dyn System, &State, &[f64]) -> Result<Track, ReferenceError>;
 
 /// A scene with its reference solution.
 #[derive(Debug)]
@@ -25,7 +22,7 @@ pub struct Case {
     id: String,
     simulation: Simulation,
     span: Span,
-    follow: Follow,
+    pace: Pace,
     critical_step: Option<f64>,
     reference_cpu_s: f64,
     samples: Arc<Track>,
@@ -117,15 +114,15 @@ impl Case {
         simulation: Simulation,
         span: Span,
     ) -> Result<Self, CaseError> {
-        Self::followed_by(follow, id, simulation, span)
+        Self::at_pace(Pace::Short, id, simulation, span)
     }
 
-    /// As [`Case::over`], with a reference of another making.
+    /// As [`Case::over`], with a reference at a pace.
     ///
     /// # Errors
     /// [`CaseError::Reference`].
-    pub(crate) fn followed_by(
-        follow: Follow,
+    pub(crate) fn at_pace(
+        pace: Pace,
         id: impl Into<String>,
         simulation: Simulation,
         span: Span,
@@ -133,7 +130,12 @@ impl Case {
         let id = id.into();
         let times = span.instants();
         let before = thread_cpu_time();
-        let samples = follow(simulation.system(), simulation.initial_state(), &times);
+        let samples = follow_at(
+            pace,
+            simulation.system(),
+            simulation.initial_state(),
+            &times,
+        );
         let samples = samples.map_err(|source| CaseError::Reference {
             case: id.clone(),
             source,
@@ -151,7 +153,7 @@ impl Case {
             every_step: BTreeMap::new(),
             simulation,
             span,
-            follow,
+            pace,
         })
     }
 
@@ -240,7 +242,12 @@ impl Case {
         }
         let times: Vec<f64> = (0..=steps).map(|step| step as f64 * dt).collect();
         let simulation = &self.simulation;
-        let track = (self.follow)(simulation.system(), simulation.initial_state(), &times)?;
+        let track = follow_at(
+            self.pace,
+            simulation.system(),
+            simulation.initial_state(),
+            &times,
+        )?;
         let track = Arc::new(track);
         self.every_step.insert(key, Arc::clone(&track));
         Ok(track)

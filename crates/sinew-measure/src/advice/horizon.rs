@@ -5,10 +5,9 @@ use sinew_core::spectrum::Spectrum;
 use sinew_scene::Simulation;
 
 use super::AdviceError;
-use super::long_steps::{REFINEMENT, follow_in_long_steps};
-use crate::case::{Follow, Span};
+use crate::case::Span;
 use crate::cpu_time::thread_cpu_time;
-use crate::reference::{Taylor, follow};
+use crate::reference::{Pace, Taylor};
 
 /// The reference is solved twice, the second time in steps of two thirds: 1 + 3/2 solutions.
 const SOLUTIONS: f64 = 2.5;
@@ -26,7 +25,7 @@ const SMALLEST_SHARE: f64 = 1e-3;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Horizon {
     pub(super) span: Span,
-    pub(super) follow: Follow,
+    pub(super) pace: Pace,
 }
 
 /// The longest part of a scene whose reference takes at most so much CPU time (s): all of it, in
@@ -35,15 +34,15 @@ pub(super) struct Horizon {
 pub(super) fn horizon(simulation: &Simulation, seconds: f64) -> Result<Horizon, AdviceError> {
     let whole = Span::of(simulation);
     let cost = ReferenceCost::new(simulation);
-    if seconds >= whole.duration * cost.per_second(1.0) {
+    if seconds >= whole.duration * cost.per_second(Pace::Short) {
         return Ok(Horizon {
             span: whole,
-            follow,
+            pace: Pace::Short,
         });
     }
     Ok(Horizon {
-        span: longest_part(whole, seconds, cost.per_second(REFINEMENT))?,
-        follow: follow_in_long_steps,
+        span: longest_part(whole, seconds, cost.per_second(Pace::Long))?,
+        pace: Pace::Long,
     })
 }
 
@@ -90,15 +89,15 @@ impl<'a> ReferenceCost<'a> {
         }
     }
 
-    /// CPU time (s) per simulated second of a checked reference, its steps cut by `refinement`.
-    fn per_second(&self, refinement: f64) -> f64 {
+    /// CPU time (s) per simulated second of a checked reference at a pace.
+    fn per_second(&self, pace: Pace) -> f64 {
         let linear = self.simulation.system().as_linear();
         let operators = linear.map(LinearSystem::operators);
         let (Some(operators), Some(spectrum)) = (operators, &self.spectrum) else {
             // The reference says what is missing.
             return 0.0;
         };
-        let mut taylor = Taylor::within(operators, spectrum, refinement);
+        let mut taylor = Taylor::within(operators, spectrum, pace.refinement());
         let trial = TRIAL_STEPS * taylor.longest_step();
         if trial == 0.0 {
             return f64::INFINITY;

@@ -1,7 +1,6 @@
 //! Which method and step a scene should take, from short runs on the scene itself.
 
 mod horizon;
-mod long_steps;
 mod question;
 mod run_table;
 
@@ -161,7 +160,7 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
     let horizon = horizon(&simulation, FOR_THE_REFERENCE * left)?;
     let measured = horizon.span;
     let unseen_changes = changes_after(&simulation, measured);
-    let mut case = Case::followed_by(horizon.follow, "scene", simulation, measured)?;
+    let mut case = Case::at_pace(horizon.pace, "scene", simulation, measured)?;
     check_reference(&case, whole, question.tolerance)?;
 
     let own = OwnRun::of(&case);

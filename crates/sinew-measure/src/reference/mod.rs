@@ -10,5 +10,5 @@ mod track;
 
 pub use error_norm::ErrorNorm;
 pub use taylor::Taylor;
-pub(crate) use track::LateRange;
+pub(crate) use track::{LateRange, Pace, follow_at};
 pub use track::{ReferenceError, Track, follow, largest};
