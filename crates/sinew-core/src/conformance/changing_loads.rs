@@ -221,7 +221,8 @@ pub fn order_with_changing_loads_is_as_declared(make: &dyn Fn() -> Boxed) {
     }
 }
 
-/// Soft enough not to matter, stiff enough to be a spring: 1e-9 N/m.
+/// A mass on a spring of 1e-9 N/m, too soft to matter within seconds, also to methods that are never
+/// stable.
 fn almost_free(ramp: Ramp) -> LinearModel {
     let load = Load {
         ramp,
@@ -251,11 +252,6 @@ pub fn the_impulse_of_a_load_arrives_wherever_it_falls(make: &dyn Fn() -> Boxed)
                 let needed = make().properties().changing_loads.needed();
                 let system = almost_free(ramp.clone());
                 let (mut integrator, mut state) = (make(), State::at_rest(1));
-                if let Ok(StableStep::UpTo(limit)) = integrator.stable_step(&system)
-                    && limit < dt
-                {
-                    return; // never stable: the mass would not keep its velocity
-                }
                 let taken = advance(&mut *integrator, &system, &mut state, 60, dt);
                 let what = format!("{ramp:?} in steps of {dt} s");
                 if let Taken::Refused = taken {
