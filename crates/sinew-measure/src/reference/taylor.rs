@@ -68,12 +68,8 @@ impl<'a> Taylor<'a> {
     /// displacement after every internal step.
     pub fn advance(&mut self, state: &mut State, t: f64, mut each_step: impl FnMut(&State)) {
         while state.t() < t {
-            let breakpoint = self
-                .breakpoints
-                .iter()
-                .copied()
-                .find(|time| *time > state.t());
-            let end = breakpoint.map_or(t, |time| time.min(t));
+            let passed = self.breakpoints.partition_point(|time| *time <= state.t());
+            let end = self.breakpoints.get(passed).map_or(t, |time| time.min(t));
             let parts = ((end - state.t()) / self.longest_step).ceil().max(1.0);
             let start = state.t();
             for part in 1..=parts as usize {
