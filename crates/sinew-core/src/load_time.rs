@@ -31,8 +31,8 @@ enum Window {
     Smooth { from: f64, to: f64 },
     /// The mean over the window.
     Mean { from: f64, to: f64 },
-    /// The line with the same mean and first moment over the window.
-    Line { from: f64, to: f64 },
+    /// The line with the same mean and first moment over the window, `shift` beside the instant.
+    Line { from: f64, to: f64, shift: f64 },
     /// The mean with weights that fall linearly from the instant to 0 at both ends.
     Hat { from: f64, to: f64 },
 }
@@ -79,8 +79,22 @@ impl LoadTime {
             window: Window::Line {
                 from: t,
                 to: t + dt,
+                shift: 0.0,
             },
         }
+    }
+
+    /// The loads at both ends of a step from `t` (s) to `t + dt`, of a method that adds up `1 - gamma` of
+    /// the first and gamma of the second. A line is taken beside the ends where gamma is not 1/2, so that
+    /// the sum is its mean.
+    #[must_use]
+    pub fn at_both_ends(t: f64, dt: f64, gamma: f64) -> [Self; 2] {
+        let window = Window::Line {
+            from: t,
+            to: t + dt,
+            shift: (0.5 - gamma) * dt,
+        };
+        [t, t + dt].map(|t| Self { t, window })
     }
 
     /// The loads at `t` (s), or their mean over `t - before`..`t + after` (s) with weights that fall
@@ -131,28 +145,37 @@ impl Ramp {
         let (from, to) = match window {
             Window::Instant => return self.value(t),
             Window::Smooth { from, to } => return self.value_within(from, to, t),
-            Window::Mean { from, to } | Window::Line { from, to } | Window::Hat { from, to } => {
-                (from, to)
-            }
+            Window::Mean { from, to }
+            | Window::Line { from, to, .. }
+            | Window::Hat { from, to } => (from, to),
         };
-        if self.is_smooth_between(from, to) {
-            return match (self, window) {
-                (Self::Sin2 { .. }, _) => self.value(t),
-                // The mean of a line. Taken at one end, it would not fit the means on both sides of a
-                // kink, and the impulse of a table would depend on where its kinks fall.
-                (Self::Table { .. }, Window::Mean { .. }) => {
-                    self.value_within(from, to, 0.5 * (from + to))
-                }
-                _ => self.value_within(from, to, t),
+        // All windows of a leapfrog count as long, so that its first is not taken otherwise than the next.
+        let length = match window {
+            Window::Hat { .. } => 2.0 * (t - from).max(to - t),
+            _ => to - from,
+        };
+        if self.is_smooth_in_steps(from, to, length) {
+            // The mean of a line is its value at the centre of the weights. Taken at the instant, it would
+            // not fit the means on both sides of a kink, and the impulse of a table would depend on
+            // where its kinks fall.
+            let centre = match window {
+                Window::Mean { .. } => 0.5 * (from + to),
+                Window::Line { shift, .. } => t + shift,
+                Window::Hat { .. } => t + ((to - t) - (t - from)) / 3.0,
+                Window::Instant | Window::Smooth { .. } => t,
+            };
+            return match self {
+                Self::Sin2 { .. } => self.value(t),
+                _ => self.value_within(from, to, centre),
             };
         }
         let length = to - from;
         match window {
-            Window::Line { .. } => {
+            Window::Line { shift, .. } => {
                 let middle = 0.5 * (from + to);
                 let mean = self.integral(from, to, |_| 1.0) / length;
                 let moment = self.integral(from, to, |s| s - middle);
-                mean + 12.0 * moment / length.powi(3) * (t - middle)
+                mean + 12.0 * moment / length.powi(3) * (t + shift - middle)
             }
             Window::Hat { .. } => {
                 let (before, after) = (t - from, to - t);
@@ -165,14 +188,17 @@ impl Ramp {
     }
 
     /// Whether a step over `from`..`to` (s) may take the value as it finds it: no breakpoint lies
-    /// between, rounding of either instant apart, or only an end of a rise that is long beside the
-    /// step, where value and slope are continuous.
+    /// between, rounding of either instant apart. A rise of a squared sine that is long beside the step is
+    /// smooth at its ends too, where value and slope are continuous; a short one is smooth nowhere, so
+    /// that all steps over it see means of it.
     #[must_use]
     pub fn is_smooth_between(&self, from: f64, to: f64) -> bool {
-        if let Self::Sin2 { rise } = self
-            && *rise >= LONG_RISE * (to - from)
-        {
-            return true;
+        self.is_smooth_in_steps(from, to, to - from)
+    }
+
+    fn is_smooth_in_steps(&self, from: f64, to: f64, length: f64) -> bool {
+        if let Self::Sin2 { rise } = self {
+            return *rise >= LONG_RISE * length || to <= 0.0 || from >= *rise;
         }
         let slack = ROUNDING * from.abs().max(to.abs());
         self.breakpoint_between(from + slack, to - slack).is_none()
@@ -217,6 +243,7 @@ mod tests {
             (pulse(0.05, 0.15), 0.1),
             (triangle(0.211, 0.219), 0.004),
             (triangle(0.2, 0.6), 0.2),
+            (triangle(0.0, 0.102), 0.051),
         ]
     }
 
@@ -237,10 +264,52 @@ mod tests {
                     0.5 * (start + end)
                 }),
                 sum(&|t| factor(LoadTime::around(t, dt, dt))),
+                sum(&|t| {
+                    let [start, end] = LoadTime::at_both_ends(t, dt, 0.8).map(factor);
+                    0.2 * start + 0.8 * end
+                }),
+                // A leapfrog begins with half a step.
+                sum(&|t| match t {
+                    0.0 => 0.5 * factor(LoadTime::around(t, 0.0, dt)),
+                    _ => factor(LoadTime::around(t, dt, dt)),
+                }),
             ];
             for (window, found) in sums.into_iter().enumerate() {
                 let off = (found / impulse - 1.0).abs();
                 assert!(off < 1e-12, "{ramp:?}, window {window}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn short_rises_that_cancel_leave_their_difference() {
+        let dt = 0.01;
+        for (first, second) in [(0.017, 0.020), (0.005, 0.0149), (0.0004, 0.0399)] {
+            let [first_ramp, second_ramp] = [first, second].map(|rise| Ramp::Sin2 { rise });
+            let difference = |when| first_ramp.factor(when) - second_ramp.factor(when);
+            let sum = |taken: &dyn Fn(f64) -> f64| -> f64 {
+                (0..10).map(|n| dt * taken(f64::from(n) * dt)).sum()
+            };
+            let expected = 0.5 * (second - first);
+            let sums = [
+                sum(&|t| match t {
+                    0.0 => 0.5 * difference(LoadTime::around(t, 0.0, dt)),
+                    _ => difference(LoadTime::around(t, dt, dt)),
+                }),
+                sum(&|t| {
+                    let [start, end] = LoadTime::at_both_ends(t, dt, 0.5).map(difference);
+                    0.5 * (start + end)
+                }),
+                sum(&|t| difference(LoadTime::start_of(t, dt))),
+                sum(&|t| difference(LoadTime::end_of(t, dt))),
+            ];
+            for (window, found) in sums.into_iter().enumerate() {
+                // Rises of two windows and more are sampled: at one end of a step they are late or early by
+                // half of it.
+                let sampled = second >= 2.0 * dt && window > 0;
+                let bound = if sampled { 0.51 * dt } else { 1e-14 };
+                let off = (found - expected).abs();
+                assert!(off < bound, "{first} {second}, window {window}: {found}");
             }
         }
     }

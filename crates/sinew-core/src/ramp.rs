@@ -140,21 +140,21 @@ impl Ramp {
         }
     }
 
-    /// Bound of the integral of the value's size from t = 0 on (s), which is infinite where the load
+    /// Bound of the integral of the value's size over all time (s), which is infinite where the load
     /// stays.
     #[must_use]
     pub fn impulse(&self) -> f64 {
         match self {
             Self::Step | Self::Sin2 { .. } => f64::INFINITY,
-            Self::Pulse { from, to } => to.max(0.0) - from.max(0.0),
+            Self::Pulse { from, to } => to - from,
             Self::Table { times, values } => {
                 if values.last().is_none_or(|last| *last != 0.0) {
                     return f64::INFINITY;
                 }
+                // A table that does not begin with 0 acts since a start that can only be at t = 0.
                 let before = times[0].max(0.0) * values[0].abs();
                 let between = times.windows(2).zip(values.windows(2));
-                let between = between
-                    .map(|(t, v)| (t[1].max(0.0) - t[0].max(0.0)) * v[0].abs().max(v[1].abs()));
+                let between = between.map(|(t, v)| (t[1] - t[0]) * v[0].abs().max(v[1].abs()));
                 before + between.sum::<f64>()
             }
         }

@@ -49,6 +49,23 @@ inner_suites! {
     cnn_stabilised_gauss_seidel_1: Inner::GaussSeidel { sweeps: 1 },
 }
 
+#[cfg(feature = "implicit")]
+#[test]
+fn a_newmark_method_of_any_gamma_passes_on_the_whole_impulse() {
+    use sinew_integrators::implicit::Newmark;
+    for (beta, gamma) in [
+        (0.5, 1.0),
+        (0.3025, 0.6),
+        (0.3, 0.5),
+        (0.3, 0.0),
+        (1.0, 0.5),
+    ] {
+        sinew_core::conformance::the_impulse_of_a_load_arrives_wherever_it_falls(&|| {
+            Box::new(Newmark::new(beta, gamma))
+        });
+    }
+}
+
 // A guard that nothing reaches leaves every law as it is.
 macro_rules! guarded_suites {
     ($($name:ident: $id:literal,)*) => {

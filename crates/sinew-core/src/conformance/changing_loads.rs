@@ -244,11 +244,16 @@ pub fn the_impulse_of_a_load_arrives_wherever_it_falls(make: &dyn Fn() -> Boxed)
         for width in [1e-6 * dt, short, dt, long] {
             let from = (7.0 + share) * dt;
             let to = from + width;
-            let triangle = Ramp::Table {
+            let triangle = |from: f64, to: f64| Ramp::Table {
                 times: vec![from, 0.5 * (from + to), to],
                 values: vec![0.0, 2.0, 0.0],
             };
-            for ramp in [Ramp::Pulse { from, to }, triangle] {
+            // One comes with the start of the run.
+            for ramp in [
+                Ramp::Pulse { from, to },
+                triangle(from, to),
+                triangle(0.0, width),
+            ] {
                 let needed = make().properties().changing_loads.needed();
                 let system = almost_free(ramp.clone());
                 let (mut integrator, mut state) = (make(), State::at_rest(1));

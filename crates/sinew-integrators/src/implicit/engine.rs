@@ -93,15 +93,16 @@ impl Engine {
 
     /// Gives the state the acceleration at the beginning of a step of `dt` (s): `M^-1` of the net
     /// force, or the one that it keeps from the end of the last step, changed by as much as loads
-    /// jump between the two.
+    /// jump between the two. `ends` gives the loads at both ends of a step from a time (s), `dt` (s) long.
     pub(crate) fn keep_acceleration(
         &mut self,
         system: &dyn System,
         state: &mut State,
         dt: f64,
+        ends: impl Fn(f64, f64) -> [LoadTime; 2],
     ) -> Result<StepReport, StepError> {
         let t = state.t();
-        let load = LoadTime::within(t, dt, 0.0);
+        let [load, _] = ends(t, dt);
         if state.acceleration != Acceleration::Same {
             let work = acceleration(system, state, load, &mut self.a)?;
             state.a.clone_from(&self.a);
@@ -109,10 +110,10 @@ impl Engine {
             return Ok(work);
         }
         if let (Some(last), Some(linear)) = (state.clock.last_step(), system.as_linear()) {
-            let changed = [LoadTime::within(t - last, last, 1.0), load];
+            let [_, before] = ends(t - last, last);
             self.a.fill(0.0);
             let operators = linear.operators();
-            if operators.add_load_change(changed, [t - last, t + dt], &mut self.a) {
+            if operators.add_load_change([before, load], [t - last, t + dt], &mut self.a) {
                 for ((a, force), mass) in state.a.iter_mut().zip(&self.a).zip(system.mass()) {
                     *a += force / mass;
                 }

@@ -136,14 +136,15 @@ impl Integrator for GeneralizedAlpha {
         let mut work = begin(self, system, state, dt)?;
         let (beta, gamma) = (self.beta(), self.gamma());
         let (old, new) = (self.of_forces, 1.0 - self.of_forces);
-        work += self.engine.keep_acceleration(system, state, dt)?;
+        let ends = |t, dt| LoadTime::at_both_ends(t, dt, 0.5);
+        work += self.engine.keep_acceleration(system, state, dt, ends)?;
         for i in 0..state.u.len() {
             let (u, v, a) = (state.u[i], state.v[i], state.a[i]);
             let predicted = u + dt * v + dt * dt * (0.5 - beta) * a;
             self.engine.u[i] = new * predicted + old * u;
             self.engine.v[i] = new * (v + dt * (1.0 - gamma) * a) + old * v;
         }
-        let [start, end] = [0.0, 1.0].map(|share| LoadTime::within(state.t(), dt, share));
+        let [start, end] = ends(state.t(), dt);
         work += self.engine.evaluate(system, end, dt)?;
         if old != 0.0 {
             // The load was taken at t + dt whole; a share of it belongs to t.

@@ -116,15 +116,15 @@ impl Integrator for Newmark {
     ) -> Result<StepReport, StepError> {
         let mut work = begin(self, system, state, dt)?;
         let (beta, gamma) = (self.beta, self.gamma);
-        work += self.engine.keep_acceleration(system, state, dt)?;
+        let ends = |t, dt| LoadTime::at_both_ends(t, dt, gamma);
+        work += self.engine.keep_acceleration(system, state, dt, ends)?;
         for i in 0..state.u.len() {
             let (u, v, a) = (state.u[i], state.v[i], state.a[i]);
             self.engine.u[i] = u + dt * v + dt * dt * (0.5 - beta) * a;
             self.engine.v[i] = v + dt * (1.0 - gamma) * a;
         }
-        work += self
-            .engine
-            .evaluate(system, LoadTime::within(state.t(), dt, 1.0), dt)?;
+        let [_, end] = ends(state.t(), dt);
+        work += self.engine.evaluate(system, end, dt)?;
         work += self.engine.solve();
         for (i, a) in self.engine.a.iter().enumerate() {
             state.u[i] = self.engine.u[i] + beta * dt * dt * a;
