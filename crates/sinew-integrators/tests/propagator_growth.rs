@@ -140,10 +140,15 @@ fn the_two_step_form_swings_no_wider_at_the_end_than_at_the_beginning() {
                     widest.max(energy(&model, &at_rest(&state)) / first)
                 })
             };
-            let (early, middle, late) = (widest(5000), widest(10_000), widest(5000));
-            let what = format!("{dt} s, {tolerance:e}: {early} {middle} {late}");
-            assert!(late <= 1.02 * early && middle <= 1.02 * early, "{what}");
-            assert!(early <= 1.5, "{what}");
+            // Each mode keeps its amplitude but for the root of the tolerance, from rest at its widest.
+            let allowed = (1.0 + tolerance.sqrt()).powi(2);
+            for steps in [5000, 10_000, 5000] {
+                let found = widest(steps);
+                assert!(
+                    found <= allowed,
+                    "{dt} s, {tolerance:e}: {found} of {allowed}"
+                );
+            }
         }
     }
 }

@@ -5,6 +5,8 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::body::bodies_up_to;
 use common::cube::{altered, cube, paper_cube, reference, run};
 use common::exponential::exponentials;
@@ -12,7 +14,8 @@ use common::{advance, build, largest, plain, relative_error};
 use proptest::prelude::*;
 use sinew_core::spectrum::critical_step;
 use sinew_core::{
-    Damping, Integrator, LinearModel, LinearSystem, Load, OptionValue, Options, Ramp, State, System,
+    BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
+    OptionValue, Options, Pattern, Ramp, State, System,
 };
 use sinew_fem::Law;
 
@@ -224,4 +227,59 @@ fn what_it_cannot_do_is_refused_with_what_can() {
         refusal(&with(pulse, 0.0), 0.02, 5),
         format!("`propagator` at t = 0.04 s: a load changes at t = 0.05 s, {advice}")
     );
+}
+
+/// Masses of 1 kg, each on a spring of its own: these squares of frequencies (1/s^2).
+fn modes(squares: &[f64]) -> LinearModel {
+    let cells = squares.len();
+    let pattern = Pattern::from_elements(cells, (0..cells as u32).map(|cell| [cell])).unwrap();
+    let mut stiffness = BlockMatrix::zeros(Arc::new(pattern), Layers::One);
+    for (cell, square) in squares.iter().enumerate() {
+        stiffness
+            .add_block(cell as u32, cell as u32, &[*square])
+            .unwrap();
+    }
+    let operators =
+        LinearOperators::new(vec![1.0; cells], stiffness, Damping::default(), Vec::new());
+    LinearModel::new(operators.unwrap())
+}
+
+/// The largest amplitude of any mode within so many steps, over that of the exact motion.
+fn largest_amplitude(squares: &[f64], dt: f64, tolerance: f64, steps: usize) -> f64 {
+    let system = modes(squares);
+    let mut integrator = two_step(tolerance);
+    let v = squares.iter().map(|square| square.sqrt()).collect();
+    let mut state = State::new(vec![1.0; squares.len()], v);
+    let mut largest = 0.0_f64;
+    for _ in 0..steps {
+        integrator.step(&system, &mut state, dt).unwrap();
+        largest = state.u.iter().fold(largest, |max, u| max.max(u.abs()));
+    }
+    largest / std::f64::consts::SQRT_2
+}
+
+/// Peaks of the polynomial that are nearly as high as the highest, and zeros that the sine has
+/// elsewhere: where a mode lies at one of them, it is stable and keeps its size all the same.
+#[test]
+fn no_mode_grows_wherever_it_lies() {
+    // Each was wrong by 1e17 and more after 1000 steps where one peak alone was looked at.
+    for (square, dt, tolerance) in [
+        (0.15532565040100568, 23.90325271059216, 0.01),
+        (0.06185995824751358, 37.9115929941618, 0.1),
+        (0.33089104127128793, 70.99916597164304, 1e-3),
+    ] {
+        let found = largest_amplitude(&[square, 1.0], dt, tolerance, 1000);
+        assert!(
+            found < 1.0 + 2.0 * f64::sqrt(tolerance),
+            "{square}: {found}"
+        );
+    }
+    let squares: Vec<f64> = (1..=600).map(|j| (f64::from(j) / 600.0).powi(2)).collect();
+    for dt in [3.0, 6.3, 9.0458555217769, 17.1, 40.0, 63.27] {
+        for tolerance in [0.9, 0.1, 1e-2, 1e-3, 1e-4, 1e-6] {
+            let found = largest_amplitude(&squares, dt, tolerance, 600);
+            let allowed = 1.0 + 2.0 * f64::sqrt(tolerance);
+            assert!(found < allowed, "dt = {dt}, {tolerance:e}: {found}");
+        }
+    }
 }

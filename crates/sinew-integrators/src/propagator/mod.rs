@@ -3,6 +3,7 @@
 mod chebyshev;
 mod cut;
 mod dense;
+mod first_step;
 mod krylov;
 mod mode;
 mod series;

@@ -2,11 +2,12 @@
 
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    Acceleration, Fact, LinearOperators, Load, LoadOverStep, SetupError, State, StepError,
-    StepReport, VelocityTime,
+    Acceleration, Fact, LinearOperators, Load, LoadOverStep, LoadTime, SetupError, State,
+    StepError, StepReport, VelocityTime,
 };
 
-use super::chebyshev::{Chebyshev, LARGEST_EIGENVALUE_MARGIN};
+use super::chebyshev::LARGEST_EIGENVALUE_MARGIN;
+use super::first_step::FirstStep;
 use super::mode::{Mode, quadrature};
 use super::series::{evaluate, interpolate, nodes, tails};
 use super::vectors::ChebyshevVectors;
@@ -14,6 +15,12 @@ use super::{HIGHEST_DEGREE, ID, Resolution, refuse_loads};
 
 /// Points per degree among which the largest value of a polynomial is looked for.
 const POINTS_PER_DEGREE: usize = 32;
+
+/// Share of the largest value that a peak has at one of these points: cos(pi/64), rounded down.
+const SEEN_OF_A_PEAK: f64 = 0.99;
+
+/// Most by which sin(w dt/2) is kept below 1.
+const MOST_ROOM: f64 = 0.25;
 
 /// The exact displacements of a mass-damped linear system under piecewise constant loads, for half
 /// the sweeps of the one-step form: `v+ = e^(-2 eta) v- + G(M^-1 K) M^-1 (F - K u)/dt`, `u+ = u + dt v+`, v being
@@ -23,13 +30,14 @@ const POINTS_PER_DEGREE: usize = 32;
 /// `eta = alpha dt/2`.
 ///
 /// Only `S = sin(w dt/2)/(w/2)` is replaced by a polynomial. With its square in G,
-/// `lambda G = (1 - e^-eta)^2 + e^-eta w^2 S^2` cannot fall below 0; S is scaled, by less than the
-/// tolerance, so that `|w S| <= 2` holds between its zeros too; and eta is taken from
-/// `sinh(eta/2) = alpha S(0)/4`, by which lambda divides G whatever S is. Every mode is then stable at
-/// any step and for any tolerance, which a polynomial for G itself is not.
+/// `lambda G = (1 - e^-eta)^2 + e^-eta w^2 S^2` cannot fall below 0; S is scaled, by less than 3/2 of the
+/// tolerance, so that `|w S|` stays a little below 2 between its zeros too, since a mode at 2 itself grows
+/// as the number of steps; and eta is taken from `sinh(eta/2) = alpha S(0)/4`, by which lambda divides G
+/// whatever S is. Every mode is then stable at any step and for any tolerance, which a polynomial for G
+/// itself is not.
 ///
 /// The tolerance bounds the error of `sin(w dt/2) = w S/2` before S is scaled; after it, the error delta is
-/// at most twice the tolerance. An undamped mode then turns by `2 asin` of the wrong sine: its phase is off
+/// at most 5/2 of the tolerance. An undamped mode then turns by `2 asin` of the wrong sine: its phase is off
 /// by about `2 delta/cos(w dt/2)` a step, by up to `2 sqrt(2 delta)` where the sine is near 1. From exact
 /// displacements a step leads to one that is off by at most 8 delta of the distance from equilibrium,
 /// as `w^2 S^2 <= 4` there.
@@ -47,8 +55,7 @@ pub(super) struct TwoStep {
     decay: f64,
     /// Series of what a jump of the load adds, for half the jump; empty without damping.
     of_jump: Vec<f64>,
-    /// Takes the first step.
-    starter: Chebyshev,
+    first_step: FirstStep,
     r: Vec<f64>,
     sum: Vec<f64>,
     other_sum: Vec<f64>,
@@ -95,7 +102,8 @@ impl TwoStep {
         let left_out: Vec<f64> = tails(&s).into_iter().map(|tail| scale * tail).collect();
         let degree = resolution.degree_for(&left_out, dt, |degree| left_out[degree])?;
         s.truncate(degree + 1);
-        let overshoot = largest_swing(&s, interval, alpha) / 2.0;
+        let room = 1.0 - (0.5 * left_out[degree]).min(MOST_ROOM);
+        let overshoot = largest_swing(&s, interval, alpha) / 2.0 / room;
         if overshoot > 1.0 {
             s.iter_mut()
                 .for_each(|coefficient| *coefficient /= overshoot);
@@ -110,24 +118,18 @@ impl TwoStep {
         let mut divided = vec![0.0; degree + 1];
         interpolate(&values, &mut divided);
         let buffer = || vec![0.0; operators.dofs()];
+        let root_of_decay = (-2.0 * (alpha * s_at_zero / 4.0).asinh()).exp();
         Ok(Self {
             degree,
             left_out: left_out[degree],
             sine_error,
             s_at_zero,
             alpha,
-            decay: (-4.0 * (alpha * s_at_zero / 4.0).asinh()).exp(),
+            decay: root_of_decay * root_of_decay,
+            first_step: FirstStep::new(&s, interval, alpha, dt, root_of_decay),
             of_jump: jump_series(operators, interval, dt, 2 * degree),
             s,
             divided,
-            starter: Chebyshev::set_up(
-                operators,
-                dt,
-                Resolution {
-                    degree: None,
-                    ..resolution
-                },
-            )?,
             r: buffer(),
             sum: buffer(),
             other_sum: buffer(),
@@ -156,27 +158,35 @@ impl TwoStep {
         let work = if running {
             self.go_on(operators, state, dt)
         } else {
-            self.start(operators, state, dt)?
+            self.start(operators, state, dt)
         };
         state.end_step(dt, VelocityTime::MiddleOfStep, Acceleration::Kick);
         Ok(work)
     }
 
     /// The first step, from a velocity that holds at the displacement's time.
-    fn start(
-        &mut self,
-        operators: &LinearOperators,
-        state: &mut State,
-        dt: f64,
-    ) -> Result<StepReport, StepError> {
-        self.sum.copy_from_slice(&state.u);
-        self.other_sum.copy_from_slice(&state.v);
-        let work = self.starter.step(operators, state, dt)?;
-        for (i, v) in state.v.iter_mut().enumerate() {
-            *v = (state.u[i] - self.sum[i]) / dt;
-            state.a[i] = 2.0 * (*v - self.other_sum[i]) / dt;
+    fn start(&mut self, operators: &LinearOperators, state: &mut State, dt: f64) -> StepReport {
+        let load = LoadTime::smooth_in(state.t(), state.t(), dt);
+        operators.external_force(load, &mut self.r);
+        operators
+            .stiffness()
+            .subtract_product(&state.u, &mut self.r);
+        for (r, mass) in self.r.iter_mut().zip(operators.mass()) {
+            *r /= mass;
         }
-        Ok(work)
+        let mut work = StepReport::ONE_FORCE;
+        self.sum.fill(0.0);
+        self.vectors.start().copy_from_slice(&state.v);
+        work.sweeps += self.add_series(operators, Which::FirstOfVelocity);
+        self.vectors.start().copy_from_slice(&self.r);
+        work.sweeps += self.add_series(operators, Which::FirstOfForce);
+        for (i, u) in state.u.iter_mut().enumerate() {
+            let v = self.sum[i] / dt;
+            state.a[i] = 2.0 * (v - state.v[i]) / dt;
+            state.v[i] = v;
+            *u += dt * v;
+        }
+        work
     }
 
     fn go_on(&mut self, operators: &LinearOperators, state: &mut State, dt: f64) -> StepReport {
@@ -240,6 +250,8 @@ impl TwoStep {
         let series = match which {
             Which::Both | Which::S => &self.s,
             Which::Jump => &self.of_jump,
+            Which::FirstOfVelocity => &self.first_step.of_velocity,
+            Which::FirstOfForce => &self.first_step.of_force,
         };
         for (k, coefficient) in series.iter().enumerate() {
             if k > 0 {
@@ -274,6 +286,8 @@ enum Which {
     Both,
     S,
     Jump,
+    FirstOfVelocity,
+    FirstOfForce,
 }
 
 /// Series of `integral over a step of (1 - e^(-alpha t)) s(dt - t) dt`, s being a mode's impulse response:
@@ -323,21 +337,29 @@ fn largest_swing(s: &[f64], interval: f64, alpha: f64) -> f64 {
     };
     let points = POINTS_PER_DEGREE * (s.len() + 1);
     let width = std::f64::consts::PI / points as f64;
-    let centre = (0..=points)
-        .map(|point| point as f64 * width)
-        .max_by(|a, b| swing(*a).total_cmp(&swing(*b)))
-        .unwrap_or(0.0);
-    // Golden section about the best point.
+    let seen: Vec<f64> = (0..=points)
+        .map(|point| swing(point as f64 * width))
+        .collect();
+    let largest = seen.iter().copied().fold(0.0, f64::max);
+    // Peaks of nearly the same height: the highest of them may be seen less well than another.
+    let near = (0..=points).filter(|point| seen[*point] >= SEEN_OF_A_PEAK * largest);
+    let peaks = near.map(|point| peak_about(&swing, point as f64 * width, width));
+    // Rounding of a value.
+    peaks.fold(largest, f64::max) * (1.0 + 1e-14)
+}
+
+/// The largest value of a function within `width` of a point, by golden section.
+fn peak_about(function: &impl Fn(f64) -> f64, centre: f64, width: f64) -> f64 {
     let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
     let (mut low, mut high) = (centre - width, centre + width);
-    for _ in 0..80 {
+    // Where a maximum is found to the square root of rounding, its value is to rounding.
+    for _ in 0..40 {
         let (left, right) = (high - golden * (high - low), low + golden * (high - low));
-        if swing(left) >= swing(right) {
+        if function(left) >= function(right) {
             high = right;
         } else {
             low = left;
         }
     }
-    // The square root of rounding is how well a maximum can be located, rounding its value.
-    swing(0.5 * (low + high)).max(swing(centre)) * (1.0 + 1e-14)
+    function(0.5 * (low + high))
 }
