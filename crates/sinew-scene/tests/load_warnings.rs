@@ -89,6 +89,17 @@ fn a_load_that_is_refused_at_any_step_is_sent_to_another_method() {
             "{message}"
         );
     }
+    // A rise that ends inside a step wants another step, too.
+    let run = by("propagator", 0.01, "kind = \"krylov\"");
+    let message = simulation(r#"{ kind = "sin2", rise = 0.123 }"#, &run).refused_load();
+    let message = message.unwrap();
+    assert!(
+        message.contains("kind = \"chebyshev\" with dt = "),
+        "{message}"
+    );
+    let run = by("propagator", proposed(&message), "");
+    let rise = simulation(r#"{ kind = "sin2", rise = 0.123 }"#, &run);
+    assert_eq!(rise.refused_load(), None);
     let odd = r#"{ kind = "pulse", from = 0.1, to = 0.3141592653589793 }"#;
     let run = by("propagator", 0.05, "");
     let message = simulation(odd, &run).refused_load().unwrap();

@@ -14,6 +14,10 @@ impl Simulation {
         let needed = integrator.properties().changing_loads.needed();
         let (dt, until) = (self.dt(), self.run().steps as f64 * self.dt());
         let broken = |ramp: &Ramp, dt: f64| needed.first_broken(ramp, 0.0, dt, until);
+        let is_smooth = |ramp: &Ramp, dt: f64| {
+            let broken = LoadOverStep::Smooth.first_broken(ramp, 0.0, dt, until);
+            broken.is_none()
+        };
         let loads = self.loads();
         let refused = loads
             .iter()
@@ -25,10 +29,13 @@ impl Simulation {
             Some(shorter) if ramps().all(|ramp| broken(ramp, shorter).is_none()) => {
                 format!("dt = {shorter} s would do")
             }
-            _ if needed == LoadOverStep::Smooth => {
-                "no step of use would do; `modal` takes loads that jump anywhere".to_owned()
+            _ if ramps().all(|ramp| is_smooth(ramp, dt)) => {
+                "kind = \"chebyshev\" takes loads that are smooth over each step".to_owned()
             }
-            _ => "kind = \"chebyshev\" takes loads that are smooth over each step".to_owned(),
+            Some(shorter) if ramps().all(|ramp| is_smooth(ramp, shorter)) => {
+                format!("kind = \"chebyshev\" with dt = {shorter} s would do")
+            }
+            _ => "no step of use would do; `modal` takes loads that jump anywhere".to_owned(),
         };
         Some(format!(
             "`{}` takes loads that are {}, and {} changes at t = {instant} s, in steps of {dt} s; {remedy}",
