@@ -1,6 +1,8 @@
 //! All combinations of cases, integrators and steps.
 
-use std::path::PathBuf;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use sinew_core::{Accuracy, OptionError, OptionValue, StableStep};
 
@@ -16,7 +18,7 @@ use crate::results::{BenchResults, Machine, Missing, Skipped};
 /// What to measure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bench {
-    /// Scene files.
+    /// Scene files, each of which is measured once.
     pub scenes: Vec<PathBuf>,
     /// Integrator ids; empty for all.
     pub integrators: Vec<String>,
@@ -108,11 +110,11 @@ impl Bench {
     ) -> Result<BenchResults, BenchError> {
         let mut results = BenchResults::new(revision, machine);
         let (mut cases, mut errors) = (Vec::new(), Vec::new());
-        for scene in &self.scenes {
+        for (id, scene) in named_cases(&self.scenes) {
             progress(Progress::Reference {
-                scene: scene.clone(),
+                scene: scene.to_owned(),
             });
-            match Case::load(scene) {
+            match load(id, scene) {
                 Ok(case) => cases.push(case),
                 Err(error) => {
                     let scene = scene.display().to_string();
@@ -224,16 +226,44 @@ impl Bench {
 /// Scene files and the files they name, as far as the scenes can be read.
 #[must_use]
 pub fn scene_files(scenes: &[PathBuf]) -> Vec<PathBuf> {
-    let files = |scene: &PathBuf| match Scene::load(scene) {
-        Ok(scene) => scene.input_files(),
-        Err(_) => vec![scene.clone()],
-    };
+    let files = |scene: &PathBuf| Scene::input_files_of(scene);
     scenes.iter().flat_map(files).collect()
 }
 
 /// The ids that the cases of these scenes will have.
 pub(crate) fn case_ids(scenes: &[PathBuf]) -> Vec<String> {
-    scenes.iter().map(|scene| Case::id_of(scene)).collect()
+    named_cases(scenes).into_iter().map(|(id, _)| id).collect()
+}
+
+/// Each scene once, with an id that no other has: the name of its file, of its folder and its file,
+/// or of its file with a number, whichever is free.
+fn named_cases(scenes: &[PathBuf]) -> Vec<(String, &Path)> {
+    let names: Vec<String> = scenes.iter().map(|scene| Case::id_of(scene)).collect();
+    let mut seen = BTreeSet::new();
+    let mut cases: Vec<(String, &Path)> = Vec::with_capacity(scenes.len());
+    for (scene, name) in scenes.iter().zip(&names) {
+        if !seen.insert(fs::canonicalize(scene).unwrap_or_else(|_| scene.clone())) {
+            continue;
+        }
+        let is_taken = |id: &String| cases.iter().any(|(taken, _)| taken == id);
+        let is_free = |id: &String| !is_taken(id) && !names.contains(id);
+        let id = if is_taken(name) {
+            let folder = scene.parent().and_then(Path::file_name);
+            let in_folder = folder.map(|folder| format!("{}-{name}", folder.to_string_lossy()));
+            let mut others = in_folder
+                .into_iter()
+                .chain((2..).map(|count| format!("{name}-{count}")));
+            others.find(is_free).unwrap_or_default()
+        } else {
+            name.clone()
+        };
+        cases.push((id, scene));
+    }
+    cases
+}
+
+fn load(id: String, scene: &Path) -> Result<Case, CaseError> {
+    Case::new(id, Scene::load(scene)?.build()?)
 }
 
 /// A method as it runs on a case, and its kinds that lead somewhere else on the front.
@@ -279,4 +309,73 @@ fn is_exact(method: &Method) -> bool {
 
 fn round(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spring(stiffness: f64) -> String {
+        format!(
+            "[oscillator]\nmass = 0.1\nstiffness = {stiffness}\ndamping = 1.0\nvelocity = -5.0\n\
+             [run]\nduration = 0.1\nintegrator = \"rk4\"\ndt = 0.02\n"
+        )
+    }
+
+    fn write(path: &Path, text: &str) -> PathBuf {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+        path.to_owned()
+    }
+
+    #[test]
+    fn scenes_of_one_name_are_cases_of_their_own_and_a_scene_named_twice_is_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let bench = Bench {
+            scenes: vec![
+                write(&path("a/x.toml"), &spring(100.0)),
+                write(&path("b/x.toml"), &spring(400.0)),
+                path("b/../a/x.toml"),
+                write(&path("c/b/x.toml"), &spring(200.0)),
+                write(&path("x-2.toml"), &spring(300.0)),
+            ],
+            integrators: vec!["rk4".to_owned()],
+            steps: vec![0.01],
+            quick: true,
+        };
+        let results = bench.run("r".into(), Machine::default(), |_| ()).unwrap();
+        let ids = ["x", "b-x", "x-3", "x-2"];
+        assert_eq!(results.case_ids(), ids);
+        let rows: Vec<&str> = results.rows.iter().map(|row| row.case.as_str()).collect();
+        assert_eq!(rows, ids);
+        let names = bench.output_files();
+        for id in ids {
+            let plot = format!("work-precision-{id}.svg");
+            assert!(names.contains(&plot), "{plot} in {names:?}");
+        }
+        assert_eq!(names.len(), 2 + 2 * ids.len());
+    }
+
+    #[test]
+    fn the_mesh_of_a_scene_with_a_mistake_is_an_input() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        for (name, text) in [
+            ("key.toml", "[mesh]\nfile = \"body.msh\"\n[run]\ndt = -1\n"),
+            ("twice.toml", "[mesh]\nfile = \"body.msh\"\n[mesh]\n"),
+            (
+                "syntax.toml",
+                "[mesh]\nfile = \"body.msh\"\n[run]\ndt = = 1\n",
+            ),
+        ] {
+            let scene = write(&path(name), text);
+            assert_eq!(
+                scene_files(std::slice::from_ref(&scene)),
+                [scene, path("body.msh")]
+            );
+        }
+        let nothing = path("no.toml");
+        assert_eq!(scene_files(std::slice::from_ref(&nothing)), [nothing]);
+    }
 }

@@ -17,6 +17,7 @@ use super::whole_file::WholeFile;
 /// | a character device or a pipe | written on as it is |
 /// | a new name in a folder that exists | written as a whole or not at all |
 /// | a file with a write bit that this run does not read | replaced as a whole or not at all; its mode stays |
+/// | an open file whose name was taken away | written on as it is |
 /// | a link | the same for what it leads to; the link stays |
 ///
 /// ```
@@ -74,10 +75,16 @@ impl Destination {
         self.place == Place::StandardOutput
     }
 
-    /// Whether the output goes to a device, a pipe or standard output, none of which is a file.
+    /// Whether the output goes to a device, a pipe, an open file or standard output, which are
+    /// written on and not replaced.
     #[must_use]
     pub fn is_stream(&self) -> bool {
         !matches!(self.place, Place::File(_))
+    }
+
+    /// Whether both outputs go to one file, so that the later would replace the earlier.
+    pub(super) fn is_same_file(&self, other: &Self) -> bool {
+        self.place.is_same_file(&other.place)
     }
 
     /// Begins the output. A named pipe waits for its reader.

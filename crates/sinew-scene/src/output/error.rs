@@ -13,6 +13,14 @@ pub enum OutputError {
         /// The path.
         path: PathBuf,
     },
+    /// A link to a name that only a folder can have.
+    #[error("cannot write {}: it is a link to {}, which can only be a folder; name another file", path.display(), target.display())]
+    LinkToFolder {
+        /// The path.
+        path: PathBuf,
+        /// The path at the end of all links.
+        target: PathBuf,
+    },
     /// A folder where a file belongs.
     #[error("cannot write {}: it is a folder; name a file in it", path.display())]
     Folder {
@@ -40,6 +48,14 @@ pub enum OutputError {
         path: PathBuf,
         /// The input that is the same file.
         input: PathBuf,
+    },
+    /// A file that another output of the same run goes to.
+    #[error("cannot write {}: it leads to the same file as {}, which this run writes too; remove the link", path.display(), other.display())]
+    Shared {
+        /// The path.
+        path: PathBuf,
+        /// The path of the other output.
+        other: PathBuf,
     },
     /// A file without a write bit.
     #[error("cannot write {}: it is read-only; make it writable, or name another file", path.display())]

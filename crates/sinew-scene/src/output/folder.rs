@@ -1,7 +1,8 @@
 //! Folders that several outputs go to.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::io::ErrorKind;
+use std::path::{Component, Path, PathBuf};
 
 use super::place::folder_of;
 use super::whole_file::WholeFile;
@@ -32,13 +33,16 @@ impl OutputFolder {
     }
 
     /// Checks, before long work, that the folder is there or can be made, takes new files, and that
-    /// files of these names may be written in it. Nothing stays of the check.
+    /// files of these names may be written in it, each a file of its own. Nothing stays of the
+    /// check.
     ///
     /// # Errors
     /// [`OutputError`] for the first that is refused.
     pub fn check(&self, names: &[String]) -> Result<(), OutputError> {
+        let folder = once_made(&self.path);
         let exists = |path: &&Path| path.as_os_str().is_empty() || path.symlink_metadata().is_ok();
-        let nearest = self.path.ancestors().find(exists).unwrap_or(&self.path);
+        let nearest = folder.ancestors().find(exists).unwrap_or(&folder);
+        let missing = folder.strip_prefix(nearest).unwrap_or(&folder);
         let nearest = if nearest.as_os_str().is_empty() {
             Path::new(".")
         } else {
@@ -52,11 +56,30 @@ impl OutputFolder {
             path: self.path.clone(),
             source,
         })?;
-        if nearest != self.path {
-            return Ok(());
+        if missing.as_os_str().is_empty() {
+            return self.check_files(nearest, names);
         }
+        let new_names = missing.iter().map(Path::new);
+        for name in new_names.chain(names.iter().map(Path::new)) {
+            may_be_called(&nearest.join(name))?;
+        }
+        names
+            .iter()
+            .try_for_each(|name| may_be_called(&self.path.join(name)))
+    }
+
+    /// Checks the files in a folder that is there.
+    fn check_files(&self, folder: &Path, names: &[String]) -> Result<(), OutputError> {
+        let mut outputs: Vec<Destination> = Vec::with_capacity(names.len());
         for name in names {
-            Destination::new(self.path.join(name), &self.inputs)?;
+            let output = Destination::new(folder.join(name), &self.inputs)?;
+            if let Some(other) = outputs.iter().find(|other| other.is_same_file(&output)) {
+                return Err(OutputError::Shared {
+                    path: output.path().to_owned(),
+                    other: other.path().to_owned(),
+                });
+            }
+            outputs.push(output);
         }
         Ok(())
     }
@@ -75,5 +98,31 @@ impl OutputFolder {
         // A reader that left asked for no more; there is nobody to tell.
         let _ = Destination::new(&path, &self.inputs)?.write(content)?;
         Ok(path)
+    }
+}
+
+/// A folder's path without the folders that are made only to be left again: `new/..` is where `new`
+/// is made.
+fn once_made(path: &Path) -> PathBuf {
+    let mut folder = PathBuf::new();
+    for component in path.components() {
+        let is_new = folder.file_name().is_some() && folder.symlink_metadata().is_err();
+        if component == Component::ParentDir && is_new {
+            folder.pop();
+        } else {
+            folder.push(component);
+        }
+    }
+    folder
+}
+
+/// Refuses a path that nothing can have, for instance one with too long a name.
+fn may_be_called(path: &Path) -> Result<(), OutputError> {
+    match path.symlink_metadata() {
+        Err(source) if source.kind() != ErrorKind::NotFound => Err(OutputError::NotOpened {
+            path: path.to_owned(),
+            source,
+        }),
+        _ => Ok(()),
     }
 }

@@ -54,6 +54,9 @@ impl Place {
             return Err(OutputError::Folder { path: here() });
         }
         let identity = Identity::of(path);
+        if let Some(identity) = &identity {
+            refuse_input(path, identity, inputs)?;
+        }
         let is_standard_output = identity.is_some() && identity == Identity::of_standard_output();
         if !kind.is_file() {
             return match unsuitable(&kind) {
@@ -61,9 +64,6 @@ impl Place {
                 None if is_standard_output => Ok(Self::StandardOutput),
                 None => Ok(Self::Stream),
             };
-        }
-        if let Some(identity) = &identity {
-            refuse_input(path, identity, inputs)?;
         }
         if is_standard_output {
             return Ok(Self::StandardOutput);
@@ -79,15 +79,24 @@ impl Place {
         if DESCRIPTORS.iter().any(|name| path.starts_with(name)) {
             return Ok(Self::Stream);
         }
-        Ok(Self::File(resolved(path)))
+        let target = resolved(path);
+        // An open file whose name was taken away has only a text for a link, by which another file
+        // may be called.
+        if Identity::of(&target) != identity {
+            return Ok(Self::Stream);
+        }
+        Ok(Self::File(target))
     }
 
     fn new(path: &Path) -> Result<Self, OutputError> {
         let target = resolved(path);
-        let shown = path.to_string_lossy();
-        if target.file_name().is_none() || shown.ends_with(std::path::is_separator) {
+        if names_folder(path) {
             let path = path.to_owned();
             return Err(OutputError::NoName { path });
+        }
+        if names_folder(&target) {
+            let path = path.to_owned();
+            return Err(OutputError::LinkToFolder { path, target });
         }
         let folder = folder_of(&target);
         if !folder.is_dir() {
@@ -98,6 +107,22 @@ impl Place {
         }
         Ok(Self::File(target))
     }
+
+    /// Whether both are the same file, which is there or not.
+    pub(super) fn is_same_file(&self, other: &Self) -> bool {
+        let (Self::File(one), Self::File(other)) = (self, other) else {
+            return false;
+        };
+        let folder = |path| fs::canonicalize(folder_of(path)).ok();
+        one.file_name() == other.file_name() && folder(one) == folder(other)
+    }
+}
+
+/// Whether a path can only be that of a folder, by how it ends.
+fn names_folder(path: &Path) -> bool {
+    let text = path.to_string_lossy();
+    let before_dot = text.strip_suffix('.').unwrap_or(&text);
+    path.file_name().is_none() || before_dot.ends_with(std::path::is_separator)
 }
 
 /// The folder that a file's path names it in.

@@ -75,10 +75,12 @@ fn folders_read_only_files_and_missing_folders_are_refused() {
         ),
         (folder.path().join("no/a.csv"), "there is no folder"),
         (folder.path().join("new/"), "expected the name of a file"),
+        (folder.path().join("new/."), "expected the name of a file"),
+        (folder.path().join("new/.."), "expected the name of a file"),
         (PathBuf::new(), "expected the name of a file"),
         (PathBuf::from(".."), "it is a folder"),
     ] {
-        let said = write(&path, &[]).unwrap_err();
+        let said = Destination::new(&path, &[]).unwrap_err().to_string();
         assert!(said.contains(expected), "{said}");
         assert!(said.contains(path.to_str().unwrap()), "{said}");
     }
@@ -129,6 +131,29 @@ fn a_folder_is_checked_with_the_files_in_it_and_made_when_it_is_needed() {
     assert_eq!(fs::read(input).unwrap(), b"new");
 }
 
+#[test]
+fn a_folder_that_is_still_to_be_made_is_checked_as_far_as_it_can_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let long = "n".repeat(300);
+    for (below, name) in [("out", &*long), (&*long, "a.svg"), ("no/n/out", &*long)] {
+        let said = OutputFolder::new(path(below), &[]).check(&[name.into()]);
+        let said = said.unwrap_err().to_string();
+        assert!(said.contains(&long), "{said}");
+    }
+    // The folder that is made on the way is left again.
+    fs::create_dir(path("there")).unwrap();
+    let input = path("there/a.svg");
+    fs::write(&input, "read").unwrap();
+    for below in ["there/new/..", "there/n/../new/../."] {
+        let same = OutputFolder::new(path(below), std::slice::from_ref(&input));
+        let said = same.check(&["a.svg".into()]).unwrap_err().to_string();
+        assert!(said.contains("this run reads it"), "{said}");
+        same.check(&["b.svg".into()]).unwrap();
+    }
+    assert_eq!(names(&path("there")), ["a.svg"], "a check makes nothing");
+}
+
 #[cfg(unix)]
 mod unix {
     use std::os::unix::fs::{FileTypeExt, symlink};
@@ -164,6 +189,90 @@ mod unix {
             said.contains("there is no folder /no/such/folder"),
             "{said}"
         );
+    }
+
+    #[test]
+    fn a_link_to_a_folder_that_is_not_there_is_refused_before_the_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        for (link, target) in [("a", "new/"), ("b", "new/."), ("c", "a")] {
+            symlink(target, path(link)).unwrap();
+            let said = Destination::new(path(link), &[]).unwrap_err().to_string();
+            assert!(said.contains("a link to"), "{said}");
+            assert!(said.contains(path(link).to_str().unwrap()), "{said}");
+        }
+    }
+
+    #[test]
+    fn two_outputs_of_a_folder_that_lead_to_one_file_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::create_dir(path("data")).unwrap();
+        fs::write(path("data/there"), "old").unwrap();
+        symlink("data/there", path("results.json")).unwrap();
+        symlink("data/../data/there", path("report.html")).unwrap();
+        symlink("data/new", path("a.svg")).unwrap();
+        symlink(path("data/new"), path("b.svg")).unwrap();
+        symlink("c.svg", path("d.svg")).unwrap();
+        symlink("/dev/null", path("e.svg")).unwrap();
+        symlink("/dev/null", path("f.svg")).unwrap();
+        let out = OutputFolder::new(folder.path(), &[]);
+        for [one, other] in [
+            ["results.json", "report.html"],
+            ["a.svg", "b.svg"],
+            ["c.svg", "d.svg"],
+        ] {
+            let said = out.check(&[one.into(), other.into()]).unwrap_err();
+            let said = said.to_string();
+            for name in [one, other] {
+                assert!(said.contains(path(name).to_str().unwrap()), "{said}");
+            }
+        }
+        out.check(&["e.svg".into(), "f.svg".into()]).unwrap();
+        out.check(&["results.json".into(), "a.svg".into()]).unwrap();
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn an_open_file_without_a_name_is_written_on_and_its_former_name_left_alone() {
+        use std::io::{Read, Seek};
+        use std::os::fd::AsRawFd;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("gone.csv");
+        let mut open = fs::File::options();
+        let open = open.read(true).append(true).create_new(true);
+        let mut gone = open.open(&path).unwrap();
+        fs::remove_file(&path).unwrap();
+        let input = folder.path().join("gone.csv (deleted)");
+        fs::write(&input, "scene").unwrap();
+        let process = std::process::id();
+        let descriptor = format!("/proc/{process}/fd/{}", gone.as_raw_fd());
+        symlink(&descriptor, folder.path().join("link")).unwrap();
+        for path in [Path::new(&descriptor), &folder.path().join("link")] {
+            write(path, std::slice::from_ref(&input)).unwrap();
+        }
+        assert_eq!(fs::read(&input).unwrap(), b"scene");
+        let mut written = String::new();
+        gone.rewind().unwrap();
+        gone.read_to_string(&mut written).unwrap();
+        assert_eq!(written, "newnew");
+        // It may be what the run reads.
+        let said = write(Path::new(&descriptor), &[descriptor.clone().into()]);
+        let said = said.unwrap_err();
+        assert!(said.contains("this run reads it"), "{said}");
+    }
+
+    #[test]
+    fn a_named_pipe_that_the_run_reads_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        let made = Command::new("mkfifo").arg(&pipe).status();
+        if !made.is_ok_and(|status| status.success()) {
+            return;
+        }
+        let same = Destination::new(&pipe, std::slice::from_ref(&pipe));
+        let said = same.unwrap_err().to_string();
+        assert!(said.contains("this run reads it"), "{said}");
     }
 
     #[test]

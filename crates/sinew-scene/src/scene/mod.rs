@@ -180,6 +180,20 @@ impl Scene {
         files
     }
 
+    /// The files that a scene file is made from, as [`Scene::input_files`], as far as they can be
+    /// told of a scene with mistakes.
+    #[must_use]
+    pub fn input_files_of(path: &Path) -> Vec<PathBuf> {
+        let text = std::fs::read(path).unwrap_or_default();
+        let text = String::from_utf8_lossy(&text);
+        let (document, _) = DeTable::parse_recoverable(&text);
+        let mesh = document.get_ref().get("mesh");
+        let file = mesh.and_then(|mesh| mesh.get_ref().as_table()?.get("file")?.get_ref().as_str());
+        let source = SceneSource::new(path, "");
+        let mesh = file.map(|written| source.resolve(Path::new(written)));
+        std::iter::once(path.to_owned()).chain(mesh).collect()
+    }
+
     fn read(document: &Table<'_>) -> Result<Self, SceneError> {
         let title = document
             .optional("title", "a title in quotes", text)?

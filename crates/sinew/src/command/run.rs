@@ -1,6 +1,6 @@
 //! `sinew run`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use sinew_core::{Outcome, RunReport, simulate};
 use sinew_scene::output::{Delivery, Destination, Voice, complain};
@@ -21,9 +21,10 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scene = Scene::load(&arguments.scene)?;
-    let stem = arguments.scene.file_stem().unwrap_or_default();
-    let default = PathBuf::from(stem).with_extension("csv");
-    let path = arguments.probes.clone().unwrap_or(default);
+    let path = match &arguments.probes {
+        Some(path) => path.clone(),
+        None => default_probes(&arguments.scene),
+    };
     let destination = Destination::new(&path, &scene.input_files())?;
     let voice = Voice::beside(&destination);
 
@@ -74,6 +75,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         ))),
         Outcome::Finished | Outcome::Stopped => Ok(()),
     }
+}
+
+/// The scene's name with .csv for its extension, of which only the last is one.
+fn default_probes(scene: &Path) -> PathBuf {
+    let mut name = scene.file_stem().unwrap_or_default().to_owned();
+    name.push(".csv");
+    name.into()
 }
 
 fn summary(simulation: &Simulation, report: &RunReport) -> String {
