@@ -27,6 +27,9 @@ const FOR_QUARTERS: usize = 16;
 /// What one or two periods show of the growth of a squared error may be this much too little.
 const MARGIN: f64 = 1.5;
 
+/// The same where instants are too few for quarters, and often end within the first period.
+const MARGIN_OF_FEW: f64 = 4.0;
+
 impl ErrorHistory {
     /// No instants yet, of a system that something damps or nothing does.
     pub(crate) fn new(damped: bool) -> Self {
@@ -89,7 +92,12 @@ impl ErrorHistory {
         } else {
             0.0
         };
-        let later = MARGIN * observed.max(hidden);
+        let margin = if all.len() >= FOR_QUARTERS {
+            MARGIN
+        } else {
+            MARGIN_OF_FEW
+        };
+        let later = margin * observed.max(hidden);
         // Two motions of the same size that have nothing in common.
         let largest = mean(last, difference).max(2.0 * mean(last, reference));
         let later = (mean(last, difference) + later).min(largest);
