@@ -202,7 +202,7 @@ impl<P: Pilots> Search<P> {
         }
     }
 
-    /// All runs so far.
+    /// All runs so far that may be chosen.
     pub fn runs(&self) -> impl Iterator<Item = &Pilot> {
         self.trails.iter().flat_map(Trail::runs).chain(&self.others)
     }
