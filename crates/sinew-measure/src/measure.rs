@@ -133,7 +133,7 @@ pub fn measure(case: &mut Case, method: &Method, dt: f64, effort: Effort) -> Res
     let setup_cpu = thread_cpu_time() - before;
 
     let mut comparison = Comparison::new(&track, stride, &run);
-    comparison.history = (!case.is_whole()).then(ErrorHistory::default);
+    comparison.history = (!case.is_whole()).then(|| ErrorHistory::new(is_damped(system)));
     let mut state = start.clone();
     let report = simulate(system, &mut *integrator, &mut state, &run, &mut comparison)
         .map_err(|error| error.to_string())?;
@@ -196,6 +196,15 @@ pub fn measure(case: &mut Case, method: &Method, dt: f64, effort: Effort) -> Res
         facts,
         ..Row::default()
     })
+}
+
+/// Whether anything damps a system, or may.
+fn is_damped(system: &dyn System) -> bool {
+    let Some(linear) = system.as_linear() else {
+        return true;
+    };
+    let damping = linear.operators().damping();
+    damping.mass > 0.0 || damping.stiffness > 0.0 || damping.extra.is_some()
 }
 
 fn work(report: &RunReport, setup_factorizations: u64) -> Work {

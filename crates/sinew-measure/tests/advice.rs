@@ -8,7 +8,7 @@
 
 use std::path::PathBuf;
 
-use sinew_core::{Clock, LoadOverStep, Run, simulate};
+use sinew_core::{Clock, LoadOverStep, OptionValue, Options, Run, StableStep, simulate};
 use sinew_measure::search::Pilot;
 use sinew_measure::{
     Advice, AdviceError, Answer, Case, Effort, Method, Question, Row, Span, advise, measure,
@@ -46,7 +46,13 @@ fn small_cube() -> Simulation {
 
 /// A cube that is pressed, with whatever else stands at the end of its scene.
 fn pressed_cube(cells: usize, rest: &str) -> Simulation {
-    let text = format!(
+    let text = pressed_text(cells, rest);
+    let scene = Scene::parse(SceneSource::new("pressed.toml", text)).unwrap();
+    scene.build().unwrap()
+}
+
+fn pressed_text(cells: usize, rest: &str) -> String {
+    format!(
         "[mesh]
 cube = {{ cells = {cells}, edge = 0.1 }}
 [[region]]
@@ -62,9 +68,7 @@ group = \"top\"
 traction = [0.0, 0.0, -20.0]
 ramp = {{ kind = \"step\" }}
 {rest}"
-    );
-    let scene = Scene::parse(SceneSource::new("pressed.toml", text)).unwrap();
-    scene.build().unwrap()
+    )
 }
 
 /// It settles, and is pressed ten times as hard long after the pilots' time is up.
@@ -376,6 +380,96 @@ fn phase_errors_are_expected_to_grow_beyond_the_part_that_was_measured() {
             assert!(
                 expected >= truth && expected >= seen.error.unwrap(),
                 "{integrator} from {duration} s: {expected} expected, {truth} found"
+            );
+        }
+    }
+}
+
+#[test]
+fn an_unstable_run_is_shown_but_never_advised() {
+    let slowly_pressed = |dt: f64| {
+        let text = pressed_text(
+            4,
+            &format!(
+                "[run]\nduration = {:e}\nsamples = 100\nintegrator = \"central-difference\"\ndt = {dt:e}\n",
+                100.0 * dt
+            ),
+        );
+        let text = text.replace("kind = \"step\"", "kind = \"sin2\", rise = 50.0");
+        let scene = Scene::parse(SceneSource::new("slowly.toml", text)).unwrap();
+        scene.build().unwrap()
+    };
+    let method = Method::new("central-difference");
+    let limit = match method.stable_step(&slowly_pressed(1e-3)).unwrap() {
+        StableStep::UpTo(limit) => limit,
+        other => panic!("{other:?}"),
+    };
+    // Rounding grows too slowly to be seen by the end.
+    for (dt, advisable) in [(0.9999 * limit, true), (1.0001 * limit, false)] {
+        let advice = advise(slowly_pressed(dt), question(0.3)).unwrap();
+        let written = advice.written.unwrap();
+        assert!(written.row.sound_error().unwrap() < 0.3, "{written:?}");
+        let Answer::Met { cheapest, .. } = &advice.answer else {
+            panic!("{:?}", advice.answer);
+        };
+        let own = |pilot: &&Pilot| pilot.method == written.method;
+        let best = cheapest.iter().find(own).unwrap();
+        assert_eq!(best.row.dt == dt, advisable, "{best:?}");
+    }
+}
+
+#[test]
+fn a_method_that_cannot_tell_its_stable_step_is_not_trusted_beyond_what_was_followed() {
+    let text = std::fs::read_to_string(path("hard/critical-damping.toml")).unwrap();
+    let text = text.replace("cells = 10", "cells = 4");
+    let text = text.replace("duration = 1.0 ", "duration = 1000.0\nsamples = 100000 ");
+    let source = SceneSource::new(path("hard/critical-damping.toml"), text);
+    let scene = Scene::parse(source).unwrap().build().unwrap();
+    let advice = advise(scene, hasty(0.3)).unwrap();
+    assert!(!advice.covers_the_scene());
+    let refused = advice.refused.iter();
+    let mut reasons = refused.filter(|(method, _)| method.integrator == "forward-euler");
+    let (_, reason) = reasons.next().unwrap();
+    assert!(reason.contains("stable step is not known"), "{reason}");
+}
+
+/// A cube that nothing damps, for a hundred seconds.
+fn undamped_cube(run: &str) -> Simulation {
+    pressed_cube(
+        3,
+        &format!("[run]\nduration = 100.0\nsamples = 2500\n{run}\n"),
+    )
+}
+
+#[test]
+fn phase_errors_are_expected_behind_larger_errors_of_the_start() {
+    let undamped = || undamped_cube("integrator = \"rk4\"\ndt = 0.004");
+    let mut whole = Case::new("whole", undamped()).unwrap();
+    let propagator = |kind: &str, tolerance| Method {
+        integrator: "propagator".to_owned(),
+        options: Options::new()
+            .with("kind", OptionValue::Text(kind.to_owned()))
+            .with_number("tolerance", tolerance),
+    };
+    let methods = [
+        propagator("two-step", 1e-4),
+        propagator("two-step", 1e-6),
+        propagator("krylov", 1e-5),
+        Method::new("modified-leapfrog"),
+    ];
+    for method in methods {
+        let over = |case: &mut Case| measure(case, &method, 0.02, Effort::UNTIMED).unwrap();
+        let truth = over(&mut whole).error.unwrap();
+        for samples in [2, 3, 5, 10, 100] {
+            let duration = 0.04 * samples as f64;
+            let span = Span { duration, samples };
+            let mut part = Case::over("part", undamped(), span).unwrap();
+            let seen = over(&mut part);
+            let expected = seen.expected_error.unwrap();
+            assert!(
+                expected >= truth,
+                "{} from {duration} s: {expected} expected, {truth} found",
+                method.label()
             );
         }
     }

@@ -33,6 +33,10 @@ const RUNNERS_UP_WITHIN: f64 = 4.0;
 /// larger.
 const TOLD_APART: f64 = 100.0;
 
+/// Why a method is left out where not all of a scene is followed.
+const STABILITY_UNKNOWN: &str =
+    "its largest stable step is not known, and only a part of the scene was followed";
+
 /// What was found.
 #[derive(Clone, Debug)]
 pub struct Advice {
@@ -49,7 +53,7 @@ pub struct Advice {
     pub written: Result<Pilot, String>,
     /// The answer.
     pub answer: Answer,
-    /// Candidates that could not run, with the reason.
+    /// Candidates that could not run, or not be trusted beyond what was measured, with the reason.
     pub refused: Vec<(Method, String)>,
     /// Runs measured.
     pub pilots: usize,
@@ -154,7 +158,7 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
     let until = begun + Duration::from_secs_f64(question.pilot_seconds);
     let whole = Span::of(&simulation);
     let tolerances = [question.tolerance, question.tolerance / 10.0];
-    let (candidates, mut refused) = candidates(&simulation, &tolerances);
+    let (mut candidates, mut refused) = candidates(&simulation, &tolerances);
     let prepared = thread_cpu_time();
     let left = until.saturating_sub(prepared).as_secs_f64();
     let horizon = horizon(&simulation, FOR_THE_REFERENCE * left)?;
@@ -162,21 +166,32 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
     let unseen_changes = changes_after(&simulation, measured);
     let mut case = Case::at_pace(horizon.pace, "scene", simulation, measured)?;
     check_reference(&case, whole, question.tolerance)?;
+    if !case.is_whole() {
+        let unknown = candidates.extract_if(.., |candidate| !candidate.stable_step_is_known);
+        refused.extend(unknown.map(|candidate| (candidate.method, STABILITY_UNKNOWN.to_owned())));
+    }
 
     let own = OwnRun::of(&case);
     let own_s = own.least_cpu_s(&case);
     let pilots = CasePilots::new(&mut case).until(until);
     let mut search = Search::new(pilots, measured, whole.duration);
-    let written = if own_s <= search.left() / 2.0 {
+    let allowing = candidates
+        .iter()
+        .filter(|candidate| candidate.allows(own.dt));
+    let written = if own_s > search.left() / 2.0 {
+        Err("it would leave too little time for other pilots".to_owned())
+    } else if allowing
+        .clone()
+        .any(|candidate| candidate.method == own.method)
+    {
         search.include(&own.method, own.dt)
     } else {
-        Err("it would leave too little time for other pilots".to_owned())
+        // An unstable run may look sound for as long as it is followed.
+        search.show(&own.method, own.dt)
     };
     // A step that misses the instants wants a reference of its own, which this run has had made.
     let reference_is_there = written.is_ok() && own.misses_instants(measured);
-    let exact = candidates
-        .iter()
-        .filter(|candidate| candidate.order.is_none());
+    let exact = allowing.filter(|candidate| candidate.order.is_none());
     let exact: Vec<Method> = exact.map(|candidate| candidate.method.clone()).collect();
     candidates
         .into_iter()
@@ -189,13 +204,14 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
             }
         }
     });
-    let written = written.and_then(|()| {
+    let written = written.map(|shown| {
         let mut runs = search.runs();
-        let own = runs.find(|run| run.method == own.method && run.row.dt == own.dt);
-        own.cloned().ok_or_else(|| "it was not measured".to_owned())
+        // Its cost may have been measured again.
+        let again = runs.find(|run| run.method == own.method && run.row.dt == own.dt);
+        again.cloned().unwrap_or(shown)
     });
     let spent_s = (thread_cpu_time() - begun).as_secs_f64();
-    if search.runs().next().is_none() {
+    if search.count() == 0 {
         return Err(AdviceError::NoTime {
             given: question.pilot_seconds,
             spent: spent_s,

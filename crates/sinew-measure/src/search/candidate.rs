@@ -16,6 +16,8 @@ pub struct Candidate {
     /// The largest step (s) at which it is stable; infinite where it always is or cannot say, 0
     /// where it never is.
     pub stable_step: f64,
+    /// Whether it can say so.
+    pub stable_step_is_known: bool,
     /// The highest order it declares; none where it is exact at any step.
     pub order: Option<u8>,
     /// Whether its set-up factorises a matrix, which on a large mesh costs more than many runs.
@@ -38,6 +40,7 @@ impl Candidate {
             accuracy => accuracy.order(false).max(accuracy.order(true)),
         };
         Ok(Self {
+            stable_step_is_known: stable_step != StableStep::Unknown,
             stable_step: match stable_step {
                 StableStep::UpTo(limit) => limit,
                 StableStep::Any | StableStep::Unknown => f64::INFINITY,
@@ -46,5 +49,11 @@ impl Candidate {
             factorises: FACTORISING.contains(&method.integrator.as_str()),
             method,
         })
+    }
+
+    /// Whether a step (s) is no longer than the longest stable one.
+    pub(crate) fn allows(&self, dt: f64) -> bool {
+        // As much more as steps of a search may be.
+        dt <= self.stable_step * (1.0 + 1e-9)
     }
 }

@@ -147,18 +147,27 @@ impl<P: Pilots> Search<P> {
         }
     }
 
-    /// Measures one more run, of any step (s).
+    /// Measures one more run, of any stable step (s).
     ///
     /// # Errors
     /// A reason in words when the method cannot make it.
-    pub fn include(&mut self, method: &Method, dt: f64) -> Result<(), String> {
+    pub fn include(&mut self, method: &Method, dt: f64) -> Result<Pilot, String> {
+        let pilot = self.show(method, dt)?;
+        self.others.push(pilot.clone());
+        Ok(pilot)
+    }
+
+    /// Measures a run that must not be chosen, of any step (s).
+    ///
+    /// # Errors
+    /// As [`Search::include`].
+    pub fn show(&mut self, method: &Method, dt: f64) -> Result<Pilot, String> {
         let row = self.pilots.measure(method, dt, Effort::QUICK)?;
         self.count += 1;
-        self.others.push(Pilot {
+        Ok(Pilot {
             method: method.clone(),
             row,
-        });
-        Ok(())
+        })
     }
 
     /// Measures the cost of the cheapest runs for a goal again and longer, so that the choice
@@ -193,7 +202,7 @@ impl<P: Pilots> Search<P> {
         }
     }
 
-    /// All runs so far.
+    /// All runs so far that may be chosen.
     pub fn runs(&self) -> impl Iterator<Item = &Pilot> {
         self.trails.iter().flat_map(Trail::runs).chain(&self.others)
     }

@@ -100,6 +100,7 @@ impl Law {
         Candidate {
             method: Method::new(integrator),
             stable_step: self.stable,
+            stable_step_is_known: true,
             order: Some(self.order),
             factorises: false,
         }

@@ -247,7 +247,7 @@ fn provenance(advice: &Advice) -> String {
         lines.push(format!("the run as written was not measured: {reason}"));
     }
     for (method, reason) in &advice.refused {
-        lines.push(format!("cannot run here: {}: {reason}", method.label()));
+        lines.push(format!("left out: {}: {reason}", method.label()));
     }
     let what = match (advice.choice_cut_short, advice.others_cut_short) {
         (true, _) => Some("every candidate was followed, so that there may be something cheaper"),
