@@ -196,7 +196,7 @@ impl Method for Propagator {
         },
         OptionHelp {
             key: TOLERANCE,
-            help: "largest error of a step in the energy norm, relative to the distance from equilibrium (\"chebyshev\"); half the largest error of any mode's sin(omega dt/2), so of the phase, not of the step (\"two-step\"); estimated error of a step relative to its change (\"krylov\"); default 1e-10",
+            help: "largest error of a step in the energy norm, relative to the distance from equilibrium (\"chebyshev\"); two fifths of the largest error of any mode's sin(omega dt/2), so of the phase, not of the step (\"two-step\"); estimated error of a step relative to its change (\"krylov\"); default 1e-10",
             shown_default: None,
         },
         OptionHelp {
