@@ -19,6 +19,9 @@ const POINTS_PER_DEGREE: usize = 32;
 /// Share of the largest value that a peak has at one of these points: cos(pi/64), rounded down.
 const SEEN_OF_A_PEAK: f64 = 0.99;
 
+/// Least by which sin(w dt/2) is kept below 1: rounding of it.
+const LEAST_ROOM: f64 = 1e-13;
+
 /// Most by which sin(w dt/2) is kept below 1.
 const MOST_ROOM: f64 = 0.25;
 
@@ -30,7 +33,7 @@ const MOST_ROOM: f64 = 0.25;
 /// `eta = alpha dt/2`.
 ///
 /// Only `S = sin(w dt/2)/(w/2)` is replaced by a polynomial. With its square in G,
-/// `lambda G = (1 - e^-eta)^2 + e^-eta w^2 S^2` cannot fall below 0; S is scaled, by less than 3/2 of the
+/// `lambda G = (1 - e^-eta)^2 + e^-eta w^2 S^2` cannot fall below 0; S is scaled, by less than 5/4 of the
 /// tolerance, so that `|w S|` stays a little below 2 between its zeros too, since a mode at 2 itself grows
 /// as the number of steps; and eta is taken from `sinh(eta/2) = alpha S(0)/4`, by which lambda divides G
 /// whatever S is. Every mode is then stable at any step and for any tolerance, which a polynomial for G
@@ -102,11 +105,13 @@ impl TwoStep {
         let left_out: Vec<f64> = tails(&s).into_iter().map(|tail| scale * tail).collect();
         let degree = resolution.degree_for(&left_out, dt, |degree| left_out[degree])?;
         s.truncate(degree + 1);
-        let room = 1.0 - (0.5 * left_out[degree]).min(MOST_ROOM);
-        let overshoot = largest_swing(&s, interval, alpha) / 2.0 / room;
-        if overshoot > 1.0 {
-            s.iter_mut()
-                .for_each(|coefficient| *coefficient /= overshoot);
+        let swing = largest_swing(&s, interval, alpha) / 2.0;
+        // The first step is off by left_out, and a mode this near to 1 turns that into amplitude by the
+        // root of the room.
+        let room = (0.1 * (swing - 1.0)).max(2.0 * left_out[degree].powi(2) + LEAST_ROOM);
+        let scale = swing / (1.0 - room.min(MOST_ROOM));
+        if scale > 1.0 {
+            s.iter_mut().for_each(|coefficient| *coefficient /= scale);
         }
 
         let sine_error = largest_error(&s, interval, alpha, dt);
