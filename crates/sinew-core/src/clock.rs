@@ -12,6 +12,9 @@ pub struct Clock {
 }
 
 impl Clock {
+    /// Share of a time by which multiples of a step may miss the instant they stand for: rounding.
+    pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
     /// The time `t` (s), before any step.
     #[must_use]
     pub fn at(t: f64) -> Self {

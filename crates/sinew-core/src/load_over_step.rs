@@ -1,6 +1,6 @@
 //! What loads must be over each step of methods that integrate them exactly.
 
-use crate::Ramp;
+use crate::{Clock, Ramp};
 
 /// What a load must be over each step for a method to take it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,9 +17,6 @@ pub enum LoadOverStep {
 
 /// Share of a step by which a jump or kink may miss the instant between two steps.
 const MISS: f64 = 1e-9;
-
-/// Rounding of a time, relative to it.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Shortest step that is proposed, relative to the time that is covered.
 const SHORTEST: f64 = 1e-7;
@@ -43,7 +40,7 @@ impl LoadOverStep {
         if self == Self::Any {
             return None;
         }
-        let margin = MISS * dt + ROUNDING * from.abs().max(to.abs());
+        let margin = MISS * dt + Clock::ROUNDING * from.abs().max(to.abs());
         let fits = |start: f64, end: f64| match self {
             Self::Any | Self::Smooth => true,
             Self::Linear => ramp.is_linear_between(start, end),

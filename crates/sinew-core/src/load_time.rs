@@ -1,11 +1,7 @@
 //! When, and over how long a time, a step takes its loads.
 
-use crate::Ramp;
 use crate::gauss::gauss_points;
-
-/// Breakpoints nearer to the end of a window than this share of its times count as that end: such
-/// times are multiples of a step, rounded.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+use crate::{Clock, Ramp};
 
 /// Windows in a rise of a squared sine from which on it counts as smooth at both ends.
 const LONG_RISE: f64 = 2.0;
@@ -200,7 +196,7 @@ impl Ramp {
         if let Self::Sin2 { rise } = self {
             return *rise >= LONG_RISE * length || to <= 0.0 || from >= *rise;
         }
-        let slack = ROUNDING * from.abs().max(to.abs());
+        let slack = Clock::ROUNDING * from.abs().max(to.abs());
         self.breakpoint_between(from + slack, to - slack).is_none()
     }
 

@@ -92,7 +92,7 @@ impl<'a> Ledger<'a> {
         let energy = if self.form == Form::Physical {
             let moved = state.u.iter().zip(&before.u);
             let [start, end] =
-                [0.0, 1.0].map(|share| self.external_force(LoadTime::within(t, dt, share)));
+                LoadTime::at_both_ends(t, dt, 0.5).map(|when| self.external_force(when));
             let loads = start.iter().zip(&end);
             let work = moved
                 .zip(loads)

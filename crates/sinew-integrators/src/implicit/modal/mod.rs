@@ -9,9 +9,9 @@ mod search;
 mod small;
 
 use sinew_core::{
-    Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, LinearOperators, LinearSystem,
-    LoadOverStep, Needs, OptionError, Options, OtherDamping, Prepared, Properties, Ramp, Revision,
-    SetupError, StableStep, State, StepError, StepReport, System,
+    Accuracy, ChangingLoads, Clock, EnergyBehaviour, Fact, Integrator, LinearOperators,
+    LinearSystem, LoadOverStep, Needs, OptionError, Options, OtherDamping, Prepared, Properties,
+    Ramp, Revision, SetupError, StableStep, State, StepError, StepReport, System,
 };
 
 use self::basis::{Basis, Choice, Failure, LoadCase};
@@ -79,10 +79,6 @@ const LOST_BY_CHOICE: f64 = 0.1;
 
 /// Share of a state that is taken for rounding.
 const ROUNDING: f64 = 1e-6;
-
-/// Breakpoints nearer to an end of a step than this share of the time count as that end: steps are
-/// rounded so.
-const SNAP: f64 = 4.0 * f64::EPSILON;
 
 impl Modal {
     /// As many modes as the tolerance needs; see the type.
@@ -430,7 +426,7 @@ impl Integrator for Modal {
         work += self.project(system, state)?;
         let t = state.t();
         let (next, mut start) = (t + dt, t);
-        let margin = SNAP * t.abs().max(next.abs());
+        let margin = Clock::ROUNDING * t.abs().max(next.abs());
         let first = self.breakpoints.partition_point(|t| *t <= start + margin);
         for at in first..self.breakpoints.len() {
             let end = self.breakpoints[at];
