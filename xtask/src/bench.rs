@@ -11,9 +11,9 @@ use sinew_bench::{Bench, machine, revision};
 use crate::beside::{self, Program};
 use crate::failure::Failure;
 use crate::progress::Bar;
-use crate::root;
+use crate::repository::root;
 
-/// What is measured unless other scenes are named.
+/// The scenes that are measured unless others are named.
 const DEFAULT_SCENES: [&str; 4] = [
     "paper-oscillator.toml",
     "paper-cube.toml",
@@ -21,7 +21,7 @@ const DEFAULT_SCENES: [&str; 4] = [
     "peers-cube.toml",
 ];
 
-/// What to measure and where to write it.
+/// Scenes, integrators and steps to measure, and the folder for the results.
 #[derive(clap::Args, Default)]
 pub(crate) struct Arguments {
     /// A scene file; may be given several times [default: the paper's two scenes, a lightly damped cube and the peers' cube]
@@ -33,15 +33,15 @@ pub(crate) struct Arguments {
     /// A step in seconds; may be given several times [default: the scene's and fractions of it]
     #[arg(long = "dt", value_name = "S")]
     steps: Vec<f64>,
-    /// Fewer steps and repeats: does everything run?
+    /// Fewer steps and repeats, to see whether everything runs
     #[arg(long)]
     quick: bool,
     /// The folder for results.json, report.html and the plots, checked before anything is measured
     /// [default: target/bench, target/bench-hard]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// The hard cases under scenes/hard instead: what fails where, stability maps, and pass marks; exits
-    /// with 1 when a mark is not passed
+    /// Measure the hard cases under scenes/hard instead: failures, stability maps and pass marks; exits
+    /// with 1 if a mark is not passed
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "beside"])]
     hard: bool,
     /// Run another program on the peers' cube in turn with our cheapest methods and print the ratios
@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     conclude(&results, &folder)
 }
 
-/// The hard cases.
+/// Measures the hard cases.
 fn run_hard(arguments: &Arguments) -> Result<(), Failure> {
     let bench = HardBench {
         scenes: root().join("scenes"),
@@ -100,7 +100,7 @@ fn folder(arguments: &Arguments, default: &str, inputs: &[PathBuf]) -> OutputFol
     OutputFolder::new(out, inputs)
 }
 
-/// Everything is written before a failed mark or something missing fails the command.
+/// Writes everything, then fails if a mark is not passed or something is missing.
 fn conclude(results: &BenchResults, folder: &OutputFolder) -> Result<(), Failure> {
     write(results, folder)?;
     let failures: Vec<String> = [failed_marks(results), missing(results)]
@@ -114,7 +114,7 @@ fn conclude(results: &BenchResults, folder: &OutputFolder) -> Result<(), Failure
     }
 }
 
-/// The marks that are not passed, where there are any.
+/// A list of the marks that are not passed, if there are any.
 fn failed_marks(results: &BenchResults) -> Option<String> {
     let failed: Vec<String> = results
         .failed_marks()
@@ -124,7 +124,7 @@ fn failed_marks(results: &BenchResults) -> Option<String> {
     (count > 0).then(|| format!("{count} marks not passed: {list}"))
 }
 
-/// What is missing from the results, where anything is.
+/// A list of what is missing from the results, if anything is.
 fn missing(results: &BenchResults) -> Option<String> {
     let missing = results.all_missing();
     let list: Vec<String> = missing.iter().map(ToString::to_string).collect();
@@ -149,7 +149,7 @@ fn write(results: &BenchResults, folder: &OutputFolder) -> Result<(), Failure> {
 
 #[cfg(test)]
 mod tests {
-    use sinew_bench::hard::{Mark, MarkVerdict};
+    use sinew_bench::results::{Mark, MarkVerdict};
     use sinew_measure::CaseInfo;
 
     use super::*;

@@ -6,11 +6,11 @@ use sinew_bench::results::BenchResults;
 use sinew_measure::Row;
 
 use crate::failure::Failure;
-use crate::root;
+use crate::repository::root;
 
 /// The case that the README shows.
 const CASE: &str = "paper-cube";
-/// Steps (ms) of its table.
+/// Steps in the README's table (ms).
 const STEPS: [f64; 2] = [20.0, 20.0 / 3.0];
 /// A stability map of the hard cases that the README shows.
 const MAP: &str = "map-poisson.svg";
@@ -66,7 +66,7 @@ pub(crate) fn run() -> Result<(), Failure> {
         ),
         (root().join("docs").join(MAP), map),
     ];
-    // All are looked at before one is written.
+    // All paths are checked before one is written.
     let outputs = outputs.into_iter().map(|(path, text)| {
         let destination = Destination::new(path, &inputs)?;
         Ok((destination, text))

@@ -1,4 +1,4 @@
-//! How a chore fails.
+//! Failures of a chore and their exit codes.
 
 use std::process::ExitCode;
 
@@ -7,7 +7,7 @@ use sinew_bench::output::{OutputError, complain};
 /// A chore that did not succeed.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// What the user gave cannot be used: exit code 2.
+    /// The user's input cannot be used: exit code 2.
     Input(String),
     /// The chore itself failed: exit code 1.
     Chore(String),
@@ -24,17 +24,17 @@ impl From<OutputError> for Failure {
 }
 
 impl Failure {
-    /// Of something the user gave.
+    /// A failure due to the user's input.
     pub(crate) fn input(error: impl ToString) -> Self {
         Self::Input(error.to_string())
     }
 
-    /// Of the chore itself.
+    /// A failure of the chore itself.
     pub(crate) fn chore(error: impl ToString) -> Self {
         Self::Chore(error.to_string())
     }
 
-    /// Says so on standard error.
+    /// Reports the failure on standard error and returns its exit code.
     pub(crate) fn report(self) -> ExitCode {
         let (message, code) = match self {
             Self::Input(message) => (message, 2),

@@ -1,16 +1,18 @@
-//! Repository chores: `cargo xtask bench | reproduce | meshes | docs | ci`.
+//! Repository chores: `cargo xtask bench | reproduce | meshes | compare | docs | rules | ci`.
 
 mod bench;
 mod beside;
 mod ci;
+mod compare;
 mod docs;
 mod failure;
 mod meshes;
 mod progress;
+mod python;
+mod repository;
 mod reproduce;
 mod rules;
 
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -29,10 +31,14 @@ enum Chore {
     Bench(bench::Arguments),
     /// Draw the paper's figures and check its claims one by one.
     Reproduce(reproduce::Arguments),
-    /// Write the meshes of the repository anew.
+    /// Write the repository's structured meshes again.
     Meshes,
+    /// Let meshio and pyvista read what sinew-mesh writes; pip installs both into target/.
+    Compare,
     /// Bring the README's table and pictures up to the last bench and the last hard bench.
     Docs,
+    /// Check the rules of ARCHITECTURE.md that a machine can check; part of `ci`.
+    Rules,
     /// Everything that must hold before a change lands.
     Ci,
 }
@@ -42,17 +48,13 @@ fn main() -> ExitCode {
         Chore::Bench(arguments) => bench::run(&arguments),
         Chore::Reproduce(arguments) => reproduce::run(&arguments),
         Chore::Meshes => meshes::run(),
+        Chore::Compare => compare::run(),
         Chore::Docs => docs::run(),
+        Chore::Rules => ci::check_rules(),
         Chore::Ci => ci::run(),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }
-}
-
-/// The root of the repository.
-fn root() -> PathBuf {
-    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
-    manifest.parent().unwrap_or(manifest).to_owned()
 }

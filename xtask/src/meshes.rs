@@ -6,18 +6,18 @@ use sinew_mesh::structured::{Split, cube};
 use sinew_mesh::{TetMesh, write_msh41_ascii};
 
 use crate::failure::Failure;
-use crate::root;
+use crate::repository::root;
 
-/// Cells a side of the paper's cube: 1331 nodes, 6000 tetrahedra.
+/// Cells along an edge of the paper's cube: 1331 nodes, 6000 tetrahedra.
 const PAPER_CELLS: usize = 10;
-/// Edge (m). The paper gives none; at 0.2 m its three claims hold (see ARCHITECTURE.md).
+/// Edge of the paper's cube (m). The paper gives none; at 0.2 m its three claims hold (see ARCHITECTURE.md).
 const PAPER_EDGE: f64 = 0.2;
 
-/// Cells a side and edge (m) of the cube with a sliver.
+/// The cube with a sliver: cells along an edge, edge (m).
 const SLIVER_CUBE: (usize, f64) = (5, 0.1);
-/// How many times thinner the sliver is.
+/// Ratios of an ordinary element's thickness to the sliver's.
 const THINNESS: [u32; 3] = [20, 100, 1000];
-/// Cells a side, of which in the core, and edge (m) of the cube with an inclusion.
+/// The cube with an inclusion: cells along an edge, how many of them in the core, edge (m).
 const INCLUSION_CUBE: (usize, usize, f64) = (6, 2, 0.1);
 
 pub(crate) fn run() -> Result<(), Failure> {

@@ -1,4 +1,4 @@
-//! A progress bar on a terminal, nothing elsewhere.
+//! A progress bar, shown on terminals only.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use sinew_bench::Progress;

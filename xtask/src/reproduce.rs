@@ -8,12 +8,12 @@ use sinew_bench::scene_files;
 use sinew_measure::Case;
 
 use crate::failure::Failure;
-use crate::root;
+use crate::repository::root;
 
-/// Where to write.
+/// The folder for the results.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Where the figures and the table go [default: target/reproduce]
+    /// The folder for the figures and the table [default: target/reproduce]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }

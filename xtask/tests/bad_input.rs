@@ -41,7 +41,7 @@ $Elements
 $EndElements
 ";
 
-/// What the command says of a scene, having written nothing.
+/// The command's message about a scene. Nothing is written.
 fn refusal(scene: &str, more: &[&str]) -> String {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("scene.toml");
@@ -298,4 +298,16 @@ fn another_program_needs_python_and_takes_no_scene() {
     assert!(beside(&["matlab"]).contains("possible values: scipy"));
     let said = beside(&["scipy", "--integrator", "cn"]);
     assert!(said.contains("unknown integrator `cn`"), "{said}");
+}
+
+#[test]
+fn a_comparison_needs_python() {
+    let nothing = tempfile::tempdir().unwrap();
+    let mut command = Command::cargo_bin("xtask").unwrap();
+    let output = command.arg("compare").env("PATH", nothing.path()).output();
+    let output = output.unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("compare needs Python 3"), "{said}");
+    assert_eq!(output.stdout, b"");
 }

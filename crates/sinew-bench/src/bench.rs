@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sinew_core::{Accuracy, OptionError, OptionValue, StableStep};
+use sinew_core::{Accuracy, OptionError, StableStep};
 
 use sinew_measure::{
-    Case, CaseError, Effort, Method, ThreadError, mark_pareto, measure, on_one_thread,
+    Case, CaseError, Effort, MethodChoice, ThreadError, mark_pareto, measure, on_one_thread,
 };
 
 use sinew_scene::Scene;
@@ -15,7 +15,7 @@ use sinew_scene::Scene;
 use crate::report::file_names;
 use crate::results::{BenchResults, Machine, Missing, Skipped};
 
-/// What to measure.
+/// Scenes, integrators and steps to measure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bench {
     /// Scene files, each of which is measured once.
@@ -24,7 +24,7 @@ pub struct Bench {
     pub integrators: Vec<String>,
     /// Steps (s); empty for [`default_steps`] of each scene.
     pub steps: Vec<f64>,
-    /// Fewer steps and repeats.
+    /// Whether to make fewer steps and repeats.
     pub quick: bool,
 }
 
@@ -35,13 +35,13 @@ pub enum BenchError {
     /// An integrator that does not exist.
     #[error(transparent)]
     Integrator(#[from] OptionError),
-    /// A step that is no time.
+    /// A step that is not positive and finite.
     #[error("--dt {0}: expected a finite step above 0 s")]
     Step(f64),
-    /// Every scene.
+    /// No scene could be measured.
     #[error("{}", in_one_line(.0))]
     Cases(Vec<CaseError>),
-    /// No thread to measure on.
+    /// There is no thread to measure on.
     #[error(transparent)]
     Thread(#[from] ThreadError),
 }
@@ -51,7 +51,7 @@ fn in_one_line(errors: &[CaseError]) -> String {
     errors.join("; ")
 }
 
-/// How far a bench has come.
+/// Progress of a bench.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress {
     /// A scene is read and its reference solved.
@@ -65,7 +65,7 @@ pub enum Progress {
         done: usize,
         /// Runs in all.
         of: usize,
-        /// What runs now.
+        /// The run, in words.
         what: String,
     },
 }
@@ -126,7 +126,7 @@ impl Bench {
         if cases.is_empty() && !errors.is_empty() {
             return Err(BenchError::Cases(errors));
         }
-        let mut plan: Vec<(usize, Method, f64)> = Vec::new();
+        let mut plan: Vec<(usize, MethodChoice, f64)> = Vec::new();
         for (index, case) in cases.iter().enumerate() {
             let steps = self.steps_of(case);
             let mut info = case.info();
@@ -159,11 +159,11 @@ impl Bench {
             });
             match measure(case, method, dt, effort) {
                 Ok(row) => results.rows.push(row),
-                Err(reason) => results.skipped.push(Skipped {
+                Err(error) => results.skipped.push(Skipped {
                     case: case.id().to_owned(),
                     integrator: method.label(),
                     dt,
-                    reason,
+                    reason: error.to_string(),
                 }),
             }
         }
@@ -266,32 +266,15 @@ fn load(id: String, scene: &Path) -> Result<Case, CaseError> {
     Case::new(id, Scene::load(scene)?.build()?)
 }
 
-/// A method as it runs on a case, and its kinds that lead somewhere else on the front.
-fn variants(case: &Case, integrator: &str) -> Vec<Method> {
-    let plain = Method::on(case, integrator);
-    let text = |text: &str| OptionValue::Text(text.to_owned());
-    let with = |key: &str, value: OptionValue| {
-        let mut method = plain.clone();
-        method.options = method.options.with(key, value);
-        method
-    };
-    let chebyshev = |sweeps: f64| {
-        let entries = [
-            ("kind".to_owned(), text("chebyshev")),
-            ("sweeps".to_owned(), OptionValue::Number(sweeps)),
-        ];
-        OptionValue::Table(entries.into())
-    };
-    let mut variants = match integrator {
-        "cnn-stabilised" => vec![with("inner", chebyshev(4.0)), with("inner", chebyshev(8.0))],
-        "propagator" => {
-            let two_step = with("kind", text("two-step"));
-            let mut loose = two_step.clone();
-            loose.options = loose.options.with_number("tolerance", 1e-3);
-            vec![two_step, loose, with("kind", text("krylov"))]
-        }
-        _ => Vec::new(),
-    };
+/// A method as it runs on a case, and the variants that lead elsewhere on the front.
+fn variants(case: &Case, integrator: &str) -> Vec<MethodChoice> {
+    let plain = MethodChoice::on(case, integrator);
+    let entry = sinew_integrators::entry(integrator);
+    let options = entry.map_or_else(Vec::new, |entry| (entry.variants)());
+    let variants = options
+        .iter()
+        .map(|options| plain.clone().with_options(options));
+    let mut variants: Vec<MethodChoice> = variants.collect();
     variants.retain(|variant| *variant != plain);
     variants.insert(0, plain);
     variants
@@ -302,7 +285,7 @@ fn variants(case: &Case, integrator: &str) -> Vec<Method> {
 const STEPS_OF_EXACT_METHODS: usize = 4;
 
 /// Whether the error of a method does not depend on the step.
-fn is_exact(method: &Method) -> bool {
+fn is_exact(method: &MethodChoice) -> bool {
     sinew_integrators::build(&method.integrator, &method.options)
         .is_ok_and(|integrator| integrator.properties().accuracy == Accuracy::Exact)
 }

@@ -1,7 +1,7 @@
 //! Cases x integrators x steps: error, cost and stability verdicts, as JSON, tables, SVG and HTML.
 //!
 //! [`Bench`] goes through all combinations, measuring each as [`sinew_measure`] does; [`report`] shows
-//! the [`results`]; [`beside`] sets our costs against another program's.
+//! the [`results`]; [`mod@beside`] compares our costs with another program's.
 
 mod bench;
 pub mod beside;

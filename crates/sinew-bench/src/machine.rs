@@ -1,4 +1,4 @@
-//! What ran where.
+//! The machine and the revision of a bench.
 
 use std::path::Path;
 use std::process::Command;

@@ -7,13 +7,15 @@
 use serde::{Deserialize, Serialize};
 use sinew_measure::{CaseInfo, Row};
 
-use crate::hard::{Mark, MarkVerdict, StabilityMap};
-
 mod json;
+mod mark;
 mod missing;
+mod stability_map;
 
 pub use json::ResultsError;
+pub use mark::{Mark, MarkVerdict};
 pub use missing::Missing;
+pub use stability_map::{MapPanel, MapRun, StabilityMap};
 
 /// Version of the format this crate writes and reads.
 pub const SCHEMA: u32 = 1;
@@ -25,10 +27,10 @@ pub struct BenchResults {
     pub schema: u32,
     /// Revision of the source that ran.
     pub revision: String,
-    /// When it ran, as the caller wishes to write it.
+    /// Date of the run, as the caller wishes to write it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
-    /// Where it ran.
+    /// The machine that it ran on.
     pub machine: Machine,
     /// The cases, in the order of the report.
     pub cases: Vec<CaseInfo>,
@@ -122,9 +124,38 @@ impl BenchResults {
         ids
     }
 
-    /// What is known of a case.
+    /// The description of a case.
     #[must_use]
     pub fn case(&self, id: &str) -> Option<&CaseInfo> {
         self.cases.iter().find(|case| case.id == id)
+    }
+}
+
+impl BenchResults {
+    /// The missing things: those found as the bench ran, and every number that cannot
+    /// be shown.
+    #[must_use]
+    pub fn all_missing(&self) -> Vec<Missing> {
+        let mut all = self.missing.clone();
+        let of_cases = self.cases.iter().flat_map(|case| {
+            let gaps = case.gaps().into_iter();
+            gaps.map(|gap| Missing::number(&case.id, None, gap))
+        });
+        let of_rows = self.rows.iter().flat_map(|row| {
+            let name = format!("{}, dt = {} s", row.label(), row.dt);
+            let gaps = row.gaps().into_iter();
+            gaps.map(move |gap| Missing::number(&row.case, Some(name.clone()), gap))
+        });
+        for missing in of_cases.chain(of_rows) {
+            // Numbers that were missing when the results were written are told once.
+            let known = |other: &Missing| {
+                (&other.scene, &other.row, &other.field)
+                    == (&missing.scene, &missing.row, &missing.field)
+            };
+            if !all.iter().any(known) {
+                all.push(missing);
+            }
+        }
+        all
     }
 }

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use sinew_bench::results::{BenchResults, Machine};
-use sinew_bench::{Bench, default_steps};
-use sinew_measure::{Outcome, Row, Verdict};
+use sinew_bench::{Bench, Progress, default_steps};
+use sinew_measure::{Row, RowOutcome, RowVerdict};
 
 fn scene(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -54,7 +54,7 @@ fn the_papers_network_at_20_ms_is_bounded_wrong_and_never_settles() {
     close(row.max_u.unwrap(), 0.160, 5e-3);
     close(row.late_amplitude.unwrap(), 0.080, 5e-3);
     assert!(row.bounded && !row.settles && row.guarded);
-    assert_eq!(row.verdict(), Verdict::Guarded);
+    assert_eq!(row.verdict(), RowVerdict::Guarded);
     assert_eq!(
         (row.steps, row.work.sweeps, row.sweeps_per_s),
         (50, 50, 50.0)
@@ -65,10 +65,14 @@ fn the_papers_network_at_20_ms_is_bounded_wrong_and_never_settles() {
 #[test]
 fn forward_euler_at_20_ms_diverges_and_the_bench_goes_on() {
     let row = row("forward-euler", 0.02);
-    assert_eq!(row.outcome, Outcome::Diverged);
+    assert_eq!(row.outcome, RowOutcome::Diverged);
     assert_eq!(row.error, None);
     assert!(!row.bounded && !row.settles);
     assert!(row.diverged_at_s.unwrap() < 0.5);
+    let rows = &cube().rows;
+    let at = rows.iter().position(|other| other == row).unwrap();
+    let later = &rows[at + 1..];
+    assert!(later.iter().any(|row| row.outcome == RowOutcome::Finished));
     assert_eq!(cube().skipped, []);
 }
 
@@ -142,7 +146,14 @@ fn what_cannot_be_asked_is_refused_before_anything_runs() {
             steps: vec![dt],
             quick: true,
         };
-        let outcome = bench.run("test".into(), Machine::default(), |_| {});
+        let mut begun = Vec::new();
+        let outcome = bench.run("test".into(), Machine::default(), |progress| {
+            begun.push(progress);
+        });
+        let runs = begun
+            .iter()
+            .filter(|progress| matches!(progress, Progress::Run { .. }));
+        assert_eq!(runs.count(), 0, "{begun:?}");
         outcome.unwrap_err().to_string()
     };
     let paper = || scene("paper-oscillator.toml");

@@ -63,11 +63,16 @@ fn every_figure_and_every_claim() {
 
 #[test]
 fn cases_of_the_wrong_kind_are_refused() {
-    let mut first = case("paper-oscillator.toml");
-    let mut second = case("paper-oscillator.toml");
-    let error = reproduce(&mut first, &mut second).unwrap_err();
+    let mut oscillator = case("paper-oscillator.toml");
+    let mut cube = case("paper-cube.toml");
+    let error = reproduce(&mut oscillator, &mut case("paper-oscillator.toml")).unwrap_err();
     assert_eq!(
         error.to_string(),
         "paper-oscillator: expected the paper's cube, a body"
+    );
+    let error = reproduce(&mut cube, &mut case("paper-cube.toml")).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "paper-cube: expected the paper's oscillator, one degree of freedom"
     );
 }

@@ -11,7 +11,7 @@ use sinew_bench::{
     report::{Axis, Plot, Series, Style, Surface, markdown, terminal, write_all},
     results::{BenchResults, Machine, Skipped},
 };
-use sinew_measure::{CaseInfo, Outcome, Row, Verdict, Work, mark_pareto};
+use sinew_measure::{CaseInfo, Row, RowOutcome, RowVerdict, Work, mark_pareto};
 
 const DOFS: usize = 2673;
 /// CPU seconds of a sweep over the cube, and of a solve with its factorised matrix.
@@ -24,7 +24,7 @@ fn options(value: &Value) -> BTreeMap<String, Value> {
 }
 
 /// One method on the cube at 1, 2, 5, 10 and 20 ms.
-struct Method {
+struct MethodChoice {
     id: &'static str,
     options: Value,
     /// Sweeps and solves of a step.
@@ -39,8 +39,8 @@ const DTS: [f64; 5] = [0.001, 0.002, 0.005, 0.01, 0.02];
 const NEVER: [f64; 5] = [0.0; 5];
 const DIVERGED: f64 = f64::INFINITY;
 
-fn methods() -> Vec<Method> {
-    let method = |id, options, work, errors, saturated| Method {
+fn methods() -> Vec<MethodChoice> {
+    let method = |id, options, work, errors, saturated| MethodChoice {
         id,
         options,
         work,
@@ -168,9 +168,9 @@ fn cube_rows(case: &str, harder: f64) -> Vec<Row> {
                 steps: if diverged { 17 } else { steps as u64 },
                 sweeps_per_s: method.work.0 / dt,
                 outcome: if diverged {
-                    Outcome::Diverged
+                    RowOutcome::Diverged
                 } else {
-                    Outcome::Finished
+                    RowOutcome::Finished
                 },
                 diverged_at_s: diverged.then_some(17.0 * dt),
                 bounded: error < 200.0,
@@ -389,7 +389,7 @@ fn the_front_holds_only_good_runs() {
         assert!(row.error.unwrap() < 1.0);
         assert!(!matches!(
             row.verdict(),
-            Verdict::Diverged | Verdict::Unbounded
+            RowVerdict::Diverged | RowVerdict::Unbounded
         ));
     }
 }
@@ -418,7 +418,7 @@ fn displacement_over_time() {
 }
 
 #[test]
-fn a_deformed_cube() {
+fn every_triangle_of_a_deformed_cube_is_drawn() {
     let n = 10_u32;
     let edge = 0.2;
     let (mut points, mut triangles) = (Vec::new(), Vec::new());
@@ -458,7 +458,12 @@ fn a_deformed_cube() {
     );
     surface.outline = Some([[0.0; 3], [edge; 3]]);
     fs::create_dir_all(directory()).unwrap();
-    fs::write(directory().join("../cube.svg"), surface.svg()).unwrap();
+    // A facet is what has an edge of half a pixel.
+    let facets = |svg: &str| svg.matches("stroke-width=\"0.5\"").count();
+    let svg = surface.svg();
+    assert_eq!(facets(&svg), triangles.len());
+    assert!(svg.contains("displacement |u| [mm]") && !svg.contains("NaN"));
+    fs::write(directory().join("../cube.svg"), svg).unwrap();
 
     let wild: Vec<[f64; 3]> = points
         .iter()
@@ -470,5 +475,8 @@ fn a_deformed_cube() {
         .collect();
     surface.points = &wild;
     surface.title = "The same, paper's CNN Q=4 (same colours)".into();
-    fs::write(directory().join("../wild.svg"), surface.svg()).unwrap();
+    let svg = surface.svg();
+    assert_eq!(facets(&svg), triangles.len());
+    assert!(!svg.contains("NaN"));
+    fs::write(directory().join("../wild.svg"), svg).unwrap();
 }

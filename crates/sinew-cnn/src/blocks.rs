@@ -2,12 +2,12 @@
 
 use sinew_core::{BlockMatrix, Layers};
 
-/// Pivots below this share of the largest entry count as zero: the cell feels nothing that way.
+/// Share of the largest entry below which a pivot counts as zero: the cell feels nothing that way.
 const NEGLIGIBLE: f64 = 1e-12;
 
 /// Symmetric blocks on the diagonal, one for each cell, each `layers` x `layers`, row-major.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct CellBlocks {
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CellBlocks {
     layers: usize,
     entries: Vec<f64>,
 }
@@ -59,15 +59,31 @@ impl CellBlocks {
         }
     }
 
+    /// `x = blocks x` for the cells from `first` on.
+    pub fn multiply_in_place(&self, first: usize, x: &mut [f64]) {
+        let from = first * self.layers * self.layers;
+        match self.layers {
+            1 => multiply_in_place::<1>(&self.entries[from..], x),
+            _ => multiply_in_place::<3>(&self.entries[from..], x),
+        }
+    }
+
+    /// Degrees of freedom of a cell: rows of a block.
+    #[must_use]
+    pub fn layers(&self) -> usize {
+        self.layers
+    }
+
+    /// The entries of all blocks, cell by cell, each row by row.
+    #[must_use]
+    pub fn entries(&self) -> &[f64] {
+        &self.entries
+    }
+
     /// Replaces the block of a cell by the first entries of `block`.
     pub(crate) fn set(&mut self, cell: usize, block: &[f64]) {
         let len = self.layers * self.layers;
         self.entries[cell * len..(cell + 1) * len].copy_from_slice(&block[..len]);
-    }
-
-    /// Entries of all blocks together.
-    pub(crate) fn len(&self) -> usize {
-        self.entries.len()
     }
 
     /// The block of a cell.
@@ -82,6 +98,16 @@ fn multiply<const L: usize>(entries: &[f64], x: &[f64], out: &mut [f64]) {
     for (block, (out, x)) in entries.chunks_exact(L * L).zip(rows) {
         for (row, out) in block.chunks_exact(L).zip(out) {
             *out = row.iter().zip(x).map(|(entry, x)| entry * x).sum();
+        }
+    }
+}
+
+fn multiply_in_place<const L: usize>(entries: &[f64], x: &mut [f64]) {
+    let (cells, _) = x.as_chunks_mut::<L>();
+    for (block, x) in entries.chunks_exact(L * L).zip(cells) {
+        let before = *x;
+        for (row, out) in block.chunks_exact(L).zip(x) {
+            *out = row.iter().zip(&before).map(|(entry, x)| entry * x).sum();
         }
     }
 }

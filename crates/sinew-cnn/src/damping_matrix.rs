@@ -2,7 +2,7 @@
 
 use sinew_core::{BlockMatrix, LinearOperators};
 
-/// D = alpha M + beta K + extra as one matrix, made anew.
+/// D = alpha M + beta K + extra as one matrix, computed on each call.
 pub(crate) fn damping_matrix(operators: &LinearOperators) -> BlockMatrix {
     let damping = operators.damping();
     let mut whole = stiffness_and_dashpots(operators, damping.stiffness, 1.0);
@@ -18,7 +18,7 @@ pub(crate) fn damping_matrix(operators: &LinearOperators) -> BlockMatrix {
     whole
 }
 
-/// `of_stiffness K + of_dashpots extra` as one matrix, made anew.
+/// `of_stiffness K + of_dashpots extra` as one matrix, computed on each call.
 pub(crate) fn stiffness_and_dashpots(
     operators: &LinearOperators,
     of_stiffness: f64,

@@ -22,13 +22,26 @@
 //! ```
 
 mod blocks;
+pub mod conformance;
 mod damping_matrix;
+mod gauss_seidel;
+mod machine;
 mod majorant;
+mod power_iteration;
+mod program;
 mod saturation;
 mod stabiliser;
 mod templates;
 
+pub use blocks::CellBlocks;
+pub use gauss_seidel::GaussSeidel;
+pub use machine::{Machine, ReferenceMachine};
 pub use majorant::{Blend, DampingShare, GammaRule, Majorant};
+pub use power_iteration::largest_eigenvalue;
+pub use program::{
+    Clamp, Forces, LoadAt, Loads, Moments, OwnTerm, Physics, Product, Program, Quotient, Register,
+    Sweep, Term, Traffic, Update, Weight, When,
+};
 pub use saturation::{Saturation, SaturationError};
-pub use stabiliser::{Inner, Stabiliser};
+pub use stabiliser::{Inner, Solution, Stabiliser};
 pub use templates::{TemplateError, Templates};

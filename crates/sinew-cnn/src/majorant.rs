@@ -1,4 +1,6 @@
-//! A block-diagonal matrix that lies above what a large step needs.
+//! A block-diagonal matrix that bounds from above the matrix that a large step needs.
+
+use std::sync::Arc;
 
 use sinew_core::spectrum::{critical_step, largest_eigenvalue, largest_eigenvalue_of_pencil};
 use sinew_core::{BlockMatrix, LinearOperators};
@@ -6,14 +8,14 @@ use sinew_core::{BlockMatrix, LinearOperators};
 use crate::blocks::{CellBlocks, largest_eigenvalue_of_block};
 use crate::damping_matrix::stiffness_and_dashpots;
 
-/// By how much a factor found by iteration, which comes from below, is raised.
+/// Margin added to an eigenvalue that an iteration approaches from below.
 const MARGIN: f64 = 1e-3;
 
 /// Share of the limit up to which nothing is added to M.
 const FREE: f64 = 0.99;
 
-/// How the factor gamma in `W <= gamma blockdiag(W)` is found, W being the weighted sum of K and
-/// dashpots that is added to M.
+/// Rule by which the factor gamma in `W <= gamma blockdiag(W)` is found, W being the weighted sum of K
+/// and dashpots that is added to M.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GammaRule {
     /// The largest eigenvalue of `blockdiag(W)^-1 W` by iteration, with a margin.
@@ -23,25 +25,25 @@ pub enum GammaRule {
     Gershgorin,
 }
 
-/// How much of `dt^2/4 K` is added to M.
+/// Share of `dt^2/4 K` that is added to M.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Blend {
-    /// As much as the step needs: nothing below .99 of central difference's limit.
+    /// As much as the step needs: none below .99 of central difference's limit.
     #[default]
     Auto,
     /// s = 1 at every step.
     Full,
 }
 
-/// How much of `dt/2 D'` is added to M, D' being the damping other than alpha M.
+/// Share of `dt/2 D'` that is added to M, D' being the damping other than alpha M.
 ///
 /// The force `F - K u - D' v` is taken with the velocity half a step behind the displacement; the
 /// share of `dt/2 D'` in P brings that share of the damping to the middle of the step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DampingShare {
-    /// s, as of `dt^2/4 K`. The rest lags by half a step as it does in central difference.
+    /// The share s, as of `dt^2/4 K`. The rest lags by half a step as it does in central difference.
     AsStiffness,
-    /// All of it, at every step.
+    /// The whole, at every step.
     Whole,
 }
 
@@ -53,7 +55,7 @@ pub enum DampingShare {
 /// suffices up to mu = 1, the limit of central difference; P1 is then M'. Beyond,
 ///
 /// * [`DampingShare::AsStiffness`]: `W = s G`, `s = 1 - .99^2/mu`, since `(1 - s) G <= .99^2 M`;
-/// * [`DampingShare::Whole`]: `W = dt/2 D' + s dt^2/4 K` with mu that of `dt^2/4 K` alone, which is
+/// * [`DampingShare::Whole`]: `W = dt/2 D' + s dt^2/4 K` with mu of `M^-1 dt^2/4 K` alone, which is
 ///   `(dt omega_max/2)^2`.
 #[derive(Clone, Debug)]
 pub struct Majorant {
@@ -63,12 +65,12 @@ pub struct Majorant {
     damping_share: f64,
     mass_suffices: bool,
     gamma: f64,
-    inverse: CellBlocks,
+    inverse: Arc<CellBlocks>,
     floor: f64,
 }
 
 impl Majorant {
-    /// For these matrices and a step of `dt` (s).
+    /// The majorant for these matrices and a step of `dt` (s).
     #[must_use]
     pub fn new(
         operators: &LinearOperators,
@@ -93,8 +95,7 @@ impl Majorant {
             DampingShare::Whole => 1.0,
         };
         let (mass, layers) = (operators.mass(), operators.stiffness().layers());
-        let of_mass = CellBlocks::of_mass(layers, mass, 1.0);
-        let mut blocks = of_mass.clone();
+        let mut blocks = CellBlocks::of_mass(layers, mass, 1.0);
         let mass_damping = CellBlocks::of_mass(layers, mass, operators.damping().mass);
         blocks.add(&mass_damping, dt / 2.0);
         let mut majorant = Self {
@@ -104,14 +105,14 @@ impl Majorant {
             damping_share,
             mass_suffices,
             gamma: 0.0,
-            inverse: CellBlocks::of_mass(layers, mass, 0.0),
+            inverse: Arc::default(),
             floor: 1.0,
         };
         if !mass_suffices {
             majorant.gamma = majorant.add_majorant_of_w(rule, &mut blocks);
         }
-        majorant.inverse = blocks.inverse();
-        majorant.floor = blunted(smallest_ratio(&of_mass, &blocks, layers.count()));
+        majorant.inverse = Arc::new(blocks.inverse());
+        majorant.floor = blunted(smallest_ratio(mass, &blocks, layers.count()));
         majorant
     }
 
@@ -129,7 +130,13 @@ impl Majorant {
         };
         let mut diagonal = CellBlocks::of_mass(matrix.layers(), operators.mass(), 0.0);
         diagonal.add_diagonal(matrix, 1.0);
-        let gamma = gamma(rule, matrix, &diagonal);
+        let gamma = match rule {
+            GammaRule::Power if operators.damping().extra.is_none() => {
+                let found = |_: &LinearOperators| GammaOfStiffness(gamma(rule, matrix, &diagonal));
+                operators.derived(found).0
+            }
+            _ => gamma(rule, matrix, &diagonal),
+        };
         blocks.add(&diagonal, weight * gamma);
         gamma
     }
@@ -176,13 +183,24 @@ impl Majorant {
         self.operators.dofs()
     }
 
-    /// `out = P1^-1 x`.
-    pub fn apply_inverse(&self, x: &[f64], out: &mut [f64]) {
-        self.inverse.multiply(x, out);
+    /// P1^-1.
+    #[must_use]
+    pub fn inverse(&self) -> &Arc<CellBlocks> {
+        &self.inverse
+    }
+
+    /// A as weights of the mass, of K and, where there are any, of the dashpots.
+    pub(crate) fn weights_of_target(&self) -> (f64, f64, Option<f64>) {
+        let damping = self.operators.damping();
+        (
+            1.0 + self.dt / 2.0 * damping.mass,
+            self.stiffness_weight(),
+            damping.extra.as_ref().map(|_| self.dashpot_weight()),
+        )
     }
 
     /// `out -= A x`: one sweep.
-    pub fn subtract_target(&self, x: &[f64], out: &mut [f64]) {
+    pub(crate) fn subtract_target(&self, x: &[f64], out: &mut [f64]) {
         let damping = self.operators.damping();
         let of_mass = 1.0 + self.dt / 2.0 * damping.mass;
         let masses = out.iter_mut().zip(self.operators.mass());
@@ -198,7 +216,7 @@ impl Majorant {
         }
     }
 
-    /// `out = (dt/2 D + dt^2/4 K) x`: what P must exceed.
+    /// `out = (dt/2 D + dt^2/4 K) x`: the matrix that P must exceed.
     pub fn multiply_required(&self, x: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         let damping = self.operators.damping();
@@ -286,6 +304,9 @@ fn with_damping(operators: &LinearOperators, undamped: f64, dt: f64) -> f64 {
     2.0 / largest.max(0.0).sqrt()
 }
 
+/// Gamma of K by iteration, which does not depend on the step.
+struct GammaOfStiffness(f64);
+
 fn gamma(rule: GammaRule, matrix: &BlockMatrix, diagonal: &CellBlocks) -> f64 {
     let inverse = diagonal.inverse();
     match rule {
@@ -337,16 +358,19 @@ fn gershgorin(matrix: &BlockMatrix, inverse: &CellBlocks) -> f64 {
     largest
 }
 
-/// The smallest eigenvalue of `P1^-1 M` over all cells: the inverse of the largest of `M^-1 P1`,
-/// where M is a multiple of the identity on each cell or, with unequal masses, bounded by them.
-fn smallest_ratio(mass: &CellBlocks, blocks: &CellBlocks, layers: usize) -> f64 {
-    let cells = mass.len() / (layers * layers);
-    (0..cells)
-        .map(|cell| {
-            let smallest_mass = (0..layers)
-                .map(|layer| mass.of_cell(cell)[layer * (layers + 1)])
-                .fold(f64::INFINITY, f64::min);
-            smallest_mass / largest_eigenvalue_of_block(blocks.of_cell(cell))
-        })
-        .fold(1.0, f64::min)
+/// The smallest eigenvalue of `P1^-1 M` over all cells: the inverse of the largest of
+/// `M^-1/2 P1 M^-1/2`.
+fn smallest_ratio(mass: &[f64], blocks: &CellBlocks, layers: usize) -> f64 {
+    let of_cell = |(cell, mass): (usize, &[f64])| {
+        let mut scaled = [0.0; 9];
+        let entries = blocks.of_cell(cell);
+        let scaled = &mut scaled[..entries.len()];
+        for (index, (scaled, entry)) in scaled.iter_mut().zip(entries).enumerate() {
+            let (row, column) = (index / layers, index % layers);
+            *scaled = entry / (mass[row] * mass[column]).sqrt();
+        }
+        1.0 / largest_eigenvalue_of_block(scaled)
+    };
+    let cells = mass.chunks_exact(layers).enumerate();
+    cells.map(of_cell).fold(1.0, f64::min)
 }

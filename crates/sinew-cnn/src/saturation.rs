@@ -9,16 +9,26 @@ pub struct Saturation {
     voltage: f64,
 }
 
-/// Why a saturation voltage makes no sense.
+/// The paper's saturation, 4 m/s.
+impl Default for Saturation {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
+
+/// Error of a saturation voltage that is not above 0.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("saturation voltage Q = {0} m/s: expected a number above 0")]
 pub struct SaturationError(f64);
 
 impl Saturation {
-    /// Never saturates.
+    /// A saturation that never sets in.
     pub const OFF: Self = Self {
         voltage: f64::INFINITY,
     };
+
+    /// The paper's voltage, 4 m/s.
+    pub const PAPER: Self = Self { voltage: 4.0 };
 
     /// Saturates at Q = `voltage` (m/s).
     ///
@@ -34,7 +44,7 @@ impl Saturation {
 
     /// Q (m/s); infinite when it never saturates.
     #[must_use]
-    pub fn voltage(self) -> f64 {
+    pub const fn voltage(self) -> f64 {
         self.voltage
     }
 

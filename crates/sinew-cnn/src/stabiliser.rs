@@ -1,13 +1,17 @@
 //! The matrix P that takes the place of M, and its inverse by sweeps of the network.
 
-use sinew_core::LinearOperators;
+use std::sync::Arc;
+
 use sinew_core::spectrum::largest_eigenvalue_of_pencil;
+use sinew_core::{Batch, Inputs, LinearModel, LinearOperators, State, VelocityTime};
 
-use crate::blocks::CellBlocks;
+use crate::gauss_seidel::GaussSeidel;
 use crate::majorant::{Blend, DampingShare, GammaRule, Majorant};
+use crate::program::{Forces, Product, Program, Quotient, Register, Sweep, Update};
+use crate::{Machine, ReferenceMachine};
 
-/// How P is built from a [`Majorant`] P1 and its A. All start cold: truncated iterations that start
-/// from the last step's result are not a fixed P, and blow up.
+/// Ways in which P is built from a [`Majorant`] P1 and its A. All start cold: truncated iterations that
+/// start from the last step's result are not a fixed P, and blow up.
 ///
 /// One iteration leaves no room for the whole damping, which would add `gamma blockdiag` of it to the
 /// inertia: it takes [`DampingShare::AsStiffness`]. More iterations take [`DampingShare::Whole`], so
@@ -19,7 +23,7 @@ use crate::majorant::{Blend, DampingShare, GammaRule, Majorant};
 /// iterations about blocks would move the slowest modes by more than that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Inner {
-    /// P = P1: one block per cell, no sweep beside the step's own.
+    /// P = P1: one block per cell, no sweep besides the step's own.
     #[default]
     Block,
     /// Block Jacobi iterations; the first needs no sweep.
@@ -59,10 +63,12 @@ impl Inner {
     pub fn sweeps(self) -> u64 {
         match self {
             Self::Block => 0,
-            Self::Jacobi { sweeps } | Self::Chebyshev { sweeps } => u64::from(sweeps) - 1,
+            Self::Jacobi { sweeps } | Self::Chebyshev { sweeps } => {
+                u64::from(sweeps).saturating_sub(1)
+            }
             // Each goes once forward over the lower half and once back over the upper, and all but
             // the first need the residual.
-            Self::GaussSeidel { sweeps } => 2 * u64::from(sweeps) - 1,
+            Self::GaussSeidel { sweeps } => (2 * u64::from(sweeps)).saturating_sub(1),
         }
     }
 }
@@ -70,20 +76,27 @@ impl Inner {
 /// A symmetric positive definite P, above A or above M' where M' suffices, and its inverse.
 ///
 /// With `P > dt/2 D + dt^2/4 K` the leapfrog step `P (v+ - v-) = dt (F - K u - D v-)`, `u += dt v+`
-/// never gains energy, whatever the step (see [`Stabiliser::certificate`]).
+/// never gains energy, at any step (see [`Stabiliser::certificate`]).
 #[derive(Clone, Debug)]
 pub struct Stabiliser {
     majorant: Majorant,
     inner: Inner,
-    /// Inverse diagonal blocks of A, for Gauss-Seidel.
-    pivots: Option<CellBlocks>,
-    residual: Vec<f64>,
-    correction: Vec<f64>,
-    direction: Vec<f64>,
+}
+
+/// Iterations by which a solution begins and goes on.
+enum Iteration {
+    /// No sweep beyond the first.
+    Single,
+    /// `P_p = A (I - (I - P1^-1 A)^p)^-1`, above A for every p where P1 is above A.
+    Jacobi(u64),
+    /// Chebyshev iteration (Saad, Iterative Methods for Sparse Linear Systems, algorithm 12.1) on
+    /// [floor, 1], which holds the spectrum of `P1^-1 A`. The residual polynomial is at most
+    /// `eps = 1/T_p((1 + a)/(1 - a))`; dividing by 1 + eps keeps P above A.
+    Chebyshev(u64),
 }
 
 impl Stabiliser {
-    /// For these matrices and a step of `dt` (s).
+    /// The stabiliser for these matrices and a step of `dt` (s).
     #[must_use]
     pub fn new(
         operators: &LinearOperators,
@@ -92,27 +105,9 @@ impl Stabiliser {
         blend: Blend,
         inner: Inner,
     ) -> Self {
-        let majorant = Majorant::new(operators, dt, rule, blend, inner.damping_share());
-        let n = operators.dofs();
-        let pivots = matches!(inner, Inner::GaussSeidel { .. }).then(|| {
-            let layers = operators.stiffness().layers();
-            let mut diagonal = CellBlocks::of_mass(layers, operators.mass(), 0.0);
-            for cell in 0..operators.stiffness().pattern().cells() {
-                majorant.target_row(cell, |column, block| {
-                    if column == cell {
-                        diagonal.set(cell, block);
-                    }
-                });
-            }
-            diagonal.inverse()
-        });
         Self {
-            majorant,
+            majorant: Majorant::new(operators, dt, rule, blend, inner.damping_share()),
             inner,
-            pivots,
-            residual: vec![0.0; n],
-            correction: vec![0.0; n],
-            direction: vec![0.0; n],
         }
     }
 
@@ -122,17 +117,80 @@ impl Stabiliser {
         &self.majorant
     }
 
-    /// `out = P^-1 r`. Allocates nothing.
-    pub fn solve(&mut self, r: &[f64], out: &mut [f64]) {
-        if self.majorant.mass_suffices() {
-            return self.jacobi(r, out, self.inner.sweeps() + 1);
-        }
-        match self.inner {
-            Inner::Block => self.majorant.apply_inverse(r, out),
-            Inner::Jacobi { sweeps } => self.jacobi(r, out, u64::from(sweeps)),
-            Inner::Chebyshev { sweeps } => self.chebyshev(r, out, sweeps),
-            Inner::GaussSeidel { sweeps } => self.gauss_seidel(r, out, sweeps),
-        }
+    /// Sweeps after which each cell knows `P^-1 r`, r being rho of the sweep `right_side`; `None` where
+    /// no program can express it, since cells would have to go one after the other.
+    pub fn sweeps(&self, program: &mut Program, right_side: Sweep) -> Option<Solution> {
+        let iteration = match self.inner {
+            _ if self.majorant.mass_suffices() => Iteration::Jacobi(self.inner.sweeps() + 1),
+            Inner::Block => Iteration::Single,
+            Inner::Jacobi { sweeps } => Iteration::Jacobi(sweeps.into()),
+            Inner::Chebyshev { sweeps } => Iteration::Chebyshev(sweeps.into()),
+            Inner::GaussSeidel { .. } => return None,
+        };
+        program.blocks = Some(Arc::clone(self.majorant.inverse()));
+        Some(match iteration {
+            Iteration::Single | Iteration::Jacobi(1) => Solution::single(right_side),
+            Iteration::Jacobi(count) => {
+                let [r, x] = ["r", "x"].map(|name| program.named(name));
+                let mut sweeps = first_of_many(right_side, r);
+                sweeps.push(of_register(r).then(x.becomes_q()));
+                sweeps.extend((2..count).map(|_| self.residual(r, x).then(x.plus_q(1.0))));
+                sweeps.push(self.residual(r, x));
+                Solution {
+                    sweeps,
+                    terms: vec![(x, 1.0)],
+                    of_q: 1.0,
+                }
+            }
+            Iteration::Chebyshev(count) => {
+                let a = self.majorant.floor();
+                let (centre, radius) = ((1.0 + a) / 2.0, (1.0 - a) / 2.0);
+                if radius <= f64::EPSILON {
+                    return Some(Solution::single(right_side));
+                }
+                let [r, x, direction] = ["r", "x", "d"].map(|name| program.named(name));
+                let sigma = centre / radius;
+                let mut rho = 1.0 / sigma;
+                let mut sweeps = first_of_many(right_side, r);
+                sweeps.push(of_register(r));
+                // The next direction and the next x, which a sweep that follows needs.
+                let mut turn = direction.becomes([]).and_q(1.0 / centre);
+                let mut moved = x.becomes([(direction, 1.0)]);
+                let mut terms = Vec::new();
+                for _ in 1..count {
+                    extend_last(&mut sweeps, [turn, moved]);
+                    let next = 1.0 / (2.0 * sigma - rho);
+                    let kept = next * rho;
+                    sweeps.push(self.residual(r, x));
+                    turn = direction
+                        .becomes([(direction, kept)])
+                        .and_q(2.0 * next / radius);
+                    moved = x.plus(1.0, direction);
+                    terms = vec![(x, 1.0), (direction, kept)];
+                    rho = next;
+                }
+                let epsilon = 1.0 / (count as f64 * sigma.acosh()).cosh();
+                let of_q = turn.of_q;
+                Solution {
+                    sweeps,
+                    terms,
+                    of_q,
+                }
+                .scaled(1.0 / (1.0 + epsilon))
+            }
+        })
+    }
+
+    /// `q = P1^-1 (r - A x)`.
+    fn residual(&self, r: Register, x: Register) -> Sweep {
+        let (of_mass, of_stiffness, of_dashpots) = self.majorant.weights_of_target();
+        let product = |factor| Product { factor, source: x };
+        let mut sweep = of_register(r).with_own(x, 0.0, -of_mass);
+        sweep.forces = Forces::Products {
+            stiffness: Some(product(of_stiffness)),
+            dashpots: of_dashpots.map(product),
+        };
+        sweep
     }
 
     /// The largest eigenvalue of `P^-1 (dt/2 D + dt^2/4 K)`. Below 1 it proves that no motion of
@@ -140,116 +198,123 @@ impl Stabiliser {
     /// `E = v'(P - dt/2 D - dt^2/4 K) v/2 + u' K u/2` falls by `dt v' D v` in each step.
     #[must_use]
     pub fn certificate(&self) -> f64 {
-        let (majorant, mut solver) = (&self.majorant, self.clone());
+        let mut solver = Solver::new(self);
         largest_eigenvalue_of_pencil(
-            majorant.dofs(),
-            |x, out| majorant.multiply_required(x, out),
+            self.majorant.dofs(),
+            |x, out| self.majorant.multiply_required(x, out),
             |x, out| solver.solve(x, out),
         )
     }
 
-    /// `P_p = A (I - (I - P1^-1 A)^p)^-1`, above A for every p where P1 is above A.
-    fn jacobi(&mut self, r: &[f64], out: &mut [f64], sweeps: u64) {
-        self.majorant.apply_inverse(r, out);
-        for _ in 1..sweeps {
-            self.residual.copy_from_slice(r);
-            self.majorant.subtract_target(out, &mut self.residual);
-            self.majorant
-                .apply_inverse(&self.residual, &mut self.correction);
-            for (out, correction) in out.iter_mut().zip(&self.correction) {
-                *out += correction;
-            }
-        }
+    /// `out = P^-1 r`, with room of its own on each call.
+    pub fn solve(&self, r: &[f64], out: &mut [f64]) {
+        Solver::new(self).solve(r, out);
     }
 
-    /// Chebyshev iteration (Saad, Iterative Methods for Sparse Linear Systems, algorithm 12.1) on
-    /// [floor, 1], which holds the spectrum of `P1^-1 A`. The residual polynomial is at most
-    /// `eps = 1/T_p((1 + a)/(1 - a))`; dividing by 1 + eps keeps P above A.
-    fn chebyshev(&mut self, r: &[f64], out: &mut [f64], sweeps: u32) {
-        let a = self.majorant.floor();
-        let (centre, radius) = ((1.0 + a) / 2.0, (1.0 - a) / 2.0);
-        if radius <= f64::EPSILON {
-            return self.majorant.apply_inverse(r, out);
-        }
-        let sigma = centre / radius;
-        let mut rho = 1.0 / sigma;
-        self.majorant.apply_inverse(r, &mut self.direction);
-        for (out, direction) in out.iter_mut().zip(&mut self.direction) {
-            *direction /= centre;
-            *out = *direction;
-        }
-        for _ in 1..sweeps {
-            self.residual.copy_from_slice(r);
-            self.majorant.subtract_target(out, &mut self.residual);
-            self.majorant
-                .apply_inverse(&self.residual, &mut self.correction);
-            let next = 1.0 / (2.0 * sigma - rho);
-            let (keep, add) = (next * rho, 2.0 * next / radius);
-            let updates = out.iter_mut().zip(&mut self.direction);
-            for ((out, direction), correction) in updates.zip(&self.correction) {
-                *direction = keep * *direction + add * correction;
-                *out += *direction;
+    /// The iteration in the order of the cells, where that is the inner one.
+    #[must_use]
+    pub fn gauss_seidel(&self) -> Option<GaussSeidel> {
+        match self.inner {
+            Inner::GaussSeidel { sweeps } if !self.majorant.mass_suffices() => {
+                Some(GaussSeidel::new(&self.majorant, sweeps))
             }
-            rho = next;
-        }
-        let epsilon = 1.0 / (f64::from(sweeps) * sigma.acosh()).cosh();
-        for out in out {
-            *out /= 1.0 + epsilon;
-        }
-    }
-
-    /// `P = (D + L) D^-1 (D + L')` of `A = L + D + L'`, which is `A + L D^-1 L'`, repeated.
-    fn gauss_seidel(&mut self, r: &[f64], out: &mut [f64], sweeps: u32) {
-        let Some(pivots) = &self.pivots else {
-            return self.majorant.apply_inverse(r, out);
-        };
-        out.fill(0.0);
-        for sweep in 0..sweeps {
-            self.residual.copy_from_slice(r);
-            if sweep > 0 {
-                self.majorant.subtract_target(out, &mut self.residual);
-            }
-            symmetric_sweep(&self.majorant, pivots, &self.residual, &mut self.correction);
-            for (out, correction) in out.iter_mut().zip(&self.correction) {
-                *out += correction;
-            }
+            _ => None,
         }
     }
 }
 
-/// `x = (D + L')^-1 D (D + L)^-1 r`.
-fn symmetric_sweep(majorant: &Majorant, pivots: &CellBlocks, r: &[f64], x: &mut [f64]) {
-    let layers = majorant.operators().stiffness().layers().count();
-    let cells = majorant.operators().stiffness().pattern().cells();
-    x.fill(0.0);
-    // Forward with what stands left of the diagonal; x holds (D + L)^-1 r afterwards. Back with
-    // what stands right of it: x_i -= D_ii^-1 sum_j>i A_ij x_j.
-    for forward in [true, false] {
-        for step in 0..cells {
-            let cell = if forward { step } else { cells - 1 - step };
-            let at = cell * layers;
-            let mut sum = [0.0; 3];
-            if forward {
-                sum[..layers].copy_from_slice(&r[at..at + layers]);
-            }
-            majorant.target_row(cell, |column, block| {
-                let wanted = if forward {
-                    column < cell
-                } else {
-                    column > cell
-                };
-                if wanted {
-                    for i in 0..layers {
-                        for j in 0..layers {
-                            sum[i] -= block[i * layers + j] * x[column * layers + j];
-                        }
-                    }
-                }
-            });
-            let pivot = pivots.of_cell(cell);
-            for i in 0..layers {
-                for j in 0..layers {
-                    x[at + i] += pivot[i * layers + j] * sum[j];
+/// `P^-1 r` as a sum of registers after some sweeps.
+pub struct Solution {
+    sweeps: Vec<Sweep>,
+    terms: Vec<(Register, f64)>,
+    /// Weight of the last sweep's q.
+    of_q: f64,
+}
+
+impl Solution {
+    fn single(right_side: Sweep) -> Self {
+        Self {
+            sweeps: vec![right_side.over(Quotient::Blocks)],
+            terms: Vec::new(),
+            of_q: 1.0,
+        }
+    }
+
+    fn scaled(mut self, by: f64) -> Self {
+        self.terms.iter_mut().for_each(|(_, weight)| *weight *= by);
+        self.of_q *= by;
+        self
+    }
+
+    /// An update that adds the solution times `weight` to the terms it has; its target is none of the
+    /// registers that hold the solution.
+    #[must_use]
+    pub fn added_to(&self, update: Update, weight: f64) -> Update {
+        let terms = self.terms.iter();
+        let sum = terms.fold(update, |sum, (register, of)| {
+            sum.and(weight * of, *register)
+        });
+        sum.and_q(weight * self.of_q)
+    }
+
+    /// The sweeps, the last of them with these updates.
+    #[must_use]
+    pub fn then<const N: usize>(mut self, updates: [Update; N]) -> Vec<Sweep> {
+        extend_last(&mut self.sweeps, updates);
+        self.sweeps
+    }
+}
+
+fn extend_last<const N: usize>(sweeps: &mut [Sweep], updates: [Update; N]) {
+    if let Some(last) = sweeps.last_mut() {
+        last.updates.extend(updates);
+    }
+}
+
+/// The sweep that keeps its rho in `r`.
+fn first_of_many(right_side: Sweep, r: Register) -> Vec<Sweep> {
+    vec![right_side.over(Quotient::Plain).then(r.becomes_q())]
+}
+
+/// `q = P1^-1 r`.
+fn of_register(r: Register) -> Sweep {
+    Sweep::local().with_own(r, 1.0, 0.0).over(Quotient::Blocks)
+}
+
+/// `P^-1` by itself.
+enum Solver {
+    Program(Box<(ReferenceMachine, LinearModel, State)>),
+    GaussSeidel(GaussSeidel),
+}
+
+impl Solver {
+    fn new(stabiliser: &Stabiliser) -> Self {
+        if let Some(gauss_seidel) = stabiliser.gauss_seidel() {
+            return Self::GaussSeidel(gauss_seidel);
+        }
+        let mut program = Program::new(VelocityTime::Same);
+        let right_side = Sweep::local().with_own(Register::U, 1.0, 0.0);
+        if let Some(solution) = stabiliser.sweeps(&mut program, right_side) {
+            let out = solution.added_to(Register::V.becomes([]), 1.0);
+            program.step = solution.then([out]);
+        }
+        let system = LinearModel::new(stabiliser.majorant.operators().clone());
+        let mut machine = ReferenceMachine::default();
+        machine.load(Arc::new(program), &system);
+        let state = State::at_rest(stabiliser.majorant.dofs());
+        Self::Program(Box::new((machine, system, state)))
+    }
+
+    fn solve(&mut self, r: &[f64], out: &mut [f64]) {
+        match self {
+            Self::GaussSeidel(gauss_seidel) => gauss_seidel.solve(r, out),
+            Self::Program(parts) => {
+                let (machine, system, state) = parts.as_mut();
+                state.u.copy_from_slice(r);
+                let mut batch = Batch::new(system, Inputs::none(), 1.0, 1);
+                // Matrices refuse nothing.
+                if machine.run(&mut batch, state).is_ok() {
+                    out.copy_from_slice(&state.v);
                 }
             }
         }

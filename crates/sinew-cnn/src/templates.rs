@@ -4,7 +4,7 @@ use sinew_core::{BlockMatrix, Layers, LinearOperators, LinearSystem, LoadTime};
 
 use crate::damping_matrix::damping_matrix;
 
-/// Why a system has no templates.
+/// Reasons for which a system has no templates.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TemplateError {
@@ -21,7 +21,7 @@ pub enum TemplateError {
 /// A = -M^-1 K, C = M^-1 D and B = M^-1 of a linear system (paper, Eq. 7).
 ///
 /// They are kept in factored form: the symmetric matrices M, D and K, shared with the system, so
-/// that a network costs no memory beside it, proportional damping needs no template C, and a
+/// that a network costs no memory of its own, proportional damping needs no template C, and a
 /// sweep gives the same bits as the system's own force divided by the mass.
 #[derive(Clone, Debug)]
 pub struct Templates {
@@ -63,7 +63,7 @@ impl Templates {
         self.operators.stiffness().pattern().neighbours(cell)
     }
 
-    /// The feedback template A (1/s^2), made anew for those who want to see it.
+    /// The feedback template A (1/s^2), computed on each call.
     #[must_use]
     pub fn feedback(&self) -> BlockMatrix {
         let mut feedback = BlockMatrix::clone(self.operators.stiffness());
@@ -77,7 +77,7 @@ impl Templates {
         feedback
     }
 
-    /// The template C (1/s) of the damping, made anew.
+    /// The template C (1/s) of the damping, computed on each call.
     #[must_use]
     pub fn damping(&self) -> BlockMatrix {
         let mut template = damping_matrix(&self.operators);
@@ -85,7 +85,7 @@ impl Templates {
         template
     }
 
-    /// The control template B (1/kg), one entry for each degree of freedom, made anew.
+    /// The control template B (1/kg), one entry for each degree of freedom, computed on each call.
     #[must_use]
     pub fn control(&self) -> Vec<f64> {
         self.operators
@@ -98,7 +98,7 @@ impl Templates {
     /// `out = A y - C x + B F` (m/s^2) for every cell: one sweep of the network, under the loads of
     /// an instant (s) or as a step takes them. `y` is the output (displacement (m)), `x` the state
     /// (velocity (m/s)).
-    pub fn sweep(&self, when: impl Into<LoadTime>, y: &[f64], x: &[f64], out: &mut [f64]) {
+    pub fn sweep<'a>(&self, when: impl Into<LoadTime<'a>>, y: &[f64], x: &[f64], out: &mut [f64]) {
         self.operators.net_force(when, y, x, out);
         for (value, mass) in out.iter_mut().zip(self.operators.mass()) {
             *value /= mass;

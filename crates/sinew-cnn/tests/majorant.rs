@@ -4,10 +4,6 @@
 #![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
-
-use common::body::{Body, bodies_up_to};
-use common::dense::{dense, dense_damping};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use sinew_cnn::{Blend, DampingShare, GammaRule, Inner, Majorant, Stabiliser};
@@ -15,6 +11,8 @@ use sinew_core::spectrum::critical_step;
 use sinew_core::{LinearOperators, LinearSystem, System};
 use sinew_fem::{Fixed, Law, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
+use sinew_testkit::body::{Body, bodies_up_to};
+use sinew_testkit::dense::{dense, dense_damping};
 
 /// Rounding of a dense decomposition, relative to eigenvalues near 1.
 const DENSE: f64 = 1e-9;
@@ -182,13 +180,8 @@ impl Damped {
         };
         if self.dashpots {
             body.problem.regions[0].law = law;
-        }
-        for region in &mut body.problem.regions {
-            if let Law::Springs { damping_ratio, .. } = &mut region.law
-                && !self.dashpots
-            {
-                *damping_ratio = 0.0;
-            }
+        } else {
+            body = body.without_dashpots();
         }
         body.problem.damping.mass = 0.0;
         body.problem.damping.stiffness = 0.0;
@@ -242,7 +235,7 @@ proptest! {
         let (k, d) = (stiffness(operators), damping(operators));
         let required = &d * (dt / 2.0) + &k * (dt * dt / 4.0);
         for inner in inners(sweeps) {
-            let mut p = Stabiliser::new(operators, dt, rule, blend, inner);
+            let p = Stabiliser::new(operators, dt, rule, blend, inner);
             let mut a = mass_with_damping(operators, dt);
             if !p.majorant().mass_suffices() {
                 a += added(operators, dt, p.majorant());
@@ -278,7 +271,10 @@ proptest! {
         let majorant = Majorant::new(operators, dt, rule, blend, of_damping);
         let p = mass_with_damping(operators, dt)
             + blockdiag(&added(operators, dt, &majorant)) * majorant.gamma();
-        let inverse = columns(n, |x, out| majorant.apply_inverse(x, out));
+        let inverse = columns(n, |x, out| {
+            out.copy_from_slice(x);
+            majorant.inverse().multiply_in_place(0, out);
+        });
         let off = (inverse * &p - DMatrix::identity(n, n)).amax();
         prop_assert!(off <= 1e-8, "{off:e}");
         let least = extremes(&(mass(operators) - &p * majorant.floor())).0;
@@ -377,7 +373,7 @@ fn cube(cells: usize, law: Law, axes: [bool; 3]) -> Model {
             law,
         }],
         fixed: vec![Fixed {
-            group: "sides".into(),
+            on: "sides".into(),
             axes,
         }],
         ..Problem::default()
@@ -431,7 +427,7 @@ fn what_is_held_neither_gives_nor_takes() {
     let dt = 20.0 * critical_step(model.operators());
     for inner in inners([3, 4, 2]) {
         for rule in [GammaRule::Power, GammaRule::Gershgorin] {
-            let mut p = Stabiliser::new(model.operators(), dt, rule, Blend::Auto, inner);
+            let p = Stabiliser::new(model.operators(), dt, rule, Blend::Auto, inner);
             let inverse = columns(model.dofs(), |x, out| p.solve(x, out));
             for dof in &held {
                 for other in (0..model.dofs()).filter(|other| other != dof) {

@@ -3,20 +3,18 @@
 #![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
-
 use std::sync::Arc;
 
-use common::body::bodies;
-use common::dense::{ROUNDING, dense, dense_damping, row_product};
 use proptest::prelude::*;
 use sinew_cnn::Templates;
 use sinew_core::{
     BlockMatrix, Damping, Layers, LinearModel, LinearOperators, LinearSystem, LoadTime, Pattern,
-    State, System, Trial,
+    State, System,
 };
 use sinew_fem::{Fixed, Law, Model, Problem, Region};
 use sinew_mesh::structured::{self, Split};
+use sinew_testkit::body::bodies;
+use sinew_testkit::dense::{ROUNDING, dense, dense_damping, row_product};
 
 fn templates(model: &Model) -> Templates {
     Templates::new(model).unwrap()
@@ -45,7 +43,7 @@ proptest! {
         let (k, d) = (dense(operators.stiffness()), dense_damping(operators));
         let State { u: y, v: x, .. } = body.state(&model, 1e-3, 1.0);
         let mut force = vec![0.0; model.dofs()];
-        model.external_force(LoadTime::at(t), &mut force);
+        model.operators().external_force(LoadTime::at(t), &mut force);
         let mut sweep = vec![0.0; model.dofs()];
         templates.sweep(t, &y, &x, &mut sweep);
         for (i, mass) in operators.mass().iter().enumerate() {
@@ -65,7 +63,7 @@ proptest! {
         let model = body.model();
         let State { u, v, .. } = body.state(&model, 1e-3, 1.0);
         let mut force = vec![0.0; model.dofs()];
-        model.net_force(&Trial { load: LoadTime::at(t), dt: 0.0, u: &u, v: &v }, &mut force).unwrap();
+        model.operators().net_force(LoadTime::at(t), &u, &v, &mut force);
         let mut sweep = vec![0.0; model.dofs()];
         templates(&model).sweep(t, &u, &v, &mut sweep);
         for ((sweep, force), mass) in sweep.iter().zip(&force).zip(model.mass()) {
@@ -124,12 +122,7 @@ proptest! {
 
     #[test]
     fn rayleigh_damping_is_a_combination_of_identity_and_feedback(body in bodies()) {
-        let mut body = body;
-        for region in &mut body.problem.regions {
-            if let Law::Springs { damping_ratio, .. } = &mut region.law {
-                *damping_ratio = 0.0;
-            }
-        }
+        let body = body.without_dashpots();
         let model = body.model();
         let (a, c) = (dense(&templates(&model).feedback()), dense(&templates(&model).damping()));
         let (alpha, beta) = (body.problem.damping.mass, body.problem.damping.stiffness);
@@ -185,7 +178,7 @@ fn a_node_of_no_tetrahedron_is_refused_by_its_tag() {
             },
         }],
         fixed: vec![Fixed {
-            group: "bottom".into(),
+            on: "bottom".into(),
             axes: [true; 3],
         }],
         ..Problem::default()

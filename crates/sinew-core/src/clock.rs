@@ -25,6 +25,15 @@ impl Clock {
         }
     }
 
+    /// Base (s), step (s) and number of steps, from which [`Clock::from_parts`] makes the same clock.
+    pub(crate) fn parts(self) -> (f64, f64, u64) {
+        (self.base, self.dt, self.steps)
+    }
+
+    pub(crate) fn from_parts(base: f64, dt: f64, steps: u64) -> Self {
+        Self { base, dt, steps }
+    }
+
     /// The time (s).
     #[must_use]
     pub fn time(self) -> f64 {

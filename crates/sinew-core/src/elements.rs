@@ -1,20 +1,20 @@
 //! The elements behind a stiffness matrix.
 
-use crate::spectrum::largest_eigenvalue;
+use crate::lanczos::largest_eigenvalue;
 
-/// A stiffness matrix as the sum that it is: one small matrix for each element.
+/// A stiffness matrix as a sum of small matrices, one for each element.
 pub trait Elements: Send + Sync {
-    /// How many there are.
+    /// Number of elements.
     fn count(&self) -> usize;
 
     /// Name of an element (0-based) in the user's terms, for messages.
     fn name(&self, element: usize) -> String;
 
-    /// Writes what an element (0-based) adds to K. The sum over all elements is K.
+    /// Writes the contribution of an element (0-based) to K. The sum over all elements is K.
     fn stiffness(&self, element: usize, out: &mut ElementStiffness);
 }
 
-/// What one element adds to K.
+/// Contribution of one element to K.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ElementStiffness {
     /// The cells it couples.

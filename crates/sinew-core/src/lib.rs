@@ -1,56 +1,101 @@
-//! The seams of sinew: what a solver is given, what it changes and what it says about its work.
+//! Interfaces of sinew: the input of a solver, the state that it changes and the work that it reports.
 //!
 //! * [`State`] is a plain value: a clone is a checkpoint.
 //! * [`System`] is `M a + f_int(u, v) = f_ext(t)`; a [`LinearSystem`] also shows its matrices.
 //! * [`Integrator`] takes a state one step further and counts its work.
 //! * [`Recorder`] says when it wants to see a state.
 //! * [`simulate()`] runs an integrator; divergence is a result, not a panic.
+//! * The feature `conformance` adds the laws that every integrator keeps, as tests.
 //!
 //! All quantities are SI, all vectors hold free degrees of freedom only, node-major (x y z).
 //!
 //! ```
-//! use sinew_core::{LinearModel, LinearOperators, LoadTime, System, Trial};
+//! use sinew_core::LinearOperators;
 //!
 //! // One mass of 0.1 kg on a spring of 100 N/m.
 //! let operators = LinearOperators::oscillator(0.1, 100.0, 1.0)?;
-//! let model = LinearModel::new(operators);
 //! let mut force = [0.0];
-//! model.net_force(&Trial { load: LoadTime::at(0.0), dt: 0.0, u: &[0.01], v: &[-5.0] }, &mut force)?;
+//! operators.net_force(0.0, &[0.01], &[-5.0], &mut force);
 //! assert_eq!(force, [-100.0 * 0.01 - 1.0 * -5.0]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod batch;
+mod bytes;
+mod changes;
+mod channel_record;
 mod clock;
 pub mod closed_form;
+#[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
+mod derived;
 mod elements;
+mod energy;
+mod evaluation_error;
+mod fingerprint;
+mod force_model;
+mod force_record;
 mod gauss;
+mod guard;
+mod hash;
+mod input;
+mod input_bytes;
 mod integrator;
-mod linear;
+mod lanczos;
+mod linear_model;
+mod load;
 mod load_over_step;
 mod load_time;
+mod operators;
 mod options;
+mod prepared;
+mod properties;
 mod ramp;
 mod recorder;
+mod revision;
 mod simulate;
 pub mod spectrum;
 mod state;
+mod state_bytes;
+mod step_error;
+mod step_report;
+mod synchronise;
 mod system;
+mod watch;
 
+pub use batch::{Batch, Step, Stepped, worst_beyond};
+pub use bytes::BytesError;
+pub use channel_record::{Between, InputError};
 pub use clock::Clock;
 pub use elements::{ElementStiffness, Elements, element_omegas_squared};
+pub use energy::Energy;
+pub use evaluation_error::EvaluationError;
+pub use force_model::ForceModel;
+pub use force_record::ForceInputError;
 pub use gauss::gauss_points;
-pub use integrator::{
-    Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, Needs, OtherDamping, Prepared,
-    Properties, SetupError, StableStep, StepError, StepReport,
-};
-pub use linear::{Damping, LinearModel, LinearOperators, LinearSystem, Load, OperatorError};
+pub use guard::{Guarding, clamp_vector};
+pub use input::Inputs;
+pub use input_bytes::InputBytesError;
+pub use integrator::{Fact, Integrator};
+pub use linear_model::LinearModel;
+pub use load::Load;
 pub use load_over_step::{LoadOverStep, step_that_meets};
 pub use load_time::LoadTime;
+pub use operators::{Damping, LinearOperators, OperatorError};
 pub use options::{OptionError, OptionValue, Options};
-pub use ramp::{Ramp, RampError};
-pub use recorder::{RecordError, Recorder, Recorders, Verdict};
-pub use simulate::{Outcome, Run, RunReport, SimulateError, simulate};
-pub use sinew_sparse::{BlockMatrix, Layers, Pattern};
+pub use prepared::Prepared;
+pub use properties::{
+    Accuracy, ChangingLoads, EnergyBehaviour, Needs, OtherDamping, Properties, StableStep,
+};
+pub use ramp::{Channel, Ramp, RampError};
+pub use recorder::{Moment, RecordError, Recorder, Recorders, Verdict};
+pub use revision::Revision;
+pub use simulate::{Outcome, Run, RunReport, SimulateError, simulate, simulate_under};
+pub use sinew_sparse::{BlockMatrix, Layers, Pattern, vectors};
 pub use state::{Acceleration, Start, State, VelocityTime};
-pub use system::{Energy, EvaluationError, Revision, Scales, System, Trial};
+pub use state_bytes::StateBytesError;
+pub use step_error::{SetupError, StepError};
+pub use step_report::StepReport;
+pub use synchronise::SynchroniseError;
+pub use system::{Equations, ForceLaw, LinearSystem, Scales, System, Trial};
+pub use watch::Watch;

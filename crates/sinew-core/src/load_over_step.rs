@@ -1,11 +1,11 @@
-//! What loads must be over each step of methods that integrate them exactly.
+//! Conditions on loads within a step, for methods that integrate loads exactly.
 
 use crate::{Clock, Ramp};
 
-/// What a load must be over each step for a method to take it.
+/// Condition that a load must meet within each step for a method to take it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoadOverStep {
-    /// Anything.
+    /// Any load.
     Any,
     /// Smooth: jumps and kinks fall on steps.
     Smooth,
@@ -22,7 +22,7 @@ const MISS: f64 = 1e-9;
 const SHORTEST: f64 = 1e-7;
 
 impl LoadOverStep {
-    /// In words.
+    /// The condition in words.
     #[must_use]
     pub fn describe(self) -> &'static str {
         match self {
@@ -33,8 +33,8 @@ impl LoadOverStep {
         }
     }
 
-    /// The first instant (s) at which a ramp is not what it must be, between `from` and `to` (s) in
-    /// steps of `dt` (s) from `from` on; `None` where it always is. Allocates nothing.
+    /// The first instant (s) at which a ramp breaks the condition, between `from` and `to` (s) in
+    /// steps of `dt` (s) from `from` on; `None` where it never does. Allocates nothing.
     #[must_use]
     pub fn first_broken(self, ramp: &Ramp, from: f64, dt: f64, to: f64) -> Option<f64> {
         if self == Self::Any {
@@ -49,13 +49,14 @@ impl LoadOverStep {
         let (mut start, mut step_before) = (from, None);
         let mut looked_from = from - margin;
         while let Some(point) = ramp.breakpoint_between(looked_from, to - margin) {
+            // What leads to an instant comes before it, so that the answer is the same for any end.
+            if point > start + margin && !fits(start, point) {
+                return Some(start);
+            }
             let step = ((point - from) / dt).round();
             // Two within the margin of one instant hold an impulse that would be lost.
             if (point - from - step * dt).abs() > margin || step_before == Some(step) {
                 return Some(point);
-            }
-            if point > start + margin && !fits(start, point) {
-                return Some(start);
             }
             (start, looked_from, step_before) = (point, point, Some(step));
         }
@@ -128,6 +129,12 @@ mod tests {
         let broken = |over: LoadOverStep| over.first_broken(&ramp, 0.0, 0.1, 1.0);
         assert_eq!(broken(LoadOverStep::Smooth), None);
         assert_eq!(broken(LoadOverStep::Linear), Some(0.0));
+        // Whether its end is seen, and falls on a step, or not.
+        let rise = Ramp::Sin2 { rise: 0.43 };
+        for to in [0.2, 0.4, 0.5, 1.0] {
+            let broken = LoadOverStep::Linear.first_broken(&rise, 0.0, 0.1, to);
+            assert_eq!(broken, Some(0.0), "to {to}");
+        }
         let table = Ramp::Table {
             times: vec![0.2, 0.4],
             values: vec![1.0, 2.0],

@@ -1,59 +1,66 @@
-//! When, and over how long a time, a step takes its loads.
+//! Instants and windows of time at which a step takes its loads.
 
+use crate::clock::Clock;
 use crate::gauss::gauss_points;
-use crate::{Clock, Ramp};
+use crate::input::Inputs;
+use crate::ramp::Ramp;
 
 /// Windows in a rise of a squared sine from which on it counts as smooth at both ends.
 const LONG_RISE: f64 = 2.0;
 
-/// The instant at which a step takes its loads, with the window of time they act for.
+/// The instant at which a step takes its loads, with the window of time they act for and the inputs
+/// that are known.
 ///
 /// A load that is smooth over the window is taken at the instant. One that jumps or has a kink
-/// inside is replaced by a mean over the window, weighted so that its impulse arrives whatever it
-/// does between two instants, and so that a method keeps the order that it has for smooth loads, up
+/// inside is replaced by a mean over the window, weighted so that its impulse arrives however it varies
+/// between two instants, and so that a method keeps the order that it has for smooth loads, up
 /// to order 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LoadTime {
+pub struct LoadTime<'a> {
     t: f64,
     window: Window,
+    inputs: &'a Inputs,
 }
 
-/// The window, and what takes the place of a load that is not smooth in it. Times in s.
+/// The window, and the replacement of a load that is not smooth in it. Times in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Window {
-    /// None: loads are taken at the instant.
+    /// No window: loads are taken at the instant.
     Instant,
     /// Loads are taken as smooth, as in the middle of the window.
     Smooth { from: f64, to: f64 },
     /// The mean over the window.
     Mean { from: f64, to: f64 },
-    /// The line with the same mean and first moment over the window, `shift` beside the instant.
+    /// The line with the same mean and first moment over the window, taken `shift` after the instant.
     Line { from: f64, to: f64, shift: f64 },
     /// The mean with weights that fall linearly from the instant to 0 at both ends.
     Hat { from: f64, to: f64 },
 }
 
-impl LoadTime {
-    /// The loads at an instant (s); at a jump, those after it.
-    #[must_use]
-    pub fn at(t: f64) -> Self {
+impl LoadTime<'static> {
+    fn new(t: f64, window: Window) -> Self {
         Self {
             t,
-            window: Window::Instant,
+            window,
+            inputs: Inputs::none(),
         }
     }
 
-    /// The loads at the beginning of a step from `t` (s) to `t + dt`, or their mean over the step: of
+    /// The loads at an instant (s); at a jump, those after it.
+    #[must_use]
+    pub fn at(t: f64) -> Self {
+        Self::new(t, Window::Instant)
+    }
+
+    /// The loads at the beginning of a step from `t` (s) to `t + dt`, or their mean over the step: for
     /// methods that take loads as constant over a step. Tables always enter by their mean.
     #[must_use]
     pub fn start_of(t: f64, dt: f64) -> Self {
-        Self {
-            t,
-            window: Window::Mean {
-                from: t,
-                to: t + dt,
-            },
-        }
+        let window = Window::Mean {
+            from: t,
+            to: t + dt,
+        };
+        Self::new(t, window)
     }
 
     /// The loads at the end of a step from `t` (s) to `t + dt`, or their mean over the step.
@@ -66,21 +73,19 @@ impl LoadTime {
     }
 
     /// The loads at `t + share dt` within a step from `t` (s) to `t + dt`, or the line over the step
-    /// with the same impulse and first moment: of methods that take loads at several instants of a
+    /// with the same impulse and first moment: for methods that take loads at several instants of a
     /// step.
     #[must_use]
     pub fn within(t: f64, dt: f64, share: f64) -> Self {
-        Self {
-            t: t + share * dt,
-            window: Window::Line {
-                from: t,
-                to: t + dt,
-                shift: 0.0,
-            },
-        }
+        let window = Window::Line {
+            from: t,
+            to: t + dt,
+            shift: 0.0,
+        };
+        Self::new(t + share * dt, window)
     }
 
-    /// The loads at both ends of a step from `t` (s) to `t + dt`, of a method that adds up `1 - gamma` of
+    /// The loads at both ends of a step from `t` (s) to `t + dt`, for a method that adds up `1 - gamma` of
     /// the first and gamma of the second. A line is taken beside the ends where gamma is not 1/2, so that
     /// the sum is its mean.
     #[must_use]
@@ -90,34 +95,48 @@ impl LoadTime {
             to: t + dt,
             shift: (0.5 - gamma) * dt,
         };
-        [t, t + dt].map(|t| Self { t, window })
+        [t, t + dt].map(|t| Self::new(t, window))
     }
 
     /// The loads at `t` (s), or their mean over `t - before`..`t + after` (s) with weights that fall
-    /// linearly to both ends: of leapfrog methods, for which
+    /// linearly to both ends: for leapfrog methods, for which
     /// `u(t + dt) - 2 u(t) + u(t - dt) = dt^2` times that mean of the acceleration.
     #[must_use]
     pub fn around(t: f64, before: f64, after: f64) -> Self {
-        Self {
-            t,
-            window: Window::Hat {
-                from: t - before,
-                to: t + after,
-            },
-        }
+        let window = Window::Hat {
+            from: t - before,
+            to: t + after,
+        };
+        Self::new(t, window)
     }
 
     /// The loads at `t` (s) as they are throughout a step from `from` to `from + dt` (s), in which
     /// they are known to be smooth.
     #[must_use]
     pub fn smooth_in(t: f64, from: f64, dt: f64) -> Self {
-        Self {
-            t,
-            window: Window::Smooth {
-                from,
-                to: from + dt,
-            },
+        let window = Window::Smooth {
+            from,
+            to: from + dt,
+        };
+        Self::new(t, window)
+    }
+}
+
+impl<'a> LoadTime<'a> {
+    /// This time under these inputs.
+    #[must_use]
+    pub fn under<'b>(self, inputs: &'b Inputs) -> LoadTime<'b> {
+        LoadTime {
+            t: self.t,
+            window: self.window,
+            inputs,
         }
+    }
+
+    /// The inputs that are known.
+    #[must_use]
+    pub fn inputs(self) -> &'a Inputs {
+        self.inputs
     }
 
     /// The instant (s).
@@ -125,9 +144,21 @@ impl LoadTime {
     pub fn t(self) -> f64 {
         self.t
     }
+
+    /// Start and end (s) of the time in which loads matter: the window, or the instant.
+    #[must_use]
+    pub fn span(self) -> (f64, f64) {
+        match self.window {
+            Window::Instant => (self.t, self.t),
+            Window::Smooth { from, to }
+            | Window::Mean { from, to }
+            | Window::Line { from, to, .. }
+            | Window::Hat { from, to } => (from, to),
+        }
+    }
 }
 
-impl From<f64> for LoadTime {
+impl From<f64> for LoadTime<'static> {
     fn from(t: f64) -> Self {
         Self::at(t)
     }
@@ -136,8 +167,11 @@ impl From<f64> for LoadTime {
 impl Ramp {
     /// The factor that a step takes.
     #[must_use]
-    pub fn factor(&self, when: LoadTime) -> f64 {
-        let LoadTime { t, window } = when;
+    pub fn factor(&self, when: LoadTime<'_>) -> f64 {
+        let LoadTime { t, window, inputs } = when;
+        if let Self::Input(_) | Self::InputRate(_) = self {
+            return self.known(inputs).factor(when);
+        }
         let (from, to) = match window {
             Window::Instant => return self.value(t),
             Window::Smooth { from, to } => return self.value_within(from, to, t),
@@ -184,28 +218,37 @@ impl Ramp {
     }
 
     /// Whether a step over `from`..`to` (s) may take the value as it finds it: no breakpoint lies
-    /// between, rounding of either instant apart. A rise of a squared sine that is long beside the step is
-    /// smooth at its ends too, where value and slope are continuous; a short one is smooth nowhere, so
-    /// that all steps over it see means of it.
+    /// between, rounding of either instant apart. A rise of a squared sine that is long compared with
+    /// the step is smooth at its ends too, where value and slope are continuous; a short one is smooth
+    /// nowhere, so that all steps over it see means of it.
     #[must_use]
     pub fn is_smooth_between(&self, from: f64, to: f64) -> bool {
         self.is_smooth_in_steps(from, to, to - from)
     }
 
     fn is_smooth_in_steps(&self, from: f64, to: f64, length: f64) -> bool {
-        if let Self::Sin2 { rise } = self {
-            return *rise >= LONG_RISE * length || to <= 0.0 || from >= *rise;
+        let is_short = |rise: f64| rise < LONG_RISE * length && to > 0.0 && from < rise;
+        match self {
+            Self::Sin2 { rise } => return !is_short(*rise),
+            // The rate of a long rise has kinks where the rise begins and ends.
+            Self::Rate(of) if matches!(**of, Self::Sin2 { rise } if is_short(rise)) => {
+                return false;
+            }
+            _ => {}
         }
         let slack = Clock::ROUNDING * from.abs().max(to.abs());
         self.breakpoint_between(from + slack, to - slack).is_none()
     }
 
     /// The integral of the value times a linear weight between two instants (s), by pieces between
-    /// breakpoints: exact but for that of a sine, which is to rounding.
+    /// breakpoints: exact but for that of a sine, which is to rounding. Breakpoints that only rounding
+    /// keeps from an end cut no piece off, or the bits would depend on what comes after the end.
     fn integral(&self, from: f64, to: f64, weight: impl Fn(f64) -> f64) -> f64 {
+        let slack = Clock::ROUNDING * from.abs().max(to.abs());
         let (mut sum, mut start) = (0.0, from);
         while start < to {
-            let end = self.breakpoint_between(start, to).unwrap_or(to);
+            let next = self.breakpoint_between(start + slack, to - slack);
+            let end = next.unwrap_or(to);
             let terms = gauss_points(start, end)
                 .map(|(s, share)| share * weight(s) * self.value_within(start, end, s));
             sum += terms.sum::<f64>();
@@ -273,6 +316,87 @@ mod tests {
             for (window, found) in sums.into_iter().enumerate() {
                 let off = (found / impulse - 1.0).abs();
                 assert!(off < 1e-12, "{ramp:?}, window {window}: {found}");
+            }
+        }
+    }
+
+    /// Sums over steps of `dt` (s) of the factors that methods take, up to t = 1, one for each window.
+    fn sums(dt: f64, factor: impl Fn(LoadTime) -> f64) -> [f64; 5] {
+        let steps = (1.0 / dt).round() as usize;
+        let sum = |taken: &dyn Fn(f64) -> f64| -> f64 {
+            (0..steps).map(|n| dt * taken(n as f64 * dt)).sum()
+        };
+        [
+            sum(&|t| factor(LoadTime::start_of(t, dt))),
+            sum(&|t| factor(LoadTime::end_of(t, dt))),
+            sum(&|t| {
+                0.5 * factor(LoadTime::within(t, dt, 0.0))
+                    + 0.5 * factor(LoadTime::within(t, dt, 1.0))
+            }),
+            sum(&|t| {
+                let [start, end] = LoadTime::at_both_ends(t, dt, 0.8).map(&factor);
+                0.2 * start + 0.8 * end
+            }),
+            sum(&|t| match t {
+                0.0 => 0.5 * factor(LoadTime::around(t, 0.0, dt)),
+                _ => factor(LoadTime::around(t, dt, dt)),
+            }),
+        ]
+    }
+
+    #[test]
+    fn the_rates_that_steps_take_add_up_to_the_way() {
+        let table = |late: f64| Ramp::Table {
+            times: [0.1, 0.22, 0.5].map(|t| t + late).to_vec(),
+            values: vec![0.0, 3.0, -1.0],
+        };
+        for (of, way) in [
+            (table(0.0), -1.0),
+            (table(0.013), -1.0),
+            (Ramp::Sin2 { rise: 0.03 }, 1.0),
+            (Ramp::Sin2 { rise: 0.099 }, 1.0),
+        ] {
+            for (window, found) in sums(0.05, |when| of.rate().factor(when))
+                .into_iter()
+                .enumerate()
+            {
+                assert!(
+                    (found - way).abs() < 1e-12,
+                    "{of:?}, window {window}: {found}"
+                );
+            }
+        }
+        // A leapfrog's way ends half a step before the last instant.
+        for (window, found) in sums(0.05, |when| Ramp::Linear.rate().factor(when))
+            .into_iter()
+            .enumerate()
+        {
+            let way = if window == 4 { 0.975 } else { 1.0 };
+            assert!((found - way).abs() < 1e-12, "window {window}: {found}");
+        }
+        // A long rise is sampled, with means at its two kinks: the error falls as dt^2.
+        let of = Ramp::Sin2 { rise: 0.713 };
+        let errors =
+            |dt: f64| sums(dt, |when| of.rate().factor(when)).map(|found| (found - 1.0).abs());
+        for (window, (coarse, fine)) in errors(0.02).into_iter().zip(errors(0.005)).enumerate() {
+            assert!(
+                coarse < 2e-3 && fine < coarse / 10.0,
+                "window {window}: {coarse} {fine}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_middle_of_a_step_sees_the_mean_rate() {
+        // What a step of a method of order 2 moves by is the way of the support in it.
+        let of = Ramp::Table {
+            times: vec![0.0, 0.03, 0.2],
+            values: vec![0.0, 1.0, 0.4],
+        };
+        for t in [0.0, 0.05, 0.1] {
+            let mean = (of.value(t + 0.05) - of.value(t)) / 0.05;
+            for when in [LoadTime::start_of(t, 0.05), LoadTime::within(t, 0.05, 0.5)] {
+                assert!((of.rate().factor(when) - mean).abs() < 1e-12, "from {t}");
             }
         }
     }

@@ -13,6 +13,33 @@ pub enum OptionValue {
     Table(BTreeMap<String, OptionValue>),
 }
 
+impl OptionValue {
+    /// The number, where it is a finite one.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(value) if value.is_finite() => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// The whole number from 1 up to `most`, where it is one.
+    #[must_use]
+    pub fn count(&self, most: u32) -> Option<u32> {
+        let fits = |value: &f64| (1.0..=f64::from(most)).contains(value) && value.fract() == 0.0;
+        self.number().filter(fits).map(|value| value as u32)
+    }
+
+    /// The word, where it is one.
+    #[must_use]
+    pub fn word(&self) -> Option<&str> {
+        match self {
+            Self::Text(word) => Some(word),
+            _ => None,
+        }
+    }
+}
+
 impl std::fmt::Display for OptionValue {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -29,7 +56,7 @@ impl std::fmt::Display for OptionValue {
     }
 }
 
-/// Why an option was refused.
+/// Reasons for which an option is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OptionError {
@@ -52,7 +79,7 @@ pub enum OptionError {
         key: String,
         /// The value given.
         found: OptionValue,
-        /// What fits.
+        /// Values that fit, in words.
         expected: &'static str,
     },
     /// No such integrator.
@@ -60,7 +87,7 @@ pub enum OptionError {
     UnknownIntegrator {
         /// The id given.
         id: String,
-        /// The ids there are.
+        /// The known ids.
         known: Vec<&'static str>,
     },
 }
@@ -108,6 +135,12 @@ impl Options {
         self.with(key, OptionValue::Number(value))
     }
 
+    /// Adds or replaces a word.
+    #[must_use]
+    pub fn with_text(self, key: impl Into<String>, word: impl Into<String>) -> Self {
+        self.with(key, OptionValue::Text(word.into()))
+    }
+
     /// Adds or replaces one option.
     pub fn insert(&mut self, key: impl Into<String>, value: OptionValue) {
         self.0.insert(key.into(), value);
@@ -147,10 +180,28 @@ impl Options {
         expected: &'static str,
         fits: impl Fn(f64) -> bool,
     ) -> Result<f64, OptionError> {
-        match self.get(key) {
-            None => Ok(default),
-            Some(OptionValue::Number(value)) if value.is_finite() && fits(*value) => Ok(*value),
-            Some(found) => Err(OptionError::Value {
+        let number = |value: &OptionValue| value.number().filter(|value| fits(*value));
+        let given = self.read(integrator, key, expected, number)?;
+        Ok(given.unwrap_or(default))
+    }
+
+    /// Reads an option by `read`; `None` where the option is absent.
+    ///
+    /// # Errors
+    /// [`OptionError::Value`] with `expected` when `read` returns `None`.
+    pub fn read<T>(
+        &self,
+        integrator: &str,
+        key: &str,
+        expected: &'static str,
+        read: impl FnOnce(&OptionValue) -> Option<T>,
+    ) -> Result<Option<T>, OptionError> {
+        let Some(found) = self.get(key) else {
+            return Ok(None);
+        };
+        match read(found) {
+            Some(value) => Ok(Some(value)),
+            None => Err(OptionError::Value {
                 integrator: integrator.into(),
                 key: key.into(),
                 found: found.clone(),
@@ -182,6 +233,9 @@ mod tests {
     #[test]
     fn refusals_name_the_integrator_the_key_and_what_fits() {
         let options = Options::new().with_number("beta", -1.0);
+        let words = Options::new().with_text("beta", "auto");
+        let word = OptionValue::Text("auto".to_owned());
+        assert_eq!(words.get("beta"), Some(&word));
         let error = options
             .number("newmark", "beta", 0.25, "a number from 0 to 0.5", |b| {
                 b >= 0.0

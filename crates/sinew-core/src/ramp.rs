@@ -1,8 +1,12 @@
-//! How a load grows in time.
+//! Factors of loads over time.
 
 use std::f64::consts::PI;
 
-/// A dimensionless factor over time.
+/// Number of an input channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Channel(pub u32);
+
+/// A factor over time: of a load (dimensionless) or of a prescribed motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ramp {
     /// 1 from t = 0 on.
@@ -26,9 +30,25 @@ pub enum Ramp {
         /// A value for each time.
         values: Vec<f64>,
     },
+    /// Constant from each point to the next, 0 before the first.
+    Hold {
+        /// Increasing times (s).
+        times: Vec<f64>,
+        /// A value for each time.
+        values: Vec<f64>,
+    },
+    /// 0 up to t = 0, the time (s) itself afterwards: motion at constant speed.
+    Linear,
+    /// Time derivative (1/s) of another ramp that follows no input, without its jumps; see
+    /// [`Ramp::rate`].
+    Rate(Box<Ramp>),
+    /// Values that a caller gives over time through [`Inputs`](crate::Inputs).
+    Input(Channel),
+    /// Time derivative (1/s) of an input.
+    InputRate(Channel),
 }
 
-/// Why a ramp makes no sense.
+/// Reasons for which a ramp is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RampError {
@@ -57,7 +77,16 @@ pub enum RampError {
         /// 0-based position in the table.
         index: usize,
     },
+    /// The rate of a rate, or of an input in the place of the input's rate.
+    #[error("the rate of a ramp {of}: expected that of one whose value is known")]
+    RateOf {
+        /// The ramp in words.
+        of: String,
+    },
 }
+
+/// Change at a breakpoint that counts as rounding, relative to the value's total variation.
+const ROUNDING: f64 = 1e-9;
 
 impl Ramp {
     /// Checks the parameters.
@@ -74,7 +103,14 @@ impl Ramp {
                 from: *from,
                 to: *to,
             }),
-            Self::Table { times, values } => {
+            Self::Linear | Self::Input(_) | Self::InputRate(_) => Ok(()),
+            Self::Rate(of) => match **of {
+                Self::Rate(_) | Self::Input(_) | Self::InputRate(_) => {
+                    Err(RampError::RateOf { of: of.describe() })
+                }
+                _ => of.check(),
+            },
+            Self::Table { times, values } | Self::Hold { times, values } => {
                 if times.len() != values.len() || times.is_empty() {
                     return Err(RampError::TableLengths {
                         times: times.len(),
@@ -91,52 +127,144 @@ impl Ramp {
         }
     }
 
-    /// The factor at time `t` (s); at a jump, that after it.
+    /// The time derivative (1/s), without jumps. [`Ramp::check`] refuses the rate of a rate.
     #[must_use]
-    pub fn value(&self, t: f64) -> f64 {
-        self.value_of_piece(t, t)
-    }
-
-    /// The factor at time `t` (s), continued smoothly from what holds in the middle of `from`..`to`
-    /// (s): that before a jump at `to`, that after a jump at `from`, whatever rounding made of
-    /// either.
-    #[must_use]
-    pub fn value_within(&self, from: f64, to: f64, t: f64) -> f64 {
-        self.value_of_piece(0.5 * (from + to), t)
-    }
-
-    /// The smooth piece that holds at `at` (s), at time `t` (s).
-    fn value_of_piece(&self, at: f64, t: f64) -> f64 {
+    pub fn rate(&self) -> Self {
         match self {
-            Self::Step => f64::from(at >= 0.0),
-            Self::Sin2 { rise } if (0.0..*rise).contains(&at) => {
-                let angle = PI / 2.0 * (t / rise).clamp(0.0, 1.0);
-                angle.sin().powi(2)
-            }
-            Self::Sin2 { rise } => f64::from(at >= *rise),
-            Self::Pulse { from, to } => f64::from(*from <= at && at < *to),
-            Self::Table { times, values } => match times.partition_point(|&time| time <= at) {
-                0 => values[0],
-                next if next == times.len() => values[next - 1],
-                next => {
-                    let (t0, t1) = (times[next - 1], times[next]);
-                    let share = (t - t0) / (t1 - t0);
-                    values[next - 1] + share * (values[next] - values[next - 1])
-                }
-            },
+            Self::Input(channel) => Self::InputRate(*channel),
+            of => Self::Rate(Box::new(of.clone())),
         }
     }
 
-    /// How far the value goes up and down in all, from 0 before the start on.
+    /// The ramp in words.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Step => "from t = 0".to_owned(),
+            Self::Sin2 { rise } => format!("rising for {rise} s"),
+            Self::Pulse { from, to } => format!("from {from} s to {to} s"),
+            Self::Table { times, .. } => format!("by a table of {} points", times.len()),
+            Self::Hold { times, .. } => format!("in {} steps", times.len()),
+            Self::Linear => "growing with time".to_owned(),
+            Self::Rate(of) => format!("by the rate of a factor {}", of.describe()),
+            Self::Input(channel) => format!("by input {}", channel.0),
+            Self::InputRate(channel) => format!("by the rate of input {}", channel.0),
+        }
+    }
+
+    /// Whether it follows an input, and so is known only as it happens.
+    #[must_use]
+    pub fn is_input(&self) -> bool {
+        matches!(self, Self::Input(_) | Self::InputRate(_))
+    }
+
+    /// The factor at time `t` (s); at a jump, the value after it.
+    #[must_use]
+    pub fn value(&self, t: f64) -> f64 {
+        self.derivative_of_piece(0, t, t)
+    }
+
+    /// The factor at time `t` (s), continued smoothly from the piece that holds in the middle of
+    /// `from`..`to` (s): the piece before a jump at `to`, the piece after a jump at `from`, however
+    /// either was rounded.
+    #[must_use]
+    pub fn value_within(&self, from: f64, to: f64, t: f64) -> f64 {
+        self.derivative_of_piece(0, 0.5 * (from + to), t)
+    }
+
+    /// A derivative (1/s^order) of the smooth piece that holds at `at` (s), at time `t` (s).
+    fn derivative_of_piece(&self, order: u32, at: f64, t: f64) -> f64 {
+        match (self, order) {
+            (Self::Step, 0) => f64::from(at >= 0.0),
+            (Self::Sin2 { rise }, _) if (0.0..*rise).contains(&at) => {
+                let share = (t / rise).clamp(0.0, 1.0);
+                if order == 0 {
+                    return (PI / 2.0 * share).sin().powi(2);
+                }
+                // sin^2(x) = (1 - cos 2x)/2 with 2x = pi t/rise.
+                let turned = PI * share + f64::from(order % 4) * PI / 2.0;
+                -0.5 * (PI / rise).powi(order as i32) * turned.cos()
+            }
+            (Self::Sin2 { rise }, 0) => f64::from(at >= *rise),
+            (Self::Pulse { from, to }, 0) => f64::from(*from <= at && at < *to),
+            (Self::Table { times, values }, 0 | 1) => {
+                match times.partition_point(|&time| time <= at) {
+                    next if next == 0 || next == times.len() => match order {
+                        0 => values[next.saturating_sub(1)],
+                        _ => 0.0,
+                    },
+                    next => {
+                        let (t0, t1) = (times[next - 1], times[next]);
+                        let rise = values[next] - values[next - 1];
+                        match order {
+                            0 => values[next - 1] + (t - t0) / (t1 - t0) * rise,
+                            _ => rise / (t1 - t0),
+                        }
+                    }
+                }
+            }
+            (Self::Hold { times, values }, 0) => match times.partition_point(|&time| time <= at) {
+                0 => 0.0,
+                next => values[next - 1],
+            },
+            (Self::Linear, 0) if at >= 0.0 => t,
+            (Self::Linear, 1) => f64::from(at >= 0.0),
+            (Self::Rate(of), _) => of.derivative_of_piece(order + 1, at, t),
+            _ => 0.0,
+        }
+    }
+
+    /// The first instant (s) from t = 0 on at which the value jumps, being 0 before the start. Unknown
+    /// for an input.
+    #[must_use]
+    pub fn first_jump(&self) -> Option<f64> {
+        let rounding = ROUNDING * self.variation();
+        let jumps = |at: f64| {
+            // The piece that ends here, at its end.
+            let before = match at {
+                0.0 => 0.0,
+                _ => self.derivative_of_piece(0, at.next_down(), at),
+            };
+            (self.value(at) - before).abs() > rounding
+        };
+        self.at_breakpoints(|points| {
+            let later = points.iter().copied().filter(|at| *at > 0.0);
+            std::iter::once(0.0).chain(later).find(|at| jumps(*at))
+        })
+    }
+
+    /// Total variation of the value, from 0 before the start on.
     #[must_use]
     pub fn variation(&self) -> f64 {
         match self {
             Self::Step | Self::Sin2 { .. } => 1.0,
             Self::Pulse { .. } => 2.0,
-            Self::Table { values, .. } => {
+            Self::Linear | Self::Input(_) | Self::InputRate(_) => f64::INFINITY,
+            Self::Rate(of) => of.variation_of_rate(),
+            Self::Table { values, .. } | Self::Hold { values, .. } => {
                 let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
                 values.first().map_or(0.0, |first| first.abs()) + steps.sum::<f64>()
             }
+        }
+    }
+
+    fn variation_of_rate(&self) -> f64 {
+        match self {
+            Self::Step | Self::Pulse { .. } | Self::Hold { .. } => 0.0,
+            Self::Sin2 { rise } => PI / rise,
+            Self::Linear => 1.0,
+            Self::Table { times, values } => {
+                let slopes = times.windows(2).zip(values.windows(2));
+                let slopes = slopes.map(|(t, v)| (v[1] - v[0]) / (t[1] - t[0]));
+                let mut last = 0.0;
+                let mut sum = 0.0;
+                for slope in slopes.chain([0.0]) {
+                    sum += f64::abs(slope - last);
+                    last = slope;
+                }
+                sum
+            }
+            Self::Rate(_) | Self::Input(_) | Self::InputRate(_) => f64::INFINITY,
         }
     }
 
@@ -145,8 +273,18 @@ impl Ramp {
     #[must_use]
     pub fn impulse(&self) -> f64 {
         match self {
-            Self::Step | Self::Sin2 { .. } => f64::INFINITY,
+            Self::Step | Self::Sin2 { .. } | Self::Linear => f64::INFINITY,
+            Self::Input(_) | Self::InputRate(_) => f64::INFINITY,
+            // The way that a value goes is the integral of its rate's size.
+            Self::Rate(of) => of.variation(),
             Self::Pulse { from, to } => to - from,
+            Self::Hold { times, values } => {
+                if values.last().is_none_or(|last| *last != 0.0) {
+                    return f64::INFINITY;
+                }
+                let between = times.windows(2).zip(values);
+                between.map(|(t, v)| (t[1] - t[0]) * v.abs()).sum()
+            }
             Self::Table { times, values } => {
                 if values.last().is_none_or(|last| *last != 0.0) {
                     return f64::INFINITY;
@@ -182,7 +320,10 @@ impl Ramp {
             Self::Step => look(&[0.0]),
             Self::Sin2 { rise } => look(&[0.0, *rise]),
             Self::Pulse { from, to } => look(&[*from, *to]),
-            Self::Table { times, .. } => look(times),
+            Self::Table { times, .. } | Self::Hold { times, .. } => look(times),
+            Self::Linear => look(&[0.0]),
+            Self::Rate(of) => of.at_breakpoints(look),
+            Self::Input(_) | Self::InputRate(_) => look(&[]),
         }
     }
 
@@ -192,9 +333,13 @@ impl Ramp {
     pub fn is_constant_between(&self, t0: f64, t1: f64) -> bool {
         let middle = 0.5 * (t0 + t1);
         match self {
-            Self::Step | Self::Pulse { .. } => true,
+            Self::Step | Self::Pulse { .. } | Self::Hold { .. } => true,
             Self::Sin2 { rise } => !(0.0..*rise).contains(&middle),
-            Self::Table { .. } => self.value(middle) == self.value(0.5 * (t0 + middle)),
+            Self::Linear | Self::Table { .. } => {
+                self.value(middle) == self.value(0.5 * (t0 + middle))
+            }
+            Self::Rate(of) => of.is_linear_between(t0, t1),
+            Self::Input(_) | Self::InputRate(_) => true,
         }
     }
 
@@ -202,39 +347,14 @@ impl Ramp {
     /// breakpoint lies between them.
     #[must_use]
     pub fn is_linear_between(&self, t0: f64, t1: f64) -> bool {
-        matches!(self, Self::Table { .. }) || self.is_constant_between(t0, t1)
+        matches!(self, Self::Table { .. } | Self::Linear) || self.is_constant_between(t0, t1)
     }
 
     /// Writes the derivatives of order 0, 1, 2, .. just after time `t`, as many as `out` holds
     /// (1, 1/s, 1/s^2, ..). They hold up to the next breakpoint.
     pub fn derivatives_after(&self, t: f64, out: &mut [f64]) {
-        out.fill(0.0);
-        let Some((value, higher)) = out.split_first_mut() else {
-            return;
-        };
-        *value = self.value(t);
-        match self {
-            Self::Step | Self::Pulse { .. } => {}
-            Self::Sin2 { rise } => {
-                if (0.0..*rise).contains(&t) {
-                    // sin^2(x) = (1 - cos 2x)/2 with 2x = rate t.
-                    let rate = PI / rise;
-                    let mut power = 0.5;
-                    for (k, derivative) in (1_u8..).zip(higher) {
-                        power *= rate;
-                        *derivative = -power * (rate * t + f64::from(k % 4) * PI / 2.0).cos();
-                    }
-                }
-            }
-            Self::Table { times, values } => {
-                let next = times.partition_point(|&time| time <= t);
-                if next > 0
-                    && next < times.len()
-                    && let Some(slope) = higher.first_mut()
-                {
-                    *slope = (values[next] - values[next - 1]) / (times[next] - times[next - 1]);
-                }
-            }
+        for (order, derivative) in (0..).zip(out) {
+            *derivative = self.derivative_of_piece(order, t, t);
         }
     }
 }
@@ -312,6 +432,115 @@ mod tests {
         }
     }
 
+    /// Ramps that have a rate, and the rates.
+    fn rates() -> Vec<(Ramp, Ramp)> {
+        let held = Ramp::Hold {
+            times: vec![0.1, 0.4],
+            values: vec![2.0, -1.0],
+        };
+        let of = ramps().into_iter().chain([Ramp::Linear, held]);
+        of.map(|ramp| (ramp.rate(), ramp))
+            .map(|(rate, of)| (of, rate))
+            .collect()
+    }
+
+    #[test]
+    fn a_rate_is_the_slope_between_breakpoints() {
+        let h = 1e-6;
+        for (of, rate) in rates() {
+            assert_eq!(rate.breakpoints(), of.breakpoints());
+            for t in [-0.05, 0.03, 0.15, 0.31, 0.39, 0.45, 0.7] {
+                let slope = (of.value(t + h) - of.value(t - h)) / (2.0 * h);
+                assert!((rate.value(t) - slope).abs() < 1e-8, "{rate:?} at {t}");
+                let mut derivatives = [0.0; 3];
+                rate.derivatives_after(t, &mut derivatives);
+                let bend = (rate.value(t + h) - rate.value(t - h)) / (2.0 * h);
+                assert_eq!(derivatives[0], rate.value(t));
+                assert!((derivatives[1] - bend).abs() < 1e-6, "{rate:?} at {t}");
+                let next = (of.value(t + 1e-3) + of.value(t - 1e-3) - 2.0 * of.value(t)) / 1e-6;
+                assert!((derivatives[1] - next).abs() < 1e-3, "{rate:?} at {t}");
+            }
+        }
+        // At a breakpoint, that after it; before one, that of the piece which ends there.
+        let Some((_, rate)) = rates().into_iter().nth(3) else {
+            panic!("the table's");
+        };
+        assert!((rate.value(0.1) - 20.0).abs() < 1e-12);
+        assert_eq!(rate.value_within(0.05, 0.1, 0.1), 0.0);
+        assert!((rate.value_within(0.2, 0.5, 0.5) + 40.0 / 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_taylor_series_of_each_rate_gives_its_values_up_to_the_next_breakpoint() {
+        for (_, rate) in rates() {
+            for (t, h) in [(0.0, 0.05), (0.1, 0.07), (0.2, 0.08), (0.45, 0.04)] {
+                let mut derivatives = [0.0; 16];
+                rate.derivatives_after(t, &mut derivatives);
+                let mut sum = 0.0;
+                for (k, derivative) in derivatives.iter().enumerate().rev() {
+                    sum = derivative + sum * h / (k as f64 + 1.0);
+                }
+                assert!((sum - rate.value(t + h)).abs() < 1e-11, "{rate:?} at {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_rate_is_constant_where_a_ramp_is_a_line() {
+        for (of, rate) in rates() {
+            for (from, to) in [(0.0, 0.1), (0.1, 0.2), (0.2, 0.3), (0.5, 0.9)] {
+                let values = [0.2, 0.5, 0.9].map(|share| rate.value(from + share * (to - from)));
+                let same = values.iter().all(|value| *value == values[0]);
+                assert_eq!(
+                    rate.is_constant_between(from, to),
+                    same,
+                    "{of:?} from {from}"
+                );
+                assert_eq!(rate.is_linear_between(from, to), same, "{of:?} from {from}");
+            }
+        }
+    }
+
+    #[test]
+    fn sizes_of_rates_bound_the_sums_over_fine_steps() {
+        let dt = 1e-5;
+        for (of, rate) in rates() {
+            let values: Vec<f64> = (0..=100_000)
+                .map(|n| rate.value(f64::from(n) * dt))
+                .collect();
+            let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+            let variation = values[0].abs() + steps.sum::<f64>();
+            assert!(
+                (rate.variation() - variation).abs() < 1e-2 * variation.max(1.0),
+                "{of:?}"
+            );
+            let impulse: f64 = values.iter().map(|v| v.abs() * dt).sum();
+            assert!(rate.impulse() > impulse - 1e-2, "{of:?}");
+        }
+        // A way of one unit, whatever the rise.
+        assert_eq!(Ramp::Sin2 { rise: 0.4 }.rate().impulse(), 1.0);
+    }
+
+    #[test]
+    fn jumps_of_the_value_are_found_and_kinks_are_none() {
+        let jumps: Vec<Option<f64>> = rates().iter().map(|(of, _)| of.first_jump()).collect();
+        let (start, first) = (Some(0.0), Some(0.1));
+        assert_eq!(jumps, [start, None, first, start, None, first]);
+        let jumps: Vec<Option<f64>> = rates().iter().map(|(_, rate)| rate.first_jump()).collect();
+        assert_eq!(jumps, [None, None, None, first, start, None]);
+        let table = |times: &[f64], values: &[f64]| Ramp::Table {
+            times: times.to_vec(),
+            values: values.to_vec(),
+        };
+        // What counts is the value at the start of the run, between rows too.
+        assert_eq!(table(&[-1.0, 1.0], &[0.0, 1.0]).first_jump(), start);
+        assert_eq!(table(&[-1.0, 0.0], &[1.0, 0.0]).first_jump(), None);
+        assert_eq!(
+            table(&[0.0, 1.0, 2.0], &[0.0, 1e9, 1e-3]).first_jump(),
+            None
+        );
+    }
+
     #[test]
     fn sizes_bound_the_sums_over_fine_steps() {
         let mut ramps = ramps();
@@ -342,6 +571,13 @@ mod tests {
             "rise = -1 s: expected a finite time above 0"
         );
         assert!(Ramp::Pulse { from: 2.0, to: 1.0 }.check().is_err());
+        let rate = Ramp::Sin2 { rise: 1.0 }.rate();
+        assert_eq!(rate.check(), Ok(()));
+        assert_eq!(
+            rate.rate().check().unwrap_err().to_string(),
+            "the rate of a ramp by the rate of a factor rising for 1 s: expected that of one whose value is known"
+        );
+        assert!(Ramp::Sin2 { rise: -1.0 }.rate().check().is_err());
         let table = |times: &[f64], values: &[f64]| Ramp::Table {
             times: times.to_vec(),
             values: values.to_vec(),

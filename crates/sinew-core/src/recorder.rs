@@ -1,45 +1,83 @@
-//! Who wants to see states while a simulation runs.
+//! Recorders, which see states while a simulation runs.
 
-use crate::{State, System};
+use crate::{EvaluationError, Inputs, State, System};
 
 /// Whether a simulation goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// On.
+    /// The run goes on.
     Continue,
-    /// No further.
+    /// The run ends here.
     Stop,
 }
 
-/// A recorder could not record.
+/// Error of a recorder that could not record.
 #[derive(Debug, thiserror::Error)]
 #[error("recording at t = {t} s failed: {source}")]
 pub struct RecordError {
     /// Time of the state (s).
     pub t: f64,
-    /// What went wrong.
+    /// The cause.
     pub source: Box<dyn std::error::Error + Send + Sync>,
 }
 
-/// Sees states of a running simulation; says beforehand which, so that nobody pays for copies.
-pub trait Recorder {
-    /// Whether it wants the state after `step` steps (0: the initial state), at time `t` (s).
-    fn wants(&mut self, step: usize, t: f64) -> bool;
+/// A moment of a running simulation.
+#[derive(Clone, Copy)]
+pub struct Moment<'a> {
+    /// The system.
+    pub system: &'a dyn System,
+    /// Inputs from outside.
+    pub inputs: &'a Inputs,
+    /// The state.
+    pub state: &'a State,
+}
 
-    /// A state it wanted. `state.v` may be staggered: ask [`State::velocity_at_t`].
+impl Moment<'_> {
+    /// Writes the velocity at the displacement's time (m/s) into `out`; see
+    /// [`State::velocity_at_t`].
+    ///
+    /// # Errors
+    /// [`EvaluationError`] when the system refuses the state.
+    pub fn velocity(&self, out: &mut [f64]) -> Result<(), EvaluationError> {
+        self.state.velocity_at_t(self.system, self.inputs, out)
+    }
+}
+
+/// Sees a running simulation. It asks beforehand for the moments it wants, which saves copies and
+/// lets a method take many steps at once.
+pub trait Recorder {
+    /// The first of the steps from `step` on (0: the initial state) after which it wants to see the
+    /// state, where there is one.
+    fn next(&mut self, step: usize) -> Option<usize>;
+
+    /// Records a moment it wanted. `state.v` may be staggered: ask [`Moment::velocity`].
     ///
     /// # Errors
     /// [`RecordError`] when it could not keep what it saw; the simulation ends.
-    fn record(&mut self, system: &dyn System, state: &State) -> Result<Verdict, RecordError>;
+    fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError>;
+
+    /// Degrees of freedom whose displacements it wants of every step. Asked once.
+    fn watches(&self) -> Vec<u32> {
+        Vec::new()
+    }
+
+    /// Displacements (m) of the degrees of freedom that it watches, after the step to time `t` (s) and
+    /// of the initial state. They come in order, but not before the batch that they belong to is taken.
+    ///
+    /// # Errors
+    /// Same as [`Recorder::record`].
+    fn watched(&mut self, _t: f64, _u: &[f64]) -> Result<Verdict, RecordError> {
+        Ok(Verdict::Continue)
+    }
 }
 
 /// Wants nothing.
 impl Recorder for () {
-    fn wants(&mut self, _step: usize, _t: f64) -> bool {
-        false
+    fn next(&mut self, _step: usize) -> Option<usize> {
+        None
     }
 
-    fn record(&mut self, _system: &dyn System, _state: &State) -> Result<Verdict, RecordError> {
+    fn record(&mut self, _moment: &Moment<'_>) -> Result<Verdict, RecordError> {
         Ok(Verdict::Continue)
     }
 }
@@ -47,52 +85,83 @@ impl Recorder for () {
 /// Wants every state.
 impl<F> Recorder for F
 where
-    F: FnMut(&dyn System, &State) -> Result<Verdict, RecordError>,
+    F: FnMut(&Moment<'_>) -> Result<Verdict, RecordError>,
 {
-    fn wants(&mut self, _step: usize, _t: f64) -> bool {
-        true
+    fn next(&mut self, step: usize) -> Option<usize> {
+        Some(step)
     }
 
-    fn record(&mut self, system: &dyn System, state: &State) -> Result<Verdict, RecordError> {
-        self(system, state)
+    fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        self(moment)
     }
 }
 
 /// Several recorders as one: each sees the states it wants; one that stops stops all.
 #[derive(Default)]
 pub struct Recorders<'a> {
-    list: Vec<(Box<dyn Recorder + 'a>, bool)>,
+    list: Vec<Member<'a>>,
+}
+
+struct Member<'a> {
+    recorder: Box<dyn Recorder + 'a>,
+    /// The step that it wants next.
+    next: Option<usize>,
+    /// Number of degrees of freedom that it watches.
+    watched: usize,
 }
 
 impl<'a> Recorders<'a> {
-    /// None yet.
+    /// A list without recorders.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// One more.
+    /// Adds a recorder.
     #[must_use]
     pub fn with(mut self, recorder: impl Recorder + 'a) -> Self {
-        self.list.push((Box::new(recorder), false));
+        self.list.push(Member {
+            watched: recorder.watches().len(),
+            recorder: Box::new(recorder),
+            next: None,
+        });
         self
     }
 }
 
 impl Recorder for Recorders<'_> {
-    fn wants(&mut self, step: usize, t: f64) -> bool {
-        for (recorder, wanted) in &mut self.list {
-            *wanted = recorder.wants(step, t);
+    fn next(&mut self, step: usize) -> Option<usize> {
+        for member in &mut self.list {
+            member.next = member.recorder.next(step);
         }
-        self.list.iter().any(|(_, wanted)| *wanted)
+        self.list.iter().filter_map(|member| member.next).min()
     }
 
-    fn record(&mut self, system: &dyn System, state: &State) -> Result<Verdict, RecordError> {
+    fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        let soonest = self.list.iter().filter_map(|member| member.next).min();
         let mut verdict = Verdict::Continue;
-        for (recorder, wanted) in &mut self.list {
-            if *wanted && recorder.record(system, state)? == Verdict::Stop {
+        for member in &mut self.list {
+            if member.next == soonest && member.recorder.record(moment)? == Verdict::Stop {
                 verdict = Verdict::Stop;
             }
+        }
+        Ok(verdict)
+    }
+
+    fn watches(&self) -> Vec<u32> {
+        let lists = self.list.iter().map(|member| member.recorder.watches());
+        lists.flatten().collect()
+    }
+
+    fn watched(&mut self, t: f64, u: &[f64]) -> Result<Verdict, RecordError> {
+        let (mut verdict, mut rest) = (Verdict::Continue, u);
+        for member in &mut self.list {
+            let (own, others) = rest.split_at(member.watched);
+            // Alone it would not be called either.
+            if !own.is_empty() && member.recorder.watched(t, own)? == Verdict::Stop {
+                verdict = Verdict::Stop;
+            }
+            rest = others;
         }
         Ok(verdict)
     }

@@ -1,8 +1,14 @@
 //! Running an integrator.
 
-use crate::{Integrator, RecordError, Recorder, State, StepError, StepReport, System, Verdict};
+use crate::{
+    Batch, Inputs, Integrator, Moment, RecordError, Recorder, State, StepError, StepReport, System,
+    Verdict, Watch,
+};
 
-/// How far and in which steps.
+/// Most steps of a batch: bounds what a watch keeps before it is written down.
+const LONGEST_BATCH: usize = 1024;
+
+/// Length, number and limit of the steps of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run {
     /// Step (s).
@@ -14,7 +20,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// As many steps as cover `duration` (s); a last step may pass it where dt does not divide it.
+    /// Steps that cover `duration` (s); the last may pass it where dt does not divide it.
     #[must_use]
     pub fn covering(duration: f64, dt: f64) -> Self {
         // The subtrahend keeps a quotient like 50.000000000000004 from costing one step more.
@@ -26,7 +32,7 @@ impl Run {
         }
     }
 
-    /// With a limit (m) on displacement components.
+    /// Sets the limit (m) on displacement components.
     #[must_use]
     pub fn with_divergence_limit(self, divergence_limit: f64) -> Self {
         Self {
@@ -36,7 +42,7 @@ impl Run {
     }
 }
 
-/// How a run ended.
+/// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
     /// All steps taken.
@@ -45,17 +51,17 @@ pub enum Outcome {
     Diverged {
         /// Time of the state (s).
         t: f64,
-        /// The worst degree of freedom.
-        cell: usize,
+        /// The degree of freedom that went farthest.
+        dof: usize,
     },
     /// A recorder stopped it.
     Stopped,
 }
 
-/// What a run did.
+/// Summary of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunReport {
-    /// How it ended.
+    /// End of the run.
     pub outcome: Outcome,
     /// Steps taken.
     pub steps: usize,
@@ -63,7 +69,7 @@ pub struct RunReport {
     pub work: StepReport,
 }
 
-/// Why a run could not go on.
+/// Reasons for which a run cannot go on.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulateError {
@@ -75,8 +81,8 @@ pub enum SimulateError {
     Record(#[from] RecordError),
 }
 
-/// Takes `run.steps` steps from `state`, showing states to the recorder as it asks for them, and
-/// stops early when a displacement is not finite or passes `run.divergence_limit`.
+/// Takes `run.steps` steps from `state`, in batches that end where the recorder wants to see a
+/// state, and stops early when a displacement is not finite or passes `run.divergence_limit`.
 ///
 /// Set-up work done by the first step counts; call [`Integrator::prepare`] first to keep it out.
 ///
@@ -89,51 +95,81 @@ pub fn simulate(
     run: &Run,
     recorder: &mut dyn Recorder,
 ) -> Result<RunReport, SimulateError> {
+    simulate_under(system, Inputs::none(), integrator, state, run, recorder)
+}
+
+/// Runs [`simulate`] under recorded inputs.
+///
+/// # Errors
+/// Same as [`simulate`].
+pub fn simulate_under(
+    system: &dyn System,
+    inputs: &Inputs,
+    integrator: &mut dyn Integrator,
+    state: &mut State,
+    run: &Run,
+    recorder: &mut dyn Recorder,
+) -> Result<RunReport, SimulateError> {
     let mut report = RunReport {
         outcome: Outcome::Finished,
         steps: 0,
         work: StepReport::default(),
     };
-    let mut show = |system: &dyn System, state: &State, step| {
-        if recorder.wants(step, state.t()) {
-            recorder.record(system, state)
-        } else {
-            Ok(Verdict::Continue)
-        }
-    };
-    if show(system, state, 0)? == Verdict::Stop {
-        report.outcome = Outcome::Stopped;
-        return Ok(report);
+    let mut watch = Watch::new(recorder.watches(), run.steps.min(LONGEST_BATCH) + 1);
+    let watches = !watch.is_empty();
+    if watches {
+        watch.sample(state);
     }
-    while report.steps < run.steps {
-        report.work += integrator.step(system, state, run.dt)?;
-        report.steps += 1;
-        if let Some(cell) = beyond(&state.u, run.divergence_limit) {
-            report.outcome = Outcome::Diverged { t: state.t(), cell };
-            return Ok(report);
+    let mut failed = None;
+    loop {
+        let mut verdict = deliver(&mut watch, recorder)?;
+        if let Some(error) = failed {
+            return Err(error);
         }
-        if show(system, state, report.steps)? == Verdict::Stop {
+        let mut next = recorder.next(report.steps);
+        if next == Some(report.steps) && report.outcome == Outcome::Finished {
+            let moment = Moment {
+                system,
+                inputs,
+                state,
+            };
+            if recorder.record(&moment)? == Verdict::Stop {
+                verdict = Verdict::Stop;
+            }
+            next = recorder.next(report.steps + 1);
+        }
+        if verdict == Verdict::Stop && report.outcome == Outcome::Finished {
             report.outcome = Outcome::Stopped;
+        }
+        if report.steps >= run.steps || report.outcome != Outcome::Finished {
             return Ok(report);
         }
+        let wished = next.map_or(run.steps, |next| next.min(run.steps));
+        let count = (wished - report.steps).clamp(1, LONGEST_BATCH);
+        let mut batch =
+            Batch::new(system, inputs, run.dt, count).with_divergence_limit(run.divergence_limit);
+        if watches {
+            batch = batch.with_watch(&mut watch);
+        }
+        failed = batch.take(integrator, state).err().map(SimulateError::from);
+        report.steps += batch.taken();
+        report.work += batch.work();
+        if let Some(dof) = batch.diverged() {
+            report.outcome = Outcome::Diverged { t: state.t(), dof };
+        }
     }
-    Ok(report)
 }
 
-/// The degree of freedom farthest beyond `limit`; one that is not a number is farthest of all.
-fn beyond(u: &[f64], limit: f64) -> Option<usize> {
-    let fine = |value: &f64| value.abs() <= limit && value.is_finite();
-    if u.iter().all(fine) {
-        return None;
-    }
-    let distance = |value: f64| {
-        if value.is_nan() {
-            f64::INFINITY
-        } else {
-            value.abs()
+/// Passes watched samples on to the recorder, those of a run that fails or ends included.
+fn deliver(watch: &mut Watch, recorder: &mut dyn Recorder) -> Result<Verdict, RecordError> {
+    let mut verdict = Verdict::Continue;
+    for (t, u) in watch.samples() {
+        if recorder.watched(t, u)? == Verdict::Stop {
+            verdict = Verdict::Stop;
         }
-    };
-    (0..u.len()).max_by(|&i, &j| distance(u[i]).total_cmp(&distance(u[j])))
+    }
+    watch.clear();
+    Ok(verdict)
 }
 
 #[cfg(test)]
@@ -146,13 +182,5 @@ mod tests {
         assert_eq!(Run::covering(1.0, 0.015).steps, 67);
         assert_eq!(Run::covering(1.0, 0.02 / 3.0).steps, 150);
         assert_eq!(Run::covering(0.0, 0.02).steps, 0);
-    }
-
-    #[test]
-    fn the_worst_degree_of_freedom_is_named() {
-        assert_eq!(beyond(&[1.0, -2.0], 3.0), None);
-        assert_eq!(beyond(&[1.0, -5.0, 4.0], 3.0), Some(1));
-        assert_eq!(beyond(&[1.0, 7.0, f64::NAN], 3.0), Some(2));
-        assert_eq!(beyond(&[f64::INFINITY], f64::INFINITY), Some(0));
     }
 }

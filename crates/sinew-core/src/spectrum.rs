@@ -1,145 +1,14 @@
 //! Extreme eigenvalues, from which stable steps follow.
 
-use crate::{LinearOperators, Needs, SetupError, System};
+pub use crate::lanczos::{largest_eigenvalue, largest_eigenvalue_of_pencil};
 
-/// Lanczos steps after which the estimate is taken as it is.
-const MAX_STEPS: usize = 600;
-
-/// The largest eigenvalue of `M^-1 S` for a symmetric positive semidefinite S and a diagonal M.
-/// `multiply(x, out)` writes `out = S x`. See [`largest_eigenvalue_of_pencil`].
-#[must_use]
-pub fn largest_eigenvalue(mass: &[f64], multiply: impl FnMut(&[f64], &mut [f64])) -> f64 {
-    largest_eigenvalue_of_pencil(mass.len(), multiply, |x, out| {
-        for ((out, x), mass) in out.iter_mut().zip(x).zip(mass) {
-            *out = x / mass;
-        }
-    })
-}
-
-/// The largest eigenvalue of `P^-1 S` for a symmetric positive semidefinite S and a symmetric
-/// positive definite P of which only the inverse is at hand, by the Lanczos iteration in P's inner
-/// product (Parlett, The Symmetric Eigenvalue Problem, section 15.11), to about nine digits.
-///
-/// `multiply(x, out)` writes `out = S x`, `solve(x, out)` writes `out = P^-1 x`; both of length `n`.
-/// The start vector is fixed, so the result reproduces.
-#[must_use]
-pub fn largest_eigenvalue_of_pencil(
-    n: usize,
-    mut multiply: impl FnMut(&[f64], &mut [f64]),
-    mut solve: impl FnMut(&[f64], &mut [f64]),
-) -> f64 {
-    // Each basis vector is kept as q and as its image P q, called dual here.
-    let mut dual = start_vector(n);
-    let mut primal = vec![0.0; n];
-    solve(&dual, &mut primal);
-    let length = dot(&primal, &dual).max(0.0).sqrt();
-    if length == 0.0 {
-        return 0.0;
-    }
-    scale(&mut dual, 1.0 / length);
-    scale(&mut primal, 1.0 / length);
-    let mut previous_dual = vec![0.0; n];
-    let mut next = vec![0.0; n];
-    let (mut diagonal, mut off_diagonal) = (Vec::new(), Vec::new());
-    let mut estimate = 0.0;
-    for step in 1..=MAX_STEPS {
-        multiply(&primal, &mut next);
-        let alpha = dot(&next, &primal);
-        let beta_before = off_diagonal.last().copied().unwrap_or(0.0);
-        for ((next, dual), previous) in next.iter_mut().zip(&dual).zip(&previous_dual) {
-            *next -= alpha * dual + beta_before * previous;
-        }
-        diagonal.push(alpha);
-        solve(&next, &mut primal);
-        let beta = dot(&next, &primal).max(0.0).sqrt();
-        // Rounding costs the basis its orthogonality, so that n steps need not be enough.
-        let exhausted = beta <= 1e-14 * alpha.abs().max(estimate);
-        if exhausted || step % 10 == 0 || step == MAX_STEPS {
-            let better = largest_of_tridiagonal(&diagonal, &off_diagonal);
-            let settled = better - estimate <= 1e-11 * better;
-            estimate = better;
-            if exhausted || settled {
-                break;
-            }
-        }
-        off_diagonal.push(beta);
-        scale(&mut next, 1.0 / beta);
-        scale(&mut primal, 1.0 / beta);
-        std::mem::swap(&mut previous_dual, &mut dual);
-        std::mem::swap(&mut dual, &mut next);
-    }
-    estimate
-}
-
-fn scale(vector: &mut [f64], factor: f64) {
-    vector.iter_mut().for_each(|value| *value *= factor);
-}
+use crate::operators::LinearOperators;
 
 /// 2/omega_max (s) of these matrices, the limit of undamped leapfrog; infinite where nothing
 /// vibrates.
 #[must_use]
 pub fn critical_step(operators: &LinearOperators) -> f64 {
-    let stiffness = operators.stiffness();
-    let eigenvalue = largest_eigenvalue(operators.mass(), |x, out| stiffness.multiply(x, out));
-    2.0 / eigenvalue.max(0.0).sqrt()
-}
-
-/// A fixed vector of length one with parts in every direction.
-fn start_vector(n: usize) -> Vec<f64> {
-    let mut seed = 0x9E37_79B9_7F4A_7C15_u64;
-    let mut vector: Vec<f64> = (0..n)
-        .map(|_| {
-            // xorshift64: Marsaglia, J. Stat. Softw. 8(14), 2003.
-            seed ^= seed << 13;
-            seed ^= seed >> 7;
-            seed ^= seed << 17;
-            (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-        })
-        .collect();
-    let length = dot(&vector, &vector).sqrt();
-    scale(&mut vector, 1.0 / length);
-    vector
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Bisection on the Sturm sequence of a symmetric tridiagonal matrix.
-fn largest_of_tridiagonal(diagonal: &[f64], off_diagonal: &[f64]) -> f64 {
-    let off = |i: usize| off_diagonal.get(i).copied().unwrap_or(0.0).abs();
-    let radius = |i: usize| off(i) + if i == 0 { 0.0 } else { off(i - 1) };
-    let discs = diagonal.iter().enumerate().map(|(i, d)| d + radius(i));
-    let mut high = discs.fold(f64::NEG_INFINITY, f64::max);
-    let mut low = diagonal.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let above = |x: f64| {
-        // All pivots of T - x negative: every eigenvalue lies below x.
-        let mut pivot = 1.0_f64;
-        for (i, d) in diagonal.iter().enumerate() {
-            let coupling = if i == 0 {
-                0.0
-            } else {
-                off(i - 1).powi(2) / pivot
-            };
-            pivot = d - x - coupling;
-            if pivot >= 0.0 {
-                return false;
-            }
-        }
-        true
-    };
-    while high - low > 1e-13 * high.abs().max(f64::MIN_POSITIVE) {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if above(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    high
+    Spectrum::of(operators).critical_step()
 }
 
 /// The fastest motions of a linear system.
@@ -158,9 +27,13 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// Of these matrices.
+    /// The spectrum of these matrices, computed at the first request and kept with them.
     #[must_use]
     pub fn of(operators: &LinearOperators) -> Self {
+        *operators.derived(Self::compute)
+    }
+
+    fn compute(operators: &LinearOperators) -> Self {
         let stiffness = operators.stiffness();
         let damping = operators.damping();
         let mass = operators.mass();
@@ -183,60 +56,9 @@ impl Spectrum {
         }
     }
 
-    /// Of a system that shows its matrices.
-    ///
-    /// # Errors
-    /// [`SetupError::Lacks`] in the name of `integrator` when it shows none.
-    pub fn of_system(system: &dyn System, integrator: &'static str) -> Result<Self, SetupError> {
-        system
-            .as_linear()
-            .map(|linear| Self::of(linear.operators()))
-            .ok_or_else(|| Needs::Matrices.lacking(integrator))
-    }
-
     /// 2/omega_max (s), the limit of undamped leapfrog; infinite where nothing vibrates.
     #[must_use]
     pub fn critical_step(&self) -> f64 {
         2.0 / self.omega_max
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn chain_between_walls_has_its_textbook_frequency() {
-        // Eigenvalues of tridiag(-1, 2, -1): 2 - 2 cos(j pi/(n + 1)).
-        for n in [1_usize, 2, 5, 40, 1500] {
-            let mass = vec![2.0; n];
-            let largest = largest_eigenvalue(&mass, |x, out| {
-                for i in 0..n {
-                    let left = if i > 0 { x[i - 1] } else { 0.0 };
-                    let right = x.get(i + 1).copied().unwrap_or(0.0);
-                    out[i] = 2.0 * x[i] - left - right;
-                }
-            });
-            let angle = n as f64 * std::f64::consts::PI / (n as f64 + 1.0);
-            let expected = (2.0 - 2.0 * angle.cos()) / 2.0;
-            assert!(
-                (largest / expected - 1.0).abs() < 2e-5,
-                "{n}: {largest} {expected}"
-            );
-        }
-    }
-
-    #[test]
-    fn unequal_masses_count() {
-        let largest = largest_eigenvalue(&[1.0, 4.0], |x, out| {
-            out[0] = 3.0 * x[0];
-            out[1] = 20.0 * x[1];
-        });
-        assert!((largest - 5.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn nothing_vibrates_without_stiffness() {
-        assert_eq!(largest_eigenvalue(&[1.0; 4], |_, out| out.fill(0.0)), 0.0);
     }
 }

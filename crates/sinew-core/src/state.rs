@@ -1,67 +1,103 @@
 //! The state of a simulation.
 
-use crate::{Clock, EvaluationError, LoadTime, Revision, System, Trial};
+use crate::clock::Clock;
+use crate::revision::Revision;
 
-/// Where a system is and how it moves, free degrees of freedom only, node-major (x y z).
+/// Displacement and velocity of a system: free degrees of freedom only, node-major (x y z).
 ///
 /// A plain value: a clone is a checkpoint, and a run continued from a clone with a fresh
 /// integrator is bit-identical. It therefore carries everything a method must remember.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// Two states are equal where all that determines the motion is equal; the identity of the loads
+/// does not count.
+#[derive(Clone, Debug)]
 pub struct State {
     /// Time of `u`.
     pub clock: Clock,
     /// Displacement (m).
     pub u: Vec<f64>,
-    /// Velocity (m/s), at the time that `velocity` says.
+    /// Velocity (m/s), at the time given by `velocity`.
     pub v: Vec<f64>,
-    /// When `v` holds.
+    /// The velocity's time.
     pub velocity: VelocityTime,
-    /// Acceleration (m/s^2), of the kind that `acceleration` says; room to work in otherwise.
+    /// Acceleration (m/s^2), of the kind given by `acceleration`; work space otherwise.
     pub a: Vec<f64>,
-    /// Which acceleration `a` is.
+    /// Kind of acceleration in `a`.
     pub acceleration: Acceleration,
-    /// What the motion began with, where a guarded method bounds velocities by it; `None` until
+    /// Internal variables of laws with memory, in an order that the system knows; empty for
+    /// elastic ones.
+    pub internal: Vec<f64>,
+    /// Identity of the matrices and the loads under which the last step was taken.
+    pub loads: Option<[Revision; 2]>,
+    /// Start of the motion, where a guarded method bounds velocities by its energy; `None` until
     /// then. Set it to `None` after changing `u` or `v` by hand.
     pub start: Option<Start>,
 }
 
-/// When the velocity of a state holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum VelocityTime {
-    /// At the displacement's time.
-    Same,
-    /// In the middle of the last step: of staggered methods.
-    MiddleOfStep,
+impl PartialEq for State {
+    fn eq(&self, other: &Self) -> bool {
+        let Self {
+            clock,
+            u,
+            v,
+            velocity,
+            a,
+            acceleration,
+            internal,
+            loads: _,
+            start,
+        } = self;
+        (clock, velocity, acceleration, start)
+            == (
+                &other.clock,
+                &other.velocity,
+                &other.acceleration,
+                &other.start,
+            )
+            && (u, v, a, internal) == (&other.u, &other.v, &other.a, &other.internal)
+    }
 }
 
-/// Which acceleration a state keeps.
+/// Time of a state's velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VelocityTime {
+    /// The displacement's time.
+    Same,
+    /// The middle of the last step: staggered methods.
+    MiddleOfStep,
+    /// The mean over a last step that does not resolve the fastest motions, so that the velocity at any
+    /// instant is unknown.
+    MeanOverStep,
+}
+
+/// Kind of acceleration that a state keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acceleration {
-    /// None.
+    /// No acceleration.
     None,
-    /// That at the displacement's time, under the loads at the end of the last step.
+    /// The acceleration at the displacement's time, under the loads at the end of the last step.
     Same,
-    /// That of the last kick, which led to a velocity in the middle of the last step.
+    /// The acceleration of the last kick, which led to a velocity in the middle of the last step.
     Kick,
 }
 
-/// What a motion began with, as far as its velocities are bounded by it.
+/// Start of a motion, by whose energy velocities are bounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
-    /// The system in which it began; in another one the motion begins anew.
+    /// The system in which it began; in another system the motion begins again.
     pub system: Revision,
     /// Kinetic and elastic energy (J).
     pub energy: f64,
 }
 
 impl State {
-    /// At rest, undeformed, at t = 0.
+    /// A state at rest, undeformed, at t = 0.
     #[must_use]
     pub fn at_rest(dofs: usize) -> Self {
         Self::new(vec![0.0; dofs], vec![0.0; dofs])
     }
 
-    /// The given displacement (m) and velocity (m/s) at t = 0.
+    /// A state with this displacement (m) and velocity (m/s) at t = 0.
     #[must_use]
     pub fn new(u: Vec<f64>, v: Vec<f64>) -> Self {
         Self {
@@ -71,6 +107,8 @@ impl State {
             velocity: VelocityTime::Same,
             a: Vec::new(),
             acceleration: Acceleration::None,
+            internal: Vec::new(),
+            loads: None,
             start: None,
         }
     }
@@ -84,7 +122,7 @@ impl State {
     /// Whether a staggered method has taken the last step, of `dt` (s), and can go on with another.
     #[must_use]
     pub fn is_staggered_by(&self, dt: f64) -> bool {
-        self.velocity == VelocityTime::MiddleOfStep && self.clock.last_step() == Some(dt)
+        self.velocity != VelocityTime::Same && self.clock.last_step() == Some(dt)
     }
 
     /// Ends a step of `dt` (s) that moved `u` and `v` to the same time and keeps no acceleration.
@@ -97,63 +135,5 @@ impl State {
         self.clock.advance(dt);
         self.velocity = velocity;
         self.acceleration = acceleration;
-    }
-
-    /// Writes the velocity at the displacement's time (m/s) into `out` (length of `u`).
-    ///
-    /// A staggered velocity is brought there with the acceleration of the last kick, where the method
-    /// keeps one (its mass may be another than the system's), and otherwise with the acceleration at
-    /// that time, which takes a force evaluation. Either is accurate to second order in the step.
-    ///
-    /// # Errors
-    /// [`EvaluationError`] when the system refuses the state.
-    pub fn velocity_at_t(
-        &self,
-        system: &dyn System,
-        out: &mut [f64],
-    ) -> Result<(), EvaluationError> {
-        let (VelocityTime::MiddleOfStep, Some(dt)) = (self.velocity, self.clock.last_step()) else {
-            out.copy_from_slice(&self.v);
-            return Ok(());
-        };
-        if self.acceleration == Acceleration::Kick {
-            for ((value, v), a) in out.iter_mut().zip(&self.v).zip(&self.a) {
-                *value = v + dt / 2.0 * a;
-            }
-            return Ok(());
-        }
-        let trial = Trial {
-            // Loads that come later do not matter yet.
-            load: LoadTime::around(self.t(), dt, 0.0),
-            dt: dt / 2.0,
-            u: &self.u,
-            v: &self.v,
-        };
-        system.net_force(&trial, out)?;
-        let acceleration = out.iter_mut().zip(system.mass());
-        for ((value, mass), v) in acceleration.zip(&self.v) {
-            *value = v + dt / 2.0 * *value / mass;
-        }
-        Ok(())
-    }
-
-    /// Moves a staggered velocity to the displacement's time, so that any method can go on from
-    /// here; whether it had to. `work` has the length of `u`.
-    ///
-    /// # Errors
-    /// As [`State::velocity_at_t`].
-    pub fn synchronise(
-        &mut self,
-        system: &dyn System,
-        work: &mut [f64],
-    ) -> Result<bool, EvaluationError> {
-        if self.velocity == VelocityTime::Same {
-            return Ok(false);
-        }
-        self.velocity_at_t(system, work)?;
-        self.v.copy_from_slice(work);
-        self.velocity = VelocityTime::Same;
-        self.acceleration = Acceleration::None;
-        Ok(true)
     }
 }

@@ -1,56 +1,29 @@
 //! The equation of motion as integrators see it.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-
 use sinew_sparse::Layers;
 
-use crate::{LinearSystem, LoadTime, State};
-
-/// Identity of a system's matrices and laws, unique in the process.
-///
-/// Integrators keep factors and buffers while it stays the same; a system takes a new one
-/// whenever it changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Revision(u64);
-
-impl Revision {
-    /// A revision no other system has.
-    #[must_use]
-    #[expect(clippy::new_without_default, reason = "each call gives another value")]
-    pub fn new() -> Self {
-        static NEXT: AtomicU64 = AtomicU64::new(0);
-        Self(NEXT.fetch_add(1, Ordering::Relaxed))
-    }
-}
+use crate::elements::Elements;
+use crate::energy::Energy;
+use crate::evaluation_error::EvaluationError;
+use crate::load_time::LoadTime;
+use crate::operators::LinearOperators;
+use crate::revision::Revision;
+use crate::spectrum::Spectrum;
+use crate::state::State;
 
 /// A point at which a system is evaluated without being changed.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<'a> {
-    /// When loads are taken.
-    pub load: LoadTime,
-    /// Step that led here (s); laws with memory need it.
+    /// The time of the loads, and inputs from outside.
+    pub load: LoadTime<'a>,
+    /// Time from the last accepted state to this point (s); laws with memory need it.
     pub dt: f64,
     /// Displacement (m).
     pub u: &'a [f64],
     /// Velocity (m/s).
     pub v: &'a [f64],
-}
-
-/// Energies of a state (J).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Energy {
-    /// Half v' M v.
-    pub kinetic: f64,
-    /// Stored in deformation.
-    pub elastic: f64,
-}
-
-impl Energy {
-    /// Kinetic and elastic together (J).
-    #[must_use]
-    pub fn total(self) -> f64 {
-        self.kinetic + self.elastic
-    }
+    /// Internal variables of the last accepted state, [`System::internal_variables`] of them.
+    pub internal: &'a [f64],
 }
 
 /// Sizes by which a guard cuts steps where a method knows no stable one.
@@ -60,47 +33,36 @@ pub struct Scales<'a> {
     pub cell_size: &'a [f64],
 }
 
-/// A law was asked outside its domain.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("element {element}: {reason}")]
-pub struct EvaluationError {
-    /// Tag of the element in its mesh.
-    pub element: u64,
-    /// What went wrong, with the numbers.
-    pub reason: String,
-}
-
 /// `M a + f_int(u, v) = f_ext(t)` with lumped M.
 ///
 /// Evaluation changes nothing; a step that is accepted is announced once through
-/// [`System::accept`].
+/// [`System::accept`]. [`System::equations`] says where the forces come from: a system is either its
+/// matrices and loads or its own force law, never both, so that all methods see the same forces.
+/// Forces from outside enter through [`crate::Inputs`].
 pub trait System: Send + Sync {
     /// Length of the displacement vector.
     fn dofs(&self) -> usize;
 
+    /// Degrees of freedom of a cell: the components that turn together with the axes.
+    fn layers(&self) -> Layers;
+
     /// Lumped mass of each degree of freedom (kg), all positive.
     fn mass(&self) -> &[f64];
 
-    /// Identity of the matrices and laws.
+    /// Identity of the matrices and laws. Other loads or inputs do not change it.
     fn revision(&self) -> Revision;
 
-    /// `out = f_ext(t) - f_int(u, v)` (N): one sweep over all cells.
-    ///
-    /// # Errors
-    /// [`EvaluationError`] when a law is outside its domain; `out` is then unspecified.
-    fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError>;
+    /// The forces.
+    fn equations(&self) -> Equations<'_>;
 
-    /// `out = f_ext` (N) as a step takes it.
-    fn external_force(&self, when: LoadTime, out: &mut [f64]);
-
-    /// The rate alpha (1/s) of that part of `f_int` which is `alpha M v`; central difference
-    /// treats it implicitly at no cost.
-    fn mass_damping(&self) -> f64 {
-        0.0
+    /// Number of internal variables, such as the viscous stresses of laws with memory; they stand
+    /// in [`State::internal`].
+    fn internal_variables(&self) -> usize {
+        0
     }
 
-    /// Tells that a step was accepted and the state is its result. Called once per step; laws
-    /// with memory update the state's internal variables here.
+    /// Tells that a step was accepted and the state is its result. Called once per step, or per
+    /// part of a step that is cut; laws with memory update the state's internal variables here.
     fn accept(&self, _state: &mut State) {}
 
     /// Energies, where the system knows them.
@@ -108,8 +70,9 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// Elements turned inside out by `u`, where the system has elements.
-    fn inverted_elements(&self, _u: &[f64]) -> Option<usize> {
+    /// Number of elements that are inside out at a time, with the displacement `u` then; `None` where the
+    /// system has no elements, or moves by inputs that the time does not bring.
+    fn inverted_elements(&self, _when: LoadTime<'_>, _u: &[f64]) -> Option<usize> {
         None
     }
 
@@ -123,21 +86,112 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// Degrees of freedom of a cell: the components that turn together with the axes. A nonlinear
-    /// system in space says so itself.
-    fn layers(&self) -> Layers {
-        self.as_linear().map_or(Layers::One, |linear| {
-            linear.operators().stiffness().layers()
-        })
-    }
-
     /// Name of the cell of a degree of freedom in the user's terms, for messages.
     fn cell_name(&self, dof: usize) -> String {
         format!("degree of freedom {dof}")
     }
+}
 
-    /// The matrices, where the system is linear.
-    fn as_linear(&self) -> Option<&dyn LinearSystem> {
+/// A [`System`] that shows its matrices.
+pub trait LinearSystem: System {
+    /// M, D, K and the loads.
+    fn operators(&self) -> &LinearOperators;
+
+    /// The elements that K is a sum of, where the system knows them.
+    fn elements(&self) -> Option<&dyn Elements> {
         None
     }
+}
+
+/// Source of the forces of a system.
+#[derive(Clone, Copy)]
+pub enum Equations<'a> {
+    /// Matrices and loads.
+    Linear(&'a dyn LinearSystem),
+    /// A law that is evaluated.
+    Forces(&'a dyn ForceLaw),
+}
+
+/// Forces of a system that shows no matrices.
+pub trait ForceLaw: Send + Sync {
+    /// `out = f_ext(t) - f_int(u, v)` (N), with the loads at `trial.load`: one sweep over all
+    /// cells.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] when the law is outside its domain; `out` is then unspecified.
+    fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError>;
+
+    /// `out = f_ext` (N) as a step takes it.
+    fn external_force(&self, when: LoadTime<'_>, out: &mut [f64]);
+
+    /// The rate alpha (1/s) of that part of `f_int` which is `alpha M v`; central difference
+    /// treats it implicitly at no cost.
+    fn mass_damping(&self) -> f64 {
+        0.0
+    }
+
+    /// Bounds of the fastest motions about a state, or about rest, from which stable steps follow;
+    /// `None` where they are unknown.
+    fn spectrum(&self, _about: Option<&State>) -> Option<Spectrum> {
+        None
+    }
+}
+
+impl<'s> dyn System + 's {
+    /// The matrices, where the system is linear.
+    #[must_use]
+    pub fn as_linear(&self) -> Option<&dyn LinearSystem> {
+        match self.equations() {
+            Equations::Linear(linear) => Some(linear),
+            Equations::Forces(_) => None,
+        }
+    }
+
+    /// `out = f_ext(t) - f_int(u, v)` (N): one sweep over all cells.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] when a law is outside its domain; `out` is then unspecified.
+    pub fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
+        match self.equations() {
+            Equations::Linear(linear) => {
+                linear
+                    .operators()
+                    .net_force(trial.load, trial.u, trial.v, out);
+                Ok(())
+            }
+            Equations::Forces(law) => law.net_force(trial, out),
+        }
+    }
+
+    /// `out = f_ext` (N) as a step takes it.
+    pub fn external_force(&self, when: LoadTime<'_>, out: &mut [f64]) {
+        match self.equations() {
+            Equations::Linear(linear) => linear.operators().external_force(when, out),
+            Equations::Forces(law) => law.external_force(when, out),
+        }
+    }
+
+    /// The rate alpha (1/s) of damping that is `alpha M v`.
+    #[must_use]
+    pub fn mass_damping(&self) -> f64 {
+        match self.equations() {
+            Equations::Linear(linear) => linear.operators().damping().mass,
+            Equations::Forces(law) => law.mass_damping(),
+        }
+    }
+
+    /// The fastest motions about a state, or about rest; `None` where they are unknown.
+    #[must_use]
+    pub fn spectrum(&self, about: Option<&State>) -> Option<Spectrum> {
+        match self.equations() {
+            Equations::Linear(linear) => Some(Spectrum::of(linear.operators())),
+            Equations::Forces(law) => law.spectrum(about),
+        }
+    }
+}
+
+/// Identity of the matrices and of the loads of a linear system.
+pub(crate) fn loads_revision(system: &dyn System) -> Option<[Revision; 2]> {
+    let operators = system.as_linear()?.operators();
+    Some([operators.revision(), operators.loads_revision()])
 }

@@ -1,45 +1,132 @@
 //! Sums over elements.
 
-use sinew_core::BlockMatrix;
-use sinew_mesh::TetMesh;
+use std::sync::Arc;
 
+use sinew_core::{BlockMatrix, Layers};
+
+use crate::body::Body;
 use crate::cells::Cells;
 use crate::error::{Cause, FemError, Item};
-use crate::springs::{self, NetworkModulus, Spring};
-use crate::{Problem, SpringRule, tetra};
+use crate::material::Material;
+use crate::network::{Dashpot, Network, dashpots};
+use crate::report::RegionFacts;
+use crate::{Problem, Region, springs};
 
-/// Tetrahedra whose matrices are held in memory at a time.
+/// Number of tetrahedra whose matrices are in memory at a time.
 const BATCH: usize = 4096;
 
-/// A quarter of each tetrahedron's mass on each of its nodes (kg).
-pub(crate) fn lumped_masses(
-    mesh: &TetMesh,
+/// The matrices of a body of some materials.
+pub(crate) struct Assembled {
+    pub(crate) stiffness: BlockMatrix,
+    /// Dashpots along springs, as a matrix; `None` where there are none.
+    pub(crate) damping: Option<BlockMatrix>,
+    /// The dashpots, held ends included.
+    pub(crate) dashpots: Vec<Dashpot>,
+    /// The material of each region.
+    pub(crate) materials: Vec<Material>,
+    /// Facts of each region.
+    pub(crate) facts: Vec<RegionFacts>,
+}
+
+/// Sums up the matrices of a body, whose tetrahedra are in the regions `region_of` and whose nodes
+/// have the lumped `masses` (kg).
+pub(crate) fn assemble(
+    body: &Body,
     problem: &Problem,
-    region_of: &[usize],
-    volumes: &[f64],
-) -> Vec<f64> {
-    let mut masses = vec![0.0; mesh.points.len()];
-    for ((tet, region), volume) in mesh.tets.iter().zip(region_of).zip(volumes) {
+    region_of: &[u32],
+    masses: &[f64],
+) -> Result<Assembled, FemError> {
+    let zero = || BlockMatrix::zeros(Arc::clone(&body.pattern), Layers::Three);
+    let mut stiffness = zero();
+    let mut networks = Vec::new();
+    let (mut materials, mut facts) = (Vec::new(), Vec::new());
+    for (members, region) in members(problem.regions.len(), region_of)
+        .iter()
+        .zip(&problem.regions)
+    {
+        let (material, network) = add_region(&mut stiffness, body, members, region, &mut facts)?;
+        materials.push(material);
+        networks.extend(network);
+    }
+    let dashpots = dashpots(&networks, masses);
+    let mut damping = None;
+    if !dashpots.is_empty() {
+        let matrix = damping.insert(zero());
+        for Dashpot { nodes, rate } in &dashpots {
+            add_edge(matrix, body, *nodes, *rate)?;
+        }
+    }
+    if body.cells.partly_held() {
+        stiffness.clear_pinned(&body.cells.pinned);
+        if let Some(damping) = &mut damping {
+            damping.clear_pinned(&body.cells.pinned);
+        }
+    }
+    Ok(Assembled {
+        stiffness,
+        damping,
+        dashpots,
+        materials,
+        facts,
+    })
+}
+
+/// The tetrahedra of each region.
+fn members(regions: usize, region_of: &[u32]) -> Vec<Vec<u32>> {
+    let mut members = vec![Vec::new(); regions];
+    for (tet, region) in (0..).zip(region_of) {
+        members[*region as usize].push(tet);
+    }
+    members
+}
+
+fn add_region(
+    stiffness: &mut BlockMatrix,
+    body: &Body,
+    members: &[u32],
+    region: &Region,
+    facts: &mut Vec<RegionFacts>,
+) -> Result<(Material, Option<Network>), FemError> {
+    let volume = members.iter().map(|tet| body.volumes[*tet as usize]).sum();
+    let (material, network) = Material::new(&region.law, &body.mesh, members, volume);
+    match &network {
+        Some(network) => {
+            for spring in &network.springs {
+                add_edge(stiffness, body, spring.nodes, spring.stiffness)?;
+            }
+        }
+        None => add_tetrahedra(stiffness, body, members, &material)?,
+    }
+    facts.push(RegionFacts {
+        tets: members.len(),
+        volume,
+        network: network.as_ref().map(|network| network.modulus),
+    });
+    Ok((material, network))
+}
+
+/// A quarter of each tetrahedron's mass on each of its nodes (kg).
+pub(crate) fn lumped_masses(body: &Body, problem: &Problem, region_of: &[u32]) -> Vec<f64> {
+    let mut masses = vec![0.0; body.mesh.points.len()];
+    for ((tet, region), volume) in body.mesh.tets.iter().zip(region_of).zip(&body.volumes) {
         for &node in tet {
-            masses[node as usize] += problem.regions[*region].density * volume / 4.0;
+            let density = problem.regions[*region as usize].density;
+            masses[node as usize] += density * volume / 4.0;
         }
     }
     masses
 }
 
-/// Adds the stiffness of some tetrahedra. Element matrices may be made by many threads; they are
-/// added in order by one, so the sums do not depend on how many.
-pub(crate) fn add_tetrahedra(
+/// Adds the stiffness of some tetrahedra. Many threads may compute the element matrices; one adds
+/// them in order, so the sums do not depend on the number of threads.
+fn add_tetrahedra(
     stiffness: &mut BlockMatrix,
-    mesh: &TetMesh,
-    cells: &Cells,
-    members: &[usize],
-    (lambda, mu): (f64, f64),
+    body: &Body,
+    members: &[u32],
+    material: &Material,
 ) -> Result<(), FemError> {
-    let element = |tet: &usize| {
-        let vertices = mesh.tets[*tet].map(|node| mesh.points[node as usize]);
-        tetra::stiffness(&vertices, lambda, mu)
-    };
+    let mesh = &body.mesh;
+    let element = |tet: &u32| material.stiffness(&mesh.points, &mesh.tets[*tet as usize]);
     for batch in members.chunks(BATCH) {
         #[cfg(feature = "rayon")]
         let matrices: Vec<Option<[f64; 144]>> = {
@@ -48,22 +135,22 @@ pub(crate) fn add_tetrahedra(
         };
         #[cfg(not(feature = "rayon"))]
         let matrices: Vec<Option<[f64; 144]>> = batch.iter().map(element).collect();
-        for (tet, matrix) in batch.iter().zip(matrices) {
+        for (tet, matrix) in batch.iter().map(|tet| *tet as usize).zip(matrices) {
             let Some(matrix) = matrix else {
                 let cause = Cause::Flat {
-                    tag: mesh.tet_tags[*tet],
-                    volume: mesh.volume(*tet),
+                    tag: mesh.tet_tags[tet],
+                    volume: body.volumes[tet],
                     edge: 0.0,
                 };
                 return Err(FemError::new(Item::Mesh, cause));
             };
-            add_moving_part(stiffness, cells, &mesh.tets[*tet], &matrix)?;
+            add_moving_part(stiffness, &body.cells, &mesh.tets[tet], &matrix)?;
         }
     }
     Ok(())
 }
 
-/// Adds the rows and columns of those nodes that are cells.
+/// Adds the rows and columns of the nodes that are cells.
 fn add_moving_part(
     stiffness: &mut BlockMatrix,
     cells: &Cells,
@@ -86,89 +173,22 @@ fn add_moving_part(
     Ok(())
 }
 
-/// The springs of a region.
-pub(crate) struct RegionSprings {
-    pub(crate) springs: Vec<Spring>,
-    /// What they are as a material.
-    pub(crate) modulus: NetworkModulus,
-    /// What calibration multiplied them by.
-    pub(crate) calibration: f64,
-}
-
-/// The springs of a region, calibrated if asked.
-pub(crate) fn region_springs<'a>(
-    points: &[[f64; 3]],
-    tets: impl Iterator<Item = &'a [u32; 4]>,
-    volume: f64,
-    youngs_modulus: f64,
-    rule: SpringRule,
-    calibrate: bool,
-) -> RegionSprings {
-    let mut springs = springs::springs(points, tets, youngs_modulus, rule);
-    let mut modulus = springs::network_modulus(points, &springs, volume);
-    let mut calibration = 1.0;
-    if calibrate && modulus.voigt > 0.0 {
-        calibration = youngs_modulus / modulus.voigt;
-        for spring in &mut springs {
-            spring.stiffness *= calibration;
-        }
-        modulus = NetworkModulus {
-            voigt: modulus.voigt * calibration,
-            softest: modulus.softest * calibration,
-            stiffest: modulus.stiffest * calibration,
-        };
-    }
-    RegionSprings {
-        springs,
-        modulus,
-        calibration,
-    }
-}
-
-/// The edges of all networks, each given with its gamma, and d = gamma 2 sqrt(k (m_i + m_j)) (N s/m)
-/// of each; gamma = 1 damps the pair critically. An edge that networks share is one spring, whose
-/// gamma is the mean of theirs by stiffness: cutting a body into regions changes nothing.
-pub(crate) fn dashpots(networks: &[(f64, Vec<Spring>)], masses: &[f64]) -> (Vec<Spring>, Vec<f64>) {
-    let scaled = |by: fn(f64) -> f64| {
-        let parts = networks.iter().flat_map(|(gamma, springs)| {
-            let factor = by(*gamma);
-            springs.iter().map(move |spring| Spring {
-                stiffness: factor * spring.stiffness,
-                ..*spring
-            })
-        });
-        springs::summed(parts.collect())
-    };
-    let (springs, damped) = (scaled(|_| 1.0), scaled(|gamma| gamma));
-    let rates = springs.iter().zip(&damped).map(|(spring, damped)| {
-        let [a, b] = spring.nodes.map(|node| masses[node as usize]);
-        let gamma = damped.stiffness / spring.stiffness;
-        gamma * 2.0 * (spring.stiffness * (a + b)).sqrt()
-    });
-    let rates = rates.collect();
-    (springs, rates)
-}
-
-/// Adds `rate n n'` to the diagonal blocks of each edge's nodes and subtracts it between them.
-pub(crate) fn add_edges(
+/// Adds `rate n n'` to the diagonal blocks of an edge's nodes and subtracts it between them.
+fn add_edge(
     matrix: &mut BlockMatrix,
-    mesh: &TetMesh,
-    cells: &Cells,
-    springs: &[Spring],
-    rates: impl IntoIterator<Item = f64>,
+    body: &Body,
+    nodes: [u32; 2],
+    rate: f64,
 ) -> Result<(), FemError> {
-    for (spring, rate) in springs.iter().zip(rates) {
-        let (n, _) = springs::direction(&mesh.points, spring.nodes);
-        let block: [f64; 9] = std::array::from_fn(|k| rate * n[k / 3] * n[k % 3]);
-        let ends = spring.nodes.map(|node| cells.of_node(node));
-        for cell in ends.into_iter().flatten() {
-            add_block(matrix, cell, cell, &block)?;
-        }
-        if let [Some(a), Some(b)] = ends {
-            let coupling = block.map(|entry| -entry);
-            add_block(matrix, a, b, &coupling)?;
-            add_block(matrix, b, a, &coupling)?;
-        }
+    let block = springs::edge_block(&body.mesh.points, nodes, rate);
+    let ends = nodes.map(|node| body.cells.of_node(node));
+    for cell in ends.into_iter().flatten() {
+        add_block(matrix, cell, cell, &block)?;
+    }
+    if let [Some(a), Some(b)] = ends {
+        let coupling = block.map(|entry| -entry);
+        add_block(matrix, a, b, &coupling)?;
+        add_block(matrix, b, a, &coupling)?;
     }
     Ok(())
 }

@@ -1,9 +1,9 @@
-//! Which nodes move: the cells of the network.
+//! The cells of the network: the nodes that move.
 
 use sinew_mesh::TetMesh;
 
 use crate::error::{Cause, FemError, Item};
-use crate::{Fixed, check};
+use crate::{Fixed, Problem};
 
 /// Marks a node that is not a cell.
 const HELD: u32 = u32::MAX;
@@ -17,26 +17,21 @@ pub(crate) struct Cells {
     /// Held components of the cells, three a cell.
     pub(crate) pinned: Vec<bool>,
     cell_of_node: Vec<u32>,
+    /// Nodes with a held component, increasing.
+    pub(crate) held_nodes: Vec<u32>,
     /// Components held at all nodes together.
     pub(crate) held_components: usize,
 }
 
 impl Cells {
-    pub(crate) fn new(mesh: &TetMesh, fixed: &[Fixed]) -> Result<Self, FemError> {
-        let mut held = vec![[false; 3]; mesh.points.len()];
-        let mut last = Item::Mesh;
-        for (index, support) in fixed.iter().enumerate() {
-            last = Item::Fixed(index);
-            let group = check::group(mesh, &support.group, last)?;
-            for node in mesh.group_nodes(group) {
-                for (held, axis) in held[node as usize].iter_mut().zip(support.axes) {
-                    *held |= axis;
-                }
-            }
-        }
+    pub(crate) fn new(mesh: &TetMesh, problem: &Problem) -> Result<Self, FemError> {
+        let held = held_axes(mesh, problem)?;
         let mut cell_of_node = vec![HELD; held.len()];
-        let (mut nodes, mut pinned) = (Vec::new(), Vec::new());
+        let (mut nodes, mut pinned, mut held_nodes) = (Vec::new(), Vec::new(), Vec::new());
         for (node, axes) in held.iter().enumerate() {
+            if *axes != [false; 3] {
+                held_nodes.push(node as u32);
+            }
             if *axes != [true; 3] {
                 cell_of_node[node] = nodes.len() as u32;
                 nodes.push(node as u32);
@@ -45,14 +40,34 @@ impl Cells {
         }
         if nodes.is_empty() {
             let nodes = held.len();
-            return Err(FemError::new(last, Cause::NothingFree { nodes }));
+            let last = |list: usize| list.checked_sub(1);
+            let moved = last(problem.moves.len()).map(Item::Move);
+            let item = moved.or(last(problem.fixed.len()).map(Item::Fixed));
+            let item = item.unwrap_or(Item::Mesh);
+            return Err(FemError::new(item, Cause::NothingFree { nodes }));
         }
         Ok(Self {
             nodes,
             pinned,
             cell_of_node,
+            held_nodes,
             held_components: held.as_flattened().iter().filter(|held| **held).count(),
         })
+    }
+
+    /// The first node that supports hold or move in other directions than these.
+    pub(crate) fn first_held_otherwise(
+        &self,
+        mesh: &TetMesh,
+        problem: &Problem,
+    ) -> Result<Option<u32>, FemError> {
+        let held = held_axes(mesh, problem)?;
+        let as_here = |node: u32, axes: &[bool; 3]| {
+            (0..3).all(|axis| axes[axis] == self.free_dof(node, axis).is_none())
+        };
+        let mut nodes = (0..).zip(&held);
+        let other = nodes.find(|(node, axes)| !as_here(*node, axes));
+        Ok(other.map(|(node, _)| node))
     }
 
     pub(crate) fn of_node(&self, node: u32) -> Option<u32> {
@@ -60,8 +75,58 @@ impl Cells {
         (cell != HELD).then_some(cell)
     }
 
+    /// The degree of freedom of a node's component (0, 1, 2 for x, y, z); `None` where it is held.
+    pub(crate) fn free_dof(&self, node: u32, axis: usize) -> Option<u32> {
+        let dof = 3 * self.of_node(node)? + axis as u32;
+        (!self.pinned[dof as usize]).then_some(dof)
+    }
+
+    /// The three components of a vector over the degrees of freedom at a node; zero where they are held.
+    pub(crate) fn at_node(&self, values: &[f64], node: u32) -> [f64; 3] {
+        let Some(cell) = self.of_node(node) else {
+            return [0.0; 3];
+        };
+        let first = 3 * cell as usize;
+        let free = |axis: usize| !self.pinned[first + axis];
+        std::array::from_fn(|axis| {
+            if free(axis) {
+                values[first + axis]
+            } else {
+                0.0
+            }
+        })
+    }
+
     /// Whether some node is held in some directions only.
     pub(crate) fn partly_held(&self) -> bool {
         self.pinned.contains(&true)
     }
+}
+
+/// The components of each node that do not move by themselves: held, or moved from outside.
+fn held_axes(mesh: &TetMesh, problem: &Problem) -> Result<Vec<[bool; 3]>, FemError> {
+    let mut held = supported(mesh, &problem.fixed)?;
+    for (index, moving) in problem.moves.iter().enumerate() {
+        let item = Item::Move(index);
+        for node in moving.on.nodes(mesh).map_err(FemError::at(item))? {
+            for (held, axis) in held[node as usize].iter_mut().zip(moving.axes) {
+                *held |= axis;
+            }
+        }
+    }
+    Ok(held)
+}
+
+/// The components of each node that supports hold.
+pub(crate) fn supported(mesh: &TetMesh, fixed: &[Fixed]) -> Result<Vec<[bool; 3]>, FemError> {
+    let mut held = vec![[false; 3]; mesh.points.len()];
+    for (index, support) in fixed.iter().enumerate() {
+        let item = Item::Fixed(index);
+        for node in support.on.nodes(mesh).map_err(FemError::at(item))? {
+            for (held, axis) in held[node as usize].iter_mut().zip(support.axes) {
+                *held |= axis;
+            }
+        }
+    }
+    Ok(held)
 }

@@ -1,4 +1,6 @@
-//! Why a model could not be built.
+//! Reasons for which a model cannot be built.
+
+use crate::On;
 
 /// The part of a problem an error is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,6 +13,10 @@ pub enum Item {
     Damping,
     /// A support, by its place in the list.
     Fixed(usize),
+    /// A prescribed motion, by its place in the list.
+    Move(usize),
+    /// The supports together.
+    Supports,
     /// A load, by its place in the list.
     Load(usize),
     /// Gravity.
@@ -24,13 +30,15 @@ impl std::fmt::Display for Item {
             Self::Region(index) => write!(f, "region {}", index + 1),
             Self::Damping => write!(f, "damping"),
             Self::Fixed(index) => write!(f, "support {}", index + 1),
+            Self::Move(index) => write!(f, "motion {}", index + 1),
+            Self::Supports => write!(f, "supports"),
             Self::Load(index) => write!(f, "load {}", index + 1),
             Self::Gravity => write!(f, "gravity"),
         }
     }
 }
 
-/// Why a model could not be built.
+/// A reason for which a model cannot be built, and the part of the problem at fault.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{item}: {cause}")]
 pub struct FemError {
@@ -43,20 +51,25 @@ impl FemError {
         Self { item, cause }
     }
 
+    /// A conversion from causes to errors of one item, for `map_err`.
+    pub(crate) fn at<E: Into<Cause>>(item: Item) -> impl FnOnce(E) -> Self {
+        move |cause| Self::new(item, cause.into())
+    }
+
     /// The part of the problem at fault.
     #[must_use]
     pub fn item(&self) -> Item {
         self.item
     }
 
-    /// What is wrong with it.
+    /// The fault.
     #[must_use]
     pub fn cause(&self) -> &Cause {
         &self.cause
     }
 }
 
-/// What is wrong with a part of a problem.
+/// A fault in a part of a problem.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Cause {
@@ -67,7 +80,7 @@ pub enum Cause {
         quantity: &'static str,
         /// Its value.
         found: f64,
-        /// What fits, with the unit.
+        /// The range that fits, with the unit.
         expected: &'static str,
     },
     /// A group the mesh does not have.
@@ -80,7 +93,7 @@ pub enum Cause {
         group: String,
         /// Dimension of its cells.
         dim: u8,
-        /// What fits.
+        /// The kind of group that fits.
         expected: &'static str,
     },
     /// A tetrahedron in two regions.
@@ -96,7 +109,7 @@ pub enum Cause {
         "{count} tetrahedra are in no region (first: {tag}); give a region for them, or one without a group for the whole mesh"
     )]
     NoRegion {
-        /// How many.
+        /// Number of such tetrahedra.
         count: usize,
         /// Element tag of the first.
         tag: u64,
@@ -110,7 +123,7 @@ pub enum Cause {
         tag: u64,
         /// Its volume (m^3).
         volume: f64,
-        /// How many.
+        /// Number of such tetrahedra.
         count: usize,
     },
     /// A tetrahedron without volume.
@@ -131,19 +144,94 @@ pub enum Cause {
         /// Nodes of the mesh.
         nodes: usize,
     },
-    /// A load of which nothing acts.
-    #[error("every node of group `{group}` is held there, so the load acts on nothing")]
-    NothingLoaded {
-        /// Name of the group.
-        group: String,
+    /// Supports other than those of the model whose pattern is to be shared.
+    #[error("node {tag} is not held as in the model given; build such a model anew")]
+    OtherSupports {
+        /// Tag of the first node that is held in other directions.
+        tag: u64,
     },
-    /// A ramp that makes no sense.
+    /// A load that falls on held components only.
+    #[error(
+        "every node of {} is held there, so the load acts on nothing",
+        named(on)
+    )]
+    NothingLoaded {
+        /// The part of the mesh it is on.
+        on: On,
+    },
+    /// A component that is held and is to be moved.
+    #[error(
+        "node {tag} is held in {} by a support; a component is held or moved, never both", axis_name(*axis)
+    )]
+    MovedAndHeld {
+        /// Tag of the first such node.
+        tag: u64,
+        /// The component: 0, 1, 2 for x, y, z.
+        axis: usize,
+    },
+    /// A component that two motions prescribe.
+    #[error("node {tag} is moved in {} by motion {first} already", axis_name(*axis))]
+    MovedTwice {
+        /// Tag of the first such node.
+        tag: u64,
+        /// The component: 0, 1, 2 for x, y, z.
+        axis: usize,
+        /// The other motion, counted from 1.
+        first: usize,
+    },
+    /// A motion along an axis that it does not prescribe.
+    #[error("{found} along {}, which is not among the axes: expected 0", axis_name(*axis))]
+    UnnamedAxis {
+        /// The component: 0, 1, 2 for x, y, z.
+        axis: usize,
+        /// The displacement along it (m).
+        found: f64,
+    },
+    /// A position that jumps where damping sees its velocity.
+    #[error(
+        "the position jumps at t = {instant} s, and stiffness damping or dashpots would see an infinite \
+         velocity: let it rise over some time"
+    )]
+    PositionJumps {
+        /// The first such instant (s).
+        instant: f64,
+    },
+    /// A node that does not exist.
+    #[error("node index {node} is out of range: the mesh has {nodes} nodes, counted from 0")]
+    NodeOutOfRange {
+        /// The index (0-based).
+        node: u32,
+        /// Nodes of the mesh.
+        nodes: usize,
+    },
+    /// Nodes where a load needs triangles.
+    #[error("a traction or pressure acts on triangles, but {nodes} nodes are given")]
+    NoTriangles {
+        /// The nodes given.
+        nodes: usize,
+    },
+    /// A displacement of a support that is refused.
+    #[error(transparent)]
+    SupportMotion(#[from] crate::vector_error::SupportMotionError),
+    /// A ramp with a parameter outside its range.
     #[error("ramp: {0}")]
     Ramp(#[from] sinew_core::RampError),
     /// Surface triangles that do not bound the body.
     #[error(transparent)]
     Surface(#[from] sinew_mesh::SurfaceError),
-    /// The matrices.
+    /// Matrices that do not make a system.
     #[error(transparent)]
     Operators(#[from] sinew_core::OperatorError),
+}
+
+/// The name of a component.
+pub(crate) fn axis_name(axis: usize) -> &'static str {
+    ["x", "y", "z"][axis % 3]
+}
+
+fn named(on: &On) -> String {
+    match on {
+        On::Group(_) => format!("group {on}"),
+        On::Nodes(_) | On::Triangles(_) => on.to_string(),
+    }
 }

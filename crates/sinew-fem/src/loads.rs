@@ -1,92 +1,151 @@
 //! Loads on nodes.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector3;
 use sinew_core::{Load, Ramp};
-use sinew_mesh::{Group, GroupMembers, TetMesh};
+use sinew_mesh::TetMesh;
 
+use crate::body::Body;
 use crate::cells::Cells;
 use crate::error::{Cause, FemError, Item};
-use crate::{LoadKind, LoadSpec, check};
+use crate::motion::Motions;
+use crate::report::LoadFacts;
+use crate::supports::HeldLoad;
+use crate::{LoadKind, LoadSpec, MoveFacts, Problem};
 
-/// What a load asks for and what of it acts, at full value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LoadFacts {
-    /// Resultant of the load (N).
-    pub asked: [f64; 3],
-    /// Resultant of what falls on components that move (N); the rest goes into the supports.
-    pub acting: [f64; 3],
+/// The loads of a problem on a body.
+pub(crate) struct LoadsOnBody {
+    /// Loads on components that move by themselves: in the order of the problem, gravity last.
+    pub(crate) moving: Vec<Load>,
+    /// Source of each of them.
+    pub(crate) items: Vec<Item>,
+    /// Parts of the loads on held components; loads without one are left out.
+    pub(crate) held: Vec<HeldLoad>,
+    /// Resultants of the loads.
+    pub(crate) facts: Vec<LoadFacts>,
+    /// Resultant of gravity.
+    pub(crate) gravity: Option<LoadFacts>,
 }
 
-/// The load on cells and its resultants.
-pub(crate) fn assemble(
-    mesh: &TetMesh,
-    cells: &Cells,
+impl LoadsOnBody {
+    /// Shares out the loads and, with the lumped `masses` of the nodes (kg), gravity. Notes in the facts of the
+    /// prescribed motions the loads that fall on them.
+    pub(crate) fn new(
+        body: &Body,
+        problem: &Problem,
+        masses: &[f64],
+        motions: &Motions,
+        moves: &mut [MoveFacts],
+    ) -> Result<Self, FemError> {
+        let (mut moving, mut held, mut facts) = (Vec::new(), Vec::new(), Vec::new());
+        let mut items = Vec::new();
+        for (index, spec) in problem.loads.iter().enumerate() {
+            let item = Item::Load(index);
+            let parts = assemble(body, motions, spec, item)?;
+            let mut on_moved = false;
+            for part in parts.held.iter().flat_map(|held| held.moved_by(motions)) {
+                on_moved = true;
+                if let Some(facts) = moves.get_mut(part)
+                    && facts.loads.last() != Some(&index)
+                {
+                    facts.loads.push(index);
+                }
+            }
+            if parts.moving.entries.is_empty() && !on_moved {
+                let on = spec.on.clone();
+                return Err(FemError::new(item, Cause::NothingLoaded { on }));
+            }
+            moving.push(parts.moving);
+            items.push(item);
+            held.extend(parts.held);
+            facts.push(parts.facts);
+        }
+        let gravity = problem.gravity.map(|acceleration| {
+            let parts = gravity(&body.cells, masses, acceleration);
+            moving.push(parts.moving);
+            items.push(Item::Gravity);
+            held.extend(parts.held);
+            parts.facts
+        });
+        Ok(Self {
+            moving,
+            items,
+            held,
+            facts,
+            gravity,
+        })
+    }
+}
+
+/// The parts of a load on moving and on held components.
+struct Parts {
+    moving: Load,
+    held: Option<HeldLoad>,
+    facts: LoadFacts,
+}
+
+/// A load shared out to nodes.
+fn assemble(
+    body: &Body,
+    motions: &Motions,
     load: &LoadSpec,
     item: Item,
-) -> Result<(Load, LoadFacts), FemError> {
-    let group = match load.kind {
-        LoadKind::Force(_) => check::group(mesh, &load.group, item)?,
-        // A volume and its surface may have one name.
-        LoadKind::Traction(_) | LoadKind::Pressure(_) => mesh
-            .group_of_dim(&load.group, 2)
-            .or_else(|_| check::group(mesh, &load.group, item))?,
-    };
+) -> Result<Parts, FemError> {
+    let (mesh, cells, on) = (&body.mesh, &body.cells, &load.on);
     let mut nodal: Vec<(u32, Vector3<f64>)> = Vec::new();
     match load.kind {
         LoadKind::Traction(traction) => {
-            for triangle in triangles(group, item)? {
+            for triangle in on.triangles(mesh).map_err(FemError::at(item))?.iter() {
                 let share = area_vector(mesh, triangle).norm() / 3.0 * Vector3::from(traction);
                 nodal.extend(triangle.map(|node| (node, share)));
             }
         }
         LoadKind::Pressure(pressure) => {
             let outward = mesh
-                .outward_triangles(triangles(group, item)?)
-                .map_err(|error| FemError::new(item, error.into()))?;
+                .outward_triangles(&on.triangles(mesh).map_err(FemError::at(item))?)
+                .map_err(FemError::at(item))?;
             for triangle in &outward {
                 let share = area_vector(mesh, triangle) * (-pressure / 3.0);
                 nodal.extend(triangle.map(|node| (node, share)));
             }
         }
         LoadKind::Force(force) => {
-            let nodes = mesh.group_nodes(group);
+            let nodes = on.nodes(mesh).map_err(FemError::at(item))?;
+            let is_moved = |node: u32| (0..3).any(|axis| motions.part_of(node, axis).is_some());
             let free = nodes
                 .into_iter()
-                .filter(|node| cells.of_node(*node).is_some());
+                .filter(|node| cells.of_node(*node).is_some() || is_moved(*node));
             let free: Vec<u32> = free.collect();
             let share = Vector3::from(force) / free.len() as f64;
             nodal.extend(free.into_iter().map(|node| (node, share)));
         }
     }
-    let (load, facts) = gather(cells, &nodal, load.ramp.clone());
-    if load.entries.is_empty() {
-        let group = group.name.clone();
-        return Err(FemError::new(item, Cause::NothingLoaded { group }));
-    }
-    Ok((load, facts))
+    Ok(gather(cells, &nodal, load.ramp.clone()))
 }
 
 /// The weight of every node.
-pub(crate) fn gravity(cells: &Cells, masses: &[f64], gravity: [f64; 3]) -> (Load, LoadFacts) {
+fn gravity(cells: &Cells, masses: &[f64], gravity: [f64; 3]) -> Parts {
     let weights = masses.iter().map(|mass| Vector3::from(gravity) * *mass);
     let nodal: Vec<(u32, Vector3<f64>)> = (0..).zip(weights).collect();
     gather(cells, &nodal, Ramp::Step)
 }
 
-fn gather(cells: &Cells, nodal: &[(u32, Vector3<f64>)], ramp: Ramp) -> (Load, LoadFacts) {
+fn gather(cells: &Cells, nodal: &[(u32, Vector3<f64>)], ramp: Ramp) -> Parts {
     let mut force = vec![0.0; cells.pinned.len()];
     let mut loaded = vec![false; cells.pinned.len()];
     let nothing_asked = nodal.iter().all(|(_, share)| *share == Vector3::zeros());
     let mut asked = Vector3::zeros();
+    let mut held: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
     for (node, share) in nodal {
         asked += share;
-        if let Some(cell) = cells.of_node(*node) {
-            for axis in 0..3 {
-                let dof = 3 * cell as usize + axis;
-                if !cells.pinned[dof] {
-                    force[dof] += share[axis];
-                    loaded[dof] |= nothing_asked || share[axis] != 0.0;
-                }
+        for axis in 0..3 {
+            if let Some(dof) = cells.free_dof(*node, axis) {
+                let dof = dof as usize;
+                force[dof] += share[axis];
+                loaded[dof] |= nothing_asked || share[axis] != 0.0;
+            } else if share[axis] != 0.0 {
+                held.entry(*node).or_default()[axis] += share[axis];
             }
         }
     }
@@ -112,17 +171,14 @@ fn gather(cells: &Cells, nodal: &[(u32, Vector3<f64>)], ramp: Ramp) -> (Load, Lo
         asked: asked.into(),
         acting: acting.into(),
     };
-    (Load { ramp, entries }, facts)
-}
-
-fn triangles(group: &Group, item: Item) -> Result<&[[u32; 3]], FemError> {
-    match &group.members {
-        GroupMembers::Triangles(triangles) => Ok(triangles),
-        _ => Err(check::dimension(
-            item,
-            group,
-            "a group of triangles (dimension 2)",
-        )),
+    let held = (!held.is_empty()).then(|| HeldLoad {
+        ramp: ramp.clone(),
+        forces: held.into_iter().collect(),
+    });
+    Parts {
+        moving: Load { ramp, entries },
+        held,
+        facts,
     }
 }
 

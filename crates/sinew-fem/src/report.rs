@@ -1,10 +1,19 @@
-//! What a model turned out to be.
+//! Counts and resultants of a model.
 
-use crate::loads::LoadFacts;
+use crate::body::Body;
 use crate::springs::NetworkModulus;
 
-/// What a model turned out to be, for people who ask what they are about to run.
-#[derive(Clone, Debug, PartialEq)]
+/// Resultants of a load at full value: of all of it, and of the part on components that move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadFacts {
+    /// Resultant of the load (N).
+    pub asked: [f64; 3],
+    /// Resultant of the part on components that move (N); the rest goes into the supports.
+    pub acting: [f64; 3],
+}
+
+/// Counts and resultants of a model, to be read before it is run.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModelReport {
     /// Nodes of the mesh.
     pub nodes: usize,
@@ -14,9 +23,9 @@ pub struct ModelReport {
     pub edges: usize,
     /// Degrees of freedom of the mesh, three a node.
     pub mesh_dofs: usize,
-    /// Components held by supports.
+    /// Components held by supports or moved from outside.
     pub held_components: usize,
-    /// Degrees of freedom that move.
+    /// Degrees of freedom that move by themselves.
     pub free_dofs: usize,
     /// Mass of the body (kg), held nodes included.
     pub mass: f64,
@@ -26,23 +35,56 @@ pub struct ModelReport {
     pub regions: Vec<RegionFacts>,
     /// Facts of each load, in the order of the problem.
     pub loads: Vec<LoadFacts>,
+    /// Facts of each prescribed motion, in the order of the problem.
+    pub moves: Vec<MoveFacts>,
     /// Weight, where there is gravity.
     pub gravity: Option<LoadFacts>,
     /// Stored blocks of the stiffness matrix.
     pub blocks: usize,
     /// Whether damping needs a matrix of its own.
     pub damping_matrix: bool,
-    /// What happened to the mesh on the way.
+    /// Changes made to the mesh when it was read, in sentences.
     pub notes: Vec<String>,
+}
+
+impl ModelReport {
+    /// The part that materials and loads do not change.
+    pub(crate) fn of_body(body: &Body) -> Self {
+        let mesh_dofs = 3 * body.mesh.points.len();
+        let held_components = body.cells.held_components;
+        Self {
+            nodes: body.mesh.points.len(),
+            tets: body.mesh.tets.len(),
+            edges: body.edges,
+            mesh_dofs,
+            held_components,
+            free_dofs: mesh_dofs - held_components,
+            blocks: body.pattern.blocks(),
+            notes: body.mesh.notes.clone(),
+            ..Self::default()
+        }
+    }
 }
 
 /// Facts of a region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RegionFacts {
-    /// Tetrahedra.
+    /// Number of tetrahedra.
     pub tets: usize,
     /// Volume (m^3).
     pub volume: f64,
-    /// What its springs are as a material, calibration included; `None` for continua.
+    /// Moduli of its springs as a material, calibration included; `None` for continua.
     pub network: Option<NetworkModulus>,
+}
+
+/// Facts of a prescribed motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MoveFacts {
+    /// Number of nodes.
+    pub nodes: usize,
+    /// The first instant (s) at which the position jumps.
+    pub jump: Option<f64>,
+    /// Loads, by their places in the problem, that fall on components it moves: these only change its
+    /// reaction.
+    pub loads: Vec<usize>,
 }

@@ -38,8 +38,8 @@ pub fn springs<'a>(
     )
 }
 
-/// What one tetrahedron adds to its six edges.
-pub(crate) fn of_tetrahedron(
+/// The springs that one tetrahedron adds to its six edges.
+fn of_tetrahedron(
     points: &[[f64; 3]],
     tet: &[u32; 4],
     youngs_modulus: f64,
@@ -63,9 +63,34 @@ pub(crate) fn of_tetrahedron(
     })
 }
 
+/// Stiffness matrix (N/m), 12 x 12, row-major and vertex-major, of the springs that one tetrahedron
+/// adds to its edges.
+#[must_use]
+pub(crate) fn stiffness(
+    points: &[[f64; 3]],
+    tet: &[u32; 4],
+    youngs_modulus: f64,
+    rule: SpringRule,
+) -> [f64; 144] {
+    let mut matrix = [0.0; 144];
+    let parts = of_tetrahedron(points, tet, youngs_modulus, rule);
+    for (spring, [a, b]) in parts.iter().zip(EDGES) {
+        let (n, _) = direction(points, spring.nodes);
+        for (row, i) in [(a, 1.0), (b, -1.0)] {
+            for (column, j) in [(a, 1.0), (b, -1.0)] {
+                for at in 0..9 {
+                    let entry = 12 * (3 * row + at / 3) + 3 * column + at % 3;
+                    matrix[entry] += i * j * spring.stiffness * n[at / 3] * n[at % 3];
+                }
+            }
+        }
+    }
+    matrix
+}
+
 /// One spring for each edge, in increasing order of their nodes.
 pub(crate) fn summed(mut parts: Vec<Spring>) -> Vec<Spring> {
-    // Stable, so that contributions add up in the order they come.
+    // A stable sort: contributions add up in the order they come.
     parts.sort_by_key(|spring| spring.nodes);
     let mut springs: Vec<Spring> = Vec::new();
     for part in parts {
@@ -86,7 +111,14 @@ pub(crate) fn direction(points: &[[f64; 3]], nodes: [u32; 2]) -> (Vector3<f64>, 
     (edge / length, length)
 }
 
-/// What a network of springs is as a material.
+/// `rate n n'`, row-major, n being the unit direction of an edge.
+#[must_use]
+pub(crate) fn edge_block(points: &[[f64; 3]], nodes: [u32; 2], rate: f64) -> [f64; 9] {
+    let (n, _) = direction(points, nodes);
+    std::array::from_fn(|k| rate * n[k / 3] * n[k % 3])
+}
+
+/// Moduli of a network of springs as a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NetworkModulus {
     /// Young's modulus (Pa) of the isotropic material with the same Voigt average; its Poisson's
@@ -99,7 +131,7 @@ pub struct NetworkModulus {
 }
 
 /// The moduli of the affine tensor `C = (1/V) sum k l^2 n n n n` of springs that fill `volume`
-/// (m^3). A tensor that resists not every strain has `softest` 0.
+/// (m^3). `softest` is 0 where some strain meets no resistance.
 #[must_use]
 pub fn network_modulus(points: &[[f64; 3]], springs: &[Spring], volume: f64) -> NetworkModulus {
     let mut tensor = Matrix6::zeros();

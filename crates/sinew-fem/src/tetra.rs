@@ -16,10 +16,31 @@ pub fn signed_volume(vertices: &[[f64; 3]; 4]) -> f64 {
     edge_matrix(vertices).determinant() / 6.0
 }
 
-/// Columns: edges from the first vertex to the others.
+/// Matrix whose columns are the edges from the first vertex to the others.
 fn edge_matrix(vertices: &[[f64; 3]; 4]) -> Matrix3<f64> {
     let [first, second, third, fourth] = vertices.map(Vector3::from);
     Matrix3::from_columns(&[second - first, third - first, fourth - first])
+}
+
+/// Gradients (1/m) of the four shape functions, which are constant: the derivatives of each along
+/// x, y and z.
+///
+/// `None` when the vertices lie in one plane.
+#[must_use]
+pub fn gradients(vertices: &[[f64; 3]; 4]) -> Option<[[f64; 3]; 4]> {
+    gradients_of(edge_matrix(vertices))
+        .map(|rows| std::array::from_fn(|vertex| std::array::from_fn(|axis| rows[(vertex, axis)])))
+}
+
+/// The gradients, a row for each vertex.
+fn gradients_of(edges: Matrix3<f64>) -> Option<Matrix4x3<f64>> {
+    let inverse = edges.try_inverse()?;
+    let mut gradients = Matrix4x3::zeros();
+    for row in 0..3 {
+        gradients.set_row(row + 1, &inverse.row(row));
+    }
+    gradients.set_row(0, &-(inverse.row(0) + inverse.row(1) + inverse.row(2)));
+    Some(gradients)
 }
 
 /// Stiffness matrix (N/m), 12 x 12, row-major and node-major, of an isotropic linear elastic
@@ -32,12 +53,7 @@ fn edge_matrix(vertices: &[[f64; 3]; 4]) -> Matrix3<f64> {
 pub fn stiffness(vertices: &[[f64; 3]; 4], lambda: f64, mu: f64) -> Option<[f64; 144]> {
     let edges = edge_matrix(vertices);
     let volume = edges.determinant().abs() / 6.0;
-    let inverse = edges.try_inverse()?;
-    let mut gradients = Matrix4x3::zeros();
-    for row in 0..3 {
-        gradients.set_row(row + 1, &inverse.row(row));
-    }
-    gradients.set_row(0, &-(inverse.row(0) + inverse.row(1) + inverse.row(2)));
+    let gradients = gradients_of(edges)?;
     let mut matrix = [0.0; 144];
     for a in 0..4 {
         for b in 0..4 {
@@ -96,6 +112,22 @@ mod tests {
         let u = linear_field([[0.0, gamma, 0.0], [0.0; 3], [0.0; 3]]);
         let expected = 0.5 * mu * gamma * gamma * signed_volume(&SKEW);
         assert!((energy(&matrix, &u) / expected - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn shape_functions_are_one_at_their_vertex_and_zero_at_the_others() {
+        let gradients = gradients(&SKEW).unwrap();
+        for (a, gradient) in gradients.iter().enumerate() {
+            for (b, vertex) in SKEW.iter().enumerate() {
+                // N_a(x_b) - N_a(x_a) = g_a . (x_b - x_a).
+                let difference = |axis: usize| vertex[axis] - SKEW[a][axis];
+                let change: f64 = (0..3).map(|axis| gradient[axis] * difference(axis)).sum();
+                let expected = if a == b { 0.0 } else { -1.0 };
+                assert!((change - expected).abs() < 1e-14);
+            }
+        }
+        let flat = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        assert_eq!(super::gradients(&flat), None);
     }
 
     #[test]

@@ -89,7 +89,7 @@ fn extreme_moduli(tensor: &Matrix6<f64>) -> (f64, f64) {
     (softest, stiffest)
 }
 
-/// What the report says of a cube's springs, over the modulus they aim at, after comparing it with K.
+/// The reported moduli of a cube's springs over the modulus given, after comparing them with K.
 fn network(split: Split, rule: SpringRule, calibrate: bool) -> NetworkModulus {
     let mesh = structured::cube(10, 0.1, split).unwrap();
     let model = build(&mesh, &body(springs(YOUNGS_MODULUS, rule, calibrate)));

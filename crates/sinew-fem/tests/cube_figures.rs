@@ -47,7 +47,9 @@ fn static_and_modal_figures() {
     let (centre, _) = mesh.nearest_node([0.05, 0.05, 0.1]);
     for (name, law, sag, omega_1, omega_max) in table {
         let model = pressed(&mesh, law, 100.0);
-        let top = model.node_displacement(&equilibrium(&model), centre);
+        let top = model
+            .node_displacement(0.0, &equilibrium(&model), centre)
+            .unwrap();
         figure(&format!("{name}: sag"), -1e3 * top[2], sag, 0.0005);
 
         let downward = on_cells(&model, |_| [0.0, 0.0, -1.0]);
@@ -94,7 +96,9 @@ fn the_papers_cube() {
     figure("load asked for (N)", facts.asked[2], -20.0, 1e-12);
     figure("load that acts (N)", facts.acting[2], -16.2, 1e-12);
     let mut acting = vec![0.0; model.dofs()];
-    model.external_force(LoadTime::at(0.0), &mut acting);
+    model
+        .operators()
+        .external_force(LoadTime::at(0.0), &mut acting);
     figure(
         "load on the moving nodes (N)",
         acting.iter().sum(),

@@ -20,7 +20,7 @@ fn model(law: Law, axes: [bool; 3]) -> Model {
             law,
         }],
         fixed: vec![Fixed {
-            group: "sides".into(),
+            on: "sides".into(),
             axes,
         }],
         ..Problem::default()

@@ -6,6 +6,7 @@ mod common;
 
 use common::{at_most, body, build, figure, held, linear, load, max_abs, relative_difference};
 use nalgebra::Vector3;
+use sinew_core::LinearSystem as _;
 use sinew_core::{LoadTime, System};
 use sinew_fem::{LoadKind, Model, Problem};
 use sinew_mesh::structured::{self, Split};
@@ -30,7 +31,9 @@ fn loaded(mesh: &TetMesh, kinds: &[(&str, LoadKind)]) -> Model {
 
 fn forces(model: &Model) -> Vec<f64> {
     let mut forces = vec![0.0; model.dofs()];
-    model.external_force(LoadTime::at(0.0), &mut forces);
+    model
+        .operators()
+        .external_force(LoadTime::at(0.0), &mut forces);
     forces
 }
 

@@ -123,7 +123,7 @@ fn errors(cells: usize, poissons_ratio: f64) -> [f64; 2] {
     let (mut values, mut slopes) = (0.0, 0.0);
     for (tet, volume) in mesh.tets.iter().zip(mesh.signed_volumes()) {
         let vertices = tet.map(|node| Vector3::from(mesh.points[node as usize]));
-        let moved = tet.map(|node| Vector3::from(model.node_displacement(&u, node)));
+        let moved = tet.map(|node| Vector3::from(model.node_displacement(0.0, &u, node).unwrap()));
         let slope = differences(&moved) * differences(&vertices).try_inverse().unwrap();
         for (shape, weight) in &rule {
             let x = mean(&vertices, shape);

@@ -1,4 +1,4 @@
-//! What a problem is refused for, and in which words.
+//! The faults for which a problem is refused, and the words.
 
 #![cfg(test)]
 
@@ -7,7 +7,7 @@ mod common;
 use common::{DENSITY, add_node_group, body, held, held_along, linear, load, springs};
 use sinew_core::{Ramp, RampError};
 use sinew_fem::{
-    Cause, FemError, Item, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule,
+    Cause, FemError, Fixed, Item, Law, LoadKind, LoadSpec, Model, On, Problem, Region, SpringRule,
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -42,8 +42,16 @@ fn with_regions(groups: &[Option<&str>]) -> Problem {
 }
 
 fn with_load(group: &str, kind: LoadKind) -> Problem {
+    loaded_on(group.into(), kind)
+}
+
+fn loaded_on(on: On, kind: LoadKind) -> Problem {
     Problem {
-        loads: vec![load(group, kind)],
+        loads: vec![LoadSpec {
+            on,
+            kind,
+            ramp: Ramp::Step,
+        }],
         ..tissue()
     }
 }
@@ -274,9 +282,55 @@ fn loads_that_act_on_nothing() {
                 Item::Load(0),
                 "load 1: every node of group `top` is held there, so the load acts on nothing",
             );
-            let group = "top".into();
-            assert_eq!(cause, Cause::NothingLoaded { group });
+            let on = "top".into();
+            assert_eq!(cause, Cause::NothingLoaded { on });
         }
+    }
+}
+
+#[test]
+fn nodes_the_mesh_does_not_have() {
+    let out_of_range = |cause| {
+        let expected = Cause::NodeOutOfRange {
+            node: 27,
+            nodes: 27,
+        };
+        assert_eq!(cause, expected);
+    };
+    let words = "node index 27 is out of range: the mesh has 27 nodes, counted from 0";
+    let nodes = On::Nodes(vec![3, 27, 90]);
+    let triangles = On::Triangles(vec![[0, 1, 3], [26, 2, 27]]);
+    for on in [nodes, triangles.clone()] {
+        let problem = Problem {
+            fixed: vec![Fixed {
+                on: on.clone(),
+                axes: [true; 3],
+            }],
+            ..tissue()
+        };
+        let message = format!("support 1: {words}");
+        out_of_range(refused(&mesh(), &problem, Item::Fixed(0), &message));
+        let problem = loaded_on(on, LoadKind::Force([1.0; 3]));
+        let message = format!("load 1: {words}");
+        out_of_range(refused(&mesh(), &problem, Item::Load(0), &message));
+    }
+    for kind in [LoadKind::Traction([1.0; 3]), LoadKind::Pressure(1.0)] {
+        let problem = loaded_on(triangles.clone(), kind);
+        let message = format!("load 1: {words}");
+        out_of_range(refused(&mesh(), &problem, Item::Load(0), &message));
+    }
+}
+
+#[test]
+fn nodes_where_a_load_needs_triangles() {
+    for kind in [LoadKind::Traction([1.0; 3]), LoadKind::Pressure(1.0)] {
+        let cause = refused(
+            &mesh(),
+            &loaded_on(On::Nodes(vec![0, 1, 3]), kind),
+            Item::Load(0),
+            "load 1: a traction or pressure acts on triangles, but 3 nodes are given",
+        );
+        assert_eq!(cause, Cause::NoTriangles { nodes: 3 });
     }
 }
 

@@ -41,7 +41,7 @@ fn linear_field(mesh: &TetMesh, node: usize) -> [f64; 3] {
     (gradient() * Vector3::from(mesh.points[node])).into()
 }
 
-/// What the stress of the linear field does to each node: sigma n A/3 from each surface triangle.
+/// The force of the linear field's stress on each node: sigma n A/3 from each surface triangle.
 fn surface_forces(mesh: &TetMesh, poissons_ratio: f64) -> Vec<f64> {
     let (lambda, mu) = lame(YOUNGS_MODULUS, poissons_ratio);
     let strain = (gradient() + gradient().transpose()) / 2.0;

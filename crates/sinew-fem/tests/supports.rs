@@ -8,7 +8,7 @@ use common::{
     add_node_group, at_most, body, build, equilibrium, figure, held_along, jitter, linear, load,
     on_cells, relative_difference,
 };
-use sinew_core::{LoadTime, System, Trial};
+use sinew_core::{LinearSystem, System};
 use sinew_fem::{Law, LoadKind, Model, SpringRule};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
@@ -53,7 +53,7 @@ fn a_bar_on_rollers_is_in_uniaxial_stress() {
         let force = model.report().loads[0].acting[2];
         figure(&format!("{name}: F/A"), force / area, TRACTION, 1e-11);
         let elongation = force * SIZE[2] / (YOUNGS_MODULUS * area);
-        let top = model.node_displacement(&u, corner)[2];
+        let top = model.node_displacement(0.0, &u, corner).unwrap()[2];
         figure(
             &format!("{name}: u_z/(F L/(E A))"),
             top / elongation,
@@ -91,13 +91,7 @@ fn held_components_are_counted_and_never_pushed() {
 
     let u = vec![1e-3; model.dofs()];
     let mut force = vec![f64::NAN; model.dofs()];
-    let trial = Trial {
-        load: LoadTime::at(0.0),
-        dt: 1e-3,
-        u: &u,
-        v: &u,
-    };
-    model.net_force(&trial, &mut force).unwrap();
+    model.operators().net_force(0.0, &u, &u, &mut force);
     for (force, held) in force.iter().zip(model.pinned()) {
         assert!(!held || *force == 0.0, "{force} N on a held component");
     }

@@ -13,16 +13,26 @@
 //! ```
 
 pub mod cnn;
-mod evaluate;
 pub mod explicit;
+mod explicit_method;
+mod exponential;
+mod frame;
 #[cfg(feature = "implicit")]
 pub mod implicit;
 mod limits;
 mod method;
+mod option_help;
 pub mod propagator;
 mod registry;
+mod scheme;
+mod stepper;
 
+pub use explicit_method::Explicit;
+pub use frame::Frame;
 #[cfg(feature = "implicit")]
-pub use implicit::{StaticError, static_solution};
-pub use method::{Method, OptionHelp};
-pub use registry::{Entry, build, entries, ids};
+pub use implicit::{FactorError, StaticError, static_solution};
+pub use method::{ConservedEnergy, Method};
+pub use option_help::{OptionHelp, OptionLabel};
+pub use registry::{Entry, build, entries, entry, ids};
+pub use scheme::{Scheme, SetUp, StepByHand, Steps};
+pub use stepper::Stepper;

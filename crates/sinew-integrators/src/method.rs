@@ -1,13 +1,15 @@
-//! What an integrator adds to the core's trait to be built by name.
+//! Methods that can be built by name.
 
-use sinew_core::{Integrator, OptionError, Options};
+use sinew_core::{Fact, OptionError, Options};
 
 use crate::explicit::GuardOption;
+use crate::frame::Frame;
+use crate::option_help::{OptionHelp, OptionLabel};
+use crate::scheme::Scheme;
+use crate::stepper::Stepper;
 
-/// An integrator that can be built from named options.
-pub trait Method: Integrator + Sized + 'static {
-    /// The name users type.
-    const ID: &'static str;
+/// A method that can be built from named options.
+pub trait Method: Scheme {
     /// One line for lists and help.
     const SUMMARY: &'static str;
     /// The options it takes.
@@ -15,7 +17,14 @@ pub trait Method: Integrator + Sized + 'static {
     /// Whether it takes `substeps`: methods with a largest stable step do.
     const SUBSTEPS: bool = false;
 
-    /// What the option `saturation` means to it: methods that can grow without bound take a guard.
+    /// Whether its set-up factorises a matrix of the whole body, which on a large mesh costs more
+    /// than many runs.
+    const FACTORISES: bool = false;
+
+    /// Form of its options in the labels of runs; every other option reads `key=value`.
+    const LABELS: &'static [(&'static str, OptionLabel)] = &[];
+
+    /// Meaning of the option `saturation` for it: methods that can grow without bound take a guard.
     const GUARD: GuardOption = GuardOption::None;
 
     /// Builds it. Keys outside [`Method::OPTIONS`] have been refused before.
@@ -29,15 +38,47 @@ pub trait Method: Integrator + Sized + 'static {
     fn conformance_options() -> Options {
         Options::new()
     }
+
+    /// Options of the variants that comparisons show besides the plain method, because they trade
+    /// error for cost differently.
+    #[must_use]
+    fn variants() -> Vec<Options> {
+        Vec::new()
+    }
+
+    /// Option sets worth trying for a relative error of a run (fraction): the defaults, unless an
+    /// option of the method trades error for cost.
+    #[must_use]
+    fn options_for_error(_error: f64) -> Vec<Options> {
+        vec![Options::new()]
+    }
+
+    /// The energy that it conserves, from the facts of its set-up.
+    #[must_use]
+    fn conserved_energy(_facts: &[Fact]) -> ConservedEnergy {
+        ConservedEnergy::Physical
+    }
+
+    /// Makes it an integrator.
+    fn integrator(self) -> Box<dyn Stepper> {
+        Box::new(Frame::new(self))
+    }
 }
 
-/// An option in words.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OptionHelp {
-    /// Its key.
-    pub key: &'static str,
-    /// What it does, what fits and the default.
-    pub help: &'static str,
-    /// A default that results name beside the integrator, because it changes what the run means.
-    pub shown_default: Option<f64>,
+/// The energy that a method conserves where nothing damps or loads the system.
+///
+/// The two leapfrog forms are for the step between two displacements: v is the velocity
+/// between them and w their mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ConservedEnergy {
+    /// `v' M v/2 + u' K u/2` at one time, exactly or up to an error that does not grow.
+    #[default]
+    Physical,
+    /// `v'(P - dt/2 D - dt^2/4 K) v/2 + w' K w/2` with `P = (1 + alpha dt/2) M`.
+    CentralDifference,
+    /// The energy of central difference with a stabilising matrix P in the place of M.
+    Stabilised {
+        /// Share of the damping other than alpha M that lags by half a step (fraction).
+        lagging: f64,
+    },
 }

@@ -1,9 +1,9 @@
 //! Integrators by name.
 
-use sinew_core::{Integrator, OptionError, Options};
+use sinew_core::{Fact, OptionError, Options};
 
 use crate::explicit::{GuardOption, Guarded, Substepped, Substeps};
-use crate::{Method, OptionHelp};
+use crate::{ConservedEnergy, Method, OptionHelp, OptionLabel, Stepper};
 
 /// Calls `$then! { name: Type, .. }` with every integrator there is: the one list that the
 /// registry and the conformance tests are made from. A new integrator is one line here.
@@ -13,6 +13,9 @@ macro_rules! for_each_integrator {
         $then! {
             forward_euler: $crate::explicit::ForwardEuler,
             symplectic_euler: $crate::explicit::SymplecticEuler,
+            #[cfg(feature = "implicit")]
+            central_difference: $crate::explicit::PatchedCentralDifference,
+            #[cfg(not(feature = "implicit"))]
             central_difference: $crate::explicit::CentralDifference,
             rk4: $crate::explicit::Rk4,
             modified_leapfrog: $crate::explicit::ModifiedLeapfrog,
@@ -39,13 +42,22 @@ pub struct Entry {
     pub id: &'static str,
     /// One line about it.
     pub summary: &'static str,
-    /// The options it takes, beside `substeps` and the guard's.
+    /// The options it takes, `substeps` and the guard's apart.
     pub options: &'static [OptionHelp],
     /// Whether it takes `substeps`.
     pub substeps: bool,
-    /// What `saturation` means to it.
+    /// Meaning of `saturation` for it.
     pub guard: GuardOption,
-    build: fn(&Options) -> Result<Box<dyn Integrator>, OptionError>,
+    /// Whether its set-up factorises a matrix of the whole body.
+    pub factorises: bool,
+    /// Options of the variants that comparisons show besides the plain method.
+    pub variants: fn() -> Vec<Options>,
+    /// Option sets worth trying for a relative error of a run (fraction).
+    pub options_for_error: fn(f64) -> Vec<Options>,
+    /// The energy that it conserves, from the facts of its set-up.
+    pub conserved_energy: fn(&[Fact]) -> ConservedEnergy,
+    labels: &'static [(&'static str, OptionLabel)],
+    build: fn(&Options) -> Result<Box<dyn Stepper>, OptionError>,
 }
 
 impl std::fmt::Debug for Entry {
@@ -64,7 +76,23 @@ impl Entry {
             options: M::OPTIONS,
             substeps: M::SUBSTEPS,
             guard: M::GUARD,
-            build: |options| Ok(Box::new(M::from_options(options)?)),
+            factorises: M::FACTORISES,
+            variants: M::variants,
+            options_for_error: M::options_for_error,
+            conserved_energy: M::conserved_energy,
+            labels: M::LABELS,
+            build: |options| Ok(M::from_options(options)?.integrator()),
+        }
+    }
+
+    /// Form of one of its options in the label of a run.
+    #[must_use]
+    pub fn option_label(&self, key: &str) -> OptionLabel {
+        let own = self.labels.iter().find(|(labelled, _)| *labelled == key);
+        match own {
+            Some((_, label)) => *label,
+            None if key == GuardOption::KEY => OptionLabel::Symbol("Q"),
+            None => OptionLabel::default(),
         }
     }
 
@@ -72,7 +100,7 @@ impl Entry {
     ///
     /// # Errors
     /// [`OptionError`] for an option it does not take or a value that does not fit.
-    pub fn build(&self, options: &Options) -> Result<Box<dyn Integrator>, OptionError> {
+    pub fn build(&self, options: &Options) -> Result<Box<dyn Stepper>, OptionError> {
         let mut known: Vec<&'static str> = self.options.iter().map(|help| help.key).collect();
         known.extend(self.guard.help().map(|help| help.key));
         if self.substeps {
@@ -105,6 +133,12 @@ pub fn entries() -> Vec<Entry> {
     for_each_integrator!(list)
 }
 
+/// The integrator of this name.
+#[must_use]
+pub fn entry(id: &str) -> Option<Entry> {
+    entries().into_iter().find(|entry| entry.id == id)
+}
+
 /// The names of all integrators.
 #[must_use]
 pub fn ids() -> Vec<&'static str> {
@@ -115,8 +149,8 @@ pub fn ids() -> Vec<&'static str> {
 ///
 /// # Errors
 /// [`OptionError`] for an unknown name or option, or a value that does not fit.
-pub fn build(id: &str, options: &Options) -> Result<Box<dyn Integrator>, OptionError> {
-    match entries().iter().find(|entry| entry.id == id) {
+pub fn build(id: &str, options: &Options) -> Result<Box<dyn Stepper>, OptionError> {
+    match entry(id) {
         Some(entry) => entry.build(options),
         None => Err(OptionError::UnknownIntegrator {
             id: id.into(),

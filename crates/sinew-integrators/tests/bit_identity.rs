@@ -5,11 +5,11 @@
 
 mod common;
 
-use common::body::{Body, bodies_up_to, fastest_time};
 use common::{build, plain, saturation};
 use proptest::prelude::*;
 use sinew_core::{LinearModel, LinearOperators, OptionValue, Options, State, System};
 use sinew_fem::{Law, SpringRule};
+use sinew_testkit::body::{Body, bodies_up_to, fastest_time};
 
 /// The network and the method it is.
 const PAIRS: [(&str, &str); 2] = [

@@ -4,13 +4,12 @@
 
 mod common;
 
-use common::body::{Body, bodies_up_to};
 use common::build;
 use common::plain;
 use proptest::prelude::*;
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{LinearModel, LinearOperators, LinearSystem, State};
-use sinew_fem::{Law, Rayleigh};
+use sinew_testkit::body::bodies_up_to;
 
 /// `1/2 v' M v + 1/2 u_n' K u_n+1`, v being the velocity between the two displacements.
 fn half_step_energy(operators: &LinearOperators, before: &[f64], after: &State) -> f64 {
@@ -21,27 +20,13 @@ fn half_step_energy(operators: &LinearOperators, before: &[f64], after: &State) 
     0.5 * (moving.map(|(v, mass)| mass * v * v).sum::<f64>() + elastic)
 }
 
-/// Nothing that takes energy out or puts it in. It is held, as rounding would swamp the deformation
-/// of a body that flies far away.
-fn conservative(body: Body) -> Body {
-    let mut body = body.on_the_ground();
-    body.problem.damping = Rayleigh::default();
-    body.problem.loads.clear();
-    body.problem.gravity = None;
-    for region in &mut body.problem.regions {
-        if let Law::Springs { damping_ratio, .. } = &mut region.law {
-            *damping_ratio = 0.0;
-        }
-    }
-    body
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
     fn half_step_energy_is_constant_at_nearly_the_critical_step(body in bodies_up_to(3)) {
-        let body = conservative(body);
+        // Held, as rounding would swamp the deformation of a body that flies far away.
+        let body = body.on_the_ground().conservative();
         let model = body.model();
         let operators = model.operators();
         let dt = 0.95 * Spectrum::of(operators).critical_step();

@@ -12,13 +12,14 @@ mod common;
 use std::sync::Mutex;
 
 use common::cube::{cube, mass_damping, paper_cube, problem, scene, springs};
+use common::tissue::{body, held, linear};
 use common::{advance, build, diverged, largest, plain, relative_error, saturation, watch};
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    Acceleration, EvaluationError, Integrator, LinearModel, LinearOperators, LinearSystem, Load,
-    LoadTime, OptionValue, Options, Ramp, Revision, Run, StableStep, State, System, Trial,
+    Acceleration, Equations, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
+    OptionValue, Options, Ramp, Revision, Run, StableStep, State, System,
 };
-use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region};
+use sinew_fem::{LoadKind, LoadSpec, Model, Problem};
 use sinew_integrators::explicit::{GuardOption, Guarded};
 use sinew_mesh::structured::{self, Split};
 
@@ -116,7 +117,9 @@ fn bad_values_are_refused_by_each_method() {
 fn on_the_papers_cube_the_limit_is_that_of_the_loads_work() {
     let model = paper_cube();
     let mut force = vec![0.0; model.dofs()];
-    model.external_force(LoadTime::at(1.0), &mut force);
+    model
+        .operators()
+        .external_force(sinew_core::LoadTime::at(1.0), &mut force);
     let at_rest = sinew_integrators::static_solution(model, &force).unwrap();
     let work: f64 = force.iter().zip(&at_rest).map(|(f, u)| f * u).sum();
     let lightest = model.mass().iter().copied().fold(f64::INFINITY, f64::min);
@@ -219,13 +222,8 @@ fn the_start_is_that_of_the_system_at_hand() {
 #[test]
 fn a_body_that_its_loads_carry_away_needs_a_number() {
     let mut problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law: springs(0.0),
-        }],
         loads: vec![top_load(Ramp::Step)],
-        ..Problem::default()
+        ..body(springs(0.0))
     };
     let mesh = structured::cube(3, 0.2, Split::Kuhn).unwrap();
     let model = Model::build(&mesh, &problem).unwrap();
@@ -243,7 +241,7 @@ fn a_body_that_its_loads_carry_away_needs_a_number() {
 
 fn top_load(ramp: Ramp) -> LoadSpec {
     LoadSpec {
-        group: "top".into(),
+        on: "top".into(),
         kind: LoadKind::Traction([0.0, 0.0, -500.0]),
         ramp,
     }
@@ -378,6 +376,18 @@ const STABLE_UP_TO: [&str; 7] = [
 ];
 
 #[test]
+fn a_step_that_no_number_of_parts_makes_stable_is_refused() {
+    let model = paper_cube_under(1.0);
+    for id in STABLE_UP_TO {
+        let refused = build(id, &auto()).prepare(&model, 1e12);
+        let message = refused.unwrap_err().to_string();
+        let expected =
+            "times the stable step, too many for saturation = \"auto\"; take a shorter dt";
+        assert!(message.contains(expected), "`{id}`: {message}");
+    }
+}
+
+#[test]
 fn a_step_is_cut_beyond_the_stable_one_into_the_fewest_parts_of_nine_tenths_of_it() {
     let models = [0.01, 1.0, 100.0, 500.0].map(paper_cube_under);
     let rest = State::at_rest(models[0].dofs());
@@ -458,7 +468,7 @@ fn parts_by_size_are_a_thousand_at_most() {
         (*x, *y) = (*x * width, *y * width);
     }
     let mut problem = problem(springs(0.0), mass_damping(0.0), [0.0, 0.0, -5.0]);
-    problem.fixed[0].group = "bottom".into();
+    problem.fixed[0].on = "bottom".into();
     problem.gravity = Some([0.0, 0.0, -9.81]);
     let model = Model::build(&mesh, &problem).unwrap();
     let rest = State::at_rest(model.dofs());
@@ -601,13 +611,6 @@ fn a_clone_continues_to_the_bit_while_cells_saturate() {
     }
 }
 
-fn linear(poissons_ratio: f64) -> Law {
-    Law::Linear {
-        youngs_modulus: 3500.0,
-        poissons_ratio,
-    }
-}
-
 /// A system that keeps the states it was told of.
 struct Told {
     inner: LinearModel,
@@ -624,17 +627,14 @@ impl System for Told {
     fn revision(&self) -> Revision {
         self.inner.revision()
     }
-    fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
-        self.inner.net_force(trial, out)
+    fn layers(&self) -> Layers {
+        self.inner.layers()
     }
-    fn external_force(&self, when: LoadTime, out: &mut [f64]) {
-        self.inner.external_force(when, out);
+    fn equations(&self) -> Equations<'_> {
+        self.inner.equations()
     }
     fn accept(&self, state: &mut State) {
         self.states.lock().unwrap().push(state.clone());
-    }
-    fn as_linear(&self) -> Option<&dyn LinearSystem> {
-        self.inner.as_linear()
     }
 }
 
@@ -747,17 +747,9 @@ fn the_limits_of_a_turned_bar_under_gravity_are_the_same() {
             .iter_mut()
             .for_each(|point| *point = turned(r, *point));
         let bar = Problem {
-            regions: vec![Region {
-                group: None,
-                density: 1060.0,
-                law: linear(0.3),
-            }],
-            fixed: vec![Fixed {
-                group: "bottom".into(),
-                axes: [true; 3],
-            }],
+            fixed: vec![held("bottom", [true; 3])],
             gravity: Some(turned(r, [0.0, 0.0, 9.81])),
-            ..Problem::default()
+            ..body(linear(3500.0, 0.3))
         };
         let model = Model::build(&mesh, &bar).unwrap();
         largest_limit(&model, &State::at_rest(model.dofs()))

@@ -11,18 +11,19 @@ mod common;
 
 use std::sync::Arc;
 
-use common::body::{Body, bodies_up_to, fastest_time};
 use common::cube::{altered, mass_damping, scene};
+use common::tissue::{body, held, linear};
 use common::{build, plain};
 use proptest::prelude::*;
 use sinew_core::{
     BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
     OptionValue, Options, Pattern, Ramp, StableStep, State, System,
 };
-use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region};
+use sinew_fem::{LoadKind, LoadSpec, Model, Problem, Rayleigh, Region};
 use sinew_integrators::explicit::Guarded;
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
+use sinew_testkit::body::{Body, bodies_up_to, fastest_time};
 
 /// Methods with a stable step on undamped bodies, and one that is stable at any step.
 const METHODS: [&str; 5] = [
@@ -80,13 +81,6 @@ fn assert_untouched(system: &dyn System, start: &State, shares: &[f64], steps: u
     }
 }
 
-fn linear(youngs_modulus: f64, poissons_ratio: f64) -> Law {
-    Law::Linear {
-        youngs_modulus,
-        poissons_ratio,
-    }
-}
-
 fn tissue() -> Region {
     Region {
         group: None,
@@ -97,7 +91,7 @@ fn tissue() -> Region {
 
 fn pulse(group: &str, traction: [f64; 3], to: f64) -> LoadSpec {
     LoadSpec {
-        group: group.into(),
+        on: group.into(),
         kind: LoadKind::Traction(traction),
         ramp: Ramp::Pulse { from: 0.0, to },
     }
@@ -203,10 +197,7 @@ impl Slender {
                 law: linear(modulus, self.poissons_ratio),
             });
         }
-        let held = vec![Fixed {
-            group: "bottom".into(),
-            axes: [true; 3],
-        }];
+        let fixed = vec![held("bottom", [true; 3])];
         let mut problem = Problem {
             regions,
             damping: self.damping,
@@ -216,14 +207,14 @@ impl Slender {
             Acts::Nothing => {}
             Acts::Pulse(traction, to) => problem.loads = vec![pulse("bottom", traction, to)],
             Acts::Sin2(traction, rise) => {
-                problem.fixed = held;
+                problem.fixed = fixed;
                 problem.loads = vec![LoadSpec {
                     ramp: Ramp::Sin2 { rise },
                     ..pulse("top", traction, 1.0)
                 }];
             }
             Acts::Gravity(gravity) => {
-                problem.fixed = held;
+                problem.fixed = fixed;
                 problem.gravity = Some(gravity);
             }
         }
@@ -361,20 +352,13 @@ proptest! {
 fn beam(traction: [f64; 3], gravity: Option<[f64; 3]>, poissons_ratio: f64) -> (TetMesh, Model) {
     let mesh = structured::block([1, 1, 10], [0.01, 0.01, 0.1], Split::Kuhn).unwrap();
     let problem = Problem {
-        regions: vec![Region {
-            law: linear(3500.0, poissons_ratio),
-            ..tissue()
-        }],
-        fixed: vec![Fixed {
-            group: "bottom".into(),
-            axes: [true; 3],
-        }],
+        fixed: vec![held("bottom", [true; 3])],
         loads: vec![LoadSpec {
             ramp: Ramp::Step,
             ..pulse("top", traction, 1.0)
         }],
         gravity,
-        ..Problem::default()
+        ..body(linear(3500.0, poissons_ratio))
     };
     let model = Model::build(&mesh, &problem).unwrap();
     (mesh, model)

@@ -45,7 +45,7 @@ fn displacement(
     Some(state.u[0])
 }
 
-fn methods() -> Vec<(String, Box<dyn Integrator>)> {
+fn methods() -> Vec<(String, Box<dyn sinew_integrators::Stepper>)> {
     let mut methods: Vec<_> = sinew_integrators::entries()
         .iter()
         .map(|entry| (entry.id.to_owned(), entry.build(&Options::new()).unwrap()))

@@ -16,8 +16,8 @@ use sinew_core::{
     LoadTime, OptionValue, Options, Pattern, Ramp, State, System,
 };
 use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule};
-use sinew_integrators::Method;
 use sinew_integrators::implicit::Modal;
+use sinew_integrators::{Frame, Method};
 use sinew_mesh::structured::{self, Split};
 
 const MASS: f64 = 0.02; // kg
@@ -58,14 +58,14 @@ fn tolerance(tolerance: f64) -> Options {
     plain().with_number("tolerance", tolerance)
 }
 
-fn prepared(system: &dyn System, options: &Options) -> Modal {
-    let mut modal = Modal::from_options(options).unwrap();
+fn prepared(system: &dyn System, options: &Options) -> Frame<Modal> {
+    let mut modal = Frame::new(Modal::from_options(options).unwrap());
     modal.prepare(system, 0.01).unwrap();
     modal
 }
 
 /// `||K phi - omega^2 M phi|| / ||K phi||` of the worst mode.
-fn worst_residual(system: &dyn LinearSystem, modal: &Modal) -> f64 {
+fn worst_residual(system: &dyn LinearSystem, modal: &Frame<Modal>) -> f64 {
     let operators = system.operators();
     let mut worst = 0.0_f64;
     for (mode, omega) in modal.frequencies().iter().enumerate() {
@@ -125,7 +125,7 @@ fn body(
 ) -> Model {
     let mesh = structured::cube(cells, 0.1, Split::Kuhn).unwrap();
     let held = |(group, axes): &(&str, [bool; 3])| Fixed {
-        group: (*group).into(),
+        on: (*group).into(),
         axes: *axes,
     };
     let problem = Problem {
@@ -137,11 +137,12 @@ fn body(
         damping,
         fixed: fixed.iter().map(held).collect(),
         loads: vec![LoadSpec {
-            group: "top".into(),
+            on: "top".into(),
             kind,
             ramp: Ramp::Step,
         }],
         gravity: None,
+        moves: Vec::new(),
     };
     Model::build(&mesh, &problem).unwrap()
 }
@@ -164,7 +165,7 @@ fn peers_cube() -> &'static Model {
 }
 
 /// Its error over 100 instants of the first second, against the exact motion by polynomials in K.
-fn peers_error(options: &Options) -> (f64, Modal) {
+fn peers_error(options: &Options) -> (f64, Frame<Modal>) {
     static REFERENCE: OnceLock<Vec<Vec<f64>>> = OnceLock::new();
     let model = peers_cube();
     let rest = || State::at_rest(model.dofs());
@@ -445,7 +446,9 @@ fn a_floating_body_flies() {
     let mut state = start.clone();
     advance(&mut modal, &model, &mut state, 10, 0.03);
     let mut force = vec![0.0; model.dofs()];
-    model.external_force(LoadTime::at(0.0), &mut force);
+    model
+        .operators()
+        .external_force(LoadTime::at(0.0), &mut force);
     for axis in 0..3 {
         let sum = |values: &mut dyn Iterator<Item = f64>| values.skip(axis).step_by(3).sum::<f64>();
         let mass = sum(&mut model.mass().iter().copied());
@@ -503,7 +506,7 @@ fn held_components_are_no_modes() {
 
 #[test]
 fn set_up_and_steps_are_counted() {
-    let mut modal = Modal::with_modes(20);
+    let mut modal = Frame::new(Modal::with_modes(20));
     let model = peers_cube();
     let work = modal.prepare(model, 0.01).unwrap();
     assert_eq!(work.factorizations, 1);
@@ -532,7 +535,7 @@ fn a_run_goes_on_from_any_of_its_states() {
         let step = modal.step(model, &mut state, 0.01).unwrap();
         assert_eq!(step.solves, 0);
     }
-    let (mut clone, mut fresh) = (state.clone(), Modal::with_modes(20));
+    let (mut clone, mut fresh) = (state.clone(), Frame::new(Modal::with_modes(20)));
     modal.step(model, &mut state, 0.01).unwrap();
     fresh.step(model, &mut clone, 0.01).unwrap();
     assert!(state == clone);
@@ -556,7 +559,7 @@ fn refusals_say_what_to_do() {
         Rayleigh::default(),
     );
     assert_eq!(
-        Modal::default()
+        Frame::new(Modal::default())
             .prepare(&dashpots, 0.01)
             .unwrap_err()
             .to_string(),
@@ -570,7 +573,7 @@ fn refusals_say_what_to_do() {
         entries: vec![(0, 1.0)],
     };
     let front = chain(900, Damping::default(), vec![blow]);
-    let message = Modal::default()
+    let message = Frame::new(Modal::default())
         .prepare(&front, 0.01)
         .unwrap_err()
         .to_string();
@@ -586,7 +589,7 @@ fn refusals_say_what_to_do() {
     let smooth = chain(600, Damping::default(), vec![uniform(600, Ramp::Step)]);
     let mut plucked = State::at_rest(600);
     plucked.u[17] = 1e-3;
-    let refusal = Modal::default().step(&smooth, &mut plucked, 0.01);
+    let refusal = Frame::new(Modal::default()).step(&smooth, &mut plucked, 0.01);
     let message = refusal.unwrap_err().to_string();
     assert!(message.starts_with("`modal` at t = 0 s: "), "{message}");
     assert!(

@@ -58,21 +58,21 @@ fn order_4_where_mass_damping_is_small_and_2_where_it_is_not() {
 }
 
 #[test]
-fn lagging_damping_costs_the_order_and_a_sweep_for_each_kind() {
+fn lagging_damping_costs_the_order_and_no_sweep() {
     let with_dashpots = scene(3, 0.2, springs(0.2), Rayleigh::default());
-    for (system, sweeps) in [
-        (damped(&cube(3), 0.0, 0.0), 2),
-        (damped(&cube(3), 80.0, 0.0), 2),
-        (damped(&cube(3), 80.0, 1e-3), 3),
-        (damped(&with_dashpots, 80.0, 0.0), 3),
-        (damped(&with_dashpots, 80.0, 1e-3), 4),
+    for (system, lags) in [
+        (damped(&cube(3), 0.0, 0.0), false),
+        (damped(&cube(3), 80.0, 0.0), false),
+        (damped(&cube(3), 80.0, 1e-3), true),
+        (damped(&with_dashpots, 80.0, 0.0), true),
+        (damped(&with_dashpots, 80.0, 1e-3), true),
     ] {
         let (mut integrator, mut state) = (build("modified-leapfrog", &plain()), moving(48));
         let first = integrator.step(&system, &mut state, 1e-4).unwrap();
         let second = integrator.step(&system, &mut state, 1e-4).unwrap();
-        assert_eq!((first.sweeps, second.sweeps), (3, sweeps));
+        assert_eq!((first.sweeps, second.sweeps), (3, 2));
         assert_eq!((first.force_evaluations, second.force_evaluations), (1, 1));
-        if sweeps > 2 {
+        if lags {
             let order = order(&system, &moving(48), 128);
             assert!((order - 1.0).abs() <= 0.1, "{order}");
         }

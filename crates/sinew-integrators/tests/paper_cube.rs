@@ -7,7 +7,7 @@ mod common;
 use common::cube::{INSTANT, error, paper_cube, reference, rk4, run};
 use common::{assert_prints, build, largest, plain, relative_error, saturation};
 use sinew_core::spectrum::Spectrum;
-use sinew_core::{LinearSystem, LoadTime, Options, State, System};
+use sinew_core::{LinearSystem, Options, State, System};
 
 /// The error at so many steps for every 20 ms.
 fn error_of(id: &str, options: &Options, steps_per_instant: usize) -> f64 {
@@ -36,9 +36,23 @@ fn the_scene_is_the_one_described() {
 fn it_settles_at_its_static_solution() {
     let model = paper_cube();
     let mut load = vec![0.0; model.dofs()];
-    model.external_force(LoadTime::at(1.0), &mut load);
+    model
+        .operators()
+        .external_force(sinew_core::LoadTime::at(1.0), &mut load);
     let at_rest = sinew_integrators::static_solution(model, &load).unwrap();
     assert_prints(largest(&at_rest), "0.01695");
+
+    let mut integrator = build("central-difference", &plain());
+    let mut state = State::at_rest(model.dofs());
+    let distance = |state: &State| {
+        relative_error(
+            std::slice::from_ref(&state.u),
+            std::slice::from_ref(&at_rest),
+        )
+    };
+    assert_eq!(distance(&state), 1.0);
+    common::advance(&mut *integrator, model, &mut state, 6000, 1e-3);
+    assert!(distance(&state) <= 1e-9, "{:e}", distance(&state));
 }
 
 #[test]
@@ -77,7 +91,7 @@ fn at_20_ms_the_network_is_bounded_and_wrong() {
     );
     let max_u = instants.iter().map(|u| largest(u)).fold(0.0, f64::max);
     assert_prints(max_u, "0.160");
-    let inverted = |u: &Vec<f64>| model.inverted_elements(u).unwrap();
+    let inverted = |u: &Vec<f64>| model.inverted_elements(0.0.into(), u).unwrap();
     assert_eq!(inverted(&state.u), 1676);
     let late = instants[22..].iter().map(inverted);
     assert_eq!((late.clone().min(), late.max()), (Some(1646), Some(2984)));

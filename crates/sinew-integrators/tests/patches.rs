@@ -8,7 +8,7 @@ mod common;
 use std::sync::OnceLock;
 
 use common::sliver::{MASS_DAMPING, auto, model, with_sliver};
-use common::{advance, build, diverged, largest, plain, relative_error, watch};
+use common::{advance, build, diverged, largest, plain, relative_error, velocity_after, watch};
 use sinew_core::{
     Integrator, LinearModel, LinearOperators, LinearSystem, OptionValue, Options, Run, StableStep,
     State, System,
@@ -188,7 +188,9 @@ fn steps_solve_their_equation() {
     // Where the step is long, M^-1 of the force is no acceleration: the velocity at t must not be
     // made with it.
     let mut v = vec![0.0; n];
-    state.velocity_at_t(&model, &mut v).unwrap();
+    state
+        .velocity_at_t(&model, sinew_core::Inputs::none(), &mut v)
+        .unwrap();
     assert!(
         largest(&v) <= 3.0 * largest(&before.v).max(largest(&state.v)),
         "{v:?}"
@@ -199,15 +201,8 @@ fn steps_solve_their_equation() {
 #[test]
 fn velocities_of_a_patch_are_those_of_the_motion() {
     let model = model(&with_sliver(1000.0), MASS_DAMPING);
-    let velocity = |integrator: &mut dyn Integrator, steps: usize, dt: f64| {
-        let mut state = State::at_rest(model.dofs());
-        advance(integrator, &model, &mut state, steps, dt);
-        let mut v = vec![0.0; model.dofs()];
-        state.velocity_at_t(&model, &mut v).unwrap();
-        v
-    };
-    let exact = velocity(&mut *build("propagator", &plain()), 5, 0.02);
-    let found = velocity(&mut *patched(), 100, 0.001);
+    let exact = velocity_after(&mut *build("propagator", &plain()), &model, 5, 0.02);
+    let found = velocity_after(&mut *patched(), &model, 100, 0.001);
     let error = relative_error(&[found], &[exact]);
     assert!(error <= 0.05, "{error}");
 }

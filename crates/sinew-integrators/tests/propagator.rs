@@ -7,7 +7,6 @@ mod common;
 
 use std::sync::Arc;
 
-use common::body::{Body, bodies_up_to};
 use common::cube::{altered, cube, scene, springs};
 use common::exponential::exponentials;
 use common::{build, largest, plain};
@@ -18,7 +17,8 @@ use sinew_core::{
     BlockMatrix, Damping, Layers, LinearModel, LinearOperators, LinearSystem, Load, OptionValue,
     Options, Pattern, Ramp, State, System,
 };
-use sinew_fem::{Law, Rayleigh};
+use sinew_fem::Rayleigh;
+use sinew_testkit::body::{Body, bodies_up_to};
 
 /// The largest difference of displacements over the largest displacement, the first included, or of
 /// velocities.
@@ -49,12 +49,8 @@ fn propagate(system: &dyn System, start: &State, dt: f64, steps: usize) -> Vec<S
 }
 
 /// The body without dashpots, as matrices without loads.
-fn proportional(mut body: Body, damping: Damping) -> (LinearModel, State) {
-    for region in &mut body.problem.regions {
-        if let Law::Springs { damping_ratio, .. } = &mut region.law {
-            *damping_ratio = 0.0;
-        }
-    }
+fn proportional(body: Body, damping: Damping) -> (LinearModel, State) {
+    let body = body.without_dashpots();
     let model = body.model();
     let start = body.state(&model, 1e-3, 1e-3 / critical_step(model.operators()));
     (altered(&model, damping, vec![]), start)

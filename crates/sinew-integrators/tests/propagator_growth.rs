@@ -5,9 +5,9 @@
 
 mod common;
 
-use common::body::{Body, bodies_up_to};
 use common::cube::altered;
 use common::exponential::exponentials;
+use common::tissue::{body, held, linear};
 use common::{build, largest, plain};
 use proptest::prelude::*;
 use sinew_core::spectrum::critical_step;
@@ -15,8 +15,9 @@ use sinew_core::{
     Damping, Integrator, LinearModel, LinearSystem, Load, LoadTime, OptionValue, Options, Ramp,
     State, System,
 };
-use sinew_fem::{Fixed, Law, Model, Problem, Rayleigh, Region};
+use sinew_fem::{Fixed, Model, Problem};
 use sinew_mesh::structured::{self, Split};
+use sinew_testkit::body::bodies_up_to;
 
 /// The kinds of which each step is a contraction.
 const KINDS: [&str; 2] = ["chebyshev", "krylov"];
@@ -30,28 +31,15 @@ fn options(kind: &str, tolerance: f64) -> Options {
 /// A cube of edge 0.1 m of nearly incompressible tissue on the ground, without damping or loads, its
 /// top raised by 1 mm.
 fn raised_cube(cells: usize) -> (Model, State) {
-    let fixed = vec![Fixed {
-        group: "bottom".into(),
-        axes: [true; 3],
-    }];
+    let fixed = vec![held("bottom", [true; 3])];
     cube_of_tissue(cells, fixed)
 }
 
 fn cube_of_tissue(cells: usize, fixed: Vec<Fixed>) -> (Model, State) {
     let mesh = structured::cube(cells, 0.1, Split::Kuhn).unwrap();
     let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law: Law::Linear {
-                youngs_modulus: 3500.0,
-                poissons_ratio: 0.45,
-            },
-        }],
-        damping: Rayleigh::default(),
         fixed,
-        loads: vec![],
-        gravity: None,
+        ..body(linear(3500.0, 0.45))
     };
     let model = Model::build(&mesh, &problem).unwrap();
     let mut start = State::at_rest(model.dofs());
@@ -274,20 +262,6 @@ fn a_body_that_is_not_held_drifts_on_and_gains_no_energy() {
     }
 }
 
-/// Nothing that takes energy out or puts it in.
-fn conservative(body: Body) -> Body {
-    let mut body = body.on_the_ground();
-    body.problem.damping = Rayleigh::default();
-    body.problem.loads.clear();
-    body.problem.gravity = None;
-    for region in &mut body.problem.regions {
-        if let Law::Springs { damping_ratio, .. } = &mut region.law {
-            *damping_ratio = 0.0;
-        }
-    }
-    body
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
@@ -300,7 +274,7 @@ proptest! {
         tolerance in prop_oneof![Just(0.9), Just(0.1), Just(1e-2), Just(1e-4), Just(1e-8)],
         loaded in any::<bool>(),
     ) {
-        let body = conservative(body);
+        let body = body.on_the_ground().conservative();
         let model = body.model();
         let limit = critical_step(model.operators());
         let start = body.state(&model, 1e-3, 1e-3 / limit);
@@ -319,7 +293,7 @@ proptest! {
         let loads = if loaded { vec![load] } else { vec![] };
         let system = altered(&model, damping, loads);
         let mut force = vec![0.0; model.dofs()];
-        system.external_force(LoadTime::at(0.0), &mut force);
+        system.operators().external_force(LoadTime::at(0.0), &mut force);
         let work = |state: &State| -> f64 { force.iter().zip(&state.u).map(|(f, u)| f * u).sum() };
         for kind in KINDS {
             let mut integrator = build("propagator", &options(kind, tolerance));

@@ -34,7 +34,9 @@ fn motion(model: &Model, ids: &[&str], dt: f64) -> Vec<Vec<f64>> {
         let mut integrator = build(id, &plain());
         for _ in 0..40 / ids.len() {
             advance(&mut *integrator, model, &mut state, steps, dt);
-            state.velocity_at_t(model, &mut velocity).unwrap();
+            state
+                .velocity_at_t(model, sinew_core::Inputs::none(), &mut velocity)
+                .unwrap();
             let moved = state.u.iter().map(|u| RATE * u);
             motion.push(moved.chain(velocity.iter().copied()).collect());
         }
@@ -120,15 +122,21 @@ fn a_synchronised_state_holds_at_one_time() {
         let staggered = state.velocity == VelocityTime::MiddleOfStep;
         assert!(staggered || id != "central-difference");
         let (mut at_t, mut work) = (vec![0.0; model.dofs()], vec![0.0; model.dofs()]);
-        state.velocity_at_t(&model, &mut at_t).unwrap();
+        state
+            .velocity_at_t(&model, sinew_core::Inputs::none(), &mut at_t)
+            .unwrap();
         let displacement = state.u.clone();
         assert_eq!(
-            state.synchronise(&model, &mut work),
+            state.synchronise(&model, sinew_core::Inputs::none(), &mut work),
             Ok(staggered),
             "`{id}`"
         );
         assert_eq!(state.velocity, VelocityTime::Same, "`{id}`");
         assert_eq!((&state.u, &state.v), (&displacement, &at_t), "`{id}`");
-        assert_eq!(state.synchronise(&model, &mut work), Ok(false), "`{id}`");
+        assert_eq!(
+            state.synchronise(&model, sinew_core::Inputs::none(), &mut work),
+            Ok(false),
+            "`{id}`"
+        );
     }
 }

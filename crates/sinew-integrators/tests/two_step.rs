@@ -7,17 +7,16 @@ mod common;
 
 use std::sync::Arc;
 
-use common::body::bodies_up_to;
 use common::cube::{altered, cube, paper_cube, reference, run};
 use common::exponential::exponentials;
-use common::{advance, build, largest, plain, relative_error};
+use common::{advance, build, largest, plain, relative_error, velocity_after};
 use proptest::prelude::*;
 use sinew_core::spectrum::critical_step;
 use sinew_core::{
     BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
     OptionValue, Options, Pattern, Ramp, State, System,
 };
-use sinew_fem::Law;
+use sinew_testkit::body::bodies_up_to;
 
 fn kind(tolerance: f64) -> Options {
     plain()
@@ -66,12 +65,7 @@ proptest! {
         ratio in prop_oneof![Just(0.0), 1e-3..2.0],
         free in any::<bool>(),
     ) {
-        let mut body = if free { body.free() } else { body };
-        for region in &mut body.problem.regions {
-            if let Law::Springs { damping_ratio, .. } = &mut region.law {
-                *damping_ratio = 0.0;
-            }
-        }
+        let body = if free { body.free() } else { body }.without_dashpots();
         let model = body.model();
         let limit = critical_step(model.operators());
         let start = body.state(&model, 1e-3, 1e-3 / limit);
@@ -101,14 +95,7 @@ proptest! {
         tolerance in prop_oneof![Just(0.9), Just(0.1), Just(1e-2), Just(1e-4)],
     ) {
         // Held: a free body may fly.
-        let mut body = body.on_the_ground();
-        body.problem.loads.clear();
-        body.problem.gravity = None;
-        for region in &mut body.problem.regions {
-            if let Law::Springs { damping_ratio, .. } = &mut region.law {
-                *damping_ratio = 0.0;
-            }
-        }
+        let body = body.on_the_ground().conservative();
         let model = body.model();
         let limit = critical_step(model.operators());
         let system = altered(&model, mass_damping(2.0 * ratio / limit), vec![]);
@@ -162,22 +149,25 @@ fn a_checkpoint_continues_to_the_same_bits() {
 #[test]
 fn another_method_can_go_on() {
     let model = cube(3);
-    let velocity = |integrator: &mut dyn Integrator, steps: usize, dt: f64| {
-        let mut state = State::at_rest(model.dofs());
-        advance(integrator, &model, &mut state, steps, dt);
-        let mut v = vec![0.0; model.dofs()];
-        state.velocity_at_t(&model, &mut v).unwrap();
-        v
-    };
-    let exact = velocity(&mut *build("propagator", &plain()), 3, 0.02);
+    let exact = velocity_after(&mut *build("propagator", &plain()), &model, 3, 0.02);
     let error = |parts: usize| {
-        let found = velocity(&mut *two_step(1e-10), 3 * parts, 0.02 / parts as f64);
+        let found = velocity_after(
+            &mut *two_step(1e-10),
+            &model,
+            3 * parts,
+            0.02 / parts as f64,
+        );
         relative_error(&[found], std::slice::from_ref(&exact))
     };
     let (coarse, fine) = (error(10), error(20));
     let after_one_step = relative_error(
-        &[velocity(&mut *two_step(1e-10), 1, 1e-4)],
-        &[velocity(&mut *build("propagator", &plain()), 1, 1e-4)],
+        &[velocity_after(&mut *two_step(1e-10), &model, 1, 1e-4)],
+        &[velocity_after(
+            &mut *build("propagator", &plain()),
+            &model,
+            1,
+            1e-4,
+        )],
     );
     assert!(after_one_step < 0.01, "{after_one_step:e}");
     assert!(

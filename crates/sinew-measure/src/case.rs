@@ -30,7 +30,7 @@ pub struct Case {
     every_step: BTreeMap<(u64, usize), Arc<Track>>,
 }
 
-/// How much of a scene is compared, and how often.
+/// The part of a scene that is compared, and its instants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
     /// Simulated time (s), from 0 on.
@@ -40,7 +40,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// All of a scene, at its own instants.
+    /// The whole of a scene, at its own instants.
     #[must_use]
     pub fn of(simulation: &Simulation) -> Self {
         let settings = simulation.settings();
@@ -74,7 +74,7 @@ pub enum CaseError {
     Reference {
         /// Id of the case.
         case: String,
-        /// What is wrong.
+        /// The error.
         source: ReferenceError,
     },
 }
@@ -169,13 +169,13 @@ impl Case {
         &self.simulation
     }
 
-    /// How much of the scene is compared.
+    /// The part of the scene that is compared.
     #[must_use]
     pub fn span(&self) -> Span {
         self.span
     }
 
-    /// How much of the scene there is.
+    /// The whole of the scene.
     #[must_use]
     pub fn whole(&self) -> Span {
         Span::of(&self.simulation)
@@ -215,7 +215,7 @@ impl Case {
         })
     }
 
-    /// What a run in steps of `dt` (s) is compared with: the reference at the case's instants and
+    /// The reference for a run in steps of `dt` (s): the one at the case's instants and
     /// the number of steps between them where dt meets them all, otherwise the reference after
     /// every step.
     ///

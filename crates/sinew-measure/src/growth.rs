@@ -24,10 +24,10 @@ struct Instant {
 /// Fewest instants of which quarters are compared too.
 const FOR_QUARTERS: usize = 16;
 
-/// What one or two periods show of the growth of a squared error may be this much too little.
+/// Factor by which one or two periods may show too little growth of a squared error.
 const MARGIN: f64 = 1.5;
 
-/// The same where instants are too few for quarters, and often end within the first period.
+/// As [`MARGIN`], where instants are too few for quarters and often end within the first period.
 const MARGIN_OF_FEW: f64 = 4.0;
 
 impl ErrorHistory {
@@ -110,7 +110,7 @@ impl ErrorHistory {
         (difference / reference).sqrt()
     }
 
-    /// Until when (s) a phase error grows. In a motion that dies out as exp(-s t) it is as
+    /// The time (s) until which a phase error grows. In a motion that dies out as exp(-s t) it is as
     /// t exp(-s t), largest at 1/s; the last half of the history against the first shows s.
     fn motion_lasts_until(&self, duration: f64) -> f64 {
         let all = &self.instants;

@@ -1,145 +1,86 @@
 //! One run, measured: its error, its verdicts, its work and its cost.
 
-use std::collections::BTreeMap;
-use std::time::Duration;
-
-use serde_json::{Number, Value};
+use sinew_core::vectors::largest;
 use sinew_core::{
-    Integrator, OptionValue, Options, RecordError, Recorder, Run, RunReport, SimulateError,
-    StableStep, State, System, Verdict, simulate,
+    Integrator, Moment, OptionError, RecordError, Recorder, Run, RunReport, SetupError,
+    SimulateError, System, Verdict, simulate,
 };
-use sinew_scene::Simulation;
 
 use crate::case::Case;
 use crate::cpu_time::thread_cpu_time;
 use crate::growth::ErrorHistory;
-use crate::reference::{ErrorNorm, LateRange, Track, largest};
-use crate::row::{Outcome, Row, Work, finite, label};
+use crate::method_choice::MethodChoice;
+use crate::reference::{ErrorNorm, LateRange, ReferenceError, Track};
+use crate::row::{Row, RowOutcome, Work, finite};
+use crate::timing::{Effort, time_run};
 
-/// An integrator with its options.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Method {
-    /// Integrator id.
-    pub integrator: String,
-    /// Options beside the defaults.
-    pub options: Options,
-}
-
-impl Method {
-    /// An integrator with default options.
-    #[must_use]
-    pub fn new(integrator: impl Into<String>) -> Self {
-        Self {
-            integrator: integrator.into(),
-            options: Options::new(),
-        }
-    }
-
-    /// As it is compared with others on a case: the scene's own integrator has the scene's options,
-    /// every other its defaults. Those that saturate say at which voltage.
-    #[must_use]
-    pub fn on(case: &Case, integrator: &str) -> Self {
-        Self::of_scene(case.simulation(), integrator)
-    }
-
-    /// As [`Method::on`], where there is no case yet.
-    #[must_use]
-    pub fn of_scene(simulation: &Simulation, integrator: &str) -> Self {
-        let mut method = Self::new(integrator);
-        let settings = simulation.settings();
-        if settings.integrator == integrator {
-            method.options = settings.options.clone();
-        }
-        method.showing_defaults()
-    }
-
-    /// With those defaults written out that change what a run means.
-    #[must_use]
-    pub fn showing_defaults(mut self) -> Self {
-        let entries = sinew_integrators::entries();
-        let options = entries.iter().filter(|entry| entry.id == self.integrator);
-        for help in options.flat_map(|entry| entry.options) {
-            if let (Some(default), None) = (help.shown_default, self.options.get(help.key)) {
-                self.options.insert(help.key, OptionValue::Number(default));
-            }
-        }
-        self
-    }
-
-    /// Its largest stable step on a scene.
-    ///
-    /// # Errors
-    /// A reason in words when its options do not fit or the system lacks what it needs.
-    pub fn stable_step(&self, simulation: &Simulation) -> Result<StableStep, String> {
-        sinew_integrators::build(&self.integrator, &self.options)
-            .map_err(|error| error.to_string())?
-            .stable_step(simulation.system())
-            .map_err(|error| error.to_string())
-    }
-
-    /// Name and options, as in `cnn Q=4`.
-    #[must_use]
-    pub fn label(&self) -> String {
-        label(&self.integrator, &json_options(&self.options))
-    }
-}
-
-/// How much time goes into measuring the cost of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Effort {
-    /// Fewest repeats, of which the median counts.
-    pub repeats: usize,
-    /// CPU time (s) after which no further repeat is made.
-    pub budget: f64,
-}
-
-impl Effort {
-    /// For results to be shown.
-    pub const FULL: Self = Self {
-        repeats: 5,
-        budget: 0.06,
-    };
-    /// For checks that everything runs.
-    pub const QUICK: Self = Self {
-        repeats: 1,
-        budget: 0.05,
-    };
-    /// Nothing is timed and the row's times are 0: for error and verdicts alone.
-    pub const UNTIMED: Self = Self {
-        repeats: 0,
-        budget: 0.0,
-    };
+/// Why a run could not be measured.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeasureError {
+    /// The integrator is unknown, or its options do not fit.
+    #[error(transparent)]
+    Options(#[from] OptionError),
+    /// There is no reference for this step.
+    #[error(transparent)]
+    Reference(#[from] ReferenceError),
+    /// The integrator cannot be set up.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A step failed.
+    #[error(transparent)]
+    Run(#[from] SimulateError),
 }
 
 /// Runs a method on a case in steps of `dt` (s).
 ///
+/// # Errors
+/// [`MeasureError`] when the method cannot run on this case at all.
+pub fn measure(
+    case: &mut Case,
+    method: &MethodChoice,
+    dt: f64,
+    effort: Effort,
+) -> Result<Row, MeasureError> {
+    let mut integrator = method.build()?;
+    let row = measure_with(case, &method.integrator, &mut *integrator, dt, effort)?;
+    Ok(Row {
+        options: method.json_options(),
+        ..row
+    })
+}
+
+/// Runs an integrator, of this workspace or not, on a case in steps of `dt` (s). The row has `name`
+/// in the place of an integrator's id, and no options.
+///
 /// Set-up, the run that is compared with the reference and the runs that are timed are separate,
-/// so that neither set-up nor comparison is in the times.
+/// so that neither set-up nor comparison is in the times. An integrator that is set up for the
+/// case and the step already has no set-up left to time.
 ///
 /// # Errors
-/// A reason in words when the method cannot run on this case at all.
-pub fn measure(case: &mut Case, method: &Method, dt: f64, effort: Effort) -> Result<Row, String> {
-    let mut integrator = sinew_integrators::build(&method.integrator, &method.options)
-        .map_err(|error| error.to_string())?;
+/// [`MeasureError`] when the integrator cannot run on this case at all.
+pub fn measure_with(
+    case: &mut Case,
+    name: &str,
+    integrator: &mut dyn Integrator,
+    dt: f64,
+    effort: Effort,
+) -> Result<Row, MeasureError> {
     let run = case.run(dt);
-    let (track, stride) = case.reference_for(dt).map_err(|error| error.to_string())?;
+    let (track, stride) = case.reference_for(dt)?;
     let system = case.simulation().system();
     let start = case.simulation().initial_state();
 
     let before = thread_cpu_time();
-    let setup = integrator
-        .prepare(system, dt)
-        .map_err(|error| error.to_string())?;
+    let setup = integrator.prepare(system, dt)?;
     let setup_cpu = thread_cpu_time() - before;
 
     let mut comparison = Comparison::new(&track, stride, &run);
     comparison.history = (!case.is_whole()).then(|| ErrorHistory::new(is_damped(system)));
     let mut state = start.clone();
-    let report = simulate(system, &mut *integrator, &mut state, &run, &mut comparison)
-        .map_err(|error| error.to_string())?;
+    let report = simulate(system, integrator, &mut state, &run, &mut comparison)?;
 
-    let time_per_run = time_run(system, &mut *integrator, start, &run, report.steps, effort)
-        .map_err(|error| error.to_string())?;
+    let time_per_run = time_run(system, integrator, start, &run, report.steps, effort)?;
     let facts = integrator.facts().into_iter();
     let facts = facts.filter(|fact| fact.value.is_finite());
     let facts = facts
@@ -157,15 +98,14 @@ pub fn measure(case: &mut Case, method: &Method, dt: f64, effort: Effort) -> Res
     let settled = late_amplitude <= (2.0 * track.late_amplitude).max(1e-3 * track.max_u);
     Ok(Row {
         case: case.id().to_owned(),
-        integrator: method.integrator.clone(),
-        options: json_options(&method.options),
+        integrator: name.to_owned(),
         dt,
         steps: report.steps as u64,
         sweeps_per_s: report.work.sweeps as f64 / simulated,
         outcome: if diverged_at.is_some() {
-            Outcome::Diverged
+            RowOutcome::Diverged
         } else {
-            Outcome::Finished
+            RowOutcome::Finished
         },
         diverged_at_s: diverged_at,
         bounded: diverged_at.is_none() && comparison.max_u <= 10.0 * track.max_u,
@@ -188,7 +128,9 @@ pub fn measure(case: &mut Case, method: &Method, dt: f64, effort: Effort) -> Res
             .and_then(finite),
         saturated: report.work.saturated as f64 / pairs,
         guarded: report.work.saturated > 0,
-        inverted: system.inverted_elements(&state.u).unwrap_or(0) as u64,
+        inverted: system
+            .inverted_elements(state.t().into(), &state.u)
+            .unwrap_or(0) as u64,
         work: work(&report, setup.factorizations),
         cpu_s_per_s: time_per_run / simulated,
         us_per_step: time_per_run / steps * 1e6,
@@ -217,49 +159,6 @@ fn work(report: &RunReport, setup_factorizations: u64) -> Work {
     }
 }
 
-/// Median thread CPU time (s) of the run.
-fn time_run(
-    system: &dyn System,
-    integrator: &mut dyn Integrator,
-    start: &State,
-    run: &Run,
-    steps: usize,
-    effort: Effort,
-) -> Result<f64, SimulateError> {
-    // Long enough that neither the clock's resolution nor its cost shows.
-    const LONG_ENOUGH: Duration = Duration::from_millis(2);
-    if effort == Effort::UNTIMED {
-        return Ok(0.0);
-    }
-    let run = Run { steps, ..*run };
-    let mut state = start.clone();
-    let mut batch = |runs: u32| -> Result<Duration, SimulateError> {
-        let before = thread_cpu_time();
-        for _ in 0..runs {
-            state.clone_from(start);
-            simulate(system, integrator, &mut state, &run, &mut ())?;
-        }
-        Ok(thread_cpu_time() - before)
-    };
-    let mut runs = 1;
-    let mut times = Vec::new();
-    let mut spent = Duration::ZERO;
-    while times.len() < effort.repeats || spent.as_secs_f64() < effort.budget / 4.0 {
-        let time = batch(runs)?;
-        spent += time;
-        if time < LONG_ENOUGH && times.is_empty() && runs < 1 << 16 {
-            runs *= 2;
-            continue;
-        }
-        times.push(time.as_secs_f64() / f64::from(runs));
-        if spent.as_secs_f64() > effort.budget {
-            break;
-        }
-    }
-    times.sort_by(f64::total_cmp);
-    Ok(times[times.len() / 2])
-}
-
 /// Compares each state with the reference as it comes; keeps no copies.
 struct Comparison<'a> {
     track: &'a Track,
@@ -267,7 +166,7 @@ struct Comparison<'a> {
     steps: usize,
     step: usize,
     norm: ErrorNorm,
-    /// Where the error beyond the last instant is asked for.
+    /// Present where the error beyond the last instant is asked for.
     history: Option<ErrorHistory>,
     max_u: f64,
     late: LateRange,
@@ -290,12 +189,13 @@ impl<'a> Comparison<'a> {
 }
 
 impl Recorder for Comparison<'_> {
-    fn wants(&mut self, step: usize, _t: f64) -> bool {
+    fn next(&mut self, step: usize) -> Option<usize> {
         self.step = step;
-        true
+        Some(step)
     }
 
-    fn record(&mut self, _system: &dyn System, state: &State) -> Result<Verdict, RecordError> {
+    fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        let state = moment.state;
         if self.step.is_multiple_of(self.stride)
             && let Some(reference) = self.track.displacements.get(self.step / self.stride)
         {
@@ -309,27 +209,5 @@ impl Recorder for Comparison<'_> {
             self.late.include(&state.u);
         }
         Ok(Verdict::Continue)
-    }
-}
-
-fn json_options(options: &Options) -> BTreeMap<String, Value> {
-    let entries = options.iter();
-    entries
-        .map(|(key, value)| (key.to_owned(), json(value)))
-        .collect()
-}
-
-fn json(value: &OptionValue) -> Value {
-    match value {
-        OptionValue::Number(number) => Number::from_f64(*number).map_or(Value::Null, Value::Number),
-        OptionValue::Text(text) => Value::String(text.clone()),
-        OptionValue::Table(entries) => {
-            let entries = entries.iter();
-            Value::Object(
-                entries
-                    .map(|(key, value)| (key.clone(), json(value)))
-                    .collect(),
-            )
-        }
     }
 }

@@ -6,7 +6,7 @@ pub fn three(x: f64) -> String {
     significant(x, 3)
 }
 
-/// Two significant digits: of figures that were published with no more.
+/// Two significant digits: for figures that were noted with no more.
 #[must_use]
 pub fn two(x: f64) -> String {
     significant(x, 2)

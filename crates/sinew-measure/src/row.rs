@@ -1,4 +1,4 @@
-//! What is known of a run: its error, its verdicts, its work and its cost.
+//! A row: a run with its error, its verdicts, its work and its cost.
 
 use std::collections::BTreeMap;
 
@@ -28,7 +28,7 @@ pub struct CaseInfo {
     /// Simulated time (s).
     #[serde(deserialize_with = "gaps::null_is_nan")]
     pub duration_s: f64,
-    /// How the reference was made.
+    /// The method of the reference, in words.
     pub reference: String,
     /// The reference's own estimated relative error (fraction).
     #[serde(deserialize_with = "gaps::null_is_nan")]
@@ -70,12 +70,12 @@ pub struct Row {
     /// Sweeps per simulated second (1/s).
     #[serde(deserialize_with = "gaps::null_is_nan")]
     pub sweeps_per_s: f64,
-    /// How the run ended.
-    pub outcome: Outcome,
+    /// End of the run.
+    pub outcome: RowOutcome,
     /// Simulated time at which the run was given up (s); only when diverged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diverged_at_s: Option<f64>,
-    /// All finite, and never larger than ten times the reference.
+    /// Every displacement is finite and at most ten times the largest of the reference.
     pub bounded: bool,
     /// The motion dies out as the reference's does.
     pub settles: bool,
@@ -110,7 +110,7 @@ pub struct Row {
     /// CPU time of the set-up (s), in none of the other times.
     #[serde(default, deserialize_with = "gaps::null_is_nan")]
     pub setup_cpu_s: f64,
-    /// What the method's set-up found out, by name: the certificate of a stabilised network, the
+    /// Figures that the method's set-up found, by name: the certificate of a stabilised network, the
     /// degree of a propagator.
     #[serde(
         default,
@@ -134,14 +134,14 @@ pub struct Row {
     pub pareto: bool,
 }
 
-/// How a run ended.
+/// End of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Outcome {
-    /// Took all its steps.
+pub enum RowOutcome {
+    /// The run took all its steps.
     #[default]
     Finished,
-    /// Given up early: not finite, or far beyond the size of the body.
+    /// The run was given up early: not finite, or far beyond the size of the body.
     Diverged,
 }
 
@@ -168,7 +168,7 @@ pub struct Work {
 /// The verdict on a run in one word. Stability and accuracy are separate questions; see the
 /// fields of [`Row`] for all the answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Verdict {
+pub enum RowVerdict {
     /// Finished, bounded, nothing saturated, error at most [`ACCURATE`].
     Accurate,
     /// Finished, bounded, nothing saturated, error above [`ACCURATE`].
@@ -177,12 +177,12 @@ pub enum Verdict {
     Guarded,
     /// Finished, but passed the bound.
     Unbounded,
-    /// Given up early.
+    /// The run was given up early.
     Diverged,
 }
 
-impl Verdict {
-    /// All verdicts, the best first.
+impl RowVerdict {
+    /// The verdicts, the best first.
     pub const ALL: [Self; 5] = [
         Self::Accurate,
         Self::Wrong,
@@ -227,8 +227,8 @@ impl Row {
     #[must_use]
     pub fn sound_error(&self) -> Option<f64> {
         match self.verdict() {
-            Verdict::Accurate | Verdict::Wrong => self.error,
-            Verdict::Guarded | Verdict::Unbounded | Verdict::Diverged => None,
+            RowVerdict::Accurate | RowVerdict::Wrong => self.error,
+            RowVerdict::Guarded | RowVerdict::Unbounded | RowVerdict::Diverged => None,
         }
     }
 
@@ -248,13 +248,15 @@ impl Row {
 
     /// The verdict in one word.
     #[must_use]
-    pub fn verdict(&self) -> Verdict {
+    pub fn verdict(&self) -> RowVerdict {
         match self.outcome {
-            Outcome::Diverged => Verdict::Diverged,
-            Outcome::Finished if !self.bounded => Verdict::Unbounded,
-            Outcome::Finished if self.guarded || self.saturated > 0.0 => Verdict::Guarded,
-            Outcome::Finished if self.error.is_some_and(|e| e <= ACCURATE) => Verdict::Accurate,
-            Outcome::Finished => Verdict::Wrong,
+            RowOutcome::Diverged => RowVerdict::Diverged,
+            RowOutcome::Finished if !self.bounded => RowVerdict::Unbounded,
+            RowOutcome::Finished if self.guarded || self.saturated > 0.0 => RowVerdict::Guarded,
+            RowOutcome::Finished if self.error.is_some_and(|e| e <= ACCURATE) => {
+                RowVerdict::Accurate
+            }
+            RowOutcome::Finished => RowVerdict::Wrong,
         }
     }
 }
@@ -276,16 +278,19 @@ mod tests {
             error: Some(ACCURATE),
             ..Row::default()
         };
-        assert_eq!(clean.verdict(), Verdict::Accurate);
+        assert_eq!(clean.verdict(), RowVerdict::Accurate);
         let with = |change: fn(&mut Row)| {
             let mut row = clean.clone();
             change(&mut row);
             row.verdict()
         };
-        assert_eq!(with(|r| r.error = Some(0.051)), Verdict::Wrong);
-        assert_eq!(with(|r| r.guarded = true), Verdict::Guarded);
-        assert_eq!(with(|r| r.saturated = 1e-6), Verdict::Guarded);
-        assert_eq!(with(|r| r.bounded = false), Verdict::Unbounded);
-        assert_eq!(with(|r| r.outcome = Outcome::Diverged), Verdict::Diverged);
+        assert_eq!(with(|r| r.error = Some(0.051)), RowVerdict::Wrong);
+        assert_eq!(with(|r| r.guarded = true), RowVerdict::Guarded);
+        assert_eq!(with(|r| r.saturated = 1e-6), RowVerdict::Guarded);
+        assert_eq!(with(|r| r.bounded = false), RowVerdict::Unbounded);
+        assert_eq!(
+            with(|r| r.outcome = RowOutcome::Diverged),
+            RowVerdict::Diverged
+        );
     }
 }

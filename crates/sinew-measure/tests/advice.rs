@@ -11,8 +11,8 @@ use std::path::PathBuf;
 use sinew_core::{Clock, LoadOverStep, OptionValue, Options, Run, StableStep, simulate};
 use sinew_measure::search::Pilot;
 use sinew_measure::{
-    Advice, AdviceError, Answer, Case, Effort, Method, Question, Row, Span, advise, measure,
-    on_one_thread,
+    Advice, AdviceError, Answer, Case, Cost, Effort, LeftOut, MethodChoice, Question, Row, Span,
+    advise, measure, on_one_thread,
 };
 use sinew_scene::{Scene, SceneSource, Simulation};
 
@@ -25,10 +25,11 @@ fn simulation(scene: &str) -> Simulation {
     Scene::load(path(scene)).unwrap().build().unwrap()
 }
 
-/// Time enough that the choice is not cut short, on slow machines too.
+/// Time enough that nothing is cut short on any machine, and costs that are the same on all.
 fn question(tolerance: f64) -> Question {
     Question {
-        pilot_seconds: 20.0,
+        pilot_seconds: 1e6,
+        cost: Cost::Work,
         ..Question::new(tolerance)
     }
 }
@@ -116,7 +117,7 @@ fn repeated(scene: &str, table: &str) -> Row {
     let simulation = scene.build().unwrap();
     let (dt, integrator) = (simulation.dt(), simulation.settings().integrator.clone());
     let mut case = Case::new("repeated", simulation).unwrap();
-    let method = Method::on(&case, &integrator);
+    let method = MethodChoice::on(&case, &integrator);
     on_one_thread(|| measure(&mut case, &method, dt, Effort::QUICK))
         .unwrap()
         .unwrap()
@@ -124,7 +125,8 @@ fn repeated(scene: &str, table: &str) -> Row {
 
 fn holds_when_repeated(scene: &str, tolerance: f64) {
     let advice = advise(simulation(scene), question(tolerance)).unwrap();
-    assert!(!advice.choice_cut_short);
+    // Some twenty methods at some twenty steps each are the grid that these stand for.
+    assert!(advice.pilots < 100, "{} pilots", advice.pilots);
     assert_eq!(advice.measured, advice.whole);
     let Answer::Met { cheapest, tenfold } = &advice.answer else {
         panic!("{:?}", advice.answer);
@@ -168,7 +170,7 @@ fn the_whole_grid_needs_no_fewer_sweeps_and_a_tighter_tolerance_never_less_work(
     let mut case = Case::new("small cube", small_cube()).unwrap();
     let mut grid = Vec::new();
     for integrator in SWEEPING {
-        let method = Method::on(&case, integrator);
+        let method = MethodChoice::on(&case, integrator);
         for parts in 1..=24 {
             let dt = 0.02 / f64::from(parts);
             grid.push(measure(&mut case, &method, dt, Effort::QUICK).unwrap());
@@ -189,14 +191,14 @@ fn the_whole_grid_needs_no_fewer_sweeps_and_a_tighter_tolerance_never_less_work(
             "{} does not count in sweeps",
             best.label()
         );
-        // Beside its sweep a step of one method does a little more than that of another.
+        // Of runs that cost the same within a tenth the most accurate is chosen.
         assert!(
             best.sweeps_per_s <= 1.1 * fewest,
             "{tolerance}: {} at {} sweeps/s, {fewest} would do",
             best.label(),
             best.sweeps_per_s
         );
-        // Times decide, and sweeps follow them to a tenth.
+        // As much may stand between two tolerances.
         assert!(
             1.1 * best.sweeps_per_s >= last,
             "{tolerance}: {} at {} sweeps/s after {last}",
@@ -290,8 +292,6 @@ fn where_time_is_short_a_first_part_of_the_scene_is_measured() {
     );
     let row = &advised(&advice).row;
     assert!(row.expected_error.unwrap() <= 1e-2 && row.expected_error >= row.error);
-    // The pilot that is under way when time runs out is finished.
-    assert!(advice.spent_s < 10.0, "{} s", advice.spent_s);
     let best = advised(&advice);
     assert!(
         advice
@@ -324,7 +324,7 @@ fn no_run_is_named_that_a_later_load_would_end() {
     let mut exact = 0;
     for pilot in cheapest.iter().chain(tenfold.as_deref()) {
         let simulation = pressed_late();
-        let Method {
+        let MethodChoice {
             integrator,
             options,
         } = &pilot.method;
@@ -347,7 +347,7 @@ fn no_run_is_named_that_a_later_load_would_end() {
     }
     assert!(exact > 0, "steps of 10 ms meet the load: {cheapest:?}");
     // As written it steps over the load.
-    let reason = advice.written.unwrap_err();
+    let reason = advice.written.unwrap_err().to_string();
     assert!(
         reason.contains("a load changes at t = 300.13 s"),
         "{reason}"
@@ -373,7 +373,7 @@ fn phase_errors_are_expected_to_grow_beyond_the_part_that_was_measured() {
             "implicit-euler",
             "cnn-stabilised",
         ] {
-            let method = Method::new(integrator);
+            let method = MethodChoice::new(integrator);
             let over = |case: &mut Case| measure(case, &method, 5e-4, Effort::UNTIMED).unwrap();
             let (seen, truth) = (over(&mut part), over(&mut whole).error.unwrap());
             let expected = seen.expected_error.unwrap();
@@ -399,7 +399,7 @@ fn an_unstable_run_is_shown_but_never_advised() {
         let scene = Scene::parse(SceneSource::new("slowly.toml", text)).unwrap();
         scene.build().unwrap()
     };
-    let method = Method::new("central-difference");
+    let method = MethodChoice::new("central-difference");
     let limit = match method.stable_step(&slowly_pressed(1e-3)).unwrap() {
         StableStep::UpTo(limit) => limit,
         other => panic!("{other:?}"),
@@ -430,7 +430,7 @@ fn a_method_that_cannot_tell_its_stable_step_is_not_trusted_beyond_what_was_foll
     let refused = advice.refused.iter();
     let mut reasons = refused.filter(|(method, _)| method.integrator == "forward-euler");
     let (_, reason) = reasons.next().unwrap();
-    assert!(reason.contains("stable step is not known"), "{reason}");
+    assert!(matches!(reason, LeftOut::StabilityUnknown), "{reason}");
 }
 
 /// A cube that nothing damps, for a hundred seconds.
@@ -445,7 +445,7 @@ fn undamped_cube(run: &str) -> Simulation {
 fn phase_errors_are_expected_behind_larger_errors_of_the_start() {
     let undamped = || undamped_cube("integrator = \"rk4\"\ndt = 0.004");
     let mut whole = Case::new("whole", undamped()).unwrap();
-    let propagator = |kind: &str, tolerance| Method {
+    let propagator = |kind: &str, tolerance| MethodChoice {
         integrator: "propagator".to_owned(),
         options: Options::new()
             .with("kind", OptionValue::Text(kind.to_owned()))
@@ -455,7 +455,7 @@ fn phase_errors_are_expected_behind_larger_errors_of_the_start() {
         propagator("two-step", 1e-4),
         propagator("two-step", 1e-6),
         propagator("krylov", 1e-5),
-        Method::new("modified-leapfrog"),
+        MethodChoice::new("modified-leapfrog"),
     ];
     for method in methods {
         let over = |case: &mut Case| measure(case, &method, 0.02, Effort::UNTIMED).unwrap();
@@ -484,7 +484,7 @@ fn spring(oscillator: &str) -> Result<Advice, AdviceError> {
 }
 
 #[test]
-fn nothing_moves() {
+fn a_scene_in_which_nothing_moves_is_refused_with_what_to_do() {
     let error = spring("mass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = 0.0").unwrap_err();
     let text = error.to_string();
     assert!(
@@ -494,7 +494,7 @@ fn nothing_moves() {
 }
 
 #[test]
-fn a_scene_too_fast_to_follow_is_refused_at_once() {
+fn a_scene_too_fast_to_follow_is_refused_with_what_to_do() {
     let error = spring("mass = 0.1\nstiffness = 1e40\ndamping = 0.0\nvelocity = 1.0").unwrap_err();
     assert!(matches!(error, AdviceError::TooFast { .. }), "{error}");
     assert!(

@@ -5,8 +5,8 @@
 
 use std::path::PathBuf;
 
-use sinew_core::{OptionValue, Options, Outcome, State, simulate};
-use sinew_measure::{Case, Effort, Method, Row, measure};
+use sinew_core::{OptionValue, Options, Outcome, simulate};
+use sinew_measure::{Case, Effort, MethodChoice, Row, measure};
 use sinew_scene::{Scene, Simulation};
 
 const SCENES: [&str; 3] = ["paper-cube", "peers-cube", "paper-oscillator"];
@@ -26,7 +26,8 @@ fn run(simulation: &Simulation, options: &Options) -> (u64, Vec<u64>) {
     let mut integrator = sinew_integrators::build("central-difference", options).unwrap();
     let mut state = simulation.initial_state().clone();
     let mut bits = Vec::new();
-    let mut recorder = |_: &dyn sinew_core::System, state: &State| {
+    let mut recorder = |moment: &sinew_core::Moment<'_>| {
+        let state = moment.state;
         let values = state.u.iter().chain(&state.v);
         bits.extend(values.map(|value| value.to_bits()));
         Ok(sinew_core::Verdict::Continue)
@@ -57,7 +58,7 @@ fn a_sound_run_is_the_same_to_the_bit() {
 }
 
 fn row(case: &mut Case, integrator: &str, saturation: &str, dt: f64) -> Row {
-    let method = Method {
+    let method = MethodChoice {
         integrator: integrator.into(),
         options: with_word(Options::new(), "saturation", saturation),
     };

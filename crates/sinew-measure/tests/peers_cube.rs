@@ -1,4 +1,4 @@
-//! The peers' cube: published figures of other programs on the same mesh, mass and load.
+//! The peers' cube: figures of other programs, measured once on the same mesh, mass and load.
 //!
 //! Central difference and backward Euler are those of scipy, SOFA and VegaFEM, which agree with each
 //! other to four digits and more; the figures stand here with the digits they were given with.
@@ -11,7 +11,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use sinew_core::spectrum::largest_eigenvalue_of_pencil;
 use sinew_core::{LinearSystem, OptionValue, Options};
 use sinew_integrators::implicit::static_solution;
-use sinew_measure::{Case, Effort, Method, measure};
+use sinew_measure::{Case, Effort, MethodChoice, measure};
 use sinew_scene::Simulation;
 
 fn case() -> &'static Mutex<Case> {
@@ -36,7 +36,7 @@ fn with_simulation<T>(look: impl FnOnce(&Simulation, &dyn LinearSystem) -> T) ->
 /// The error (%) of a method in steps of `ms`.
 fn error(integrator: &str, ms: f64) -> f64 {
     let mut case = locked();
-    let method = Method::new(integrator);
+    let method = MethodChoice::new(integrator);
     let row = measure(&mut case, &method, ms * 1e-3, Effort::QUICK).unwrap();
     100.0 * row.error.unwrap()
 }
@@ -91,7 +91,9 @@ fn the_force_is_shared_equally_by_the_81_nodes_of_the_top_that_move() {
         let body = simulation.model().body().unwrap();
         let height = |dof: usize| body.mesh.points[body.model.nodes()[dof / 3] as usize][2];
         let mut force = vec![0.0; linear.dofs()];
-        linear.external_force(sinew_core::LoadTime::at(0.0), &mut force);
+        linear
+            .operators()
+            .external_force(sinew_core::LoadTime::at(0.0), &mut force);
         let loaded: Vec<usize> = (0..force.len()).filter(|i| force[*i] != 0.0).collect();
         assert_eq!(loaded.len(), 81);
         assert!(loaded.iter().all(|&i| (height(i) - 0.1).abs() < 1e-12));
@@ -144,14 +146,14 @@ fn the_lowest_frequency() {
     });
 }
 
-/// The published marks in work: a sweep of ours is to cost a fifth of a product of scipy's, whose
+/// The marks in work: a sweep of ours is to cost a fifth of a product of scipy's, whose
 /// central difference takes 1000 of them. An error of .1 % at a third of its cost, 1e-6 at its cost.
 #[test]
 fn errors_for_the_sweeps_that_the_marks_allow() {
     let text = |text: &str| OptionValue::Text(text.into());
     let mut case = locked();
     for (tolerance, error, share_of_scipy) in [(1e-3, 1e-3, 1.0 / 3.0), (1e-8, 1e-6, 1.0)] {
-        let mut method = Method::new("propagator");
+        let mut method = MethodChoice::new("propagator");
         method.options = Options::new()
             .with("kind", text("two-step"))
             .with_number("tolerance", tolerance);

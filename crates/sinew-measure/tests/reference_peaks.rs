@@ -5,8 +5,9 @@
 
 use std::path::{Path, PathBuf};
 
+use sinew_core::vectors::largest;
 use sinew_core::{State, System};
-use sinew_measure::reference::{Taylor, Track, follow, largest};
+use sinew_measure::reference::{Taylor, Track, follow};
 use sinew_scene::{Scene, SceneSource, Simulation};
 
 /// Internal steps of the reference over which a body is followed.

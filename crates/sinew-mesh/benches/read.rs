@@ -1,7 +1,7 @@
-//! How fast a large mesh is read, how much memory that takes, and how meshio does on the same files.
+//! Time and memory for reading a large mesh, in comparison with meshio on the same files.
 //!
 //! `cargo bench -p sinew-mesh` makes a structured mesh of a million tetrahedra, writes it in every version and
-//! encoding, and reads each file several times. The ratio to meshio is printed where `python3` has it. A number after
+//! encoding, and reads each file several times. The ratio to meshio is printed where `python3` has meshio. A number after
 //! `--` is the number of cells along an edge of the cube, for smaller or larger meshes.
 
 #![allow(
@@ -128,7 +128,7 @@ fn measure(name: &str, path: &Path, has_meshio: bool) {
     }
 }
 
-/// The bytes of what the reader returns.
+/// The size of what the reader returns (bytes).
 fn array_bytes(mesh: &Mesh) -> usize {
     let cells = mesh.cells.iter().map(|block| {
         let per_cell = 8 + 4 + 4;

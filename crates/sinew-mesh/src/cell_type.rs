@@ -127,15 +127,15 @@ impl CellType {
             .find(|kind| kind.name() == name)
     }
 
-    /// Whether the shape is a tetrahedron, of whatever order. Its corners are the first four nodes.
+    /// Whether the shape is a tetrahedron of any order. Its corners are the first four nodes.
     #[must_use]
     pub fn is_tetrahedron(self) -> bool {
         self.name().starts_with("tetra")
     }
 
-    /// Where gmsh and VTK number the nodes of a cell differently: `vtk_row[i] = gmsh_row[order[i]]`.
+    /// The order of VTK's nodes in gmsh's row of a cell: `vtk_row[i] = gmsh_row[order[i]]`.
     ///
-    /// `None` means the two agree. As in meshio 5.3.5, `wedge18` and `pyramid14` are left as gmsh has them.
+    /// `None` where the two programs agree. As in meshio 5.3.5, `wedge18` and `pyramid14` stay in gmsh's order.
     #[must_use]
     pub fn vtk_order_in_gmsh_row(self) -> Option<&'static [u8]> {
         Some(match self {
@@ -212,7 +212,7 @@ mod tests {
         }
     }
 
-    /// gmsh's manual gives the two corners of each mid-edge node of a tetra10; VTK's file formats give theirs.
+    /// The two corners of each mid-edge node of a tetra10, from gmsh's manual and from VTK's file formats.
     #[test]
     fn tetra10_edges_move_from_gmsh_to_vtk_order() {
         let gmsh_edges = [(0, 1), (1, 2), (2, 0), (3, 0), (3, 2), (3, 1)];

@@ -1,14 +1,14 @@
-//! Finds cells that have the same nodes, in whatever order.
+//! Finds cells that have the same nodes, in any order.
 
 use std::collections::HashMap;
 
 /// Pairs (first cell, later cell) of cells with the same set of nodes, given the nodes of each cell in turn.
 ///
-/// The later cells ascend, and each is paired with the first cell of its node set.
+/// The later cells are in ascending order, and each is paired with the first cell of its node set.
 pub(crate) fn duplicate_cells<'c>(
     cells: impl Iterator<Item = &'c [u32]> + Clone,
 ) -> Vec<(usize, usize)> {
-    // Most meshes have no duplicates, so a cheap key that ignores the order comes first, and bits tell which keys may have
+    // Most meshes have no duplicates, so a cheap key that ignores the order comes first, and bits record which keys may have
     // been there before. Equal keys prove nothing; the cells behind them are compared exactly.
     let mut seen = Bits::for_keys(cells.clone().count());
     let mut suspects: Vec<u64> = cells
@@ -43,7 +43,7 @@ pub(crate) fn duplicate_cells<'c>(
     pairs
 }
 
-/// A set of keys that may take a key for another, but never misses one.
+/// A set of keys that may report a key which was not added, but never misses one that was (a Bloom filter).
 struct Bits {
     words: Vec<u64>,
 }
@@ -62,7 +62,7 @@ impl Bits {
         (word, 1 << (key & 63))
     }
 
-    /// Adds a key, and tells whether it seemed to be there.
+    /// Adds a key. Returns whether the set seemed to contain it already.
     fn replace(&mut self, key: u64) -> bool {
         let (word, bit) = self.place(key);
         let was_set = self.words[word] & bit != 0;

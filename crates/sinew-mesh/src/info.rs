@@ -1,4 +1,4 @@
-//! A mesh in a few numbers, for people and programs.
+//! A summary of a mesh in a few numbers, for people and programs.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -6,11 +6,11 @@ use std::fmt::Write as _;
 use crate::check::{TetShape, tet_corners};
 use crate::mesh::Mesh;
 
-/// What there is in a mesh. [`MeshInfo::to_json`] gives the fields under their names.
+/// Summary of a mesh. [`MeshInfo::to_json`] gives the fields under their names.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct MeshInfo {
-    /// Number of points, those included that no cell has.
+    /// Number of points, including those that no cell uses.
     pub num_points: usize,
     /// The least and the greatest coordinates of all points; zeros for a mesh without any.
     pub bbox: [[f64; 3]; 2],
@@ -18,19 +18,19 @@ pub struct MeshInfo {
     pub cells: BTreeMap<&'static str, usize>,
     /// The physical groups, by dimension and tag.
     pub physical: Vec<GroupInfo>,
-    /// Sum of the volumes of all tetrahedra, of whatever order, by their corners; each counts as positive.
+    /// Sum of the volumes of all tetrahedra of any order, computed from their corners and counted as positive.
     pub tet_volume: f64,
     /// The first row of each block with cells.
     pub first_cells: Vec<Vec<u32>>,
-    /// Points that no cell of three dimensions has.
+    /// Number of points that no volume cell uses.
     pub points_not_in_3d_cells: usize,
-    /// Cells of three dimensions with the nodes of an earlier one.
+    /// Number of volume cells that have the same nodes as an earlier one.
     pub duplicate_3d_cells: usize,
-    /// Tetrahedra with a negative volume, flat ones apart.
+    /// Number of tetrahedra with a negative volume, not counting flat ones.
     pub tets_inverted: usize,
-    /// Tetrahedra without volume: at most 1e-9 of the cube of the longest edge.
+    /// Number of flat tetrahedra, whose volume is at most 1e-9 of the cube of the longest edge.
     pub tets_degenerate: usize,
-    /// What was tolerated when the file was read.
+    /// Warnings of the reader.
     pub warnings: Vec<String>,
 }
 

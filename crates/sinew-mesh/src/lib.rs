@@ -2,8 +2,8 @@
 //!
 //! A file is read into a [`Mesh`]: all its cells, tags, groups and warnings, arranged as meshio arranges them.
 //! [`Mesh::check`] finds what makes a simulation fail, [`info::MeshInfo`] sums a mesh up, [`write_msh`] and
-//! [`vtu::write_vtu`] write it. [`Mesh::to_tet_mesh`] makes of it the [`TetMesh`] that a simulation needs. Nothing here knows
-//! mechanics.
+//! [`vtu::write_vtu`] write it. [`Mesh::to_tet_mesh`] turns it into the [`TetMesh`] that a simulation needs. This crate
+//! knows no mechanics.
 //!
 //! ```
 //! use sinew_mesh::{GroupMembers, read_msh, structured, write_msh41_ascii};
@@ -22,7 +22,7 @@
 //!     eprintln!("{}: {} cells", set.name, set.blocks.iter().map(Vec::len).sum::<usize>());
 //! }
 //!
-//! // What a simulation needs: tetrahedra, groups by name, outward surfaces.
+//! // The mesh of a simulation: tetrahedra, groups by name, outward surfaces.
 //! let tissue = mesh.to_tet_mesh()?;
 //! assert_eq!(tissue, cube);
 //! let top = tissue.group("top")?;
@@ -55,5 +55,7 @@ pub use msh::{
     write_msh, write_msh41_ascii,
 };
 pub use physical_tags::PhysicalTags;
-pub use tet_mesh::{Group, GroupMembers, SurfaceError, TetMesh, TetMeshError, UnknownGroup};
+pub use tet_mesh::{
+    AddGroupError, Group, GroupMembers, SurfaceError, TetMesh, TetMeshError, UnknownGroup,
+};
 pub use warning::{Position, Warning};

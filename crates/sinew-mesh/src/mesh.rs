@@ -10,8 +10,8 @@ use crate::warning::Warning;
 /// Everything read from a mesh file.
 ///
 /// The arrangement is that of meshio's `Mesh`: points in file order, cells in blocks of one type with 0-based, VTK-ordered
-/// connectivity. What meshio drops is kept beside it: node and element tags, every physical group of a cell, and a
-/// name table keyed by dimension *and* tag.
+/// connectivity. Node and element tags, every physical group of a cell and a name table keyed by dimension *and* tag, which
+/// meshio drops, are kept as well.
 ///
 /// To build one by hand, start from [`Mesh::default`] and fill the fields in.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -21,7 +21,7 @@ pub struct Mesh {
     pub points: Vec<[f64; 3]>,
     /// The tag of each point in the file: at least 1, in any order, with gaps. Empty stands for `1..=points.len()`.
     pub node_tags: Vec<u64>,
-    /// The geometrical entity each point is classified on (meshio's `gmsh:dim_tags`). Empty if the file has none (2.2).
+    /// The geometrical entity on which each point lies (meshio's `gmsh:dim_tags`). Empty if the file has none (2.2).
     pub node_entities: Vec<Entity>,
     /// The cells. Version 4: one block per element block of the file. Version 2: one per run of equal types.
     pub cells: Vec<CellBlock>,
@@ -37,7 +37,7 @@ pub struct Mesh {
     pub periodic: Vec<PeriodicLink>,
     /// The sections of the file that were skipped, in file order.
     pub skipped_sections: Vec<String>,
-    /// What the reader accepted but a user should know.
+    /// Remarks of the reader about contents that it accepted but a user should know of.
     pub warnings: Vec<Warning>,
 }
 
@@ -110,7 +110,7 @@ impl CellBlock {
     }
 }
 
-/// Which cell of a mesh.
+/// Position of a cell in a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CellIndex {
     /// Index into [`Mesh::cells`].
@@ -119,7 +119,7 @@ pub struct CellIndex {
     pub cell: usize,
 }
 
-/// Cells of one type with the nodes of an earlier one: pairs (first cell, later cell).
+/// Cells of one type that have the same nodes as an earlier one: pairs (first cell, later cell).
 pub(crate) struct Duplicates {
     pub(crate) kind: CellType,
     pub(crate) pairs: Vec<(CellIndex, CellIndex)>,
@@ -186,7 +186,8 @@ pub struct PeriodicLink {
     pub entity: i32,
     /// Tag of the entity it is a copy of.
     pub master: i32,
-    /// The 4 x 4 transformation in row-major order that takes the master onto the dependent entity, or nothing.
+    /// The 4 x 4 transformation, in row-major order, that takes the master onto the dependent entity; empty if the file
+    /// has none.
     pub affine: Vec<f64>,
     /// Pairs of node tags: dependent, master.
     pub node_tags: Vec<[u64; 2]>,
@@ -225,7 +226,7 @@ impl Mesh {
         })
     }
 
-    /// The cells of one dimension that have the nodes of an earlier cell of their type, type by type.
+    /// The cells of one dimension that have the same nodes as an earlier cell of their type, type by type.
     pub(crate) fn duplicate_cells(&self, dim: u8) -> Vec<Duplicates> {
         let kinds: BTreeSet<CellType> = self.cells.iter().map(|block| block.kind).collect();
         let kinds = kinds.into_iter().filter(|kind| kind.dim() == dim);
@@ -285,7 +286,7 @@ impl Mesh {
 
     /// meshio's `cell_sets`: the cells of each named group, in the order of [`Mesh::physical_names`].
     ///
-    /// A cell in several groups is in several sets, and a tag counts whatever its sign.
+    /// A cell in several groups is in several sets. The sign of a tag does not matter.
     #[must_use]
     pub fn cell_sets(&self) -> Vec<CellSet> {
         let mut sets: Vec<CellSet> = self

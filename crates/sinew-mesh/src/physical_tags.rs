@@ -1,4 +1,4 @@
-//! Which physical groups each cell of a block belongs to.
+//! The physical groups that each cell of a block belongs to.
 
 /// The physical tags of each cell of a block: none, one or several per cell.
 ///
@@ -11,7 +11,7 @@ pub struct PhysicalTags {
 }
 
 impl PhysicalTags {
-    /// The tags of no cells.
+    /// The tags of an empty block.
     #[must_use]
     pub fn new() -> PhysicalTags {
         PhysicalTags::default()
@@ -31,7 +31,7 @@ impl PhysicalTags {
 
     /// Adds the next cell's tags. Zeros, gmsh's "no group", are left out.
     pub fn push(&mut self, tags: &[i32]) {
-        // Neighbouring rows of a file nearly always share their groups, so looking at the latest lists is enough to
+        // Neighbouring rows of a file nearly always share their groups, so comparing with the latest lists is enough to
         // keep them few; a repeated list costs memory, not correctness.
         const LOOK_BACK: usize = 8;
         let start = self.lists.len().saturating_sub(LOOK_BACK);
@@ -58,7 +58,7 @@ impl PhysicalTags {
             .map_or(&[], Vec::as_slice)
     }
 
-    /// The first tag of a cell, or 0: the value meshio keeps under `gmsh:physical`.
+    /// The first tag of a cell, or 0 if it has none. meshio keeps this value under `gmsh:physical`.
     #[must_use]
     pub fn first_of(&self, cell: usize) -> i32 {
         self.of(cell).first().copied().unwrap_or(0)

@@ -1,6 +1,6 @@
 //! Boxes of tetrahedra on a regular grid.
 //!
-//! Each hexahedron of the grid is cut into six tetrahedra round one of its space diagonals. Nodes are numbered x
+//! Each hexahedron of the grid is cut into six tetrahedra around one of its space diagonals. Nodes are numbered x
 //! fastest: node (i, j, k) has index `i + (nx + 1) * (j + (ny + 1) * k)`. The groups are
 //!
 //! | name | dimension | tag | members |
@@ -12,13 +12,13 @@
 
 use crate::tet_mesh::{Group, GroupMembers, OUTWARD_FACES, TetMesh};
 
-/// How the hexahedra of a grid are cut.
+/// Way of cutting the hexahedra of a grid into tetrahedra.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Split {
-    /// Every hexahedron round its diagonal from the lowest to the highest corner (Kuhn 1960). All diagonals point one
+    /// Every hexahedron around its diagonal from the lowest to the highest corner (Kuhn 1960). All diagonals point one
     /// way, which makes the mesh stiffer in some directions than in others.
     Kuhn,
-    /// As [`Split::Kuhn`], with hexahedron (i, j, k) reflected in x, y, z where i, j, k is odd. No direction is
+    /// [`Split::Kuhn`] with hexahedron (i, j, k) reflected in x, y, z where i, j, k is odd. No direction is
     /// preferred over its mirror image.
     Mirrored,
 }
@@ -33,12 +33,12 @@ pub enum StructuredError {
         /// `x`, `y` or `z`.
         axis: char,
     },
-    /// An edge is no length.
+    /// An edge length is not positive and finite.
     #[error("the edge along {axis} is {size:?} long; a positive, finite length is needed")]
     BadSize {
         /// `x`, `y` or `z`.
         axis: char,
-        /// The length asked for.
+        /// The requested length.
         size: f64,
     },
     /// Floating-point numbers cannot tell neighbouring nodes apart, or overflow.
@@ -50,7 +50,7 @@ pub enum StructuredError {
         axis: char,
         /// Cells along the axis.
         cells: usize,
-        /// The length asked for.
+        /// The requested length.
         size: f64,
     },
     /// More nodes or tetrahedra than a 32-bit index can count.
@@ -136,7 +136,7 @@ fn ticks(axis: char, cells: usize, size: f64) -> Result<Vec<f64>, StructuredErro
     if !(size.is_finite() && size > 0.0) {
         return Err(StructuredError::BadSize { axis, size });
     }
-    // Checked here too, so that an absurd number of cells is refused before its coordinates are stored.
+    // Checked here as well, so that an absurd number of cells is refused before its coordinates are stored.
     if u32::try_from(cells).is_err() {
         return Err(StructuredError::TooLarge { cells: [cells; 3] });
     }
@@ -174,7 +174,7 @@ impl Grid {
         }
     }
 
-    /// Index of a node; fits in 32 bits by [`Grid::new`].
+    /// Index of a node. [`Grid::new`] makes sure that it fits into 32 bits.
     fn node(&self, [i, j, k]: [usize; 3]) -> u32 {
         let [nx, ny, _] = self.cells;
         (i + (nx + 1) * (j + (ny + 1) * k)) as u32

@@ -1,13 +1,13 @@
-//! What a reader tolerates and tells, and where in the file it stands.
+//! Warnings of a reader, and places in a file.
 
 use std::fmt;
 
 /// A place in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Position {
-    /// Line, counted from 1; `None` in binary files, where lines mean nothing.
+    /// Line, counted from 1; `None` in binary files, which have no lines.
     pub line: Option<u64>,
-    /// Byte, counted from 0.
+    /// Byte offset, counted from 0.
     pub byte: u64,
 }
 
@@ -20,12 +20,12 @@ impl fmt::Display for Position {
     }
 }
 
-/// Something in a file that was accepted, but that its user should know.
+/// Something in a file that was accepted, but that its user should know of.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
-    /// Where in the file, if it is about one place.
+    /// Place in the file, if the warning is about one.
     pub at: Option<Position>,
-    /// What it is.
+    /// Sentence for the user.
     pub message: String,
 }
 

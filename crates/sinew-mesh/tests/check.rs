@@ -1,4 +1,4 @@
-//! What the mesh check finds, what the fixes change, and what the summary of a mesh says.
+//! The findings of the mesh check, the changes of the repairs, and the summary of a mesh.
 
 #![allow(
     clippy::expect_used,

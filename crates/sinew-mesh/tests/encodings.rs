@@ -18,7 +18,7 @@ fn decoded(layout: Layout, mesh: &Mesh) -> Mesh {
     read_msh(&bytes).unwrap_or_else(|error| panic!("{layout:?}: {error}"))
 }
 
-/// What a version cannot hold is taken away from the mesh that should come back.
+/// Removes what a version cannot hold from the mesh that should come back.
 fn as_held_by(layout: Layout, mesh: &Mesh) -> Mesh {
     let mut mesh = mesh.clone();
     if layout.version == "2.2" {

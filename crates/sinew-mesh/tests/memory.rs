@@ -1,4 +1,4 @@
-//! What a file claims does not decide how much memory is taken: that is bounded by what it holds.
+//! Memory is bounded by the size of a file, not by the counts that it claims.
 
 #![allow(
     clippy::expect_used,

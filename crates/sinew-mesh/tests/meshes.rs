@@ -13,7 +13,7 @@ use sinew_mesh::read_msh_file;
 
 #[test]
 fn the_table_of_meshes_is_true() {
-    let dir = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../meshes");
+    let dir = concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes");
     let Ok(readme) = fs::read_to_string(format!("{dir}/README.md")) else {
         // The crate on its own, outside its repository.
         return;

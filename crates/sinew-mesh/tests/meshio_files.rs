@@ -21,7 +21,7 @@ struct Pack {
 }
 
 fn pack(name: &str) -> Pack {
-    let path = format!("{}/data/{name}.pack", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/tests/data/{name}.pack", env!("CARGO_MANIFEST_DIR"));
     let bytes = fs::read(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
     let mut pack = Pack {
         files: BTreeMap::new(),

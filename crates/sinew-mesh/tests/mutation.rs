@@ -12,25 +12,22 @@ mod common;
 use std::sync::LazyLock;
 
 use common::encode::{ALL, encoded};
-use common::{TWICE_22, TWO_REGIONS_41, read};
+use common::{TWICE_22, TWO_REGIONS_41, full_mesh, read};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use sinew_mesh::structured::{Split, cube};
-use sinew_mesh::{
-    CellData, CellNodeData, Mesh, MshEncoding, MshVersion, PeriodicLink, PointData, read_msh,
-    write_msh, write_msh41_ascii,
-};
+use sinew_mesh::{Mesh, MshEncoding, MshVersion, read_msh, write_msh, write_msh41_ascii};
 
 /// Files of every version and encoding, with every section.
 static VALID: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let mut files: Vec<Vec<u8>> = vec![TWICE_22.into(), TWO_REGIONS_41.into(), PARTITIONED.into()];
     let two_regions = read(TWO_REGIONS_41);
     files.extend(ALL.map(|layout| encoded(&two_regions, layout)));
-    let with_data = with_data(two_regions);
+    let full_mesh = full_mesh();
     let small_cube = cube(1, 0.1, Split::Kuhn).expect("valid").to_mesh();
     for version in [MshVersion::V22, MshVersion::V41] {
         for encoding in [MshEncoding::Text, MshEncoding::Binary] {
-            for mesh in [&small_cube, &with_data] {
+            for mesh in [&small_cube, &full_mesh] {
                 let mut written = Vec::new();
                 write_msh(mesh, version, encoding, &mut written).expect("memory does not fail");
                 files.push(written);
@@ -47,39 +44,6 @@ $Nodes\n1 5 1 5\n3 2 1 5\n1\n2\n3\n4\n5\n0 0 0 0 0 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n
 $Elements\n2 2 1 2\n3 2 4 1\n1 1 2 3 4\n3 3 4 1\n2 2 3 4 5\n$EndElements
 $GhostElements\n1\n2 1 1 2\n$EndGhostElements
 ";
-
-fn with_data(mut mesh: Mesh) -> Mesh {
-    let nan = f64::NAN;
-    mesh.point_data = vec![PointData {
-        name: "temperature".to_owned(),
-        step: 2,
-        time: 0.5,
-        components: 3,
-        values: (0..18).map(f64::from).collect(),
-    }];
-    mesh.cell_data = vec![CellData {
-        name: "energy".to_owned(),
-        step: -1,
-        time: 1e-9,
-        components: 1,
-        blocks: vec![vec![nan], vec![2.5], vec![3.5]],
-    }];
-    mesh.cell_node_data = vec![CellNodeData {
-        name: "stress".to_owned(),
-        step: 0,
-        time: 0.0,
-        components: 2,
-        blocks: vec![vec![nan; 6], (0..8).map(f64::from).collect(), vec![nan; 8]],
-    }];
-    mesh.periodic = vec![PeriodicLink {
-        dim: 2,
-        entity: 3,
-        master: 4,
-        affine: (0..16).map(f64::from).collect(),
-        node_tags: vec![[10, 20], [30, 40]],
-    }];
-    mesh
-}
 
 fn valid_files() -> &'static [Vec<u8>] {
     &VALID
@@ -196,7 +160,7 @@ fn apply(damage: &Damage, bytes: &mut Vec<u8>) {
     }
 }
 
-/// What holds for every mesh that was read, however odd the file.
+/// Checks what holds for every mesh that was read, however odd the file.
 fn assert_consistent(mesh: &Mesh) {
     assert_eq!(mesh.node_tags.len(), mesh.points.len());
     assert!(mesh.points.iter().flatten().all(|x| x.is_finite()));
@@ -234,7 +198,7 @@ fn assert_consistent(mesh: &Mesh) {
     }
 }
 
-/// What is asked of the reader, whatever the bytes.
+/// Checks what the reader promises for any bytes.
 fn assert_survives(bytes: &[u8]) {
     let mesh = match read_msh(bytes) {
         Err(error) => {
@@ -315,7 +279,7 @@ fn no_cut_file_passes_unnoticed() {
             let Ok(mesh) = read_msh(&file[..length]) else {
                 continue;
             };
-            // What is left out from here on are whole sections that need not be there.
+            // From here on only whole, optional sections are missing.
             let at_line_end = file[length..].starts_with(b"\n") || file[..length].ends_with(b"\n");
             let lines = file[..length].trim_ascii_end();
             let last_line = lines

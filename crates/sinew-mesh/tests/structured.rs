@@ -14,7 +14,7 @@ use sinew_mesh::{GroupMembers, TetMesh};
 
 const SPLITS: [Split; 2] = [Split::Kuhn, Split::Mirrored];
 
-/// How many tetrahedra have each face, keyed by its sorted nodes.
+/// The number of tetrahedra at each face, by its sorted nodes.
 fn tets_per_face(mesh: &TetMesh) -> HashMap<[u32; 3], usize> {
     let mut faces = HashMap::new();
     for &[a, b, c, d] in &mesh.tets {

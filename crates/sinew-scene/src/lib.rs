@@ -1,8 +1,8 @@
 //! Scenes of soft tissue in TOML: read, check, plan, build.
 //!
-//! A [`Scene`] is what a user wrote, every key checked. [`Scene::build`] makes a [`Simulation`] of
-//! it, which integrators can move and which prints its [`Plan`]. Whatever is wrong comes as one
-//! [`SceneError`] that knows the line.
+//! A [`Scene`] holds what a user wrote, every key checked. [`Scene::build`] turns it into a
+//! [`Simulation`]: a system that integrators can move, with a printable [`Plan`]. Every mistake is
+//! reported as one [`SceneError`], with its line.
 //!
 //! ```
 //! use sinew_scene::{Scene, SceneSource};
@@ -35,6 +35,7 @@
 mod decode;
 mod error;
 mod nearest;
+mod number;
 pub mod output;
 mod plan;
 mod probe_csv;
@@ -42,11 +43,15 @@ mod scene;
 mod simulation;
 mod source;
 
-pub use error::{Fault, SceneError};
+pub use error::{Fault, NoStableStep, SceneError, StableStepError};
 pub use plan::{Plan, PlanSection};
 pub use probe_csv::ProbeCsv;
 pub use scene::{
-    Body, Initial, MeshSource, Oscillator, ProbePoint, RunSettings, Scene, Subject, TimeStep,
+    Body, Initial, MeshSource, Motion, Oscillator, ProbePoint, RunSettings, Scene, Subject,
+    TimeStep, Way,
 };
-pub use simulation::{BodyModel, NearestNode, Probe, SceneModel, Simulation};
+pub use simulation::{
+    BodyModel, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe, Reaction,
+    ReactionError, ReactionOf, RefusedLoad, SceneModel, Simulation, UnresolvedLoad,
+};
 pub use source::SceneSource;

@@ -1,6 +1,6 @@
-//! Which name a misspelt one was meant to be.
+//! The name that a misspelt one was meant to be.
 
-/// The most similar of `known`, if one is similar enough to be meant.
+/// The most similar name in `known`, if one is similar enough.
 pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     const SIMILAR_ENOUGH: f64 = 0.75;
     let lower = name.to_lowercase();

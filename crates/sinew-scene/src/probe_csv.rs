@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use sinew_core::{RecordError, Recorder, State, System, Verdict};
+use sinew_core::{Moment, RecordError, Recorder, Verdict};
 
 use crate::output::{Delivery, Output, OutputError};
 use crate::simulation::Probe;
@@ -11,9 +11,9 @@ use crate::simulation::Probe;
 /// `<probe>_u_y_m`, `<probe>_u_z_m` of each probe (`<probe>_u_m` for an oscillator). Numbers
 /// are written so that reading them gives the same bits.
 ///
-/// A file has another name until [`ProbeCsv::finish`], so that a file with its own name is
-/// always whole; dropped before that, it leaves nothing behind. Where the output is a pipe whose
-/// reader goes away, the run is stopped.
+/// A file has a temporary name until [`ProbeCsv::finish`], so that a file under its final name is
+/// always complete; dropped before that, it leaves nothing behind. Where the output is a pipe and its
+/// reader closes it, the run is stopped.
 #[derive(Debug)]
 pub struct ProbeCsv {
     probes: Vec<Probe>,
@@ -21,7 +21,7 @@ pub struct ProbeCsv {
 }
 
 impl ProbeCsv {
-    /// Writes the head of the columns.
+    /// Starts the output with the row of column names.
     ///
     /// # Errors
     /// [`OutputError::Failed`].
@@ -38,15 +38,21 @@ impl ProbeCsv {
     /// Completes the output; see [`Output::finish`].
     ///
     /// # Errors
-    /// [`OutputError`] when it cannot be written or may no longer have its name.
+    /// [`OutputError`] when the output cannot be written or its name may no longer be used.
     pub fn finish(self) -> Result<Delivery, OutputError> {
         self.output.finish()
     }
 
-    fn write(&mut self, state: &State) -> io::Result<()> {
-        write!(self.output, "{:?}", state.t())?;
+    /// Writes a row; `moving` holds the displacements of the degrees of freedom, which are not held or moved.
+    fn write(&mut self, t: f64, moving: &[f64]) -> io::Result<()> {
+        write!(self.output, "{t:?}")?;
+        let mut moving = moving.iter().copied();
         for probe in &self.probes {
-            for value in probe.displacement(&state.u) {
+            for (axis, dof) in probe.dofs.iter().enumerate() {
+                let value = match dof {
+                    Some(_) => moving.next().unwrap_or(f64::NAN),
+                    None => probe.prescribed(axis, t),
+                };
                 write!(self.output, ",{value:?}")?;
             }
         }
@@ -55,16 +61,27 @@ impl ProbeCsv {
 }
 
 impl Recorder for ProbeCsv {
-    fn wants(&mut self, _step: usize, _t: f64) -> bool {
-        true
+    fn next(&mut self, _step: usize) -> Option<usize> {
+        None
     }
 
-    fn record(&mut self, _system: &dyn System, state: &State) -> Result<Verdict, RecordError> {
-        match self.write(state) {
+    fn record(&mut self, _moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        Ok(Verdict::Continue)
+    }
+
+    fn watches(&self) -> Vec<u32> {
+        let dofs = self.probes.iter().flat_map(|probe| &probe.dofs);
+        let dofs: Vec<u32> = dofs.flatten().map(|dof| *dof as u32).collect();
+        // Steps are shown to those who watch something; where all is held or moved, anything will do.
+        if dofs.is_empty() { vec![0] } else { dofs }
+    }
+
+    fn watched(&mut self, t: f64, moving: &[f64]) -> Result<Verdict, RecordError> {
+        match self.write(t, moving) {
             Ok(()) if self.output.reader_left() => Ok(Verdict::Stop),
             Ok(()) => Ok(Verdict::Continue),
             Err(error) => Err(RecordError {
-                t: state.t(),
+                t,
                 source: self.output.failed(error).into(),
             }),
         }
@@ -86,6 +103,9 @@ fn columns(probes: &[Probe]) -> Vec<String> {
 mod tests {
     use std::fs;
 
+    use sinew_core::Ramp;
+    use sinew_fem::Course;
+
     use super::*;
     use crate::output::Destination;
 
@@ -99,28 +119,37 @@ mod tests {
             name: name.into(),
             node: None,
             dofs: dofs.to_vec(),
+            courses: Vec::new(),
+        };
+        let along_y = Course {
+            displacement: [9.0, 0.25, 9.0],
+            ramp: Ramp::Linear,
         };
         vec![
             probe("tip", &[Some(3), None, Some(5)]),
             probe("mass", &[Some(0)]),
+            Probe {
+                courses: vec![Vec::new(), vec![along_y], Vec::new()],
+                ..probe("moved", &[None, None, Some(8)])
+            },
         ]
     }
 
-    fn state() -> State {
-        State::new(vec![0.1, 0.0, 0.0, 1e-7, -2.0, 0.3], vec![0.0; 6])
-    }
+    /// Of the degrees of freedom 3, 5, 0 and 8.
+    const MOVING: [f64; 4] = [1e-7, 0.3, 0.1, 0.7];
 
     #[test]
     fn rows_hold_the_probes_in_order() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run.csv");
         let mut csv = csv(&path);
-        csv.write(&state()).unwrap();
+        csv.write(2.0, &MOVING).unwrap();
         assert!(!path.exists(), "unfinished files have another name");
         assert_eq!(csv.finish().unwrap(), Delivery::Whole);
         assert_eq!(
             fs::read_to_string(&path).unwrap(),
-            "t_s,tip_u_x_m,tip_u_y_m,tip_u_z_m,mass_u_m\n0.0,1e-7,0.0,0.3,0.1\n"
+            "t_s,tip_u_x_m,tip_u_y_m,tip_u_z_m,mass_u_m,moved_u_x_m,moved_u_y_m,moved_u_z_m\n\
+             2.0,1e-7,0.0,0.3,0.1,0.0,0.5,0.7\n"
         );
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
@@ -131,7 +160,7 @@ mod tests {
         let path = folder.path().join("run.csv");
         fs::write(&path, "old").unwrap();
         let mut csv = csv(&path);
-        csv.write(&state()).unwrap();
+        csv.write(0.0, &MOVING).unwrap();
         drop(csv);
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);

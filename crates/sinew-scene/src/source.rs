@@ -10,8 +10,8 @@ pub struct SceneSource {
 }
 
 impl SceneSource {
-    /// A text and the path by which its user knows it; other paths in the text are relative to
-    /// that path's folder.
+    /// A text and the path that messages show. Paths in the text are relative to the folder of this
+    /// path.
     #[must_use]
     pub fn new(path: impl Into<PathBuf>, text: impl Into<String>) -> Self {
         Self {
@@ -32,7 +32,7 @@ impl SceneSource {
         &self.text
     }
 
-    /// A path written in the scene, seen from where the scene's own path is seen from.
+    /// A path written in the scene, made relative to the same folder as the scene's own path.
     #[must_use]
     pub fn resolve(&self, written: &Path) -> PathBuf {
         match self.path.parent() {

@@ -58,7 +58,7 @@ fn a_scene_means_the_same_in_any_layout() {
             let again = parse(&text.unwrap());
             assert_eq!(again.title(), scene.title());
             assert_eq!(again.subject(), scene.subject(), "{}", path.display());
-            assert_eq!(again.run(), scene.run());
+            assert_eq!(again.settings(), scene.settings());
         }
     }
 }
@@ -86,11 +86,12 @@ fn a_scene_can_be_built_on_a_mesh_at_hand() {
     let simulation = parse(text).build_on(mesh).unwrap();
     assert_eq!(simulation.system().dofs(), 3 * 3 * 3 * 5);
     assert_eq!(simulation.system().extent(), Some(0.2));
-    // A mesh without the scene's groups is refused where the scene names them.
+    // A mesh without the scene's groups is refused at the line that names one of them.
     let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let bare = sinew_mesh::TetMesh::new(corners, vec![[0, 1, 2, 3]]).unwrap();
     let refusal = parse(text).build_on(bare).unwrap_err().to_string();
-    assert!(refusal.contains("sides"), "{refusal}");
+    let place = "scene.toml:9: [[fixed]] 1: no group is named \"sides\"";
+    assert!(refusal.starts_with(place), "{refusal}");
 }
 
 #[test]
@@ -106,7 +107,7 @@ fn the_papers_oscillator() {
     };
     assert_eq!(scene.subject(), &Subject::Oscillator(expected));
     assert_eq!(
-        scene.run(),
+        scene.settings(),
         &RunSettings {
             duration: 1.0,
             samples: 50,
@@ -121,6 +122,7 @@ fn the_papers_oscillator() {
 fn the_papers_cube() {
     let expected = Body {
         mesh: MeshSource::File("../meshes/paper-cube.msh".into()),
+        motions: Vec::new(),
         problem: Problem {
             regions: vec![Region {
                 group: Some("tissue".into()),
@@ -137,11 +139,12 @@ fn the_papers_cube() {
                 stiffness: 0.0,
             },
             fixed: vec![Fixed {
-                group: "sides".into(),
+                on: "sides".into(),
                 axes: [true; 3],
             }],
+            moves: Vec::new(),
             loads: vec![LoadSpec {
-                group: "top".into(),
+                on: "top".into(),
                 kind: LoadKind::Traction([0.0, 0.0, -500.0]),
                 ramp: Ramp::Step,
             }],
@@ -156,8 +159,8 @@ fn the_papers_cube() {
     };
     let scene = scene("paper-cube.toml");
     assert_eq!(scene.title(), "The paper's cube, reproduction scene");
-    assert_eq!(scene.subject(), &Subject::Body(expected));
-    assert_eq!(scene.run().dt, TimeStep::Given(0.02));
+    assert_eq!(scene.subject(), &Subject::Body(Box::new(expected)));
+    assert_eq!(scene.settings().dt, TimeStep::Given(0.02));
 }
 
 /// Every key that the paper's scenes do not use.
@@ -289,6 +292,6 @@ substeps = "auto"
         ]
     );
     let options = Options::new().with("substeps", OptionValue::Text("auto".into()));
-    assert_eq!(scene.run().options, options);
-    assert_eq!(scene.run().samples, 7);
+    assert_eq!(scene.settings().options, options);
+    assert_eq!(scene.settings().samples, 7);
 }

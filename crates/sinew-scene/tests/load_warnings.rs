@@ -1,11 +1,14 @@
-//! What is said, before a run, of loads that its method cannot take or cannot follow.
+//! Warnings about loads that an integrator refuses or cannot follow.
 
 #![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use sinew_scene::{Scene, SceneSource, Simulation};
+mod common;
 
-/// A small cube under a traction with this ramp, run so.
+use common::build;
+use sinew_scene::Simulation;
+
+/// A small cube under a traction with this ramp and these keys in `[run]`.
 fn simulation(ramp: &str, run: &str) -> Simulation {
     let text = format!(
         r#"
@@ -30,8 +33,7 @@ duration = 1.0
 {run}
 "#
     );
-    let scene = Scene::parse(SceneSource::new("tap.toml", text)).unwrap();
-    scene.build().unwrap()
+    build(&text)
 }
 
 const SHORT_PULSE: &str = r#"{ kind = "pulse", from = 0.0131, to = 0.0137 }"#;
@@ -40,7 +42,7 @@ fn by(integrator: &str, dt: f64, options: &str) -> String {
     format!("integrator = \"{integrator}\"\ndt = {dt}\n{options}")
 }
 
-/// The step in a message that says it would do.
+/// The step that a message proposes.
 fn proposed(message: &str) -> f64 {
     let rest = message.split("dt = ").nth(1).unwrap();
     rest.split(' ').next().unwrap().parse().unwrap()
@@ -51,14 +53,14 @@ fn a_propagator_names_the_jump_that_it_will_refuse_and_a_step_that_meets_it() {
     for kind in ["chebyshev", "two-step", "krylov"] {
         let run = by("propagator", 0.005, &format!("kind = \"{kind}\""));
         let simulation = simulation(SHORT_PULSE, &run);
-        let refused = simulation.refused_load().unwrap();
+        let refused = simulation.refused_load().unwrap().to_string();
         assert!(simulation.plan().warnings.contains(&refused), "{refused}");
         for part in ["[[load]] 1 on `top`", "t = 0.0131 s", "steps of 0.005 s"] {
             assert!(refused.contains(part), "{refused}");
         }
         let dt = proposed(&refused);
         assert!((dt / 1e-4 - 1.0).abs() < 1e-9, "{refused}");
-        // The step that is named is taken.
+        // The proposed step is accepted.
         let run = by("propagator", dt, &format!("kind = \"{kind}\""));
         let simulation = self::simulation(SHORT_PULSE, &run);
         assert_eq!(simulation.refused_load(), None);
@@ -79,7 +81,9 @@ fn a_load_that_is_refused_at_any_step_is_sent_to_another_method() {
     let rise = r#"{ kind = "sin2", rise = 0.3 }"#;
     let refused = |kind: &str| {
         let run = by("propagator", 0.05, &format!("kind = \"{kind}\""));
-        simulation(rise, &run).refused_load()
+        simulation(rise, &run)
+            .refused_load()
+            .map(|load| load.to_string())
     };
     assert_eq!(refused("chebyshev"), None);
     for kind in ["two-step", "krylov"] {
@@ -89,10 +93,10 @@ fn a_load_that_is_refused_at_any_step_is_sent_to_another_method() {
             "{message}"
         );
     }
-    // A rise that ends inside a step wants another step, too.
+    // A rise that ends inside a step needs another step as well.
     let run = by("propagator", 0.01, "kind = \"krylov\"");
     let message = simulation(r#"{ kind = "sin2", rise = 0.123 }"#, &run).refused_load();
-    let message = message.unwrap();
+    let message = message.unwrap().to_string();
     assert!(
         message.contains("kind = \"chebyshev\" with dt = "),
         "{message}"
@@ -102,7 +106,7 @@ fn a_load_that_is_refused_at_any_step_is_sent_to_another_method() {
     assert_eq!(rise.refused_load(), None);
     let odd = r#"{ kind = "pulse", from = 0.1, to = 0.3141592653589793 }"#;
     let run = by("propagator", 0.05, "");
-    let message = simulation(odd, &run).refused_load().unwrap();
+    let message = simulation(odd, &run).refused_load().unwrap().to_string();
     assert!(
         message.contains("`modal` takes loads that jump anywhere"),
         "{message}"
@@ -159,8 +163,7 @@ dt = 0.005
 "#;
     for integrator in ["forward-euler", "cnn"] {
         let text = text.replace("forward-euler", integrator);
-        let scene = Scene::parse(SceneSource::new("dashpots.toml", text)).unwrap();
-        let warnings = scene.build().unwrap().plan().warnings;
+        let warnings = build(&text).plan().warnings;
         let known = format!("nothing is known about the step up to which `{integrator}` is stable");
         assert!(
             warnings.iter().any(|text| text.contains(&known)),

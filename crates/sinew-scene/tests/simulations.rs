@@ -1,4 +1,4 @@
-//! What scenes become: states, probes, samples and files.
+//! Simulations built from scenes: states, probes, samples and files.
 
 #![cfg(test)]
 #![allow(
@@ -8,14 +8,13 @@
     reason = "a test fails by panicking"
 )]
 
-use std::fs;
+mod common;
 
-use sinew_core::{LoadTime, System, simulate};
-use sinew_scene::output::{Delivery, Destination};
-use sinew_scene::{ProbeCsv, Scene, SceneSource, Simulation};
+use common::{build, numbers, run};
+use sinew_core::{LinearSystem as _, LoadTime, System};
+use sinew_scene::Simulation;
 
-/// A cube of 3 x 3 x 3 cells of 0.1 m held at the bottom, with what is given put in place of the
-/// defaults and added at the end.
+/// A cube of 3 x 3 x 3 cells of 0.1 m with the given support, and `rest` added at the end of the scene.
 fn cube(fixed: &str, rest: &str) -> Simulation {
     let text = format!(
         r#"
@@ -46,9 +45,7 @@ dt = 0.002
 {rest}
 "#
     );
-    Scene::parse(SceneSource::new("cube.toml", text))
-        .and_then(Scene::build)
-        .unwrap()
+    build(&text)
 }
 
 const HELD: &str = r#"group = "bottom""#;
@@ -62,7 +59,7 @@ fn at(simulation: &Simulation, field: &[f64], point: [f64; 3]) -> [f64; 3] {
     let body = body(simulation);
     let (node, distance) = body.mesh.nearest_node(point);
     assert!(distance < 1e-12);
-    body.model.node_displacement(field, node)
+    body.model.node_displacement(0.0, field, node).unwrap()
 }
 
 #[test]
@@ -120,7 +117,7 @@ fn a_static_state_balances_the_named_loads_at_full_value() {
         let body = body(&simulation);
         let state = simulation.initial_state();
         let mut force = vec![0.0; body.model.dofs()];
-        let operators = body.model.as_linear().unwrap().operators();
+        let operators = body.model.operators();
         operators.stiffness().multiply(&state.u, &mut force);
         let sum = |axis: usize| force.iter().skip(axis).step_by(3).sum::<f64>();
         let weight: f64 = body
@@ -134,6 +131,16 @@ fn a_static_state_balances_the_named_loads_at_full_value() {
         assert!((sum(0) - x).abs() < 1e-8, "{loads}: {} N along x", sum(0));
         assert!((sum(1)).abs() < 1e-8);
         assert!((sum(2) - z).abs() < 1e-8, "{loads}: {} N along z", sum(2));
+        // Also at each node: the loads stand in the order of the scene, gravity last.
+        for (load, name) in operators.loads().iter().zip(["pull", "shear", "gravity"]) {
+            if loads.contains(name) {
+                for &(dof, value) in &load.entries {
+                    force[dof as usize] -= value;
+                }
+            }
+        }
+        let worst = force.iter().fold(0.0_f64, |worst, f| worst.max(f.abs()));
+        assert!(worst < 1e-9, "{loads}: {worst} N are left at a node");
     }
 }
 
@@ -157,9 +164,12 @@ fn probes_follow_the_nearest_node() {
     assert!((node.distance - 0.04).abs() < 1e-12);
     assert_eq!(node.tag, 64);
     let u = &simulation.initial_state().u;
-    assert_eq!(corner.displacement(u).collect::<Vec<_>>(), [1.0, 2.0, 3.0]);
+    assert_eq!(
+        corner.displacement(0.0, u).collect::<Vec<_>>(),
+        [1.0, 2.0, 3.0]
+    );
     assert_eq!(held.dofs, [None; 3]);
-    assert_eq!(held.displacement(u).collect::<Vec<_>>(), [0.0; 3]);
+    assert_eq!(held.displacement(0.0, u).collect::<Vec<_>>(), [0.0; 3]);
 }
 
 #[test]
@@ -184,15 +194,15 @@ fn an_oscillator_starts_as_written_and_feels_its_force() {
     let text = "[oscillator]\nmass = 2\nstiffness = 50\ndamping = 0\ndisplacement = 0.5\n\
                 velocity = -1\nforce = 3\n\
                 [run]\nduration = 1\nintegrator = \"newmark\"\ndt = 0.01";
-    let simulation = Scene::parse(SceneSource::new("o.toml", text))
-        .unwrap()
-        .build()
-        .unwrap();
+    let simulation = build(text);
     let state = simulation.initial_state();
     assert_eq!((state.u[0], state.v[0]), (0.5, -1.0));
     let mut force = [0.0];
     simulation
         .system()
+        .as_linear()
+        .unwrap()
+        .operators()
         .external_force(LoadTime::at(0.0), &mut force);
     assert_eq!(force, [3.0]);
     assert!(simulation.model().body().is_none());
@@ -202,35 +212,16 @@ fn an_oscillator_starts_as_written_and_feels_its_force() {
 fn a_run_writes_its_probes() {
     let simulation = cube(HELD, "[[probe]]\nname = \"tip\"\npoint = [0.3, 0.3, 0.3]");
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("probes.csv");
-    let output = Destination::new(&path, &[]).unwrap().open().unwrap();
-    let mut csv = ProbeCsv::new(output, simulation.probes()).unwrap();
-    let mut state = simulation.initial_state().clone();
-    let mut integrator = simulation.integrator().unwrap();
-    simulate(
-        simulation.system(),
-        &mut *integrator,
-        &mut state,
-        &simulation.run(),
-        &mut csv,
-    )
-    .unwrap();
-    assert_eq!(csv.finish().unwrap(), Delivery::Whole);
-    let text = fs::read_to_string(&path).unwrap();
-    let rows: Vec<&str> = text.lines().collect();
+    let (state, csv) = run(&simulation, folder.path());
+    let rows: Vec<&str> = csv.lines().collect();
     assert_eq!(rows[0], "t_s,tip_u_x_m,tip_u_y_m,tip_u_z_m");
     assert_eq!(rows.len(), 52, "a head, the start and 50 steps");
-    let last: Vec<f64> = rows[51]
-        .split(',')
-        .map(|cell| cell.parse().unwrap())
-        .collect();
+    let last = numbers(rows[51]);
     assert_eq!(last[0], state.t());
     assert_eq!(last[1..], at(&simulation, &state.u, [0.3; 3]));
     assert!(last[3] < 0.0, "it hangs down");
 }
 
-/// The paper's oscillator is stable under central difference up to 2/omega = .0632 s; nine tenths of
-/// that cover the 20 ms between two instants in one step, and 1 s in eighteen.
 #[test]
 fn an_automatic_step_is_stable_however_long_the_run() {
     for duration in [1.0, 1e6, 1e9, 1e12] {
@@ -238,8 +229,7 @@ fn an_automatic_step_is_stable_however_long_the_run() {
             "[oscillator]\nmass = 1.0\nstiffness = 1e6\ndamping = 0.1\nvelocity = 1.0\n\
              [run]\nduration = {duration:e}\nintegrator = \"central-difference\"\ndt = \"auto\"\n"
         );
-        let scene = Scene::parse(SceneSource::new("long.toml", text)).unwrap();
-        let simulation = scene.build().unwrap();
+        let simulation = build(&text);
         // 2/omega.
         assert!(
             simulation.dt() <= 0.002,
@@ -250,6 +240,8 @@ fn an_automatic_step_is_stable_however_long_the_run() {
     }
 }
 
+/// The paper's oscillator is stable under central difference up to 2/omega = .0632 s; nine tenths of
+/// that cover the 20 ms between two instants in one step, and 1 s in eighteen.
 #[test]
 fn an_automatic_step_is_stable_and_meets_the_instants() {
     let scene = |samples: usize| {
@@ -258,8 +250,7 @@ fn an_automatic_step_is_stable_and_meets_the_instants() {
              [run]\nduration = 1.0\nsamples = {samples}\nintegrator = \"central-difference\"\n\
              dt = \"auto\"\n"
         );
-        let scene = Scene::parse(SceneSource::new("spring.toml", text)).unwrap();
-        scene.build().unwrap()
+        build(&text)
     };
     assert_eq!(scene(50).dt(), 0.02);
     assert_eq!(scene(1).dt(), 1.0 / 18.0);

@@ -21,9 +21,12 @@
 //! # Ok::<(), sinew_sparse::AssemblyError>(())
 //! ```
 
+mod error;
 mod matrix;
 mod pattern;
 mod product;
+pub mod vectors;
 
-pub use matrix::{AssemblyError, BlockMatrix, Layers};
+pub use error::AssemblyError;
+pub use matrix::{BlockMatrix, Layers};
 pub use pattern::Pattern;

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::Pattern;
+use crate::error::AssemblyError;
+use crate::pattern::Pattern;
 
 /// Degrees of freedom of a cell, that is, layers of the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -30,36 +31,6 @@ impl Layers {
     }
 }
 
-/// Why an element could not be assembled.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum AssemblyError {
-    /// An element names a cell that does not exist.
-    #[error("cell {cell} does not exist: there are {cells} cells (0-based)")]
-    CellOutOfRange {
-        /// The cell named.
-        cell: u32,
-        /// How many cells there are.
-        cells: usize,
-    },
-    /// Two cells of an element are not neighbours in the pattern.
-    #[error("cells {row} and {column} are not neighbours in the pattern")]
-    NotNeighbours {
-        /// Row cell.
-        row: u32,
-        /// Column cell.
-        column: u32,
-    },
-    /// The element matrix has the wrong number of entries.
-    #[error("the element matrix has {found} entries, expected {expected} (row-major)")]
-    ElementSize {
-        /// Entries given.
-        found: usize,
-        /// Entries needed: (cells of the element x layers) squared.
-        expected: usize,
-    },
-}
-
 /// A square matrix of dense blocks on a [`Pattern`].
 ///
 /// Rows and columns are cells; each stored block has `layers` x `layers` entries, row-major.
@@ -82,14 +53,12 @@ impl BlockMatrix {
         }
     }
 
-    /// Adds a dense element matrix, row-major, `nodes.len() * layers` on a side, node-major.
+    /// Checks what [`BlockMatrix::add_element`] checks, and adds nothing.
     ///
     /// # Errors
-    /// [`AssemblyError`] when a cell or a neighbour pair is unknown to the pattern or the size
-    /// does not fit; nothing is added then.
-    pub fn add_element(&mut self, nodes: &[u32], element: &[f64]) -> Result<(), AssemblyError> {
-        let layers = self.layers.count();
-        let side = nodes.len() * layers;
+    /// Same as [`BlockMatrix::add_element`].
+    pub fn check_element(&self, nodes: &[u32], element: &[f64]) -> Result<(), AssemblyError> {
+        let side = nodes.len() * self.layers.count();
         if element.len() != side * side {
             return Err(AssemblyError::ElementSize {
                 found: element.len(),
@@ -101,6 +70,18 @@ impl BlockMatrix {
                 self.position(row, column)?;
             }
         }
+        Ok(())
+    }
+
+    /// Adds a dense element matrix, row-major, `nodes.len() * layers` on a side, node-major.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] when a cell or a neighbour pair is unknown to the pattern or the size
+    /// does not fit; nothing is added then.
+    pub fn add_element(&mut self, nodes: &[u32], element: &[f64]) -> Result<(), AssemblyError> {
+        self.check_element(nodes, element)?;
+        let layers = self.layers.count();
+        let side = nodes.len() * layers;
         for (a, &row) in nodes.iter().enumerate() {
             for (b, &column) in nodes.iter().enumerate() {
                 let start = self.position(row, column)? * self.layers.block_len();
@@ -118,7 +99,7 @@ impl BlockMatrix {
     /// Adds `block` (row-major, `layers` x `layers`) at (`row`, `column`).
     ///
     /// # Errors
-    /// As [`BlockMatrix::add_element`].
+    /// Same as [`BlockMatrix::add_element`].
     pub fn add_block(&mut self, row: u32, column: u32, block: &[f64]) -> Result<(), AssemblyError> {
         let len = self.layers.block_len();
         if block.len() != len {
@@ -146,7 +127,7 @@ impl BlockMatrix {
             .ok_or(AssemblyError::NotNeighbours { row, column })
     }
 
-    /// The pattern the blocks stand on.
+    /// The pattern of the blocks.
     #[must_use]
     pub fn pattern(&self) -> &Arc<Pattern> {
         &self.pattern

@@ -1,11 +1,11 @@
-//! Which cells are neighbours of which.
+//! Neighbourhoods of cells.
 
-use crate::AssemblyError;
+use crate::error::AssemblyError;
 
 /// A symmetric neighbourhood relation on cells, each cell being its own neighbour.
 ///
 /// Neighbours of a cell are listed in increasing order, so equal graphs give equal patterns
-/// whatever the order of the elements they came from.
+/// in any order of the elements they came from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pattern {
     row_start: Vec<usize>,

@@ -8,8 +8,7 @@ use crate::{BlockMatrix, Layers, Pattern};
 const SERIAL_BLOCKS: usize = 200_000;
 
 impl BlockMatrix {
-    /// `out = K x`. Both vectors have length [`BlockMatrix::dofs`]; other lengths leave the
-    /// excess untouched.
+    /// `out = K x`. Both vectors have length [`BlockMatrix::dofs`].
     pub fn multiply(&self, x: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         self.rows(out, 1.0, |j| x[j]);

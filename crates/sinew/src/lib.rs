@@ -1,6 +1,8 @@
-//! Soft-tissue dynamics for surgical simulation: the face of the sinew crates.
+//! Soft-tissue dynamics for surgical simulation: all sinew crates under one name.
 //!
-//! Each crate works alone; this one puts them under one name and brings the `sinew` command.
+//! Each crate also works alone. The default feature `cli` builds the `sinew` command; a program that does not
+//! need it depends on `sinew = { version = "..", default-features = false }`, which leaves out the command's
+//! libraries, and adds the features `implicit` (implicit methods) and `rayon` (threads) where it wants them.
 //!
 //! ```
 //! use sinew::prelude::*;
@@ -12,7 +14,7 @@
 //!         density: 1060.0,
 //!         law: Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.45 },
 //!     }],
-//!     fixed: vec![Fixed { group: "bottom".into(), axes: [true; 3] }],
+//!     fixed: vec![Fixed { on: "bottom".into(), axes: [true; 3] }],
 //!     gravity: Some([0.0, 0.0, -9.81]),
 //!     ..Problem::default()
 //! })?;
@@ -31,16 +33,20 @@ pub use {
     sinew_measure as measure, sinew_mesh as mesh, sinew_scene as scene, sinew_sparse as sparse,
 };
 
-/// What most programs need.
+/// The items that most programs need.
 pub mod prelude {
     pub use sinew_cnn::{Saturation, Templates};
     pub use sinew_core::{
-        Integrator, LinearSystem, Options, Outcome, Ramp, Recorder, Run, StableStep, State,
-        StepReport, System, simulate,
+        Between, Channel, Inputs, Integrator, LinearSystem, LoadTime, Options, Outcome, Ramp,
+        Recorder, Run, StableStep, State, StepReport, System, simulate, simulate_under,
+        worst_beyond,
     };
+    pub use sinew_fem::stress::von_mises;
     pub use sinew_fem::{
-        Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule,
+        Course, Fixed, Law, LoadKind, LoadSpec, Model, Moving, NodalForces, On, Problem, Rayleigh,
+        Region, SpringRule,
     };
+    pub use sinew_integrators::Stepper;
     pub use sinew_mesh::structured::{self, Split};
     pub use sinew_mesh::{TetMesh, read_msh_file};
     pub use sinew_scene::Scene;

@@ -9,7 +9,7 @@ use clap::{Parser, Subcommand};
 
 use command::Failure;
 
-/// Soft-tissue dynamics: scenes planned and run.
+/// Soft-tissue dynamics: plan and run scenes.
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
@@ -19,12 +19,12 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Say what a scene will build, what it leaves out and which steps are stable; with
-    /// --tolerance also by which method and step it runs most cheaply.
+    /// Describe what a scene builds, what it leaves out and which steps are stable; with --tolerance,
+    /// also advise the cheapest integrator and step.
     Plan(command::plan::Arguments),
     /// Run a scene and write the motion of its probes.
     Run(command::run::Arguments),
-    /// Look into, check and convert mesh files.
+    /// Inspect, check and convert mesh files.
     #[command(subcommand)]
     Mesh(command::mesh::Command),
     /// List the integrators and their options.
@@ -52,7 +52,7 @@ fn main() -> ExitCode {
 fn answer(said: &clap::Error) -> ExitCode {
     match said.print() {
         Err(error) if !said.use_stderr() && error.kind() != ErrorKind::BrokenPipe => {
-            Failure::Run(format!("writing standard output failed: {error}")).report()
+            Failure::Print(error).report()
         }
         _ => ExitCode::from(u8::try_from(said.exit_code()).unwrap_or(2)),
     }

@@ -25,6 +25,130 @@ fn plan_says_what_is_removed_and_which_step_is_stable() {
     }
 }
 
+/// The paper's cube by another integrator, written into a directory.
+fn cube_by(directory: &Path, integrator: &str) {
+    let text = std::fs::read_to_string(scene("paper-cube.toml")).unwrap();
+    let mesh = scene("../meshes/paper-cube.msh");
+    let text = text
+        .replace("../meshes/paper-cube.msh", mesh.to_str().unwrap())
+        .replace("integrator = \"cnn\"", integrator)
+        .replace("saturation", "# saturation");
+    std::fs::write(directory.join("cube.toml"), text).unwrap();
+}
+
+/// The paper's Eqs. 5 to 7 with Q = 4 m/s and a step of 20 ms; memory counted by hand: u, v and the
+/// mass read, f(v), u and v written, 11247 blocks of 3 x 3 numbers and a column for 891 cells.
+#[test]
+fn plan_prints_the_program_of_the_papers_network() {
+    let directory = tempfile::tempdir().unwrap();
+    let cube = scene("paper-cube.toml");
+    let said = sinew(
+        directory.path(),
+        &["plan", cube.to_str().unwrap(), "--program"],
+    );
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let vectors = 6 * 3 * 8;
+    let blocks = 11247.0 / 891.0 * 76.0;
+    let memory = format!(
+        "memory a cell and step: {:.0} bytes = {vectors} of vectors",
+        f64::from(vectors) + blocks
+    );
+    for part in [
+        "program of `cnn`, dt = 0.02 s",
+        "q = M^-1 (F(t) - K u - 80 M v)",
+        "f(v) <- f(v) clamped: each component at most 4",
+        "u <- u + 0.02 f(v)",
+        "v <- v + 0.02 q",
+        "1 sweep over neighbours, 1 pass over the cells",
+        &memory,
+    ] {
+        assert!(said.out.contains(part), "{part} is not in\n{}", said.out);
+    }
+}
+
+#[test]
+fn plan_prints_a_program_as_one_json_object() {
+    let directory = tempfile::tempdir().unwrap();
+    cube_by(directory.path(), "integrator = \"central-difference\"");
+    let said = sinew(
+        directory.path(),
+        &["plan", "cube.toml", "--program", "--json"],
+    );
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let object: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let sweep = &object["program"]["step"][0];
+    // The kick dt/(1 + alpha dt/2) of the textbook.
+    let kick = sweep["updates"][0]["of_q"].as_f64().unwrap();
+    assert!((kick - 0.02 / (1.0 + 80.0 * 0.01)).abs() < 1e-15, "{kick}");
+    assert_eq!(sweep["minus_stiffness"]["of"], "u");
+    assert_eq!(sweep["own"][0]["per_mass"], -80.0);
+}
+
+#[test]
+fn a_guards_limits_in_the_program_are_those_of_the_motions_start() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = "[oscillator]\nmass = 0.1\nstiffness = 100\ndamping = 0\nvelocity = -5\n\
+        [run]\nduration = 0.1\nintegrator = \"central-difference\"\ndt = 0.05\nsaturation = \"auto\"\n";
+    std::fs::write(directory.path().join("thrown.toml"), scene).unwrap();
+    let said = sinew(
+        directory.path(),
+        &["plan", "thrown.toml", "--program", "--json"],
+    );
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let object: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let limit = object["program"]["limits_m_s"][0].as_f64().unwrap();
+    // It sets out with 5 m/s, and the guard leaves room above that.
+    assert!((5.0..500.0).contains(&limit), "{limit}");
+}
+
+#[test]
+fn the_stabilising_blocks_are_printed() {
+    let directory = tempfile::tempdir().unwrap();
+    cube_by(directory.path(), "integrator = \"cnn-stabilised\"");
+    let said = sinew(
+        directory.path(),
+        &["plan", "cube.toml", "--program", "--json"],
+    );
+    let object: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let blocks = object["program"]["p_inverse_per_kg"].as_array().unwrap();
+    let first = blocks[0].as_array().unwrap();
+    assert_eq!(first.len(), 9);
+    // Symmetric, and below the inverse of the mass.
+    assert_eq!(first[1], first[3]);
+    assert!(first[0].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn plan_says_why_a_method_has_no_program() {
+    let directory = tempfile::tempdir().unwrap();
+    for (integrator, why) in [
+        (
+            "integrator = \"newmark\"",
+            "`newmark` has no program: each step solves linear equations",
+        ),
+        (
+            "integrator = \"propagator\"\nkind = \"krylov\"",
+            "`propagator` has no program: in a Krylov space",
+        ),
+        (
+            "integrator = \"cnn-stabilised\"\ninner = { kind = \"gauss-seidel\", sweeps = 2 }",
+            "`cnn-stabilised` has no program: a Gauss-Seidel iteration",
+        ),
+    ] {
+        cube_by(directory.path(), integrator);
+        let said = sinew(directory.path(), &["plan", "cube.toml", "--program"]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        assert!(said.out.contains(why), "{}", said.out);
+        let said = sinew(
+            directory.path(),
+            &["plan", "cube.toml", "--program", "--json"],
+        );
+        let object: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+        assert!(object["program"].is_null());
+        assert!(object["reason"].is_string());
+    }
+}
+
 #[test]
 fn run_writes_the_probes_and_calls_a_guarded_run_guarded() {
     let directory = tempfile::tempdir().unwrap();
@@ -35,6 +159,38 @@ fn run_writes_the_probes_and_calls_a_guarded_run_guarded() {
     let csv = std::fs::read_to_string(directory.path().join("paper-cube.csv")).unwrap();
     assert_eq!(csv.lines().count(), 52);
     assert!(csv.starts_with("t_s,top-centre_u_x_m"));
+}
+
+/// The top of a cube is pressed down: what holds it below and above are opposite forces once it rests, but for the
+/// rest of the motion.
+#[test]
+fn run_ends_with_the_force_of_each_support_and_motion() {
+    let directory = tempfile::tempdir().unwrap();
+    let pressed = scene("moved-top.toml");
+    let said = sinew(directory.path(), &["run", pressed.to_str().unwrap()]);
+    assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
+    let force = |begin: &str| -> f64 {
+        let line = said.out.lines().find(|line| line.starts_with(begin));
+        let numbers = line.and_then(|line| Some(line.split_once('(')?.1.split_once(')')?.0));
+        let z = numbers.and_then(|numbers| numbers.split(", ").nth(2));
+        z.unwrap_or_else(|| panic!("{}", said.out)).parse().unwrap()
+    };
+    let (below, above) = (
+        force("[[fixed]] 1 on `bottom`"),
+        force("[[move]] 1 on `top`"),
+    );
+    // Stiffer than a bar that is free at its sides, softer than one that cannot get wider.
+    let (free, confined) = (3.5, 3.5 * 0.55 / (1.45 * 0.1));
+    assert!(free < below && below < confined, "{below} {above}");
+    assert!((below + above).abs() < 0.05 * below, "{below} {above}");
+    let csv = std::fs::read_to_string(directory.path().join("moved-top.csv")).unwrap();
+    assert!(
+        csv.lines().last().unwrap().ends_with(",0.0,0.0,-0.01"),
+        "{csv}"
+    );
+    let plan = sinew(directory.path(), &["plan", pressed.to_str().unwrap()]);
+    let line = "moves       `top` in x, y, z, 25 nodes: to [0, 0, -0.01] m rising for 0.2 s";
+    assert!(plan.out.contains(line), "{}", plan.out);
 }
 
 #[test]
@@ -52,7 +208,7 @@ fn run_says_into_how_many_parts_the_guard_cut_each_step() {
     let cut = "the guard took each step in 18 parts: whole, it is longer than the stable step of `forward-euler`";
     assert!(said.out.contains(cut), "{}", said.out);
     assert!(!said.out.contains("guarded:"), "{}", said.out);
-    // Whole steps are nothing to speak of.
+    // Uncut steps are not mentioned.
     let text = text.replace("dt = 0.02", "dt = 0.001");
     std::fs::write(directory.path().join("guarded.toml"), text).unwrap();
     let said = sinew(directory.path(), &["run", "guarded.toml"]);
@@ -75,7 +231,10 @@ fn a_diverging_run_says_so_keeps_what_it_has_and_fails() {
     let said = sinew(directory.path(), &["run", "euler.toml"]);
     assert_eq!(said.code, Some(1));
     assert!(said.err.contains("diverged at t = 0.16"), "{}", said.err);
-    assert!(directory.path().join("euler.csv").exists());
+    let csv = std::fs::read_to_string(directory.path().join("euler.csv")).unwrap();
+    let rows: Vec<&str> = csv.lines().collect();
+    assert_eq!(rows.len(), 9, "a head, the start and 7 steps of 20 ms");
+    assert!(rows[8].starts_with("0.14,"), "{}", rows[8]);
 }
 
 #[test]
@@ -106,7 +265,7 @@ fn bad_input_gives_one_error_with_file_and_line_and_writes_nothing() {
             "duration = 0",
             "scene.toml:8: [run]: duration = 0",
         ),
-        ("[run]", "[runn]", "scene.toml"),
+        ("[run]", "[runn]", "scene.toml:7: unknown key `runn`"),
     ];
     let scene = "title = \"a spring\"\n[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = -5.0\n[run]\nduration = 1.0\nintegrator = \"cnn\"\ndt = 0.02 \nsaturation = 4.0\n";
     for (from, to, expected) in cases {

@@ -1,4 +1,4 @@
-//! Where commands write, as a user meets it: nothing is destroyed, streams are streams.
+//! Outputs of the commands: nothing is destroyed, and streams stay streams.
 
 #![cfg(test)]
 #![cfg(unix)]
@@ -7,6 +7,7 @@ use std::fs::{self, File};
 use std::os::unix::fs::{FileTypeExt, PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::CommandCargoExt;
 
@@ -42,7 +43,7 @@ impl Folder {
         command
     }
 
-    /// Everything in it, names and contents.
+    /// Names and contents of all files in it.
     fn contents(&self) -> Vec<(String, Vec<u8>)> {
         let entries = fs::read_dir(self.0.path()).unwrap();
         let mut contents: Vec<(String, Vec<u8>)> = entries
@@ -70,7 +71,7 @@ fn err(output: &Output) -> &str {
     std::str::from_utf8(&output.stderr).unwrap()
 }
 
-/// The probes of the spring and nothing else.
+/// Whether a text is the CSV file of the spring's probe and nothing else.
 fn is_csv(text: &str) -> bool {
     text.starts_with("t_s,mass_u_m\n")
         && text.lines().count() == 52
@@ -266,9 +267,11 @@ fn a_named_pipe_is_fed_and_stays() {
 
 #[test]
 fn a_reader_that_goes_away_ends_the_run_quietly() {
+    /// Far longer than the run takes to notice, far shorter than it would take to its end.
+    const PATIENCE: Duration = Duration::from_secs(60);
     let folder = Folder::new();
-    // At a step that needs no warning.
-    let long = SPRING.replace("duration = 1.0", "duration = 4000.0");
+    // At a step that needs no warning; hours of it.
+    let long = SPRING.replace("duration = 1.0", "duration = 4e9");
     let long = long.replace("dt = 0.02", "dt = 0.005");
     fs::write(folder.path("long.toml"), long).unwrap();
     let mut run = folder.sinew(&["run", "long.toml", "--probes", "-"]);
@@ -278,8 +281,14 @@ fn a_reader_that_goes_away_ends_the_run_quietly() {
         .spawn()
         .unwrap();
     drop(child.stdout.take());
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() && start.elapsed() < PATIENCE {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // Of a run that has ended there is nothing to kill.
+    let _ = child.kill();
     let output = child.wait_with_output().unwrap();
-    assert_eq!(code(&output), Some(0));
+    assert_eq!(code(&output), Some(0), "it ran on");
     assert_eq!(err(&output), "");
 }
 

@@ -20,7 +20,7 @@ dt = 0.02
 saturation = 4.0
 ";
 
-/// What the command says of a scene.
+/// Runs `sinew plan` on a scene.
 fn plan(scene: &str, arguments: &[&str]) -> Said {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("scene.toml"), scene).unwrap();
@@ -32,7 +32,7 @@ fn plan(scene: &str, arguments: &[&str]) -> Said {
 }
 
 #[test]
-fn the_advice_runs_when_it_is_pasted_and_its_error_stands_beside_its_cost() {
+fn the_advice_runs_when_it_is_pasted_and_its_error_stands_next_to_its_cost() {
     let said = plan(SPRING, &["--tolerance", "1e-2"]);
     assert_eq!(said.code, Some(0), "{}", said.err);
     let (plan, advice) = said

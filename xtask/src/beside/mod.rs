@@ -1,6 +1,5 @@
 //! `cargo xtask bench --beside scipy`.
 
-mod python;
 mod scipy;
 
 use sinew_bench::beside::{ExportError, Exported, Rounds, export, run_beside};
@@ -9,11 +8,18 @@ use sinew_bench::{Bench, peers, scene_files};
 use sinew_measure::Case;
 
 use crate::failure::Failure;
-use crate::root;
-use python::Python;
+use crate::python::{Packages, Python};
+use crate::repository::root;
 use scipy::Scipy;
 
-/// Another program to run beside ours.
+/// The packages that `xtask/python/central_difference.py` imports.
+const PACKAGES: Packages = Packages {
+    needed_by: "--beside scipy",
+    folder: "scipy",
+    names: &["numpy", "scipy"],
+};
+
+/// Another program to compare with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Program {
     /// scipy's sparse matrices, central difference at 1 ms.
@@ -28,7 +34,7 @@ pub(crate) fn run(Program::Scipy: Program, bench: &Bench) -> Result<(), Failure>
     let inputs = scene_files(std::slice::from_ref(&scene));
     let folder = OutputFolder::new(target.join("beside"), &inputs);
     folder.check(&Exported::output_files())?;
-    let python = Python::with_scipy(&target)?;
+    let python = Python::with(&PACKAGES, &target)?;
     let mut case = Case::load(&scene).map_err(Failure::input)?;
     let exported = export(&case, &folder).map_err(|error| match error {
         ExportError::Output(error) => error.into(),

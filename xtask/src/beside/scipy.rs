@@ -1,18 +1,18 @@
-//! scipy's central difference as a program that steps when told to.
+//! scipy's central difference, run step by step in a program of its own.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Stdio};
 
 use serde_json::Value;
-use sinew_bench::beside::{Exported, Rival};
+use sinew_bench::beside::{Exported, Rival, RivalError};
 
-use super::python::Python;
-use crate::root;
+use crate::python::Python;
+use crate::repository::root;
 
 /// Step (s).
 const DT: f64 = 1e-3;
 
-/// The running script `xtask/scipy/central_difference.py`.
+/// The running script `xtask/python/central_difference.py`.
 pub(super) struct Scipy {
     name: String,
     exported: Exported,
@@ -25,7 +25,7 @@ pub(super) struct Scipy {
 impl Scipy {
     /// Starts the script on an exported system.
     pub(super) fn start(python: &Python, exported: &Exported) -> Result<Self, String> {
-        let script = root().join("xtask/scipy/central_difference.py");
+        let script = root().join("xtask/python/central_difference.py");
         let mut child = python
             .command()
             .arg(&script)
@@ -60,7 +60,7 @@ impl Scipy {
         Ok(scipy)
     }
 
-    /// One command, one line of answer.
+    /// Sends a command and returns the line that answers it.
     fn ask(&mut self, command: &str) -> Result<String, String> {
         let mut answer = String::new();
         let asked = writeln!(self.commands, "{command}").and_then(|()| self.commands.flush());
@@ -69,7 +69,7 @@ impl Scipy {
             return Ok(answer.trim_end().to_owned());
         }
         let mut said = String::new();
-        // What it said is better than why it could not be read.
+        // The script's own message says more than the failure to read from it.
         let _ = self.errors.read_to_string(&mut said);
         let reason = said.trim_end().lines().last().unwrap_or("it said nothing");
         Err(format!("scipy's script ended at `{command}`: {reason}"))
@@ -85,13 +85,13 @@ impl Rival for Scipy {
         ("central-difference", DT)
     }
 
-    fn lap(&mut self) -> Result<f64, String> {
+    fn lap(&mut self) -> Result<f64, RivalError> {
         let answer = self.ask("lap")?;
         let time = answer.parse().ok().filter(|time| *time > 0.0);
-        time.ok_or_else(|| format!("scipy's script answered {answer} instead of a time"))
+        time.ok_or_else(|| format!("scipy's script answered {answer} instead of a time").into())
     }
 
-    fn displacements(&mut self) -> Result<Vec<Vec<f64>>, String> {
+    fn displacements(&mut self) -> Result<Vec<Vec<f64>>, RivalError> {
         self.ask("displacements")?;
         let path = self.exported.directory.join("displacements.f64");
         let bytes = std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;

@@ -45,7 +45,7 @@ pub enum ExportError {
     Unfit {
         /// Id of the case.
         case: String,
-        /// What the format has no place for.
+        /// The thing that the format has no place for.
         what: &'static str,
     },
     /// A file cannot be written.

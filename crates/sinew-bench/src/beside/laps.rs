@@ -1,16 +1,21 @@
 //! Laps in turn: theirs, ours, theirs, ours.
 
+use std::error::Error;
+
 use sinew_core::{Integrator, Run, SimulateError, State, simulate};
 
 use super::pilots::{Target, pilots};
-use sinew_measure::Case;
 use sinew_measure::reference::ErrorNorm;
-use sinew_measure::thread_cpu_time;
-use sinew_measure::{Method, on_one_thread};
+use sinew_measure::{
+    Case, MeasureError, MethodChoice, ThreadError, on_one_thread, thread_cpu_time,
+};
+
+/// An error of another program, whose kinds are not known here.
+pub type RivalError = Box<dyn Error + Send + Sync>;
 
 /// Another program that steps the same system.
 pub trait Rival {
-    /// What it is, with versions.
+    /// Its name, with versions.
     fn name(&self) -> String;
 
     /// The integrator of ours that does the same, and its step (s).
@@ -19,17 +24,17 @@ pub trait Rival {
     /// One run over the case's duration: CPU time (s) of its steps alone.
     ///
     /// # Errors
-    /// What went wrong, in words.
-    fn lap(&mut self) -> Result<f64, String>;
+    /// An error of the other program.
+    fn lap(&mut self) -> Result<f64, RivalError>;
 
     /// Displacement (m) at the case's samples, t = 0 first, from a run that nobody times.
     ///
     /// # Errors
-    /// What went wrong, in words.
-    fn displacements(&mut self) -> Result<Vec<Vec<f64>>, String>;
+    /// An error of the other program.
+    fn displacements(&mut self) -> Result<Vec<Vec<f64>>, RivalError>;
 }
 
-/// How often.
+/// Number of laps of each pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rounds(pub usize);
 
@@ -37,12 +42,15 @@ pub struct Rounds(pub usize);
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LapError {
-    /// The other program.
-    #[error("{0}")]
-    Rival(String),
-    /// One of our methods.
-    #[error("{0}")]
-    Ours(String),
+    /// The other program failed.
+    #[error(transparent)]
+    Rival(RivalError),
+    /// One of our methods cannot run.
+    #[error(transparent)]
+    Ours(#[from] MeasureError),
+    /// There is no thread to measure on.
+    #[error(transparent)]
+    Thread(#[from] ThreadError),
     /// The two did not solve the same problem.
     #[error(
         "{rival} and `{integrator}` are {difference:.1e} apart (relative), more than {allowed:.0e}: not the same computation"
@@ -54,7 +62,7 @@ pub enum LapError {
         integrator: String,
         /// Relative L2 difference of the displacements.
         difference: f64,
-        /// What rounding explains.
+        /// Largest difference that rounding explains.
         allowed: f64,
     },
 }
@@ -65,7 +73,7 @@ const ROUNDING: f64 = 1e-9;
 /// One of our runs and its laps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
-    /// What the run is here for.
+    /// The error that the run is to reach, and the run.
     pub target: Target,
     /// CPU time of our steps over that of theirs in the lap before, sorted.
     pub ratios: Vec<f64>,
@@ -108,7 +116,7 @@ pub fn run_beside(
     rounds: Rounds,
 ) -> Result<Beside, LapError> {
     let run = || run_here(case, integrators, rival, rounds);
-    on_one_thread(run).map_err(|error| LapError::Ours(error.to_string()))?
+    on_one_thread(run)?
 }
 
 fn run_here(
@@ -120,7 +128,8 @@ fn run_here(
     let same = rival.same();
     let theirs = rival.displacements().map_err(LapError::Rival)?;
     let error = apart(&theirs, &case.samples().displacements);
-    let ours = Contender::new(case, &Method::on(case, same.0), same.1)?.displacements(case)?;
+    let mut twin = Contender::new(case, &MethodChoice::on(case, same.0), same.1)?;
+    let ours = twin.displacements(case).map_err(MeasureError::from)?;
     let difference = apart(&theirs, &ours);
     if difference.is_nan() || difference > ROUNDING {
         return Err(LapError::Apart {
@@ -130,7 +139,7 @@ fn run_here(
             allowed: ROUNDING,
         });
     }
-    let targets = pilots(case, integrators, same).map_err(LapError::Ours)?;
+    let targets = pilots(case, integrators, same)?;
     let contenders = targets
         .iter()
         .map(|target| Contender::new(case, &target.method, target.row.dt));
@@ -141,7 +150,7 @@ fn run_here(
     for round in 0..=rounds {
         for (contender, ratios) in contenders.iter_mut().zip(&mut ratios) {
             let theirs = rival.lap().map_err(LapError::Rival)?;
-            let ours = contender.lap(case).map_err(failed)?;
+            let ours = contender.lap(case).map_err(MeasureError::from)?;
             if round > 0 {
                 laps.push(theirs);
                 ratios.push(ours / theirs);
@@ -175,12 +184,9 @@ struct Contender {
 }
 
 impl Contender {
-    fn new(case: &Case, method: &Method, dt: f64) -> Result<Self, LapError> {
-        let built = sinew_integrators::build(&method.integrator, &method.options);
-        let mut integrator = built.map_err(failed)?;
-        integrator
-            .prepare(case.simulation().system(), dt)
-            .map_err(failed)?;
+    fn new(case: &Case, method: &MethodChoice, dt: f64) -> Result<Self, MeasureError> {
+        let mut integrator = method.build()?;
+        integrator.prepare(case.simulation().system(), dt)?;
         Ok(Self {
             integrator,
             run: case.run(dt),
@@ -204,7 +210,7 @@ impl Contender {
     }
 
     /// Displacement (m) at the samples, for a step that meets them.
-    fn displacements(&mut self, case: &Case) -> Result<Vec<Vec<f64>>, LapError> {
+    fn displacements(&mut self, case: &Case) -> Result<Vec<Vec<f64>>, SimulateError> {
         let system = case.simulation().system();
         let samples = case.simulation().settings().samples;
         let run = Run {
@@ -214,15 +220,11 @@ impl Contender {
         let mut state = case.simulation().initial_state().clone();
         let mut displacements = vec![state.u.clone()];
         for _ in 0..samples {
-            simulate(system, &mut *self.integrator, &mut state, &run, &mut ()).map_err(failed)?;
+            simulate(system, &mut *self.integrator, &mut state, &run, &mut ())?;
             displacements.push(state.u.clone());
         }
         Ok(displacements)
     }
-}
-
-fn failed(error: impl ToString) -> LapError {
-    LapError::Ours(error.to_string())
 }
 
 /// Relative L2 difference over all samples; infinite where they are not the same in number.
@@ -230,11 +232,7 @@ fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     if a.len() != b.len() || a.iter().zip(b).any(|(a, b)| a.len() != b.len()) {
         return f64::INFINITY;
     }
-    let mut norm = ErrorNorm::default();
-    for (a, b) in a.iter().zip(b) {
-        norm.include(a, b);
-    }
-    norm.relative()
+    ErrorNorm::between(a, b)
 }
 
 /// The middle of sorted values.

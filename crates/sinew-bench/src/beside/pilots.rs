@@ -1,7 +1,7 @@
 //! Short runs that find which methods and steps are worth laps.
 
 use sinew_measure::search::{CasePilots, Goal, Search, candidates};
-use sinew_measure::{Case, Effort, Method, Row, measure};
+use sinew_measure::{Case, Effort, MeasureError, MethodChoice, Row, measure};
 
 /// An error and the run of ours that reaches it most cheaply.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,7 +9,7 @@ pub struct Target {
     /// Largest error (fraction); none for the run that is the other program's own method and step.
     pub error: Option<f64>,
     /// The method.
-    pub method: Method,
+    pub method: MethodChoice,
     /// The run, as its pilot measured it.
     pub row: Row,
 }
@@ -21,13 +21,13 @@ const ERRORS: [f64; 3] = [1e-2, 1e-3, 1e-6];
 /// far as there is one. Cost is CPU time of set-up and steps for the case's duration.
 ///
 /// # Errors
-/// A reason in words when the other program's own method cannot run here.
+/// [`MeasureError`] when the other program's own method cannot run here.
 pub fn pilots(
     case: &mut Case,
     integrators: &[String],
     same: (&str, f64),
-) -> Result<Vec<Target>, String> {
-    let method = Method::on(case, same.0);
+) -> Result<Vec<Target>, MeasureError> {
+    let method = MethodChoice::on(case, same.0);
     let same = measure(case, &method, same.1, Effort::QUICK)?;
     // What cannot run here is no candidate; the bench lists why.
     let (mut candidates, _) = candidates(case.simulation(), &ERRORS);

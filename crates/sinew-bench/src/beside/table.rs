@@ -2,13 +2,11 @@
 
 use std::fmt;
 
-use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, ContentArrangement, Table};
 
 use super::laps::{Beside, Pair};
+use crate::report::ruled::{self, RULED_HEAD};
 use crate::report::{milliseconds, percent, three};
-
-const RULED_HEAD: TableStyle =
-    TableStyle::new().header_separator(LineStyle::new('─', '─', '─', '─'));
 
 const HEAD: [&str; 7] = [
     "wanted",
@@ -47,14 +45,10 @@ impl fmt::Display for Beside {
         for pair in &self.pairs {
             table.add_row(cells(pair));
         }
-        for (index, column) in table.column_iter_mut().enumerate() {
-            column.set_padding((0, 2));
-            if index >= 2 {
-                column.set_cell_alignment(CellAlignment::Right);
-            }
+        for column in table.column_iter_mut().skip(2) {
+            column.set_cell_alignment(CellAlignment::Right);
         }
-        let lines: Vec<String> = table.lines().map(|l| l.trim_end().to_owned()).collect();
-        f.write_str(&lines.join("\n"))
+        f.write_str(&ruled::lines(table, 2))
     }
 }
 
@@ -88,14 +82,14 @@ fn short_percent(fraction: f64) -> String {
 mod tests {
     use super::super::Target;
     use super::*;
-    use sinew_measure::{Method, Row};
+    use sinew_measure::{MethodChoice, Row};
 
     #[test]
     fn a_ratio_stands_beside_both_errors() {
         let pair = Pair {
             target: Target {
                 error: Some(1e-6),
-                method: Method::new("rk4"),
+                method: MethodChoice::new("rk4"),
                 row: Row {
                     integrator: "rk4".into(),
                     dt: 1e-4,

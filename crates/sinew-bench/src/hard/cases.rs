@@ -1,6 +1,6 @@
-//! Which methods a hard case is given to, at which steps.
+//! The list of hard cases: their scenes, methods and steps.
 
-use sinew_measure::Method;
+use sinew_measure::MethodChoice;
 
 use super::methods::{block, chebyshev, cnn, cut, gauss_seidel, guarded, patched};
 
@@ -8,71 +8,71 @@ use super::methods::{block, chebyshev, cnn, cut, gauss_seidel, guarded, patched}
 pub(crate) struct HardCase {
     /// The scene's file, from the folder of scenes.
     pub(crate) scene: &'static str,
-    pub(crate) methods: Vec<Method>,
+    pub(crate) methods: Vec<MethodChoice>,
     /// Steps (s).
     pub(crate) steps: &'static [f64],
-    /// Left out of a quick run: its reference alone takes seconds.
+    /// Whether a quick run leaves it out, because its reference alone takes seconds.
     pub(crate) slow: bool,
 }
 
-/// Everything that the cases of the paper's own kind are given to.
-fn rivals() -> Vec<Method> {
+/// The methods that cases of the paper's own kind are given to.
+fn rivals() -> Vec<MethodChoice> {
     vec![
         cnn(),
         block(),
         chebyshev(4),
         chebyshev(8),
         gauss_seidel(4),
-        Method::new("central-difference"),
+        MethodChoice::new("central-difference"),
         cut("central-difference"),
         cut("modified-leapfrog"),
-        Method::new("newmark"),
-        Method::new("implicit-euler"),
+        MethodChoice::new("newmark"),
+        MethodChoice::new("implicit-euler"),
     ]
 }
 
-/// And those that single out bad elements.
-fn rivals_and_patches() -> Vec<Method> {
+/// The rivals, and the method that singles out bad elements.
+fn rivals_and_patches() -> Vec<MethodChoice> {
     let mut methods = rivals();
     methods.push(patched());
     methods
 }
 
-/// And those that a saturation of the scene's own guards.
-fn rivals_and_guards() -> Vec<Method> {
+/// The rivals, and methods with a guard.
+fn rivals_and_guards() -> Vec<MethodChoice> {
     let mut methods = rivals();
     methods.extend(["central-difference", "cnn", "cnn-symplectic"].map(guarded));
     methods
 }
 
-/// Nothing of the network but its most and its least work; methods that keep their energy.
-fn conservative() -> Vec<Method> {
+/// Methods for undamped motion, most of which keep their energy.
+fn conservative() -> Vec<MethodChoice> {
     vec![
         block(),
         chebyshev(4),
         chebyshev(8),
-        Method::new("central-difference"),
-        Method::new("newmark"),
-        Method::new("implicit-euler"),
+        MethodChoice::new("central-difference"),
+        MethodChoice::new("newmark"),
+        MethodChoice::new("implicit-euler"),
     ]
 }
 
-/// For damping that no explicit step can follow.
-fn stiffly_damped() -> Vec<Method> {
+/// Methods for damping that no explicit step can follow.
+fn stiffly_damped() -> Vec<MethodChoice> {
     vec![
         cnn(),
         block(),
         chebyshev(8),
         chebyshev(16),
         chebyshev(32),
-        Method::new("central-difference"),
+        MethodChoice::new("central-difference"),
         cut("central-difference"),
-        Method::new("newmark"),
-        Method::new("implicit-euler"),
+        MethodChoice::new("newmark"),
+        MethodChoice::new("implicit-euler"),
     ]
 }
 
-/// In the order of the pass marks.
+/// The hard cases, in the order of the pass marks.
 pub(crate) fn all() -> Vec<HardCase> {
     let case = |scene, methods, steps: &'static [f64]| HardCase {
         scene,

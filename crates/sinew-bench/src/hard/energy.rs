@@ -1,20 +1,8 @@
 //! The energy of a run, step by step, in the form that its method keeps.
 
-use sinew_core::{
-    Integrator, LinearOperators, LoadTime, RecordError, Recorder, State, System, Verdict as GoOn,
-};
-
-/// Which energy is kept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Form {
-    /// `v'(P - dt/2 D - dt^2/4 K) v/2 + w' K w/2`, v between two displacements, w their mean and P
-    /// the matrix in the place of M, for leapfrog methods with a stabilising matrix.
-    Stabilised,
-    /// The same for central difference, where P = (1 + alpha dt/2) M.
-    CentralDifference,
-    /// `v' M v/2 + u' K u/2` at one time.
-    Physical,
-}
+use sinew_core::vectors::{dot, larger};
+use sinew_core::{LinearOperators, LoadTime, Moment, RecordError, Recorder, State, Verdict};
+use sinew_integrators::ConservedEnergy;
 
 /// Follows energy and work through a run. It must see every step.
 ///
@@ -24,16 +12,14 @@ enum Form {
 #[derive(Debug)]
 pub(crate) struct Ledger<'a> {
     operators: &'a LinearOperators,
-    form: Form,
-    /// The share of the damping beside alpha M that lags in the first half step.
-    lagging: f64,
+    form: ConservedEnergy,
     before: Option<State>,
     /// P v.
     momentum: Vec<f64>,
     work: f64,
     start: f64,
     first: f64,
-    /// What the ledger found.
+    /// The energies found so far.
     pub(crate) found: Energies,
 }
 
@@ -51,20 +37,11 @@ pub(crate) struct Energies {
 }
 
 impl<'a> Ledger<'a> {
-    /// For a method that is set up.
-    pub(crate) fn of(operators: &'a LinearOperators, integrator: &dyn Integrator) -> Self {
-        let facts = integrator.facts();
-        let centred = facts.iter().find(|fact| fact.name == "s_d");
-        let (form, lagging) = match (integrator.id(), centred) {
-            // Where nothing is added to M it is central difference and has no facts.
-            ("central-difference", _) | ("cnn-stabilised", None) => (Form::CentralDifference, 0.0),
-            ("cnn-stabilised", Some(centred)) => (Form::Stabilised, 1.0 - centred.value),
-            _ => (Form::Physical, 0.0),
-        };
+    /// A ledger of a method that conserves this energy.
+    pub(crate) fn new(operators: &'a LinearOperators, form: ConservedEnergy) -> Self {
         Self {
             operators,
             form,
-            lagging,
             before: None,
             momentum: Vec::new(),
             work: 0.0,
@@ -89,7 +66,7 @@ impl<'a> Ledger<'a> {
 
     fn add(&mut self, before: &State, state: &State) {
         let (t, dt) = (before.t(), length_of_step(before, state));
-        let energy = if self.form == Form::Physical {
+        let energy = if self.form == ConservedEnergy::Physical {
             let moved = state.u.iter().zip(&before.u);
             let [start, end] =
                 LoadTime::at_both_ends(t, dt, 0.5).map(|when| self.external_force(when));
@@ -108,12 +85,12 @@ impl<'a> Ledger<'a> {
         }
         let found = &mut self.found;
         found.drift = energy / self.first - 1.0;
-        found.change = largest(found.change, found.drift.abs());
+        found.change = larger(found.change, found.drift.abs());
         let allowed = self.start + self.work;
         found.largest_allowed = found.largest_allowed.max(allowed);
         if energy > allowed || energy.is_nan() {
             let excess = (energy - allowed) / found.largest_allowed;
-            found.excess = largest(found.excess, excess);
+            found.excess = larger(found.excess, excess);
         }
     }
 
@@ -141,10 +118,14 @@ impl<'a> Ledger<'a> {
                 .collect();
         }
         let mass_damping = self.operators.damping().mass;
+        let lagging = match self.form {
+            ConservedEnergy::Stabilised { lagging } => lagging,
+            ConservedEnergy::CentralDifference | ConservedEnergy::Physical => 0.0,
+        };
         for i in 0..n {
             let damping = if start {
                 let of_mass = mass_damping * self.operators.mass()[i] * before.v[i];
-                self.lagging * (damping[i] + of_mass)
+                lagging * (damping[i] + of_mass)
             } else {
                 damping[i]
             };
@@ -154,7 +135,7 @@ impl<'a> Ledger<'a> {
         let moved = velocities.map(|(v, before)| 0.5 * share * (v + before));
         self.work += moved.zip(&load).map(|(d, f)| d * f).sum::<f64>();
 
-        if self.form == Form::CentralDifference {
+        if self.form == ConservedEnergy::CentralDifference {
             let factor = 1.0 + 0.5 * dt * self.operators.damping().mass;
             let mass = self.operators.mass().iter();
             self.momentum = state
@@ -179,11 +160,12 @@ impl<'a> Ledger<'a> {
 }
 
 impl Recorder for Ledger<'_> {
-    fn wants(&mut self, _step: usize, _t: f64) -> bool {
-        true
+    fn next(&mut self, step: usize) -> Option<usize> {
+        Some(step)
     }
 
-    fn record(&mut self, _system: &dyn System, state: &State) -> Result<GoOn, RecordError> {
+    fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        let state = moment.state;
         match self.before.take() {
             None => {
                 self.start = self.operators.energy(&state.u, &state.v).total();
@@ -196,7 +178,7 @@ impl Recorder for Ledger<'_> {
                 self.before = Some(before);
             }
         }
-        Ok(GoOn::Continue)
+        Ok(Verdict::Continue)
     }
 }
 
@@ -206,13 +188,4 @@ fn length_of_step(before: &State, state: &State) -> f64 {
     let difference = state.t() - before.t();
     let same = |dt: &f64| (dt / difference - 1.0).abs() <= 1e-6;
     state.clock.last_step().filter(same).unwrap_or(difference)
-}
-
-/// The larger one; NaN counts as infinite.
-fn largest(a: f64, b: f64) -> f64 {
-    if b.is_nan() { f64::INFINITY } else { a.max(b) }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,10 +1,13 @@
 //! A run on a hard case: a row with the figures that only hard cases have.
 
 use sinew_core::{Run, State, simulate};
+use sinew_integrators::explicit::Substeps;
 use sinew_integrators::static_solution;
-use sinew_measure::{Case, Effort, Method, Row, finite, measure};
+use sinew_measure::reference::ErrorNorm;
+use sinew_measure::{Case, Effort, MethodChoice, Row, finite, measure};
 
 use super::energy::{Energies, Ledger};
+use super::error::HardError;
 
 /// Distance from equilibrium (relative) below which a reference counts as come to rest.
 const AT_REST: f64 = 1e-3;
@@ -13,21 +16,20 @@ const AT_REST: f64 = 1e-3;
 /// distance from equilibrium at the end and the drift of its energy.
 ///
 /// # Errors
-/// A reason in words when the method cannot run on this case at all.
+/// [`HardError`] when the method cannot run on this case at all.
 pub(crate) fn hard_row(
     case: &mut Case,
-    method: &Method,
+    method: &MethodChoice,
     dt: f64,
     effort: Effort,
-) -> Result<Row, String> {
+) -> Result<Row, HardError> {
     let mut row = measure(case, method, dt, effort)?;
     row.step_over_critical = case.critical_step().map(|critical| dt / critical);
     if row.error.is_none() {
         return Ok(row);
     }
     let equilibrium = equilibrium(case);
-    let keeps_energy =
-        keeps_energy(case) && !method.options.iter().any(|(key, _)| key == "substeps");
+    let keeps_energy = keeps_energy(case) && method.options.get(Substeps::KEY).is_none();
     if equilibrium.is_none() && !keeps_energy {
         return Ok(row);
     }
@@ -39,31 +41,26 @@ pub(crate) fn hard_row(
     Ok(row)
 }
 
-/// The last state and the energies of so many steps.
+/// The last state and the energies of `steps` steps.
 pub(crate) fn run_with_energies(
     case: &Case,
-    method: &Method,
+    method: &MethodChoice,
     dt: f64,
     steps: usize,
-) -> Result<(State, Energies), String> {
-    let words = |error: &dyn std::fmt::Display| error.to_string();
+) -> Result<(State, Energies), HardError> {
     let system = case.simulation().system();
-    let linear = system
-        .as_linear()
-        .ok_or("needs the matrices of a linear system")?;
-    let mut integrator = sinew_integrators::build(&method.integrator, &method.options)
-        .map_err(|error| words(&error))?;
-    integrator
-        .prepare(system, dt)
-        .map_err(|error| words(&error))?;
-    let mut ledger = Ledger::of(linear.operators(), &*integrator);
+    let linear = system.as_linear().ok_or(HardError::NotLinear)?;
+    let mut integrator = method.build()?;
+    integrator.prepare(system, dt)?;
+    let entry = sinew_integrators::entry(&method.integrator);
+    let form = entry.map(|entry| (entry.conserved_energy)(&integrator.facts()));
+    let mut ledger = Ledger::new(linear.operators(), form.unwrap_or_default());
     let mut state = case.simulation().initial_state().clone();
     let run = Run {
         steps,
         ..case.run(dt)
     };
-    simulate(system, &mut *integrator, &mut state, &run, &mut ledger)
-        .map_err(|error| words(&error))?;
+    simulate(system, &mut *integrator, &mut state, &run, &mut ledger)?;
     Ok((state, ledger.found))
 }
 
@@ -99,6 +96,7 @@ fn keeps_energy(case: &Case) -> bool {
 
 /// `||a - b|| / ||b||`.
 pub(crate) fn relative_distance(a: &[f64], b: &[f64]) -> f64 {
-    let norm = |terms: &mut dyn Iterator<Item = f64>| terms.map(|x| x * x).sum::<f64>().sqrt();
-    norm(&mut a.iter().zip(b).map(|(a, b)| a - b)) / norm(&mut b.iter().copied())
+    let mut norm = ErrorNorm::default();
+    norm.include(a, b);
+    norm.relative()
 }

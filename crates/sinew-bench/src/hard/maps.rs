@@ -1,14 +1,14 @@
 //! The stability maps: which scenes, parameters and steps.
 
-use sinew_measure::{Case, Method};
+use sinew_measure::{Case, CaseError, MethodChoice};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, StructuredError, cube};
-use sinew_scene::{Scene, SceneSource};
+use sinew_scene::{Scene, SceneError, SceneSource};
 
 use super::meshes::{inclusion_cube, sliver_cube};
 use super::methods::{block, chebyshev, cnn};
-use super::stability_map::StabilityMap;
-use crate::results::Missing;
+use super::stability_map::ColumnError;
+use crate::results::{Missing, StabilityMap};
 
 /// Hexahedra along an edge (m) of the cube: small enough for thousands of runs.
 const CELLS: usize = 4;
@@ -93,7 +93,7 @@ const VARIED: [Varied; 5] = [
     },
     Varied {
         id: "pair-damping",
-        title: "Dashpots beside the springs, by their share of each pair's critical damping",
+        title: "Dashpots in parallel with the springs, by their share of each pair's critical damping",
         parameter: "share of critical damping [1]",
         values: &[0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0],
         divisors: COARSE,
@@ -126,19 +126,32 @@ fn damping(alpha: f64) -> String {
     format!("[damping]\nmass = {alpha}\n")
 }
 
-fn methods() -> [Method; 6] {
+fn methods() -> [MethodChoice; 6] {
     [
-        Method::new("central-difference"),
-        Method::new("symplectic-euler"),
-        Method::new("newmark"),
+        MethodChoice::new("central-difference"),
+        MethodChoice::new("symplectic-euler"),
+        MethodChoice::new("newmark"),
         cnn(),
         block(),
         chebyshev(4),
     ]
 }
 
+/// Why a value of the parameter has no runs.
+#[derive(Debug, thiserror::Error)]
+enum MapError {
+    #[error(transparent)]
+    Mesh(#[from] StructuredError),
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    #[error(transparent)]
+    Column(#[from] ColumnError),
+}
+
 impl Varied {
-    fn case(&self, value: f64) -> Result<Case, String> {
+    fn case(&self, value: f64) -> Result<Case, MapError> {
         let duration = LONGEST * f64::from(self.samples);
         let text = format!(
             "[mesh]\ncube = {{ cells = {CELLS}, edge = {EDGE} }}\n{}\n\
@@ -149,10 +162,8 @@ impl Varied {
             self.samples
         );
         let source = SceneSource::new(format!("map {}", self.id), text);
-        let scene = Scene::parse(source).map_err(|error| error.to_string())?;
-        let mesh = (self.mesh)(value).map_err(|error| error.to_string())?;
-        let simulation = scene.build_on(mesh).map_err(|error| error.to_string())?;
-        Case::new(self.id, simulation).map_err(|error| error.to_string())
+        let simulation = Scene::parse(source)?.build_on((self.mesh)(value)?)?;
+        Ok(Case::new(self.id, simulation)?)
     }
 
     /// The map over the values at which there is one, and the others.
@@ -170,14 +181,14 @@ impl Varied {
         let methods = methods();
         for &value in self.values.iter().step_by(every) {
             let mut longer = map.clone();
-            let added = self
-                .case(value)
-                .and_then(|mut case| longer.add(value, &mut case, &methods));
-            match added {
+            let mut add = || -> Result<(), MapError> {
+                Ok(longer.add(value, &mut self.case(value)?, &methods)?)
+            };
+            match add() {
                 Ok(()) => map = longer,
-                Err(reason) => missing.push(Missing {
+                Err(error) => missing.push(Missing {
                     row: Some(format!("{} = {value}", self.parameter)),
-                    ..Missing::scene(format!("map {}", self.id), reason)
+                    ..Missing::scene(format!("map {}", self.id), error)
                 }),
             }
         }

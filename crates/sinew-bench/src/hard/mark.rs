@@ -1,55 +1,6 @@
-//! What is asked of a hard case, what was measured, and whether that passes.
+//! Marks in the making: what is asked, and the figure that is put to it.
 
-use serde::{Deserialize, Serialize};
-
-/// A pass mark and the figure measured for it.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Mark {
-    /// The case in words.
-    pub case: String,
-    /// What is asked, in words.
-    pub asked: String,
-    /// What was measured, in words with its unit, or why nothing was.
-    pub measured: String,
-    /// The measured figure; none where there is none or it is not finite.
-    #[serde(default)]
-    pub figure: Option<f64>,
-    /// The largest figure that passes.
-    #[serde(default)]
-    pub limit: Option<f64>,
-    /// The method and step that gave the figure.
-    pub by: String,
-    /// Whether it passes.
-    pub verdict: MarkVerdict,
-    /// What else should be known.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub note: String,
-}
-
-/// Whether a mark is passed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MarkVerdict {
-    /// The figure is within the limit.
-    Pass,
-    /// It is not, or could not be measured.
-    #[default]
-    Fail,
-    /// The mark is about something that does not exist here.
-    NotApplicable,
-}
-
-impl MarkVerdict {
-    /// As tables show it.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Pass => "pass",
-            Self::Fail => "FAIL",
-            Self::NotApplicable => "not applicable",
-        }
-    }
-}
+use crate::results::{Mark, MarkVerdict};
 
 /// A mark before it is measured.
 #[derive(Clone, Copy, Debug)]
@@ -104,7 +55,7 @@ impl Asked {
 }
 
 impl Mark {
-    /// With something that should be known beside the figure.
+    /// Adds a remark.
     pub(crate) fn noting(self, note: impl Into<String>) -> Self {
         let note = note.into();
         Self { note, ..self }

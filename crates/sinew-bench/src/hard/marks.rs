@@ -1,4 +1,4 @@
-//! All pass marks, in the order of the report.
+//! The pass marks, in the order of the report.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -9,7 +9,9 @@ use super::checks::{
     centre_of_mass, energy_and_work, energy_form, equilibrium, long_run, mirror, released_bar,
     rotation, slivers, units, within_work,
 };
-use super::mark::{Asked, Mark};
+use super::error::HardError;
+use super::mark::Asked;
+use crate::results::Mark;
 
 /// The cases and rows that marks are taken from.
 pub(crate) struct Measured<'a> {
@@ -17,16 +19,16 @@ pub(crate) struct Measured<'a> {
     /// Ids of the cases that were to be read.
     pub(crate) planned: &'a [String],
     pub(crate) rows: &'a [Row],
-    /// Where scenes are.
+    /// The folders of scenes.
     pub(crate) folders: [PathBuf; 2],
     pub(crate) quick: bool,
 }
 
 impl Measured<'_> {
-    fn case(&self, id: &str) -> Result<&Case, String> {
+    fn case(&self, id: &str) -> Result<&Case, HardError> {
         self.cases
             .get(id)
-            .ok_or_else(|| format!("{id} was not read"))
+            .ok_or_else(|| HardError::NotRead(id.to_owned()))
     }
 
     fn rows_of(&self, id: &str) -> Vec<&Row> {
@@ -47,9 +49,9 @@ fn asked(case: &'static str, asked: &'static str, limit: f64) -> Asked {
 pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<Mark> {
     let mut marks = Vec::new();
     let steps = |full, quick| if measured.quick { quick } else { full };
-    let mut give = |asked: Asked, mark: &mut dyn FnMut(Asked) -> Result<Mark, String>| {
+    let mut give = |asked: Asked, mark: &mut dyn FnMut(Asked) -> Result<Mark, HardError>| {
         begins(asked.case);
-        marks.push(mark(asked).unwrap_or_else(|reason| asked.not_measured(reason)));
+        marks.push(mark(asked).unwrap_or_else(|error| asked.not_measured(error.to_string())));
     };
 
     let reproduction = asked(
@@ -155,18 +157,14 @@ pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<
         "first amplitude to 1 % of the modal solution",
         0.01,
     );
-    let mut bar = match measured
+    let bar = measured
         .case("released-bar")
         .and_then(|case| released_bar::check(frequency, amplitude, case, 0.005))
-    {
-        Ok([frequency, amplitude]) => [Ok(frequency), Ok(amplitude)],
-        Err(reason) => [Err(reason.clone()), Err(reason)],
-    }
-    .into_iter();
-    for part in [frequency, amplitude] {
-        give(part, &mut |_| {
-            bar.next().unwrap_or_else(|| Err("not measured".into()))
+        .unwrap_or_else(|error| {
+            [frequency, amplitude].map(|asked| asked.not_measured(error.to_string()))
         });
+    for (part, mark) in [frequency, amplitude].into_iter().zip(bar) {
+        give(part, &mut |_| Ok(mark.clone()));
     }
 
     let energy = asked(

@@ -3,6 +3,7 @@
 mod cases;
 mod checks;
 mod energy;
+mod error;
 mod hard_run;
 mod maps;
 mod mark;
@@ -23,15 +24,13 @@ use crate::results::{BenchResults, Machine, Missing, Skipped};
 use crate::{BenchError, Progress};
 use cases::HardCase;
 use hard_run::hard_row;
-pub use mark::{Mark, MarkVerdict};
-pub use stability_map::{MapPanel, MapRun, StabilityMap};
 
 /// The bench of hard cases.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HardBench {
     /// The folder of scenes, which has the hard ones in `hard`.
     pub scenes: PathBuf,
-    /// Without the cases that take seconds, with fewer steps and repeats.
+    /// Leaves out the cases that take seconds, and makes fewer steps and repeats.
     pub quick: bool,
 }
 
@@ -120,11 +119,11 @@ impl HardBench {
                     done += 1;
                     match hard_row(&mut case, method, dt, effort) {
                         Ok(row) => results.rows.push(row),
-                        Err(reason) => results.skipped.push(Skipped {
+                        Err(error) => results.skipped.push(Skipped {
                             case: case.id().to_owned(),
                             integrator: method.label(),
                             dt,
-                            reason,
+                            reason: error.to_string(),
                         }),
                     }
                 }

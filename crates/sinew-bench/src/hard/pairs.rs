@@ -1,9 +1,11 @@
 //! Copies of a scene in another frame or in other units.
 
 use sinew_core::{LinearModel, State, System};
-use sinew_fem::{Law, LoadKind, Model, Problem};
+use sinew_fem::{LoadKind, Model, Problem};
 use sinew_mesh::TetMesh;
-use sinew_scene::{BodyModel, Simulation, Subject};
+use sinew_scene::{BodyModel, Simulation};
+
+use super::error::HardError;
 
 /// A system with the state it starts from.
 pub(crate) struct Twin {
@@ -13,10 +15,8 @@ pub(crate) struct Twin {
 
 /// The mesh and the problem behind a scene's body.
 pub(crate) fn body(simulation: &Simulation) -> Option<(&BodyModel, &Problem)> {
-    match simulation.scene().subject() {
-        Subject::Body(body) => Some((simulation.model().body()?, &body.problem)),
-        Subject::Oscillator(_) => None,
-    }
+    let built = simulation.model().body()?;
+    Some((built, &built.problem))
 }
 
 /// A rotation by 90 degrees about a coordinate axis.
@@ -35,7 +35,7 @@ impl QuarterTurn {
         turned
     }
 
-    /// Of every node's vector.
+    /// Turns every node's vector.
     pub(crate) fn of_field(self, field: &[f64]) -> Vec<f64> {
         let vectors = field.as_chunks::<3>().0.iter();
         vectors.flat_map(|vector| self.of(*vector)).collect()
@@ -50,8 +50,8 @@ impl QuarterTurn {
 }
 
 /// A body turned as a whole: mesh, supports, loads and start.
-pub(crate) fn turned(simulation: &Simulation, turn: QuarterTurn) -> Result<Twin, String> {
-    let (built, problem) = body(simulation).ok_or("an oscillator has no direction")?;
+pub(crate) fn turned(simulation: &Simulation, turn: QuarterTurn) -> Result<Twin, HardError> {
+    let (built, problem) = body(simulation).ok_or(HardError::NoBody)?;
     let mut mesh = built.mesh.clone();
     for point in &mut mesh.points {
         *point = turn.of(*point);
@@ -59,6 +59,12 @@ pub(crate) fn turned(simulation: &Simulation, turn: QuarterTurn) -> Result<Twin,
     let mut problem = problem.clone();
     for fixed in &mut problem.fixed {
         fixed.axes = turn.of_axes(fixed.axes);
+    }
+    for moving in &mut problem.moves {
+        moving.axes = turn.of_axes(moving.axes);
+        for course in &mut moving.courses {
+            course.displacement = turn.of(course.displacement);
+        }
     }
     for load in &mut problem.loads {
         load.kind = match load.kind {
@@ -75,7 +81,7 @@ pub(crate) fn turned(simulation: &Simulation, turn: QuarterTurn) -> Result<Twin,
 
 /// A body measured in another unit of length, `per_metre` of them a metre; kilograms and seconds
 /// stay.
-pub(crate) fn in_units(simulation: &Simulation, per_metre: f64) -> Result<Twin, String> {
+pub(crate) fn in_units(simulation: &Simulation, per_metre: f64) -> Result<Twin, HardError> {
     let start = simulation.initial_state();
     let scaled = |field: &[f64]| field.iter().map(|x| per_metre * x).collect();
     let start = State::new(scaled(&start.u), scaled(&start.v));
@@ -90,11 +96,16 @@ pub(crate) fn in_units(simulation: &Simulation, per_metre: f64) -> Result<Twin, 
     let mut problem = problem.clone();
     for region in &mut problem.regions {
         region.density /= per_metre.powi(3);
-        let (Law::Linear { youngs_modulus, .. } | Law::Springs { youngs_modulus, .. }) =
-            &mut region.law;
-        *youngs_modulus /= per_metre;
+        *region.law.youngs_modulus_mut() /= per_metre;
     }
     let times = |vector: [f64; 3], factor: f64| vector.map(|x| factor * x);
+    for course in problem
+        .moves
+        .iter_mut()
+        .flat_map(|moving| &mut moving.courses)
+    {
+        course.displacement = times(course.displacement, per_metre);
+    }
     for load in &mut problem.loads {
         load.kind = match load.kind {
             LoadKind::Traction(traction) => LoadKind::Traction(times(traction, 1.0 / per_metre)),
@@ -107,24 +118,24 @@ pub(crate) fn in_units(simulation: &Simulation, per_metre: f64) -> Result<Twin, 
 }
 
 /// Mass, stiffness and damping of an oscillator have no length in their units, its force has.
-fn oscillator_in_units(system: &dyn System, start: State, per_metre: f64) -> Result<Twin, String> {
-    let linear = system
-        .as_linear()
-        .ok_or("needs the matrices of a linear system")?;
+fn oscillator_in_units(
+    system: &dyn System,
+    start: State,
+    per_metre: f64,
+) -> Result<Twin, HardError> {
+    let linear = system.as_linear().ok_or(HardError::NotLinear)?;
     let operators = linear.operators().clone();
     let mut loads = operators.loads().to_vec();
     for (_, force) in loads.iter_mut().flat_map(|load| &mut load.entries) {
         *force *= per_metre;
     }
-    let operators = operators
-        .with_loads(loads)
-        .map_err(|error| error.to_string())?;
+    let operators = operators.with_loads(loads)?;
     let system = Box::new(LinearModel::new(operators));
     Ok(Twin { system, start })
 }
 
-fn twin(mesh: &TetMesh, problem: &Problem, start: State) -> Result<Twin, String> {
-    let model = Model::build(mesh, problem).map_err(|error| error.to_string())?;
+fn twin(mesh: &TetMesh, problem: &Problem, start: State) -> Result<Twin, HardError> {
+    let model = Model::build(mesh, problem)?;
     let system = Box::new(model);
     Ok(Twin { system, start })
 }

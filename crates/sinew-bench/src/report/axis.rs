@@ -2,7 +2,7 @@
 
 use super::number;
 
-/// How values are spread along an axis.
+/// The spread of values along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// Evenly.
@@ -14,9 +14,9 @@ pub enum Scale {
 /// An axis of a plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What it shows, with the unit.
+    /// The quantity, with its unit.
     pub label: String,
-    /// How values are spread.
+    /// The spread of values.
     pub scale: Scale,
     /// Lowest and highest value shown; otherwise they come from the data.
     pub range: Option<(f64, f64)>,
@@ -42,7 +42,7 @@ impl Axis {
         }
     }
 
-    /// The same with a fixed range.
+    /// The axis with a fixed range.
     #[must_use]
     pub fn range(self, low: f64, high: f64) -> Self {
         Self {

@@ -1,14 +1,17 @@
-//! What a case's Pareto front says, in sentences.
+//! A case's Pareto front in sentences.
 
+use sinew_integrators::Scheme;
+use sinew_integrators::cnn::Cnn;
+use sinew_integrators::implicit::Modal;
 use sinew_measure::{CaseInfo, Row};
 
 use super::number;
 use crate::results::BenchResults;
 
 /// The paper's network.
-const PAPER: &str = "cnn";
+const PAPER: &str = Cnn::ID;
 /// The method that knows the whole body, against which local ones are held.
-const NON_LOCAL: &str = "modal";
+const NON_LOCAL: &str = Modal::ID;
 /// Errors below which they are compared (fraction).
 const COMPARED_BELOW: f64 = 0.01;
 /// Errors (fraction) below which the front is not followed: what is better than that is better
@@ -20,9 +23,9 @@ const LEAST_ERROR: f64 = 1e-8;
 pub struct FrontMember {
     /// The method with its options.
     pub label: String,
-    /// In one sentence: for which errors it is the cheapest, in which steps, at which work.
+    /// A sentence with the errors for which it is the cheapest, its steps and its work.
     pub says: String,
-    /// What kind of method it is.
+    /// One line about the method.
     pub summary: String,
 }
 
@@ -74,8 +77,7 @@ fn member(group: &[&Row], above: Option<f64>) -> FrontMember {
         1 => sweeps(first),
         _ => format!("{} to {}", sweeps(first), sweeps(last)),
     };
-    let entries = sinew_integrators::entries();
-    let entry = entries.iter().find(|entry| entry.id == first.integrator);
+    let entry = sinew_integrators::entry(&first.integrator);
     FrontMember {
         label: first.label(),
         says: format!(
@@ -87,7 +89,7 @@ fn member(group: &[&Row], above: Option<f64>) -> FrontMember {
     }
 }
 
-/// Where the paper's network stands beyond forward Euler's limit; `None` where it did not run there.
+/// A sentence on the paper's network beyond forward Euler's limit; `None` where it did not run there.
 #[must_use]
 pub fn paper_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String> {
     let rows = || {
@@ -133,7 +135,7 @@ pub fn paper_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String>
     ))
 }
 
-/// How local methods stand against `modal` below 1 %, set-up included.
+/// A sentence that compares local methods with `modal` below 1 %, set-up included.
 #[must_use]
 pub fn modal_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String> {
     let total = |row: &Row| row.total_cpu_s(case.duration_s);
@@ -190,7 +192,7 @@ pub fn modal_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String>
     ))
 }
 
-/// All of it as plain lines.
+/// Members and sentences as plain lines.
 pub(super) fn lines(results: &BenchResults, case: &str) -> Vec<String> {
     let mut lines: Vec<String> = front_members(results, case)
         .into_iter()

@@ -1,6 +1,6 @@
 //! Heat maps: error and boundedness over step and a parameter, a panel for each method.
 
-use sinew_measure::Verdict;
+use sinew_measure::RowVerdict;
 
 use super::{
     axis::Axis,
@@ -10,7 +10,7 @@ use super::{
     svg::{Anchor, Frame, Paint, Stroke, Svg, Text, text_width},
     verdict,
 };
-use crate::hard::{MapPanel, MapRun, StabilityMap};
+use crate::results::{MapPanel, MapRun, StabilityMap};
 
 const MARGIN: f64 = 14.0;
 const TITLE: f64 = 15.0;
@@ -107,7 +107,7 @@ fn draw_panel(svg: &mut Svg, map: &StabilityMap, panel: &MapPanel, frame: Frame,
     let computed = panel.stable_steps.iter().any(Option::is_some);
     let theory = match (computed, panel.cannot_tell) {
         (true, false) => "line: largest stable step, computed",
-        (true, true) => "line: largest stable step, where it can be told",
+        (true, true) => "line: largest stable step, where it is known",
         (false, false) => "stable at any step",
         (false, true) => "cannot tell its stable step",
     };
@@ -167,7 +167,7 @@ fn draw_steps(svg: &mut Svg, map: &StabilityMap, frame: Frame) {
 
 fn draw_run(svg: &mut Svg, cell: Frame, run: &MapRun) {
     let (fill, ink) = match (run.verdict(), run.error) {
-        (Verdict::Unbounded | Verdict::Diverged, _) | (_, None) => {
+        (RowVerdict::Unbounded | RowVerdict::Diverged, _) | (_, None) => {
             (verdict::tint(run.verdict()), Paint::OnTint)
         }
         (_, Some(error)) => {
@@ -204,8 +204,8 @@ fn draw_run(svg: &mut Svg, cell: Frame, run: &MapRun) {
 /// A sign for what colour alone must not say.
 fn sign(run: &MapRun) -> &'static str {
     match run.verdict() {
-        Verdict::Accurate => "",
-        Verdict::Wrong if run.error.is_some_and(|error| error < 1.0) => "",
+        RowVerdict::Accurate => "",
+        RowVerdict::Wrong if run.error.is_some_and(|error| error < 1.0) => "",
         verdict => verdict.symbol(),
     }
 }
@@ -238,7 +238,7 @@ fn draw_limit(svg: &mut Svg, map: &StabilityMap, panel: &MapPanel, frame: Frame)
     }
 }
 
-/// Where a step lies among columns that stand for `steps`, in columns from the left edge: a column's
+/// The place of a step among columns that stand for `steps`, in columns from the left edge: a column's
 /// middle is its step, between middles the logarithm counts.
 fn place(steps: &[f64], dt: f64) -> f64 {
     let columns = steps.len() as f64;
@@ -314,15 +314,15 @@ fn draw_legend(svg: &mut Svg, left: f64, top: f64) {
         );
     }
     let signs = [
-        (Verdict::Wrong, "worse than returning zero"),
-        (Verdict::Guarded, "cells saturated"),
-        (Verdict::Unbounded, "|u| > 10× the reference's"),
-        (Verdict::Diverged, "diverged, given up"),
+        (RowVerdict::Wrong, "worse than returning zero"),
+        (RowVerdict::Guarded, "cells saturated"),
+        (RowVerdict::Unbounded, "|u| > 10× the reference's"),
+        (RowVerdict::Diverged, "diverged, given up"),
     ];
     let mut x = bar.right() + 40.0;
     let y = bar.top + 7.0;
     for (verdict, text) in signs {
-        let failed = matches!(verdict, Verdict::Unbounded | Verdict::Diverged);
+        let failed = matches!(verdict, RowVerdict::Unbounded | RowVerdict::Diverged);
         let tint = if failed {
             verdict::tint(verdict)
         } else {
@@ -357,15 +357,15 @@ fn draw_legend(svg: &mut Svg, left: f64, top: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sinew_measure::Outcome;
+    use sinew_measure::RowOutcome;
 
     fn run(error: Option<f64>, bounded: bool, guarded: bool) -> MapRun {
         MapRun {
             error,
             outcome: if error.is_some() {
-                Outcome::Finished
+                RowOutcome::Finished
             } else {
-                Outcome::Diverged
+                RowOutcome::Diverged
             },
             bounded,
             guarded,

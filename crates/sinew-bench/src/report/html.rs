@@ -12,9 +12,8 @@ use super::{
     summary::cheapest,
     verdict, work_precision,
 };
-use crate::hard::StabilityMap;
-use crate::results::{BenchResults, Skipped};
-use sinew_measure::{ACCURATE, CaseInfo, Row, Verdict};
+use crate::results::{BenchResults, Skipped, StabilityMap};
+use sinew_measure::{ACCURATE, CaseInfo, Row, RowVerdict};
 
 /// The whole page.
 #[must_use]
@@ -86,14 +85,14 @@ impl Page {
              has three verdicts: is it bounded, does it settle as the reference does, and how large \
              is its error.</li>\n<li>",
         );
-        for verdict in Verdict::ALL {
+        for verdict in RowVerdict::ALL {
             self.put(format_args!(
                 "<span class=\"sign\" style=\"background:{}\">{}</span> {} ({}){}",
                 verdict::tint(verdict),
                 verdict.symbol(),
                 verdict.word(),
                 Escaped(verdict::meaning(verdict)),
-                if verdict == Verdict::Diverged {
+                if verdict == RowVerdict::Diverged {
                     ".</li>\n"
                 } else {
                     ", "
@@ -156,7 +155,7 @@ impl Page {
         self.out.push_str(
             "<section>\n<h2 id=\"maps\">Where methods hold: step against one property of the scene</h2>\n\
              <p>Every square is a run on a small cube, coloured by its error. The line is the largest \
-             stable step that each method computes from the matrices before it runs: theory, beside \
+             stable step that each method computes from the matrices before it runs: theory, next to \
              the runs. With dashpots it is a bound from below, and the paper's network has none. \
              <b>Bounded is not accurate</b>: where there is no line, only the colour tells how far a \
              method can be trusted.</p>\n",
@@ -245,7 +244,7 @@ impl Page {
         }
     }
 
-    /// What methods found out at set-up, folded away.
+    /// The facts of the methods' set-ups, folded away.
     fn findings(&mut self, rows: &[&Row]) {
         let telling: Vec<&&Row> = rows.iter().filter(|row| !row.facts.is_empty()).collect();
         if telling.is_empty() {
@@ -334,7 +333,7 @@ impl Page {
             let verdict = row.verdict();
             let symbol = match verdict {
                 // The cell says so in words.
-                Verdict::Diverged => "",
+                RowVerdict::Diverged => "",
                 verdict => verdict.symbol(),
             };
             self.put(format_args!(
@@ -406,7 +405,9 @@ fn runs(results: &BenchResults, missing: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::Machine;
+    use crate::peers;
+    use crate::results::{Machine, MapPanel, MapRun, Mark};
+    use sinew_measure::RowOutcome;
 
     #[test]
     fn nothing_from_the_results_escapes_into_markup() {
@@ -453,9 +454,72 @@ mod tests {
         );
     }
 
+    /// Runs that end in all ways on the peers' cube, a mark, a map, and what is missing.
+    fn every_kind_of_result() -> BenchResults {
+        let mut results = BenchResults::new("r", Machine::default());
+        results.cases.push(CaseInfo {
+            id: peers::CASE.into(),
+            critical_step_s: Some(3e-3),
+            max_u_m: f64::INFINITY,
+            ..CaseInfo::default()
+        });
+        let sound = Row {
+            case: peers::CASE.into(),
+            integrator: "rk4".into(),
+            dt: 1e-3,
+            bounded: true,
+            error: Some(0.01),
+            max_u: Some(1e-4),
+            late_amplitude: Some(0.0),
+            cpu_s_per_s: 0.1,
+            facts: [("degree".to_owned(), 8.0)].into(),
+            pareto: true,
+            ..Row::default()
+        };
+        results.rows = vec![
+            Row {
+                guarded: true,
+                dt: 2e-3,
+                ..sound.clone()
+            },
+            Row {
+                outcome: RowOutcome::Diverged,
+                error: None,
+                dt: 4e-3,
+                ..sound.clone()
+            },
+            sound,
+        ];
+        results.marks.push(Mark::default());
+        results.maps.push(StabilityMap {
+            id: "map".into(),
+            values: vec![1.0, 2.0],
+            steps: vec![1e-3, 2e-3],
+            panels: vec![MapPanel {
+                method: "rk4".into(),
+                stable_steps: vec![Some(1e-3), None],
+                cannot_tell: true,
+                runs: vec![vec![MapRun::default(); 2]; 2],
+            }],
+            ..StabilityMap::default()
+        });
+        results.skipped.push(Skipped::default());
+        results
+    }
+
     #[test]
     fn the_page_needs_no_network() {
-        let page = html(&BenchResults::new("r", Machine::default()));
+        let page = html(&every_kind_of_result());
+        for part in [
+            "<table class=\"peers\"",
+            "<table class=\"marks\"",
+            "id=\"maps\"",
+            "id=\"missing\"",
+            "degree",
+        ] {
+            assert!(page.contains(part), "the page has no {part}");
+        }
+        assert!(page.matches("<svg").count() >= 3, "strip, plot and map");
         let elsewhere = page.replace("http://www.w3.org/2000/svg", "");
         for word in ["http:", "https:", "src=", "@import", "url("] {
             assert!(!elsewhere.contains(word), "{word}");

@@ -4,8 +4,11 @@ use std::fmt::Write;
 
 use comfy_table::{ContentArrangement, Table, TableStyle, presets};
 
-use super::{markup::escape, table::RULED_HEAD};
-use crate::hard::{Mark, MarkVerdict};
+use super::{
+    markup::escape,
+    ruled::{self, RULED_HEAD},
+};
+use crate::results::{Mark, MarkVerdict};
 
 const HEADS: [&str; 5] = ["case", "asked", "measured", "by", "verdict"];
 
@@ -17,12 +20,7 @@ fn cells(mark: &Mark) -> [&str; 5] {
 /// The marks for a terminal.
 #[must_use]
 pub fn terminal_marks(marks: &[Mark]) -> String {
-    let mut table = table(marks, RULED_HEAD, str::to_owned);
-    for column in table.column_iter_mut() {
-        column.set_padding((0, 1));
-    }
-    let lines = table.lines().map(|line| line.trim_end().to_owned());
-    lines.collect::<Vec<_>>().join("\n")
+    ruled::lines(table(marks, RULED_HEAD, str::to_owned), 1)
 }
 
 /// The marks as a Markdown table.
@@ -51,7 +49,7 @@ pub(super) fn section(marks: &[Mark]) -> String {
     }
     let count = |verdict| marks.iter().filter(|mark| mark.verdict == verdict).count();
     let mut out = format!(
-        "<section>\n<h2 id=\"marks\">What is asked of the hard cases</h2>\n\
+        "<section>\n<h2 id=\"marks\">Pass marks of the hard cases</h2>\n\
          <p>{} passed, {} failed, {} not applicable. Figures are measured in this run; limits were \
          set before it.</p>\n<div class=\"wide\"><table class=\"marks\">\n<thead><tr>",
         count(MarkVerdict::Pass),

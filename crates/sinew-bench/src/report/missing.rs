@@ -1,4 +1,4 @@
-//! What is missing, as people read it.
+//! The list of missing things, as people read it.
 
 use std::fmt::Write;
 

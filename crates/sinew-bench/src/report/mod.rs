@@ -1,8 +1,8 @@
-//! What people see of a bench: tables, plots, a page. No speed stands without its error beside it.
+//! Tables, plots and a page of a bench. No speed stands without its error beside it.
 //!
 //! The pictures are SVG, written here rather than by a plotting library: the cells of a strip, a
 //! shaded surface, marks with hover texts and colours that follow the page's dark mode are not what
-//! such libraries draw, and axes are little work beside them.
+//! such libraries draw, and axes are little work compared with them.
 
 mod axis;
 mod colour_map;
@@ -15,6 +15,7 @@ mod markup;
 mod missing;
 mod peers;
 mod plot;
+pub(crate) mod ruled;
 mod strip;
 mod style;
 mod summary;

@@ -14,7 +14,7 @@ pub struct Plot {
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
-    /// What is drawn, the first lowest.
+    /// The series, the first lowest.
     pub series: Vec<Series>,
     /// Lines at fixed `x`, labelled above the frame.
     pub vertical_rules: Vec<Rule>,
@@ -36,7 +36,7 @@ pub struct Series {
     pub name: String,
     /// Its points in the order of the line. NaN breaks the line, infinity leaves the frame.
     pub points: Vec<Point>,
-    /// How it is drawn.
+    /// Its colour, line and marker.
     pub style: Style,
 }
 
@@ -56,9 +56,9 @@ pub struct Point {
 /// A line across the frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    /// Where, on the axis it crosses.
+    /// Its place on the axis that it crosses.
     pub at: f64,
-    /// What it means.
+    /// Its meaning, in words.
     pub label: String,
 }
 
@@ -100,12 +100,6 @@ impl Plot {
         let label = label.into();
         self.horizontal_rules.push(Rule { at, label });
         self
-    }
-
-    /// The picture as a file of its own or for a page.
-    #[must_use]
-    pub fn svg(&self) -> String {
-        draw::draw(self)
     }
 }
 

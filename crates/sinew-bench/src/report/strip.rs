@@ -1,6 +1,6 @@
 //! Stability strip: the verdict on every method at every step.
 
-use sinew_measure::{Outcome, Row, Verdict};
+use sinew_measure::{Row, RowOutcome, RowVerdict};
 
 use super::{
     missing::shown,
@@ -20,7 +20,7 @@ const DOES_NOT_SETTLE: &str = "~";
 
 /// Verdicts on the runs of a case as SVG: a row per method, a column per step, and where the
 /// critical step lies. Columns are evenly spaced whatever the steps, so that every cell can show
-/// its error beside its verdict.
+/// its error and its verdict.
 #[must_use]
 pub fn strip(results: &BenchResults, case: &str) -> String {
     let rows: Vec<&Row> = results.rows_of(case).collect();
@@ -175,7 +175,7 @@ fn draw_cell(svg: &mut Svg, frame: Frame, run: &Row) {
     let verdict = run.verdict();
     svg.rect(frame, Paint::Data(verdict::tint(verdict)));
     let y = frame.top + 0.5 * frame.height;
-    let restless = run.outcome == Outcome::Finished && run.bounded && !run.settles;
+    let restless = run.outcome == RowOutcome::Finished && run.bounded && !run.settles;
     let symbol = if restless {
         format!("{}{DOES_NOT_SETTLE}", verdict.symbol())
     } else {
@@ -188,11 +188,11 @@ fn draw_cell(svg: &mut Svg, frame: Frame, run: &Row) {
     );
     // The symbol already says "unbounded" and "diverged".
     let text = match (run.outcome, run.error, run.diverged_at_s) {
-        (Outcome::Finished, Some(error), _) => {
+        (RowOutcome::Finished, Some(error), _) => {
             shown(100.0 * error, |x| format!("{} %", number::three(x)))
         }
-        (Outcome::Finished, None, _) => "n/a".to_owned(),
-        (Outcome::Diverged, _, Some(t)) => format!("at {} s", number::short(t)),
+        (RowOutcome::Finished, None, _) => "n/a".to_owned(),
+        (RowOutcome::Diverged, _, Some(t)) => format!("at {} s", number::short(t)),
         _ => String::new(),
     };
     svg.text(
@@ -204,7 +204,7 @@ fn draw_cell(svg: &mut Svg, frame: Frame, run: &Row) {
 }
 
 struct Entry {
-    verdict: Option<Verdict>,
+    verdict: Option<RowVerdict>,
     symbol: &'static str,
     text: String,
 }
@@ -239,7 +239,7 @@ impl Entry {
 }
 
 fn legend() -> Vec<Entry> {
-    let verdicts = Verdict::ALL.into_iter().map(|verdict| Entry {
+    let verdicts = RowVerdict::ALL.into_iter().map(|verdict| Entry {
         verdict: Some(verdict),
         symbol: verdict.symbol(),
         text: format!("{}: {}", verdict.word(), verdict::meaning(verdict)),
@@ -303,8 +303,12 @@ mod tests {
         let svg = strip(&results, "<a>");
         assert!(svg.contains(">G~<") && svg.contains(">2520 %<"));
         assert!(svg.contains("&lt;a&gt;") && !svg.contains("<a>"));
-        for verdict in Verdict::ALL {
+        for verdict in RowVerdict::ALL {
             assert!(svg.contains(verdict.word()));
+            assert!(
+                svg.contains(&format!(">{}<", verdict.symbol())),
+                "{verdict:?}"
+            );
         }
     }
 }

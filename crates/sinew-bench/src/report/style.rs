@@ -103,10 +103,10 @@ impl Marker {
     }
 }
 
-/// How a line is broken.
+/// The dashes of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dash {
-    /// Not at all.
+    /// A line without gaps.
     Solid,
     /// Long strokes.
     Dashed,
@@ -126,14 +126,14 @@ impl Dash {
     }
 }
 
-/// How a series is drawn.
+/// Colour, line and marker of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
     /// Colour of line and markers.
     pub colour: Colour,
     /// Marker at every point.
     pub marker: Option<Marker>,
-    /// How the line is broken.
+    /// The dashes of the line.
     pub dash: Dash,
     /// Width of the line (px).
     pub width: f64,
@@ -160,7 +160,7 @@ impl Style {
         }
     }
 
-    /// The same without markers.
+    /// The style without markers.
     #[must_use]
     pub fn line_only(self) -> Self {
         Self {

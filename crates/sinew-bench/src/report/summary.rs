@@ -1,6 +1,6 @@
-//! What to take home from a case.
+//! The cheapest run of a case that is good enough.
 
-use sinew_measure::{Row, Verdict};
+use sinew_measure::{Row, RowVerdict};
 
 /// The accurate run that costs least among those with at most the given error (fraction).
 pub(super) fn cheapest<'a>(
@@ -8,7 +8,7 @@ pub(super) fn cheapest<'a>(
     largest_error: f64,
 ) -> Option<&'a Row> {
     rows.into_iter()
-        .filter(|row| row.verdict() == Verdict::Accurate)
+        .filter(|row| row.verdict() == RowVerdict::Accurate)
         .filter(|row| row.error.is_some_and(|error| error <= largest_error))
         .filter(|row| row.cpu_s_per_s.is_finite())
         .min_by(|a, b| a.cpu_s_per_s.total_cmp(&b.cpu_s_per_s))

@@ -27,7 +27,7 @@ pub struct Surface<'a> {
     pub triangles: &'a [[u32; 3]],
     /// The number at each vertex.
     pub values: &'a [f64],
-    /// What the numbers are, with the unit.
+    /// Name of the numbers, with the unit.
     pub value_label: String,
     /// Numbers at the ends of the colour bar; otherwise they come from `values`.
     pub range: Option<(f64, f64)>,
@@ -296,6 +296,7 @@ mod tests {
         );
         let svg = surface.svg();
         assert!(svg.contains("2 triangles not finite, left out"));
+        assert_eq!(svg.matches("stroke-width=\"0.5\"").count(), 1);
         assert!(svg.contains("&lt;s&gt;") && !svg.contains("NaN"));
     }
 

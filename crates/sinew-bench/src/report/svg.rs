@@ -197,7 +197,7 @@ impl Svg {
         ));
     }
 
-    /// What `draw` draws, with a text that shows on hovering.
+    /// Draws by `draw`, with a text that shows on hovering.
     pub(super) fn noted(&mut self, note: &str, draw: impl FnOnce(&mut Self)) {
         if note.is_empty() {
             draw(self);
@@ -208,7 +208,7 @@ impl Svg {
         self.out.push_str("</g>\n");
     }
 
-    /// What `draw` draws, cut off outside the frame.
+    /// Draws by `draw`, cut off outside the frame.
     pub(super) fn clipped(&mut self, frame: Frame, draw: impl FnOnce(&mut Self)) {
         let (x, y, w, h) = (N(frame.left), N(frame.top), N(frame.width), N(frame.height));
         self.put(format_args!(

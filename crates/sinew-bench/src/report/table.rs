@@ -1,6 +1,6 @@
 //! Tables for the terminal and for Markdown.
 
-use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle, presets};
+use comfy_table::{CellAlignment, ContentArrangement, Table, TableStyle, presets};
 
 use super::{
     columns::{Column, columns_of},
@@ -8,22 +8,18 @@ use super::{
     marks::{markdown_marks, terminal_marks},
     missing::{self, shown},
     number,
+    ruled::{self, RULED_HEAD},
 };
-use crate::hard::Mark;
-use crate::results::BenchResults;
+use crate::results::{BenchResults, Mark};
 use sinew_measure::Row;
 
-/// Lines cost width, which a terminal lacks.
-pub(super) const RULED_HEAD: TableStyle =
-    TableStyle::new().header_separator(LineStyle::new('─', '─', '─', '─'));
-
-/// All rows for a terminal, by case, then the runs that were skipped and what is missing.
+/// The rows by case, the runs that were skipped and the missing things, for a terminal.
 #[must_use]
 pub fn terminal(results: &BenchResults) -> String {
     by_case(results, "", terminal_rows, terminal_marks)
 }
 
-/// All rows as Markdown, by case, then the runs that were skipped and what is missing.
+/// The rows by case, the runs that were skipped and the missing things, as Markdown.
 #[must_use]
 pub fn markdown(results: &BenchResults) -> String {
     by_case(results, "### ", markdown_rows, markdown_marks)
@@ -33,12 +29,8 @@ pub fn markdown(results: &BenchResults) -> String {
 #[must_use]
 pub fn terminal_rows<'a>(rows: impl IntoIterator<Item = &'a Row>) -> String {
     let rows: Vec<&Row> = rows.into_iter().collect();
-    let mut table = table(&rows, RULED_HEAD, |column| column.title("\n"), |cell| cell);
-    for column in table.column_iter_mut() {
-        column.set_padding((0, 1));
-    }
-    let lines = table.lines().map(|line| line.trim_end().to_owned());
-    lines.collect::<Vec<_>>().join("\n")
+    let table = table(&rows, RULED_HEAD, |column| column.title("\n"), |cell| cell);
+    ruled::lines(table, 1)
 }
 
 /// Some rows as a Markdown table.
@@ -149,7 +141,7 @@ fn align_right(table: &str, columns: &[&Column]) -> String {
 mod tests {
     use super::*;
     use crate::results::{Machine, Missing, Skipped};
-    use sinew_measure::Outcome;
+    use sinew_measure::RowOutcome;
 
     fn results() -> BenchResults {
         let mut results = BenchResults::new("r", Machine::default());
@@ -169,7 +161,7 @@ mod tests {
         results.rows = vec![
             row.clone(),
             Row {
-                outcome: Outcome::Diverged,
+                outcome: RowOutcome::Diverged,
                 diverged_at_s: Some(0.34),
                 error: None,
                 bounded: false,

@@ -1,53 +1,53 @@
-//! How verdicts look: a symbol and a word beside every colour.
+//! The look of verdicts: a symbol and a word with every colour.
 
-use sinew_measure::{Outcome, Row, Verdict};
+use sinew_measure::{Row, RowOutcome, RowVerdict};
 
 use super::{missing::shown, number, style::Colour};
 
-/// What a verdict says of a run.
-pub(super) fn meaning(verdict: Verdict) -> &'static str {
+/// The meaning of a verdict, in words.
+pub(super) fn meaning(verdict: RowVerdict) -> &'static str {
     match verdict {
-        Verdict::Accurate => "error ≤ 5 %",
-        Verdict::Wrong => "bounded, error > 5 %",
-        Verdict::Guarded => "cells saturated",
-        Verdict::Unbounded => "|u| > 10× the reference's",
-        Verdict::Diverged => "given up early",
+        RowVerdict::Accurate => "error ≤ 5 %",
+        RowVerdict::Wrong => "bounded, error > 5 %",
+        RowVerdict::Guarded => "cells saturated",
+        RowVerdict::Unbounded => "|u| > 10× the reference's",
+        RowVerdict::Diverged => "given up early",
     }
 }
 
 /// Light enough for black text: tints of the Okabe-Ito colours.
-pub(super) fn tint(verdict: Verdict) -> Colour {
+pub(super) fn tint(verdict: RowVerdict) -> Colour {
     match verdict {
-        Verdict::Accurate => Colour(0xb8, 0xe6, 0xd4),
-        Verdict::Wrong => Colour(0xfb, 0xe3, 0xad),
-        Verdict::Guarded => Colour(0xec, 0xcf, 0xe0),
-        Verdict::Unbounded => Colour(0xf6, 0xb9, 0x8d),
-        Verdict::Diverged => Colour(0xd9, 0xd9, 0xd9),
+        RowVerdict::Accurate => Colour(0xb8, 0xe6, 0xd4),
+        RowVerdict::Wrong => Colour(0xfb, 0xe3, 0xad),
+        RowVerdict::Guarded => Colour(0xec, 0xcf, 0xe0),
+        RowVerdict::Unbounded => Colour(0xf6, 0xb9, 0x8d),
+        RowVerdict::Diverged => Colour(0xd9, 0xd9, 0xd9),
     }
 }
 
 /// The error in per cent without the sign, or what stands in its place.
 pub(super) fn error(row: &Row) -> String {
     match (row.outcome, row.error) {
-        (Outcome::Diverged, _) => match row.diverged_at_s {
+        (RowOutcome::Diverged, _) => match row.diverged_at_s {
             Some(t) => format!("diverged at t={} s", number::short(t)),
             None => "diverged".to_owned(),
         },
-        (Outcome::Finished, Some(error)) if row.bounded => shown(error, number::percent),
-        (Outcome::Finished, Some(error)) => {
+        (RowOutcome::Finished, Some(error)) if row.bounded => shown(error, number::percent),
+        (RowOutcome::Finished, Some(error)) => {
             format!("unbounded ({})", shown(error, number::percent))
         }
-        (Outcome::Finished, None) => "n/a".to_owned(),
+        (RowOutcome::Finished, None) => "n/a".to_owned(),
     }
 }
 
 /// The error with its unit where it is a number.
 pub(super) fn error_with_unit(row: &Row) -> String {
     match (row.outcome, row.bounded) {
-        (Outcome::Finished, _) if row.error.is_none_or(|error| !error.is_finite()) => error(row),
-        (Outcome::Finished, true) => format!("{} %", error(row)),
-        (Outcome::Finished, false) => error(row).replace(')', " %)"),
-        (Outcome::Diverged, _) => error(row),
+        (RowOutcome::Finished, _) if row.error.is_none_or(|error| !error.is_finite()) => error(row),
+        (RowOutcome::Finished, true) => format!("{} %", error(row)),
+        (RowOutcome::Finished, false) => error(row).replace(')', " %)"),
+        (RowOutcome::Diverged, _) => error(row),
     }
 }
 
@@ -64,17 +64,17 @@ mod tests {
             diverged_at_s,
             ..Row::default()
         };
-        let fine = row(Outcome::Finished, true, Some(25.2), None);
+        let fine = row(RowOutcome::Finished, true, Some(25.2), None);
         assert_eq!(error(&fine), "2520");
         assert_eq!(error_with_unit(&fine), "2520 %");
-        let unbounded = row(Outcome::Finished, false, Some(4e30), None);
+        let unbounded = row(RowOutcome::Finished, false, Some(4e30), None);
         assert_eq!(error(&unbounded), "unbounded (4.00e32)");
         assert_eq!(error_with_unit(&unbounded), "unbounded (4.00e32 %)");
-        let nothing = row(Outcome::Finished, true, None, None);
+        let nothing = row(RowOutcome::Finished, true, None, None);
         assert_eq!(error_with_unit(&nothing), "n/a");
-        let infinite = row(Outcome::Finished, true, Some(f64::INFINITY), None);
+        let infinite = row(RowOutcome::Finished, true, Some(f64::INFINITY), None);
         assert_eq!(error_with_unit(&infinite), "n/a (inf)");
-        let diverged = row(Outcome::Diverged, false, None, Some(0.34));
+        let diverged = row(RowOutcome::Diverged, false, None, Some(0.34));
         assert_eq!(error(&diverged), "diverged at t=0.34 s");
         assert_eq!(error_with_unit(&diverged), "diverged at t=0.34 s");
     }

@@ -9,7 +9,7 @@ use super::{
     verdict,
 };
 use crate::results::BenchResults;
-use sinew_measure::{Outcome, Row};
+use sinew_measure::{Row, RowOutcome};
 
 /// Errors above this (fraction) are drawn in the lane of the unbounded runs.
 const LARGEST_SHOWN_ERROR: f64 = 100.0;
@@ -58,13 +58,13 @@ pub fn work_precision(results: &BenchResults, case: &str) -> Plot {
     plot
 }
 
-struct Method {
+struct MethodChoice {
     label: String,
     style: Style,
 }
 
 /// The methods of all cases, one family per integrator.
-fn methods(results: &BenchResults) -> Vec<Method> {
+fn methods(results: &BenchResults) -> Vec<MethodChoice> {
     let mut families: Vec<(&str, Vec<String>)> = Vec::new();
     for row in &results.rows {
         let family = match families.iter().position(|(id, _)| *id == row.integrator) {
@@ -86,7 +86,7 @@ fn methods(results: &BenchResults) -> Vec<Method> {
         .flat_map(|(family, (_, members))| {
             members.into_iter().enumerate().map(move |(member, label)| {
                 let style = Style::of_family(family, member);
-                Method { label, style }
+                MethodChoice { label, style }
             })
         })
         .collect()
@@ -111,7 +111,7 @@ fn point(row: &Row) -> Point {
 /// The error as drawn: infinite where it has no place in the frame.
 fn shown_error(row: &Row) -> f64 {
     match (row.outcome, row.error) {
-        (Outcome::Finished, Some(error)) if row.bounded && error <= LARGEST_SHOWN_ERROR => {
+        (RowOutcome::Finished, Some(error)) if row.bounded && error <= LARGEST_SHOWN_ERROR => {
             error.max(LEAST_SHOWN_ERROR)
         }
         _ => f64::INFINITY,

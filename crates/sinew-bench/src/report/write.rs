@@ -10,7 +10,7 @@ use crate::results::{BenchResults, ResultsError};
 const RESULTS: &str = "results.json";
 const REPORT: &str = "report.html";
 
-/// What was written.
+/// The files that were written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
     /// `results.json`.

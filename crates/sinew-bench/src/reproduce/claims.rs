@@ -8,11 +8,11 @@ use sinew_measure::Row;
 /// A claim of the paper and what was measured.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
-    /// Where the paper says it.
+    /// The place in the paper.
     pub place: &'static str,
-    /// What it says, in short.
+    /// The claim, in short.
     pub says: &'static str,
-    /// What was measured.
+    /// The measured figures, in words.
     pub measured: String,
     /// Whether it holds.
     pub holds: Holds,
@@ -21,16 +21,16 @@ pub struct Claim {
 /// Whether a claim holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Holds {
-    /// As it is said.
+    /// It holds as it is written.
     Yes,
-    /// In the part that the measurement names.
+    /// It holds in the part that the measurement names.
     InPart,
-    /// Not.
+    /// It does not hold.
     No,
 }
 
 impl Holds {
-    /// In a word.
+    /// One word for tables.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {

@@ -2,7 +2,7 @@
 
 use sinew_mesh::GroupMembers;
 
-use super::ReproduceError;
+use super::error::ReproduceError;
 use super::runs::{History, LARGE, Runs, SMALL, Snapshot, VOLTAGES};
 use crate::report::{Axis, Plot, Series, Style, Surface, three};
 use sinew_measure::Row;
@@ -12,7 +12,7 @@ use sinew_measure::Row;
 pub struct Figure {
     /// Its number, as in `1b`.
     pub number: &'static str,
-    /// What it shows.
+    /// Its caption.
     pub caption: String,
     /// The picture.
     pub svg: String,
@@ -164,7 +164,11 @@ fn cube(
     let mut points = mesh.points.clone();
     let mut values = vec![0.0; points.len()];
     for (node, point) in (0..).zip(&mut points) {
-        let u = body.model.node_displacement(&snapshot.u, node);
+        let u = body.model.node_displacement(snapshot.t, &snapshot.u, node);
+        let u = u.map_err(|_| ReproduceError::Case {
+            case: runs.cube.id().to_owned(),
+            expected: "a snapshot of its own",
+        })?;
         values[node as usize] = u.iter().map(|u| u * u).sum::<f64>().sqrt() * 1e3;
         for (coordinate, u) in point.iter_mut().zip(u) {
             *coordinate += u;

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use sinew_scene::output::{OutputError, OutputFolder};
 
+use super::claims::Claim;
 use super::figures::NUMBERS;
-use super::{Claim, Reproduction};
+use super::reproduction::Reproduction;
 use crate::report::escape;
 
 const CLAIMS: &str = "claims.md";
@@ -21,7 +22,7 @@ fn of_figure(number: &str) -> String {
     format!("fig-{number}.svg")
 }
 
-/// What was written.
+/// The files that were written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WrittenReproduction {
     /// `reproduction.html`.
@@ -98,4 +99,20 @@ fn html(reproduction: &Reproduction) -> String {
     }
     page.push_str("</body>\n</html>\n");
     page
+}
+
+impl Reproduction {
+    /// Writes `fig-*.svg`, `claims.md` and `reproduction.html` into a folder.
+    ///
+    /// # Errors
+    /// [`OutputError`].
+    pub fn write(&self, folder: &OutputFolder) -> Result<WrittenReproduction, OutputError> {
+        write(self, folder)
+    }
+
+    /// The names of the files that [`Reproduction::write`] writes.
+    #[must_use]
+    pub fn output_files() -> Vec<String> {
+        file_names()
+    }
 }

@@ -2,11 +2,11 @@
 
 use sinew_core::{Options, Run, State, simulate};
 
-use super::ReproduceError;
+use super::error::ReproduceError;
+use sinew_core::vectors::largest;
 use sinew_measure::Case;
-use sinew_measure::reference::{ErrorNorm, largest};
-use sinew_measure::{Effort, Method, measure};
-use sinew_measure::{Row, finite};
+use sinew_measure::reference::ErrorNorm;
+use sinew_measure::{Effort, MeasureError, MethodChoice, Row, finite, measure};
 
 /// The paper's steps (s).
 pub(super) const SMALL: f64 = 0.001;
@@ -96,12 +96,12 @@ impl<'a> Runs<'a> {
 }
 
 /// The paper's explicit integration.
-fn euler() -> Method {
-    Method::new("forward-euler")
+fn euler() -> MethodChoice {
+    MethodChoice::new("forward-euler")
 }
 
-fn network(voltage: f64) -> Method {
-    Method {
+fn network(voltage: f64) -> MethodChoice {
+    MethodChoice {
         integrator: "cnn".into(),
         options: Options::new().with_number("saturation", voltage),
     }
@@ -114,10 +114,15 @@ fn wrong(case: &Case, expected: &'static str) -> ReproduceError {
     }
 }
 
-fn failed(case: &Case, method: &Method, dt: f64, reason: String) -> ReproduceError {
+fn failed(
+    case: &Case,
+    method: &MethodChoice,
+    dt: f64,
+    source: impl Into<MeasureError>,
+) -> ReproduceError {
     ReproduceError::Run {
         run: format!("{}: {} at {dt} s", case.id(), method.integrator),
-        reason,
+        source: source.into(),
     }
 }
 
@@ -125,21 +130,21 @@ fn failed(case: &Case, method: &Method, dt: f64, reason: String) -> ReproduceErr
 fn reference(oscillator: &mut Case) -> Result<Vec<(f64, f64)>, ReproduceError> {
     let track = oscillator
         .reference_at_every_step(SMALL)
-        .map_err(|error| failed(oscillator, &euler(), SMALL, error.to_string()))?;
+        .map_err(|error| failed(oscillator, &euler(), SMALL, error))?;
     let points = track.times.iter().zip(&track.displacements);
     Ok(points.map(|(t, u)| (*t, u[0])).collect())
 }
 
-fn histories(case: &mut Case, method: &Method) -> Result<[History; 3], ReproduceError> {
+fn histories(case: &mut Case, method: &MethodChoice) -> Result<[History; 3], ReproduceError> {
     let duration = case.simulation().settings().duration;
     let mut history = |dt: f64| {
         let mut row = measure(case, method, dt, Effort::QUICK)
-            .map_err(|reason| failed(case, method, dt, reason))?;
+            .map_err(|error| failed(case, method, dt, error))?;
         let points = follow(case, method, dt, duration)?;
         if row.error.is_some() {
             let track = case
                 .reference_at_every_step(dt)
-                .map_err(|error| failed(case, method, dt, error.to_string()))?;
+                .map_err(|error| failed(case, method, dt, error))?;
             let mut norm = ErrorNorm::default();
             for ((_, u), reference) in points.iter().zip(&track.displacements) {
                 norm.include(&[*u], reference);
@@ -154,12 +159,13 @@ fn histories(case: &mut Case, method: &Method) -> Result<[History; 3], Reproduce
 /// (t (s), u (m)) of the first degree of freedom, from the start on, however far it goes.
 fn follow(
     case: &Case,
-    method: &Method,
+    method: &MethodChoice,
     dt: f64,
     duration: f64,
 ) -> Result<Vec<(f64, f64)>, ReproduceError> {
     let mut points = Vec::new();
-    let mut keep = |_: &dyn sinew_core::System, state: &State| {
+    let mut keep = |moment: &sinew_core::Moment<'_>| {
+        let state = moment.state;
         points.push((state.t(), state.u[0]));
         Ok(sinew_core::Verdict::Continue)
     };
@@ -169,15 +175,16 @@ fn follow(
 
 fn snapshot(
     case: &mut Case,
-    method: &Method,
+    method: &MethodChoice,
     dt: f64,
     limit: f64,
 ) -> Result<Snapshot, ReproduceError> {
     let row = measure(case, method, dt, Effort::QUICK)
-        .map_err(|reason| failed(case, method, dt, reason))?;
+        .map_err(|error| failed(case, method, dt, error))?;
     let duration = case.simulation().settings().duration;
     let state = state_after(case, method, dt, duration, limit)?;
-    let inverted = case.simulation().system().inverted_elements(&state.u);
+    let system = case.simulation().system();
+    let inverted = system.inverted_elements(state.t().into(), &state.u);
     Ok(Snapshot {
         t: state.t(),
         u: state.u,
@@ -189,7 +196,7 @@ fn snapshot(
 /// The state after `duration` (s), or the first in which a displacement passes `limit` (m).
 fn state_after(
     case: &Case,
-    method: &Method,
+    method: &MethodChoice,
     dt: f64,
     duration: f64,
     limit: f64,
@@ -200,16 +207,15 @@ fn state_after(
 
 fn run(
     case: &Case,
-    method: &Method,
+    method: &MethodChoice,
     settings: &Run,
     recorder: &mut dyn sinew_core::Recorder,
 ) -> Result<State, ReproduceError> {
-    let fail = |reason: String| failed(case, method, settings.dt, reason);
-    let mut integrator = sinew_integrators::build(&method.integrator, &method.options)
-        .map_err(|error| fail(error.to_string()))?;
+    let fail = |error: MeasureError| failed(case, method, settings.dt, error);
+    let mut integrator = method.build().map_err(|error| fail(error.into()))?;
     let mut state = case.simulation().initial_state().clone();
     let system = case.simulation().system();
     simulate(system, &mut *integrator, &mut state, settings, recorder)
-        .map_err(|error| fail(error.to_string()))?;
+        .map_err(|error| fail(error.into()))?;
     Ok(state)
 }

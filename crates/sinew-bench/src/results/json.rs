@@ -14,7 +14,7 @@ pub enum ResultsError {
         /// The version found.
         found: u32,
     },
-    /// Not the JSON of a bench.
+    /// The text is not the JSON of a bench.
     #[error("not the results of a bench: {0}")]
     Json(#[from] serde_json::Error),
 }
@@ -60,7 +60,7 @@ mod tests {
 
     use super::*;
     use crate::results::{Machine, Skipped};
-    use sinew_measure::{CaseInfo, Outcome, Row, Verdict, Work, finite};
+    use sinew_measure::{CaseInfo, Row, RowOutcome, RowVerdict, Work, finite};
 
     fn row() -> Row {
         Row {
@@ -98,7 +98,7 @@ mod tests {
         let mut written = results(vec![
             row(),
             Row {
-                outcome: Outcome::Diverged,
+                outcome: RowOutcome::Diverged,
                 diverged_at_s: Some(0.34),
                 error: None,
                 max_u: None,
@@ -136,13 +136,13 @@ mod tests {
             ..row()
         };
         assert_eq!(read, expected);
-        assert_eq!(read.verdict(), Verdict::Guarded);
+        assert_eq!(read.verdict(), RowVerdict::Guarded);
     }
 
     #[test]
     fn numbers_that_are_missing_are_null_and_none_is_nan() {
         let diverged = Row {
-            outcome: Outcome::Diverged,
+            outcome: RowOutcome::Diverged,
             error: None,
             max_u: finite(f64::INFINITY),
             late_amplitude: finite(f64::NAN),

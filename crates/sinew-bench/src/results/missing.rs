@@ -1,11 +1,9 @@
-//! What a bench was asked for and cannot show.
+//! Things that a bench was asked for and cannot show.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 use sinew_measure::Gap;
-
-use super::BenchResults;
 
 /// A scene, a run or a number that was asked for and is not there. In its place stands `null` in
 /// JSON and `n/a` in tables; everything else is as it would be without it.
@@ -19,7 +17,7 @@ pub struct Missing {
     /// The number's field; none where more than a number is missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field: Option<String>,
-    /// What stands there instead of a number, as in `inf`; none where nothing does.
+    /// The text that stands in place of a number, as in `inf`; none where nothing does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<String>,
     /// Why it is missing.
@@ -27,7 +25,7 @@ pub struct Missing {
 }
 
 impl Missing {
-    /// All of a scene.
+    /// A whole scene.
     pub(crate) fn scene(scene: impl Into<String>, reason: impl ToString) -> Self {
         Self {
             scene: scene.into(),
@@ -36,7 +34,7 @@ impl Missing {
         }
     }
 
-    fn number(scene: &str, row: Option<String>, gap: Gap) -> Self {
+    pub(super) fn number(scene: &str, row: Option<String>, gap: Gap) -> Self {
         Self {
             scene: scene.to_owned(),
             row,
@@ -69,34 +67,5 @@ impl Missing {
 impl fmt::Display for Missing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}: {}", self.place(), self.what(), self.reason)
-    }
-}
-
-impl BenchResults {
-    /// Everything that is missing: what was found so as the bench ran, and every number that cannot
-    /// be shown.
-    #[must_use]
-    pub fn all_missing(&self) -> Vec<Missing> {
-        let mut all = self.missing.clone();
-        let of_cases = self.cases.iter().flat_map(|case| {
-            let gaps = case.gaps().into_iter();
-            gaps.map(|gap| Missing::number(&case.id, None, gap))
-        });
-        let of_rows = self.rows.iter().flat_map(|row| {
-            let name = format!("{}, dt = {} s", row.label(), row.dt);
-            let gaps = row.gaps().into_iter();
-            gaps.map(move |gap| Missing::number(&row.case, Some(name.clone()), gap))
-        });
-        for missing in of_cases.chain(of_rows) {
-            // Numbers that were missing when the results were written are told once.
-            let known = |other: &Missing| {
-                (&other.scene, &other.row, &other.field)
-                    == (&missing.scene, &missing.row, &missing.field)
-            };
-            if !all.iter().any(known) {
-                all.push(missing);
-            }
-        }
-        all
     }
 }

@@ -2,6 +2,7 @@
 //! output.
 
 mod network;
+mod ordered;
 mod paper;
 mod stabilised;
 mod symplectic;

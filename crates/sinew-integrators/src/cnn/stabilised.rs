@@ -1,15 +1,18 @@
 //! `cnn-stabilised`: the network with a stabilising matrix in template B.
 
-use sinew_cnn::{Blend, DampingShare, GammaRule, Inner, Stabiliser};
+use sinew_cnn::{
+    Blend, DampingShare, GammaRule, Inner, LoadAt, Loads, Physics, Program, Register, Stabiliser,
+    Sweep,
+};
 use sinew_core::{
-    Acceleration, Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, LinearSystem,
-    LoadTime, Needs, OptionError, OptionValue, Options, OtherDamping, Prepared, Properties,
-    SetupError, StableStep, State, StepError, StepReport, System, Trial, VelocityTime,
+    Acceleration, EnergyBehaviour, Fact, Needs, OptionError, OptionValue, Options, Properties,
+    SetupError, StepReport, System, VelocityTime,
 };
 
-use crate::evaluate::{net_force, synchronise};
+use super::ordered::OrderedSteps;
 use crate::explicit::{CentralDifference, GuardOption};
-use crate::{Method, OptionHelp};
+use crate::scheme::linear;
+use crate::{ConservedEnergy, Explicit, Method, OptionHelp, OptionLabel, Scheme, SetUp};
 
 /// `P (v+ - v-) = dt (F(t) - K u - D v-)`, `u += dt v+`, the velocity half a step behind, started with
 /// `P v_half = M v0 + dt/2 (F(0) - K u0 - D_lag v0)`, D_lag being the part of D that is not in P: the
@@ -34,22 +37,11 @@ pub struct CnnStabilised {
     inner: Inner,
     gamma: GammaRule,
     blend: Blend,
-    prepared: Prepared,
-    set_up: Option<SetUp>,
-    force: Vec<f64>,
-    change: Vec<f64>,
-}
-
-/// What a system and a step need.
-#[derive(Debug)]
-enum SetUp {
-    /// Nothing beside M: the step is central difference's.
-    Plain(CentralDifference),
-    Stabilised(Box<Stabiliser>),
+    stabiliser: Option<Stabiliser>,
 }
 
 impl CnnStabilised {
-    /// With this inner iteration, bound and blend.
+    /// The method with this inner iteration, bound and blend.
     #[must_use]
     pub fn new(inner: Inner, gamma: GammaRule, blend: Blend) -> Self {
         Self {
@@ -60,23 +52,21 @@ impl CnnStabilised {
         }
     }
 
-    /// What was added to M for the system and step at hand; `None` before set-up and where nothing
-    /// was.
+    /// The matrix that was added to M for the current system and step; `None` before set-up and where
+    /// none was needed.
     #[must_use]
     pub fn stabiliser(&self) -> Option<&Stabiliser> {
-        match &self.set_up {
-            Some(SetUp::Stabilised(stabiliser)) => Some(stabiliser),
-            _ => None,
-        }
+        self.stabiliser.as_ref()
     }
 }
 
+/// Name of the fact for the share of the damping that is centred in time.
+const DAMPING_SHARE: &str = "s_d";
 const INNER: &str = "inner";
 const GAMMA: &str = "gamma";
 const S: &str = "s";
 
 impl Method for CnnStabilised {
-    const ID: &'static str = "cnn-stabilised";
     const SUMMARY: &'static str = "cellular network, order 2 with mass damping, stable at any step; one sweep a step, more with `inner`";
     const OPTIONS: &'static [OptionHelp] = &[
         OptionHelp {
@@ -98,42 +88,61 @@ impl Method for CnnStabilised {
 
     const GUARD: GuardOption = GuardOption::Any;
 
-    fn from_options(options: &Options) -> Result<Self, OptionError> {
-        let refused = |key: &str, found: &OptionValue, expected| {
-            Err(OptionError::Value {
-                integrator: Self::ID.into(),
-                key: key.into(),
-                found: found.clone(),
-                expected,
-            })
-        };
-        let inner = match options.get(INNER) {
-            None => Inner::Block,
-            Some(found) => match inner_of(found) {
-                Some(inner) => inner,
-                None => return refused(INNER, found, INNER_EXPECTED),
-            },
-        };
-        let gamma = match options.get(GAMMA) {
-            None => GammaRule::Power,
-            Some(OptionValue::Text(word)) if word == "power" => GammaRule::Power,
-            Some(OptionValue::Text(word)) if word == "gershgorin" => GammaRule::Gershgorin,
-            Some(found) => return refused(GAMMA, found, "\"power\" or \"gershgorin\""),
-        };
-        let blend = match options.get(S) {
-            None => Blend::Auto,
-            Some(OptionValue::Text(word)) if word == "auto" => Blend::Auto,
-            Some(OptionValue::Number(1.0)) => Blend::Full,
-            Some(found) => return refused(S, found, "\"auto\" or 1"),
-        };
-        Ok(Self::new(inner, gamma, blend))
+    // A kind of iteration and its count speak for themselves.
+    const LABELS: &'static [(&'static str, OptionLabel)] =
+        &[(INNER, OptionLabel::Phrase(&["kind", "sweeps"]))];
+
+    fn variants() -> Vec<Options> {
+        vec![chebyshev(4.0), chebyshev(8.0)]
     }
+
+    fn options_for_error(_error: f64) -> Vec<Options> {
+        let plain = std::iter::once(Options::new());
+        plain.chain(Self::variants()).collect()
+    }
+
+    /// The energy that the method conserves. Where nothing is added to M it is central difference and has
+    /// no facts.
+    fn conserved_energy(facts: &[Fact]) -> ConservedEnergy {
+        match facts.iter().find(|fact| fact.name == DAMPING_SHARE) {
+            None => ConservedEnergy::CentralDifference,
+            Some(centred) => ConservedEnergy::Stabilised {
+                lagging: 1.0 - centred.value,
+            },
+        }
+    }
+
+    fn from_options(options: &Options) -> Result<Self, OptionError> {
+        let inner = options.read(Self::ID, INNER, INNER_EXPECTED, inner_of)?;
+        let rules = "\"power\" or \"gershgorin\"";
+        let gamma = options.read(Self::ID, GAMMA, rules, |value| match value.word()? {
+            "power" => Some(GammaRule::Power),
+            "gershgorin" => Some(GammaRule::Gershgorin),
+            _ => None,
+        })?;
+        let blend = options.read(Self::ID, S, "\"auto\" or 1", |value| match value {
+            OptionValue::Text(word) if word == "auto" => Some(Blend::Auto),
+            OptionValue::Number(1.0) => Some(Blend::Full),
+            _ => None,
+        })?;
+        let (inner, gamma) = (inner.unwrap_or_default(), gamma.unwrap_or_default());
+        Ok(Self::new(inner, gamma, blend.unwrap_or_default()))
+    }
+}
+
+/// Chebyshev's iteration with this many sweeps.
+fn chebyshev(sweeps: f64) -> Options {
+    let inner = [
+        ("kind".to_owned(), OptionValue::Text("chebyshev".to_owned())),
+        ("sweeps".to_owned(), OptionValue::Number(sweeps)),
+    ];
+    Options::new().with(INNER, OptionValue::Table(inner.into()))
 }
 
 const INNER_EXPECTED: &str = "{ kind = \"block\" }, or kind = \"jacobi\", \"chebyshev\" or \"gauss-seidel\" with sweeps = a whole number from 1 on";
 
 /// Most inner iterations: far more than any can use.
-const MOST_SWEEPS: f64 = 10_000.0;
+const MOST_SWEEPS: u32 = 10_000;
 
 fn inner_of(value: &OptionValue) -> Option<Inner> {
     let OptionValue::Table(entries) = value else {
@@ -143,16 +152,10 @@ fn inner_of(value: &OptionValue) -> Option<Inner> {
         return None;
     }
     let sweeps = match entries.get("sweeps") {
-        Some(OptionValue::Number(p)) if (1.0..=MOST_SWEEPS).contains(p) && p.fract() == 0.0 => {
-            Some(*p as u32)
-        }
-        Some(_) => return None,
+        Some(given) => Some(given.count(MOST_SWEEPS)?),
         None => None,
     };
-    let Some(OptionValue::Text(kind)) = entries.get("kind") else {
-        return None;
-    };
-    match (kind.as_str(), sweeps) {
+    match (entries.get("kind")?.word()?, sweeps) {
         ("block", None) => Some(Inner::Block),
         ("jacobi", Some(sweeps)) => Some(Inner::Jacobi { sweeps }),
         ("chebyshev", Some(sweeps)) => Some(Inner::Chebyshev { sweeps }),
@@ -161,97 +164,41 @@ fn inner_of(value: &OptionValue) -> Option<Inner> {
     }
 }
 
-impl Integrator for CnnStabilised {
-    fn id(&self) -> &'static str {
-        Self::ID
-    }
+impl Scheme for CnnStabilised {
+    const ID: &'static str = "cnn-stabilised";
+
+    type ByHand = OrderedSteps;
 
     fn properties(&self) -> Properties {
-        Properties {
-            accuracy: Accuracy::Order(2),
-            needs: Needs::Matrices,
-            energy: EnergyBehaviour::Bounded,
-            changing_loads: ChangingLoads::order(2),
-            other_damping: OtherDamping::order(match self.inner.damping_share() {
-                DampingShare::AsStiffness => 1,
-                DampingShare::Whole => 2,
-            }),
-        }
+        let plain = Properties::of_order(2, Needs::Matrices, EnergyBehaviour::Bounded);
+        plain.with_other_damping(match self.inner.damping_share() {
+            DampingShare::AsStiffness => 1,
+            DampingShare::Whole => 2,
+        })
     }
 
-    fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
-        if self.prepared.is_for(system, dt) {
-            return Ok(StepReport::default());
-        }
-        let operators =
-            system
-                .as_linear()
-                .map(LinearSystem::operators)
-                .ok_or(SetupError::Lacks {
-                    integrator: Self::ID,
-                    needs: Needs::Matrices.describe(),
-                })?;
-        let mut checked = Prepared::default();
-        checked.check(Self::ID, system, dt)?;
-        self.prepared = Prepared::default();
-        for buffer in [&mut self.force, &mut self.change] {
-            buffer.resize(system.dofs(), 0.0);
-        }
-        let stabiliser = Stabiliser::new(operators, dt, self.gamma, self.blend, self.inner);
-        self.set_up = Some(if stabiliser.majorant().adds_nothing() {
-            let mut plain = CentralDifference::default();
-            plain.prepare(system, dt)?;
-            SetUp::Plain(plain)
-        } else {
-            SetUp::Stabilised(Box::new(stabiliser))
-        });
-        self.prepared = checked;
-        Ok(StepReport::default())
-    }
-
-    fn stable_step(&self, _system: &dyn System) -> Result<StableStep, SetupError> {
-        Ok(StableStep::Any)
-    }
-
-    fn step(
+    fn set_up(
         &mut self,
         system: &dyn System,
-        state: &mut State,
         dt: f64,
-    ) -> Result<StepReport, StepError> {
-        let mut work = self.prepare(system, dt)?;
-        Prepared::check_state(Self::ID, system, state)?;
-        let stabiliser = match &mut self.set_up {
-            Some(SetUp::Stabilised(stabiliser)) => stabiliser,
-            Some(SetUp::Plain(plain)) => return plain.step(system, state, dt),
-            None => return Ok(work),
+        _before: Option<OrderedSteps>,
+    ) -> Result<SetUp<OrderedSteps>, SetupError> {
+        let operators = linear(system, Self::ID)?.operators();
+        let stabiliser = Stabiliser::new(operators, dt, self.gamma, self.blend, self.inner);
+        self.stabiliser = None;
+        let physics = Physics::of(system);
+        if stabiliser.majorant().adds_nothing() {
+            return Ok(CentralDifference.program(&physics, dt).into());
+        }
+        let made = match stabiliser.gauss_seidel() {
+            Some(solver) => {
+                let steps = OrderedSteps::new(solver, &stabiliser, self.inner.sweeps());
+                SetUp::by_hand(steps, StepReport::default())
+            }
+            None => program(&stabiliser, &physics, dt).into(),
         };
-        let running = state.is_staggered_by(dt);
-        if !running {
-            work += synchronise(system, state)?;
-        }
-        let weight = if running { dt } else { dt / 2.0 };
-        // Only the damping that P does not hold lags in the first half step.
-        let lagging = 1.0 - stabiliser.majorant().damping_share();
-        work += residual(system, state, dt, lagging, &mut self.force)?;
-        for ((force, mass), v) in self.force.iter_mut().zip(system.mass()).zip(&state.v) {
-            *force = weight * *force + if running { 0.0 } else { mass * v };
-        }
-        stabiliser.solve(&self.force, &mut self.change);
-        work.sweeps += self.inner.sweeps();
-        // Kept so that the velocity at the displacement's time can be had: M^-1 of the force is not
-        // the acceleration of this motion.
-        state.a.resize(state.u.len(), 0.0);
-        let moving = state.u.iter_mut().zip(&mut state.v).zip(&mut state.a);
-        for (((u, v), a), change) in moving.zip(&self.change) {
-            let before = *v;
-            *v = if running { *v + change } else { *change };
-            *a = (*v - before) / weight;
-            *u += dt * *v;
-        }
-        state.end_step(dt, VelocityTime::MiddleOfStep, Acceleration::Kick);
-        system.accept(state);
-        Ok(work)
+        self.stabiliser = Some(stabiliser);
+        Ok(made)
     }
 
     fn facts(&self) -> Vec<Fact> {
@@ -262,46 +209,45 @@ impl Integrator for CnnStabilised {
         let fact = |name, value| Fact { name, value };
         vec![
             fact("s", majorant.s()),
-            fact("s_d", majorant.damping_share()),
+            fact(DAMPING_SHARE, majorant.damping_share()),
             fact("gamma", majorant.gamma()),
             fact("certificate", stabiliser.certificate()),
         ]
     }
 }
 
-/// `out = F - K u - D v` before a step of `dt` (s); at the start with the share `lagging` of the
-/// damping other than alpha M in place of D.
-fn residual(
-    system: &dyn System,
-    state: &State,
-    dt: f64,
-    lagging: f64,
-    out: &mut [f64],
-) -> Result<StepReport, StepError> {
-    if state.is_staggered_by(dt) {
-        let trial = Trial {
-            load: LoadTime::around(state.t(), dt, dt),
-            dt: 0.0,
-            u: &state.u,
-            v: &state.v,
-        };
-        return net_force(system, &trial, out);
+/// The step as a program.
+fn program(stabiliser: &Stabiliser, physics: &Physics, dt: f64) -> Program {
+    let (u, v, a) = (Register::U, Register::V, Register::A);
+    let mut program = Program::new(VelocityTime::MiddleOfStep);
+    // Kept so that the velocity at the displacement's time can be had: M^-1 of the force is not the
+    // acceleration of this motion.
+    program.acceleration = Acceleration::Kick;
+
+    // Only the damping that P does not hold lags in the first half step.
+    let lagging = 1.0 - stabiliser.majorant().damping_share();
+    let w = program.named("w0");
+    let before =
+        Sweep::local().then(w.becomes([(u, 1.0), (v, lagging * physics.stiffness_damping)]));
+    let mut start = Sweep::of_stiffness(1.0, w, Loads::at(LoadAt::From));
+    if physics.dashpots {
+        start = start.with_dashpots(lagging, v);
     }
-    if let Some(linear) = system.as_linear() {
-        let operators = linear.operators();
-        operators.external_force(LoadTime::around(state.t(), 0.0, dt), out);
-        let damping = operators.damping();
-        let of_stiffness = lagging * damping.stiffness;
-        if of_stiffness == 0.0 {
-            operators.stiffness().subtract_product(&state.u, out);
-        } else {
-            operators
-                .stiffness()
-                .subtract_product_combined(&state.u, of_stiffness, &state.v, out);
-        }
-        if let Some(extra) = &damping.extra {
-            extra.subtract_scaled_product(lagging, &state.v, out);
-        }
+    let start = start.scaled(dt / 2.0).with_own(v, 0.0, 1.0);
+    if let Some(solution) = stabiliser.sweeps(&mut program, start) {
+        let weight = dt / 2.0;
+        let kick = solution.added_to(a.becomes([(v, -1.0 / weight)]), 1.0 / weight);
+        let first = solution.added_to(v.becomes([]), 1.0);
+        program.start = vec![before];
+        let moves = [kick.in_last_step(), first, u.plus(dt, v)];
+        program.start.extend(solution.then(moves));
     }
-    Ok(StepReport::ONE_FORCE)
+
+    let force = program.net_force(physics, u, v, LoadAt::Around).scaled(dt);
+    if let Some(solution) = stabiliser.sweeps(&mut program, force) {
+        let kick = solution.added_to(a.becomes([]), 1.0 / dt);
+        let next = solution.added_to(v.becomes([(v, 1.0)]), 1.0);
+        program.step = solution.then([kick.in_last_step(), next, u.plus(dt, v)]);
+    }
+    program
 }

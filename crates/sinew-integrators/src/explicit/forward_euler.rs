@@ -1,79 +1,46 @@
 //! `forward-euler`: both halves from the old state.
 
-use sinew_core::{
-    Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs, OptionError, Options,
-    OtherDamping, Prepared, Properties, SetupError, StableStep, State, StepError, StepReport,
-    System,
-};
-
-use super::GuardOption;
-use crate::Method;
-use crate::evaluate::{acceleration, begin, prepare_buffers};
-use crate::limits;
+use crate::explicit_method::prelude::*;
 
 /// `u += dt v`, `v += dt M^-1 (F(t) - K u - D v)`, both from the old u and v (Euler 1768).
 ///
 /// The "explicit integration" that the cellular network is compared with. Unstable at any step
 /// without damping.
 #[derive(Debug, Default)]
-pub struct ForwardEuler {
-    prepared: Prepared,
-    a: Vec<f64>,
-}
+pub struct ForwardEuler;
 
-impl Method for ForwardEuler {
+impl Explicit for ForwardEuler {
     const ID: &'static str = "forward-euler";
     const SUMMARY: &'static str = "explicit, order 1; what the paper calls explicit integration";
-    const SUBSTEPS: bool = true;
-    const GUARD: GuardOption = GuardOption::Any;
-
-    fn from_options(_options: &Options) -> Result<Self, OptionError> {
-        Ok(Self::default())
-    }
-}
-
-impl Integrator for ForwardEuler {
-    fn id(&self) -> &'static str {
-        Self::ID
-    }
 
     fn properties(&self) -> Properties {
-        Properties {
-            accuracy: Accuracy::Order(1),
-            needs: Needs::Forces,
-            energy: EnergyBehaviour::Grows,
-            changing_loads: ChangingLoads::order(1),
-            other_damping: OtherDamping::order(1),
+        Properties::of_order(1, Needs::Forces, EnergyBehaviour::Grows)
+    }
+
+    /// The limit `2 zeta/w = beta + alpha/w^2` where the fastest mode swings, `2/|lambda|` where it creeps;
+    /// slow modes under mass damping creep with roots up to alpha.
+    fn stable_step(&self, spectrum: &Spectrum) -> StableStep {
+        let (w2, alpha) = (spectrum.omega_max.powi(2), spectrum.mass_damping);
+        let d = alpha + spectrum.damping_max;
+        let swinging = spectrum.stiffness_damping + alpha / w2;
+        let fastest = match (d / 2.0).powi(2) - w2 {
+            _ if !spectrum.proportional => swinging.min(2.0 / d),
+            creeping if creeping >= 0.0 => 2.0 / (d / 2.0 + creeping.sqrt()),
+            _ => swinging,
+        };
+        match fastest.min(2.0 / alpha) {
+            // Dashpots alone may or may not damp every mode; their largest eigenvalue does not tell.
+            0.0 if !spectrum.proportional => StableStep::Unknown,
+            limit => StableStep::UpTo(limit),
         }
     }
 
-    fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
-        prepare_buffers(&mut self.prepared, Self::ID, system, dt, &mut [&mut self.a])
-    }
-
-    fn stable_step(&self, system: &dyn System) -> Result<StableStep, SetupError> {
-        limits::forward_euler(Self::ID, system)
-    }
-
-    fn step(
-        &mut self,
-        system: &dyn System,
-        state: &mut State,
-        dt: f64,
-    ) -> Result<StepReport, StepError> {
-        let mut work = begin(self, system, state, dt)?;
-        work += acceleration(
-            system,
-            state,
-            LoadTime::start_of(state.t(), dt),
-            &mut self.a,
-        )?;
-        for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&self.a) {
-            *u += dt * *v;
-            *v += dt * a;
-        }
-        state.advance(dt);
-        system.accept(state);
-        Ok(work)
+    fn program(&self, physics: &Physics, dt: f64) -> Program {
+        let mut program = Program::new(VelocityTime::Same);
+        let force = program.net_force(physics, U, V, LoadAt::StartOf);
+        program
+            .step
+            .push(force.then(U.plus(dt, V)).then(V.plus_q(dt)));
+        program
     }
 }

@@ -1,13 +1,10 @@
-//! Methods whose step needs forces only.
+//! Explicit methods, whose steps need forces only.
 
 mod central_difference;
 mod forward_euler;
 mod guard;
 mod modified_leapfrog;
 #[cfg(feature = "implicit")]
-mod patches;
-#[cfg(not(feature = "implicit"))]
-#[path = "no_patches.rs"]
 mod patches;
 mod rk4;
 mod substeps;
@@ -17,6 +14,8 @@ pub use central_difference::CentralDifference;
 pub use forward_euler::ForwardEuler;
 pub use guard::{Guard, GuardOption, Guarded};
 pub use modified_leapfrog::ModifiedLeapfrog;
+#[cfg(feature = "implicit")]
+pub use patches::PatchedCentralDifference;
 pub use rk4::Rk4;
 pub use substeps::{Substepped, Substeps};
 pub use symplectic_euler::SymplecticEuler;

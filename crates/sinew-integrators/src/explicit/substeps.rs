@@ -1,19 +1,22 @@
 //! `substeps`: a step cut into equal parts.
 
+use sinew_cnn::Program;
 use sinew_core::{
-    Fact, Integrator, OptionError, OptionValue, Options, Properties, SetupError, StableStep, State,
-    StepError, StepReport, System,
+    Batch, Fact, Integrator, OptionError, Options, Prepared, Properties, SetupError, StableStep,
+    State, StepError, StepReport, System,
 };
+
+use crate::Stepper;
 
 /// Share of the stable step that automatic sub-steps stay below.
 const MARGIN: f64 = 0.9;
 
-/// Into how many parts a step is cut.
+/// Number of parts into which a step is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Substeps {
     /// This many parts, always.
     Fixed(u32),
-    /// As many as bring a part below nine tenths of the stable step.
+    /// The fewest parts that are no longer than nine tenths of the stable step.
     Auto,
 }
 
@@ -28,8 +31,31 @@ impl Substeps {
         Self::parts(dt, limit).min(f64::from(u32::MAX)) as u32
     }
 
+    /// The same for a method, where there are so many that parts stay stable.
+    ///
+    /// # Errors
+    /// [`SetupError::Unresolved`] where there are not, by the option that asked for them.
+    pub(super) fn stable_parts_of(
+        integrator: &'static str,
+        dt: f64,
+        limit: f64,
+        option: &str,
+    ) -> Result<u32, SetupError> {
+        let parts = Self::parts_of(dt, limit);
+        if dt / f64::from(parts) <= limit {
+            return Ok(parts);
+        }
+        let times = dt / limit;
+        Err(SetupError::Unresolved {
+            integrator,
+            reason: format!(
+                "dt = {dt} s is {times:.1e} times the stable step, too many for {option} = \"auto\"; take a shorter dt"
+            ),
+        })
+    }
+
     /// Length (s) of the longest equal parts of a time of `length` (s) that are no longer than nine
-    /// tenths of `limit` (s), which is above 0, however many they are.
+    /// tenths of `limit` (s), which is above 0, in any number.
     #[must_use]
     pub fn longest_part(length: f64, limit: f64) -> f64 {
         length / Self::parts(length, limit)
@@ -45,21 +71,15 @@ impl Substeps {
     /// # Errors
     /// [`OptionError::Value`] for anything but a whole number from 1 on or "auto".
     pub fn take_from(options: &mut Options, integrator: &str) -> Result<Option<Self>, OptionError> {
-        match options.remove(Self::KEY) {
-            None => Ok(None),
-            Some(OptionValue::Text(word)) if word == "auto" => Ok(Some(Self::Auto)),
-            Some(OptionValue::Number(count))
-                if count >= 1.0 && count <= f64::from(u32::MAX) && count.fract() == 0.0 =>
-            {
-                Ok(Some(Self::Fixed(count as u32)))
+        let expected = "a whole number from 1 on, or \"auto\"";
+        let substeps = options.read(integrator, Self::KEY, expected, |value| {
+            match value.word() {
+                Some("auto") => Some(Self::Auto),
+                _ => value.count(u32::MAX).map(Self::Fixed),
             }
-            Some(found) => Err(OptionError::Value {
-                integrator: integrator.into(),
-                key: Self::KEY.into(),
-                found,
-                expected: "a whole number from 1 on, or \"auto\"",
-            }),
-        }
+        })?;
+        options.remove(Self::KEY);
+        Ok(substeps)
     }
 }
 
@@ -70,7 +90,7 @@ pub(super) fn whole(parts: f64) -> u32 {
 
 /// An integrator that takes several equal steps for each one asked of it.
 pub struct Substepped {
-    inner: Box<dyn Integrator>,
+    inner: Box<dyn Stepper>,
     substeps: Substeps,
     parts: Option<(sinew_core::Revision, f64, u32)>,
 }
@@ -78,7 +98,7 @@ pub struct Substepped {
 impl Substepped {
     /// Cuts the steps of `inner`.
     #[must_use]
-    pub fn new(inner: Box<dyn Integrator>, substeps: Substeps) -> Self {
+    pub fn new(inner: Box<dyn Stepper>, substeps: Substeps) -> Self {
         Self {
             inner,
             substeps,
@@ -98,17 +118,7 @@ impl Substepped {
             Substeps::Auto => match self.inner.stable_step(system)? {
                 StableStep::Any => Ok(1),
                 StableStep::UpTo(limit) if limit > 0.0 && dt.is_finite() => {
-                    let parts = Substeps::parts_of(dt, limit);
-                    if dt / f64::from(parts) <= limit {
-                        return Ok(parts);
-                    }
-                    Err(SetupError::Unresolved {
-                        integrator: self.inner.id(),
-                        reason: format!(
-                            "dt = {dt} s is {:.1e} times the stable step, too many for substeps = \"auto\"; take a shorter dt",
-                            dt / limit
-                        ),
-                    })
+                    Substeps::stable_parts_of(self.inner.id(), dt, limit, "substeps")
                 }
                 StableStep::UpTo(_) | StableStep::Unknown => Err(SetupError::Lacks {
                     integrator: self.inner.id(),
@@ -119,26 +129,43 @@ impl Substepped {
     }
 }
 
+impl Stepper for Substepped {
+    fn program(&self) -> Option<Program> {
+        let (_, _, parts) = self.parts?;
+        Some(self.inner.program()?.repeated(parts))
+    }
+
+    fn without_program(&self) -> &'static str {
+        self.inner.without_program()
+    }
+}
+
 impl Integrator for Substepped {
     fn id(&self) -> &'static str {
         self.inner.id()
     }
 
     fn properties(&self) -> Properties {
-        self.inner.properties()
+        let inner = self.inner.properties();
+        Properties {
+            refuses_long_steps: inner.refuses_long_steps || self.substeps == Substeps::Auto,
+            ..inner
+        }
     }
 
     fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
-        if !(dt.is_finite() && dt > 0.0) {
-            return self.inner.prepare(system, dt);
-        }
+        Prepared::check(self.id(), system, dt)?;
         let parts = self.parts(system, dt)?;
         self.parts = Some((system.revision(), dt, parts));
         self.inner.prepare(system, dt / f64::from(parts))
     }
 
-    fn stable_step(&self, system: &dyn System) -> Result<StableStep, SetupError> {
-        match (self.inner.stable_step(system)?, self.substeps) {
+    fn stable_step_about(
+        &self,
+        system: &dyn System,
+        state: Option<&State>,
+    ) -> Result<StableStep, SetupError> {
+        match (self.inner.stable_step_about(system, state)?, self.substeps) {
             (StableStep::UpTo(limit), Substeps::Fixed(parts)) => {
                 Ok(StableStep::UpTo(limit * f64::from(parts)))
             }
@@ -147,18 +174,9 @@ impl Integrator for Substepped {
         }
     }
 
-    fn step(
-        &mut self,
-        system: &dyn System,
-        state: &mut State,
-        dt: f64,
-    ) -> Result<StepReport, StepError> {
-        let mut work = self.prepare(system, dt)?;
-        let parts = self.parts(system, dt)?;
-        for _ in 0..parts {
-            work.add_part(self.inner.step(system, state, dt / f64::from(parts))?);
-        }
-        Ok(work)
+    fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
+        let parts = self.parts(batch.system(), batch.dt())?;
+        batch.in_parts(parts, |batch| self.inner.run(batch, state))
     }
 
     fn facts(&self) -> Vec<Fact> {

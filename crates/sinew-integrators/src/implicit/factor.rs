@@ -11,11 +11,13 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, MatRef, Par, Side, Spec};
 use sinew_core::{Layers, LinearOperators, Pattern};
 
-/// `mass M + stiffness K + extra D_extra`, where D_extra is the damping beside the proportional.
+use super::factor_error::FactorError;
+
+/// `mass M + stiffness K + extra D_extra`, where D_extra is the damping that is not proportional.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Combination {
     pub(crate) mass: f64,
@@ -65,7 +67,7 @@ impl std::fmt::Debug for Factor {
 
 impl Factor {
     /// Orders and analyses the pattern of `operators`.
-    pub(crate) fn analyse(operators: &LinearOperators) -> Result<Self, String> {
+    pub(crate) fn analyse(operators: &LinearOperators) -> Result<Self, FactorError> {
         let stiffness = operators.stiffness();
         let (pattern, layers) = (Arc::clone(stiffness.pattern()), stiffness.layers());
         let (forward, inverse) = dof_ordering(&pattern, layers)?;
@@ -78,7 +80,7 @@ impl Factor {
             SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, n)),
             CholeskySymbolicParams::default(),
         )
-        .map_err(|error| error.to_string())?;
+        .map_err(of_faer)?;
         let numeric = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
         let solve = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
         let scratch = buffer(StackReq::or(numeric, solve))?;
@@ -105,7 +107,7 @@ impl Factor {
         &mut self,
         operators: &LinearOperators,
         combination: Combination,
-    ) -> Result<(), String> {
+    ) -> Result<(), FactorError> {
         self.fill(operators, combination);
         let n = self.column_start.len() - 1;
         let matrix = SparseColMatRef::new(
@@ -123,7 +125,7 @@ impl Factor {
                 Spec::default(),
             )
             .map(|_| ())
-            .map_err(|_| "it is not positive definite".to_owned())
+            .map_err(|_| FactorError::NotPositiveDefinite)
     }
 
     /// Entries of the lower triangle, column by column: by symmetry, column j is row j.
@@ -177,13 +179,16 @@ impl Factor {
 
 /// Eigenvalues in increasing order and eigenvectors of a dense symmetric matrix, both column by
 /// column; only its lower triangle is read.
-pub(crate) fn symmetric_eigen(matrix: &[f64], n: usize) -> Result<(Vec<f64>, Vec<f64>), String> {
+pub(crate) fn symmetric_eigen(
+    matrix: &[f64],
+    n: usize,
+) -> Result<(Vec<f64>, Vec<f64>), FactorError> {
     if n == 0 {
         return Ok((Vec::new(), Vec::new()));
     }
     let eigen = MatRef::from_column_major_slice(matrix, n, n)
         .self_adjoint_eigen(Side::Lower)
-        .map_err(|_| "a dense eigenproblem did not converge".to_owned())?;
+        .map_err(|_| FactorError::Eigenproblem)?;
     let values = (0..n).map(|i| eigen.S()[i]).collect();
     let vectors = (0..n).flat_map(|j| (0..n).map(move |i| (i, j)));
     Ok((values, vectors.map(|(i, j)| eigen.U()[(i, j)]).collect()))
@@ -191,7 +196,10 @@ pub(crate) fn symmetric_eigen(matrix: &[f64], n: usize) -> Result<(Vec<f64>, Vec
 
 /// Approximate minimum degree on the graph of cells, which is three times smaller each way than
 /// that of degrees of freedom, spread to all layers. Returns the permutation and its inverse.
-fn dof_ordering(pattern: &Pattern, layers: Layers) -> Result<(Vec<usize>, Vec<usize>), String> {
+fn dof_ordering(
+    pattern: &Pattern,
+    layers: Layers,
+) -> Result<(Vec<usize>, Vec<usize>), FactorError> {
     let cells = pattern.cells();
     let (column_start, row_index) = lower_triangle(pattern, Layers::One);
     let structure =
@@ -205,7 +213,7 @@ fn dof_ordering(pattern: &Pattern, layers: Layers) -> Result<(Vec<usize>, Vec<us
         amd::Control::default(),
         MemStack::new(&mut scratch),
     )
-    .map_err(|error| error.to_string())?;
+    .map_err(of_faer)?;
     let layers = layers.count();
     let spread = |order: Vec<usize>| -> Vec<usize> {
         let dofs = order.into_iter();
@@ -234,6 +242,13 @@ fn lower_triangle(pattern: &Pattern, layers: Layers) -> (Vec<usize>, Vec<usize>)
     (column_start, row_index)
 }
 
-fn buffer(request: StackReq) -> Result<MemBuffer, String> {
-    MemBuffer::try_new(request).map_err(|_| "not enough memory".to_owned())
+fn buffer(request: StackReq) -> Result<MemBuffer, FactorError> {
+    MemBuffer::try_new(request).map_err(|_| FactorError::OutOfMemory)
+}
+
+fn of_faer(error: FaerError) -> FactorError {
+    match error {
+        FaerError::IndexOverflow => FactorError::TooLarge,
+        _ => FactorError::OutOfMemory,
+    }
 }

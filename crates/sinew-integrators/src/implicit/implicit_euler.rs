@@ -1,74 +1,69 @@
 //! `implicit-euler`: both halves from the new state.
 
 use sinew_core::{
-    Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs, OptionError, Options,
-    OtherDamping, Properties, SetupError, StableStep, State, StepError, StepReport, System,
+    EnergyBehaviour, LoadTime, Needs, OptionError, Options, Properties, SetupError, State, Step,
+    StepError, Stepped, System,
 };
 
-use super::engine::Engine;
-use crate::Method;
-use crate::evaluate::begin;
+use super::effective_mass::{EffectiveMass, ImplicitSteps, ONE_SOLVE, OneSolve};
+use crate::{Method, Scheme, SetUp};
 
 /// `v+ = v + dt a+`, `u+ = u + dt v+` with `(M + dt D + dt^2 K) a+ = F(t + dt) - K (u + dt v) - D v`
 /// (Baraff and Witkin, Large steps in cloth simulation, 1998, for a linear system). Stable at any
 /// step and strongly damped by it.
-#[derive(Debug, Default)]
-pub struct ImplicitEuler {
-    engine: Engine,
-}
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ImplicitEuler;
 
 impl Method for ImplicitEuler {
-    const ID: &'static str = "implicit-euler";
     const SUMMARY: &'static str = "implicit, order 1, one sparse solve a step; damps what it moves";
+    const FACTORISES: bool = true;
 
     fn from_options(_options: &Options) -> Result<Self, OptionError> {
-        Ok(Self::default())
+        Ok(Self)
     }
 }
 
-impl Integrator for ImplicitEuler {
-    fn id(&self) -> &'static str {
-        Self::ID
-    }
+impl Scheme for ImplicitEuler {
+    const ID: &'static str = "implicit-euler";
+
+    type ByHand = ImplicitSteps<Self>;
 
     fn properties(&self) -> Properties {
-        Properties {
-            accuracy: Accuracy::Order(1),
-            needs: Needs::Matrices,
-            changing_loads: ChangingLoads::order(1),
-            energy: EnergyBehaviour::Falls,
-            other_damping: OtherDamping::order(1),
-        }
+        Properties::of_order(1, Needs::Matrices, EnergyBehaviour::Falls)
     }
 
-    fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
-        self.engine.prepare(Self::ID, system, dt, (dt, dt * dt))
+    fn set_up(
+        &mut self,
+        system: &dyn System,
+        dt: f64,
+        before: Option<ImplicitSteps<Self>>,
+    ) -> Result<SetUp<ImplicitSteps<Self>>, SetupError> {
+        ImplicitSteps::set_up(self, system, dt, before)
     }
+}
 
-    fn stable_step(&self, _system: &dyn System) -> Result<StableStep, SetupError> {
-        Ok(StableStep::Any)
+impl OneSolve for ImplicitEuler {
+    fn coefficients(&self, dt: f64) -> [f64; 2] {
+        [dt, dt * dt]
     }
 
     fn step(
-        &mut self,
-        system: &dyn System,
+        &self,
+        effective: &mut EffectiveMass,
+        step: &Step<'_>,
         state: &mut State,
-        dt: f64,
-    ) -> Result<StepReport, StepError> {
-        let mut work = begin(self, system, state, dt)?;
-        for (predicted, (u, v)) in self.engine.u.iter_mut().zip(state.u.iter().zip(&state.v)) {
+    ) -> Result<Stepped, StepError> {
+        let dt = step.dt;
+        for (predicted, (u, v)) in effective.u.iter_mut().zip(state.u.iter().zip(&state.v)) {
             *predicted = u + dt * v;
         }
-        self.engine.v.copy_from_slice(&state.v);
-        let load = LoadTime::end_of(state.t(), dt);
-        work += self.engine.evaluate(system, load, dt)?;
-        work += self.engine.solve();
-        for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&self.engine.a) {
+        effective.v.copy_from_slice(&state.v);
+        effective.evaluate(step, LoadTime::end_of(state.t(), dt))?;
+        effective.solve();
+        for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&effective.a) {
             *v += dt * a;
             *u += dt * *v;
         }
-        state.advance(dt);
-        system.accept(state);
-        Ok(work)
+        Ok(Stepped::at_same_time(ONE_SOLVE))
     }
 }

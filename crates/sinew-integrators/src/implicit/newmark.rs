@@ -1,15 +1,12 @@
 //! `newmark`: Newmark's family.
 
-use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    Acceleration, Accuracy, ChangingLoads, EnergyBehaviour, Integrator, LoadTime, Needs,
-    OptionError, Options, OtherDamping, Properties, SetupError, StableStep, State, StepError,
-    StepReport, System, VelocityTime,
+    Acceleration, EnergyBehaviour, LoadTime, Needs, OptionError, Options, Properties, SetupError,
+    StableStep, State, Step, StepError, Stepped, System,
 };
 
-use super::engine::Engine;
-use crate::evaluate::begin;
-use crate::{Method, OptionHelp};
+use super::effective_mass::{EffectiveMass, ImplicitSteps, ONE_SOLVE, OneSolve};
+use crate::{Method, OptionHelp, Scheme, SetUp};
 
 /// Newmark's method (J. Eng. Mech. Div. ASCE 85, 1959) in its acceleration form (Hughes, The
 /// Finite Element Method, section 9.1): with `u* = u + dt v + dt^2 (1/2 - beta) a` and
@@ -18,22 +15,17 @@ use crate::{Method, OptionHelp};
 /// `v+ = v* + gamma dt a+`. The first acceleration is the consistent one.
 ///
 /// The default, beta = 1/4 and gamma = 1/2, is stable at any step and conserves energy.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Newmark {
     beta: f64,
     gamma: f64,
-    engine: Engine,
 }
 
 impl Newmark {
-    /// With these parameters.
+    /// Newmark's method with these parameters.
     #[must_use]
     pub fn new(beta: f64, gamma: f64) -> Self {
-        Self {
-            beta,
-            gamma,
-            engine: Engine::default(),
-        }
+        Self { beta, gamma }
     }
 }
 
@@ -44,7 +36,6 @@ impl Default for Newmark {
 }
 
 impl Method for Newmark {
-    const ID: &'static str = "newmark";
     const SUMMARY: &'static str = "implicit, order 2, one sparse solve a step, stable at any step";
     const OPTIONS: &'static [OptionHelp] = &[
         OptionHelp {
@@ -59,6 +50,8 @@ impl Method for Newmark {
         },
     ];
 
+    const FACTORISES: bool = true;
+
     fn from_options(options: &Options) -> Result<Self, OptionError> {
         let share = |key, default| {
             options.number(Self::ID, key, default, "a number from 0 to 1", |value| {
@@ -69,70 +62,87 @@ impl Method for Newmark {
     }
 }
 
-impl Integrator for Newmark {
-    fn id(&self) -> &'static str {
-        Self::ID
-    }
+impl Scheme for Newmark {
+    const ID: &'static str = "newmark";
+
+    type ByHand = ImplicitSteps<Self>;
 
     fn properties(&self) -> Properties {
-        Properties {
-            accuracy: Accuracy::Order(if self.gamma == 0.5 { 2 } else { 1 }),
-            needs: Needs::Matrices,
-            changing_loads: ChangingLoads::order(if self.gamma == 0.5 { 2 } else { 1 }),
-            energy: match (self.beta, self.gamma) {
-                (0.25, 0.5) => EnergyBehaviour::Conserved,
-                (_, 0.5) => EnergyBehaviour::Bounded,
-                (_, gamma) if gamma > 0.5 => EnergyBehaviour::Falls,
-                _ => EnergyBehaviour::Grows,
-            },
-            other_damping: OtherDamping::order(if self.gamma == 0.5 { 2 } else { 1 }),
-        }
+        let order = if self.gamma == 0.5 { 2 } else { 1 };
+        let energy = match (self.beta, self.gamma) {
+            (0.25, 0.5) => EnergyBehaviour::Conserved,
+            (_, 0.5) => EnergyBehaviour::Bounded,
+            (_, gamma) if gamma > 0.5 => EnergyBehaviour::Falls,
+            _ => EnergyBehaviour::Grows,
+        };
+        Properties::of_order(order, Needs::Matrices, energy)
     }
 
-    fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
-        let coefficients = (self.gamma * dt, self.beta * dt * dt);
-        self.engine.prepare(Self::ID, system, dt, coefficients)
+    fn set_up(
+        &mut self,
+        system: &dyn System,
+        dt: f64,
+        before: Option<ImplicitSteps<Self>>,
+    ) -> Result<SetUp<ImplicitSteps<Self>>, SetupError> {
+        ImplicitSteps::set_up(self, system, dt, before)
     }
 
-    /// Any where 2 beta >= gamma >= 1/2; otherwise `1/(w sqrt(gamma/2 - beta))`, a lower bound with
-    /// damping, and none where gamma < 1/2 (Hughes, section 9.1).
-    fn stable_step(&self, system: &dyn System) -> Result<StableStep, SetupError> {
-        if self.gamma < 0.5 {
-            return Ok(StableStep::UpTo(0.0));
-        }
-        if 2.0 * self.beta >= self.gamma {
+    /// Any step where 2 beta >= gamma >= 1/2; otherwise `1/(w sqrt(gamma/2 - beta))`, a lower bound with
+    /// damping. Where gamma < 1/2, none without damping, and unknown with it (Hughes, section 9.1).
+    fn stable_step(
+        &self,
+        system: &dyn System,
+        about: Option<&State>,
+    ) -> Result<StableStep, SetupError> {
+        if 2.0 * self.beta >= self.gamma && self.gamma >= 0.5 {
             return Ok(StableStep::Any);
         }
-        let spectrum = Spectrum::of_system(system, Self::ID)?;
+        let Some(spectrum) = system.spectrum(about) else {
+            return Ok(StableStep::Unknown);
+        };
+        if self.gamma < 0.5 {
+            let damping = spectrum.mass_damping + spectrum.damping_max;
+            return Ok(match damping {
+                0.0 => StableStep::UpTo(0.0),
+                _ => StableStep::Unknown,
+            });
+        }
         let limit = (self.gamma / 2.0 - self.beta).sqrt().recip() / spectrum.omega_max;
         Ok(StableStep::UpTo(limit))
     }
+}
+
+impl OneSolve for Newmark {
+    fn coefficients(&self, dt: f64) -> [f64; 2] {
+        [self.gamma * dt, self.beta * dt * dt]
+    }
 
     fn step(
-        &mut self,
-        system: &dyn System,
+        &self,
+        effective: &mut EffectiveMass,
+        step: &Step<'_>,
         state: &mut State,
-        dt: f64,
-    ) -> Result<StepReport, StepError> {
-        let mut work = begin(self, system, state, dt)?;
+    ) -> Result<Stepped, StepError> {
+        let (dt, mut work) = (step.dt, ONE_SOLVE);
         let (beta, gamma) = (self.beta, self.gamma);
         let ends = |t, dt| LoadTime::at_both_ends(t, dt, gamma);
-        work += self.engine.keep_acceleration(system, state, dt, ends)?;
+        work += effective.keep_acceleration(step, state, ends)?;
         for i in 0..state.u.len() {
             let (u, v, a) = (state.u[i], state.v[i], state.a[i]);
-            self.engine.u[i] = u + dt * v + dt * dt * (0.5 - beta) * a;
-            self.engine.v[i] = v + dt * (1.0 - gamma) * a;
+            effective.u[i] = u + dt * v + dt * dt * (0.5 - beta) * a;
+            effective.v[i] = v + dt * (1.0 - gamma) * a;
         }
         let [_, end] = ends(state.t(), dt);
-        work += self.engine.evaluate(system, end, dt)?;
-        work += self.engine.solve();
-        for (i, a) in self.engine.a.iter().enumerate() {
-            state.u[i] = self.engine.u[i] + beta * dt * dt * a;
-            state.v[i] = self.engine.v[i] + gamma * dt * a;
+        effective.evaluate(step, end)?;
+        effective.solve();
+        for (i, a) in effective.a.iter().enumerate() {
+            state.u[i] = effective.u[i] + beta * dt * dt * a;
+            state.v[i] = effective.v[i] + gamma * dt * a;
             state.a[i] = *a;
         }
-        state.end_step(dt, VelocityTime::Same, Acceleration::Same);
-        system.accept(state);
-        Ok(work)
+        Ok(Stepped {
+            acceleration: Acceleration::Same,
+            ..Stepped::at_same_time(work)
+        })
     }
 }

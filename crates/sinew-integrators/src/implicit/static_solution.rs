@@ -1,10 +1,12 @@
 //! The equilibrium under a load.
 
 use sinew_core::LinearSystem;
+use sinew_core::vectors::norm;
 
 use super::factor::{Combination, Factor};
+use super::factor_error::FactorError;
 
-/// Why there is no static solution.
+/// Reasons for which there is no static solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StaticError {
@@ -12,7 +14,7 @@ pub enum StaticError {
     #[error(
         "the stiffness matrix could not be factorised ({0}); is the body held against all rigid motions?"
     )]
-    Singular(String),
+    Singular(#[source] FactorError),
     /// The stiffness matrix is so nearly singular that its factor gives no equilibrium.
     #[error(
         "the solution leaves {residual:.1e} of the load unbalanced; is the body held against all rigid motions?"
@@ -57,7 +59,6 @@ pub fn static_solution(system: &dyn LinearSystem, force: &[f64]) -> Result<Vec<f
     operators
         .stiffness()
         .subtract_product(&solution, &mut unbalanced);
-    let norm = |vector: &[f64]| vector.iter().map(|x| x * x).sum::<f64>().sqrt();
     let residual = norm(&unbalanced);
     // A comparison that is false for NaN too.
     if residual <= BALANCED * norm(force) {
@@ -66,5 +67,31 @@ pub fn static_solution(system: &dyn LinearSystem, force: &[f64]) -> Result<Vec<f
         Err(StaticError::Unbalanced {
             residual: residual / norm(force),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::error::Error;
+    use std::sync::Arc;
+
+    use sinew_core::{BlockMatrix, Damping, Layers, LinearModel, LinearOperators, Pattern};
+
+    use super::*;
+
+    #[test]
+    fn two_masses_on_one_spring_have_no_equilibrium_and_the_error_names_the_factor() {
+        let pattern = Pattern::from_elements(2, [[0, 1]]).unwrap();
+        let mut stiffness = BlockMatrix::zeros(Arc::new(pattern), Layers::One);
+        stiffness
+            .add_element(&[0, 1], &[1.0, -1.0, -1.0, 1.0])
+            .unwrap();
+        let damping = Damping::default();
+        let floating = LinearOperators::new(vec![1.0; 2], stiffness, damping, Vec::new());
+        let floating = LinearModel::new(floating.unwrap());
+        let error = static_solution(&floating, &[1.0, 0.0]).unwrap_err();
+        let source = error.source().and_then(|source| source.downcast_ref());
+        assert_eq!(source, Some(&FactorError::NotPositiveDefinite));
+        assert!(error.to_string().contains("is the body held"), "{error}");
     }
 }

@@ -1,17 +1,18 @@
 //! The exact motion's series, cut so that no mode grows.
 
 use sinew_core::SetupError;
+use sinew_core::closed_form::Mode;
 
-use super::Resolution;
-use super::mode::{Mode, quadrature};
+use super::quadrature::quadrature;
+use super::resolution::Resolution;
 use super::series::{evaluate, interpolate, nodes, tails};
 
 /// Points per degree at which a step is compared with the exact one. The norms swing at most twice per
-/// degree, so that what lies between two points is larger by half a percent.
+/// degree, so that a value between two points is larger by half a percent.
 const POINTS_PER_DEGREE: usize = 32;
-/// Margin for what lies between the points.
+/// Margin for values between the points.
 const BETWEEN: f64 = 1.05;
-/// Growth of a step that rounding can feign.
+/// Growth of a step that can be rounding.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The exact motion over a step as Chebyshev series on 0..`interval`, long enough to be exact.
@@ -81,7 +82,7 @@ struct Point {
 }
 
 impl Motion {
-    /// Cut at the given degree or at the smallest one that meets the tolerance.
+    /// The series cut at the given degree or at the smallest one that meets the tolerance.
     pub(super) fn cut(&self, resolution: Resolution) -> Result<Cut, SetupError> {
         // What rounding of g, which is of the size of dt^2, does to lambda g.
         let rounding = ROUNDING * self.interval * self.dt * self.dt;
@@ -91,7 +92,7 @@ impl Motion {
         Ok(self.cut_at(degree))
     }
 
-    /// An estimate of the error at each degree: the sum of what is left out of each series, relative to
+    /// An estimate of the error at each degree: the sum of the terms left out of each series, relative to
     /// dt, 1 and dt^2/2.
     fn left_out(&self) -> Vec<f64> {
         let (s, s_rate, g) = (tails(&self.s), tails(&self.s_rate), tails(&self.g));
@@ -249,7 +250,7 @@ mod tests {
         [1.0 - lambda * value(&cut.g), off, -off, value(&cut.s_rate)]
     }
 
-    /// On 20 times as many points as the relaxation was found from, off them too.
+    /// Checks 20 times as many points as the relaxation was found from, points between those included.
     #[test]
     fn no_mode_grows_and_none_is_off_by_more_than_is_said() {
         for (reach, alpha, beta) in [

@@ -1,6 +1,7 @@
 //! The first step of the two-step form.
 
-use super::mode::Mode;
+use sinew_core::closed_form::Mode;
+
 use super::series::{evaluate, interpolate, nodes};
 
 /// Series of `s(M^-1 K)` and `g(M^-1 K)` in `u+ = u + s v + g r`, `r = M^-1 (F - K u)`, for the recurrence's own
@@ -9,14 +10,15 @@ use super::series::{evaluate, interpolate, nodes};
 ///
 /// A first step by the exact s would not fit: where S has a zero that the sine has elsewhere, the recurrence
 /// hardly turns a mode that this step moves, and lets it swing far out. With S in s that cannot be.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct FirstStep {
     pub(super) of_velocity: Vec<f64>,
     pub(super) of_force: Vec<f64>,
 }
 
 impl FirstStep {
-    /// For the series S on 0..`interval` (1/s^2), the damping alpha (1/s), a step of `dt` (s) and e^-eta.
+    /// The first step for the series S on 0..`interval` (1/s^2), the damping alpha (1/s), a step of `dt` (s) and
+    /// e^-eta.
     pub(super) fn new(half_sine: &[f64], interval: f64, alpha: f64, dt: f64, decay: f64) -> Self {
         // The series of a cosine falls a degree later than that of a sine over its argument.
         let cosine = half_cosine(half_sine.len() + 1, interval, alpha, dt);

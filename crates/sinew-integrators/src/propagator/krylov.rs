@@ -1,17 +1,19 @@
 //! The propagator in a Krylov space.
 
 use sinew_core::spectrum::Spectrum;
+use sinew_core::vectors::weighted_dot;
 use sinew_core::{
-    BlockMatrix, Fact, LinearOperators, LoadOverStep, LoadTime, SetupError, State, StepError,
-    StepReport,
+    BlockMatrix, Fact, LinearOperators, LoadTime, Needs, SetupError, State, Step, StepError,
+    StepReport, Stepped,
 };
 
-use super::dense::Exponential;
-use super::{HIGHEST_DEGREE, ID, Resolution, refuse_loads};
+use super::resolution::{HIGHEST_DEGREE, ID, Resolution};
+use crate::StepByHand;
+use crate::exponential::Exponential;
 
 /// Columns beyond the Hessenberg matrix that hold e1 and the chain of the phi functions.
 const CHAIN: usize = 3;
-/// How often the error estimate is made while the space grows.
+/// Number of columns by which the space grows between two error estimates.
 const EVERY: usize = 3;
 /// Length of a rate below which squares underflow and nothing moves any more.
 const NOTHING: f64 = 1e-140;
@@ -24,14 +26,14 @@ const SHORTEST: f64 = 0.5;
 /// `y' = L y + b` for y = (u, v) over a step: `y+ = y + dt phi_1(dt L) w0 + dt^2 phi_2(dt L) w1` with
 /// `w0 = L y + b(t)` and w1 the rate of b, each product taken in the Krylov space of its vector by the
 /// Arnoldi process (Saad, SIAM J. Numer. Anal. 29, 1992; Sidje, ACM TOMS 24, 1998). The space grows
-/// until Saad's estimate of what it leaves out, relative to the change over the step, meets the
+/// until Saad's estimate of the error, relative to the change over the step, meets the
 /// tolerance.
 ///
 /// Inner products weigh velocities by M and displacements by omega_max^2 M, so that both count alike.
-/// The energy weighs displacements by K, so that what is left out may bring energy in. A step that does
+/// The energy weighs displacements by K, so that the error may bring energy in. A step that does
 /// is shortened: `y + theta (y+ - y)` has no more energy than y for the theta of [`Krylov::part_without_gain`].
 #[derive(Debug)]
-pub(super) struct Krylov {
+pub struct Krylov {
     resolution: Resolution,
     capacity: usize,
     weight: f64,
@@ -45,7 +47,7 @@ pub(super) struct Krylov {
     start: Vec<f64>,
     change: Vec<f64>,
     load: Vec<f64>,
-    /// Coefficients in the basis when they were last looked at.
+    /// Coefficients in the basis at the last estimate.
     before: Vec<f64>,
     /// Coefficients of the change in the basis.
     coefficients: Vec<f64>,
@@ -55,6 +57,26 @@ pub(super) struct Krylov {
     middle: Vec<f64>,
     largest: usize,
     estimate: f64,
+}
+
+impl StepByHand for Krylov {
+    fn without_program(&self) -> &'static str {
+        "in a Krylov space the coefficients of each step are dot products over all cells, known only when it is taken"
+    }
+
+    fn step(&mut self, step: &Step<'_>, state: &mut State) -> Result<Stepped, StepError> {
+        let linear = step.system.as_linear().ok_or(Needs::Matrices.lacking(ID))?;
+        let work = self.advance(linear.operators(), step, state)?;
+        Ok(Stepped::at_same_time(work))
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let fact = |name, value| Fact { name, value };
+        vec![
+            fact("degree", self.largest as f64),
+            fact("left_out", self.estimate),
+        ]
+    }
 }
 
 impl Krylov {
@@ -105,39 +127,39 @@ impl Krylov {
         })
     }
 
-    pub(super) fn step(
+    fn advance(
         &mut self,
         operators: &LinearOperators,
+        step: &Step<'_>,
         state: &mut State,
-        dt: f64,
     ) -> Result<StepReport, StepError> {
+        let dt = step.dt;
         let mass = operators.mass();
         let n = mass.len();
         let t = state.t();
-        let remedy =
-            "choose a dt that meets that instant, or kind = \"chebyshev\" for curved ramps";
-        refuse_loads(operators.loads(), LoadOverStep::Linear, t, dt, remedy)?;
         let mut work = StepReport::ONE_FORCE;
         self.change.fill(0.0);
 
         // w0 = L y + b: velocity and acceleration.
         let (of_u, of_v) = self.start.split_at_mut(n);
         of_u.copy_from_slice(&state.v);
-        let start = LoadTime::smooth_in(t, t, dt);
+        let start = LoadTime::smooth_in(t, t, dt).under(step.inputs);
         operators.net_force(start, &state.u, &state.v, of_v);
         divide(of_v, mass);
         work.sweeps += self.add_phi(operators, state, dt, 1)?;
 
         // w1: the rate of the load.
-        let end = LoadTime::smooth_in(t + dt, t, dt);
+        let end = LoadTime::smooth_in(t + dt, t, dt).under(step.inputs);
         self.load.fill(0.0);
         let mut changes = false;
-        for load in operators.loads() {
+        for load in operators.loads_between(step.inputs, t, t + dt) {
             let rate = (load.ramp.factor(end) - load.ramp.factor(start)) / dt;
             if rate != 0.0 {
                 changes = true;
                 for &(dof, force) in &load.entries {
-                    self.load[dof as usize] += rate * force;
+                    if let Some(load) = self.load.get_mut(dof as usize) {
+                        *load += rate * force;
+                    }
                 }
             }
         }
@@ -156,14 +178,6 @@ impl Krylov {
             *v += change;
         }
         Ok(work)
-    }
-
-    pub(super) fn facts(&self) -> Vec<Fact> {
-        let fact = |name, value| Fact { name, value };
-        vec![
-            fact("degree", self.largest as f64),
-            fact("left_out", self.estimate),
-        ]
     }
 
     /// `change += dt^order phi_order(dt L) start`; returns the sweeps it took. For order 1 the change is
@@ -416,12 +430,8 @@ fn divide(values: &mut [f64], mass: &[f64]) {
 }
 
 fn dot(weight: f64, mass: &[f64], a: &[f64], b: &[f64]) -> f64 {
-    let n = mass.len();
-    let part = |a: &[f64], b: &[f64]| -> f64 {
-        let terms = mass.iter().zip(a).zip(b);
-        terms.map(|((mass, a), b)| mass * a * b).sum()
-    };
-    weight * part(&a[..n], &b[..n]) + part(&a[n..], &b[n..])
+    let ((a_u, a_v), (b_u, b_v)) = (a.split_at(mass.len()), b.split_at(mass.len()));
+    weight * weighted_dot(mass, a_u, b_u) + weighted_dot(mass, a_v, b_v)
 }
 
 fn norm(weight: f64, mass: &[f64], y: &[f64]) -> f64 {

@@ -2,53 +2,46 @@
 
 mod chebyshev;
 mod cut;
-mod dense;
 mod first_step;
 mod krylov;
-mod mode;
+mod quadrature;
+mod resolution;
 mod series;
+mod sweeps;
 mod two_step;
-mod vectors;
 
 use chebyshev::Chebyshev;
 use krylov::Krylov;
+use resolution::{HIGHEST_DEGREE, ID, LOOSE, Resolution};
 use sinew_core::{
-    Accuracy, ChangingLoads, EnergyBehaviour, Fact, Integrator, LinearSystem, Load, LoadOverStep,
-    Needs, OptionError, OptionValue, Options, OtherDamping, Prepared, Properties, SetupError,
-    StableStep, State, StepError, StepReport, System,
+    Accuracy, ChangingLoads, EnergyBehaviour, Fact, LoadOverStep, Needs, OptionError, OptionValue,
+    Options, OtherDamping, Properties, Revision, SetupError, StepReport, System,
 };
 
 use two_step::TwoStep;
 
-use crate::evaluate::{begin, synchronise};
-use crate::{Method, OptionHelp};
-
-const ID: &str = "propagator";
-/// Above this degree shorter steps cost less memory and no more sweeps.
-const HIGHEST_DEGREE: usize = 500;
-/// Error of a step with a degree chosen by hand above which it is refused: a polynomial of too low
-/// a degree is violently wrong.
-const LOOSE: f64 = 1e-2;
+use crate::scheme::linear;
+use crate::{Method, OptionHelp, OptionLabel, Scheme, SetUp};
 
 /// The exact motion of a linear system over a step, by sweeps of the network only.
 ///
 /// By Chebyshev polynomials for proportional damping and any ramp, or in a Krylov space for any
 /// damping and loads that are constant or linear over a step; either way kinks and jumps of loads
 /// must fall on steps. The degree is chosen from the step to meet a tolerance, and each step is
-/// checked. [`PropagatorKind`] says what the tolerance bounds.
+/// checked. [`PropagatorKind`] defines the error that the tolerance bounds.
 ///
-/// No undamped motion grows, whatever the tolerance, the step and the number of steps. Chebyshev's and
+/// No undamped motion grows, for any tolerance, step and number of steps. Chebyshev's and
 /// Krylov's forms err towards less energy instead: a loose tolerance takes energy out, up to about twice
 /// the error of a step each time. The two-step form neither takes nor gives.
 #[derive(Debug)]
 pub struct Propagator {
     kind: PropagatorKind,
     resolution: Resolution,
-    prepared: Prepared,
-    engine: Option<Engine>,
+    /// Series for these matrices and this step.
+    made: Option<((Revision, f64), Series)>,
 }
 
-/// Which polynomials, and what their tolerance bounds.
+/// Kinds of polynomials, with the error that their tolerance bounds.
 ///
 /// Rounding, up to `4e-15 (omega_max dt)^2`, comes on top.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,9 +49,9 @@ pub enum PropagatorKind {
     /// Chebyshev's, on the interval of the eigenvalues: proportional damping, any ramp.
     ///
     /// The tolerance bounds the error of a step under constant loads, relative to the distance from
-    /// equilibrium before it, both in the energy norm, whatever the state: the fact `step_error`. No step
-    /// takes the state farther from equilibrium. A body that is not held keeps its velocity; its way
-    /// and what its loads do to it fall short by the fact `relaxation`, which is below the tolerance.
+    /// equilibrium before it, both in the energy norm, in any state: the fact `step_error`. No step
+    /// takes the state farther from equilibrium. A body that is not held keeps its velocity; its distance
+    /// travelled and the effect of loads on it fall short by the fact `relaxation`, which is below the tolerance.
     #[default]
     Chebyshev,
     /// Chebyshev's for the step from two displacements to the next, in half the sweeps: mass damping,
@@ -70,7 +63,7 @@ pub enum PropagatorKind {
     /// found from two exact ones by 8 `sine_error` of the distance from equilibrium. Amplitudes neither
     /// grow nor fall.
     TwoStep,
-    /// Those that fit the state at hand best: any damping, loads constant or linear over a step.
+    /// Polynomials that fit the current state best: any damping, loads constant or linear over a step.
     ///
     /// The tolerance bounds an estimate of the error of a step, relative to the step's change of
     /// `(omega_max u, v)` in the norm of the mass. Under constant loads, energy less the work of the loads
@@ -79,7 +72,7 @@ pub enum PropagatorKind {
 }
 
 impl PropagatorKind {
-    /// What it needs loads to be over each step.
+    /// Condition that loads must meet over each step.
     fn needed_of_loads(self) -> LoadOverStep {
         match self {
             Self::Chebyshev => LoadOverStep::Smooth,
@@ -89,65 +82,15 @@ impl PropagatorKind {
     }
 }
 
-/// How well a step is resolved.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Resolution {
-    /// Bound of the error of a step, as the kind measures it.
-    tolerance: f64,
-    /// Degree, where it is given.
-    degree: Option<usize>,
-}
-
-impl Resolution {
-    /// The degree to take: the given one, or the smallest whose error meets the tolerance. `left_out`
-    /// holds an estimate of the error for each degree, from which the search begins.
-    fn degree_for(
-        self,
-        left_out: &[f64],
-        dt: f64,
-        error: impl Fn(usize) -> f64,
-    ) -> Result<usize, SetupError> {
-        let highest = HIGHEST_DEGREE.min(left_out.len() - 1);
-        let meets = |degree: usize| error(degree) <= self.tolerance;
-        let given = self.degree.map(|degree| degree.min(highest));
-        if let Some(degree) = given
-            && meets(degree)
-        {
-            return Ok(degree);
-        }
-        let estimated = left_out.iter().position(|left| *left <= self.tolerance);
-        let enough =
-            estimated.and_then(|from| (from.max(1)..=highest).find(|degree| meets(*degree)));
-        let enough = enough.map(|enough| {
-            let fewer = (1..enough).rev().take_while(|degree| meets(*degree));
-            fewer.last().unwrap_or(enough)
-        });
-        let reason = match (given, enough) {
-            (None, Some(degree)) => return Ok(degree),
-            (Some(degree), Some(enough)) => format!(
-                "degree {degree} leaves out {:.1e} of the motion over a step of {dt} s; take degree {enough} or leave it out",
-                error(degree)
-            ),
-            (_, None) => format!(
-                "a step of {dt} s needs a degree above {HIGHEST_DEGREE}; take a shorter step"
-            ),
-        };
-        Err(SetupError::Unresolved {
-            integrator: ID,
-            reason,
-        })
-    }
-}
-
+/// The series that all steps have in common.
 #[derive(Debug)]
-enum Engine {
+enum Series {
     TwoStep(Box<TwoStep>),
     Chebyshev(Box<Chebyshev>),
-    Krylov(Box<Krylov>),
 }
 
 impl Propagator {
-    /// With the smallest degrees that meet `tolerance`, which bounds what [`PropagatorKind`] says.
+    /// The method with the smallest degrees that meet `tolerance`, which bounds the error of [`PropagatorKind`].
     #[must_use]
     pub fn with_tolerance(kind: PropagatorKind, tolerance: f64) -> Self {
         Self::new(
@@ -159,7 +102,7 @@ impl Propagator {
         )
     }
 
-    /// With this degree; refused where it leaves out more than `tolerance`.
+    /// The method with this degree; refused where it leaves out more than `tolerance`.
     #[must_use]
     pub fn with_degree(kind: PropagatorKind, degree: usize, tolerance: f64) -> Self {
         Self::new(
@@ -175,8 +118,7 @@ impl Propagator {
         Self {
             kind,
             resolution,
-            prepared: Prepared::default(),
-            engine: None,
+            made: None,
         }
     }
 }
@@ -185,8 +127,11 @@ const TOLERANCE: &str = "tolerance";
 const DEGREE: &str = "degree";
 const KIND: &str = "kind";
 
+fn of_kind(kind: &str) -> Options {
+    Options::new().with(KIND, OptionValue::Text(kind.into()))
+}
+
 impl Method for Propagator {
-    const ID: &'static str = ID;
     const SUMMARY: &'static str = "the exact motion over a step as a polynomial: sweeps only";
     const OPTIONS: &'static [OptionHelp] = &[
         OptionHelp {
@@ -206,48 +151,61 @@ impl Method for Propagator {
         },
     ];
 
+    const LABELS: &'static [(&'static str, OptionLabel)] = &[(KIND, OptionLabel::Value)];
+
+    fn variants() -> Vec<Options> {
+        vec![
+            of_kind("two-step"),
+            of_kind("two-step").with_number(TOLERANCE, 1e-3),
+            of_kind("krylov"),
+        ]
+    }
+
+    /// Options for an error of a run. Errors of steps add up; a tenth of the error leaves room for that and
+    /// costs few degrees. The two-step form's tolerance is one of frequencies: the phase error grows.
+    fn options_for_error(error: f64) -> Vec<Options> {
+        vec![
+            Options::new(),
+            Options::new().with_number(TOLERANCE, 0.1 * error),
+            of_kind("two-step").with_number(TOLERANCE, 0.01 * error),
+            of_kind("krylov").with_number(TOLERANCE, 0.1 * error),
+        ]
+    }
+
     fn from_options(options: &Options) -> Result<Self, OptionError> {
-        let kind = match options.get(KIND) {
-            None => PropagatorKind::default(),
-            Some(OptionValue::Text(word)) if word == "chebyshev" => PropagatorKind::Chebyshev,
-            Some(OptionValue::Text(word)) if word == "two-step" => PropagatorKind::TwoStep,
-            Some(OptionValue::Text(word)) if word == "krylov" => PropagatorKind::Krylov,
-            Some(found) => {
-                return Err(OptionError::Value {
-                    integrator: ID.into(),
-                    key: KIND.into(),
-                    found: found.clone(),
-                    expected: "\"chebyshev\", \"two-step\" or \"krylov\"",
-                });
-            }
-        };
+        let kinds = "\"chebyshev\", \"two-step\" or \"krylov\"";
+        let kind = options.read(ID, KIND, kinds, |value| match value.word()? {
+            "chebyshev" => Some(PropagatorKind::Chebyshev),
+            "two-step" => Some(PropagatorKind::TwoStep),
+            "krylov" => Some(PropagatorKind::Krylov),
+            _ => None,
+        })?;
         let expected = "a number above 0 and below 1";
         let share = |x: f64| x > 0.0 && x < 1.0;
         let expected_degree = "a whole number from 1 to 500";
-        let whole = |x: f64| (1.0..=HIGHEST_DEGREE as f64).contains(&x) && x.fract() == 0.0;
-        let degree = options.number(ID, DEGREE, 0.0, expected_degree, whole)?;
-        let given = (degree > 0.0).then_some(degree as usize);
-        let default = if given.is_some() { LOOSE } else { 1e-10 };
-        Ok(Self::new(
-            kind,
-            Resolution {
-                tolerance: options.number(ID, TOLERANCE, default, expected, share)?,
-                degree: given,
-            },
-        ))
+        let degree = options.read(ID, DEGREE, expected_degree, |value| {
+            value.count(HIGHEST_DEGREE as u32)
+        })?;
+        let default = if degree.is_some() { LOOSE } else { 1e-10 };
+        let resolution = Resolution {
+            tolerance: options.number(ID, TOLERANCE, default, expected, share)?,
+            degree: degree.map(|degree| degree as usize),
+        };
+        Ok(Self::new(kind.unwrap_or_default(), resolution))
     }
 }
 
-impl Integrator for Propagator {
-    fn id(&self) -> &'static str {
-        ID
-    }
+impl Scheme for Propagator {
+    const ID: &'static str = ID;
+
+    type ByHand = Krylov;
 
     fn properties(&self) -> Properties {
         Properties {
             accuracy: Accuracy::Exact,
             needs: Needs::Matrices,
             changing_loads: ChangingLoads::Exact(self.kind.needed_of_loads()),
+            refuses_long_steps: true,
             // Conserved but for the part that is left out, by which it falls or, in two-step form,
             // oscillates.
             energy: EnergyBehaviour::Bounded,
@@ -258,108 +216,59 @@ impl Integrator for Propagator {
         }
     }
 
-    fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
-        if self.prepared.is_for(system, dt) {
-            return Ok(StepReport::default());
-        }
-        let operators = system
-            .as_linear()
-            .map(LinearSystem::operators)
-            .ok_or_else(|| Needs::Matrices.lacking(ID))?;
-        let mut checked = Prepared::default();
-        checked.check(ID, system, dt)?;
-        self.prepared = Prepared::default();
-        let resolution = self.resolution;
-        self.engine = Some(match self.kind {
-            PropagatorKind::Chebyshev => {
-                Engine::Chebyshev(Box::new(Chebyshev::set_up(operators, dt, resolution)?))
-            }
+    fn load_remedy(&self) -> &'static str {
+        match self.kind {
+            PropagatorKind::Chebyshev => "choose a dt that meets that instant",
             PropagatorKind::TwoStep => {
-                Engine::TwoStep(Box::new(TwoStep::set_up(operators, dt, resolution)?))
+                "choose a dt that meets the instants at which loads jump, or kind = \"chebyshev\""
             }
             PropagatorKind::Krylov => {
-                Engine::Krylov(Box::new(Krylov::set_up(operators, dt, resolution)?))
+                "choose a dt that meets that instant, or kind = \"chebyshev\" for curved ramps"
             }
-        });
-        self.prepared = checked;
-        Ok(StepReport::default())
+        }
     }
 
-    fn stable_step(&self, _system: &dyn System) -> Result<StableStep, SetupError> {
-        Ok(StableStep::Any)
+    fn depends_on_loads(&self) -> bool {
+        self.kind == PropagatorKind::Chebyshev
     }
 
-    fn step(
+    fn set_up(
         &mut self,
         system: &dyn System,
-        state: &mut State,
         dt: f64,
-    ) -> Result<StepReport, StepError> {
-        if self.kind == PropagatorKind::TwoStep {
-            return self.step_staggered(system, state, dt);
-        }
-        let mut work = begin(self, system, state, dt)?;
-        if let Some(operators) = system.as_linear().map(LinearSystem::operators) {
-            match &mut self.engine {
-                Some(Engine::Chebyshev(engine)) => work += engine.step(operators, state, dt)?,
-                Some(Engine::Krylov(engine)) => work += engine.step(operators, state, dt)?,
-                Some(Engine::TwoStep(_)) | None => {}
+        _before: Option<Krylov>,
+    ) -> Result<SetUp<Krylov>, SetupError> {
+        let (operators, resolution) = (linear(system, ID)?.operators(), self.resolution);
+        let of = (operators.revision(), dt);
+        let known = self.made.take().filter(|(known, _)| *known == of);
+        let series = match (known, self.kind) {
+            (Some((_, series)), _) => series,
+            (None, PropagatorKind::Chebyshev) => {
+                Series::Chebyshev(Box::new(Chebyshev::new(operators, dt, resolution)?))
             }
-        }
-        state.advance(dt);
-        system.accept(state);
-        Ok(work)
+            (None, PropagatorKind::TwoStep) => {
+                Series::TwoStep(Box::new(TwoStep::new(operators, dt, resolution)?))
+            }
+            (None, PropagatorKind::Krylov) => {
+                let steps = Krylov::set_up(operators, dt, resolution)?;
+                return Ok(SetUp::by_hand(steps, StepReport::default()));
+            }
+        };
+        let program = match &series {
+            Series::Chebyshev(series) => {
+                series.program(operators.loads().iter().map(|load| &load.ramp))
+            }
+            Series::TwoStep(series) => series.program(),
+        };
+        self.made = Some((of, series));
+        Ok(program.into())
     }
 
     fn facts(&self) -> Vec<Fact> {
-        match &self.engine {
-            Some(Engine::Chebyshev(engine)) => engine.facts(),
-            Some(Engine::TwoStep(engine)) => engine.facts(),
-            Some(Engine::Krylov(engine)) => engine.facts(),
+        match &self.made {
+            Some((_, Series::Chebyshev(series))) => series.facts(),
+            Some((_, Series::TwoStep(series))) => series.facts(),
             None => Vec::new(),
         }
-    }
-}
-
-impl Propagator {
-    fn step_staggered(
-        &mut self,
-        system: &dyn System,
-        state: &mut State,
-        dt: f64,
-    ) -> Result<StepReport, StepError> {
-        let mut work = self.prepare(system, dt)?;
-        Prepared::check_state(ID, system, state)?;
-        if !state.is_staggered_by(dt) {
-            work += synchronise(system, state)?;
-        }
-        let operators = system.as_linear().map(LinearSystem::operators);
-        if let (Some(operators), Some(Engine::TwoStep(engine))) = (operators, &mut self.engine) {
-            work += engine.step(operators, state, dt)?;
-        }
-        system.accept(state);
-        Ok(work)
-    }
-}
-
-/// Refuses loads that are not what a kind needs them to be over a step of `dt` (s) from `t` (s).
-fn refuse_loads(
-    loads: &[Load],
-    needed: LoadOverStep,
-    t: f64,
-    dt: f64,
-    remedy: &str,
-) -> Result<(), StepError> {
-    let broken = |load: &Load| needed.first_broken(&load.ramp, t, dt, t + dt);
-    match loads.iter().find_map(broken) {
-        None => Ok(()),
-        Some(instant) => Err(StepError::Inaccurate {
-            integrator: ID,
-            t,
-            reason: format!(
-                "a load changes at t = {instant} s, and is not {} of {dt} s; {remedy}",
-                needed.describe()
-            ),
-        }),
     }
 }

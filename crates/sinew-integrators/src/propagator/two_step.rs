@@ -1,17 +1,16 @@
 //! The propagator in two-step form.
 
+use sinew_cnn::{LoadAt, Loads, Program, Register, Sweep, When};
+use sinew_core::closed_form::Mode;
 use sinew_core::spectrum::Spectrum;
-use sinew_core::{
-    Acceleration, Fact, LinearOperators, Load, LoadOverStep, LoadTime, SetupError, State,
-    StepError, StepReport, VelocityTime,
-};
+use sinew_core::{Acceleration, Fact, LinearOperators, SetupError, VelocityTime};
 
 use super::chebyshev::LARGEST_EIGENVALUE_MARGIN;
 use super::first_step::FirstStep;
-use super::mode::{Mode, quadrature};
+use super::quadrature::quadrature;
+use super::resolution::{HIGHEST_DEGREE, ID, Resolution};
 use super::series::{evaluate, interpolate, nodes, tails};
-use super::vectors::ChebyshevVectors;
-use super::{HIGHEST_DEGREE, ID, Resolution, refuse_loads};
+use super::sweeps::ChebyshevVectors;
 
 /// Points per degree among which the largest value of a polynomial is looked for.
 const POINTS_PER_DEGREE: usize = 32;
@@ -27,7 +26,7 @@ const MOST_ROOM: f64 = 0.25;
 
 /// The exact displacements of a mass-damped linear system under piecewise constant loads, for half
 /// the sweeps of the one-step form: `v+ = e^(-2 eta) v- + G(M^-1 K) M^-1 (F - K u)/dt`, `u+ = u + dt v+`, v being
-/// the mean velocity over a step. This is what any mode `q'' + alpha q' + lambda q = r` does from one
+/// the mean velocity over a step. Any mode `q'' + alpha q' + lambda q = r` moves so from one
 /// step to the next (Gautschi, Numer. Math. 3, 1961; Hochbruck and Lubich, Numer. Math. 83, 1999,
 /// without damping), with `lambda G = (1 - e^-eta)^2 + 4 e^-eta sin^2(w dt/2)`, `w^2 = lambda - alpha^2/4` and
 /// `eta = alpha dt/2`.
@@ -36,15 +35,15 @@ const MOST_ROOM: f64 = 0.25;
 /// `lambda G = (1 - e^-eta)^2 + e^-eta w^2 S^2` cannot fall below 0; S is scaled, by less than 5/4 of the
 /// tolerance, so that `|w S|` stays a little below 2 between its zeros too, since a mode at 2 itself grows
 /// as the number of steps; and eta is taken from `sinh(eta/2) = alpha S(0)/4`, by which lambda divides G
-/// whatever S is. Every mode is then stable at any step and for any tolerance, which a polynomial for G
-/// itself is not.
+/// for any S. Every mode is then stable at any step and for any tolerance, which does not hold for a
+/// polynomial for G itself.
 ///
 /// The tolerance bounds the error of `sin(w dt/2) = w S/2` before S is scaled; after it, the error delta is
 /// at most 5/2 of the tolerance. An undamped mode then turns by `2 asin` of the wrong sine: its phase is off
 /// by about `2 delta/cos(w dt/2)` a step, by up to `2 sqrt(2 delta)` where the sine is near 1. From exact
 /// displacements a step leads to one that is off by at most 8 delta of the distance from equilibrium,
 /// as `w^2 S^2 <= 4` there.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct TwoStep {
     degree: usize,
     left_out: f64,
@@ -56,13 +55,13 @@ pub(super) struct TwoStep {
     s_at_zero: f64,
     alpha: f64,
     decay: f64,
-    /// Series of what a jump of the load adds, for half the jump; empty without damping.
+    /// Series of the effect of a jump of the load, for half the jump; empty without damping.
     of_jump: Vec<f64>,
     first_step: FirstStep,
-    r: Vec<f64>,
-    sum: Vec<f64>,
-    other_sum: Vec<f64>,
-    vectors: ChebyshevVectors,
+    interval: f64,
+    dt: f64,
+    /// Time of the velocity after a step.
+    velocity: VelocityTime,
 }
 
 /// S of one mode.
@@ -77,7 +76,7 @@ fn half_sine(lambda: f64, alpha: f64, dt: f64) -> f64 {
 
 impl TwoStep {
     /// Chooses the degree and makes the coefficients.
-    pub(super) fn set_up(
+    pub(super) fn new(
         operators: &LinearOperators,
         dt: f64,
         resolution: Resolution,
@@ -122,7 +121,6 @@ impl TwoStep {
             .collect();
         let mut divided = vec![0.0; degree + 1];
         interpolate(&values, &mut divided);
-        let buffer = || vec![0.0; operators.dofs()];
         let root_of_decay = (-2.0 * (alpha * s_at_zero / 4.0).asinh()).exp();
         Ok(Self {
             degree,
@@ -135,143 +133,98 @@ impl TwoStep {
             of_jump: jump_series(operators, interval, dt, 2 * degree),
             s,
             divided,
-            r: buffer(),
-            sum: buffer(),
-            other_sum: buffer(),
-            vectors: ChebyshevVectors::new(operators.dofs(), interval),
+            interval,
+            dt,
+            velocity: match omega * dt <= 2.0 {
+                true => VelocityTime::MiddleOfStep,
+                false => VelocityTime::MeanOverStep,
+            },
         })
     }
 
-    /// Moves u and v over a step, times included.
-    pub(super) fn step(
-        &mut self,
-        operators: &LinearOperators,
-        state: &mut State,
-        dt: f64,
-    ) -> Result<StepReport, StepError> {
-        let running = state.is_staggered_by(dt);
-        let refuse = |from: f64| {
-            let remedy =
-                "choose a dt that meets the instants at which loads jump, or kind = \"chebyshev\"";
-            refuse_loads(operators.loads(), LoadOverStep::Constant, from, dt, remedy)
+    /// The step as a program.
+    pub(super) fn program(&self) -> Program {
+        let dt = self.dt;
+        let (u, v, a) = (Register::U, Register::V, Register::A);
+        let mut program = Program::new(self.velocity);
+        program.acceleration = Acceleration::Kick;
+        let [r, sum, y] = ["r", "sum", "y"].map(|name| program.register(name));
+        let room = ["c", "d"].map(|name| program.register(name));
+        let vectors = ChebyshevVectors {
+            interval: self.interval,
+            room,
         };
-        refuse(state.t())?;
-        if running {
-            refuse(state.t() - dt)?;
-        }
-        state.a.resize(state.u.len(), 0.0);
-        let work = if running {
-            self.go_on(operators, state, dt)
-        } else {
-            self.start(operators, state, dt)
-        };
-        state.end_step(dt, VelocityTime::MiddleOfStep, Acceleration::Kick);
-        Ok(work)
-    }
+        let keep = || a.becomes([(v, 1.0)]).in_last_step();
+        let force = |at| Sweep::of_stiffness(1.0, u, Loads::at(at)).then(r.becomes_q());
 
-    /// The first step, from a velocity that holds at the displacement's time.
-    fn start(&mut self, operators: &LinearOperators, state: &mut State, dt: f64) -> StepReport {
-        let load = LoadTime::smooth_in(state.t(), state.t(), dt);
-        operators.external_force(load, &mut self.r);
-        operators
-            .stiffness()
-            .subtract_product(&state.u, &mut self.r);
-        for (r, mass) in self.r.iter_mut().zip(operators.mass()) {
-            *r /= mass;
+        let FirstStep {
+            of_velocity,
+            of_force,
+        } = &self.first_step;
+        let first = sum.becomes([(v, of_velocity[0]), (r, of_force[0])]);
+        program.start.push(force(LoadAt::From).then(first));
+        for (start, series) in [(v, of_velocity), (r, of_force)] {
+            let add = |k: usize, x| vec![sum.plus(series[k], x)];
+            let sweeps = vectors.sweeps(start, series.len(), When::Always, add);
+            program.start.extend(sweeps);
         }
-        let mut work = StepReport::ONE_FORCE;
-        self.sum.fill(0.0);
-        self.vectors.start().copy_from_slice(&state.v);
-        work.sweeps += self.add_series(operators, Which::FirstOfVelocity);
-        self.vectors.start().copy_from_slice(&self.r);
-        work.sweeps += self.add_series(operators, Which::FirstOfForce);
-        for (i, u) in state.u.iter_mut().enumerate() {
-            let v = self.sum[i] / dt;
-            state.a[i] = 2.0 * (v - state.v[i]) / dt;
-            state.v[i] = v;
-            *u += dt * v;
-        }
-        work
-    }
-
-    fn go_on(&mut self, operators: &LinearOperators, state: &mut State, dt: f64) -> StepReport {
-        let mass = operators.mass();
-        // The mean of both loads where they jump at this instant.
-        self.r.fill(0.0);
-        let mut jumps = false;
-        for Load { ramp, entries } in operators.loads() {
-            let [before, after] = [-0.5, 0.5].map(|part| ramp.value(state.t() + part * dt));
-            jumps |= before != after;
-            for &(dof, force) in entries {
-                self.r[dof as usize] += 0.5 * (before + after) * force;
-            }
-        }
-        operators
-            .stiffness()
-            .subtract_product(&state.u, &mut self.r);
-        for (r, mass) in self.r.iter_mut().zip(mass) {
-            *r /= mass;
-        }
-        let mut work = StepReport::ONE_FORCE;
+        // The acceleration that leads from v to the mean velocity of the step.
+        let kick = a.becomes([(sum, 2.0 / (dt * dt)), (v, -2.0 / dt)]);
+        let last = Sweep::local().then(kick.in_last_step());
+        let last = last.then(v.becomes([(sum, 1.0 / dt)]));
+        program.start.push(last.then(u.plus(dt, v)));
 
         // y = S r - alpha^2/4 (S - S0)/lambda r, then G r = e^-eta (S y - alpha^2/4 S0 (S - S0)/lambda r).
         let quarter = self.alpha * self.alpha / 4.0;
-        self.vectors.start().copy_from_slice(&self.r);
-        self.sum.fill(0.0);
-        self.other_sum.fill(0.0);
-        work.sweeps += self.add_series(operators, Which::Both);
-        let y = self.vectors.start();
-        for ((y, sum), divided) in y.iter_mut().zip(&mut self.sum).zip(&self.other_sum) {
-            *y = *sum - quarter * divided;
-            *sum = -quarter * self.s_at_zero * divided;
-        }
-        work.sweeps += self.add_series(operators, Which::S);
-        let root = self.decay.sqrt();
-        self.sum.iter_mut().for_each(|sum| *sum *= root);
-
-        if jumps && !self.of_jump.is_empty() {
-            let jump = self.vectors.start();
-            jump.fill(0.0);
-            for Load { ramp, entries } in operators.loads() {
-                let [before, after] = [-0.5, 0.5].map(|part| ramp.value(state.t() + part * dt));
-                for &(dof, force) in entries {
-                    let dof = dof as usize;
-                    jump[dof] += 0.5 * (after - before) * force / mass[dof];
-                }
+        let damped = quarter != 0.0;
+        let divided = program.named("divided");
+        let add = |k: usize, x| {
+            let mut updates = vec![match k {
+                0 => y.becomes([(x, self.s[0])]),
+                _ => y.plus(self.s[k], x),
+            }];
+            if damped {
+                updates.push(match k {
+                    0 => divided.becomes([(x, self.divided[0])]),
+                    _ => divided.plus(self.divided[k], x),
+                });
             }
-            work.sweeps += self.add_series(operators, Which::Jump);
-        }
-        for (i, u) in state.u.iter_mut().enumerate() {
-            let v = self.decay * state.v[i] + self.sum[i] / dt;
-            state.a[i] = (v - state.v[i]) / dt;
-            state.v[i] = v;
-            *u += dt * v;
-        }
-        work
-    }
-
-    /// Adds series of the vector that `vectors` were started with to the sums.
-    fn add_series(&mut self, operators: &LinearOperators, which: Which) -> u64 {
-        let series = match which {
-            Which::Both | Which::S => &self.s,
-            Which::Jump => &self.of_jump,
-            Which::FirstOfVelocity => &self.first_step.of_velocity,
-            Which::FirstOfForce => &self.first_step.of_force,
+            updates
         };
-        for (k, coefficient) in series.iter().enumerate() {
-            if k > 0 {
-                self.vectors.advance(operators);
-            }
-            for (sum, x) in self.sum.iter_mut().zip(self.vectors.current()) {
-                *sum += coefficient * x;
-            }
-            if which == Which::Both {
-                for (sum, x) in self.other_sum.iter_mut().zip(self.vectors.current()) {
-                    *sum += self.divided[k] * x;
-                }
+        let mut sweeps = vec![force(LoadAt::Around)];
+        sweeps[0].updates.extend(add(0, r));
+        sweeps.extend(vectors.sweeps(r, self.s.len(), When::Always, add));
+        let s_0 = self.s[0];
+        if let Some(last) = sweeps.last_mut() {
+            if damped {
+                last.updates.push(y.plus(-quarter, divided));
+                let of_divided = -quarter * self.s_at_zero;
+                last.updates
+                    .push(sum.becomes([(divided, of_divided), (y, s_0)]));
+            } else {
+                last.updates.push(sum.becomes([(y, s_0)]));
             }
         }
-        series.len() as u64 - 1
+        let add = |k: usize, x| vec![sum.plus(self.s[k], x)];
+        sweeps.extend(vectors.sweeps(y, self.s.len(), When::Always, add));
+        if let Some(last) = sweeps.last_mut() {
+            last.updates.push(keep());
+            let kick = v.becomes([(v, self.decay), (sum, self.decay.sqrt() / dt)]);
+            last.updates.push(kick);
+        }
+        if let Some(first) = self.of_jump.first() {
+            let add = |k: usize, x| vec![v.plus(self.of_jump[k] / dt, x)];
+            let jump = Sweep::of_stiffness(0.0, u, Loads::HalfJump).without_neighbours();
+            let jump = jump.when(When::LoadsJump).then(r.becomes_q());
+            sweeps.push(jump.then(v.plus(first / dt, r)));
+            let terms = self.of_jump.len();
+            sweeps.extend(vectors.sweeps(r, terms, When::LoadsJump, add));
+        }
+        let taken = a.becomes([(a, -1.0 / dt), (v, 1.0 / dt)]);
+        let last = Sweep::local().then(taken.in_last_step());
+        sweeps.push(last.then(u.plus(dt, v)));
+        program.step = sweeps;
+        program
     }
 
     pub(super) fn facts(&self) -> Vec<Fact> {
@@ -284,19 +237,8 @@ impl TwoStep {
     }
 }
 
-/// Which series are added.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Which {
-    /// S to the one sum, its divided difference to the other.
-    Both,
-    S,
-    Jump,
-    FirstOfVelocity,
-    FirstOfForce,
-}
-
 /// Series of `integral over a step of (1 - e^(-alpha t)) s(dt - t) dt`, s being a mode's impulse response:
-/// by how much half a jump at the beginning of a step does more than the same half at its end.
+/// the effect of half a jump at the beginning of a step beyond that of the same half at its end.
 fn jump_series(operators: &LinearOperators, interval: f64, dt: f64, degree: usize) -> Vec<f64> {
     let alpha = operators.damping().mass;
     if alpha == 0.0 {

@@ -8,9 +8,10 @@ use sinew_core::{
     Damping, Integrator, LinearModel, LinearOperators, LinearSystem, Load, Options, Ramp, Run,
     RunReport, State, System,
 };
-use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule};
+use sinew_fem::{Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, SpringRule};
 use sinew_mesh::structured::{self, Split};
 
+use super::tissue::{body, held};
 use super::{build, relative_error, watch};
 
 /// The time between two instants at which errors are taken [s].
@@ -37,22 +38,14 @@ pub(crate) fn scene(cells: usize, edge: f64, law: Law, damping: Rayleigh) -> Mod
 /// A body held at its four lateral faces under a traction on its top (Pa).
 pub(crate) fn problem(law: Law, damping: Rayleigh, traction: [f64; 3]) -> Problem {
     Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law,
-        }],
         damping,
-        fixed: vec![Fixed {
-            group: "sides".into(),
-            axes: [true; 3],
-        }],
+        fixed: vec![held("sides", [true; 3])],
         loads: vec![LoadSpec {
-            group: "top".into(),
+            on: "top".into(),
             kind: LoadKind::Traction(traction),
             ramp: Ramp::Step,
         }],
-        gravity: None,
+        ..body(law)
     }
 }
 

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use sinew_core::{LinearSystem, LoadTime, State, System};
 use sinew_fem::Model;
 
-use super::dense::{dense, dense_damping};
+use sinew_testkit::dense::{dense, dense_damping};
 
 /// Steps that are compared.
 pub(crate) const STEPS: u32 = 20;
@@ -38,7 +38,9 @@ impl Dense {
 
     fn force(&self, t: f64) -> DVector<f64> {
         let mut force = vec![0.0; self.model.dofs()];
-        self.model.external_force(LoadTime::at(t), &mut force);
+        self.model
+            .operators()
+            .external_force(LoadTime::at(t), &mut force);
         DVector::from_vec(force)
     }
 

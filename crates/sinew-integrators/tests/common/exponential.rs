@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use sinew_core::spectrum::critical_step;
 use sinew_core::{LinearModel, LinearSystem, Ramp, State};
 
-use super::dense::{dense, dense_damping};
+use sinew_testkit::dense::{dense, dense_damping};
 
 /// Over a stretch without kinks a ramp is `c x`, x moving by a linear law of its own: x = (1, p, q)
 /// with p' = a p + b q, q' = e p + g q, and p' = h besides.
@@ -56,6 +56,7 @@ fn piece(ramp: &Ramp, t: f64) -> Piece {
                 }
             }
         }
+        other => unreachable!("no test has {other:?}"),
     }
 }
 

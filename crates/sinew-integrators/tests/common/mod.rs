@@ -7,19 +7,18 @@
     reason = "a test fails by panicking"
 )]
 
-#[path = "../../../sinew-cnn/tests/common/body.rs"]
-pub(crate) mod body;
 pub(crate) mod cube;
-#[path = "../../../sinew-cnn/tests/common/dense.rs"]
-pub(crate) mod dense;
 pub(crate) mod dense_methods;
 pub(crate) mod exponential;
 pub(crate) mod sliver;
+pub(crate) mod taylor;
+pub(crate) mod tissue;
 
 use std::collections::BTreeMap;
 
 use sinew_core::{
-    Integrator, OptionValue, Options, Outcome, Run, RunReport, State, System, Verdict, simulate,
+    Inputs, Integrator, OptionValue, Options, Outcome, Run, RunReport, State, System, Verdict,
+    simulate,
 };
 
 /// An integrator by name, under these options.
@@ -59,6 +58,20 @@ pub(crate) fn advance(
     }
 }
 
+/// The velocity at the displacement's time after so many steps from rest.
+pub(crate) fn velocity_after(
+    integrator: &mut dyn Integrator,
+    system: &dyn System,
+    steps: usize,
+    dt: f64,
+) -> Vec<f64> {
+    let mut state = State::at_rest(system.dofs());
+    advance(integrator, system, &mut state, steps, dt);
+    let mut v = vec![0.0; system.dofs()];
+    state.velocity_at_t(system, Inputs::none(), &mut v).unwrap();
+    v
+}
+
 /// Runs an integrator and shows every state, the first included.
 pub(crate) fn watch(
     system: &dyn System,
@@ -68,8 +81,8 @@ pub(crate) fn watch(
     mut see: impl FnMut(&State),
 ) -> (State, RunReport) {
     let mut state = start;
-    let mut recorder = |_: &dyn System, state: &State| {
-        see(state);
+    let mut recorder = |moment: &sinew_core::Moment<'_>| {
+        see(moment.state);
         Ok(Verdict::Continue)
     };
     let report = simulate(system, integrator, &mut state, run, &mut recorder).unwrap();

@@ -1,31 +1,22 @@
 //! A soft cube on the ground, pressed from above, with one flat tetrahedron in it.
 
 use sinew_core::{OptionValue, Options, Ramp};
-use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region};
+use sinew_fem::{LoadKind, LoadSpec, Model, Problem, Rayleigh};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
 
+use super::tissue::{body, held, linear};
+
 pub(crate) fn model(mesh: &TetMesh, damping: Rayleigh) -> Model {
     let problem = Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law: Law::Linear {
-                youngs_modulus: 3500.0,
-                poissons_ratio: 0.3,
-            },
-        }],
         damping,
-        fixed: vec![Fixed {
-            group: "bottom".into(),
-            axes: [true; 3],
-        }],
+        fixed: vec![held("bottom", [true; 3])],
         loads: vec![LoadSpec {
-            group: "top".into(),
+            on: "top".into(),
             kind: LoadKind::Traction([0.0, 0.0, -20.0]),
             ramp: Ramp::Step,
         }],
-        gravity: None,
+        ..body(linear(3500.0, 0.3))
     };
     Model::build(mesh, &problem).unwrap()
 }

@@ -1,10 +1,10 @@
-//! How much of a scene its pilots can follow.
+//! The part of a scene that pilots can follow in the time they have.
 
 use sinew_core::LinearSystem;
 use sinew_core::spectrum::Spectrum;
 use sinew_scene::Simulation;
 
-use super::AdviceError;
+use super::error::AdviceError;
 use crate::case::Span;
 use crate::cpu_time::thread_cpu_time;
 use crate::reference::{Pace, Taylor};
@@ -28,7 +28,7 @@ pub(super) struct Horizon {
     pub(super) pace: Pace,
 }
 
-/// The longest part of a scene whose reference takes at most so much CPU time (s): all of it, in
+/// The longest part of a scene whose reference takes at most `seconds` of CPU time: all of it, in
 /// long steps where the full reference takes longer, or some of its intervals, or a whole fraction
 /// of the first.
 pub(super) fn horizon(simulation: &Simulation, seconds: f64) -> Result<Horizon, AdviceError> {
@@ -46,7 +46,7 @@ pub(super) fn horizon(simulation: &Simulation, seconds: f64) -> Result<Horizon, 
     })
 }
 
-/// The longest part at a cost (CPU s per simulated s) that takes at most so much CPU time (s).
+/// The longest part that takes at most `seconds` of CPU time at a cost (CPU s per simulated s).
 fn longest_part(whole: Span, seconds: f64, cost: f64) -> Result<Span, AdviceError> {
     let affordable = seconds / cost;
     let interval = whole.interval();

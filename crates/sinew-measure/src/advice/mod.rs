@@ -1,9 +1,11 @@
-//! Which method and step a scene should take, from short runs on the scene itself.
+//! Advice on the method and step that a scene should take, from short runs on the scene itself.
 
+mod error;
 mod horizon;
 mod question;
 mod run_table;
 
+pub use error::AdviceError;
 pub use question::{
     DEFAULT_PILOT_SECONDS, Question, QuestionError, check_budget, check_pilot_seconds,
     check_tolerance,
@@ -15,11 +17,11 @@ use std::time::Duration;
 use sinew_core::Ramp;
 use sinew_scene::Simulation;
 
-use crate::case::{Case, CaseError, Span};
+use crate::case::{Case, Span};
 use crate::cpu_time::thread_cpu_time;
-use crate::measure::Method;
-use crate::one_thread::{ThreadError, on_one_thread};
-use crate::search::{CasePilots, Goal, Pilot, Search, candidates, ramps};
+use crate::method_choice::{MethodChoice, MethodError};
+use crate::one_thread::on_one_thread;
+use crate::search::{CasePilots, Goal, Pilot, PilotError, Search, candidates, ramps};
 use horizon::horizon;
 
 /// Share of the pilots' time that the reference may take.
@@ -29,20 +31,43 @@ const FOR_THE_REFERENCE: f64 = 0.5;
 /// cheapest run.
 const RUNNERS_UP_WITHIN: f64 = 4.0;
 
-/// A tolerance, and a tenth of it, are told from the reference's own error where they are ten times
-/// larger.
+/// Smallest tolerance over the reference's own error: even a tenth of the tolerance is then ten times
+/// larger than that error.
 const TOLD_APART: f64 = 100.0;
 
-/// Why a method is left out where not all of a scene is followed.
-const STABILITY_UNKNOWN: &str =
-    "its largest stable step is not known, and only a part of the scene was followed";
+/// Why a method is no candidate for the answer.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LeftOut {
+    /// It cannot be used on the scene.
+    #[error(transparent)]
+    Method(#[from] MethodError),
+    /// It could make no pilot.
+    #[error(transparent)]
+    Pilot(#[from] PilotError),
+    /// A run beyond what was followed may be unstable.
+    #[error("its largest stable step is not known, and only a part of the scene was followed")]
+    StabilityUnknown,
+}
 
-/// What was found.
-#[derive(Clone, Debug)]
+/// Why the run that the scene asks for was not measured.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum NotMeasured {
+    /// It takes too long.
+    #[error("it would leave too little time for other pilots")]
+    TooLong,
+    /// It cannot be made.
+    #[error(transparent)]
+    Pilot(#[from] PilotError),
+}
+
+/// The answer to a [`Question`], with how it was found.
+#[derive(Debug)]
 pub struct Advice {
-    /// What was asked.
+    /// The question.
     pub question: Question,
-    /// All of the scene.
+    /// The whole scene.
     pub whole: Span,
     /// The part of it, from t = 0 on, over which errors were measured.
     pub measured: Span,
@@ -50,11 +75,11 @@ pub struct Advice {
     /// follows.
     pub unseen_changes: Vec<f64>,
     /// The run as the scene has it, or why it cannot be made.
-    pub written: Result<Pilot, String>,
+    pub written: Result<Pilot, NotMeasured>,
     /// The answer.
     pub answer: Answer,
     /// Candidates that could not run, or not be trusted beyond what was measured, with the reason.
-    pub refused: Vec<(Method, String)>,
+    pub refused: Vec<(MethodChoice, LeftOut)>,
     /// Runs measured.
     pub pilots: usize,
     /// CPU time (s) of it all, the reference included.
@@ -70,78 +95,20 @@ pub struct Advice {
 /// false, as they are to be expected ([`Row::expected_error`](crate::Row::expected_error)).
 #[derive(Clone, Debug)]
 pub enum Answer {
-    /// Something keeps to tolerance and budget.
+    /// At least one run keeps to tolerance and budget.
     Met {
         /// The cheapest run of each integrator in total, the advised one first.
         cheapest: Vec<Pilot>,
         /// The cheapest run with a tenth of the error, at any cost.
         tenfold: Option<Box<Pilot>>,
     },
-    /// Nothing does.
+    /// No measured run keeps to both.
     Missed {
         /// The cheapest run within the tolerance, at any cost.
         within_tolerance: Option<Box<Pilot>>,
         /// The run with the smallest error within the budget.
         within_budget: Option<Box<Pilot>>,
     },
-}
-
-/// Why there is no advice.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum AdviceError {
-    /// The question.
-    #[error(transparent)]
-    Question(#[from] QuestionError),
-    /// The scene has no reference.
-    #[error("no advice without a reference: {0}")]
-    Case(#[from] CaseError),
-    /// The scene is too fast for the time there is.
-    #[error(
-        "the scene moves too fast to be followed: {duration:e} s of it take {needed:.0e} s of CPU time; shorten [run] duration, look for a stiffness or mass in wrong units, or give --pilot-seconds more"
-    )]
-    TooFast {
-        /// The shortest part that would say something (s).
-        duration: f64,
-        /// CPU time (s) it takes.
-        needed: f64,
-    },
-    /// No time was left for pilots.
-    #[error(
-        "no run could be measured: making ready and the reference took {spent:.1} s of CPU time, and {given} s were given; give --pilot-seconds more, such as {:.0}",
-        10.0 * .spent.max(*.given)
-    )]
-    NoTime {
-        /// CPU time given (s).
-        given: f64,
-        /// CPU time taken (s).
-        spent: f64,
-    },
-    /// Errors are relative to the motion, and there is none.
-    #[error(
-        "nothing moves in the first {duration} s of the scene, so that no error can be told; {remedy}"
-    )]
-    NothingMoves {
-        /// How much of the scene was followed (s).
-        duration: f64,
-        /// What to do.
-        remedy: &'static str,
-    },
-    /// The reference is no better than the tolerance.
-    #[error(
-        "a tolerance of {tolerance:e} cannot be told from the reference's own error, {reference:.1e}; ask for {least:.0e} or more"
-    )]
-    BeyondReference {
-        /// What was asked.
-        tolerance: f64,
-        /// The reference's error (fraction).
-        reference: f64,
-        /// The smallest tolerance that can be told.
-        least: f64,
-    },
-    /// No thread to measure on.
-    #[error(transparent)]
-    Thread(#[from] ThreadError),
 }
 
 /// Looks for the cheapest method and step of a scene by pilot runs on one thread.
@@ -158,7 +125,11 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
     let until = begun + Duration::from_secs_f64(question.pilot_seconds);
     let whole = Span::of(&simulation);
     let tolerances = [question.tolerance, question.tolerance / 10.0];
-    let (mut candidates, mut refused) = candidates(&simulation, &tolerances);
+    let (mut candidates, unusable) = candidates(&simulation, &tolerances);
+    let unusable = unusable.into_iter();
+    let mut refused: Vec<(MethodChoice, LeftOut)> = unusable
+        .map(|(method, error)| (method, error.into()))
+        .collect();
     let prepared = thread_cpu_time();
     let left = until.saturating_sub(prepared).as_secs_f64();
     let horizon = horizon(&simulation, FOR_THE_REFERENCE * left)?;
@@ -168,31 +139,35 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
     check_reference(&case, whole, question.tolerance)?;
     if !case.is_whole() {
         let unknown = candidates.extract_if(.., |candidate| !candidate.stable_step_is_known);
-        refused.extend(unknown.map(|candidate| (candidate.method, STABILITY_UNKNOWN.to_owned())));
+        refused.extend(unknown.map(|candidate| (candidate.method, LeftOut::StabilityUnknown)));
     }
 
     let own = OwnRun::of(&case);
     let own_s = own.least_cpu_s(&case);
-    let pilots = CasePilots::new(&mut case).until(until);
+    let pilots = CasePilots::new(&mut case)
+        .until(until)
+        .charging(question.cost);
     let mut search = Search::new(pilots, measured, whole.duration);
     let allowing = candidates
         .iter()
         .filter(|candidate| candidate.allows(own.dt));
     let written = if own_s > search.left() / 2.0 {
-        Err("it would leave too little time for other pilots".to_owned())
+        Err(NotMeasured::TooLong)
     } else if allowing
         .clone()
         .any(|candidate| candidate.method == own.method)
     {
-        search.include(&own.method, own.dt)
+        search
+            .include(&own.method, own.dt)
+            .map_err(NotMeasured::from)
     } else {
         // An unstable run may look sound for as long as it is followed.
-        search.show(&own.method, own.dt)
+        search.show(&own.method, own.dt).map_err(NotMeasured::from)
     };
-    // A step that misses the instants wants a reference of its own, which this run has had made.
+    // A step that misses the instants needs a reference of its own, which this run has had computed.
     let reference_is_there = written.is_ok() && own.misses_instants(measured);
     let exact = allowing.filter(|candidate| candidate.order.is_none());
-    let exact: Vec<Method> = exact.map(|candidate| candidate.method.clone()).collect();
+    let exact: Vec<MethodChoice> = exact.map(|candidate| candidate.method.clone()).collect();
     candidates
         .into_iter()
         .for_each(|candidate| search.add(candidate));
@@ -217,8 +192,9 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
             spent: spent_s,
         });
     }
-    let never_ran = search.refused();
-    refused.extend(never_ran.map(|(method, reason)| (method.clone(), reason.to_owned())));
+    let (pilots, others_cut_short) = (search.count(), search.cut_short());
+    let never_ran = search.into_refused().into_iter();
+    refused.extend(never_ran.map(|(method, error)| (method, error.into())));
     Ok(Advice {
         question,
         whole,
@@ -227,10 +203,10 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
         written,
         answer,
         refused,
-        pilots: search.count(),
+        pilots,
         spent_s,
         choice_cut_short,
-        others_cut_short: search.cut_short(),
+        others_cut_short,
     })
 }
 
@@ -312,7 +288,7 @@ fn check_reference(case: &Case, whole: Span, tolerance: f64) -> Result<(), Advic
 
 /// The run that the scene asks for.
 struct OwnRun {
-    method: Method,
+    method: MethodChoice,
     dt: f64,
 }
 
@@ -320,7 +296,7 @@ impl OwnRun {
     fn of(case: &Case) -> Self {
         let settings = case.simulation().settings();
         Self {
-            method: Method::on(case, &settings.integrator),
+            method: MethodChoice::on(case, &settings.integrator),
             dt: case.simulation().dt(),
         }
     }
@@ -371,7 +347,7 @@ impl Advice {
         self.measured.duration >= self.whole.duration
     }
 
-    /// Up to when (s) an advised run is known to keep to the tolerance, from t = 0 on; none where
+    /// The time (s) up to which, from t = 0 on, an advised run is known to keep to the tolerance; none where
     /// nothing is advised.
     #[must_use]
     pub fn met_until(&self) -> Option<f64> {

@@ -1,4 +1,6 @@
-//! What is asked.
+//! The question to the advice.
+
+use crate::cost::Cost;
 
 /// Time for pilots (CPU s) unless another is given.
 pub const DEFAULT_PILOT_SECONDS: f64 = 10.0;
@@ -12,6 +14,8 @@ pub struct Question {
     pub budget: Option<f64>,
     /// CPU time (s) after which no pilot is begun.
     pub pilot_seconds: f64,
+    /// What the cost of a run is taken from.
+    pub cost: Cost,
 }
 
 /// A question that has no answer.
@@ -41,6 +45,7 @@ impl Question {
             tolerance,
             budget: None,
             pilot_seconds: DEFAULT_PILOT_SECONDS,
+            cost: Cost::default(),
         }
     }
 

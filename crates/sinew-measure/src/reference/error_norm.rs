@@ -16,6 +16,16 @@ impl ErrorNorm {
         }
     }
 
+    /// The relative error over all instants.
+    #[must_use]
+    pub fn between(u: &[Vec<f64>], reference: &[Vec<f64>]) -> f64 {
+        let mut norm = Self::default();
+        for (u, reference) in u.iter().zip(reference) {
+            norm.include(u, reference);
+        }
+        norm.relative()
+    }
+
     /// The relative error; where the reference never moves, 0 or infinite.
     #[must_use]
     pub fn relative(self) -> f64 {

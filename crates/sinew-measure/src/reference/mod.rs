@@ -11,4 +11,4 @@ mod track;
 pub use error_norm::ErrorNorm;
 pub use taylor::Taylor;
 pub(crate) use track::{LateRange, Pace, follow_at};
-pub use track::{ReferenceError, Track, follow, largest};
+pub use track::{ReferenceError, Track, follow};

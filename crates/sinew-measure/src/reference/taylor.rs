@@ -26,7 +26,7 @@ pub struct Taylor<'a> {
 }
 
 impl<'a> Taylor<'a> {
-    /// For these matrices. `refinement` above 1 takes shorter steps, for a check by comparison.
+    /// The series for these matrices. `refinement` above 1 takes shorter steps, for a check by comparison.
     #[must_use]
     pub fn new(operators: &'a LinearOperators, refinement: f64) -> Self {
         Self::within(operators, &Spectrum::of(operators), refinement)

@@ -1,6 +1,7 @@
 //! A reference at the instants a comparison needs.
 
 use sinew_core::spectrum::Spectrum;
+use sinew_core::vectors::largest;
 use sinew_core::{State, System};
 
 use super::Taylor;
@@ -39,7 +40,7 @@ pub enum ReferenceError {
     Inaccurate {
         /// Relative L2 difference.
         error: f64,
-        /// What is allowed.
+        /// Largest difference allowed.
         allowed: f64,
     },
 }
@@ -92,7 +93,7 @@ pub(crate) fn follow_at(
     let steps = |refinement| Taylor::within(operators, &spectrum, refinement);
     let mut track = solve(steps(pace.refinement()), start, times);
     let check = solve(steps(CHECK * pace.refinement()), start, times);
-    track.error = relative_difference(&check.displacements, &track.displacements);
+    track.error = ErrorNorm::between(&check.displacements, &track.displacements);
     track.sweeps += check.sweeps;
     if track.error <= ALLOWED {
         return Ok(track);
@@ -128,28 +129,6 @@ fn solve(mut taylor: Taylor<'_>, start: &State, times: &[f64]) -> Track {
         error: 0.0,
         sweeps: taylor.sweeps,
     }
-}
-
-/// Largest |component|; infinite where one is not a number.
-#[must_use]
-pub fn largest(u: &[f64]) -> f64 {
-    let larger = |max: f64, u: &f64| {
-        if u.is_nan() {
-            f64::INFINITY
-        } else {
-            max.max(u.abs())
-        }
-    };
-    u.iter().fold(0.0, larger)
-}
-
-/// `||a - b|| / ||b||` over all instants; 0 where both are at rest throughout.
-fn relative_difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
-    let mut norms = ErrorNorm::default();
-    for (a, b) in a.iter().zip(b) {
-        norms.include(a, b);
-    }
-    norms.relative()
 }
 
 /// Range of each degree of freedom over some states.

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Deserializer};
 
-use super::{CaseInfo, Outcome, Row};
+use super::{CaseInfo, Row, RowOutcome};
 
 /// A number that should be there and is none.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Gap {
     /// The field it should stand in.
     pub field: String,
-    /// What stands there instead, as in `inf`; none where nothing does.
+    /// The text that stands in its place, as in `inf`; none where nothing does.
     pub value: Option<String>,
     /// Why it cannot be shown.
     pub reason: &'static str,
@@ -40,9 +40,9 @@ impl Gaps {
     }
 
     /// A number that every finished run has.
-    fn finished(&mut self, field: &str, value: Option<f64>, outcome: Outcome) {
+    fn finished(&mut self, field: &str, value: Option<f64>, outcome: RowOutcome) {
         match (value, outcome) {
-            (None, Outcome::Finished) => self.0.push(Gap {
+            (None, RowOutcome::Finished) => self.0.push(Gap {
                 field: field.to_owned(),
                 value: None,
                 reason: "the run finished and no finite number came of it",
@@ -190,7 +190,7 @@ mod tests {
             ]
         );
         let diverged = Row {
-            outcome: Outcome::Diverged,
+            outcome: RowOutcome::Diverged,
             error: None,
             max_u: None,
             late_amplitude: None,

@@ -3,32 +3,44 @@
 use std::collections::BTreeMap;
 
 use serde_json::Value;
+use sinew_integrators::OptionLabel;
 
-/// The integrator's id and its options, abbreviated where the field has a symbol or a usual phrase:
-/// `cnn Q=4`, `central-difference substeps=3`, `cnn-stabilised chebyshev 4`.
+/// The integrator's id and its options, abbreviated as the method says: `cnn Q=4`,
+/// `central-difference substeps=3`, `cnn-stabilised chebyshev 4`.
 pub(crate) fn label(integrator: &str, options: &BTreeMap<String, Value>) -> String {
-    let mut label = integrator.to_owned();
+    let entry = sinew_integrators::entry(integrator);
+    let labelled = options.iter().map(|(key, value)| {
+        let label = entry.as_ref().map(|entry| entry.option_label(key));
+        (label.unwrap_or_default(), key, value)
+    });
     // The kind of a method comes before its figures.
-    let (kinds, others): (Vec<_>, Vec<_>) = options.iter().partition(|(key, _)| *key == "kind");
-    for (key, value) in kinds.into_iter().chain(others) {
-        label.push(' ');
-        label.push_str(&option(key, value));
+    let (kinds, others): (Vec<_>, Vec<_>) =
+        labelled.partition(|(label, ..)| *label == OptionLabel::Value);
+    let mut text = integrator.to_owned();
+    for (label, key, value) in kinds.into_iter().chain(others) {
+        text.push(' ');
+        text.push_str(&option(label, key, value));
     }
-    label
+    text
 }
 
-fn option(key: &str, value: &Value) -> String {
-    match (key, value) {
-        ("kind", value) => plain(value),
-        ("saturation", value) => format!("Q={}", plain(value)),
-        // A method of iteration and its count speak for themselves.
-        ("inner", Value::Object(inner)) => match (inner.get("kind"), inner.get("sweeps")) {
-            (Some(kind), Some(sweeps)) => format!("{} {}", plain(kind), plain(sweeps)),
-            (Some(kind), None) => plain(kind),
-            _ => format!("{key}={}", plain(value)),
-        },
-        _ => format!("{key}={}", plain(value)),
+fn option(label: OptionLabel, key: &str, value: &Value) -> String {
+    match label {
+        OptionLabel::Value => plain(value),
+        OptionLabel::Symbol(symbol) => format!("{symbol}={}", plain(value)),
+        OptionLabel::Phrase(words) => {
+            phrase(words, value).unwrap_or_else(|| option(OptionLabel::KeyAndValue, key, value))
+        }
+        OptionLabel::KeyAndValue => format!("{key}={}", plain(value)),
     }
+}
+
+/// The values of these keys of a table; none where it is no table or lacks the first key.
+fn phrase(keys: &[&str], value: &Value) -> Option<String> {
+    let table = value.as_object()?;
+    table.get(*keys.first()?)?;
+    let values = keys.iter().filter_map(|key| table.get(*key));
+    Some(values.map(plain).collect::<Vec<_>>().join(" "))
 }
 
 fn plain(value: &Value) -> String {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Outcome, Row};
+use super::{Row, RowOutcome};
 
 /// Sets `pareto` on every row: true where no other finished run of the same case is at least as
 /// cheap (`cpu_s_per_s`) and at least as accurate (`error`), and better in one of the two.
@@ -37,7 +37,7 @@ pub fn mark_pareto(rows: &mut [Row]) {
 
 fn point(row: &Row) -> Option<(f64, f64)> {
     let error = row.error.filter(|&e| e < 1.0)?;
-    (row.outcome == Outcome::Finished && row.cpu_s_per_s.is_finite())
+    (row.outcome == RowOutcome::Finished && row.cpu_s_per_s.is_finite())
         .then_some((row.cpu_s_per_s, error))
 }
 
@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_dearer_and_worse_is_off_the_front() {
+    fn a_run_that_costs_more_and_is_worse_is_off_the_front() {
         assert_eq!(
             front(&[(1.0, 0.5), (2.0, 0.1), (3.0, 0.2), (4.0, 0.01)]),
             [true, true, false, true]
@@ -91,7 +91,7 @@ mod tests {
     fn diverged_runs_and_old_marks_do_not_count() {
         let mut rows = vec![
             Row {
-                outcome: Outcome::Diverged,
+                outcome: RowOutcome::Diverged,
                 error: Some(0.0),
                 pareto: true,
                 ..row(0.1, 0.0)

@@ -1,18 +1,15 @@
-//! What a search may choose from.
+//! A method that a search may choose.
 
 use sinew_core::{Accuracy, StableStep};
 use sinew_scene::Simulation;
 
-use crate::measure::Method;
-
-/// Integrators whose set-up factorises a matrix; known before the first of them has run.
-const FACTORISING: [&str; 4] = ["implicit-euler", "newmark", "generalized-alpha", "modal"];
+use crate::method_choice::{MethodChoice, MethodError};
 
 /// A method with what its search needs to know of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     /// The method.
-    pub method: Method,
+    pub method: MethodChoice,
     /// The largest step (s) at which it is stable; infinite where it always is or cannot say, 0
     /// where it never is.
     pub stable_step: f64,
@@ -28,13 +25,10 @@ impl Candidate {
     /// A method on a scene.
     ///
     /// # Errors
-    /// A reason in words when its options do not fit or the system lacks what it needs.
-    pub fn of(simulation: &Simulation, method: Method) -> Result<Self, String> {
-        let integrator = sinew_integrators::build(&method.integrator, &method.options)
-            .map_err(|error| error.to_string())?;
-        let stable_step = integrator
-            .stable_step(simulation.system())
-            .map_err(|error| error.to_string())?;
+    /// [`MethodError`] when its options do not fit or the system lacks what it needs.
+    pub fn of(simulation: &Simulation, method: MethodChoice) -> Result<Self, MethodError> {
+        let integrator = method.build()?;
+        let stable_step = integrator.stable_step(simulation.system())?;
         let order = match integrator.properties().accuracy {
             Accuracy::Exact => None,
             accuracy => accuracy.order(false).max(accuracy.order(true)),
@@ -46,7 +40,8 @@ impl Candidate {
                 StableStep::Any | StableStep::Unknown => f64::INFINITY,
             },
             order,
-            factorises: FACTORISING.contains(&method.integrator.as_str()),
+            factorises: sinew_integrators::entry(&method.integrator)
+                .is_some_and(|entry| entry.factorises),
             method,
         })
     }

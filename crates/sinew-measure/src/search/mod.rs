@@ -8,47 +8,20 @@
 
 mod candidate;
 mod candidates;
+mod goal;
 mod pilots;
 mod trail;
 
 pub use candidate::Candidate;
 pub use candidates::candidates;
+pub use goal::Goal;
 pub(crate) use pilots::ramps;
-pub use pilots::{CasePilots, Pilot, Pilots};
+pub use pilots::{CasePilots, Pilot, PilotError, Pilots, UnfitLoads};
 
-use crate::measure::{Effort, Method};
-use crate::{Row, Span};
+use crate::Span;
+use crate::method_choice::MethodChoice;
+use crate::timing::Effort;
 use trail::{Aim, Trail};
-
-/// What a run must keep to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Goal {
-    /// Largest relative error over the whole scene (fraction), to be expected where not all of it
-    /// is compared.
-    pub error: f64,
-    /// Most CPU seconds per simulated second, set-up apart; infinite where cost is no matter.
-    pub budget: f64,
-}
-
-impl Goal {
-    /// An error at any cost.
-    #[must_use]
-    pub fn error(error: f64) -> Self {
-        Self {
-            error,
-            budget: f64::INFINITY,
-        }
-    }
-
-    /// Whether a run keeps to it.
-    #[must_use]
-    pub fn is_met_by(self, row: &Row) -> bool {
-        row.cpu_s_per_s <= self.budget
-            && row
-                .sound_error_over_scene()
-                .is_some_and(|e| e <= self.error)
-    }
-}
 
 /// Costs that differ by less than this share count as equal: times repeat no better.
 const NOISE: f64 = 0.1;
@@ -120,7 +93,7 @@ impl<P: Pilots> Search<P> {
                     duration: self.duration,
                     least_step: self.pilots.least_step_cpu_s(),
                 };
-                if pilots_left[index] == 0 || self.begins_too_dear(trail, aim.best) {
+                if pilots_left[index] == 0 || self.begins_too_costly(trail, aim.best) {
                     return None;
                 }
                 Some((index, trail.next(&aim)?))
@@ -150,8 +123,8 @@ impl<P: Pilots> Search<P> {
     /// Measures one more run, of any stable step (s).
     ///
     /// # Errors
-    /// A reason in words when the method cannot make it.
-    pub fn include(&mut self, method: &Method, dt: f64) -> Result<Pilot, String> {
+    /// [`PilotError`] when the method cannot make it.
+    pub fn include(&mut self, method: &MethodChoice, dt: f64) -> Result<Pilot, PilotError> {
         let pilot = self.show(method, dt)?;
         self.others.push(pilot.clone());
         Ok(pilot)
@@ -161,7 +134,7 @@ impl<P: Pilots> Search<P> {
     ///
     /// # Errors
     /// As [`Search::include`].
-    pub fn show(&mut self, method: &Method, dt: f64) -> Result<Pilot, String> {
+    pub fn show(&mut self, method: &MethodChoice, dt: f64) -> Result<Pilot, PilotError> {
         let row = self.pilots.measure(method, dt, Effort::QUICK)?;
         self.count += 1;
         Ok(Pilot {
@@ -202,7 +175,7 @@ impl<P: Pilots> Search<P> {
         }
     }
 
-    /// All runs so far that may be chosen.
+    /// The runs so far that may be chosen.
     pub fn runs(&self) -> impl Iterator<Item = &Pilot> {
         self.trails.iter().flat_map(Trail::runs).chain(&self.others)
     }
@@ -238,18 +211,16 @@ impl<P: Pilots> Search<P> {
     }
 
     /// Candidates that could not run at all, with the reason.
-    pub fn refused(&self) -> impl Iterator<Item = (&Method, &str)> {
-        let of = |trail: &'_ Trail| trail.runs().next().is_none();
-        self.trails
-            .iter()
-            .filter(move |trail| of(trail))
-            .filter_map(|trail| {
-                let reason = trail.reason.as_deref()?;
-                Some((&trail.candidate.method, reason))
-            })
+    #[must_use]
+    pub fn into_refused(self) -> Vec<(MethodChoice, PilotError)> {
+        let trails = self.trails.into_iter();
+        trails
+            .filter(|trail| trail.runs().next().is_none())
+            .filter_map(|trail| Some((trail.candidate.method, trail.reason?)))
+            .collect()
     }
 
-    /// How many runs were measured.
+    /// Number of runs measured.
     #[must_use]
     pub fn count(&self) -> usize {
         self.count
@@ -280,13 +251,13 @@ impl<P: Pilots> Search<P> {
 
     /// Whether the set-up alone of a candidate that factorises costs more than the best run, as
     /// that of one that has run shows.
-    fn begins_too_dear(&self, trail: &Trail, best: f64) -> bool {
-        let dear =
+    fn begins_too_costly(&self, trail: &Trail, best: f64) -> bool {
+        let costly =
             |pilot: &Pilot| pilot.row.work.factorizations > 0 && pilot.row.setup_cpu_s > best;
-        trail.candidate.factorises && trail.runs().next().is_none() && self.runs().any(dear)
+        trail.candidate.factorises && trail.runs().next().is_none() && self.runs().any(costly)
     }
 
-    /// Measures a candidate in so many parts of the interval; false where no time is left for it.
+    /// Measures a candidate in `parts` parts of the interval; false where no time is left for it.
     fn follow(&mut self, index: usize, parts: u32) -> bool {
         let trail = &mut self.trails[index];
         let price = trail.price(parts, self.span.duration, self.pilots.least_step_cpu_s());

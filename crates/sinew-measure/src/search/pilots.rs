@@ -2,21 +2,54 @@
 
 use std::time::Duration;
 
-use sinew_core::{LinearSystem, LoadOverStep, Ramp, Run};
+use sinew_core::{LinearSystem, LoadOverStep, OptionError, Ramp, Run};
 use sinew_scene::Simulation;
 
 use crate::case::Case;
+use crate::cost::Cost;
 use crate::cpu_time::thread_cpu_time;
-use crate::measure::{Effort, Method, measure};
+use crate::measure::{MeasureError, measure};
+use crate::method_choice::MethodChoice;
 use crate::row::Row;
+use crate::timing::Effort;
 
 /// A run that was measured, with the method that made it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pilot {
     /// The method.
-    pub method: Method,
-    /// What was measured.
+    pub method: MethodChoice,
+    /// The measured row.
     pub row: Row,
+}
+
+/// Why a pilot was not made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PilotError {
+    /// The integrator is unknown, or its options do not fit.
+    #[error(transparent)]
+    Options(#[from] OptionError),
+    /// The loads do not fit the step.
+    #[error(transparent)]
+    Loads(#[from] UnfitLoads),
+    /// The loads fit no step that is worth a pilot.
+    #[error("{0}, nor of a longer one that meets the instants of the error")]
+    LoadsAtAnyStep(#[source] UnfitLoads),
+    /// The run failed.
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
+}
+
+/// A load of the scene changes where a method needs it not to.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("a load changes at t = {instant} s of the scene, and is not {} of {dt} s", .needed.describe())]
+pub struct UnfitLoads {
+    /// The first instant (s) at which one does.
+    pub instant: f64,
+    /// The behaviour of loads over each step that the method needs.
+    pub needed: LoadOverStep,
+    /// The step (s).
+    pub dt: f64,
 }
 
 /// Measures runs.
@@ -24,15 +57,20 @@ pub trait Pilots {
     /// Measures a method in steps of `dt` (s).
     ///
     /// # Errors
-    /// A reason in words when it cannot run so.
-    fn measure(&mut self, method: &Method, dt: f64, effort: Effort) -> Result<Row, String>;
+    /// [`PilotError`] when it cannot run so.
+    fn measure(
+        &mut self,
+        method: &MethodChoice,
+        dt: f64,
+        effort: Effort,
+    ) -> Result<Row, PilotError>;
 
     /// The fewest parts of an interval (s), whose multiples serve as well, at which a method takes
     /// the loads.
     ///
     /// # Errors
-    /// A reason in words when it takes them at no step that is worth a pilot.
-    fn parts_for_loads(&self, _method: &Method, _interval: f64) -> Result<u32, String> {
+    /// [`PilotError`] when it takes them at no step that is worth a pilot.
+    fn parts_for_loads(&self, _method: &MethodChoice, _interval: f64) -> Result<u32, PilotError> {
         Ok(1)
     }
 
@@ -56,15 +94,20 @@ const MOST_PARTS: u32 = 100;
 pub struct CasePilots<'a> {
     case: &'a mut Case,
     until: Option<Duration>,
+    cost: Cost,
 }
 
 impl<'a> CasePilots<'a> {
     /// As many as are asked for.
     pub fn new(case: &'a mut Case) -> Self {
-        Self { case, until: None }
+        Self {
+            case,
+            until: None,
+            cost: Cost::default(),
+        }
     }
 
-    /// Until this thread has used `until` of CPU time, by [`thread_cpu_time`].
+    /// Limits the pilots to those begun before [`thread_cpu_time`] reaches `until`.
     #[must_use]
     pub fn until(self, until: Duration) -> Self {
         Self {
@@ -72,27 +115,36 @@ impl<'a> CasePilots<'a> {
             ..self
         }
     }
+
+    /// Takes the cost of runs from this.
+    #[must_use]
+    pub fn charging(self, cost: Cost) -> Self {
+        Self { cost, ..self }
+    }
 }
 
 impl Pilots for CasePilots<'_> {
-    fn measure(&mut self, method: &Method, dt: f64, effort: Effort) -> Result<Row, String> {
+    fn measure(
+        &mut self,
+        method: &MethodChoice,
+        dt: f64,
+        effort: Effort,
+    ) -> Result<Row, PilotError> {
         check_loads(self.case.simulation(), needed_of_loads(method)?, dt)?;
-        measure(self.case, method, dt, effort)
+        Ok(self.cost.charged(measure(self.case, method, dt, effort)?))
     }
 
-    fn parts_for_loads(&self, method: &Method, interval: f64) -> Result<u32, String> {
+    fn parts_for_loads(&self, method: &MethodChoice, interval: f64) -> Result<u32, PilotError> {
         let needed = needed_of_loads(method)?;
-        let mut refused = String::new();
-        for parts in 1..=MOST_PARTS {
+        let mut parts = 1;
+        loop {
             let dt = interval / f64::from(parts);
             match check_loads(self.case.simulation(), needed, dt) {
                 Ok(()) => return Ok(parts),
-                Err(reason) => refused = reason,
+                Err(unfit) if parts == MOST_PARTS => return Err(PilotError::LoadsAtAnyStep(unfit)),
+                Err(_) => parts += 1,
             }
         }
-        Err(format!(
-            "{refused}, nor of a longer one that meets the instants of the error"
-        ))
     }
 
     fn left(&self) -> f64 {
@@ -103,27 +155,28 @@ impl Pilots for CasePilots<'_> {
 
     /// A sweep of the reference also sums its series: half of it is no more than a sweep.
     fn least_step_cpu_s(&self) -> f64 {
-        0.5 * self.case.reference_cpu_s() / self.case.samples().sweeps.max(1) as f64
+        let sweeps = self.case.samples().sweeps.max(1);
+        let sweep = 0.5 * self.case.reference_cpu_s() / sweeps as f64;
+        self.cost.of_least_step(sweep)
     }
 }
 
-/// What a method needs loads to be over each step.
-fn needed_of_loads(method: &Method) -> Result<LoadOverStep, String> {
-    let integrator = sinew_integrators::build(&method.integrator, &method.options)
-        .map_err(|error| error.to_string())?;
-    Ok(integrator.properties().changing_loads.needed())
+/// The behaviour of loads over each step that a method needs.
+fn needed_of_loads(method: &MethodChoice) -> Result<LoadOverStep, OptionError> {
+    Ok(method.build()?.properties().changing_loads.needed())
 }
 
 /// Refuses steps of `dt` (s) over which the loads of a scene are not what a method needs.
-fn check_loads(simulation: &Simulation, needed: LoadOverStep, dt: f64) -> Result<(), String> {
+fn check_loads(simulation: &Simulation, needed: LoadOverStep, dt: f64) -> Result<(), UnfitLoads> {
     let end = Run::covering(simulation.settings().duration, dt).steps as f64 * dt;
     let broken = |ramp: &Ramp| needed.first_broken(ramp, 0.0, dt, end);
     match ramps(simulation).filter_map(broken).reduce(f64::min) {
         None => Ok(()),
-        Some(instant) => Err(format!(
-            "a load changes at t = {instant} s of the scene, and is not {} of {dt} s",
-            needed.describe()
-        )),
+        Some(instant) => Err(UnfitLoads {
+            instant,
+            needed,
+            dt,
+        }),
     }
 }
 

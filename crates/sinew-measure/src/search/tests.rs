@@ -3,8 +3,10 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
+use sinew_core::LoadOverStep;
+
 use super::*;
-use crate::Work;
+use crate::{Row, Work};
 
 /// `error = factor dt^order`, never below `floor` nor above `cap`; one unit of cost a step.
 #[derive(Clone, Copy, Debug)]
@@ -35,16 +37,25 @@ struct Laws {
     laws: BTreeMap<String, Law>,
     /// Parts of a kink: steps that do not divide it are refused.
     kink: Option<f64>,
-    /// What loads ask of the parts of an interval, where they ask anything.
-    for_loads: Option<Result<u32, String>>,
+    /// Number of parts of an interval that the loads ask for, where they ask for any.
+    for_loads: Option<Result<u32, UnfitLoads>>,
     guarded: Vec<&'static str>,
     left: RefCell<f64>,
     least_step: f64,
     taken: Vec<(String, f64)>,
 }
 
+/// A load that changes at an instant (s) within a step (s).
+fn unfit(instant: f64, dt: f64) -> UnfitLoads {
+    UnfitLoads {
+        instant,
+        needed: LoadOverStep::Smooth,
+        dt,
+    }
+}
+
 impl Pilots for &mut Laws {
-    fn measure(&mut self, method: &Method, dt: f64, _: Effort) -> Result<Row, String> {
+    fn measure(&mut self, method: &MethodChoice, dt: f64, _: Effort) -> Result<Row, PilotError> {
         let law = self.laws[&method.integrator];
         assert!(
             dt <= law.stable * (1.0 + 1e-9),
@@ -53,7 +64,7 @@ impl Pilots for &mut Laws {
         if let Some(kink) = self.kink
             && ((kink / dt).round() - kink / dt).abs() > 1e-9
         {
-            return Err("a kink inside the step".into());
+            return Err(unfit(kink, dt).into());
         }
         let row = law.row(&method.integrator, dt);
         *self.left.borrow_mut() -= row.setup_cpu_s + 2.0 * row.cpu_s_per_s;
@@ -64,8 +75,8 @@ impl Pilots for &mut Laws {
         })
     }
 
-    fn parts_for_loads(&self, _: &Method, _: f64) -> Result<u32, String> {
-        self.for_loads.clone().unwrap_or(Ok(1))
+    fn parts_for_loads(&self, _: &MethodChoice, _: f64) -> Result<u32, PilotError> {
+        Ok(self.for_loads.unwrap_or(Ok(1))?)
     }
 
     fn left(&self) -> f64 {
@@ -98,7 +109,7 @@ impl Law {
 
     fn candidate(self, integrator: &str) -> Candidate {
         Candidate {
-            method: Method::new(integrator),
+            method: MethodChoice::new(integrator),
             stable_step: self.stable,
             stable_step_is_known: true,
             order: Some(self.order),
@@ -240,7 +251,7 @@ fn a_smaller_error_never_costs_less() {
 const WORTH_IT_MARGIN: f64 = 0.021;
 
 #[test]
-fn dear_methods_are_left_once_a_cheap_one_is_known() {
+fn costly_methods_are_left_once_a_cheap_one_is_known() {
     let mut laws = laws(&[
         (
             "cheap",
@@ -295,18 +306,18 @@ fn set_up_counts_once_for_the_duration() {
 }
 
 #[test]
-fn one_factorisation_that_is_too_dear_speaks_for_all() {
-    let dear = Law {
+fn one_factorisation_that_costs_too_much_speaks_for_all() {
+    let costly = Law {
         setup: 5.0,
         factorizations: 1,
         ..PLAIN
     };
-    let mut laws = laws(&[("factor", dear), ("modes", dear), ("quick", PLAIN)]);
+    let mut laws = laws(&[("factor", costly), ("modes", costly), ("quick", PLAIN)]);
     let mut search = Search::new(&mut laws, SPAN, 1.0);
     for id in ["factor", "modes"] {
         search.add(Candidate {
             factorises: true,
-            ..dear.candidate(id)
+            ..costly.candidate(id)
         });
     }
     search.add(PLAIN.candidate("quick"));
@@ -437,11 +448,14 @@ fn steps_meet_the_loads_on_the_way_to_a_goal() {
 #[test]
 fn a_method_that_takes_the_loads_at_no_step_is_never_begun() {
     let mut laws = laws(&[("exact", PLAIN)]);
-    laws.for_loads = Some(Err("a load that is never constant".into()));
+    laws.for_loads = Some(Err(unfit(0.3, 1.0)));
     let mut search = search(&mut laws);
     search.seek(Goal::error(1e-2));
-    let refused: Vec<_> = search.refused().map(|(_, reason)| reason).collect();
-    assert_eq!(refused, ["a load that is never constant"]);
+    let refused = search.into_refused();
+    let [(_, PilotError::Loads(reason))] = &refused[..] else {
+        panic!("{refused:?}");
+    };
+    assert_eq!(*reason, unfit(0.3, 1.0));
     assert!(laws.taken.is_empty());
 }
 
@@ -451,10 +465,13 @@ fn a_method_that_never_runs_is_named_with_its_reason() {
     laws.kink = Some(std::f64::consts::PI);
     let mut search = search(&mut laws);
     search.seek(Goal::error(1e-3));
-    let refused: Vec<_> = search.refused().collect();
-    assert_eq!(refused.len(), 1);
-    assert_eq!(refused[0].1, "a kink inside the step");
     assert_eq!(search.count(), 0);
+    let refused = search.into_refused();
+    let [(method, PilotError::Loads(reason))] = &refused[..] else {
+        panic!("{refused:?}");
+    };
+    assert_eq!(method.integrator, "exact");
+    assert_eq!(reason.instant, std::f64::consts::PI);
 }
 
 #[test]

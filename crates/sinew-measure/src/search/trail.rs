@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Candidate, Goal, Pilot};
+use super::{Candidate, Goal, Pilot, PilotError};
 use crate::{Row, Span};
 
 /// Parts of the interval that are tried after the longest steps were refused.
@@ -17,7 +17,7 @@ const WORTH_IT: f64 = 0.02;
 /// Order below which the error of an exact method is its own tolerance, not the step's.
 const STALLED: f64 = 0.5;
 
-/// What a candidate is followed for.
+/// The aim of following a candidate.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aim {
     pub(super) goal: Goal,
@@ -53,7 +53,7 @@ pub(super) struct Next {
 pub(super) struct Trail {
     pub(super) candidate: Candidate,
     /// Why it was refused last.
-    pub(super) reason: Option<String>,
+    pub(super) reason: Option<PilotError>,
     interval: f64,
     /// Every number of parts is a multiple of this one.
     unit: u32,
@@ -64,7 +64,7 @@ pub(super) struct Trail {
 
 impl Trail {
     /// A candidate whose steps are the interval in multiples of `unit` parts, or why it has none.
-    pub(super) fn new(candidate: Candidate, span: Span, unit: Result<u32, String>) -> Self {
+    pub(super) fn new(candidate: Candidate, span: Span, unit: Result<u32, PilotError>) -> Self {
         // The subtrahend as in `Run::covering`.
         let parts = (span.interval() / candidate.stable_step - 1e-9)
             .ceil()
@@ -95,7 +95,7 @@ impl Trail {
         self.runs.values_mut()
     }
 
-    pub(super) fn insert(&mut self, parts: u32, measured: Result<Row, String>) {
+    pub(super) fn insert(&mut self, parts: u32, measured: Result<Row, PilotError>) {
         match measured {
             Ok(row) => {
                 let method = self.candidate.method.clone();
@@ -162,8 +162,9 @@ impl Trail {
         (next.parts < below && self.refused.len() < MOST_REFUSALS).then_some(next)
     }
 
-    /// What a candidate costs is known once it has run; before, only what it must. Those that
-    /// factorise go last: set-up is in no bound, and one may show that all are too dear.
+    /// The first step. The cost of a candidate is known once it has run; before, only a lower bound
+    /// is. Those that
+    /// factorise go last: set-up is in no bound, and one may show that all cost too much.
     fn start(&self, aim: &Aim) -> Option<Next> {
         let parts = match self.refused.last() {
             None => self.first?,

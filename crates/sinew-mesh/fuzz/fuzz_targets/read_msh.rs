@@ -1,4 +1,4 @@
-//! Whatever the bytes: the reader gives a mesh or an error, and what it gives can be checked, repaired and written.
+//! From any bytes the reader makes a mesh or an error, and every mesh can be checked, repaired and written.
 //!
 //! ```text
 //! cargo install cargo-fuzz

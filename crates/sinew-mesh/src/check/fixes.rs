@@ -1,4 +1,4 @@
-//! Repairs, each only when asked for. Coincident nodes are never merged: a cut is made of them.
+//! Repairs of a mesh, each made only on request. Coincident nodes are never merged, because cuts consist of them.
 
 use std::collections::HashSet;
 
@@ -8,8 +8,8 @@ use crate::mesh::{CellBlock, Mesh};
 use crate::physical_tags::PhysicalTags;
 
 impl Mesh {
-    /// Turns inverted tetrahedra (4 and 10 nodes) the right way round by exchanging two corners, with the nodes between them and
-    /// the values at all of these. Returns how many were turned.
+    /// Turns inverted tetrahedra (4 and 10 nodes) the right way round: exchanges two corners, the nodes on the edges between
+    /// corners accordingly, and the values at all of them. Returns the number of turned tetrahedra.
     pub fn orient(&mut self) -> usize {
         let mut turned = 0;
         for block in 0..self.cells.len() {
@@ -49,7 +49,7 @@ impl Mesh {
         turned
     }
 
-    /// Drops the nodes that no cell has, with their values and links. Returns how many were dropped.
+    /// Drops the nodes that no cell uses, with their values and links. Returns the number of dropped nodes.
     pub fn drop_orphans(&mut self) -> usize {
         let mut is_used = vec![false; self.points.len()];
         for &node in self.cells.iter().flat_map(|block| &block.connectivity) {
@@ -66,7 +66,7 @@ impl Mesh {
             .filter(|&(_, &used)| !used)
             .map(|(node, _)| self.node_tag(node))
             .collect();
-        // Nodes without tags count from 1, which the others would no longer do.
+        // Without tags, nodes count from 1; the remaining ones must keep the numbers they had.
         self.node_tags = (0u32..)
             .zip(&is_used)
             .filter(|&(_, &used)| used)
@@ -101,8 +101,8 @@ impl Mesh {
         dropped
     }
 
-    /// Merges cells that have the nodes of an earlier cell of their type into that one, which gets the groups of all. Values are
-    /// those of the first. Blocks that are left without cells go. Returns how many cells were merged into others.
+    /// Merges each cell into the first cell of its type with the same nodes, which then belongs to the groups of both.
+    /// Values are those of the first cell. Blocks without cells are removed. Returns the number of cells merged into others.
     pub fn merge_duplicates(&mut self) -> usize {
         let pairs: Vec<_> = (0..=3)
             .flat_map(|dim| self.duplicate_cells(dim))
@@ -167,7 +167,7 @@ fn groups_of_cells(block: &CellBlock) -> Vec<Vec<i32>> {
         .collect()
 }
 
-/// Keeps the rows for which `keep` is true, in a list of rows of so many entries.
+/// Keeps the rows for which `keep` is true. A row has `width` entries.
 fn keep_rows<T>(list: &mut Vec<T>, keep: &[bool], width: usize) {
     let mut entry = 0;
     list.retain(|_| {

@@ -1,4 +1,4 @@
-//! Is a mesh fit for simulation: what is wrong with its cells, nodes and groups, and where.
+//! Checks whether a mesh is fit for simulation: its cells, nodes and groups.
 
 mod fixes;
 mod shape;
@@ -11,19 +11,19 @@ pub(crate) use shape::{TetShape, tet_corners};
 use crate::mesh::{CellBlock, CellIndex, Mesh};
 use crate::tet_mesh::OUTWARD_FACES;
 
-/// How many examples of each finding are kept.
+/// Number of examples that are kept of each finding.
 const EXAMPLES: usize = 10;
 
-/// From where on a tetrahedron is worth a mention.
+/// Limits beyond which a tetrahedron or a mesh is reported.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CheckLimits {
-    /// A tetrahedron is flat if its volume is at most this share of the cube of its longest edge.
+    /// Greatest volume of a flat tetrahedron, as a share of the cube of its longest edge.
     pub flat_volume: f64,
-    /// A tetrahedron is a sliver if two of its faces meet at less than this angle, in degrees,
+    /// Angle between two faces (degrees) below which a tetrahedron is a sliver.
     pub sliver_dihedral: f64,
-    /// or if three times its inradius is less than this share of its circumradius (1 for a regular tetrahedron).
+    /// Ratio of three inradii to the circumradius (1 for a regular tetrahedron) below which it is a sliver as well.
     pub sliver_radius_ratio: f64,
-    /// A mesh wider than this, in its own unit, is probably not in metres.
+    /// Width, in the mesh's own unit, above which that unit is probably not the metre.
     pub widest_in_metres: f64,
 }
 
@@ -38,10 +38,10 @@ impl Default for CheckLimits {
     }
 }
 
-/// How often something occurs, and the tags of the first ten places.
+/// Number of occurrences of a problem, and the tags of the first ten.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Finding {
-    /// How often.
+    /// Number of occurrences.
     pub total: usize,
     /// The tags of the first ten elements, or nodes.
     pub first_tags: Vec<u64>,
@@ -55,7 +55,7 @@ impl Finding {
         }
     }
 
-    /// Whether it does not occur.
+    /// Whether the problem does not occur.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.total == 0
@@ -101,12 +101,12 @@ pub struct EdgeLengths {
     pub mean: f64,
 }
 
-/// Cells of three dimensions that hang together by nodes.
+/// Volume cells that are connected through shared nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Part {
-    /// How many cells.
+    /// Number of cells.
     pub cells: usize,
-    /// Tag of the first.
+    /// Tag of the first cell.
     pub first_tag: u64,
 }
 
@@ -119,33 +119,33 @@ pub struct SharedFace {
     pub element_tags: Vec<u64>,
 }
 
-/// What [`Mesh::check`] finds.
+/// The findings of [`Mesh::check`].
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct MeshCheck {
-    /// Number of tetrahedra, of whatever order; the shape is that of their corners.
+    /// Number of tetrahedra of any order. All shapes are measured on the corners.
     pub tets: usize,
     /// Tetrahedra numbered the wrong way round. [`Mesh::orient`] turns them.
     pub inverted: Finding,
     /// Tetrahedra without volume.
     pub flat: Finding,
-    /// Tetrahedra that are not flat, but nearly.
+    /// Tetrahedra that are nearly flat.
     pub slivers: Finding,
     /// Cells that name a node twice.
     pub repeated_nodes: Finding,
-    /// Cells with the nodes of an earlier one. [`Mesh::merge_duplicates`] merges them.
+    /// Cells that have the same nodes as an earlier one. [`Mesh::merge_duplicates`] merges them.
     pub duplicates: Finding,
-    /// Nodes that no cell has. [`Mesh::drop_orphans`] drops them.
+    /// Nodes that no cell uses. [`Mesh::drop_orphans`] drops them.
     pub orphans: Finding,
-    /// Nodes of lines or surfaces that no volume cell has, in a mesh with volume cells: they have no mass.
+    /// Nodes of lines or surfaces that no volume cell uses, in a mesh with volume cells. They would have no mass.
     pub outside_volume: Finding,
-    /// Cells of three dimensions that hang together, largest part first; at most ten.
+    /// The connected parts of the volume cells, largest first; at most ten.
     pub parts: Vec<Part>,
-    /// How many such parts there are.
+    /// Number of all connected parts.
     pub part_count: usize,
-    /// Faces of more than two different tetrahedra: how many.
+    /// Number of faces that more than two different tetrahedra share.
     pub non_manifold_faces: usize,
-    /// The first ten of these.
+    /// The first ten of these faces.
     pub first_non_manifold: Vec<SharedFace>,
     /// Named groups without cells: dimension, tag, name.
     pub empty_groups: Vec<(u8, i32, String)>,
@@ -160,9 +160,9 @@ pub struct MeshCheck {
 }
 
 impl Mesh {
-    /// Looks for what makes a simulation fail or mislead. Nothing is changed.
+    /// Looks for problems that make a simulation fail or mislead. Changes nothing.
     ///
-    /// Nodes at the same place are no finding: cuts and contact surfaces are made of them.
+    /// Nodes at the same place are not reported, because cuts and contact surfaces consist of them.
     ///
     /// ```
     /// use sinew_mesh::{TetMesh, structured};
@@ -181,7 +181,7 @@ impl Mesh {
         self.check_against(&CheckLimits::default())
     }
 
-    /// As [`Mesh::check`], with other limits.
+    /// Does the same as [`Mesh::check`], with other limits.
     #[must_use]
     pub fn check_against(&self, limits: &CheckLimits) -> MeshCheck {
         let mut check = MeshCheck::default();
@@ -203,13 +203,13 @@ impl Mesh {
 }
 
 impl MeshCheck {
-    /// Whether nothing was found that needs attention. Several parts alone are none.
+    /// Whether nothing needs attention. A mesh of several parts alone does not.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.problems().is_empty()
     }
 
-    /// What needs attention, a sentence each.
+    /// The findings that need attention, one sentence each.
     #[must_use]
     pub fn problems(&self) -> Vec<String> {
         let mut problems = Vec::new();
@@ -293,7 +293,7 @@ impl fmt::Display for MeshCheck {
     }
 }
 
-/// Every cell for which `matters` holds for its block.
+/// Every cell of the blocks for which `matters` holds.
 fn cells_of<'m>(
     mesh: &'m Mesh,
     matters: impl Fn(&CellBlock) -> bool + 'm,
@@ -380,7 +380,7 @@ fn check_nodes_of_cells(mesh: &Mesh, check: &mut MeshCheck) {
     }
 }
 
-/// Sets of nodes that grow together.
+/// Disjoint sets of nodes that can be joined (union-find).
 struct Sets {
     parent: Vec<u32>,
 }
@@ -389,7 +389,7 @@ impl Sets {
     fn root(&mut self, mut node: u32) -> u32 {
         while self.parent[node as usize] != node {
             let above = self.parent[node as usize];
-            // Halve the path for the next one who walks it.
+            // Halve the path for the next search.
             self.parent[node as usize] = self.parent[above as usize];
             node = self.parent[node as usize];
         }
@@ -444,7 +444,7 @@ fn check_faces(mesh: &Mesh, check: &mut MeshCheck) {
         .chunk_by(|a, b| a.0 == b.0)
         .filter(|shared| shared.len() > 2)
     {
-        // Copies of a cell are a finding of their own.
+        // Copies of a cell are reported separately.
         let mut seen = HashSet::new();
         let mut cells: Vec<CellIndex> = Vec::new();
         for &(_, at) in shared {

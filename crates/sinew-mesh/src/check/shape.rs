@@ -4,7 +4,7 @@ use crate::cell_type::CellType;
 use crate::mesh::Mesh;
 use crate::tet_mesh::{cross, dot, sub};
 
-/// The corners of a cell if it is a tetrahedron, of whatever order.
+/// The corners of a cell if it is a tetrahedron of any order.
 pub(crate) fn tet_corners(mesh: &Mesh, kind: CellType, row: &[u32]) -> Option<[[f64; 3]; 4]> {
     if !kind.is_tetrahedron() {
         return None;
@@ -13,13 +13,13 @@ pub(crate) fn tet_corners(mesh: &Mesh, kind: CellType, row: &[u32]) -> Option<[[
     Some([corner(0)?, corner(1)?, corner(2)?, corner(3)?])
 }
 
-/// What the checks need of a tetrahedron.
+/// The quantities of a tetrahedron that the checks use.
 pub(crate) struct TetShape {
-    /// Six times the volume is the triple product; negative if inverted.
+    /// Signed volume, a sixth of the triple product of three edges. Negative if the tetrahedron is inverted.
     pub(crate) volume: f64,
     /// Lengths of the edges 01, 02, 03, 23, 13, 12: opposite edges are three apart.
     pub(crate) edges: [f64; 6],
-    /// Normals of the faces opposite each corner, twice their area long, outwards if not inverted.
+    /// Normals of the faces opposite each corner, of twice the area's length, outward unless the tetrahedron is inverted.
     normals: [[f64; 3]; 4],
 }
 
@@ -41,7 +41,7 @@ impl TetShape {
 
     /// Whether the volume is at most a share of the cube of the longest edge.
     pub(crate) fn is_flat(&self, share: f64) -> bool {
-        // A NaN counts as flat, too.
+        // A NaN counts as flat as well.
         let limit = share * self.longest_edge().powi(3);
         self.volume.is_nan() || self.volume.abs() <= limit
     }
@@ -60,7 +60,7 @@ impl TetShape {
 
     /// Three times the inradius over the circumradius: 1 for a regular tetrahedron, 0 for a flat one.
     ///
-    /// The circumradius is that of Crelle's formula: 24 R |V| = sqrt((p+q+r)(p+q-r)(p-q+r)(q+r-p)), where p, q, r are
+    /// The circumradius R comes from Crelle's formula: 24 R |V| = sqrt((p+q+r)(p+q-r)(p-q+r)(q+r-p)), where p, q, r are
     /// the products of opposite edges.
     pub(crate) fn radius_ratio(&self) -> f64 {
         let volume = self.volume.abs();

@@ -1,4 +1,4 @@
-//! From tables of tags to a mesh of indices.
+//! Turns tables of tags into a mesh of indices.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -76,7 +76,7 @@ fn no_nodes(contents: &Contents) -> Fault {
     Fault::new(contents.length, problem, "a $Nodes section with nodes")
 }
 
-/// Each node once.
+/// The nodes, each once.
 struct Nodes {
     tags: Vec<u64>,
     points: Vec<[f64; 3]>,
@@ -271,7 +271,7 @@ fn resolved(
     };
     let mut connectivity = match node_tags.into_tags() {
         Tags::Narrow(mut tags) if index.is_complete() => {
-            // The tags are consecutive: all that is left is to count from 0.
+            // The tags are consecutive, so an index is a difference of tags.
             let (least, greatest) = index.range();
             let is_known = |tag: u32| (least..=greatest).contains(&u64::from(tag));
             if !tags.iter().fold(true, |all, &tag| all & is_known(tag)) {
@@ -311,7 +311,7 @@ fn resolved(
     Ok(connectivity)
 }
 
-/// Which groups a block's elements are in.
+/// Lookup of the groups that a block's elements belong to.
 struct Groups {
     entities: Option<Entities>,
     /// In a partitioned mesh, blocks refer to these first.
@@ -351,7 +351,7 @@ impl Groups {
     }
 }
 
-/// Version 2.0 names groups by tag alone: the name goes to the dimensions that have cells with the tag.
+/// Gives names without a dimension, as version 2.0 has them, to the dimensions that have cells with the tag.
 fn add_dimensions(names: NamesWithoutDim, cells: &[CellBlock], to: &mut PhysicalNames) {
     for (tag, name) in names {
         let mut dims: BTreeSet<u8> = BTreeSet::new();
@@ -370,7 +370,7 @@ fn add_dimensions(names: NamesWithoutDim, cells: &[CellBlock], to: &mut Physical
     }
 }
 
-/// meshio's version 4.0 has no entities, and the groups of cells as data under this name.
+/// Name of the data field under which meshio's version 4.0, which has no entities, stores the groups of cells.
 fn take_groups_from_data(mesh: &mut Mesh, remarks: &mut Remarks) {
     const NAME: &str = "gmsh:physical";
     let is_in_group = |block: &CellBlock| block.physical.lists().flatten().next().is_some();
@@ -431,7 +431,7 @@ fn remark_repeated_element_tags(blocks: &[CellBlock], remarks: &mut Remarks) {
     }
 }
 
-/// Whether the tags ascend within each block, and no two blocks overlap: then none is repeated, as in most files.
+/// Whether the tags ascend within each block and no two blocks overlap. Then no tag is repeated; most files are like that.
 fn have_ascending_tags_apart(blocks: &[CellBlock]) -> bool {
     let mut ranges = Vec::with_capacity(blocks.len());
     for block in blocks {

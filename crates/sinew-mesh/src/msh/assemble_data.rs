@@ -1,4 +1,4 @@
-//! From values under tags to values in the order of points and cells.
+//! Brings values under tags into the order of points and cells.
 
 use super::data::{Holder, RawData};
 use super::fault::Fault;
@@ -138,7 +138,7 @@ impl RawData {
     }
 }
 
-/// What happened to the rows of a section.
+/// Counts of the rows of a section by what became of them.
 #[derive(Default)]
 struct RowCount {
     given: Vec<bool>,
@@ -211,10 +211,10 @@ fn point_values(data: &RawData, points: usize, nodes: &TagIndex, rows: &mut RowC
     values
 }
 
-/// Finds cells by tag.
+/// Index of cells by tag.
 struct ElementIndex {
     first: TagIndex,
-    /// Where each block starts among all cells.
+    /// The position of each block's first cell among all cells.
     starts: Vec<usize>,
     /// Cells with the tag of an earlier one, and that one, among all cells.
     repeated: Vec<(usize, usize)>,

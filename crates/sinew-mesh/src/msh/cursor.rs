@@ -1,15 +1,15 @@
-//! A place in the bytes, moving forward only.
+//! A position in the bytes of a file that moves forward only.
 
 use super::fault::Fault;
 
-/// Longer tokens and lines belong to no .msh file; messages that quote them stay short too.
+/// Greatest length of a token or line. Longer ones belong to no .msh file, and messages that quote them stay short.
 pub(super) const LONGEST: usize = 4096;
 
 #[derive(Clone)]
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
     offset: usize,
-    /// Just after the last line break that was passed.
+    /// Offset behind the last line break that was passed.
     line_start: usize,
 }
 
@@ -35,7 +35,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// At a place in the bytes.
+    /// A cursor at an offset.
     pub(super) fn at(bytes: &'a [u8], offset: usize) -> Cursor<'a> {
         Cursor {
             bytes,
@@ -66,7 +66,7 @@ impl<'a> Cursor<'a> {
         self.rest().is_empty()
     }
 
-    /// Moves over blanks and line breaks; tells whether there was a line break.
+    /// Moves over blanks and line breaks. Returns whether there was a line break.
     #[inline]
     pub(super) fn skip_blanks(&mut self) -> bool {
         let mut passed_line_break = false;
@@ -159,7 +159,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The next bytes, whatever they are; nothing if there are not as many.
+    /// The next `length` bytes, or nothing if the file has fewer left.
     #[inline]
     pub(super) fn take(&mut self, length: usize) -> Option<&'a [u8]> {
         let taken = self.rest().get(..length)?;
@@ -190,7 +190,7 @@ fn short_number(bytes: [u8; 8]) -> (u64, usize) {
     (all, length)
 }
 
-/// The same for up to 19 digits.
+/// The number that up to 19 digits at the start of the bytes spell, and how many digits there are.
 fn long_number(bytes: &[u8]) -> Option<(u64, usize)> {
     let length = bytes
         .iter()
@@ -263,7 +263,7 @@ mod tests {
             assert_eq!(cursor.plain_number(), None, "{text:?}");
             assert_eq!(cursor.offset(), 0, "{text:?}");
         }
-        // Nothing tells that the last number of a file is complete: it is left to the slower way.
+        // The last number of a file may be cut off, so it is left to the slower way.
         assert_eq!(Cursor::new(b"12").plain_number(), None);
     }
 

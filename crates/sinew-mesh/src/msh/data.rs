@@ -2,13 +2,13 @@
 
 use super::cursor::{Cursor, LONGEST, Token, quoted};
 use super::fault::Fault;
+use super::framing::count_line;
 use super::header::{Encoding, Format};
 use super::number;
 use super::remarks::Remarks;
-use super::section::count_line;
 use super::source::{Binary, Bytes, Record, SizeWidth, Source, TagKind, Text};
 
-/// What the values of a section belong to.
+/// The holders of the values of a section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Holder {
     Nodes,
@@ -28,7 +28,7 @@ pub(super) struct RawData {
     /// For nodes of elements: how many nodes each row has.
     pub(super) node_counts: Vec<u32>,
     pub(super) values: Vec<f64>,
-    /// Where the section's numbers start.
+    /// Offset of the section's first number.
     pub(super) offset: usize,
 }
 
@@ -168,7 +168,7 @@ fn read_numbers<'a>(cursor: &mut Cursor<'a>) -> Result<[Token<'a>; 3], Fault> {
     Ok(numbers)
 }
 
-/// Tags are ints, whatever the manual says; but a writer that follows the manual is understood, too.
+/// Tags are ints in practice, other than gmsh's manual says. Files that follow the manual are read as well.
 fn read_binary_rows(
     cursor: &mut Cursor<'_>,
     binary: Binary,

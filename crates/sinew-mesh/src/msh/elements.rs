@@ -2,12 +2,12 @@
 
 use super::cursor::Cursor;
 use super::fault::Fault;
+use super::framing::count_line;
 use super::header::{Format, Version, with_source};
 use super::nodes::{Header, entity_of_block};
 use super::places::{Layout, RowPlaces};
 use super::remarks::Remarks;
 use super::rows_of_lines::read_row;
-use super::section::count_line;
 use super::source::{Record, Source, TagKind, Text};
 use super::tag_list::TagList;
 use crate::cell_type::CellType;
@@ -30,7 +30,7 @@ pub(super) struct RawBlock {
     pub(super) place: BlockPlace,
 }
 
-/// How a block's elements are attached to groups.
+/// The groups of a block's elements, as the file gives them.
 #[derive(Debug)]
 pub(super) enum RawGroups {
     /// Version 4: by the entity of the block, which stands at `offset`.
@@ -42,14 +42,14 @@ pub(super) enum RawGroups {
     },
 }
 
-/// Where a block's elements stand, for messages.
+/// The places of a block's elements in the file, for messages.
 #[derive(Debug)]
 pub(super) struct BlockPlace {
     number: BlockNumber,
     rows: RowPlaces,
 }
 
-/// How messages count the elements of a block.
+/// The way in which messages count the elements of a block.
 #[derive(Debug, Clone, Copy)]
 enum BlockNumber {
     /// Version 4: within the block with this number, from 1.
@@ -238,7 +238,7 @@ fn read_v2_runs(source: &mut impl Source, total: u64) -> Result<ElementSection, 
     Ok(blocks.into_section())
 }
 
-/// What stands before rows of one type with the same number of tags.
+/// The header of rows of one type with the same number of tags.
 struct Run {
     kind: CellType,
     rows: u64,

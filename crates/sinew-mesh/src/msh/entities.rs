@@ -1,4 +1,4 @@
-//! `$Entities` and `$PartitionedEntities`: which physical groups each geometrical entity belongs to.
+//! `$Entities` and `$PartitionedEntities`: the physical groups of each geometrical entity.
 
 use std::collections::HashMap;
 
@@ -76,7 +76,7 @@ pub(super) fn read_partitioned(
 
 struct Rows {
     version: Version,
-    /// Rows also tell the parent and the partitions.
+    /// Whether rows also give the parent and the partitions.
     are_parts: bool,
 }
 
@@ -133,7 +133,7 @@ impl Rows {
             source.int_list("partitions")?;
         }
         for _ in 0..self.bounds(dim) {
-            // Boxes are not used; gmsh writes 1e22 and meshio zeros for unknown ones.
+            // Boxes are not used: gmsh writes 1e22 and meshio zeros where it knows none.
             source.double("a bound of its box")?;
         }
         let physical = source.int_list("physical tags")?;

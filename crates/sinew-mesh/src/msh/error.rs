@@ -1,4 +1,4 @@
-//! What can be wrong with the bytes of a .msh file.
+//! Errors in the bytes of a .msh file.
 
 use crate::warning::Position;
 
@@ -11,31 +11,31 @@ pub enum MshError {
     /// The contents break the format or contradict themselves.
     #[error("{at}: {}{problem}; expected {expected}", before_problem(place))]
     Malformed {
-        /// Where.
+        /// Place in the file.
         at: Position,
         /// Section, block and row, e.g. `$Elements, block 2, element 17`; empty outside sections.
         place: String,
-        /// What is wrong.
+        /// The problem.
         problem: String,
-        /// What should stand there.
+        /// The contents that would be right there.
         expected: String,
     },
-    /// The file may be valid, but uses what this reader does not read.
+    /// The file may be valid, but uses a feature that this reader does not support.
     #[error("{at}: {}{problem}; {advice}", before_problem(place))]
     Unsupported {
-        /// Where.
+        /// Place in the file.
         at: Position,
         /// Section, block and row; empty outside sections.
         place: String,
-        /// What is not supported.
+        /// The feature that is not supported.
         problem: String,
-        /// What to do about it.
+        /// Advice to the user.
         advice: String,
     },
 }
 
 impl MshError {
-    /// Where in the file the error is.
+    /// Place of the error in the file.
     #[must_use]
     pub fn position(&self) -> Position {
         match self {

@@ -1,9 +1,9 @@
-//! An error on its way up: every level it passes adds where it is.
+//! An error on its way up. Every level that it passes adds its own place to it.
 
 use super::error::MshError;
 use crate::warning::Position;
 
-/// What is wrong, as the decoders report it. Boxed, because it is returned from the innermost loops.
+/// An error as the decoders report it. Boxed, because it is returned from the innermost loops.
 #[derive(Debug)]
 pub(super) struct Fault(Box<Details>);
 
@@ -34,7 +34,7 @@ impl Fault {
         }))
     }
 
-    /// The data end before they should; the place of the record will say of how many.
+    /// An error of data that end too early. The place of the record will add how many were declared.
     pub(super) fn shortage(
         offset: usize,
         problem: impl Into<String>,
@@ -45,7 +45,7 @@ impl Fault {
         fault
     }
 
-    /// The file may well be valid, but this reader does not know how to read it.
+    /// An error of a file that may be valid, but that this reader cannot read.
     pub(super) fn unsupported(
         offset: usize,
         problem: impl Into<String>,
@@ -98,7 +98,7 @@ impl Fault {
     }
 }
 
-/// Whether lines mean something in a file.
+/// Whether places in a file are given by line.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum Lines {
     #[default]
@@ -107,7 +107,7 @@ pub(super) enum Lines {
     DoNot,
 }
 
-/// Line, where lines count, and byte of an offset.
+/// The position of an offset: its byte, and its line in a text file.
 fn position(bytes: &[u8], offset: usize, lines: Lines) -> Position {
     let before = bytes.get(..offset).unwrap_or(bytes);
     let line = || before.iter().filter(|&&byte| byte == b'\n').count() as u64 + 1;

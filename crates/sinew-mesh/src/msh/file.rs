@@ -1,4 +1,4 @@
-//! Reading by path: the only place of this crate that opens files.
+//! Reading by path. No other part of this crate opens files.
 
 use std::fs;
 use std::io;
@@ -12,12 +12,12 @@ use crate::mesh::Mesh;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MshFileError {
-    /// There is no such file, or it may not be read.
+    /// The file does not exist or cannot be read.
     #[error("{}: cannot be read: {error}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         error: io::Error,
     },
     /// The path is a directory, pipe, device or socket.
@@ -25,7 +25,7 @@ pub enum MshFileError {
     NotAFile {
         /// The path.
         path: PathBuf,
-        /// What it is.
+        /// The kind of thing that it is.
         what: &'static str,
     },
     /// The contents are wrong.
@@ -33,7 +33,7 @@ pub enum MshFileError {
     Contents {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and where.
+        /// The problem and its place.
         error: Box<MshError>,
     },
 }

@@ -1,10 +1,10 @@
-//! What kind of file it is: other formats, and the `$MeshFormat` section.
+//! The kind of file: the `$MeshFormat` section, and other formats that are mistaken for .msh.
 
 use super::cursor::{Cursor, quoted};
 use super::fault::Fault;
+use super::framing::end_section;
 use super::number;
 use super::remarks::Remarks;
-use super::section::end_section;
 use super::source::{Binary, ByteOrder, SizeWidth};
 
 /// A version and its encoding.
@@ -14,16 +14,16 @@ pub(super) struct Format {
     pub(super) encoding: Encoding,
 }
 
-/// A version of the format, as far as versions differ.
+/// A version of the format. Versions that do not differ share a variant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Version {
     /// `2` and `2.0`: the dimension of physical names may be missing.
     V20,
     /// `2.1` and `2.2`.
     V22,
-    /// `4.0`, and `4` where the data say so.
+    /// `4.0`, and `4` where the data show it.
     V40,
-    /// `4.1`, and `4` where the data say so.
+    /// `4.1`, and `4` where the data show it.
     V41,
 }
 
@@ -39,7 +39,7 @@ pub(super) enum Encoding {
     Binary(Binary),
 }
 
-/// Evaluates an expression with the source of numbers that a format has at the cursor.
+/// Evaluates an expression with the source of numbers that fits a format, at the cursor.
 macro_rules! with_source {
     ($format:expr, $cursor:expr, $source:ident => $body:expr) => {
         match $format.encoding {
@@ -56,7 +56,7 @@ macro_rules! with_source {
 }
 pub(super) use with_source;
 
-/// Names the formats that also end in .msh, or are often mistaken for it.
+/// Refuses, by name, other formats that end in .msh or are often mistaken for it.
 pub(super) fn refuse_other_formats(bytes: &[u8]) -> Result<(), Fault> {
     let refuse = |what: &str| {
         Err(Fault::new(
@@ -79,8 +79,8 @@ pub(super) fn refuse_other_formats(bytes: &[u8]) -> Result<(), Fault> {
     }
 }
 
-/// The rest of the `$MeshFormat` section. `bare_four` is what version `4` stands for in a binary file, where the data
-/// cannot be looked at before they are read.
+/// Reads the rest of the `$MeshFormat` section. `bare_four` is the meaning of version `4` in a binary file, whose data
+/// cannot be inspected before they are read.
 pub(super) fn read(
     cursor: &mut Cursor<'_>,
     bare_four: Version,
@@ -167,7 +167,7 @@ pub(super) fn read(
     Ok(format)
 }
 
-/// A 1 as the file's ints are stored.
+/// Reads the number 1, which shows the byte order of the file's ints.
 fn byte_order(cursor: &mut Cursor<'_>) -> Result<ByteOrder, Fault> {
     let offset = cursor.offset();
     let expected = "the number 1 in 4 bytes, of either byte order";
@@ -182,7 +182,7 @@ fn byte_order(cursor: &mut Cursor<'_>) -> Result<ByteOrder, Fault> {
     }
 }
 
-/// What a bare `4` stands for: version 4.1 if the first line of `$Nodes` has four numbers, else 4.0.
+/// The meaning of a bare `4`: version 4.1 if the first line of `$Nodes` has four numbers, else 4.0.
 fn version_of_text(cursor: &Cursor<'_>) -> Version {
     let mut ahead = cursor.clone();
     while !ahead.is_at_end() {

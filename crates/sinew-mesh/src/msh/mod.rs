@@ -4,7 +4,7 @@
 //! sections, and one module for each section decodes its rows per format version into raw tables that still hold the
 //! file's tags. [`assemble`] then turns tags into indices, when all sections are known, in whatever order they came.
 //!
-//! Where the format leaves a question open, the answer is:
+//! The reader's answers to the questions that the format leaves open:
 //!
 //! | case | what the reader does |
 //! |---|---|
@@ -53,6 +53,7 @@ mod entities;
 mod error;
 mod fault;
 mod file;
+mod framing;
 mod header;
 mod nodes;
 mod number;
@@ -82,7 +83,7 @@ use remarks::Remarks;
 /// Points, cells, names and their order are those that meshio 5.3.5 gives, wherever meshio reads a file as it is meant. Beyond
 /// that, every cell has its groups in every version, data rows go by their tags, and what meshio refuses is read.
 ///
-/// What was tolerated stands in [`Mesh::warnings`].
+/// [`Mesh::warnings`] lists what was tolerated.
 ///
 /// # Errors
 ///

@@ -2,12 +2,12 @@
 
 use super::cursor::Cursor;
 use super::fault::Fault;
+use super::framing::count_line;
 use super::header::{Format, Version, with_source};
 use super::physical_names::dimension;
 use super::places::{Layout, RowPlaces};
 use super::remarks::Remarks;
 use super::rows_of_lines::read_row;
-use super::section::count_line;
 use super::source::{Record, Source, TagKind, Text};
 use crate::mesh::Entity;
 
@@ -16,7 +16,7 @@ use crate::mesh::Entity;
 pub(super) struct RawNodes {
     pub(super) tags: Vec<u64>,
     pub(super) points: Vec<[f64; 3]>,
-    /// Where the tag of each node stands.
+    /// The place of each node's tag in the file.
     pub(super) places: RowPlaces,
     /// Empty in version 2, except for nodes with parametric coordinates.
     pub(super) entities: Vec<Entity>,
@@ -63,7 +63,7 @@ pub(super) fn read_v2_bytes(
     Ok(total)
 }
 
-/// Rows of a node's tag, its coordinates, and numbers that are read over.
+/// Reads rows of a node's tag, its coordinates and numbers that are skipped.
 fn read_tagged_points(
     source: &mut impl Source,
     total: u64,
@@ -189,7 +189,7 @@ impl Header {
         })
     }
 
-    /// Warns if the header does not describe what the blocks hold.
+    /// Warns if the header contradicts the blocks.
     pub(super) fn compare(
         &self,
         section: &str,

@@ -3,7 +3,7 @@
 use super::cursor::{Token, quoted};
 use super::fault::Fault;
 
-/// A count or tag: decimal digits only, so that `-1`, `3.5` and what exceeds 64 bits are named, not misread.
+/// A count or tag: decimal digits only, so that `-1`, `3.5` and numbers beyond 64 bits are refused, not misread.
 pub(super) fn unsigned(token: Token<'_>, what: &str) -> Result<u64, Fault> {
     let digits = token.text;
     let value = digits.iter().try_fold(0u64, |value, byte| {
@@ -48,7 +48,7 @@ pub(super) fn double(token: Token<'_>, what: &str) -> Result<f64, Fault> {
         })
 }
 
-/// The number inside `np.float64(...)` or its like.
+/// The number inside `np.float64(...)` or a similar wrapper.
 pub(super) fn inside_repr(text: &[u8]) -> Option<&[u8]> {
     let call = text.strip_prefix(b"np.")?.strip_suffix(b")")?;
     ["float64(", "float32(", "int64(", "int32("]

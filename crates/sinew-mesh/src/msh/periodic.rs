@@ -33,12 +33,12 @@ pub(super) fn read(cursor: &mut Cursor<'_>, format: Format) -> Result<Vec<Period
             }
             as_gmsh
         }
-        // Version 2 has it as text in binary files, too.
+        // In version 2 it is text even in binary files.
         _ => read_text_links(cursor),
     }
 }
 
-/// How the numbers of links are stored.
+/// The encoding of the numbers of links.
 #[derive(Clone, Copy)]
 struct Layout {
     count_of_links: TagKind,
@@ -166,7 +166,7 @@ fn read_text_link(cursor: &mut Cursor<'_>) -> Result<PeriodicLink, Fault> {
     Ok(link)
 }
 
-/// `$GhostElements` without its last line. Ghosts repeat cells for the sake of other partitions; they are no cells.
+/// `$GhostElements` without its last line. Ghosts repeat the cells of other partitions; they are not cells themselves.
 pub(super) fn read_ghosts(source: &mut impl Source, version: Version) -> Result<u64, Fault> {
     let what = "the number of ghost elements";
     let count = source.size(what)?;

@@ -15,7 +15,7 @@ pub(super) type PhysicalNames = BTreeMap<(u8, i32), String>;
 /// Names by tag alone: version 2.0 has no column for the dimension.
 pub(super) type NamesWithoutDim = BTreeMap<i32, String>;
 
-/// What names are kept under.
+/// The tables that names are stored in.
 pub(super) struct Names<'n> {
     pub(super) version: Version,
     pub(super) names: &'n mut PhysicalNames,
@@ -104,7 +104,7 @@ fn is_tag_and_name(cursor: &Cursor<'_>) -> bool {
     is_number && ahead.rest().starts_with(b"\"")
 }
 
-/// What stands between the first and the last quote of this line.
+/// The text between the first and the last quote of this line.
 fn quoted_text<'a>(cursor: &mut Cursor<'a>) -> Result<Token<'a>, Fault> {
     let before = cursor.offset();
     let rest = cursor.rest();

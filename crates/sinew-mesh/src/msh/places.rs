@@ -1,4 +1,4 @@
-//! Where the rows of a table stand in the file, without a number for each row.
+//! The places of a table's rows in the file, stored without a number for each row.
 
 use super::cursor::Cursor;
 
@@ -15,14 +15,14 @@ struct Run {
     layout: Layout,
 }
 
-/// How to get from a row to the next.
+/// The way from one row to the next.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Layout {
-    /// Rows of so many bytes.
+    /// Rows of this many bytes.
     Bytes(usize),
-    /// Rows of so many words.
+    /// Rows of this many words.
     Words(usize),
-    /// Element rows of version 2 as text: two words, a count, as many words, and so many nodes.
+    /// Element rows of version 2 as text: two words, a count, that many words, and this many nodes.
     ElementWords { nodes: usize },
 }
 
@@ -36,7 +36,7 @@ impl RowPlaces {
         });
     }
 
-    /// The offset of a row. It is looked up when there is something to say about the row, which is rare.
+    /// The offset of a row. It is computed only for messages about the row, which are rare.
     pub(super) fn offset(&self, row: usize, bytes: &[u8]) -> usize {
         let after = self.runs.partition_point(|run| run.first_row <= row);
         let Some(run) = after.checked_sub(1).and_then(|i| self.runs.get(i)) else {

@@ -3,7 +3,7 @@
 use super::fault::Lines;
 use crate::warning::{Position, Warning};
 
-/// More warnings than this help nobody.
+/// Greatest number of warnings that are kept. More would help nobody.
 const KEPT: usize = 100;
 
 #[derive(Debug, Default)]
@@ -16,22 +16,22 @@ pub(super) struct Remarks {
 }
 
 impl Remarks {
-    /// From now on places are told by bytes only, because the file is binary.
+    /// Gives places by byte only from now on, because the file is binary.
     pub(super) fn lines_mean_nothing(&mut self) {
         self.lines = Lines::DoNot;
     }
 
-    /// Whether lines mean something, as far as the file has been read.
+    /// Whether places are given by line, as far as the file has been read.
     pub(super) fn lines(&self) -> Lines {
         self.lines
     }
 
-    /// A remark about one place of the file.
+    /// Adds a remark about one place of the file.
     pub(super) fn at(&mut self, offset: usize, message: impl Into<String>) {
         self.add(Some(offset), message.into());
     }
 
-    /// A remark about the file as a whole.
+    /// Adds a remark about the file as a whole.
     pub(super) fn general(&mut self, message: impl Into<String>) {
         self.add(None, message.into());
     }

@@ -1,4 +1,4 @@
-//! Version 2 text: one row per line by custom, a stream of numbers by gmsh's reading.
+//! Text of version 2, which by custom has one row per line and which gmsh reads as a stream of numbers.
 
 use super::cursor::Cursor;
 use super::fault::Fault;

@@ -5,15 +5,15 @@ use super::data::{self, Holder, RawData};
 use super::elements::{self, ElementSection};
 use super::entities::{self, Entities};
 use super::fault::Fault;
+use super::framing::{count_line, end_section};
 use super::header::{self, Encoding, Format, Version, with_source};
 use super::nodes::{self, RawNodes};
-use super::number;
 use super::periodic;
 use super::physical_names::{self, Names, NamesWithoutDim, PhysicalNames};
 use super::remarks::Remarks;
 use crate::mesh::PeriodicLink;
 
-/// Everything decoded, with the tags of the file.
+/// The decoded contents of a file, still under the tags of the file.
 #[derive(Default)]
 pub(super) struct Contents {
     pub(super) physical_names: PhysicalNames,
@@ -28,11 +28,11 @@ pub(super) struct Contents {
     pub(super) periodic: Vec<PeriodicLink>,
     pub(super) data: Vec<RawData>,
     pub(super) skipped: Vec<String>,
-    /// Where the file ends.
+    /// Offset of the file's end.
     pub(super) length: usize,
 }
 
-/// Decodes every section. `bare_four` is what version `4` stands for in a binary file.
+/// Decodes every section. `bare_four` is the meaning of version `4` in a binary file.
 pub(super) fn read_all(
     cursor: &mut Cursor<'_>,
     bare_four: Version,
@@ -265,13 +265,6 @@ fn read_elements(
     Ok((section, format!("the declared {total} elements")))
 }
 
-/// A count that stands on a line of its own, as text even in binary files.
-pub(super) fn count_line(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, Fault> {
-    let count = number::unsigned(cursor.token(what)?, what)?;
-    cursor.line_end(what)?;
-    Ok(count)
-}
-
 fn skip(
     cursor: &mut Cursor<'_>,
     offset: usize,
@@ -305,37 +298,4 @@ fn shown(name: &str) -> String {
         text.push_str("...");
     }
     text
-}
-
-/// Takes the `$End...` line. `after` names what stood before it.
-///
-/// Nothing but this line may follow the declared rows: more rows would be lost silently. If the file ends here, it may
-/// have been cut inside the last number, unless a line break closed that number's row.
-pub(super) fn end_section(
-    cursor: &mut Cursor<'_>,
-    name: &str,
-    after: &str,
-    remarks: &mut Remarks,
-) -> Result<(), Fault> {
-    let end = format!("$End{name}");
-    let row_was_closed = cursor.skip_blanks();
-    let offset = cursor.offset();
-    if cursor.is_at_end() {
-        if row_was_closed {
-            remarks.at(offset, format!("the file ends without {end}"));
-            return Ok(());
-        }
-        let problem =
-            format!("the file ends without {end}, in the last row, which may have been cut");
-        return Err(Fault::new(offset, problem, end));
-    }
-    let line = cursor.line();
-    if line == end.as_bytes() {
-        return Ok(());
-    }
-    Err(Fault::new(
-        offset,
-        format!("{} follows {after}", quoted(line)),
-        end,
-    ))
 }

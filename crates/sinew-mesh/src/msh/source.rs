@@ -1,7 +1,7 @@
-//! Where section decoders take their numbers from.
+//! The sources that section decoders take their numbers from.
 //!
-//! A decoder names the kind of each number; the source knows how that kind is encoded. So the text and the binary
-//! form of a version share one decoder. Long tables are read by a method each, which the two sources do in their own way.
+//! A decoder names the kind of each number, and the source knows how that kind is encoded. So the text and the binary
+//! form of a version share one decoder. Each long table has a method of its own, which the two sources implement differently.
 
 use super::cursor::{Cursor, Token};
 use super::fault::Fault;
@@ -23,12 +23,12 @@ pub(super) trait Source {
     fn least_bytes(&self, record: Record) -> u64;
     /// Bytes left in the file.
     fn bytes_left(&self) -> u64;
-    /// How rows of so many numbers follow each other.
+    /// The layout of rows of these numbers.
     fn layout(&self, row: Record) -> Layout;
 
     /// `count` node tags.
     fn node_tags(&mut self, count: usize, tags: &mut Vec<u64>) -> Result<(), Fault>;
-    /// Rows of three coordinates, and `parameters` numbers that are read over.
+    /// Rows of three coordinates and `parameters` numbers that are skipped.
     fn points(
         &mut self,
         rows: usize,
@@ -85,8 +85,8 @@ pub(super) trait Source {
         Ok([x, y, z])
     }
 
-    /// The count as a `usize`, if as many records can still follow: what is reserved for them is bounded by the
-    /// size of the file, whatever a count claims.
+    /// The count as a `usize`, if that many records can still follow. So the memory reserved for them is bounded by the
+    /// size of the file.
     fn room_for(&mut self, count: u64, what: &str, record: Record) -> Result<usize, Fault> {
         let offset = self.next_offset();
         let needed = count.checked_mul(self.least_bytes(record));
@@ -101,7 +101,7 @@ pub(super) trait Source {
         }
     }
 
-    /// A count of ints, and the ints.
+    /// A count and that many ints.
     fn int_list(&mut self, what: &str) -> Result<Vec<i32>, Fault> {
         let count_of = format!("the number of {what}");
         let count = self.size(&count_of)?;
@@ -125,14 +125,14 @@ fn negative(offset: usize, what: &str, value: i32) -> Fault {
     Fault::new(offset, problem, "a non-negative whole number")
 }
 
-/// How a tag is encoded in binary files; text makes no difference.
+/// The encoding of a tag in binary files. In text all tags look alike.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TagKind {
     Int,
     Size,
 }
 
-/// How many numbers of each kind a record has at least.
+/// The fewest numbers of each kind that a record has.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Record {
     pub(super) ints: u64,
@@ -148,7 +148,7 @@ impl Record {
         }
     }
 
-    /// So many tags, encoded as `kind`.
+    /// A record of `count` tags, encoded as `kind`.
     pub(super) fn tags(kind: TagKind, count: u64) -> Record {
         match kind {
             TagKind::Int => Record::ints(count),
@@ -169,16 +169,16 @@ impl Record {
     }
 }
 
-/// Numbers written as text, separated by blanks; line breaks mean nothing.
+/// Numbers written as text, separated by blanks or line breaks.
 pub(super) struct Text<'c, 'a> {
     cursor: &'c mut Cursor<'a>,
     reprs: Reprs,
 }
 
-/// Numbers as Python shows those of NumPy 2: `np.float64(0.5)`.
+/// Treatment of numbers that are spelled as Python shows those of NumPy 2: `np.float64(0.5)`.
 enum Reprs {
     Refuse,
-    /// And remember where the first one stands.
+    /// They are read. Holds the offset of the first one, once there is one.
     Accept(Option<usize>),
 }
 
@@ -198,7 +198,7 @@ impl<'c, 'a> Text<'c, 'a> {
         }
     }
 
-    /// Where the first number is spelled as Python shows it, if one is.
+    /// The offset of the first number that is spelled as Python shows it, if there is one.
     pub(super) fn first_repr(&self) -> Option<usize> {
         match self.reprs {
             Reprs::Accept(first) => first,
@@ -255,7 +255,7 @@ impl Source for Text<'_, '_> {
         }
     }
 
-    /// In text a tag is a tag, however large.
+    /// In text all tags are spelled alike, however large.
     #[inline]
     fn tag(&mut self, _: TagKind, what: &str) -> Result<u64, Fault> {
         self.size(what)
@@ -322,7 +322,7 @@ impl Source for Text<'_, '_> {
     }
 }
 
-/// How a binary file stores numbers.
+/// The way a binary file stores numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Binary {
     pub(super) order: ByteOrder,
@@ -379,7 +379,7 @@ impl<'c, 'a> Bytes<'c, 'a> {
             .ok_or_else(|| Fault::shortage(offset, "the file ends here", what))
     }
 
-    /// So many rows of so many bytes, and where they start.
+    /// The offset and the bytes of `rows` rows of `row_bytes` bytes each.
     fn rows(
         &mut self,
         rows: usize,

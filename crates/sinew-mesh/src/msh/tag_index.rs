@@ -1,8 +1,8 @@
-//! From tags, in any order and with gaps, to indices.
+//! Finds indices by tags, which may be in any order and have gaps.
 
 use std::collections::HashMap;
 
-/// Finds the index of a node or element by its tag.
+/// Index of nodes or elements by tag.
 pub(super) struct TagIndex {
     lookup: Lookup,
     least: u64,
@@ -18,7 +18,7 @@ enum Lookup {
 }
 
 impl TagIndex {
-    /// Knows the tags if they are consecutive, and otherwise none of them yet.
+    /// An index of the tags if they are consecutive, otherwise one that has none of them yet.
     pub(super) fn of_range(tags: &[u64]) -> TagIndex {
         let least = tags.iter().min().copied().unwrap_or(0);
         let greatest = tags.iter().max().copied().unwrap_or(0);
@@ -42,7 +42,7 @@ impl TagIndex {
         }
     }
 
-    /// Whether every tag has its index already.
+    /// Whether the index is complete.
     pub(super) fn is_complete(&self) -> bool {
         matches!(self.lookup, Lookup::Consecutive)
     }

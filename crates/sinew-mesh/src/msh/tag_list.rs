@@ -4,7 +4,7 @@
 #[derive(Debug, Default)]
 pub(super) struct TagList {
     narrow: Vec<u32>,
-    /// Used as soon as some tag does not fit into 32 bits.
+    /// All tags, as soon as one does not fit into 32 bits.
     wide: Vec<u64>,
 }
 

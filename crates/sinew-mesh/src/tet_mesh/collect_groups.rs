@@ -3,9 +3,11 @@
 use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
 
-use super::from_mesh::DROPPED;
-use super::{Group, GroupMembers};
+use super::group::{Group, GroupMembers};
 use crate::mesh::Mesh;
+
+/// Marks a node that no tetrahedron uses.
+pub(super) const DROPPED: u32 = u32::MAX;
 
 /// The groups of a mesh: `tet_tags` are the physical tags of each tetrahedron, `new_index` is for each point its index among
 /// the nodes that are kept, or [`DROPPED`].
@@ -38,7 +40,7 @@ pub(super) fn unnamed(dim: u8, tag: i32) -> String {
 
 struct Collector {
     collected: Vec<Collected>,
-    /// Where the group with a dimension and tag is collected.
+    /// Index into `collected` by dimension and tag.
     place: HashMap<(u8, i32), usize>,
 }
 

@@ -1,61 +1,13 @@
-//! From a mesh as a file holds it to the mesh a simulation needs.
+//! Turns a mesh as a file holds it into the mesh that a simulation needs.
 
 use std::collections::{BTreeMap, HashSet};
 
 use super::TetMesh;
-use super::collect_groups::collected_groups;
+use super::collect_groups::{DROPPED, collected_groups};
+use super::error::TetMeshError;
 use crate::cell_type::CellType;
 use crate::duplicates::duplicate_cells;
 use crate::mesh::{CellBlock, Mesh};
-
-/// A mesh cannot be simulated.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum TetMeshError {
-    /// There is nothing to simulate.
-    #[error("the mesh has no tetrahedra (it has {found}); a simulation needs 4-node tetrahedra")]
-    NoTetrahedra {
-        /// The cells there are, for reading.
-        found: String,
-    },
-    /// There are cells that cannot be simulated yet.
-    #[error(
-        "the mesh has {count} {kind} cells (the first has tag {element_tag}); only 4-node tetrahedra, with 3-node \
-         triangles, 2-node lines and vertices as groups, can be simulated so far"
-    )]
-    UnsupportedCells {
-        /// Their type.
-        kind: CellType,
-        /// How many.
-        count: usize,
-        /// The tag of the first.
-        element_tag: u64,
-    },
-    /// A cell names a node that does not exist.
-    #[error("{kind} with tag {element_tag} has node index {node}, but there are {nodes} nodes{}", up_to(*nodes))]
-    NodeOutOfRange {
-        /// Type of the cell.
-        kind: CellType,
-        /// Tag of the cell.
-        element_tag: u64,
-        /// The index it names.
-        node: u32,
-        /// Number of nodes.
-        nodes: usize,
-    },
-    /// More cells than a 32-bit index can count.
-    #[error("the mesh has {count} tetrahedra; at most {} are supported", u32::MAX)]
-    TooManyTetrahedra {
-        /// How many.
-        count: usize,
-    },
-}
-
-fn up_to(nodes: usize) -> String {
-    nodes
-        .checked_sub(1)
-        .map_or_else(String::new, |last| format!(" (0..={last})"))
-}
 
 impl Mesh {
     /// The tetrahedra of this mesh, the nodes they use and the physical groups.
@@ -108,9 +60,6 @@ impl Mesh {
         })
     }
 }
-
-/// Marks a node that no tetrahedron uses.
-pub(super) const DROPPED: u32 = u32::MAX;
 
 fn element_tag(block: &CellBlock, cell: usize) -> u64 {
     block

@@ -1,19 +1,27 @@
-//! The mesh a simulation needs: points, 4-node tetrahedra and groups.
+//! The mesh that a simulation needs: points, 4-node tetrahedra and groups.
 
+mod add_group;
+mod boundary;
 mod collect_groups;
+mod error;
+mod find_group;
 mod from_mesh;
 mod group;
 mod surface;
 mod to_mesh;
+mod vector;
 
-pub use from_mesh::TetMeshError;
-pub use group::{Group, GroupMembers, UnknownGroup};
+pub use add_group::AddGroupError;
+pub use error::TetMeshError;
+pub use find_group::UnknownGroup;
+pub use group::{Group, GroupMembers};
 pub(crate) use surface::OUTWARD_FACES;
 pub use surface::SurfaceError;
+pub(crate) use vector::{cross, dot, sub};
 
 /// Points, tetrahedra and groups, every point being a corner of some tetrahedron.
 ///
-/// The fields are open so that a mesh can be built by hand. The methods expect every index to be in range, as
+/// The fields are public so that a mesh can be built by hand. The methods expect every index to be in range, as
 /// [`Mesh::to_tet_mesh`](crate::Mesh::to_tet_mesh), [`TetMesh::new`] and the
 /// [`structured`](crate::structured) generators guarantee, and panic otherwise. Flat and inverted tetrahedra are
 /// allowed.
@@ -30,7 +38,7 @@ pub struct TetMesh {
     pub node_tags: Vec<u64>,
     /// The groups, highest dimension first, then by tag.
     pub groups: Vec<Group>,
-    /// What was merged or dropped on the way from the file, in sentences for the user.
+    /// Notes for the user, one sentence each, on what was merged or dropped on the way from the file.
     pub notes: Vec<String>,
 }
 
@@ -135,22 +143,6 @@ impl TetMesh {
         }
         (nearest.0, nearest.1.sqrt())
     }
-}
-
-pub(crate) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

@@ -35,17 +35,18 @@ pub enum SurfaceError {
     },
 }
 
-/// Where a face was found: tetrahedron and its node opposite the face.
+/// The tetrahedra at a face.
 #[derive(Clone, Copy)]
 struct Adjacent {
     tet: usize,
+    /// Its node opposite the face.
     opposite: u32,
     second_tet: Option<usize>,
 }
 
 impl TetMesh {
-    /// The given surface triangles, each turned so that its normal (counter-clockwise rule) points away from the one
-    /// tetrahedron it is a face of. The order is kept.
+    /// The given surface triangles, each turned so that its normal (counter-clockwise rule) points away from the only
+    /// tetrahedron of which it is a face. The order is kept.
     ///
     /// # Errors
     ///
@@ -68,7 +69,9 @@ impl TetMesh {
                         tet_tags,
                     })
                 }
-                Some(behind) => Ok(self.turned_outward(*triangle, behind)),
+                Some(Adjacent { tet, opposite, .. }) => {
+                    Ok(self.turned_outward(*triangle, tet, opposite))
+                }
             }
         });
         oriented.collect()
@@ -99,13 +102,14 @@ impl TetMesh {
         adjacent
     }
 
-    fn turned_outward(&self, triangle: [u32; 3], behind: Adjacent) -> [u32; 3] {
+    /// The triangle with its normal away from the tetrahedron `tet`, whose node opposite the triangle is `opposite`.
+    pub(super) fn turned_outward(&self, triangle: [u32; 3], tet: usize, opposite: u32) -> [u32; 3] {
         let [a, b, c] = triangle.map(|node| self.points[node as usize]);
-        let opposite = self.points[behind.opposite as usize];
-        let towards_inside = dot(cross(sub(b, a), sub(c, a)), sub(opposite, a));
+        let inner = self.points[opposite as usize];
+        let towards_inside = dot(cross(sub(b, a), sub(c, a)), sub(inner, a));
         let points_inward = if towards_inside == 0.0 {
             // A flat tetrahedron has no inside; go by its numbering, as if it were positively oriented.
-            !self.is_outward_by_numbering(triangle, behind)
+            !self.is_outward_by_numbering(triangle, tet, opposite)
         } else {
             towards_inside > 0.0
         };
@@ -113,12 +117,12 @@ impl TetMesh {
         if points_inward { [a, c, b] } else { [a, b, c] }
     }
 
-    fn is_outward_by_numbering(&self, triangle: [u32; 3], behind: Adjacent) -> bool {
-        let nodes = self.tets[behind.tet];
+    fn is_outward_by_numbering(&self, triangle: [u32; 3], tet: usize, opposite: u32) -> bool {
+        let nodes = self.tets[tet];
         let [a, b, c] = triangle;
-        nodes.iter().zip(OUTWARD_FACES).any(|(&opposite, face)| {
+        nodes.iter().zip(OUTWARD_FACES).any(|(&node, face)| {
             let face = face.map(|i| nodes[i]);
-            opposite == behind.opposite && [[a, b, c], [b, c, a], [c, a, b]].contains(&face)
+            node == opposite && [[a, b, c], [b, c, a], [c, a, b]].contains(&face)
         })
     }
 
@@ -135,7 +139,8 @@ impl TetMesh {
     }
 }
 
-fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
+/// The nodes of a triangle in ascending order.
+pub(super) fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
     triangle.sort_unstable();
     triangle
 }

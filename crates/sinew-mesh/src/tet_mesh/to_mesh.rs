@@ -1,4 +1,4 @@
-//! Back from a simulation's mesh to one that can be written.
+//! Turns a simulation's mesh into one that can be written to a file.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -114,7 +114,7 @@ fn blocks_by_groups<'a>(
     blocks
 }
 
-/// Gives the cells of lower dimension tags that no tetrahedron has, or everything new tags if there is no room.
+/// Gives the cells of lower dimension tags that no tetrahedron has, or new tags to all cells if there is no room.
 fn number_the_rest(cells: &mut [CellBlock], first_tet_block: usize) {
     let (lower, tets) = cells.split_at_mut(first_tet_block);
     let greatest = tets

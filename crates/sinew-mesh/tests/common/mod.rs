@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses some of these")]
 
-use sinew_mesh::{Mesh, MshError, read_msh};
+use sinew_mesh::{CellData, CellNodeData, Mesh, MshError, PeriodicLink, PointData, read_msh};
 
 pub(crate) mod encode;
 
@@ -83,6 +83,59 @@ $EndElements
 /// Reads a file that must be right.
 pub(crate) fn read(text: &str) -> Mesh {
     read_msh(text.as_bytes()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A mesh with all there is: data with gaps, links, groups, sparse tags.
+pub(crate) fn full_mesh() -> Mesh {
+    let mut mesh = read(TWO_REGIONS_41);
+    let nan = f64::NAN;
+    mesh.point_data = vec![
+        PointData {
+            name: "temperature".to_owned(),
+            step: 2,
+            time: 0.5,
+            components: 1,
+            values: vec![1.0, nan, -1e-300, 0.1, 5.0, nan],
+        },
+        PointData {
+            name: "displacement, größer".to_owned(),
+            step: 2,
+            time: 0.5,
+            components: 3,
+            values: (0..18).map(f64::from).collect(),
+        },
+    ];
+    mesh.cell_data = vec![CellData {
+        name: "energy".to_owned(),
+        step: -1,
+        time: 1e-9,
+        components: 1,
+        blocks: vec![vec![nan], vec![2.5], vec![3.5]],
+    }];
+    mesh.cell_node_data = vec![CellNodeData {
+        name: "stress".to_owned(),
+        step: 0,
+        time: 0.0,
+        components: 2,
+        blocks: vec![vec![nan; 6], (0..8).map(f64::from).collect(), vec![nan; 8]],
+    }];
+    mesh.periodic = vec![
+        PeriodicLink {
+            dim: 2,
+            entity: 3,
+            master: 4,
+            affine: (0..16).map(f64::from).collect(),
+            node_tags: vec![[10, 20], [30, 40]],
+        },
+        PeriodicLink {
+            dim: 0,
+            entity: 1,
+            master: 2,
+            affine: Vec::new(),
+            node_tags: Vec::new(),
+        },
+    ];
+    mesh
 }
 
 /// Reads a file that must be refused.

@@ -1,4 +1,4 @@
-//! From TOML to values: which keys a table has, what each must hold, and where it stands.
+//! Values from TOML: the keys of a table, what each must hold, and its place in the text.
 
 mod place;
 mod table;

@@ -1,4 +1,4 @@
-//! Where a table and its keys stand in the text.
+//! The place of a table and its keys in the text.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::error::{Fault, SceneError};
 use crate::source::SceneSource;
 
-/// A table of a scene: its name and where it and its keys stand.
+/// The name of a table of a scene, and the bytes of the text that hold it and its keys.
 #[derive(Debug, Clone)]
 pub(crate) struct Place {
     scene: Arc<SceneSource>,
@@ -46,17 +46,17 @@ impl Place {
         &self.name
     }
 
-    /// A fault of the whole table.
+    /// An error that points at the whole table.
     pub(crate) fn fault(&self, fault: Fault) -> SceneError {
         self.error(self.header.clone(), fault)
     }
 
-    /// A fault of a key's presence or name.
+    /// An error that points at a key; at the table where the key is not given.
     pub(crate) fn key_fault(&self, key: &str, fault: Fault) -> SceneError {
         self.error(self.keys.get(key).map(|place| place.key.clone()), fault)
     }
 
-    /// A fault of a key's value; of the whole table where the key is not given.
+    /// An error that points at a key's value; at the table where the key is not given.
     pub(crate) fn value_fault(&self, key: &str, fault: Fault) -> SceneError {
         self.error(self.keys.get(key).map(|place| place.value.clone()), fault)
     }

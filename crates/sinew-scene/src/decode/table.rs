@@ -14,7 +14,7 @@ use crate::source::SceneSource;
 
 type Keys = &'static [&'static str];
 
-/// A table whose keys were checked, to be asked for its values.
+/// A table whose keys were checked. Its methods read the values.
 pub(crate) struct Table<'a> {
     scene: &'a Arc<SceneSource>,
     entries: &'a DeTable<'a>,
@@ -23,7 +23,7 @@ pub(crate) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// The whole document, which has no keys beside `keys`.
+    /// The whole document; a key that is not in `keys` is an error.
     pub(crate) fn document(
         scene: &'a Arc<SceneSource>,
         entries: &'a DeTable<'a>,
@@ -61,7 +61,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// That a key means nothing here.
+    /// The error for a key that means nothing here.
     pub(crate) fn unknown(&self, key: &Spanned<DeString<'_>>) -> SceneError {
         let fault = Fault::UnknownKey {
             key: key.get_ref().clone().into_owned(),
@@ -71,7 +71,7 @@ impl<'a> Table<'a> {
         self.place.key_fault(key.get_ref(), fault)
     }
 
-    /// The entries beside the known keys.
+    /// The entries whose keys are not among the known ones.
     pub(crate) fn others(
         &self,
     ) -> impl Iterator<Item = (&'a Spanned<DeString<'a>>, &'a Spanned<DeValue<'a>>)> {
@@ -81,12 +81,12 @@ impl<'a> Table<'a> {
             .filter(move |(key, _)| !keys.contains(&key.get_ref().as_ref()))
     }
 
-    /// Where it stands.
+    /// The table's place in the text.
     pub(crate) fn place(&self) -> &Place {
         &self.place
     }
 
-    /// Gives up the table for its place.
+    /// Turns the table into its place in the text.
     pub(crate) fn into_place(self) -> Place {
         self.place
     }
@@ -95,7 +95,7 @@ impl<'a> Table<'a> {
         self.entries.contains_key(key)
     }
 
-    /// A key's value, if the key is there.
+    /// The value of a key, if the key is given.
     pub(crate) fn optional<T>(
         &self,
         key: &'static str,
@@ -114,7 +114,7 @@ impl<'a> Table<'a> {
             .map_err(|misfit| self.misfit(key, value, expected.to_owned(), misfit))
     }
 
-    /// A key's value.
+    /// The value of a key that must be given.
     pub(crate) fn required<T>(
         &self,
         key: &'static str,
@@ -125,7 +125,7 @@ impl<'a> Table<'a> {
             .ok_or_else(|| self.missing(key, expected))
     }
 
-    /// One of a few words, if the key is there.
+    /// The meaning of a key whose value is one of a few words, if the key is given.
     pub(crate) fn optional_choice<T: Copy>(
         &self,
         key: &'static str,
@@ -138,7 +138,7 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// One of a few words.
+    /// The meaning of a key whose value is one of a few words.
     pub(crate) fn choice<T: Copy>(
         &self,
         key: &'static str,
@@ -148,7 +148,7 @@ impl<'a> Table<'a> {
             .ok_or_else(|| self.missing(key, &any_of(choices)))
     }
 
-    /// The one key of `of` that is there.
+    /// The only key among `of` that is given; none or several are an error.
     pub(crate) fn exactly_one(&self, of: Keys) -> Result<&'static str, SceneError> {
         let found: Vec<&'static str> = of.iter().copied().filter(|key| self.has(key)).collect();
         match found[..] {
@@ -161,7 +161,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Refuses keys that make no sense here.
+    /// Returns an error if one of `keys` is given, for `reason`.
     pub(crate) fn refuse(&self, keys: Keys, reason: &str) -> Result<(), SceneError> {
         match keys.iter().copied().find(|key| self.has(key)) {
             None => Ok(()),
@@ -172,7 +172,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// A table within, if it is there.
+    /// A table inside this one, if it is given.
     pub(crate) fn table(
         &self,
         key: &'static str,
@@ -181,7 +181,7 @@ impl<'a> Table<'a> {
         self.open_table(key, keys)?.map(Table::closed).transpose()
     }
 
-    /// A table within that may have other keys beside `keys`.
+    /// A table inside this one that may have other keys than `keys`.
     pub(crate) fn open_table(
         &self,
         key: &'static str,
@@ -231,7 +231,7 @@ impl<'a> Table<'a> {
         items.iter().enumerate().map(table).collect()
     }
 
-    /// That a key is not there.
+    /// The error for a key that is missing.
     pub(crate) fn missing(&self, key: &'static str, expected: &str) -> SceneError {
         self.place.fault(Fault::Missing {
             key,
@@ -239,7 +239,7 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// That a value does not fit.
+    /// The error for a value that does not fit.
     pub(crate) fn misfit(
         &self,
         key: &str,
@@ -264,7 +264,7 @@ impl<'a> Table<'a> {
         self.place.value_fault(key, fault)
     }
 
-    /// A value as the user wrote it, on one line and not too long.
+    /// A value as the user wrote it, on one line and shortened.
     fn written(&self, value: &Spanned<DeValue<'_>>) -> String {
         const LONGEST: usize = 60;
         let text = self.scene.text().get(value.span()).unwrap_or_default();

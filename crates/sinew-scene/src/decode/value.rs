@@ -1,13 +1,13 @@
-//! What a single value may be.
+//! Readers of single values: numbers, texts, lists.
 
 use toml::de::{DeArray, DeValue};
 
-/// How a value does not fit.
+/// The way in which a value does not fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Misfit {
-    /// It is of the wrong type.
+    /// The type is wrong.
     Type,
-    /// It is of the right type, and still wrong.
+    /// The type is right, the value is not.
     Value,
 }
 
@@ -69,7 +69,7 @@ pub(crate) fn boolean(value: &DeValue<'_>) -> Result<bool, Misfit> {
     value.as_bool().ok_or(Misfit::Type)
 }
 
-/// A string with something in it.
+/// A string that is not blank.
 pub(crate) fn text(value: &DeValue<'_>) -> Result<String, Misfit> {
     let text = value.as_str().ok_or(Misfit::Type)?;
     satisfying(text.to_owned(), |text| !text.trim().is_empty())

@@ -1,24 +1,24 @@
-//! Paths that outputs go to, and outputs on their way.
+//! Paths that may be written, and outputs while they are written.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use super::OutputError;
+use super::error::OutputError;
 use super::identity::Input;
-use super::place::Place;
 use super::stream::Stream;
+use super::target::Target;
 use super::whole_file::WholeFile;
 
-/// A path that may be written.
+/// A path that was checked and may be written.
 ///
-/// | path | is |
+/// | path | what happens to it |
 /// | --- | --- |
-/// | `-`, `/dev/stdout` | standard output |
-/// | a character device or a pipe | written on as it is |
+/// | `-`, `/dev/stdout` | stands for standard output |
+/// | a character device or a pipe | written to as it is |
 /// | a new name in a folder that exists | written as a whole or not at all |
 /// | a file with a write bit that this run does not read | replaced as a whole or not at all; its mode stays |
-/// | an open file whose name was taken away | written on as it is |
-/// | a link | the same for what it leads to; the link stays |
+/// | an open file whose name was removed | written to as it is |
+/// | a link | its target is treated as above; the link stays |
 ///
 /// ```
 /// use sinew_scene::output::Destination;
@@ -33,33 +33,33 @@ use super::whole_file::WholeFile;
 pub struct Destination {
     path: PathBuf,
     inputs: Vec<Input>,
-    place: Place,
+    target: Target,
 }
 
-/// How far an output came.
+/// The part of an output that was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[must_use]
 pub enum Delivery {
     /// All of it was written.
     Whole,
-    /// The reader of a pipe went away before the end.
+    /// The reader of a pipe closed it before the end.
     ReaderLeft,
 }
 
 impl Destination {
-    /// Checks a path for a run that reads `inputs`; those that do not exist are passed over.
-    /// Nothing is made or changed.
+    /// Checks a path for a run that reads `inputs`; inputs that do not exist are ignored.
+    /// Creates and changes nothing.
     ///
     /// # Errors
     /// [`OutputError`] for a path that is refused.
     pub fn new(path: impl Into<PathBuf>, inputs: &[PathBuf]) -> Result<Self, OutputError> {
         let path = path.into();
         let inputs = Input::all(inputs);
-        let place = Place::find(&path, &inputs)?;
+        let target = Target::find(&path, &inputs)?;
         Ok(Self {
             path,
             inputs,
-            place,
+            target,
         })
     }
 
@@ -72,30 +72,30 @@ impl Destination {
     /// Whether the output goes to standard output, which should then hold nothing else.
     #[must_use]
     pub fn is_standard_output(&self) -> bool {
-        self.place == Place::StandardOutput
+        self.target == Target::StandardOutput
     }
 
     /// Whether the output goes to a device, a pipe, an open file or standard output, which are
-    /// written on and not replaced.
+    /// written to and not replaced.
     #[must_use]
     pub fn is_stream(&self) -> bool {
-        !matches!(self.place, Place::File(_))
+        !matches!(self.target, Target::File(_))
     }
 
-    /// Whether both outputs go to one file, so that the later would replace the earlier.
+    /// Whether both outputs go to the same file, so that the second would replace the first.
     pub(super) fn is_same_file(&self, other: &Self) -> bool {
-        self.place.is_same_file(&other.place)
+        self.target.is_same_file(&other.target)
     }
 
-    /// Begins the output. A named pipe waits for its reader.
+    /// Opens the output. A named pipe waits for its reader.
     ///
     /// # Errors
     /// [`OutputError::NotOpened`].
     pub fn open(self) -> Result<Output, OutputError> {
-        let sink = match &self.place {
-            Place::StandardOutput => Ok(Sink::stream(Stream::standard_output())),
-            Place::Stream => Stream::open(&self.path).map(Sink::stream),
-            Place::File(path) => WholeFile::create(path).map(Sink::Whole),
+        let sink = match &self.target {
+            Target::StandardOutput => Ok(Sink::stream(Stream::standard_output())),
+            Target::Stream => Stream::open(&self.path).map(Sink::stream),
+            Target::File(path) => WholeFile::create(path).map(Sink::Whole),
         };
         match sink {
             Ok(sink) => Ok(Output {
@@ -109,7 +109,7 @@ impl Destination {
         }
     }
 
-    /// Writes all of an output at once.
+    /// Writes the whole output at once.
     ///
     /// # Errors
     /// [`OutputError`]; a file that was there is then as it was.
@@ -122,8 +122,8 @@ impl Destination {
     }
 }
 
-/// An output on its way to its [`Destination`]. A file has another name until [`Output::finish`];
-/// dropped before that, it leaves nothing behind.
+/// An output that is being written to its [`Destination`]. A file has a temporary name until
+/// [`Output::finish`]; dropped before that, it leaves nothing behind.
 #[derive(Debug)]
 pub struct Output {
     destination: Destination,
@@ -143,7 +143,7 @@ impl Sink {
 }
 
 impl Output {
-    /// Whether the reader of a pipe went away, so that more output has nobody to go to.
+    /// Whether the reader of a pipe closed it, so that nobody reads further output.
     #[must_use]
     pub fn reader_left(&self) -> bool {
         match &self.sink {
@@ -152,7 +152,7 @@ impl Output {
         }
     }
 
-    /// Completes the output. A file gets its name now, if that may still be written.
+    /// Completes the output. A file gets its final name, if that may still be written.
     ///
     /// # Errors
     /// [`OutputError`]; a file that was there is then as it was.
@@ -167,11 +167,11 @@ impl Output {
         let Destination {
             path,
             inputs,
-            place,
+            target,
         } = destination;
         let finished = match (flushed, sink) {
             (Ok(()), Sink::Whole(file)) => {
-                if Place::find(&path, &inputs)? != place {
+                if Target::find(&path, &inputs)? != target {
                     return Err(OutputError::Changed { path });
                 }
                 file.finish()
@@ -184,7 +184,7 @@ impl Output {
         }
     }
 
-    /// The error of writing to it, with its path.
+    /// An error while writing, with the path.
     pub(crate) fn failed(&self, source: io::Error) -> OutputError {
         OutputError::Failed {
             path: self.destination.path.clone(),

@@ -1,9 +1,9 @@
-//! Why an output cannot be written.
+//! Errors of outputs.
 
 use std::io;
 use std::path::PathBuf;
 
-/// An output that is refused, or that failed while it was written. Every message names the path.
+/// Why an output was refused, or failed while it was written. Every message names the path.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum OutputError {
@@ -63,7 +63,7 @@ pub enum OutputError {
         /// The path.
         path: PathBuf,
     },
-    /// Neither a file nor something that takes a stream.
+    /// Something that is neither a file nor accepts a stream.
     #[error("cannot write {}: it is {kind}; expected a new name, a file, a pipe, a character device or - for standard output", path.display())]
     Unsuitable {
         /// The path.
@@ -71,13 +71,13 @@ pub enum OutputError {
         /// Its kind in words.
         kind: &'static str,
     },
-    /// A path that is something else than it was when the run began.
+    /// A path that now names something other than when the run began.
     #[error("cannot write {}: it was changed by others while the run went on; name another file and run again", path.display())]
     Changed {
         /// The path.
         path: PathBuf,
     },
-    /// A path that the system does not open for writing.
+    /// A path that the operating system does not open for writing.
     #[error("cannot write {}: {source}; name another file", path.display())]
     NotOpened {
         /// The path.
@@ -85,7 +85,7 @@ pub enum OutputError {
         /// The system's reason.
         source: io::Error,
     },
-    /// Writing that failed after it had begun, for instance for want of room.
+    /// A failure after writing had begun, for instance a full disk.
     #[error("writing {} failed: {source}", path.display())]
     Failed {
         /// The path.
@@ -96,14 +96,14 @@ pub enum OutputError {
 }
 
 impl OutputError {
-    /// Whether the path was refused, so that another one helps; otherwise writing failed.
+    /// Whether the path was refused, so that another path helps; otherwise writing failed.
     #[must_use]
     pub fn is_refusal(&self) -> bool {
         !matches!(self, Self::Failed { .. })
     }
 }
 
-/// The other name under which a run reads the file, where it has one.
+/// The path by which the run reads the file, if it differs from the refused one.
 fn as_input(path: &PathBuf, input: &PathBuf) -> String {
     if path == input {
         String::new()

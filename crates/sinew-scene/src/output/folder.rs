@@ -1,15 +1,16 @@
-//! Folders that several outputs go to.
+//! Folders for several outputs.
 
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
-use super::place::folder_of;
+use super::destination::Destination;
+use super::error::OutputError;
+use super::target::folder_of;
 use super::whole_file::WholeFile;
-use super::{Destination, OutputError};
 
-/// A folder for outputs, made when the first of them is written. Each file in it goes through the
-/// door of a [`Destination`].
+/// A folder for outputs, created when the first of them is written. Each file in it is written
+/// through a [`Destination`].
 #[derive(Debug, Clone)]
 pub struct OutputFolder {
     path: PathBuf,
@@ -17,7 +18,7 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// The folder at `path` for a run that reads `inputs`. Nothing is looked at yet.
+    /// The folder at `path` for a run that reads `inputs`. Nothing is checked yet.
     #[must_use]
     pub fn new(path: impl Into<PathBuf>, inputs: &[PathBuf]) -> Self {
         Self {
@@ -32,12 +33,12 @@ impl OutputFolder {
         &self.path
     }
 
-    /// Checks, before long work, that the folder is there or can be made, takes new files, and that
-    /// files of these names may be written in it, each a file of its own. Nothing stays of the
-    /// check.
+    /// Checks, before long work, that the folder exists or can be created, that it accepts new files,
+    /// and that files of these names may be written in it, no two of them the same file. Leaves no
+    /// trace.
     ///
     /// # Errors
-    /// [`OutputError`] for the first that is refused.
+    /// [`OutputError`] for the first path that is refused.
     pub fn check(&self, names: &[String]) -> Result<(), OutputError> {
         let folder = once_made(&self.path);
         let exists = |path: &&Path| path.as_os_str().is_empty() || path.symlink_metadata().is_ok();
@@ -68,7 +69,7 @@ impl OutputFolder {
             .try_for_each(|name| may_be_called(&self.path.join(name)))
     }
 
-    /// Checks the files in a folder that is there.
+    /// Checks the files in a folder that exists.
     fn check_files(&self, folder: &Path, names: &[String]) -> Result<(), OutputError> {
         let mut outputs: Vec<Destination> = Vec::with_capacity(names.len());
         for name in names {
@@ -84,7 +85,7 @@ impl OutputFolder {
         Ok(())
     }
 
-    /// Writes a file of this name and tells its path.
+    /// Writes a file of this name and returns its path.
     ///
     /// # Errors
     /// [`OutputError`]; a file that was there is then as it was.
@@ -95,14 +96,14 @@ impl OutputFolder {
             path: folder.to_owned(),
             source,
         })?;
-        // A reader that left asked for no more; there is nobody to tell.
+        // A reader that closed its pipe wants no more, which is no error.
         let _ = Destination::new(&path, &self.inputs)?.write(content)?;
         Ok(path)
     }
 }
 
-/// A folder's path without the folders that are made only to be left again: `new/..` is where `new`
-/// is made.
+/// A folder's path without folders that would be created only to be left again: `new/..` is the
+/// folder that holds `new`.
 fn once_made(path: &Path) -> PathBuf {
     let mut folder = PathBuf::new();
     for component in path.components() {
@@ -116,7 +117,7 @@ fn once_made(path: &Path) -> PathBuf {
     folder
 }
 
-/// Refuses a path that nothing can have, for instance one with too long a name.
+/// Refuses a path that no file can have, for instance one with too long a name.
 fn may_be_called(path: &Path) -> Result<(), OutputError> {
     match path.symlink_metadata() {
         Err(source) if source.kind() != ErrorKind::NotFound => Err(OutputError::NotOpened {

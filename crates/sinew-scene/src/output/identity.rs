@@ -1,4 +1,4 @@
-//! Files told apart by what they are rather than by how their paths are spelt.
+//! The identity of files, which does not depend on how their paths are spelt.
 
 use std::fs::{self, File, Metadata};
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ pub(super) struct Identity(u64, u64);
 pub(super) struct Identity(PathBuf);
 
 impl Identity {
-    /// That of the file which a path leads to; `None` where it leads to none.
+    /// Identity of the file at a path; `None` where there is none.
     pub(super) fn of(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok()?;
         Self::from_metadata(&metadata, path)
@@ -31,8 +31,8 @@ impl Identity {
         fs::canonicalize(path).ok().map(Self)
     }
 
-    /// That of standard output, where it is a file or a pipe. A device is not told from another use
-    /// of the same device.
+    /// Identity of standard output, where it is a file or a pipe. Of a device nothing is said: an input
+    /// may use the same one.
     #[cfg(unix)]
     pub(super) fn of_standard_output() -> Option<Self> {
         use std::os::fd::AsFd;
@@ -59,7 +59,7 @@ pub(super) struct Input {
 }
 
 impl Input {
-    /// Those of the paths that lead somewhere.
+    /// The inputs at the paths that exist.
     pub(super) fn all(paths: &[PathBuf]) -> Vec<Self> {
         let input = |path: &PathBuf| {
             let identity = Identity::of(path)?;
@@ -69,7 +69,7 @@ impl Input {
         paths.iter().filter_map(input).collect()
     }
 
-    /// The input that is this file, where one is.
+    /// The input that is this file, if one is.
     pub(super) fn same<'a>(inputs: &'a [Self], identity: &Identity) -> Option<&'a Self> {
         inputs.iter().find(|input| input.identity == *identity)
     }

@@ -1,16 +1,16 @@
-//! The one door through which commands write: what a path may name, and how it is written.
+//! All writing of the commands: which paths may be written, and how.
 //!
-//! A [`Destination`] is a path that was checked before the work began; [`Destination::open`] makes
-//! an [`Output`] of it. A file is written beside its own name and renamed when it is whole; devices,
-//! pipes and standard output are written to as they are. Everything else is refused, and so are the
-//! files that a run reads.
+//! A [`Destination`] is a path that was checked before the work began; [`Destination::open`] turns it
+//! into an [`Output`]. A file is written under a temporary name and renamed when it is complete;
+//! devices, pipes and standard output are written to as they are. Everything else is refused, and so
+//! are the files that the run reads.
 
 mod destination;
 mod error;
 mod folder;
 mod identity;
-mod place;
 mod stream;
+mod target;
 mod voice;
 mod whole_file;
 

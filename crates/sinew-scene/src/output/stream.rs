@@ -1,11 +1,11 @@
-//! Outputs that are written on as they are.
+//! Outputs that are written to as they are.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Stdout, Write};
 use std::path::Path;
 
-/// Standard output, a device, a pipe or an open file. A reader that goes away is no failure: the
-/// rest has nobody to go to and is dropped.
+/// Standard output, a device, a pipe or an open file. A reader that closes its pipe is no failure: the
+/// rest, which nobody reads, is dropped.
 #[derive(Debug)]
 pub(super) struct Stream {
     sink: Sink,
@@ -23,7 +23,7 @@ impl Stream {
         Self::on(Sink::StandardOutput(io::stdout()))
     }
 
-    /// Opens what is there; a pipe waits for its reader.
+    /// Opens what the path names; a pipe waits for its reader.
     pub(super) fn open(path: &Path) -> io::Result<Self> {
         let file = File::options().append(true).open(path)?;
         Ok(Self::on(Sink::Path(file)))
@@ -36,7 +36,7 @@ impl Stream {
         }
     }
 
-    /// Whether the reader of a pipe went away.
+    /// Whether the reader of a pipe closed it.
     pub(super) fn reader_left(&self) -> bool {
         self.reader_left
     }

@@ -1,11 +1,12 @@
-//! What commands say to people.
+//! Messages of the commands to people.
 
 use std::io::{self, ErrorKind, Write};
 use std::path::PathBuf;
 
-use super::{Destination, OutputError};
+use super::destination::Destination;
+use super::error::OutputError;
 
-/// Where a command speaks: not where its output goes, so that the output stays clean.
+/// The stream of a command's messages: not the one that its output goes to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Voice {
     /// Standard output.
@@ -15,9 +16,9 @@ pub enum Voice {
 }
 
 impl Voice {
-    /// The one that leaves an output to itself.
+    /// The stream that an output does not go to.
     #[must_use]
-    pub fn beside(destination: &Destination) -> Self {
+    pub fn apart_from(destination: &Destination) -> Self {
         if destination.is_standard_output() {
             Self::StandardError
         } else {
@@ -25,7 +26,7 @@ impl Voice {
         }
     }
 
-    /// Writes a text and the end of its line. A reader that went away is no failure.
+    /// Writes a text and the end of its line. A reader that closed the stream is no failure.
     ///
     /// # Errors
     /// [`OutputError::Failed`] when it cannot be written for any other reason.
@@ -50,7 +51,7 @@ fn line(mut stream: impl Write, text: &str) -> io::Result<()> {
     stream.flush()
 }
 
-/// Writes a text and the end of its line to standard output. A reader that went away is no failure.
+/// Writes a text and the end of its line to standard output. A reader that closed it is no failure.
 ///
 /// # Errors
 /// [`OutputError::Failed`] when it cannot be written for any other reason.
@@ -58,7 +59,7 @@ pub fn say(text: &str) -> Result<(), OutputError> {
     Voice::StandardOutput.say(text)
 }
 
-/// Writes a warning or an error to standard error. Where that fails there is nobody left to tell.
+/// Writes a warning or an error to standard error. Ignores a failure, as there is no other way to report it.
 pub fn complain(text: &str) {
     let _ = Voice::StandardError.say(text);
 }

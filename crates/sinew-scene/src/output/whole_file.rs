@@ -1,13 +1,13 @@
-//! Files that are there as a whole or not at all.
+//! Files that are complete or absent.
 
 use std::fs::{self, File, Metadata};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::place::folder_of;
+use super::target::folder_of;
 
-/// A file under a temporary name beside its own until [`WholeFile::finish`]: readers see the old
+/// A file under a temporary name in the same folder until [`WholeFile::finish`]: readers see the old
 /// file or the new one, never a part. Dropped before that, it leaves nothing behind.
 #[derive(Debug)]
 pub(super) struct WholeFile {
@@ -17,7 +17,7 @@ pub(super) struct WholeFile {
 }
 
 impl WholeFile {
-    /// Starts a file that will be called `path`, with the mode of the one that is there.
+    /// Starts a file that will be called `path`, with the mode of the file that it replaces.
     pub(super) fn create(path: &Path) -> io::Result<Self> {
         let (temporary, file) = temporary_in(folder_of(path))?;
         let started = Self {
@@ -39,7 +39,7 @@ impl WholeFile {
                 .and_then(|file| file.sync_all())
                 .and_then(|()| fs::rename(&self.temporary, &self.path));
             if named.is_err() {
-                // The first error is the one to tell; most often there is nothing left to remove.
+                // The first error is reported; usually there is nothing left to remove.
                 let _ = fs::remove_file(&self.temporary);
             }
             named?;
@@ -64,32 +64,33 @@ impl Write for WholeFile {
 impl Drop for WholeFile {
     fn drop(&mut self) {
         if self.file.take().is_some() {
-            // Nobody can be told of a failure here.
+            // A failure cannot be reported here.
             let _ = fs::remove_file(&self.temporary);
         }
     }
 }
 
-/// A new file in the same folder, so that renaming never copies, under a name that no other writer
-/// uses and that is short however long the file's own is.
+/// Creates a file in the same folder, so that renaming never copies, under a name that no other writer
+/// uses and that is short however long the final name is.
 fn temporary_in(folder: &Path) -> io::Result<(PathBuf, File)> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     loop {
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
         let path = folder.join(format!(".sinew-{}-{count}.tmp", std::process::id()));
         match File::create_new(&path) {
-            // Left by a process of this number that was killed.
+            // Left behind by a killed process with the same id.
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
             created => return created.map(|file| (path, file)),
         }
     }
 }
 
-/// Gives a file the owner and the mode of the one that it will replace, as far as we may.
+/// Gives a file the owner and the mode of the file that it will replace, as far as we may.
 #[cfg(unix)]
 fn keep_access(old: &Metadata, file: &File) {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
-    /// Who may read, write and run: without set-user-id and its like, which new content must earn.
+    /// The bits for reading, writing and execution, without set-user-id and the like, which must not pass
+    /// to new content.
     const ACCESS: u32 = 0o777;
     let _ = fchown(file, Some(old.uid()), Some(old.gid()));
     let _ = file.set_permissions(fs::Permissions::from_mode(old.mode() & ACCESS));

@@ -1,37 +1,31 @@
-//! The body: mesh, materials, supports, loads, start and probes.
+//! Sections about the body: mesh, materials, supports, loads, initial state and probes.
 
-use sinew_fem::{Law, LoadFacts, LoadKind, LoadSpec, ModelReport, Region, RegionFacts, SpringRule};
+use sinew_core::Ramp;
+use sinew_fem::{Course, LoadFacts, LoadKind, LoadSpec, ModelReport, Region, RegionFacts};
 use sinew_mesh::structured::Split;
 use sinew_mesh::{GroupMembers, TetMesh};
 
-use super::Plan;
-use super::number::{length, short, vector};
-use crate::scene::{Body, Initial, MeshSource};
-use crate::simulation::{BodyModel, Probe, cells_of};
+use super::section::PlanSection;
+use crate::number::{count, length, short, vector};
+use crate::scene::{Body, Initial, MeshSource, Way};
+use crate::simulation::{BodyModel, Probe};
 
-pub(super) fn describe(body: &Body, built: &BodyModel, probes: &[Probe], plan: &mut Plan) {
+/// The sections about a body and its probes.
+pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<PlanSection> {
     let report = built.model.report();
-    plan.add("mesh", mesh(body, built, report));
     let regions = body.problem.regions.iter().zip(&report.regions);
-    plan.add(
-        "regions",
-        regions
-            .flat_map(|(region, facts)| material(region, facts))
-            .collect(),
-    );
-    plan.add("damping", vec![damping(body, report)]);
-    plan.add("fixed", supports(body, built, report));
-    plan.add("loads", loads(body, report));
-    plan.add(
-        "initial",
-        body.initial
-            .iter()
-            .map(|initial| start(initial, built))
-            .collect(),
-    );
-    plan.add("probes", probes.iter().map(probe).collect());
-    plan.warnings
-        .extend(built.mesh_warnings.iter().chain(&report.notes).cloned());
+    let regions = regions.flat_map(|(region, facts)| material(region, facts));
+    let initial = body.initial.iter().map(|initial| start(initial, built));
+    vec![
+        PlanSection::new("mesh", mesh(body, built, report)),
+        PlanSection::new("regions", regions.collect()),
+        PlanSection::new("damping", vec![damping(body, report)]),
+        PlanSection::new("fixed", supports(body, built, report)),
+        PlanSection::new("moves", moves(body, built)),
+        PlanSection::new("loads", loads(body, report)),
+        PlanSection::new("initial", initial.collect()),
+        PlanSection::new("probes", probes.iter().map(probe).collect()),
+    ]
 }
 
 fn mesh(body: &Body, built: &BodyModel, report: &ModelReport) -> Vec<String> {
@@ -85,43 +79,18 @@ fn material(region: &Region, facts: &RegionFacts) -> Vec<String> {
         "{group}: {} tetrahedra, {} kg/m3",
         facts.tets, region.density
     );
-    match region.law {
-        Law::Linear {
-            youngs_modulus,
-            poissons_ratio,
-        } => vec![format!(
-            "{head}, linear elastic, E = {youngs_modulus} Pa, nu = {poissons_ratio}"
-        )],
-        Law::Springs {
-            youngs_modulus,
-            rule,
-            calibrate,
-            ..
-        } => {
-            let rule = match rule {
-                SpringRule::Lloyd => "lloyd",
-                SpringRule::VanGelder => "van-gelder",
-            };
-            let scaled = if calibrate {
-                "calibrated"
-            } else {
-                "not calibrated"
-            };
-            let mut lines = vec![format!(
-                "{head}, springs \"{rule}\" {scaled}, E = {youngs_modulus} Pa, nu = 1/4 by nature"
-            )];
-            lines.extend(facts.network.map(|network| {
-                let share = |modulus: f64| short(modulus / youngs_modulus);
-                format!(
-                    "its springs average to {} E (Voigt), {} to {} E by direction",
-                    share(network.voigt),
-                    share(network.softest),
-                    share(network.stiffest)
-                )
-            }));
-            lines
-        }
-    }
+    let mut lines = vec![format!("{head}, {}", region.law)];
+    lines.extend(facts.network.map(|network| {
+        let youngs_modulus = region.law.youngs_modulus();
+        let share = |modulus: f64| short(modulus / youngs_modulus);
+        format!(
+            "its springs average to {} E (Voigt), {} to {} E by direction",
+            share(network.voigt),
+            share(network.softest),
+            share(network.stiffest)
+        )
+    }));
+    lines
 }
 
 fn damping(body: &Body, report: &ModelReport) -> String {
@@ -146,20 +115,14 @@ fn damping(body: &Body, report: &ModelReport) -> String {
 }
 
 fn supports(body: &Body, built: &BodyModel, report: &ModelReport) -> Vec<String> {
-    if body.problem.fixed.is_empty() {
+    if body.problem.fixed.is_empty() && body.motions.is_empty() {
         return vec![format!(
             "nothing: all {} degrees of freedom move",
             report.mesh_dofs
         )];
     }
-    let fixed = body.problem.fixed.iter().map(|fixed| {
-        let axes = ["x", "y", "z"]
-            .iter()
-            .zip(fixed.axes)
-            .filter(|(_, held)| *held);
-        let axes: Vec<&str> = axes.map(|(axis, _)| *axis).collect();
-        format!("`{}` in {}", fixed.group, axes.join(", "))
-    });
+    let fixed = body.problem.fixed.iter();
+    let fixed = fixed.map(|fixed| format!("{} in {}", fixed.on, axes(fixed.axes)));
     let mut lines: Vec<String> = fixed.collect();
     let cells = built.model.nodes().len();
     lines.push(format!(
@@ -174,13 +137,59 @@ fn supports(body: &Body, built: &BodyModel, report: &ModelReport) -> Vec<String>
         .count();
     if pinned > 0 {
         lines.push(format!(
-            "{pinned} held components stay beside moving ones of their node"
+            "{pinned} held components belong to nodes that move in other directions"
         ));
     }
     lines
 }
 
+/// The letters of some axes.
+fn axes(named: [bool; 3]) -> String {
+    let letters = ["x", "y", "z"].into_iter().zip(named);
+    let letters: Vec<&str> = letters
+        .filter_map(|(axis, named)| named.then_some(axis))
+        .collect();
+    letters.join(", ")
+}
+
+fn moves(body: &Body, built: &BodyModel) -> Vec<String> {
+    let facts = built.model.report().moves.iter();
+    let moves = body.motions.iter().zip(&built.problem.moves).zip(facts);
+    let lines = moves.map(|((motion, moving), facts)| {
+        let way = match &motion.way {
+            Way::Displacement(displacement, ramp) => {
+                format!("to {} m {}", vector(*displacement), ramp.describe())
+            }
+            Way::Velocity(velocity) => format!("at {} m/s from t = 0", vector(*velocity)),
+            Way::Table(path) => format!("by {}{}", path.display(), rows(&moving.courses)),
+        };
+        format!(
+            "`{}` in {}, {}: {way}",
+            motion.group,
+            axes(motion.axes),
+            count(facts.nodes, "node")
+        )
+    });
+    lines.collect()
+}
+
+/// The rows of a table and the time they cover.
+fn rows(courses: &[Course]) -> String {
+    let times = courses.iter().find_map(|course| match &course.ramp {
+        Ramp::Table { times, .. } => Some((times.len(), times.first()?, times.last()?)),
+        _ => None,
+    });
+    match times {
+        Some((rows, from, to)) => format!(", {} from {from} s to {to} s", count(rows, "row")),
+        None => ", which stays at rest".to_owned(),
+    }
+}
+
 fn loads(body: &Body, report: &ModelReport) -> Vec<String> {
+    let supports = match body.motions.is_empty() {
+        true => "fixed nodes",
+        false => "fixed or moved nodes",
+    };
     let named = body
         .problem
         .loads
@@ -192,46 +201,42 @@ fn loads(body: &Body, report: &ModelReport) -> Vec<String> {
             let name = name
                 .as_ref()
                 .map_or_else(String::new, |name| format!("\"{name}\", "));
-            format!("{name}{}: {}", described(load), resultant(facts))
+            format!("{name}{}: {}", described(load), resultant(facts, supports))
         })
         .collect();
     if let (Some(gravity), Some(facts)) = (body.problem.gravity, &report.gravity) {
         lines.push(format!(
             "gravity {} m/s2: {}",
             vector(gravity),
-            resultant(facts)
+            resultant(facts, supports)
         ));
     }
     lines
 }
 
 fn described(load: &LoadSpec) -> String {
-    use sinew_core::Ramp;
     let kind = match load.kind {
         LoadKind::Traction(traction) => format!("traction {} Pa", vector(traction)),
         LoadKind::Pressure(pressure) => format!("pressure {pressure} Pa"),
         LoadKind::Force(force) => format!("force {} N", vector(force)),
     };
-    let ramp = match &load.ramp {
-        Ramp::Step => "from t = 0".to_owned(),
-        Ramp::Sin2 { rise } => format!("rising for {rise} s"),
-        Ramp::Pulse { from, to } => format!("from {from} s to {to} s"),
-        Ramp::Table { times, .. } => format!("by a table of {} points", times.len()),
-    };
-    format!("{kind} on `{}` {ramp}", load.group)
+    let ramp = load.ramp.describe();
+    format!("{kind} on {} {ramp}", load.on)
 }
 
-fn resultant(facts: &LoadFacts) -> String {
+/// Resultants of a load, with the name of the nodes that do not move by themselves.
+fn resultant(facts: &LoadFacts, supports: &str) -> String {
     let lost: [f64; 3] = std::array::from_fn(|i| facts.asked[i] - facts.acting[i]);
     let (asked, acting, lost) = (length(facts.asked), length(facts.acting), length(lost));
     if lost <= 1e-9 * asked.max(acting) {
         return format!("{} N act", short(acting));
     }
     format!(
-        "{} N asked, {} N act, {} N fall on fixed nodes",
+        "{} N asked, {} N act, {} N fall on {}",
         short(asked),
         short(acting),
-        short(lost)
+        short(lost),
+        supports
     )
 }
 
@@ -256,7 +261,7 @@ fn start(initial: &Initial, built: &BodyModel) -> String {
     let of = group
         .as_ref()
         .map_or_else(|| "the whole body".to_owned(), |name| format!("`{name}`"));
-    match cells_of(group.as_deref(), built) {
+    match built.cells_of(group.as_deref()) {
         Ok((cells, nodes)) => format!("{what} of {of}: {} of {nodes} nodes move", cells.len()),
         Err(error) => error.to_string(),
     }
@@ -265,6 +270,7 @@ fn start(initial: &Initial, built: &BodyModel) -> String {
 fn probe(probe: &Probe) -> String {
     let held = match probe.dofs.iter().filter(|dof| dof.is_none()).count() {
         0 => "",
+        _ if probe.courses.iter().any(|courses| !courses.is_empty()) => ", moved",
         3 => ", held in x, y and z",
         _ => ", held in some directions",
     };

@@ -1,13 +1,14 @@
-//! The run: steps, and whether they are short enough.
+//! Section about the run: its steps, and whether they are short enough.
 
 use sinew_core::{StableStep, element_omegas_squared};
 
-use super::Plan;
-use super::number::{count, short};
+use super::section::PlanSection;
+use crate::number::{count, short};
 use crate::scene::{RunSettings, TimeStep};
 use crate::simulation::Simulation;
 
-pub(super) fn describe(simulation: &Simulation, plan: &mut Plan) {
+/// The section about the run.
+pub(super) fn section(simulation: &Simulation) -> PlanSection {
     let RunSettings {
         duration,
         samples,
@@ -35,49 +36,21 @@ pub(super) fn describe(simulation: &Simulation, plan: &mut Plan) {
             samples + 1
         ),
     ];
-    let stable_step = match simulation.integrator() {
-        Ok(integrator) => integrator
-            .stable_step(simulation.system())
-            .map_err(|e| e.to_string()),
-        Err(error) => Err(error.to_string()),
-    };
-    match stable_step {
-        Ok(stable_step) => {
-            lines.push(match stable_step {
-                StableStep::Any => format!("`{id}` is stable at any step"),
-                StableStep::UpTo(limit) if limit > 0.0 => {
-                    format!("`{id}` is stable up to dt = {} s", short(limit))
-                }
-                StableStep::UpTo(_) => format!("`{id}` is stable at no step"),
-                StableStep::Unknown => format!("`{id}` cannot tell up to which step it is stable"),
-            });
-            if stable_step.allows(*dt) == Some(false) {
-                plan.warnings.push(match stable_step {
-                    StableStep::UpTo(limit) if limit > 0.0 => format!(
-                        "dt = {dt} s is {} times the stable step of `{id}`, {} s",
-                        short(dt / limit),
-                        short(limit)
-                    ),
-                    _ => format!("`{id}` is unstable on this scene at any dt"),
-                });
+    if let Ok(stable_step) = simulation.stable_step() {
+        lines.push(match stable_step {
+            StableStep::Any => format!("`{id}` is stable at any step"),
+            StableStep::UpTo(limit) if limit > 0.0 => {
+                format!("`{id}` is stable up to dt = {} s", short(limit))
             }
-            if let StableStep::UpTo(limit) = stable_step
-                && limit > 0.0
-            {
-                lines.extend(stiffest_element(simulation));
-            }
-            if stable_step == StableStep::Unknown {
-                plan.warnings.push(format!(
-                    "nothing is known about the step up to which `{id}` is stable here: its motion may grow at \
-                     dt = {dt} s; `central-difference` knows its step"
-                ));
-            }
-            plan.stable_step = stable_step;
+            StableStep::UpTo(_) => format!("`{id}` is stable at no step"),
+            StableStep::Unknown => format!("`{id}` cannot tell up to which step it is stable"),
+        });
+        if matches!(stable_step, StableStep::UpTo(limit) if limit > 0.0) {
+            lines.extend(stiffest_element(simulation));
         }
-        Err(error) => plan.warnings.push(error),
     }
-    // A method that makes patches names the elements they hold. Methods without a largest stable
-    // step have nothing of the kind to say, and a set-up that is dear.
+    // The remarks of a method with patches name the elements in them. Methods without a largest
+    // stable step make no such remarks, and their set-up is costly.
     let entries = sinew_integrators::entries();
     let has_limit = entries.iter().any(|entry| entry.id == id && entry.substeps);
     if has_limit
@@ -86,20 +59,13 @@ pub(super) fn describe(simulation: &Simulation, plan: &mut Plan) {
     {
         lines.extend(integrator.remarks());
     }
-    plan.warnings.extend(simulation.refused_load());
-    plan.warnings.extend(simulation.unresolved_load());
-    if dt > duration {
-        plan.warnings.push(format!(
-            "dt = {dt} s is longer than the duration, {duration} s"
-        ));
-    }
-    plan.add("run", lines);
+    PlanSection::new("run", lines)
 }
 
-/// Elements whose own step is shorter than half the usual stand out.
+/// Share of the median element's step below which the step of an element stands out.
 const STANDS_OUT: f64 = 0.5;
 
-/// Which element sets the step, if one does.
+/// A sentence about the element that sets the step, if one does.
 fn stiffest_element(simulation: &Simulation) -> Option<String> {
     let linear = simulation.system().as_linear()?;
     let elements = linear.elements()?;
@@ -108,17 +74,17 @@ fn stiffest_element(simulation: &Simulation) -> Option<String> {
     let step = |omega_squared: f64| 2.0 / omega_squared.max(0.0).sqrt();
     let mut steps: Vec<(f64, usize)> = omegas.iter().map(|w2| step(*w2)).zip(0..).collect();
     steps.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (&(shortest, worst), &(usual, _)) = (steps.first()?, steps.get(steps.len() / 2)?);
-    if shortest >= STANDS_OUT * usual {
+    let (&(shortest, worst), &(median, _)) = (steps.first()?, steps.get(steps.len() / 2)?);
+    if shortest >= STANDS_OUT * median {
         return Some("no element sets the step alone: all allow about the same".to_owned());
     }
-    let below = steps.partition_point(|(step, _)| *step < STANDS_OUT * usual);
+    let below = steps.partition_point(|(step, _)| *step < STANDS_OUT * median);
     Some(format!(
-        "{} sets the step: alone it would allow {} s, the usual element {} s; {} below half of \
+        "{} sets the step: alone it would allow {} s, the median element {} s; {} below half of \
          that, for which `central-difference` has patches = \"auto\"",
         elements.name(worst),
         short(shortest),
-        short(usual),
+        short(median),
         if below == 1 {
             "no other is".to_owned()
         } else {

@@ -1,6 +1,6 @@
 //! `[[fixed]]`: supports.
 
-use sinew_fem::Fixed;
+use sinew_fem::{Fixed, On};
 use toml::de::DeValue;
 
 use crate::decode::value::{Misfit, text};
@@ -14,11 +14,17 @@ pub(super) fn read_all(document: &Table<'_>) -> Result<(Vec<Fixed>, Vec<Place>),
 }
 
 fn read(table: &Table<'_>) -> Result<Fixed, SceneError> {
-    let expected = "some of the letters x, y and z, each once";
     Ok(Fixed {
-        group: table.required("group", "the name of a group", text)?,
-        axes: table.optional("axes", expected, axes)?.unwrap_or([true; 3]),
+        on: On::Group(table.required("group", "the name of a group", text)?),
+        axes: axes_of(table)?,
     })
+}
+
+/// The axes that a table names; all where it names none.
+pub(super) fn axes_of(table: &Table<'_>) -> Result<[bool; 3], SceneError> {
+    let expected = "some of the letters x, y and z, each once";
+    let named = table.optional("axes", expected, axes)?;
+    Ok(named.unwrap_or([true; 3]))
 }
 
 fn axes(value: &DeValue<'_>) -> Result<[bool; 3], Misfit> {

@@ -1,11 +1,11 @@
-//! `[[initial]]`: how the body is bent and moves at t = 0.
+//! `[[initial]]`: displacement and velocity at t = 0.
 
-use super::GRAVITY;
+use super::keys::GRAVITY;
 use crate::decode::value::{Misfit, list, text, vector};
 use crate::decode::{Place, Table};
 use crate::error::{Fault, SceneError};
 
-/// A part of the state at t = 0. What several of them say about a node, the last one decides.
+/// A part of the state at t = 0. Where several parts set the same node, the last one counts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Initial {
     /// The same displacement (m) for all nodes of a group.
@@ -28,7 +28,7 @@ pub enum Initial {
         group: Option<String>,
         /// Strain along x, y, z.
         strain: [f64; 3],
-        /// The point that stays where it is (m).
+        /// The point that does not move (m).
         origin: [f64; 3],
     },
     /// The displacement of the whole body at rest under loads at their full value.
@@ -47,7 +47,7 @@ const KEYS: &[&str] = &[
     "static",
 ];
 
-/// `load_names` are those that a static state may name.
+/// Reads all parts; a static state may name the loads in `load_names`, and gravity.
 pub(super) fn read_all(
     document: &Table<'_>,
     load_names: &[Option<String>],

@@ -1,21 +1,29 @@
-//! `[[load]]`: what acts on the body.
+//! `[[load]]`: forces on the body.
 
-use sinew_fem::{LoadKind, LoadSpec};
+use sinew_fem::{LoadKind, LoadSpec, On};
 
+use super::keys::GRAVITY;
+use super::ramp;
 use super::region::taken;
-use super::{GRAVITY, ramp};
 use crate::decode::value::{Misfit, finite, text, vector};
 use crate::decode::{Place, Table};
 use crate::error::SceneError;
 
 const KEYS: &[&str] = &["name", "group", "traction", "pressure", "force", "ramp"];
 
-/// Loads, the names they were given, and where they stand.
-pub(super) type Loads = (Vec<LoadSpec>, Vec<Option<String>>, Vec<Place>);
+/// The tables `[[load]]`, in the order of the file.
+pub(super) struct LoadTables {
+    /// The loads.
+    pub(super) specs: Vec<LoadSpec>,
+    /// The name of each, if it has one.
+    pub(super) names: Vec<Option<String>>,
+    /// The place of each in the text.
+    pub(super) places: Vec<Place>,
+}
 
-pub(super) fn read_all(document: &Table<'_>) -> Result<Loads, SceneError> {
+pub(super) fn read_all(document: &Table<'_>) -> Result<LoadTables, SceneError> {
     let tables = document.tables("load", KEYS)?;
-    let loads = tables.iter().map(read).collect::<Result<_, _>>()?;
+    let specs = tables.iter().map(read).collect::<Result<_, _>>()?;
     let mut names: Vec<Option<String>> = Vec::new();
     for table in &tables {
         let name = table.optional("name", "a name other than \"gravity\"", name)?;
@@ -28,7 +36,11 @@ pub(super) fn read_all(document: &Table<'_>) -> Result<Loads, SceneError> {
         names.push(name);
     }
     let places = tables.into_iter().map(Table::into_place).collect();
-    Ok((loads, names, places))
+    Ok(LoadTables {
+        specs,
+        names,
+        places,
+    })
 }
 
 fn name(value: &toml::de::DeValue<'_>) -> Result<String, Misfit> {
@@ -49,7 +61,7 @@ fn read(table: &Table<'_>) -> Result<LoadSpec, SceneError> {
         _ => LoadKind::Pressure(table.required("pressure", "a finite number of Pa", finite)?),
     };
     Ok(LoadSpec {
-        group: table.required("group", "the name of a group", text)?,
+        on: On::Group(table.required("group", "the name of a group", text)?),
         kind,
         ramp: ramp::read(table)?,
     })

@@ -1,4 +1,4 @@
-//! `[mesh]`: where the body's shape comes from.
+//! `[mesh]`: the source of the body's shape.
 
 use std::path::PathBuf;
 
@@ -8,19 +8,19 @@ use crate::decode::Table;
 use crate::decode::value::{above_zero, count_up_to, text};
 use crate::error::SceneError;
 
-/// Where the body's shape comes from.
+/// The source of the body's shape.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MeshSource {
-    /// A mesh file, its path as written: relative to the scene.
+    /// A mesh file: its path as written, relative to the scene's folder.
     File(PathBuf),
-    /// A structured cube with a corner in the origin and the groups `tissue`, `sides`, `top` and
+    /// A structured cube with one corner at the origin and the groups `tissue`, `sides`, `top` and
     /// `bottom`.
     Cube {
         /// Hexahedra along each edge.
         cells: usize,
         /// Length of an edge (m).
         edge: f64,
-        /// How hexahedra are cut into tetrahedra.
+        /// The way in which hexahedra are cut into tetrahedra.
         split: Split,
     },
 }

@@ -1,10 +1,12 @@
-//! What a user wrote: the tables of a scene, checked one by one.
+//! The tables of a scene as the user wrote them, checked one by one.
 
 mod damping;
 mod fixed;
 mod initial;
+pub(crate) mod keys;
 mod load;
 mod mesh;
+mod motion;
 mod oscillator;
 mod probe;
 mod ramp;
@@ -18,7 +20,9 @@ use sinew_fem::Problem;
 use toml::de::DeTable;
 
 pub use initial::Initial;
+use keys::GRAVITY;
 pub use mesh::MeshSource;
+pub use motion::{Motion, Way};
 pub use oscillator::Oscillator;
 pub use probe::ProbePoint;
 pub use run::{RunSettings, TimeStep};
@@ -33,27 +37,30 @@ use crate::source::SceneSource;
 pub struct Scene {
     title: String,
     subject: Subject,
-    run: RunSettings,
+    settings: RunSettings,
     places: Places,
 }
 
-/// What moves in a scene.
+/// The thing that moves in a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Subject {
     /// A body of tetrahedra.
-    Body(Body),
+    Body(Box<Body>),
     /// One mass on a spring.
     Oscillator(Oscillator),
 }
 
-/// A body of tetrahedra, how it is held and what acts on it.
+/// A body of tetrahedra with its supports, motions, loads and initial state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
-    /// Its shape.
+    /// The source of its shape.
     pub mesh: MeshSource,
-    /// Materials, damping, supports and loads.
+    /// Materials, damping, supports and loads. Prescribed motions, which may be in files, are added where the
+    /// scene is built: see [`crate::BodyModel::problem`].
     pub problem: Problem,
-    /// The name of each load of `problem`, where it has one.
+    /// Parts that are moved.
+    pub motions: Vec<Motion>,
+    /// The name of each load of `problem`, if it has one.
     pub load_names: Vec<Option<String>>,
     /// Its state at t = 0.
     pub initial: Vec<Initial>,
@@ -61,7 +68,7 @@ pub struct Body {
     pub probes: Vec<ProbePoint>,
 }
 
-/// Where the tables of a scene stand, in the order of the lists they were read into.
+/// The places of the tables of a scene, in the order of the lists they were read into.
 #[derive(Debug, Clone)]
 pub(crate) struct Places {
     pub(crate) document: Place,
@@ -70,23 +77,21 @@ pub(crate) struct Places {
     pub(crate) regions: Vec<Place>,
     pub(crate) damping: Option<Place>,
     pub(crate) fixed: Vec<Place>,
+    pub(crate) motions: Vec<Place>,
     pub(crate) loads: Vec<Place>,
     pub(crate) initial: Vec<Place>,
     pub(crate) run: Place,
 }
 
 impl Places {
-    /// The place of a list's item; that of the whole document where there is none.
+    /// The place of a list's item, or of the whole document if the list has no such item.
     pub(crate) fn of<'a>(&'a self, list: &'a [Place], index: usize) -> &'a Place {
         list.get(index).unwrap_or(&self.document)
     }
 }
 
-/// The key of gravity, which is also its name among the loads.
-pub(crate) const GRAVITY: &str = "gravity";
-
 const BODY_KEYS: &[&str] = &[
-    "region", "damping", "fixed", "load", GRAVITY, "initial", "probe",
+    "region", "damping", "fixed", "move", "load", GRAVITY, "initial", "probe",
 ];
 
 const KEYS: &[&str] = &[
@@ -96,6 +101,7 @@ const KEYS: &[&str] = &[
     "region",
     "damping",
     "fixed",
+    "move",
     "load",
     GRAVITY,
     "initial",
@@ -107,7 +113,7 @@ impl Scene {
     /// Reads a scene file.
     ///
     /// # Errors
-    /// [`SceneError`] when the file cannot be read, or as [`Scene::parse`].
+    /// [`SceneError`] when the file cannot be read, and as for [`Scene::parse`].
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = path.as_ref();
         match std::fs::read_to_string(path) {
@@ -122,7 +128,7 @@ impl Scene {
     /// Reads a scene; opens no file.
     ///
     /// # Errors
-    /// [`SceneError`] for the first thing that is not as it should be.
+    /// [`SceneError`] for the first mistake found.
     pub fn parse(source: SceneSource) -> Result<Self, SceneError> {
         let source = Arc::new(source);
         let document = DeTable::parse(source.text()).map_err(|error| {
@@ -136,22 +142,22 @@ impl Scene {
         Self::read(&Table::document(&source, document.get_ref(), KEYS)?)
     }
 
-    /// What the scene is called; empty where it has no title.
+    /// The title; empty where the scene has none.
     #[must_use]
     pub fn title(&self) -> &str {
         &self.title
     }
 
-    /// What moves.
+    /// The thing that moves.
     #[must_use]
     pub fn subject(&self) -> &Subject {
         &self.subject
     }
 
-    /// How long, by which integrator and in which steps.
+    /// Duration, integrator and steps.
     #[must_use]
-    pub fn run(&self) -> &RunSettings {
-        &self.run
+    pub fn settings(&self) -> &RunSettings {
+        &self.settings
     }
 
     pub(crate) fn places(&self) -> &Places {
@@ -164,24 +170,27 @@ impl Scene {
         self.places.document.scene()
     }
 
-    /// The files that the scene is made from: its own and the mesh it names. No output of a run may
-    /// be one of them.
+    /// The files that the scene is read from: its own, and the mesh and the tables it names. No output of a run
+    /// may replace one of them.
     #[must_use]
     pub fn input_files(&self) -> Vec<PathBuf> {
         let source = self.source();
         let mut files = vec![source.path().to_owned()];
-        if let Subject::Body(Body {
-            mesh: MeshSource::File(written),
-            ..
-        }) = &self.subject
-        {
-            files.push(source.resolve(written));
+        if let Subject::Body(body) = &self.subject {
+            let Body { mesh, motions, .. } = &**body;
+            if let MeshSource::File(written) = mesh {
+                files.push(source.resolve(written));
+            }
+            files.extend(motions.iter().filter_map(|motion| match &motion.way {
+                Way::Table(written) => Some(source.resolve(written)),
+                Way::Displacement(..) | Way::Velocity(_) => None,
+            }));
         }
         files
     }
 
-    /// The files that a scene file is made from, as [`Scene::input_files`], as far as they can be
-    /// told of a scene with mistakes.
+    /// The files that a scene is read from, as [`Scene::input_files`], also for a scene with mistakes, as
+    /// far as they can be found.
     #[must_use]
     pub fn input_files_of(path: &Path) -> Vec<PathBuf> {
         let text = std::fs::read(path).unwrap_or_default();
@@ -189,9 +198,21 @@ impl Scene {
         let (document, _) = DeTable::parse_recoverable(&text);
         let mesh = document.get_ref().get("mesh");
         let file = mesh.and_then(|mesh| mesh.get_ref().as_table()?.get("file")?.get_ref().as_str());
+        let motions = document.get_ref().get("move");
+        let motions = motions.and_then(|motions| motions.get_ref().as_array());
+        let motions = motions.into_iter().flat_map(|motions| motions.iter());
+        let tables = motions.filter_map(|motion| {
+            motion
+                .get_ref()
+                .as_table()?
+                .get("table")?
+                .get_ref()
+                .as_str()
+        });
         let source = SceneSource::new(path, "");
-        let mesh = file.map(|written| source.resolve(Path::new(written)));
-        std::iter::once(path.to_owned()).chain(mesh).collect()
+        let named = file.into_iter().chain(tables);
+        let named = named.map(|written| source.resolve(Path::new(written)));
+        std::iter::once(path.to_owned()).chain(named).collect()
     }
 
     fn read(document: &Table<'_>) -> Result<Self, SceneError> {
@@ -205,6 +226,7 @@ impl Scene {
             regions: Vec::new(),
             damping: None,
             fixed: Vec::new(),
+            motions: Vec::new(),
             loads: Vec::new(),
             initial: Vec::new(),
             run: document.place().clone(),
@@ -217,7 +239,7 @@ impl Scene {
                 places.oscillator = Some(table.into_place());
                 Subject::Oscillator(oscillator)
             }
-            None => Subject::Body(Body::read(document, &mut places)?),
+            None => Subject::Body(Box::new(Body::read(document, &mut places)?)),
         };
         let run = document
             .open_table("run", run::KEYS)?
@@ -227,13 +249,30 @@ impl Scene {
         Ok(Self {
             title,
             subject,
-            run: settings,
+            settings,
             places,
         })
     }
 }
 
 impl Body {
+    /// A load (0-based) in the terms of the scene.
+    pub(crate) fn load_in_words(&self, index: usize) -> String {
+        match (self.problem.loads.get(index), self.load_names.get(index)) {
+            (_, Some(Some(name))) => format!("[[load]] \"{name}\""),
+            (Some(load), _) => format!("[[load]] {} on {}", index + 1, load.on),
+            (None, _) => format!("[[load]] {}", index + 1),
+        }
+    }
+
+    /// A motion (0-based) in the terms of the scene.
+    pub(crate) fn motion_in_words(&self, index: usize) -> String {
+        match self.motions.get(index) {
+            Some(motion) => format!("[[move]] {} of `{}`", index + 1, motion.group),
+            None => format!("[[move]] {}", index + 1),
+        }
+    }
+
     fn read(document: &Table<'_>, places: &mut Places) -> Result<Self, SceneError> {
         let mesh_table = document
             .table("mesh", mesh::KEYS)?
@@ -246,15 +285,17 @@ impl Body {
         let damping_table = document.table("damping", damping::KEYS)?;
         let damping = damping_table.as_ref().map(damping::read).transpose()?;
         let (fixed, fixed_places) = fixed::read_all(document)?;
-        let (loads, load_names, load_places) = load::read_all(document)?;
+        let (motions, motion_places) = motion::read_all(document)?;
+        let loads = load::read_all(document)?;
         let gravity = document.optional(GRAVITY, "[x, y, z] in m/s2, all finite", vector)?;
-        let (initial, initial_places) = initial::read_all(document, &load_names)?;
+        let (initial, initial_places) = initial::read_all(document, &loads.names)?;
         let (probes, _) = probe::read_all(document)?;
         places.mesh = Some(mesh_table.into_place());
         places.regions = region_places;
         places.damping = damping_table.map(Table::into_place);
         places.fixed = fixed_places;
-        places.loads = load_places;
+        places.motions = motion_places;
+        places.loads = loads.places;
         places.initial = initial_places;
         Ok(Self {
             mesh,
@@ -262,10 +303,12 @@ impl Body {
                 regions,
                 damping: damping.unwrap_or_default(),
                 fixed,
-                loads,
+                moves: Vec::new(),
+                loads: loads.specs,
                 gravity,
             },
-            load_names,
+            motions,
+            load_names: loads.names,
             initial,
             probes,
         })

@@ -4,7 +4,7 @@ use crate::decode::Table;
 use crate::decode::value::{above_zero, finite, zero_or_above};
 use crate::error::SceneError;
 
-/// m u'' + d u' + k u = f from u(0), u'(0).
+/// One mass on a spring and a dashpot: m u'' + d u' + k u = f from u(0), u'(0).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Oscillator {
     /// m (kg).

@@ -1,4 +1,4 @@
-//! `[[probe]]`: points whose motion is written down.
+//! `[[probe]]`: points whose motion is recorded.
 
 use toml::de::DeValue;
 
@@ -7,12 +7,12 @@ use crate::decode::value::{Misfit, text, vector};
 use crate::decode::{Place, Table};
 use crate::error::SceneError;
 
-/// A point whose motion is written down: that of the nearest node.
+/// A point whose motion is recorded, as that of the nearest node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProbePoint {
-    /// Its name, also in the heads of columns.
+    /// Its name, which also begins the names of its columns.
     pub name: String,
-    /// Where it is in the undeformed body (m).
+    /// Its position in the undeformed body (m).
     pub point: [f64; 3],
 }
 

@@ -1,4 +1,4 @@
-//! `ramp` of a load: its factor over time.
+//! `ramp` of a load or a motion: its factor over time.
 
 use sinew_core::{Ramp, RampError};
 
@@ -37,8 +37,18 @@ impl Kind {
 
 /// The ramp of a load's table; a step where it is not given.
 pub(super) fn read(load: &Table<'_>) -> Result<Ramp, SceneError> {
-    let Some(table) = load.table("ramp", KEYS)? else {
-        return Ok(Ramp::Step);
+    Ok(given(load)?.unwrap_or(Ramp::Step))
+}
+
+/// The ramp of a motion's table.
+pub(super) fn required(motion: &Table<'_>) -> Result<Ramp, SceneError> {
+    let expected = "a table such as { kind = \"sin2\", rise = 0.2 }";
+    given(motion)?.ok_or_else(|| motion.missing("ramp", expected))
+}
+
+fn given(of: &Table<'_>) -> Result<Option<Ramp>, SceneError> {
+    let Some(table) = of.table("ramp", KEYS)? else {
+        return Ok(None);
     };
     let kind = table.choice("kind", &KINDS)?;
     table.refuse(kind.foreign_keys(), "does not go with this kind of ramp")?;
@@ -56,7 +66,7 @@ pub(super) fn read(load: &Table<'_>) -> Result<Ramp, SceneError> {
             values: table.required("values", "a list of finite numbers", numbers)?,
         },
     };
-    ramp.check().map(|()| ramp).map_err(|error| {
+    ramp.check().map(|()| Some(ramp)).map_err(|error| {
         let key = match error {
             RampError::Pulse { .. } => "to",
             RampError::TableLengths { .. } => "values",

@@ -1,4 +1,4 @@
-//! `[[region]]`: materials and where they are.
+//! `[[region]]`: materials and their regions.
 
 use sinew_fem::{Law, Region, SpringRule};
 
@@ -16,12 +16,15 @@ const KEYS: &[&str] = &[
 ];
 
 #[derive(Clone, Copy)]
-enum Model {
+enum MaterialModel {
     Springs,
     Linear,
 }
 
-const MODELS: [(&str, Model); 2] = [("springs", Model::Springs), ("linear", Model::Linear)];
+const MODELS: [(&str, MaterialModel); 2] = [
+    ("springs", MaterialModel::Springs),
+    ("linear", MaterialModel::Linear),
+];
 
 const RULES: [(&str, SpringRule); 2] = [
     ("lloyd", SpringRule::Lloyd),
@@ -52,7 +55,7 @@ pub(super) fn read_all(document: &Table<'_>) -> Result<(Vec<Region>, Vec<Place>)
     Ok((regions, tables.into_iter().map(Table::into_place).collect()))
 }
 
-/// That a name is given a second time.
+/// The error for a name that is given a second time.
 pub(super) fn taken(place: &Place, key: &'static str, name: &str, owner: &Place) -> SceneError {
     let line = owner
         .line(key)
@@ -72,8 +75,8 @@ fn read(table: &Table<'_>) -> Result<Region, SceneError> {
     let modulus = "a finite Young's modulus above 0 Pa";
     let youngs_modulus = table.required("youngs_modulus", modulus, above_zero)?;
     let law = match model {
-        Model::Springs => springs(table, youngs_modulus)?,
-        Model::Linear => linear(table, youngs_modulus)?,
+        MaterialModel::Springs => springs(table, youngs_modulus)?,
+        MaterialModel::Linear => linear(table, youngs_modulus)?,
     };
     Ok(Region {
         group,

@@ -1,4 +1,4 @@
-//! `[run]`: how long, by which integrator and in which steps.
+//! `[run]`: duration, integrator and steps.
 
 use std::collections::BTreeMap;
 
@@ -6,21 +6,22 @@ use sinew_core::{OptionError, OptionValue, Options};
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::GRAVITY;
+use super::keys::AT_THE_TOP;
 use crate::decode::value::{Misfit, above_zero, count_up_to, finite, text};
 use crate::decode::{Place, Table};
 use crate::error::{Fault, SceneError};
 
-/// How long, by which integrator and in which steps.
+/// Duration, integrator and steps of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunSettings {
     /// Simulated time (s).
     pub duration: f64,
-    /// The error is taken at t = j duration/samples, j = 0..=samples.
+    /// Number of intervals between the instants t = j duration/samples, j = 0..=samples, at which errors are
+    /// measured.
     pub samples: usize,
     /// Id of the integrator.
     pub integrator: String,
-    /// Step, as asked for.
+    /// The step as the scene asks for it.
     pub dt: TimeStep,
     /// The integrator's own options.
     pub options: Options,
@@ -29,10 +30,10 @@ pub struct RunSettings {
 /// A step as a scene asks for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TimeStep {
-    /// This one (s).
+    /// This step (s).
     Given(f64),
-    /// The longest below nine tenths of the integrator's stable step that meets all instants at
-    /// which the error is taken.
+    /// The longest step up to nine tenths of the integrator's stable step that meets all instants at
+    /// which errors are measured.
     Auto,
 }
 
@@ -72,11 +73,11 @@ fn refused(error: OptionError, run: &Place) -> SceneError {
     run.value_fault(&key, Fault::Integrator(error))
 }
 
-/// The integrator's own options: whatever stands in `[run]` beside its keys.
+/// The integrator's own options: all keys of `[run]` other than its own.
 fn options(run: &Table<'_>) -> Result<Options, SceneError> {
     let mut options = Options::new();
     for (key, value) in run.others() {
-        if ["title", GRAVITY].contains(&key.get_ref().as_ref()) {
+        if AT_THE_TOP.contains(&key.get_ref().as_ref()) {
             return Err(run.unknown(key));
         }
         let expected = "a finite number, a string, or a table of these";

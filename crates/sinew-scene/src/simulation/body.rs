@@ -1,23 +1,64 @@
 //! The mesh of a scene and the matrices on it.
 
-use sinew_fem::{Cause, FemError, Item, Model};
-use sinew_mesh::{UnknownGroup, structured};
+use sinew_fem::{Cause, Course, FemError, Item, Model, Moving, On};
+use sinew_mesh::{TetMesh, structured};
 
-use super::{BodyModel, MeshAndWarnings};
+use super::model::BodyModel;
+use super::motion_table::MotionTable;
 use crate::error::{Fault, SceneError};
-use crate::scene::{Body, GRAVITY, MeshSource, Places};
+use crate::scene::keys::GRAVITY;
+use crate::scene::{Body, MeshSource, Motion, Places, Way};
 
+/// A mesh and the warnings of its reader.
+pub(super) type MeshAndWarnings = (TetMesh, Vec<String>);
+
+/// Assembles the matrices.
 pub(super) fn build(
     body: &Body,
     (mesh, mesh_warnings): MeshAndWarnings,
     places: &Places,
 ) -> Result<BodyModel, SceneError> {
-    let model = Model::build(&mesh, &body.problem).map_err(|error| refused(error, places))?;
+    let mut problem = body.problem.clone();
+    for (index, motion) in body.motions.iter().enumerate() {
+        problem.moves.push(moving(motion, places, index)?);
+    }
+    let model = Model::build(&mesh, &problem).map_err(|error| refused(error, body, places))?;
     Ok(BodyModel {
         mesh,
         mesh_warnings,
+        problem,
         model,
     })
+}
+
+/// A prescribed motion, its table read.
+fn moving(motion: &Motion, places: &Places, index: usize) -> Result<Moving, SceneError> {
+    let Motion { group, axes, way } = motion;
+    let courses = match way {
+        Way::Displacement(displacement, ramp) => vec![Course {
+            displacement: *displacement,
+            ramp: ramp.clone(),
+        }],
+        Way::Velocity(velocity) => vec![Course::at_velocity(*velocity)],
+        Way::Table(written) => {
+            let place = places.of(&places.motions, index);
+            let path = place.scene().resolve(written);
+            let table = MotionTable::read(&path, *axes)
+                .map_err(|error| place.value_fault("table", error.into()))?;
+            Course::along(&table.times, &table.positions)
+        }
+    };
+    Ok(Moving {
+        on: On::Group(group.clone()),
+        axes: *axes,
+        courses,
+    })
+}
+
+/// The key that gives the way of a motion.
+fn way_key(body: &Body, index: usize) -> &'static str {
+    let motion = body.motions.get(index);
+    motion.map_or("group", |motion| motion.way.key())
 }
 
 /// Makes or reads the mesh that `[mesh]` names.
@@ -40,38 +81,29 @@ pub(super) fn mesh(body: &Body, places: &Places) -> Result<MeshAndWarnings, Scen
     }
 }
 
-/// Points at what the model was refused for.
-fn refused(error: FemError, places: &Places) -> SceneError {
+/// The error at the place of what the model was refused for.
+fn refused(error: FemError, body: &Body, places: &Places) -> SceneError {
     let whole = &places.document;
     let place = match error.item() {
         Item::Mesh => places.mesh.as_ref().unwrap_or(whole),
         Item::Damping => places.damping.as_ref().unwrap_or(whole),
         Item::Region(index) => places.of(&places.regions, index),
         Item::Fixed(index) => places.of(&places.fixed, index),
+        Item::Move(index) => places.of(&places.motions, index),
         Item::Load(index) => places.of(&places.loads, index),
-        Item::Gravity => whole,
+        Item::Supports | Item::Gravity => whole,
     };
     let key = match (error.item(), error.cause()) {
         (Item::Gravity, _) => GRAVITY,
         (Item::Mesh, Cause::Inverted { .. } | Cause::Flat { .. }) => "file",
+        (Item::Move(index), Cause::UnnamedAxis { .. } | Cause::Value { .. }) => {
+            way_key(body, index)
+        }
+        (Item::Move(index), Cause::PositionJumps { .. }) => match way_key(body, index) {
+            "displacement" => "ramp",
+            key => key,
+        },
         _ => "group",
     };
     place.value_fault(key, Fault::Model(error))
-}
-
-/// The cells of a group's nodes, those of the whole body where no group is named, and the number
-/// of nodes there are, the held ones included.
-pub(crate) fn cells_of(
-    group: Option<&str>,
-    body: &BodyModel,
-) -> Result<(Vec<u32>, usize), UnknownGroup> {
-    let Some(name) = group else {
-        let cells = (0..).take(body.model.nodes().len()).collect();
-        return Ok((cells, body.mesh.points.len()));
-    };
-    let nodes = body.mesh.group_nodes(body.mesh.group(name)?);
-    let cells = nodes
-        .iter()
-        .filter_map(|node| body.model.cell_of_node(*node));
-    Ok((cells.collect(), nodes.len()))
 }

@@ -1,15 +1,18 @@
-//! Loads that the scene's method cannot take, or cannot follow, in the scene's steps.
+//! Loads that the scene's integrator refuses, or cannot follow, in the scene's steps.
 
-use sinew_core::{Load, LoadOverStep, Ramp, step_that_meets};
+use sinew_core::{ChangingLoads, Load, LoadOverStep, Options, Ramp, step_that_meets};
 
-use super::{SceneModel, Simulation};
-use crate::scene::{GRAVITY, Subject};
+use sinew_fem::Item;
+
+use super::Simulation;
+use super::load_problems::{LoadRemedy, RefusedLoad, UnresolvedLoad};
+use crate::scene::Subject;
+use crate::scene::keys::GRAVITY;
 
 impl Simulation {
-    /// Why the scene's method will refuse a load of the scene, and what to do; `None` where it takes
-    /// them all.
+    /// The first load of the scene that its integrator will refuse; `None` where it accepts all loads.
     #[must_use]
-    pub fn refused_load(&self) -> Option<String> {
+    pub fn refused_load(&self) -> Option<RefusedLoad> {
         let integrator = self.integrator().ok()?;
         let needed = integrator.properties().changing_loads.needed();
         let (dt, until) = (self.dt(), self.run().steps as f64 * self.dt());
@@ -27,28 +30,28 @@ impl Simulation {
         let ramps = || loads.iter().map(|load| &load.ramp);
         let remedy = match step_that_meets(ramps(), dt, until) {
             Some(shorter) if ramps().all(|ramp| broken(ramp, shorter).is_none()) => {
-                format!("dt = {shorter} s would do")
+                LoadRemedy::Step(shorter)
             }
-            _ if ramps().all(|ramp| is_smooth(ramp, dt)) => {
-                "kind = \"chebyshev\" takes loads that are smooth over each step".to_owned()
-            }
+            _ if ramps().all(|ramp| is_smooth(ramp, dt)) => LoadRemedy::Chebyshev,
             Some(shorter) if ramps().all(|ramp| is_smooth(ramp, shorter)) => {
-                format!("kind = \"chebyshev\" with dt = {shorter} s would do")
+                LoadRemedy::ChebyshevWithStep(shorter)
             }
-            _ => "no step of use would do; `modal` takes loads that jump anywhere".to_owned(),
+            _ => LoadRemedy::Integrator(exact_under_any_load()),
         };
-        Some(format!(
-            "`{}` takes loads that are {}, and {} changes at t = {instant} s, in steps of {dt} s; {remedy}",
-            integrator.id(),
-            needed.describe(),
-            self.load_in_words(index),
-        ))
+        Some(RefusedLoad {
+            integrator: integrator.id(),
+            needed,
+            load: self.load_in_words(index),
+            instant,
+            dt,
+            remedy,
+        })
     }
 
-    /// A load that comes and goes within a step of the scene's method, which feels its impulse but
-    /// not its course; `None` where there is none.
+    /// The first load of the scene that comes and goes within one step; `None` where there is none, or the
+    /// integrator is exact.
     #[must_use]
-    pub fn unresolved_load(&self) -> Option<String> {
+    pub fn unresolved_load(&self) -> Option<UnresolvedLoad> {
         let integrator = self.integrator().ok()?;
         if integrator.properties().changing_loads.is_exact() {
             return None;
@@ -62,16 +65,15 @@ impl Simulation {
             let lengths = within.map(|pair| (pair[1] - pair[0], pair[0]));
             lengths.min_by(|a, b| a.0.total_cmp(&b.0))
         };
-        let found = self.loads().iter().enumerate().find_map(|(index, load)| {
+        self.loads().iter().enumerate().find_map(|(index, load)| {
             let (length, from) = shortest(&load.ramp)?;
-            (length < (1.0 - 1e-9) * dt).then_some((index, length, from))
-        });
-        let (index, length, from) = found?;
-        Some(format!(
-            "{} changes twice within {length:.3e} s at t = {from} s, less than dt = {dt} s: its impulse \
-             arrives, its course does not; dt = {length:.3e} s would follow it",
-            self.load_in_words(index)
-        ))
+            (length < (1.0 - 1e-9) * dt).then(|| UnresolvedLoad {
+                load: self.load_in_words(index),
+                from,
+                length,
+                dt,
+            })
+        })
     }
 
     fn loads(&self) -> &[Load] {
@@ -79,17 +81,27 @@ impl Simulation {
         linear.map_or(&[], |linear| linear.operators().loads())
     }
 
-    /// A load of the system as the scene calls it.
+    /// The name of a load of the system in the terms of the scene.
     fn load_in_words(&self, index: usize) -> String {
-        let (Subject::Body(body), SceneModel::Body(_)) = (self.scene().subject(), self.model())
+        let (Subject::Body(body), Some(built)) = (self.scene().subject(), self.model().body())
         else {
             return "the force".to_owned();
         };
-        // The model's loads are those of the problem, then gravity.
-        match (body.problem.loads.get(index), body.load_names.get(index)) {
-            (Some(_), Some(Some(name))) => format!("[[load]] \"{name}\""),
-            (Some(load), _) => format!("[[load]] {} on `{}`", index + 1, load.group),
-            (None, _) => GRAVITY.to_owned(),
+        match built.model.item_of_load(index) {
+            Some(Item::Load(load)) => body.load_in_words(load),
+            Some(Item::Move(motion)) => body.motion_in_words(motion),
+            _ => GRAVITY.to_owned(),
         }
     }
+}
+
+/// The id of an integrator that is exact wherever loads jump, if there is one.
+fn exact_under_any_load() -> Option<&'static str> {
+    let exact = ChangingLoads::Exact(LoadOverStep::Any);
+    let entries = sinew_integrators::entries();
+    let takes_any = |entry: &&sinew_integrators::Entry| {
+        let integrator = entry.build(&Options::new());
+        integrator.is_ok_and(|integrator| integrator.properties().changing_loads == exact)
+    };
+    entries.iter().find(takes_any).map(|entry| entry.id)
 }

@@ -1,27 +1,32 @@
-//! From a scene to a system that integrators can move.
+//! A scene as a system that integrators can move.
 
 mod body;
+mod build;
+mod load_problems;
 mod loads;
+mod model;
+mod motion_table;
 mod probe;
+mod reaction;
 mod start;
 mod step;
+mod warnings;
 
-use sinew_core::{
-    Integrator, LinearModel, LinearOperators, Load, OptionError, Ramp, Run, State, System,
-};
-use sinew_mesh::TetMesh;
+use std::sync::OnceLock;
 
-pub(crate) use body::cells_of;
+use sinew_core::{OptionError, Run, StableStep, State, System};
+use sinew_integrators::Stepper;
+
+pub use load_problems::{LoadRemedy, RefusedLoad, UnresolvedLoad};
+pub use model::{BodyModel, SceneModel};
+pub use motion_table::{MotionTableError, MotionTableFault};
 pub use probe::{NearestNode, Probe};
+pub use reaction::{Reaction, ReactionError, ReactionOf};
 
-use crate::error::{Fault, SceneError};
-use crate::plan::Plan;
-use crate::scene::{Body, Oscillator, Places, RunSettings, Scene, Subject};
+use crate::error::StableStepError;
+use crate::scene::{RunSettings, Scene};
 
-/// A mesh and what its reader accepted but a user should know.
-type MeshAndWarnings = (TetMesh, Vec<String>);
-
-/// A scene made ready to run. All its files are read.
+/// A scene that is ready to run: files read, matrices assembled, step chosen.
 #[derive(Debug)]
 pub struct Simulation {
     scene: Scene,
@@ -29,131 +34,17 @@ pub struct Simulation {
     initial: State,
     probes: Vec<Probe>,
     dt: f64,
-}
-
-/// What moves, with its matrices.
-#[derive(Debug)]
-pub enum SceneModel {
-    /// A body of tetrahedra.
-    Body(Box<BodyModel>),
-    /// One mass on a spring.
-    Oscillator(LinearModel),
-}
-
-/// A body of tetrahedra: its mesh and its matrices.
-#[derive(Debug)]
-pub struct BodyModel {
-    /// The mesh.
-    pub mesh: TetMesh,
-    /// What the reader of the mesh file accepted but a user should know.
-    pub mesh_warnings: Vec<String>,
-    /// The system.
-    pub model: sinew_fem::Model,
-}
-
-impl SceneModel {
-    /// The system to integrate.
-    #[must_use]
-    pub fn system(&self) -> &dyn System {
-        match self {
-            Self::Body(body) => &body.model,
-            Self::Oscillator(model) => model,
-        }
-    }
-
-    /// Mesh and matrices, where a body moves.
-    #[must_use]
-    pub fn body(&self) -> Option<&BodyModel> {
-        match self {
-            Self::Body(body) => Some(body),
-            Self::Oscillator(_) => None,
-        }
-    }
-}
-
-impl Scene {
-    /// Reads the mesh, assembles the matrices and finds the state at t = 0.
-    ///
-    /// # Errors
-    /// [`SceneError`] with the line of the scene that asks for what cannot be had.
-    pub fn build(self) -> Result<Simulation, SceneError> {
-        self.assemble(body::mesh)
-    }
-
-    /// As [`Scene::build`], on a mesh at hand (m) in place of the one that `[mesh]` names. An
-    /// oscillator has no use for it.
-    ///
-    /// # Errors
-    /// [`SceneError`] with the line of the scene that asks for what this mesh does not have.
-    pub fn build_on(self, mesh: TetMesh) -> Result<Simulation, SceneError> {
-        self.assemble(|_, _| Ok((mesh, Vec::new())))
-    }
-
-    fn assemble(
-        self,
-        mesh: impl FnOnce(&Body, &Places) -> Result<MeshAndWarnings, SceneError>,
-    ) -> Result<Simulation, SceneError> {
-        let (model, initial, probes) = match self.subject() {
-            Subject::Body(body) => {
-                let mesh = mesh(body, self.places())?;
-                let model = body::build(body, mesh, self.places())?;
-                let initial = start::state(body, self.places(), &model)?;
-                let probes = probe::of_body(&body.probes, &model);
-                (SceneModel::Body(Box::new(model)), initial, probes)
-            }
-            Subject::Oscillator(oscillator) => {
-                let model = oscillator_model(oscillator).map_err(|error| {
-                    let place = self.places().oscillator.as_ref();
-                    let place = place.unwrap_or(&self.places().document);
-                    place.fault(Fault::Oscillator(error))
-                })?;
-                let initial = State::new(vec![oscillator.displacement], vec![oscillator.velocity]);
-                (
-                    SceneModel::Oscillator(model),
-                    initial,
-                    vec![probe::of_oscillator()],
-                )
-            }
-        };
-        let dt = step::seconds(self.run(), model.system())
-            .map_err(|fault| self.places().run.value_fault("dt", fault))?;
-        Ok(Simulation {
-            dt,
-            scene: self,
-            model,
-            initial,
-            probes,
-        })
-    }
-}
-
-fn oscillator_model(oscillator: &Oscillator) -> Result<LinearModel, sinew_core::OperatorError> {
-    let Oscillator {
-        mass,
-        stiffness,
-        damping,
-        force,
-        ..
-    } = *oscillator;
-    let mut operators = LinearOperators::oscillator(mass, stiffness, damping)?;
-    if force != 0.0 {
-        let load = Load {
-            ramp: Ramp::Step,
-            entries: vec![(0, force)],
-        };
-        operators = operators.with_loads(vec![load])?;
-    }
-    Ok(LinearModel::new(operators))
+    stable_step: OnceLock<Result<StableStep, StableStepError>>,
 }
 
 impl Simulation {
-    /// The scene it was made from.
+    /// The scene that it was built from.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// What moves.
+    /// The thing that moves, with its matrices.
     #[must_use]
     pub fn model(&self) -> &SceneModel {
         &self.model
@@ -171,19 +62,19 @@ impl Simulation {
         &self.initial
     }
 
-    /// How long, by which integrator and in which steps.
+    /// Duration, integrator and steps as the scene asks for them.
     #[must_use]
     pub fn settings(&self) -> &RunSettings {
-        self.scene.run()
+        self.scene.settings()
     }
 
-    /// The step (s), also where the scene leaves it to the integrator.
+    /// The step (s): the given one, or the one found for dt = "auto".
     #[must_use]
     pub fn dt(&self) -> f64 {
         self.dt
     }
 
-    /// Points whose motion is written down; of an oscillator, its mass.
+    /// Points whose motion is recorded; for an oscillator, its mass.
     #[must_use]
     pub fn probes(&self) -> &[Probe] {
         &self.probes
@@ -192,13 +83,23 @@ impl Simulation {
     /// A fresh integrator with the scene's options.
     ///
     /// # Errors
-    /// [`OptionError`]; the scene was refused before if there is one.
-    pub fn integrator(&self) -> Result<Box<dyn Integrator>, OptionError> {
+    /// [`OptionError`] for an option that the integrator refuses. Reading the scene has checked them.
+    pub fn integrator(&self) -> Result<Box<dyn Stepper>, OptionError> {
         let settings = self.settings();
         sinew_integrators::build(&settings.integrator, &settings.options)
     }
 
-    /// The steps that cover the duration. A body has diverged when a displacement passes 100
+    /// The largest stable step of the scene's integrator. The first call solves for it, later ones
+    /// remember it; where dt = "auto", building the scene was the first.
+    ///
+    /// # Errors
+    /// [`StableStepError`] when the system lacks what the answer needs.
+    pub fn stable_step(&self) -> Result<StableStep, StableStepError> {
+        let found = || step::stable(self.settings(), self.system());
+        self.stable_step.get_or_init(found).clone()
+    }
+
+    /// The steps that cover the duration. A body counts as diverged when a displacement exceeds 100
     /// times its size.
     #[must_use]
     pub fn run(&self) -> Run {
@@ -209,17 +110,37 @@ impl Simulation {
         }
     }
 
-    /// The times (s) at which the error is taken, from 0 to the duration.
+    /// The times (s) at which errors are measured, from 0 to the duration.
     pub fn sample_times(&self) -> impl ExactSizeIterator<Item = f64> {
         let RunSettings {
             duration, samples, ..
         } = *self.settings();
         (0..samples + 1).map(move |j| j as f64 * duration / samples as f64)
     }
+}
 
-    /// What was built and what was left out, for people.
-    #[must_use]
-    pub fn plan(&self) -> Plan {
-        Plan::of(self)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::SceneSource;
+
+    fn oscillator(dt: &str) -> Simulation {
+        let text = format!(
+            "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = 1.0\n[run]\nduration = 1.0\n\
+             integrator = \"central-difference\"\ndt = {dt}\n"
+        );
+        let scene = Scene::parse(SceneSource::new("spring.toml", text)).unwrap();
+        scene.build().unwrap()
+    }
+
+    #[test]
+    fn the_stable_step_is_solved_for_once_and_only_where_it_is_asked_for() {
+        let automatic = oscillator("\"auto\"");
+        let solved = automatic.stable_step.get().cloned();
+        assert_eq!(solved, Some(automatic.stable_step()), "with dt = \"auto\"");
+        let given = oscillator("0.01");
+        assert_eq!(given.stable_step.get(), None, "building needs none");
+        assert_eq!(given.stable_step(), automatic.stable_step());
+        assert!(given.stable_step.get().is_some());
     }
 }

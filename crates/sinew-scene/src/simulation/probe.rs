@@ -1,21 +1,25 @@
-//! Probes: which degrees of freedom are written down.
+//! Probes: the degrees of freedom that are recorded.
 
-use super::BodyModel;
+use sinew_fem::Course;
+
+use super::model::BodyModel;
 use crate::scene::ProbePoint;
 
-/// A node, or the mass of an oscillator, whose motion is written down.
+/// A node, or the mass of an oscillator, whose motion is recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
     /// Its name.
     pub name: String,
-    /// The node it stands for, where a body moves.
+    /// Its node; `None` for an oscillator.
     pub node: Option<NearestNode>,
-    /// Its degrees of freedom: along x, y and z for a node, one for an oscillator. `None` where
-    /// the node is held.
+    /// Its degrees of freedom: along x, y and z for a node, one for an oscillator. `None` stands for a
+    /// direction in which the node is held or moved.
     pub dofs: Vec<Option<usize>>,
+    /// The courses of each direction in which the node is moved; none in others.
+    pub courses: Vec<Vec<Course>>,
 }
 
-/// The node nearest to a probe.
+/// The node nearest to the point of a probe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearestNode {
     /// Index in the mesh, from 0.
@@ -27,10 +31,20 @@ pub struct NearestNode {
 }
 
 impl Probe {
-    /// The displacement (m) of each of its degrees of freedom; 0 where it is held.
-    pub fn displacement<'a>(&'a self, u: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let value = |dof: usize| u.get(dof).copied().unwrap_or(f64::NAN);
-        self.dofs.iter().map(move |dof| dof.map_or(0.0, value))
+    /// The displacement (m) in each of its directions at time `t` (s), with that of the degrees of freedom then: 0
+    /// where it is held, the prescribed one where it is moved.
+    pub fn displacement<'a>(&'a self, t: f64, u: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let own = move |dof: usize| u.get(dof).copied().unwrap_or(f64::NAN);
+        let directions = self.dofs.iter().enumerate();
+        directions.map(move |(axis, dof)| dof.map_or_else(|| self.prescribed(axis, t), own))
+    }
+
+    /// The displacement (m) that is prescribed in a direction at time `t` (s); 0 where none is.
+    pub(crate) fn prescribed(&self, axis: usize, t: f64) -> f64 {
+        let courses = self.courses.get(axis).into_iter().flatten();
+        // A scene has no inputs.
+        let along = |course: &Course| course.displacement_at(t, axis).unwrap_or(f64::NAN);
+        courses.fold(0.0, |sum, course| sum + along(course))
     }
 }
 
@@ -50,6 +64,9 @@ pub(super) fn of_body(points: &[ProbePoint], body: &BodyModel) -> Vec<Probe> {
                 distance,
             }),
             dofs: (0..3).map(dof).collect(),
+            courses: (0..3)
+                .map(|axis| body.model.courses(index, axis).to_vec())
+                .collect(),
         }
     };
     points.iter().map(probe).collect()
@@ -60,5 +77,6 @@ pub(super) fn of_oscillator() -> Probe {
         name: "mass".into(),
         node: None,
         dofs: vec![Some(0)],
+        courses: Vec::new(),
     }
 }

@@ -3,9 +3,10 @@
 use sinew_core::{LinearSystem, State, System};
 use sinew_fem::Model;
 
-use super::{BodyModel, cells_of};
+use super::model::BodyModel;
 use crate::error::{Fault, SceneError};
-use crate::scene::{Body, GRAVITY, Initial, Places};
+use crate::scene::keys::GRAVITY;
+use crate::scene::{Body, Initial, Places};
 
 pub(super) fn state(body: &Body, places: &Places, built: &BodyModel) -> Result<State, SceneError> {
     let mut state = State::at_rest(built.model.dofs());
@@ -43,14 +44,24 @@ fn apply(
             std::array::from_fn(|i| strain[i] * (point[i] - origin[i]))
         }),
         Initial::Static { loads } => {
-            let force = full_loads(loads, body, &built.model);
-            state.u = sinew_integrators::static_solution(&built.model, &force)?;
+            state.u = at_rest(&full_loads(loads, body, &built.model), &built.model)?;
             Ok(())
         }
     }
 }
 
-/// Sets a field at the moving components of a group's nodes.
+/// The displacement (m) of the body at rest under a force (N).
+#[cfg(feature = "implicit")]
+fn at_rest(force: &[f64], model: &Model) -> Result<Vec<f64>, Fault> {
+    Ok(sinew_integrators::static_solution(model, force)?)
+}
+
+#[cfg(not(feature = "implicit"))]
+fn at_rest(_force: &[f64], _model: &Model) -> Result<Vec<f64>, Fault> {
+    Err(Fault::StaticNotBuilt)
+}
+
+/// Sets a field at the free components of a group's nodes.
 fn set(
     field: &mut [f64],
     group: Option<&str>,
@@ -58,7 +69,7 @@ fn set(
     value_at: impl Fn([f64; 3]) -> [f64; 3],
 ) -> Result<(), Fault> {
     let (nodes, pinned) = (built.model.nodes(), built.model.pinned());
-    for cell in cells_of(group, built)?.0 {
+    for cell in built.cells_of(group)?.0 {
         let point = built.mesh.points[nodes[cell as usize] as usize];
         for (axis, value) in value_at(point).into_iter().enumerate() {
             let dof = 3 * cell as usize + axis;

@@ -1,36 +1,37 @@
-//! The step of a scene that leaves it to the integrator.
+//! The step of a scene, and the largest stable one of its integrator.
 
 use sinew_core::{StableStep, System};
 use sinew_integrators::explicit::Substeps;
 
-use crate::error::Fault;
+use crate::error::{NoStableStep, StableStepError};
 use crate::scene::{RunSettings, TimeStep};
 
-/// The step (s) that a scene asks for.
-pub(super) fn seconds(settings: &RunSettings, system: &dyn System) -> Result<f64, Fault> {
-    let TimeStep::Given(dt) = settings.dt else {
-        return automatic(settings, system);
-    };
-    Ok(dt)
+/// The largest stable step of the scene's integrator.
+pub(super) fn stable(
+    settings: &RunSettings,
+    system: &dyn System,
+) -> Result<StableStep, StableStepError> {
+    let integrator = sinew_integrators::build(&settings.integrator, &settings.options)?;
+    Ok(integrator.stable_step(system)?)
 }
 
-fn automatic(settings: &RunSettings, system: &dyn System) -> Result<f64, Fault> {
-    let id = &settings.integrator;
-    let refused = |reason: String| Err(Fault::NoStableStep { reason });
-    let integrator = sinew_integrators::build(id, &settings.options)?;
-    match integrator.stable_step(system) {
-        Ok(StableStep::UpTo(limit)) if limit > 0.0 && limit.is_finite() => {
+/// The step (s) that a scene asks for; `stable` is called only where it leaves it to the integrator.
+pub(super) fn seconds(
+    settings: &RunSettings,
+    stable: impl FnOnce() -> Result<StableStep, StableStepError>,
+) -> Result<f64, NoStableStep> {
+    if let TimeStep::Given(dt) = settings.dt {
+        return Ok(dt);
+    }
+    let integrator = settings.integrator.clone();
+    match stable()? {
+        StableStep::UpTo(limit) if limit > 0.0 && limit.is_finite() => {
             let between = settings.duration / settings.samples as f64;
             Ok(Substeps::longest_part(between, limit))
         }
-        Ok(StableStep::UpTo(limit)) if limit > 0.0 => {
-            refused(format!("nothing in this scene limits the step of `{id}`"))
-        }
-        Ok(StableStep::UpTo(_)) => refused(format!("`{id}` is stable at no step on this scene")),
-        Ok(StableStep::Any) => refused(format!("`{id}` is stable at any step")),
-        Ok(StableStep::Unknown) => {
-            refused(format!("`{id}` cannot tell up to which step it is stable"))
-        }
-        Err(error) => refused(error.to_string()),
+        StableStep::UpTo(limit) if limit > 0.0 => Err(NoStableStep::Unlimited { integrator }),
+        StableStep::UpTo(_) => Err(NoStableStep::Never { integrator }),
+        StableStep::Any => Err(NoStableStep::Any { integrator }),
+        StableStep::Unknown => Err(NoStableStep::Unknown { integrator }),
     }
 }

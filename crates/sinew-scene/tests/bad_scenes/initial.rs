@@ -1,4 +1,4 @@
-//! What is wrong with `[[initial]]`.
+//! Mistakes in `[[initial]]`.
 
 use crate::refusal;
 use crate::scenes::BODY;

@@ -1,4 +1,4 @@
-//! What is wrong with `[[load]]`.
+//! Mistakes in `[[load]]`.
 
 use crate::refusal;
 use crate::scenes::BODY;

@@ -1,4 +1,4 @@
-//! What is wrong with `[mesh]`.
+//! Mistakes in `[mesh]`.
 
 use crate::refusal;
 use crate::scenes::BODY;

@@ -1,4 +1,4 @@
-//! What is wrong with the file that `[mesh]` names.
+//! Mistakes in the file that `[mesh]` names.
 
 use std::fs;
 
@@ -7,8 +7,8 @@ use sinew_scene::Scene;
 use crate::message;
 use crate::scenes::BODY;
 
-/// What is said about a scene whose mesh file has these contents, or is not there; the folder is
-/// written as `<folder>`.
+/// The message about a scene whose mesh file has these contents or is missing; its folder is shown as
+/// `<folder>`.
 fn refusal(contents: Option<&str>) -> String {
     refusal_of(BODY, contents)
 }

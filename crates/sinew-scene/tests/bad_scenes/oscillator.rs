@@ -1,4 +1,4 @@
-//! What is wrong with `[oscillator]`.
+//! Mistakes in `[oscillator]`.
 
 use crate::refusal;
 use crate::scenes::OSCILLATOR;

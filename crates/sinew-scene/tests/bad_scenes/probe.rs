@@ -1,4 +1,4 @@
-//! What is wrong with `[[probe]]`.
+//! Mistakes in `[[probe]]`.
 
 use crate::refusal;
 use crate::scenes::BODY;

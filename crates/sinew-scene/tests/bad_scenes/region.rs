@@ -1,4 +1,4 @@
-//! What is wrong with `[[region]]`.
+//! Mistakes in `[[region]]`.
 
 use crate::refusal;
 use crate::scenes::BODY;

@@ -1,4 +1,4 @@
-//! What is wrong with `[run]`.
+//! Mistakes in `[run]`.
 
 use crate::refusal;
 use crate::scenes::BODY;

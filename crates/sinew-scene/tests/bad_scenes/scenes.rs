@@ -28,6 +28,44 @@ name = "centre"
 point = [0.1, 0.1, 0.1]
 "#;
 
+/// The same tables in other spellings: dotted keys, and lists of tables on a line.
+pub(crate) const DOTTED: &str = r#"mesh.cube = { cells = 2, edge = 0.2 }
+region = [{ density = 1060.0, model = "linear", youngs_modulus = 3500.0, poissons_ratio = 0.3 }]
+damping.mass = 80.0
+fixed = [{ group = "bottom" }, { group = "sides", axes = "x" }]
+run.duration = 1.0
+run.integrator = "newmark"
+run.dt = 0.02
+"#;
+
+/// A cube with stiffness damping whose top is moved, and its bottom sideways.
+pub(crate) const MOVED: &str = r#"[mesh]
+cube = { cells = 2, edge = 0.2 }
+[[region]]
+density = 1060.0
+model = "linear"
+youngs_modulus = 3500.0
+poissons_ratio = 0.3
+[damping]
+stiffness = 0.01
+[[fixed]]
+group = "bottom"
+axes = "yz"
+[[move]]
+group = "top"
+axes = "z"
+displacement = [0.0, 0.0, -0.01]
+ramp = { kind = "sin2", rise = 0.2 }
+[[move]]
+group = "bottom"
+axes = "x"
+velocity = [0.05, 0.0, 0.0]
+[run]
+duration = 1.0
+integrator = "newmark"
+dt = 0.02
+"#;
+
 pub(crate) const OSCILLATOR: &str = r#"[oscillator]
 mass = 0.1
 stiffness = 100.0

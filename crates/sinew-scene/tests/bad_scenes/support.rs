@@ -1,4 +1,4 @@
-//! What is wrong with `[[fixed]]`.
+//! Mistakes in `[[fixed]]`.
 
 use crate::refusal;
 use crate::scenes::BODY;

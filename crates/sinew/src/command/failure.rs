@@ -1,65 +1,150 @@
-//! How a command fails: one message, and the line of the scene where there is one.
+//! Failures of commands: one message each, with the line of the scene where there is one.
 
+use std::io;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use miette::{LabeledSpan, NamedSource, Report, miette};
-use sinew_scene::SceneError;
+use sinew_core::{OptionError, SetupError, SimulateError};
+use sinew_measure::advice::AdviceError;
+use sinew_mesh::vtu::WriteVtuError;
+use sinew_mesh::{MshFileError, WriteMshError};
 use sinew_scene::output::{OutputError, complain};
+use sinew_scene::{ReactionError, RefusedLoad, SceneError};
 
-/// A command that did not succeed.
-#[derive(Debug)]
+/// Exit code for input that cannot be used.
+const REFUSED: u8 = 2;
+
+/// Exit code for findings, and for failures after the input was accepted.
+const FAILED: u8 = 1;
+
+/// Why a command did not succeed.
+#[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    /// A scene that cannot be used: exit code 2.
-    Scene(SceneError),
-    /// Anything else that was given and cannot be used: exit code 2.
-    Input(String),
-    /// A check found something and said so: exit code 1.
+    /// A scene that cannot be used.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A load that the scene's integrator refuses.
+    #[error(transparent)]
+    Load(#[from] RefusedLoad),
+    /// An option that the scene's integrator refuses.
+    #[error(transparent)]
+    Option(#[from] OptionError),
+    /// A scene that the integrator cannot be set up for.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A scene for which there is no advice.
+    #[error("{}: {source}", scene.display())]
+    Advice {
+        /// The scene file.
+        scene: PathBuf,
+        /// The reason.
+        source: AdviceError,
+    },
+    /// A mesh file that cannot be read.
+    #[error(transparent)]
+    Mesh(#[from] MshFileError),
+    /// A name that does not tell a mesh format.
+    #[error("{}: expected a name that ends in .msh or .vtu", path.display())]
+    MeshFormat {
+        /// The path.
+        path: PathBuf,
+    },
+    /// A mesh that a .msh file cannot hold.
+    #[error("cannot write {}: {source}", path.display())]
+    WriteMsh {
+        /// The path.
+        path: PathBuf,
+        /// The reason.
+        source: WriteMshError,
+    },
+    /// A mesh that a .vtu file cannot hold.
+    #[error("cannot write {}: {source}", path.display())]
+    WriteVtu {
+        /// The path.
+        path: PathBuf,
+        /// The reason.
+        source: WriteVtuError,
+    },
+    /// A report and a mesh that both go to standard output.
+    #[error("--json and --out {} both go to standard output; name a file with --out", out.display())]
+    SharedOutput {
+        /// The destination of the mesh.
+        out: PathBuf,
+    },
+    /// An output that is refused or fails.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A check that found defects and has reported them.
+    #[error("the check found defects")]
     Findings,
-    /// The run itself failed: exit code 1.
-    Run(String),
-}
-
-impl From<SceneError> for Failure {
-    fn from(error: SceneError) -> Self {
-        Self::Scene(error)
-    }
-}
-
-impl From<OutputError> for Failure {
-    fn from(error: OutputError) -> Self {
-        if error.is_refusal() {
-            Self::Input(error.to_string())
-        } else {
-            Self::Run(error.to_string())
-        }
-    }
+    /// A run that ended with an error.
+    #[error(transparent)]
+    Run(#[from] SimulateError),
+    /// Reactions that cannot be found.
+    #[error("no reactions: {0}")]
+    Reactions(#[from] ReactionError),
+    /// A run that diverged.
+    #[error(
+        "the run diverged at t = {t:.6} s, first at {place}; `sinew plan` names the stable step"
+    )]
+    Diverged {
+        /// Time (s).
+        t: f64,
+        /// The degree of freedom in the system's words.
+        place: String,
+    },
+    /// Advice from which numbers are missing.
+    #[error("missing from the advice: {}", gaps.join("; "))]
+    Gaps {
+        /// A sentence about each.
+        gaps: Vec<String>,
+    },
+    /// Help or the version could not be printed.
+    #[error("writing standard output failed: {0}")]
+    Print(io::Error),
 }
 
 impl Failure {
-    /// Says so on standard error.
-    pub(crate) fn report(self) -> ExitCode {
+    fn exit_code(&self) -> u8 {
         match self {
-            Self::Scene(error) => {
-                complain(&format!("error: {error}"));
-                if let Some(report) = excerpt(&error) {
-                    complain(&format!("{report:?}"));
-                }
-                ExitCode::from(2)
-            }
-            Self::Input(message) => {
-                complain(&format!("error: {message}"));
-                ExitCode::from(2)
-            }
-            Self::Findings => ExitCode::from(1),
-            Self::Run(message) => {
-                complain(&format!("error: {message}"));
-                ExitCode::from(1)
-            }
+            Self::Scene(_)
+            | Self::Load(_)
+            | Self::Option(_)
+            | Self::Setup(_)
+            | Self::Advice { .. }
+            | Self::Mesh(_)
+            | Self::MeshFormat { .. }
+            | Self::WriteMsh { .. }
+            | Self::WriteVtu { .. }
+            | Self::SharedOutput { .. } => REFUSED,
+            Self::Output(error) if error.is_refusal() => REFUSED,
+            Self::Output(_)
+            | Self::Findings
+            | Self::Run(_)
+            | Self::Reactions(_)
+            | Self::Diverged { .. }
+            | Self::Gaps { .. }
+            | Self::Print(_) => FAILED,
         }
+    }
+
+    /// Writes the message to standard error and returns the exit code.
+    pub(crate) fn report(&self) -> ExitCode {
+        // Findings were reported as they were found.
+        if !matches!(self, Self::Findings) {
+            complain(&format!("error: {self}"));
+        }
+        if let Self::Scene(error) = self
+            && let Some(report) = excerpt(error)
+        {
+            complain(&format!("{report:?}"));
+        }
+        ExitCode::from(self.exit_code())
     }
 }
 
-/// The text at fault with a mark under it, and the hint.
+/// The marked text at fault and the hint.
 fn excerpt(error: &SceneError) -> Option<Report> {
     let span = error.span()?;
     let label = LabeledSpan::at(span, error.fault().to_string());

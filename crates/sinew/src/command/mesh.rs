@@ -6,38 +6,40 @@ use clap::{Subcommand, ValueEnum};
 use serde_json::json;
 use sinew_mesh::info::MeshInfo;
 use sinew_mesh::vtu::{VtuEncoding, write_vtu};
-use sinew_mesh::{Finding, Mesh, MeshCheck, MshEncoding, MshVersion, read_msh_file, write_msh};
+use sinew_mesh::{
+    Finding, Mesh, MeshCheck, MshEncoding, MshVersion, WriteMshError, read_msh_file, write_msh,
+};
 use sinew_scene::output::{Destination, Voice, complain, say};
 
 use super::Failure;
 
-/// What to do with a mesh file.
+/// Commands for mesh files.
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    /// Say what is in a gmsh file.
+    /// Summarise a gmsh file.
     Info {
         /// The .msh file.
         file: PathBuf,
-        /// As one JSON object.
+        /// Print one JSON object.
         #[arg(long)]
         json: bool,
     },
-    /// Look for what makes a simulation fail or mislead; exit code 1 if there is something.
+    /// Look for defects that make a simulation fail or mislead; exit code 1 if there are any.
     Check {
         /// The .msh file.
         file: PathBuf,
-        /// As one JSON object.
+        /// Print one JSON object.
         #[arg(long)]
         json: bool,
-        /// Repair before looking, and write the result to another file; may be given several times.
+        /// Repair before the check, and write the result to another file; may be given several times.
         #[arg(long, value_name = "WHAT")]
         fix: Vec<Fix>,
-        /// Where the repaired mesh goes, - for standard output [default: FILE with .fixed.msh]
+        /// The file for the repaired mesh, - for standard output [default: FILE with .fixed.msh]
         #[arg(long, value_name = "OUT", requires = "fix")]
         out: Option<PathBuf>,
     },
-    /// Write a gmsh file in another version, encoding or format: .msh or .vtu by the name of
-    /// OUTPUT, .msh where it is a device, a pipe or - for standard output.
+    /// Write a gmsh file in another version, encoding or format. The extension of OUTPUT, .msh or
+    /// .vtu, selects the format; a device, a pipe or - for standard output gets .msh.
     Convert {
         /// The .msh file.
         input: PathBuf,
@@ -46,10 +48,10 @@ pub(crate) enum Command {
         /// Version of a .msh file.
         #[arg(long, default_value = "4.1")]
         version: Version,
-        /// Numbers as text.
+        /// Write numbers as text.
         #[arg(long, conflicts_with = "binary")]
         ascii: bool,
-        /// Numbers as bytes [default for .vtu; .msh is text by default]
+        /// Write numbers as bytes [default for .vtu; .msh is text by default]
         #[arg(long)]
         binary: bool,
     },
@@ -60,7 +62,7 @@ pub(crate) enum Command {
 pub(crate) enum Fix {
     /// Turn inverted tetrahedra.
     Orient,
-    /// Drop nodes that no cell has.
+    /// Remove nodes that belong to no cell.
     DropOrphans,
     /// Merge cells with the same nodes.
     MergeDuplicates,
@@ -97,7 +99,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
 }
 
 fn read(file: &Path) -> Result<Mesh, Failure> {
-    read_msh_file(file).map_err(|error| Failure::Input(error.to_string()))
+    Ok(read_msh_file(file)?)
 }
 
 fn info(file: &Path, json: bool) -> Result<(), Failure> {
@@ -163,12 +165,11 @@ fn check(file: &Path, json: bool, fixes: &[Fix], out: Option<&Path>) -> Result<(
     };
     let voice = destination
         .as_ref()
-        .map_or(Voice::StandardOutput, Voice::beside);
+        .map_or(Voice::StandardOutput, Voice::apart_from);
     if json && voice == Voice::StandardError {
-        return Err(Failure::Input(format!(
-            "--json and --out {} both go to standard output; name a file with --out",
-            path.display()
-        )));
+        return Err(Failure::SharedOutput {
+            out: path.to_owned(),
+        });
     }
     let mut mesh = read(file)?;
     let mut fixed = Vec::new();
@@ -184,8 +185,8 @@ fn check(file: &Path, json: bool, fixes: &[Fix], out: Option<&Path>) -> Result<(
     if let Some(destination) = destination {
         let mut bytes = Vec::new();
         write_msh(&mesh, MshVersion::V41, MshEncoding::Text, &mut bytes)
-            .map_err(|error| cannot_write(path, &error))?;
-        // A reader that left wants no more; what was found is still to be told.
+            .map_err(|source| cannot_write_msh(path, source))?;
+        // A reader that closed its pipe is no error, and the findings are still reported.
         let _ = destination.write(&bytes)?;
     }
     let check = mesh.check();
@@ -291,15 +292,14 @@ fn convert(
     let destination = Destination::new(output, &[input.to_owned()])?;
     let extension = output.extension().and_then(|extension| extension.to_str());
     let extension = match extension.map(str::to_ascii_lowercase) {
-        // Their names say nothing of a format.
+        // Names of streams do not tell a format.
         None if destination.is_stream() => "msh".to_owned(),
         extension => extension.unwrap_or_default(),
     };
     if !["msh", "vtu"].contains(&extension.as_str()) {
-        return Err(Failure::Input(format!(
-            "{}: expected a name that ends in .msh or .vtu",
-            output.display()
-        )));
+        return Err(Failure::MeshFormat {
+            path: output.to_owned(),
+        });
     }
     let mesh = read(input)?;
     let mut bytes = Vec::new();
@@ -309,7 +309,10 @@ fn convert(
         } else {
             VtuEncoding::RawAppended
         };
-        write_vtu(&mesh, encoding, &mut bytes).map_err(|error| cannot_write(output, &error))?;
+        write_vtu(&mesh, encoding, &mut bytes).map_err(|source| Failure::WriteVtu {
+            path: output.to_owned(),
+            source,
+        })?;
     } else {
         let version = match version {
             Version::V22 => MshVersion::V22,
@@ -321,10 +324,10 @@ fn convert(
             MshEncoding::Text
         };
         write_msh(&mesh, version, encoding, &mut bytes)
-            .map_err(|error| cannot_write(output, &error))?;
+            .map_err(|source| cannot_write_msh(output, source))?;
     }
-    let voice = Voice::beside(&destination);
-    // A reader that left asked for no more.
+    let voice = Voice::apart_from(&destination);
+    // A reader that closed its pipe is no error.
     let _ = destination.write(&bytes)?;
     for warning in &mesh.warnings {
         complain(&format!("warning: {}: {warning}", input.display()));
@@ -333,6 +336,7 @@ fn convert(
     Ok(())
 }
 
-fn cannot_write(path: &Path, error: &dyn std::error::Error) -> Failure {
-    Failure::Input(format!("cannot write {}: {error}", path.display()))
+fn cannot_write_msh(path: &Path, source: WriteMshError) -> Failure {
+    let path = path.to_owned();
+    Failure::WriteMsh { path, source }
 }

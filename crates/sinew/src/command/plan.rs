@@ -2,9 +2,12 @@
 
 mod advice;
 mod advice_json;
+mod program;
+mod program_json;
 
 use std::path::PathBuf;
 
+use sinew_measure::Cost;
 use sinew_measure::advice::{
     DEFAULT_PILOT_SECONDS, Question, QuestionError, advise, check_budget, check_pilot_seconds,
     check_tolerance,
@@ -14,17 +17,18 @@ use sinew_scene::output::say;
 
 use super::Failure;
 
-/// A scene, and the error it is to run with.
+/// A scene and the error that its run may have.
 #[derive(clap::Args)]
+#[command(group = clap::ArgGroup::new("printed").args(["tolerance", "program"]))]
 pub(crate) struct Arguments {
     /// The scene file.
     scene: PathBuf,
-    /// Name the cheapest method and step whose relative error is at most this fraction, such as
-    /// 1e-2, from short runs on the scene; where they do not cover it, the answer says up to when it
+    /// Advise the cheapest integrator and step with at most this relative error, such as 1e-2, found
+    /// by short runs of the scene; where they do not cover the scene, the answer says up to when it
     /// holds
     #[arg(long, value_name = "ERROR", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
-    /// Most CPU seconds per simulated second, set-up apart; 1 is real time
+    /// Largest cost in CPU seconds per simulated second, without set-up; 1 is real time
     #[arg(
         long,
         value_name = "CPU_S_PER_S",
@@ -33,7 +37,7 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     budget: Option<f64>,
-    /// CPU seconds after which no further pilot run begins
+    /// CPU seconds after which no further short run begins
     #[arg(
         long,
         value_name = "S",
@@ -43,8 +47,13 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     pilot_seconds: f64,
-    /// The advice as one JSON object, without the plan; each null in it is explained in `missing`
-    #[arg(long, requires = "tolerance")]
+    /// Print what each cell computes in a step: the sweeps of the scene's integrator as formulas, with
+    /// their coefficients
+    #[arg(long, conflicts_with = "tolerance")]
+    program: bool,
+    /// Print the advice or the program as one JSON object, without the plan; in an advice the list
+    /// `missing` explains each null
+    #[arg(long, requires = "printed")]
     json: bool,
 }
 
@@ -53,6 +62,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !arguments.json {
         say(simulation.plan().to_string().trim_end())?;
     }
+    if arguments.program {
+        return program::print(&simulation, arguments.json);
+    }
     let Some(tolerance) = arguments.tolerance else {
         return Ok(());
     };
@@ -60,10 +72,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         tolerance,
         budget: arguments.budget,
         pilot_seconds: arguments.pilot_seconds,
+        cost: Cost::CpuTime,
     };
     let advice = advise(simulation, question);
-    let advice = advice
-        .map_err(|error| Failure::Input(format!("{}: {error}", arguments.scene.display())))?;
+    let advice = advice.map_err(|source| Failure::Advice {
+        scene: arguments.scene.clone(),
+        source,
+    })?;
     if !arguments.json {
         say(&format!("\n{}", advice::text(&advice)))?;
         return Ok(());
@@ -73,10 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if advice.gaps.is_empty() {
         return Ok(());
     }
-    Err(Failure::Run(format!(
-        "missing from the advice: {}",
-        advice.gaps.join("; ")
-    )))
+    Err(Failure::Gaps { gaps: advice.gaps })
 }
 
 fn tolerance(text: &str) -> Result<f64, QuestionError> {
@@ -91,7 +103,7 @@ fn pilot_seconds(text: &str) -> Result<f64, QuestionError> {
     number(text, check_pilot_seconds)
 }
 
-/// What is no number is refused like a number that does not fit.
+/// Reads and checks a number. Text that is not a number is refused like a number that does not fit.
 fn number(
     text: &str,
     check: impl Fn(f64) -> Result<(), QuestionError>,

@@ -4,17 +4,18 @@ use std::path::{Path, PathBuf};
 
 use sinew_core::{Outcome, RunReport, simulate};
 use sinew_scene::output::{Delivery, Destination, Voice, complain};
-use sinew_scene::{ProbeCsv, Scene, Simulation};
+use sinew_scene::{ProbeCsv, Reaction, Scene, Simulation};
 
 use super::Failure;
 
-/// A scene and where its probes go.
+/// A scene and the destination of its probes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The scene file.
     scene: PathBuf,
-    /// Where the motion of the probes goes, as CSV: a new file, a writable file that is no input, a
-    /// device or a pipe, or - for standard output [default: the scene's name with .csv, here]
+    /// The CSV file for the motion of the probes: a new file, a writable file that the run does not
+    /// read, a device or a pipe, or - for standard output [default: the scene's name with .csv, in
+    /// the current folder]
     #[arg(long, value_name = "FILE")]
     probes: Option<PathBuf>,
 }
@@ -26,29 +27,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => default_probes(&arguments.scene),
     };
     let destination = Destination::new(&path, &scene.input_files())?;
-    let voice = Voice::beside(&destination);
+    let voice = Voice::apart_from(&destination);
 
     let simulation = scene.build()?;
     if let Some(refused) = simulation.refused_load() {
-        return Err(Failure::Input(refused));
+        return Err(refused.into());
     }
-    let plan = simulation.plan();
-    for warning in &plan.warnings {
+    for warning in simulation.warnings() {
         complain(&format!("warning: {warning}"));
     }
-    let mut integrator = simulation
-        .integrator()
-        .map_err(|error| Failure::Input(error.to_string()))?;
+    let mut integrator = simulation.integrator()?;
     let system = simulation.system();
-    integrator
-        .prepare(system, simulation.dt())
-        .map_err(|error| Failure::Input(error.to_string()))?;
+    integrator.prepare(system, simulation.dt())?;
     let mut csv = ProbeCsv::new(destination.open()?, simulation.probes())?;
     let mut state = simulation.initial_state().clone();
     let settings = simulation.run();
-    let report = simulate(system, &mut *integrator, &mut state, &settings, &mut csv)
-        .map_err(|error| Failure::Run(error.to_string()))?;
-    // Nobody is left to read of the run where the reader of its motion went away.
+    let report = simulate(system, &mut *integrator, &mut state, &settings, &mut csv)?;
+    // Where the reader of the motion closed its pipe, nobody wants a summary.
     if csv.finish()? == Delivery::Whole {
         voice.say(&summary(&simulation, &report))?;
         for remark in integrator.remarks() {
@@ -56,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         for probe in simulation.probes() {
             let u: Vec<String> = probe
-                .displacement(&state.u)
+                .displacement(state.t(), &state.u)
                 .map(|u| format!("{u:.6e}"))
                 .collect();
             voice.say(&format!(
@@ -66,18 +61,26 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 state.t()
             ))?;
         }
+        for Reaction { by, on, force } in simulation.reactions(&state)? {
+            let force = force.map(|force| format!("{force:.6e}"));
+            voice.say(&format!(
+                "{by} on {on}: reaction = ({}) N at t = {:.6} s",
+                force.join(", "),
+                state.t()
+            ))?;
+        }
         voice.say(&format!("probes: {}", path.display()))?;
     }
     match report.outcome {
-        Outcome::Diverged { t, cell } => Err(Failure::Run(format!(
-            "the run diverged at t = {t:.6} s, first at {}; `sinew plan` names the stable step",
-            system.cell_name(cell)
-        ))),
+        Outcome::Diverged { t, dof } => Err(Failure::Diverged {
+            t,
+            place: system.cell_name(dof),
+        }),
         Outcome::Finished | Outcome::Stopped => Ok(()),
     }
 }
 
-/// The scene's name with .csv for its extension, of which only the last is one.
+/// The scene's file name with .csv in place of its last extension.
 fn default_probes(scene: &Path) -> PathBuf {
     let mut name = scene.file_stem().unwrap_or_default().to_owned();
     name.push(".csv");
@@ -103,8 +106,6 @@ fn summary(simulation: &Simulation, report: &RunReport) -> String {
             "\nguarded: {share:.3} % of all velocities were saturated; the motion is bounded, not accurate"
         ));
     }
-    text.push_str(
-        "\nno error is known without a reference: `cargo xtask bench --scene` measures it",
-    );
+    text.push_str("\nthe error of this run is not known: `sinew plan --tolerance` measures it");
     text
 }

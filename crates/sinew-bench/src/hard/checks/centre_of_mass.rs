@@ -1,25 +1,27 @@
 //! A pulse moves the centre of mass of a free body as Newton says.
 
 use sinew_core::{Ramp, System};
-use sinew_measure::{Case, Method};
+use sinew_measure::{Case, MethodChoice};
 
 use super::{at, trajectory};
-use crate::hard::mark::{Asked, Mark};
+use crate::hard::error::HardError;
+use crate::hard::mark::Asked;
 use crate::hard::methods::{block, chebyshev, cut};
 use crate::report::{milliseconds, percent};
+use crate::results::Mark;
 
 /// The axis along which the body is free.
 const Z: usize = 2;
 
 /// The largest distance of the centre of mass from its place, over its largest displacement: by the
 /// method and step that come nearest.
-pub(crate) fn check(asked: Asked, case: &Case, steps: &[f64]) -> Result<Mark, String> {
+pub(crate) fn check(asked: Asked, case: &Case, steps: &[f64]) -> Result<Mark, HardError> {
     let mut found = Vec::new();
     let methods = [
         block(),
         chebyshev(4),
         chebyshev(8),
-        Method::new("newmark"),
+        MethodChoice::new("newmark"),
         cut("central-difference"),
     ];
     for method in &methods {
@@ -30,7 +32,7 @@ pub(crate) fn check(asked: Asked, case: &Case, steps: &[f64]) -> Result<Mark, St
     let best = found
         .iter()
         .min_by(|a, b| a.2.total_cmp(&b.2))
-        .ok_or("no step was given")?;
+        .ok_or(HardError::NoRun)?;
     let shown = |figure: f64| format!("{} %", percent(figure));
     let others = found.iter().filter(|other| *other != best);
     let others: Vec<String> = others
@@ -43,7 +45,7 @@ pub(crate) fn check(asked: Asked, case: &Case, steps: &[f64]) -> Result<Mark, St
         .noting(others.join(", ")))
 }
 
-fn deviation(case: &Case, method: &Method, dt: f64) -> Result<f64, String> {
+fn deviation(case: &Case, method: &MethodChoice, dt: f64) -> Result<f64, HardError> {
     let simulation = case.simulation();
     let system = simulation.system();
     let path = trajectory(
@@ -80,17 +82,15 @@ fn centre(system: &dyn System, u: &[f64]) -> f64 {
     moment / mass
 }
 
-/// Where a pulse F on a mass m at rest has brought it by time t: `F/m` times the integral of the
+/// The place (m) to which a pulse F has brought a mass m by time t, from rest: `F/m` times the integral of the
 /// pulse, taken twice.
-fn place(system: &dyn System, t: f64) -> Result<f64, String> {
-    let linear = system
-        .as_linear()
-        .ok_or("needs the loads of a linear system")?;
+fn place(system: &dyn System, t: f64) -> Result<f64, HardError> {
+    let linear = system.as_linear().ok_or(HardError::NotLinear)?;
     let [load] = linear.operators().loads() else {
-        return Err("needs one load".into());
+        return Err(HardError::NotOnePulse);
     };
     let Ramp::Pulse { from, to } = load.ramp else {
-        return Err("needs a pulse".into());
+        return Err(HardError::NotOnePulse);
     };
     let along_z = load
         .entries

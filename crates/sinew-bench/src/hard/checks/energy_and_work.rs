@@ -1,25 +1,27 @@
-//! What a method adds to the energy beside the work of the loads.
+//! The energy that a method adds to the work of the loads.
 
-use sinew_measure::{Case, Method};
+use sinew_measure::{Case, MethodChoice};
 
 use super::at;
+use crate::hard::error::HardError;
 use crate::hard::hard_run::run_with_energies;
-use crate::hard::mark::{Asked, Mark, Worst};
+use crate::hard::mark::{Asked, Worst};
 use crate::hard::methods::{block, chebyshev, cnn, gauss_seidel};
 use crate::report::three;
+use crate::results::Mark;
 
 /// The largest excess of the energy over E0 and the work so far, as a share of them, among the
 /// methods that promise there is none.
-pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
+pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, HardError> {
     let dt = case.simulation().dt();
-    let critical = case.critical_step().ok_or("nothing vibrates")?;
+    let critical = case.critical_step().ok_or(HardError::NothingVibrates)?;
     let promising = [
         (block(), dt),
         (chebyshev(4), dt),
         (chebyshev(8), dt),
         (gauss_seidel(4), dt),
-        (Method::new("newmark"), dt),
-        (Method::new("central-difference"), 0.9 * critical),
+        (MethodChoice::new("newmark"), dt),
+        (MethodChoice::new("central-difference"), 0.9 * critical),
     ];
     let mut worst = Worst::default();
     let mut names = Vec::new();
@@ -46,7 +48,7 @@ fn without_bound_or(excess: f64) -> String {
     }
 }
 
-fn excess(case: &Case, method: &Method, dt: f64) -> Result<f64, String> {
+fn excess(case: &Case, method: &MethodChoice, dt: f64) -> Result<f64, HardError> {
     let (_, energies) = run_with_energies(case, method, dt, case.run(dt).steps)?;
     Ok(energies.excess)
 }

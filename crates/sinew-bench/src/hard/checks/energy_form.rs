@@ -1,21 +1,23 @@
 //! Far beyond the critical step a stabilised network keeps its energy form.
 
-use sinew_measure::{Case, Method};
+use sinew_measure::{Case, MethodChoice};
 
 use super::trajectory;
+use crate::hard::error::HardError;
 use crate::hard::hard_run::run_with_energies;
-use crate::hard::mark::{Asked, Mark, Worst};
+use crate::hard::mark::{Asked, Worst};
 use crate::hard::methods::{block, chebyshev, gauss_seidel};
 use crate::report::{short, three};
-use sinew_measure::reference::largest;
+use crate::results::Mark;
+use sinew_core::vectors::largest;
 
 /// Steps over the critical step.
 const STEPS: [f64; 3] = [5.0, 25.0, 250.0];
 
-/// The largest relative change of the energy form over so many steps, among several inner
+/// The largest relative change of the energy form over `steps` steps, among several inner
 /// iterations and steps; the displacement must stay within ten times the reference's.
-pub(crate) fn check(asked: Asked, case: &Case, steps: usize) -> Result<Mark, String> {
-    let critical = case.critical_step().ok_or("nothing vibrates")?;
+pub(crate) fn check(asked: Asked, case: &Case, steps: usize) -> Result<Mark, HardError> {
+    let critical = case.critical_step().ok_or(HardError::NothingVibrates)?;
     let mut worst = Worst::default();
     let mut bounded = true;
     let mut largest_u = 0.0_f64;
@@ -41,7 +43,12 @@ pub(crate) fn check(asked: Asked, case: &Case, steps: usize) -> Result<Mark, Str
         .noting(note))
 }
 
-fn follow(case: &Case, method: &Method, dt: f64, steps: usize) -> Result<(f64, f64), String> {
+fn follow(
+    case: &Case,
+    method: &MethodChoice,
+    dt: f64,
+    steps: usize,
+) -> Result<(f64, f64), HardError> {
     let (_, energies) = run_with_energies(case, method, dt, steps)?;
     let simulation = case.simulation();
     let (system, start) = (simulation.system(), simulation.initial_state());

@@ -1,13 +1,15 @@
-//! Whatever stands in the place of the mass, a damped body comes to rest where K u = F.
+//! The place of rest: a damped body comes to rest where K u = F, whatever stands in the place of the mass.
 
 use sinew_core::{Outcome, Run, simulate};
-use sinew_measure::{Case, Method};
+use sinew_measure::{Case, MethodChoice};
 
 use super::{at, set_up};
+use crate::hard::error::HardError;
 use crate::hard::hard_run::{equilibrium, relative_distance};
-use crate::hard::mark::{Asked, Mark, Worst};
+use crate::hard::mark::{Asked, Worst};
 use crate::hard::methods::{block, chebyshev, cut};
 use crate::report::{short, three};
+use crate::results::Mark;
 
 /// Steps between two looks at the distance, and most of these.
 const ROUND: usize = 1000;
@@ -15,8 +17,8 @@ const MOST_ROUNDS: usize = 200;
 
 /// The largest relative distance from the solution of K u = F, among several methods that are given
 /// the time they need.
-pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
-    let rest = equilibrium(case).ok_or("the reference does not come to rest")?;
+pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, HardError> {
+    let rest = equilibrium(case).ok_or(HardError::NeverAtRest)?;
     let dt = case.simulation().dt();
     let mut worst = Worst::default();
     let mut notes = Vec::new();
@@ -24,7 +26,7 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
     for method in [
         block(),
         chebyshev(8),
-        Method::new("newmark"),
+        MethodChoice::new("newmark"),
         cut("central-difference"),
     ] {
         let settled = settle(case, &method, dt, &rest, asked.limit)?;
@@ -51,11 +53,11 @@ struct Settled {
 
 fn settle(
     case: &Case,
-    method: &Method,
+    method: &MethodChoice,
     dt: f64,
     rest: &[f64],
     limit: f64,
-) -> Result<Settled, String> {
+) -> Result<Settled, HardError> {
     let system = case.simulation().system();
     let mut integrator = set_up(method, system, dt)?;
     let mut state = case.simulation().initial_state().clone();
@@ -70,8 +72,7 @@ fn settle(
         bounded: true,
     };
     for _ in 0..MOST_ROUNDS {
-        let report = simulate(system, &mut *integrator, &mut state, &run, &mut ())
-            .map_err(|error| error.to_string())?;
+        let report = simulate(system, &mut *integrator, &mut state, &run, &mut ())?;
         settled.bounded = !matches!(report.outcome, Outcome::Diverged { .. });
         settled.distance = relative_distance(&state.u, rest);
         settled.time = state.t();

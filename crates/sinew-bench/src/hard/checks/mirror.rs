@@ -1,16 +1,18 @@
-//! What is symmetric stays symmetric.
+//! Symmetry: a symmetric motion stays symmetric.
 
-use sinew_measure::{Case, Method};
+use sinew_measure::{Case, MethodChoice};
 
 use super::{at, trajectory};
-use crate::hard::mark::{Asked, Mark, Worst};
+use crate::hard::error::HardError;
+use crate::hard::mark::{Asked, Worst};
 use crate::hard::methods::{block, chebyshev, cnn, cut};
 use crate::hard::pairs::body;
 use crate::report::three;
+use crate::results::Mark;
 
 /// The largest `|u_x(mirror image) + u_x|`, and the same in y, over the largest displacement, among
 /// several methods.
-pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
+pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, HardError> {
     let simulation = case.simulation();
     let (system, start, dt) = (
         simulation.system(),
@@ -22,10 +24,10 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
     let methods = [
         block(),
         chebyshev(4),
-        Method::new("newmark"),
+        MethodChoice::new("newmark"),
         cut("central-difference"),
     ];
-    let drift_of = |method: &Method| -> Result<f64, String> {
+    let drift_of = |method: &MethodChoice| -> Result<f64, HardError> {
         let path = trajectory(system, start, method, dt, case.run(dt).steps)?;
         Ok(drift(&path, &images))
     };
@@ -33,7 +35,7 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
         let drift = drift_of(method)?;
         worst.include(drift, at(&method.label(), dt));
     }
-    let names: Vec<String> = methods.iter().map(Method::label).collect();
+    let names: Vec<String> = methods.iter().map(MethodChoice::label).collect();
     let note = format!(
         "largest of {}, in x and y, at every step; the paper's network, unstable at this step, lets \
          rounding grow to {}",
@@ -64,8 +66,8 @@ fn drift(path: &[Vec<f64>], images: &[Vec<usize>; 2]) -> f64 {
 }
 
 /// The mirror image of each cell in the middle plane across an axis.
-fn images(case: &Case, axis: usize) -> Result<Vec<usize>, String> {
-    let (built, _) = body(case.simulation()).ok_or("an oscillator has no mirror image")?;
+fn images(case: &Case, axis: usize) -> Result<Vec<usize>, HardError> {
+    let (built, _) = body(case.simulation()).ok_or(HardError::NoBody)?;
     let (low, high) = built.mesh.bounding_box();
     let tolerance = 1e-6 * (high[axis] - low[axis]);
     let points: Vec<[f64; 3]> = built
@@ -78,10 +80,7 @@ fn images(case: &Case, axis: usize) -> Result<Vec<usize>, String> {
         let mut mirrored = *point;
         mirrored[axis] = low[axis] + high[axis] - point[axis];
         let near = |other: &[f64; 3]| (0..3).all(|i| (other[i] - mirrored[i]).abs() <= tolerance);
-        points
-            .iter()
-            .position(near)
-            .ok_or("the mesh is not its own mirror image")
+        points.iter().position(near).ok_or(HardError::NotSymmetric)
     };
-    Ok(points.iter().map(image).collect::<Result<_, _>>()?)
+    points.iter().map(image).collect()
 }

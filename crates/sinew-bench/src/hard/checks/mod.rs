@@ -13,8 +13,9 @@ pub(crate) mod units;
 pub(crate) mod within_work;
 
 use sinew_core::{Integrator, State, System};
-use sinew_measure::Method;
+use sinew_measure::MethodChoice;
 
+use crate::hard::error::HardError;
 use crate::report::milliseconds;
 
 /// A method at a step, in words.
@@ -24,32 +25,27 @@ pub(crate) fn at(method: &str, dt: f64) -> String {
 
 /// A method, built and set up.
 pub(crate) fn set_up(
-    method: &Method,
+    method: &MethodChoice,
     system: &dyn System,
     dt: f64,
-) -> Result<Box<dyn Integrator>, String> {
-    let mut integrator = sinew_integrators::build(&method.integrator, &method.options)
-        .map_err(|error| error.to_string())?;
-    integrator
-        .prepare(system, dt)
-        .map_err(|error| error.to_string())?;
+) -> Result<Box<dyn Integrator>, HardError> {
+    let mut integrator = method.build()?;
+    integrator.prepare(system, dt)?;
     Ok(integrator)
 }
 
-/// The displacements after each of so many steps.
+/// The displacements after each of `steps` steps.
 pub(crate) fn trajectory(
     system: &dyn System,
     start: &State,
-    method: &Method,
+    method: &MethodChoice,
     dt: f64,
     steps: usize,
-) -> Result<Vec<Vec<f64>>, String> {
+) -> Result<Vec<Vec<f64>>, HardError> {
     let mut integrator = set_up(method, system, dt)?;
     let mut state = start.clone();
     let step = |_| {
-        integrator
-            .step(system, &mut state, dt)
-            .map_err(|error| error.to_string())?;
+        integrator.step(system, &mut state, dt)?;
         Ok(state.u.clone())
     };
     (0..steps).map(step).collect()

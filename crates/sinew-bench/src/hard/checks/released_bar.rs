@@ -1,13 +1,16 @@
 //! The first mode of a bar that is stretched and let go.
 
 use sinew_core::Integrator;
+use sinew_integrators::Frame;
 use sinew_integrators::implicit::Modal;
-use sinew_measure::{Case, Method};
+use sinew_measure::{Case, MethodChoice};
 
 use super::{at, trajectory};
-use crate::hard::mark::{Asked, Mark};
+use crate::hard::error::HardError;
+use crate::hard::mark::Asked;
 use crate::hard::methods::{block, chebyshev};
 use crate::report::percent;
+use crate::results::Mark;
 
 /// Frequency and amplitude of the first mode as relative distances from the modal solution's: by the
 /// method nearest to both.
@@ -16,15 +19,13 @@ pub(crate) fn check(
     amplitude: Asked,
     case: &Case,
     dt: f64,
-) -> Result<[Mark; 2], String> {
+) -> Result<[Mark; 2], HardError> {
     let system = case.simulation().system();
     let start = case.simulation().initial_state();
-    let mut modal = Modal::with_modes(1);
-    modal
-        .prepare(system, dt)
-        .map_err(|error| error.to_string())?;
-    let omega = *modal.frequencies().first().ok_or("no mode was found")?;
-    let shape = modal.shape(0).ok_or("no mode was found")?;
+    let mut modal = Frame::new(Modal::with_modes(1));
+    modal.prepare(system, dt)?;
+    let omega = *modal.frequencies().first().ok_or(HardError::NoMode)?;
+    let shape = modal.shape(0).ok_or(HardError::NoMode)?;
     let share = |u: &[f64]| -> f64 {
         let terms = u.iter().zip(shape).zip(system.mass());
         terms.map(|((u, phi), mass)| phi * mass * u).sum()
@@ -33,10 +34,10 @@ pub(crate) fn check(
 
     let mut found = Vec::new();
     for method in [
-        Method::new("central-difference"),
+        MethodChoice::new("central-difference"),
         block(),
         chebyshev(8),
-        Method::new("newmark"),
+        MethodChoice::new("newmark"),
     ] {
         let path = trajectory(system, start, &method, dt, case.run(dt).steps)?;
         let mut q = vec![q0];
@@ -55,7 +56,7 @@ pub(crate) fn check(
     let nearest = found
         .iter()
         .min_by(|a, b| a.1.max(a.2).total_cmp(&b.1.max(b.2)));
-    let (by, off_omega, off_amplitude) = nearest.ok_or("no method was given")?;
+    let (by, off_omega, off_amplitude) = nearest.ok_or(HardError::NoRun)?;
     let shown = |figure: f64| format!("{} %", percent(figure));
     let others: Vec<String> = found
         .iter()

@@ -1,25 +1,27 @@
 //! Turning a scene turns its motion.
 
-use sinew_measure::{Case, Method};
+use sinew_measure::{Case, MethodChoice};
 
 use super::{at, largest_difference, trajectory};
-use crate::hard::mark::{Asked, Mark, Worst};
+use crate::hard::error::HardError;
+use crate::hard::mark::{Asked, Worst};
 use crate::hard::methods::{block, chebyshev, cnn};
 use crate::hard::pairs::{QuarterTurn, turned};
 use crate::report::three;
+use crate::results::Mark;
 
 /// The largest difference between a scene's motion, turned, and the motion of the turned scene,
 /// over the largest displacement: for quarter turns about x, y and z and several methods.
-pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, String> {
+pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, HardError> {
     let simulation = case.simulation();
     let (system, start) = (simulation.system(), simulation.initial_state());
     let dt = simulation.dt();
-    let critical = case.critical_step().ok_or("nothing vibrates")?;
+    let critical = case.critical_step().ok_or(HardError::NothingVibrates)?;
     let methods = [
         (block(), dt),
         (chebyshev(4), dt),
-        (Method::new("newmark"), dt),
-        (Method::new("central-difference"), 0.9 * critical),
+        (MethodChoice::new("newmark"), dt),
+        (MethodChoice::new("central-difference"), 0.9 * critical),
         (cnn(), dt),
     ];
     let mut worst = Worst::default();

@@ -1,13 +1,11 @@
-//! What one thin element costs in accuracy.
+//! The cost of one thin element in accuracy.
 
 use sinew_measure::Row;
 
 use super::at;
-use crate::hard::mark::{Asked, Mark};
+use crate::hard::mark::Asked;
 use crate::report::{short, three};
-
-/// Methods that solve for the whole body in each step, which is no question of sweeps.
-const SOLVE_ALL: [&str; 2] = ["newmark", "implicit-euler"];
+use crate::results::Mark;
 
 /// The error with a sliver over that without, by the method with the least work among those that
 /// pass, or else by the one with the least ratio.
@@ -26,7 +24,10 @@ pub(crate) fn check(asked: Asked, uniform: &[&Row], sliver: &[&Row]) -> Mark {
         found.push((row, ratio));
     }
     let passing = found.iter().filter(|(_, ratio)| *ratio <= asked.limit);
-    let explicit = passing.filter(|(row, _)| !SOLVE_ALL.contains(&row.integrator.as_str()));
+    // Where the whole body is solved for, work is no question of sweeps.
+    let factorises =
+        |row: &Row| sinew_integrators::entry(&row.integrator).is_some_and(|e| e.factorises);
+    let explicit = passing.filter(|(row, _)| !factorises(row));
     let best = explicit
         .min_by(|a, b| a.0.sweeps_per_s.total_cmp(&b.0.sweeps_per_s))
         .or_else(|| found.iter().min_by(|a, b| a.1.total_cmp(&b.1)));

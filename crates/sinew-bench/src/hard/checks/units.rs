@@ -3,46 +3,46 @@
 use std::path::PathBuf;
 
 use sinew_core::{OptionValue, Run};
-use sinew_measure::Method;
+use sinew_integrators::explicit::GuardOption;
+use sinew_measure::MethodChoice;
 use sinew_scene::{Scene, Simulation};
 
 use super::{at, largest_difference, trajectory};
-use crate::hard::mark::{Asked, Mark, Worst};
+use crate::hard::error::HardError;
+use crate::hard::mark::{Asked, Worst};
 use crate::hard::methods::block;
 use crate::hard::pairs::in_units;
 use crate::report::three;
+use crate::results::Mark;
 
-/// Millimetres and micrometres a metre.
+/// Number of millimetres and of micrometres in a metre.
 const UNITS: [f64; 2] = [1e3, 1e6];
-
-/// The paper's network: a saturated one lets rounding grow, so that its scenes are moved by the
-/// stabilised one.
-const PAPER: &str = "cnn";
 
 /// Most steps that are compared.
 const MOST_STEPS: usize = 200;
 
 /// The largest difference between the motion of a scene in metres and in other units, over the
-/// largest displacement: of every scene in these folders by its own method, if that is not the
-/// paper's, at its own step.
-pub(crate) fn check(asked: Asked, folders: &[PathBuf]) -> Result<Mark, String> {
+/// largest displacement: of every scene in these folders by its own method at its own step. A method
+/// that saturates lets rounding grow, so that its scenes are moved by the stabilised network.
+pub(crate) fn check(asked: Asked, folders: &[PathBuf]) -> Result<Mark, HardError> {
     let mut worst = Worst::default();
     let mut names = Vec::new();
-    let mut papers = Vec::new();
+    let mut saturating = Vec::new();
     for path in scenes(folders)? {
-        let scene = Scene::load(&path).map_err(|error| error.to_string())?;
-        let simulation = scene.build().map_err(|error| error.to_string())?;
+        let scene = Scene::load(&path)?;
+        let simulation = scene.build()?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let settings = simulation.settings();
-        let own = Method {
+        let own = MethodChoice {
             integrator: settings.integrator.clone(),
             options: settings.options.clone(),
         };
         let dt = simulation.dt();
         let mut method = own.clone();
-        if own.integrator == PAPER {
+        let entry = sinew_integrators::entry(&own.integrator);
+        if entry.is_some_and(|entry| entry.guard == GuardOption::OwnOrAuto) {
             let difference = difference(&simulation, &own, dt, UNITS[0])?;
-            papers.push(format!("{name} {}", three(difference)));
+            saturating.push(format!("{name} {}", three(difference)));
             method = block();
         }
         for per_metre in UNITS {
@@ -53,21 +53,24 @@ pub(crate) fn check(asked: Asked, folders: &[PathBuf]) -> Result<Mark, String> {
     }
     let (count, names) = (names.len(), names.join(", "));
     let mut note = format!("largest of {count} scenes in mm and um: {names}");
-    if !papers.is_empty() {
-        let papers = papers.join(", ");
+    if !saturating.is_empty() {
+        let saturating = saturating.join(", ");
         note.push_str(&format!(
-            "; the paper's network, beyond its stable step in its own scenes, lets rounding grow \
-             there: {papers}"
+            "; in scenes of a network that saturates, which lets rounding grow, its own difference \
+             is: {saturating}"
         ));
     }
     Ok(asked.measured(worst.figure, three, worst.by).noting(note))
 }
 
 /// The scenes in the folders, sorted.
-fn scenes(folders: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+fn scenes(folders: &[PathBuf]) -> Result<Vec<PathBuf>, HardError> {
     let mut paths = Vec::new();
     for folder in folders {
-        let unreadable = |error: std::io::Error| format!("{}: {error}", folder.display());
+        let unreadable = |source| HardError::Folder {
+            folder: folder.clone(),
+            source,
+        };
         for entry in std::fs::read_dir(folder).map_err(unreadable)? {
             let path = entry.map_err(unreadable)?.path();
             if path
@@ -84,10 +87,10 @@ fn scenes(folders: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
 
 fn difference(
     simulation: &Simulation,
-    method: &Method,
+    method: &MethodChoice,
     dt: f64,
     per_metre: f64,
-) -> Result<f64, String> {
+) -> Result<f64, HardError> {
     let duration = simulation.settings().duration;
     let steps = Run::covering(duration, dt).steps.min(MOST_STEPS);
     let (system, start) = (simulation.system(), simulation.initial_state());
@@ -99,15 +102,14 @@ fn difference(
     Ok(largest_difference(&path, &metres))
 }
 
-/// A saturation voltage is a velocity.
-fn scaled(method: &Method, per_metre: f64) -> Method {
-    const SATURATION: &str = "saturation";
+/// The method with its saturation voltage, a velocity, in other units.
+fn scaled(method: &MethodChoice, per_metre: f64) -> MethodChoice {
     let mut method = method.clone();
-    if let Some(OptionValue::Number(voltage)) = method.options.get(SATURATION) {
+    if let Some(OptionValue::Number(voltage)) = method.options.get(GuardOption::KEY) {
         let voltage = voltage * per_metre;
         method
             .options
-            .insert(SATURATION, OptionValue::Number(voltage));
+            .insert(GuardOption::KEY, OptionValue::Number(voltage));
     }
     method
 }

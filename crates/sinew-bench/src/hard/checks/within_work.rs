@@ -3,10 +3,11 @@
 use sinew_measure::Row;
 
 use super::at;
-use crate::hard::mark::{Asked, Mark};
+use crate::hard::mark::Asked;
 use crate::report::percent;
+use crate::results::Mark;
 
-/// Judges the rows without solves that take at most so many sweeps a step: by the one with the
+/// Judges the rows without solves that take at most `sweeps_a_step` sweeps a step: by the one with the
 /// least work that passes, or else by the one with the least error.
 pub(crate) fn check<'a>(
     asked: Asked,

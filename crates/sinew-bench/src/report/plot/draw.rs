@@ -16,7 +16,15 @@ const LANE: f64 = 26.0;
 const MARKER: f64 = 4.2;
 const SAMPLE: f64 = 34.0;
 
-pub(super) fn draw(plot: &Plot) -> String {
+impl Plot {
+    /// The picture as a file of its own or for a page.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        draw(self)
+    }
+}
+
+fn draw(plot: &Plot) -> String {
     let layout = Layout::of(plot);
     let mut svg = Svg::new(plot.width, layout.height, &described(plot));
     svg.text(
@@ -157,7 +165,7 @@ impl Layout {
         }
     }
 
-    /// Where a point lies as shares of the frame; none where it cannot be shown.
+    /// The place of a point in shares of the frame; none where it cannot be shown.
     fn shares(&self, point: &Point) -> Option<(f64, f64)> {
         let (x, y) = (self.x.share(point.x), self.y.share(point.y));
         let y = match self.lane {

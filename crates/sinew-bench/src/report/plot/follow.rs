@@ -1,4 +1,4 @@
-//! How far a line is followed out of the frame.
+//! A line on its way out of the frame.
 
 /// Place as shares of the frame: to the right, and upwards.
 type Place = (f64, f64);

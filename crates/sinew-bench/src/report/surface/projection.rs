@@ -21,7 +21,7 @@ pub(super) fn project([x, y, z]: [f64; 3]) -> Projected {
     }
 }
 
-/// How brightly a triangle is lit, in 0.72..1: gently, since colour carries the number. Both sides
+/// The brightness of a triangle, in 0.72..1: little varied, since colour carries the number. Both sides
 /// are lit alike, as inverted elements turn theirs.
 pub(super) fn light(corners: &[[f64; 3]; 3]) -> f64 {
     // From above, more from the left than from the right.
@@ -76,7 +76,7 @@ pub(super) fn edges(bounds: [[f64; 3]; 2]) -> (Vec<Edge>, Vec<Edge>) {
         })
 }
 
-/// What a picture has to hold.
+/// The box that a picture has to hold.
 #[derive(Debug)]
 pub(super) struct Extent {
     low: (f64, f64),

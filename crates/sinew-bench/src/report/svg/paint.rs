@@ -1,6 +1,6 @@
 //! Colours and lines.
 //!
-//! Neutral colours name themselves beside their value, so that a page can restyle them: attributes
+//! Neutral colours have a name besides their value, so that a page can restyle them: attributes
 //! give way to its CSS, and a file alone still looks right.
 
 use crate::report::style::{Colour, Dash};
@@ -17,7 +17,7 @@ pub(in crate::report) enum Paint {
     OnTint,
 }
 
-/// How a line is drawn.
+/// Colour, width and dashes of a line.
 #[derive(Clone, Copy)]
 pub(in crate::report) struct Stroke {
     pub(in crate::report) paint: Paint,

@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 use super::Paint;
 use crate::report::markup::escape;
 
-/// Which part of a text its position means.
+/// The part of a text that its position refers to.
 #[derive(Clone, Copy)]
 pub(in crate::report) enum Anchor {
     Start,

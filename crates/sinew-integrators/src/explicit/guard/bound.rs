@@ -1,4 +1,4 @@
-//! The limits of `saturation = "auto"`: how fast a cell can move by the energy there is.
+//! The limits of `saturation = "auto"`: the largest speed of a cell by the energy in the body.
 //!
 //! *Exact motion.* The motion of a linear system is that of its start without loads and that of each load from
 //! rest, added up. In the norm `|v|_M = sqrt(v'Mv)` the first is at most `sqrt(2 E_start)`, since damping takes
@@ -38,7 +38,7 @@ pub(super) fn room(share: f64, damping: f64) -> f64 {
         .max(damping * damping)
 }
 
-/// What bounds the velocities in a system.
+/// Bounds of the velocities in a system.
 #[derive(Debug)]
 pub(super) struct Bound {
     /// Square root of the mass of each cell (kg^1/2).
@@ -72,8 +72,8 @@ impl Bound {
         })
     }
 
-    /// Writes the limit of each cell (m/s) for motion computed in steps of `dt` (s), with this room for what the
-    /// method makes of it; returns the largest limit over the cell's size (1/s), 0 where the system has no sizes.
+    /// Writes the limit of each cell (m/s) for motion computed in steps of `dt` (s), `room` times the bound
+    /// by energy; returns the largest limit over the cell's size (1/s), 0 where the system has no sizes.
     pub(super) fn limits(&self, start: Option<Start>, dt: f64, room: f64, out: &mut [f64]) -> f64 {
         let start_strength = start.map_or(0.0, |start| (2.0 * start.energy).sqrt());
         let load_strength: f64 = self.loads.iter().map(|load| load.at(dt)).sum();
@@ -86,7 +86,7 @@ impl Bound {
     }
 }
 
-/// What a motion from this state begins with; `None` where the system shows no matrices.
+/// Start of a motion from this state; `None` where the system shows no matrices.
 pub(super) fn start(system: &dyn System, state: &State) -> Option<Start> {
     let operators = system.as_linear()?.operators();
     let energy = operators.energy(&state.u, &state.v).total();

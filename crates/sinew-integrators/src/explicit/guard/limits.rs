@@ -1,17 +1,19 @@
 //! The limits of a guard, cell by cell.
 
+use std::sync::Arc;
+
 use sinew_core::{Revision, SetupError, Start, System};
 
 use super::Guard;
 use super::bound::Bound;
 
-/// Limits for the system, the start and the step at hand.
+/// Limits for the system, the start and the current step.
 #[derive(Debug, Default)]
 pub(super) struct Limits {
     /// Q of each cell (m/s).
-    of_cells: Vec<f64>,
-    /// What they are computed from, and for which system; `None` where they are the user's.
-    bound: Option<(Revision, Bound)>,
+    of_cells: Arc<[f64]>,
+    /// Bound that they are computed from, and its system; `None` where they are the user's.
+    bound: Option<((Revision, Option<Revision>), Bound)>,
     start: Option<Start>,
     /// The step (s), and the factor by which velocities computed at it may exceed the bound of exact motion.
     step: (f64, f64),
@@ -33,16 +35,18 @@ impl Limits {
         let cells = system.dofs() / system.layers().count();
         match guard {
             Guard::At(limit) => {
-                self.of_cells.clear();
-                self.of_cells.resize(cells, limit);
+                self.of_cells = vec![limit; cells].into();
             }
             Guard::Auto => {
+                let loads = system.as_linear();
+                let loads = loads.map(|linear| linear.operators().loads_revision());
+                let of = (system.revision(), loads);
                 let known = self.bound.as_ref();
-                if known.is_none_or(|(revision, _)| *revision != system.revision()) {
+                if known.is_none_or(|(known, _)| *known != of) {
                     let bound = Bound::new(integrator, system)?;
-                    self.of_cells.resize(cells, 0.0);
+                    self.of_cells = vec![0.0; cells].into();
                     self.start = None;
-                    self.bound = Some((system.revision(), bound));
+                    self.bound = Some((of, bound));
                     self.update();
                 }
             }
@@ -50,7 +54,7 @@ impl Limits {
         Ok(())
     }
 
-    /// Takes what the motion began with into account; whether it changed the limits.
+    /// Sets the start of the motion; returns whether it changed the limits.
     pub(super) fn set_start(&mut self, start: Option<Start>) -> bool {
         if self.start == start {
             return false;
@@ -60,7 +64,7 @@ impl Limits {
         true
     }
 
-    /// Takes into account the step (s) and by what factor velocities computed at it may exceed the bound of exact
+    /// Sets the step (s) and the factor by which velocities computed at it may exceed the bound of exact
     /// motion.
     pub(super) fn set_step(&mut self, dt: f64, room: f64) {
         if self.step != (dt, room) {
@@ -72,13 +76,15 @@ impl Limits {
     fn update(&mut self) {
         if let Some((_, bound)) = &self.bound {
             let (dt, room) = self.step;
-            self.largest_rate = bound.limits(self.start, dt, room, &mut self.of_cells);
+            let mut of_cells = vec![0.0; self.of_cells.len()];
+            self.largest_rate = bound.limits(self.start, dt, room, &mut of_cells);
+            self.of_cells = of_cells.into();
         }
     }
 
     /// Q of each cell (m/s).
-    pub(super) fn of_cells(&self) -> &[f64] {
-        &self.of_cells
+    pub(super) fn of_cells(&self) -> Arc<[f64]> {
+        Arc::clone(&self.of_cells)
     }
 
     /// The largest Q (m/s).

@@ -1,6 +1,7 @@
-//! The most that loads can do to a body.
+//! Bounds of the work that loads do on a body.
 
 use sinew_core::LinearOperators;
+use sinew_core::vectors::dot;
 
 /// Iterations after which a body counts as not held.
 const MOST_ITERATIONS: usize = 2000;
@@ -8,20 +9,20 @@ const MOST_ITERATIONS: usize = 2000;
 /// Residual of a solution, relative to the load; the error of the energy is its square.
 const RESIDUAL: f64 = 1e-5;
 
-/// Stiffness of a motion, relative to that of moving each cell by itself, which is rounding of zero.
+/// Stiffness of a motion that counts as zero, relative to the stiffness against moving each cell by itself.
 const UNRESISTED: f64 = 1e-12;
 
 /// Bounds of `e = sqrt(v'Mv + w'Kw)` that a load can bring about at any time after a start at rest, w being the
-/// displacement from the equilibrium of the moment or, for the second, from that without loads.
+/// displacement from the equilibrium of the moment or, for the second, from the equilibrium without loads.
 #[derive(Debug)]
 pub(super) struct LoadStrength {
-    /// By the load's changes (J^1/2); infinite where nothing holds the body against it.
+    /// Bound by the load's changes (J^1/2); infinite where nothing holds the body against it.
     by_changes: f64,
     /// `sqrt(F'M^-1 F)` (J^1/2/s), F being the load at full value.
     rate: f64,
-    /// Of the ramp (s).
+    /// Impulse of the ramp (s).
     impulse: f64,
-    /// Of the ramp.
+    /// Variation of the ramp.
     variation: f64,
 }
 
@@ -113,8 +114,4 @@ fn compliance(operators: &LinearOperators, force: &[f64]) -> f64 {
         size = next;
     }
     f64::INFINITY
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,23 +1,22 @@
-//! `saturation`: a guard that bounds velocities whatever the step.
+//! `saturation`: a guard that bounds velocities at any step.
 
 mod bound;
-mod clamp;
 mod limits;
 mod load_work;
 mod option;
-mod unaccepted;
 
+use sinew_cnn::Program;
 use sinew_core::{
-    Fact, Integrator, Prepared, Properties, Revision, SetupError, StableStep, Start, State,
-    StepError, StepReport, System,
+    Batch, Fact, Guarding, Integrator, Prepared, Properties, Revision, SetupError, StableStep,
+    Start, State, StepError, StepReport, System,
 };
+
+use crate::Stepper;
 
 use super::substeps::{Substeps, whole};
 use bound::{LEAST_ROOM, room};
-use clamp::Clamp;
 use limits::Limits;
 pub use option::{Guard, GuardOption};
-use unaccepted::Unaccepted;
 
 /// Most parts of a step where none is stable: a light cell's limit would ask for millions.
 const MOST_PARTS_BY_SIZE: u32 = 1000;
@@ -27,50 +26,50 @@ const MOST_PARTS_BY_SIZE: u32 = 1000;
 /// depend on the axes' directions. Not a bit changes while nothing saturates.
 ///
 /// With [`Guard::Auto`] a step longer than the method's stable one is cut into the fewest equal parts that are
-/// at most nine tenths of it. The limits Q_i are those of the energy that the loads and the start of the motion
-/// bring, with room for what a stable method makes of it, so that a stable step, or part of one, is never
+/// at most nine tenths of it. The limits Q_i follow from the energy that the loads and the start of the motion
+/// bring, with room for the larger velocities of a stable method, so that a stable step, or part of one, is never
 /// clamped. Where a method knows no stable step, as forward Euler without damping, parts are so short that no
 /// cell passes a fifth of its size in one, or a thousandth of the step, and the limits are what bounds the motion.
 ///
 /// [`Guard::At`] clamps and does nothing else.
 ///
-/// Where a method moves displacements with its new velocity, both clamps are the same; where with
-/// the old one, that was clamped a step before. Staggered velocities stay where the method has
-/// them, and an acceleration that a method keeps beside them is that of the clamped motion.
+/// Where a method moves displacements with its new velocity, both clamps are the same; where it
+/// uses the old one, that velocity was clamped a step before. Staggered velocities stay staggered,
+/// and an acceleration that a method keeps is that of the clamped motion.
 pub struct Guarded {
-    inner: Box<dyn Integrator>,
+    inner: Box<dyn Stepper>,
     guard: Guard,
     prepared: Prepared,
     limits: Limits,
-    clamp: Clamp,
-    /// The method's stable step on the system at hand.
+    guarding: Guarding,
+    /// The method's stable step on the current system.
     stable: Option<(Revision, StableStep)>,
     parts: u32,
 }
 
 impl Guarded {
-    /// Name of the fact that tells into how many parts a step is cut.
+    /// Name of the fact for the number of parts of a step.
     pub const SUBSTEPS: &'static str = "guard_substeps";
-    /// Name of the fact that tells the largest of all limits (m/s), which rises without end where a step nears the
+    /// Name of the fact for the largest of all limits (m/s), which rises without end where a step nears the
     /// method's stable one.
     pub const LARGEST_LIMIT: &'static str = "guard_q_max";
 
     /// Guards `inner`.
     #[must_use]
-    pub fn new(inner: Box<dyn Integrator>, guard: Guard) -> Self {
+    pub fn new(inner: Box<dyn Stepper>, guard: Guard) -> Self {
         Self {
             inner,
             guard,
             prepared: Prepared::default(),
             limits: Limits::default(),
-            clamp: Clamp::default(),
+            guarding: Guarding::default(),
             stable: None,
             parts: 1,
         }
     }
 
-    /// What the motion began with. Kept in the state, for a run that is continued by a fresh
-    /// integrator to have the same limits.
+    /// Start of the motion, kept in the state so that a run continued by a fresh integrator has the same
+    /// limits.
     fn start(&mut self, system: &dyn System, state: &mut State) -> Option<Start> {
         if let Guard::At(_) = self.guard {
             return None;
@@ -82,7 +81,7 @@ impl Guarded {
         state.start
     }
 
-    /// The method's stable step, found once for each system.
+    /// The method's stable step, computed once for each system.
     fn stable(&mut self, system: &dyn System) -> Result<StableStep, SetupError> {
         if let Some((revision, stable)) = self.stable
             && revision == system.revision()
@@ -94,7 +93,7 @@ impl Guarded {
         Ok(stable)
     }
 
-    /// Chooses the parts of a step, and limits that leave room for what the method makes of them.
+    /// Chooses the parts of a step, and limits with room for the method's velocities at that length.
     fn cut(&mut self, system: &dyn System, dt: f64) -> Result<(), SetupError> {
         if let Guard::At(_) = self.guard {
             return Ok(());
@@ -102,7 +101,11 @@ impl Guarded {
         let (parts, limit) = match self.stable(system)? {
             StableStep::Any => (1, f64::INFINITY),
             StableStep::UpTo(limit) if dt <= limit => (1, limit),
-            StableStep::UpTo(limit) if limit > 0.0 => (Substeps::parts_of(dt, limit), limit),
+            StableStep::UpTo(limit) if limit > 0.0 => {
+                let id = self.inner.id();
+                let parts = Substeps::stable_parts_of(id, dt, limit, GuardOption::KEY)?;
+                (parts, limit)
+            }
             StableStep::UpTo(_) | StableStep::Unknown => {
                 self.limits.set_step(dt, LEAST_ROOM);
                 let passed = dt * self.limits.largest_rate();
@@ -118,6 +121,19 @@ impl Guarded {
     }
 }
 
+impl Stepper for Guarded {
+    fn program(&self) -> Option<Program> {
+        let (parts, limits) = (self.parts, self.limits.of_cells());
+        let part = self.prepared.step()? / f64::from(parts);
+        let guarded = self.inner.program()?.guarded(limits, part);
+        Some(guarded.repeated(parts))
+    }
+
+    fn without_program(&self) -> &'static str {
+        self.inner.without_program()
+    }
+}
+
 impl Integrator for Guarded {
     fn id(&self) -> &'static str {
         self.inner.id()
@@ -128,50 +144,48 @@ impl Integrator for Guarded {
     }
 
     fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
-        if self.prepared.is_for(system, dt) {
+        if self.prepared.is_for_loads(system, dt) {
             return Ok(StepReport::default());
         }
-        let mut checked = Prepared::default();
-        checked.check(self.inner.id(), system, dt)?;
-        self.prepared = Prepared::default();
+        self.prepared.forget();
+        Prepared::check(self.inner.id(), system, dt)?;
         self.limits.prepare(self.inner.id(), system, self.guard)?;
-        self.clamp.prepare(system);
         self.cut(system, dt)?;
         let work = self.inner.prepare(system, dt / f64::from(self.parts))?;
-        self.prepared = checked;
+        self.prepared.done(system, dt);
         Ok(work)
     }
 
-    /// That of the method: the guard bounds the motion beyond it without making it right.
-    fn stable_step(&self, system: &dyn System) -> Result<StableStep, SetupError> {
-        self.inner.stable_step(system)
+    /// The method's stable step: the guard bounds the motion beyond it without making it right.
+    fn stable_step_about(
+        &self,
+        system: &dyn System,
+        state: Option<&State>,
+    ) -> Result<StableStep, SetupError> {
+        self.inner.stable_step_about(system, state)
     }
 
-    fn step(
-        &mut self,
-        system: &dyn System,
-        state: &mut State,
-        dt: f64,
-    ) -> Result<StepReport, StepError> {
-        let mut work = self.prepare(system, dt)?;
-        Prepared::check_state(self.inner.id(), system, state)?;
+    fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
+        let (system, dt) = (batch.system(), batch.dt());
+        if self.guard == Guard::Auto && batch.inputs().forces().next().is_some() {
+            return Err(StepError::Setup(SetupError::Lacks {
+                integrator: self.inner.id(),
+                needs: "forces known beforehand for saturation = \"auto\" (give a number instead)",
+            }));
+        }
         let start = self.start(system, state);
         if self.limits.set_start(start) {
             self.cut(system, dt)?;
+            let work = self.inner.prepare(system, dt / f64::from(self.parts))?;
+            batch.count(work);
         }
-        let part = dt / f64::from(self.parts);
-        let waiting = Unaccepted(system);
-        for _ in 0..self.parts {
-            self.clamp.remember(state, part);
-            let done = self.inner.step(&waiting, state, part)?;
-            let clamped = self.clamp.apply(self.limits.of_cells(), state, part);
-            system.accept(state);
-            work.add_part(StepReport {
-                saturated: done.saturated.max(clamped),
-                ..done
-            });
-        }
-        Ok(work)
+        let mut guarding = std::mem::take(&mut self.guarding);
+        guarding.set(self.limits.of_cells(), system.layers().count());
+        let (guarding, result) = batch.in_parts(self.parts, |batch| {
+            batch.guarded(guarding, |batch| self.inner.run(batch, state))
+        });
+        self.guarding = guarding;
+        result
     }
 
     fn facts(&self) -> Vec<Fact> {

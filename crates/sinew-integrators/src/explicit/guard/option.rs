@@ -2,9 +2,9 @@
 
 use sinew_core::{OptionError, OptionValue, Options};
 
-use crate::OptionHelp;
+use crate::option_help::OptionHelp;
 
-/// What bounds the velocities.
+/// Bound of the velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Guard {
     /// One limit for all cells (m/s).
@@ -14,30 +14,32 @@ pub enum Guard {
     Auto,
 }
 
-/// What the option `saturation` means to a method.
+/// Meaning of the option `saturation` for a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GuardOption {
-    /// It has no such option.
+    /// The method has no such option.
     None,
-    /// A number or "auto" guards it, "off" or nothing does not.
+    /// A number or "auto" guards the method, "off" or an absent option does not.
     Any,
-    /// The option is its own; "auto" switches its own saturation off and guards it.
+    /// The option is the method's own; "auto" switches its own saturation off and guards it.
     OwnOrAuto,
 }
 
-const KEY: &str = "saturation";
 const AUTO: &str = "auto";
 const OFF: &str = "off";
 
 impl GuardOption {
-    /// What fits.
+    /// The option's key.
+    pub const KEY: &'static str = "saturation";
+
+    /// Values that fit.
     pub(crate) const EXPECTED: &'static str = "a number above 0 [m/s], \"auto\" or \"off\"";
 
     /// The option in words, where the method does not list it itself.
     #[must_use]
     pub fn help(self) -> Option<OptionHelp> {
         matches!(self, Self::Any).then_some(OptionHelp {
-            key: KEY,
+            key: Self::KEY,
             help: "guard: largest speed of a cell [m/s], \"auto\" to cut steps beyond the stable one and limit speeds by the energy there is, or \"off\"; default \"off\"",
             shown_default: None,
         })
@@ -52,32 +54,27 @@ impl GuardOption {
         options: &mut Options,
         integrator: &str,
     ) -> Result<Option<Guard>, OptionError> {
-        let word = |value: &OptionValue, wanted| matches!(value, OptionValue::Text(text) if text == wanted);
-        let given = options.get(KEY).cloned();
-        match (self, given) {
-            (Self::Any | Self::OwnOrAuto, Some(value)) if word(&value, AUTO) => {
-                options.remove(KEY);
-                if self == Self::OwnOrAuto {
-                    options.insert(KEY, OptionValue::Text(OFF.into()));
-                }
+        let word = options.get(Self::KEY).and_then(OptionValue::word);
+        match (self, word) {
+            (Self::None, _) => Ok(None),
+            (Self::OwnOrAuto, Some(AUTO)) => {
+                options.insert(Self::KEY, OptionValue::Text(OFF.into()));
                 Ok(Some(Guard::Auto))
             }
-            (Self::Any, Some(value)) => {
-                options.remove(KEY);
-                match value {
-                    OptionValue::Number(limit) if limit.is_finite() && limit > 0.0 => {
-                        Ok(Some(Guard::At(limit)))
+            (Self::OwnOrAuto, _) => Ok(None),
+            (Self::Any, _) => {
+                let read = |value: &OptionValue| match value.word() {
+                    Some(AUTO) => Some(Some(Guard::Auto)),
+                    Some(OFF) => Some(None),
+                    _ => {
+                        let limit = value.number().filter(|limit| *limit > 0.0);
+                        limit.map(|limit| Some(Guard::At(limit)))
                     }
-                    value if word(&value, OFF) => Ok(None),
-                    found => Err(OptionError::Value {
-                        integrator: integrator.into(),
-                        key: KEY.into(),
-                        found,
-                        expected: Self::EXPECTED,
-                    }),
-                }
+                };
+                let guard = options.read(integrator, Self::KEY, Self::EXPECTED, read)?;
+                options.remove(Self::KEY);
+                Ok(guard.flatten())
             }
-            _ => Ok(None),
         }
     }
 }

@@ -6,145 +6,240 @@
 //! over whole elements knows no rigid motion, so that a patch moves with its surroundings as freely
 //! as before, which blocks cut out of K would not.
 
-mod candidates;
+mod stiff_elements;
 
 use std::sync::Arc;
 
+use sinew_cnn::Physics;
 use sinew_core::{
-    BlockMatrix, Damping, ElementStiffness, Fact, Layers, LinearOperators, LinearSystem, Needs,
-    OptionError, OptionValue, Options, Pattern, SetupError, StableStep, System,
+    Acceleration, BlockMatrix, Damping, ElementStiffness, Fact, Layers, LinearOperators, LoadTime,
+    Needs, OperatorError, OptionError, Options, Pattern, Properties, SetupError, StableStep, State,
+    Step, StepError, StepReport, Stepped, System, VelocityTime,
 };
 
-use crate::OptionHelp;
+use sinew_sparse::AssemblyError;
+
+use super::{CentralDifference, GuardOption};
 use crate::implicit::factor::{Combination, Factor};
-use candidates::Candidates;
+use crate::implicit::factor_error::FactorError;
+use crate::scheme::linear;
+use crate::{ConservedEnergy, Explicit, Method, OptionHelp, Scheme, SetUp, StepByHand};
+use stiff_elements::StiffElements;
 
 const KEY: &str = "patches";
-
-pub(super) const OPTIONS: &[OptionHelp] = &[OptionHelp {
-    key: KEY,
-    help: "\"auto\": the few elements that forbid dt are solved as small blocks; \"off\" (default)",
-    shown_default: None,
-}];
 
 /// Elements named in a remark.
 const NAMED: usize = 5;
 
-/// Patches chosen anew for each system and step.
+/// [`CentralDifference`] in which the few elements that forbid the step are solved as small blocks:
+/// stable up to the limit of all others, order 2, the elements named in a remark.
+///
+/// Without `patches = "auto"` it is central difference.
 #[derive(Debug, Default)]
-pub(super) struct AutoPatches {
-    made: Option<Box<Patches>>,
+pub struct PatchedCentralDifference {
+    auto: bool,
+    facts: Vec<Fact>,
     remark: Option<String>,
 }
 
-impl AutoPatches {
-    /// The option `patches`.
-    pub(super) fn from_options(
-        options: &Options,
-        integrator: &str,
-    ) -> Result<Option<Self>, OptionError> {
-        match options.get(KEY) {
-            None => Ok(None),
-            Some(OptionValue::Text(word)) if word == "off" => Ok(None),
-            Some(OptionValue::Text(word)) if word == "auto" => Ok(Some(Self::default())),
-            Some(found) => Err(OptionError::Value {
-                integrator: integrator.into(),
-                key: KEY.into(),
-                found: found.clone(),
-                expected: "\"auto\" or \"off\"",
-            }),
-        }
+impl Method for PatchedCentralDifference {
+    const SUMMARY: &'static str = <CentralDifference as Explicit>::SUMMARY;
+    const OPTIONS: &'static [OptionHelp] = &[OptionHelp {
+        key: KEY,
+        help: "\"auto\": the few elements that forbid dt are solved as small blocks; \"off\" (default)",
+        shown_default: None,
+    }];
+    const SUBSTEPS: bool = true;
+    const GUARD: GuardOption = <CentralDifference as Explicit>::GUARD;
+
+    fn from_options(options: &Options) -> Result<Self, OptionError> {
+        let expected = "\"auto\" or \"off\"";
+        let auto = options.read(Self::ID, KEY, expected, |value| match value.word()? {
+            "auto" => Some(true),
+            "off" => Some(false),
+            _ => None,
+        })?;
+        Ok(Self {
+            auto: auto.unwrap_or(false),
+            ..Self::default()
+        })
     }
 
-    /// The step (s) up to which patches of few elements make the method stable.
-    pub(super) fn stable_step(
+    fn conserved_energy(facts: &[Fact]) -> ConservedEnergy {
+        <CentralDifference as Method>::conserved_energy(facts)
+    }
+}
+
+impl Scheme for PatchedCentralDifference {
+    const ID: &'static str = <CentralDifference as Explicit>::ID;
+
+    type ByHand = PatchedSteps;
+
+    fn properties(&self) -> Properties {
+        let plain = Explicit::properties(&CentralDifference);
+        let needs = if self.auto {
+            Needs::Matrices
+        } else {
+            plain.needs
+        };
+        Properties { needs, ..plain }
+    }
+
+    fn survives_change_of_rows(&self) -> bool {
+        !self.auto
+    }
+
+    fn stable_step(
         &self,
         system: &dyn System,
-        integrator: &'static str,
+        about: Option<&State>,
     ) -> Result<StableStep, SetupError> {
-        let linear = linear(system, integrator)?;
-        Candidates::of(linear, integrator).map(|candidates| candidates.stable_step())
+        if !self.auto {
+            return Scheme::stable_step(&CentralDifference, system, about);
+        }
+        let integrator = Self::ID;
+        let stiff = StiffElements::of(linear(system, integrator)?, integrator)?;
+        Ok(stiff.stable_step())
     }
 
-    /// Makes the patches that a step of `dt` (s) needs.
-    pub(super) fn prepare(
+    fn set_up(
         &mut self,
         system: &dyn System,
-        integrator: &'static str,
         dt: f64,
-    ) -> Result<(), SetupError> {
-        *self = Self::default();
+        _before: Option<PatchedSteps>,
+    ) -> Result<SetUp<PatchedSteps>, SetupError> {
+        let plain = || CentralDifference.program(&Physics::of(system), dt);
+        if !self.auto {
+            return Ok(plain().into());
+        }
+        let integrator = Self::ID;
         let linear = linear(system, integrator)?;
-        let candidates = Candidates::of(linear, integrator)?;
-        let count = candidates.fewest_for(dt)?;
+        let stiff = StiffElements::of(linear, integrator)?;
+        let count = stiff.fewest_for(dt)?;
         if count == 0 {
+            self.facts = facts(0, 0, 0);
             self.remark = Some(format!(
                 "dt = {dt} s is stable without patches; none are made"
             ));
-            return Ok(());
+            return Ok(plain().into());
         }
-        let elements = candidates.stiffness(count);
-        let patches = Patches::new(linear.operators(), elements, dt).map_err(|reason| {
+        let elements = stiff.stiffness(count);
+        let patches = Patches::new(linear.operators(), elements, dt).map_err(|error| {
             SetupError::Factorization {
                 integrator,
-                reason: format!("a patch: {reason}"),
+                reason: format!("a patch: {error}"),
             }
         })?;
-        let mut names = candidates.names(count.min(NAMED)).join(", ");
+        let mut names = stiff.names(count.min(NAMED)).join(", ");
         if count > NAMED {
             names.push_str(" and others");
         }
+        self.facts = facts(count, patches.cells.len(), patches.blocks);
         self.remark = Some(format!(
             "dt = {dt} s is {:.3} times the stable step without patches, {:.3e} s, which {names} \
              set; {count} of {} elements, on {} cells, are solved in {} small block(s)",
-            dt / candidates.plain_limit(),
-            candidates.plain_limit(),
-            candidates.elements(),
+            dt / stiff.plain_limit(),
+            stiff.plain_limit(),
+            stiff.elements(),
             patches.cells.len(),
             patches.blocks,
         ));
-        self.made = Some(Box::new(patches));
-        Ok(())
-    }
-
-    /// The patches of the step at hand, where it needs any.
-    pub(super) fn made(&mut self) -> Option<&mut Patches> {
-        self.made.as_deref_mut()
-    }
-
-    pub(super) fn facts(&self) -> Vec<Fact> {
-        let (elements, cells, blocks) = self.made.as_ref().map_or((0, 0, 0), |patches| {
-            (patches.elements, patches.cells.len(), patches.blocks)
-        });
-        let fact = |name, value: usize| Fact {
-            name,
-            value: value as f64,
+        let steps = PatchedSteps {
+            patches,
+            a: vec![0.0; system.dofs()],
         };
-        vec![
-            fact("patches", blocks),
-            fact("patch_elements", elements),
-            fact("patch_cells", cells),
-        ]
+        Ok(SetUp::by_hand(steps, StepReport::default()))
     }
 
-    pub(super) fn remarks(&self) -> Vec<String> {
+    fn facts(&self) -> Vec<Fact> {
+        self.facts.clone()
+    }
+
+    fn remarks(&self) -> Vec<String> {
         self.remark.iter().cloned().collect()
     }
 }
 
-fn linear<'a>(
-    system: &'a dyn System,
-    integrator: &'static str,
-) -> Result<&'a dyn LinearSystem, SetupError> {
-    system
-        .as_linear()
-        .ok_or_else(|| Needs::Matrices.lacking(integrator))
+fn facts(elements: usize, cells: usize, blocks: usize) -> Vec<Fact> {
+    let fact = |name, value: usize| Fact {
+        name,
+        value: value as f64,
+    };
+    vec![
+        fact("patches", blocks),
+        fact("patch_elements", elements),
+        fact("patch_cells", cells),
+    ]
+}
+
+/// Central difference with patches.
+pub struct PatchedSteps {
+    patches: Patches,
+    a: Vec<f64>,
+}
+
+impl StepByHand for PatchedSteps {
+    fn without_program(&self) -> &'static str {
+        "its patches solve linear equations in each step, with a factor for each patch"
+    }
+
+    fn is_staggered(&self) -> bool {
+        true
+    }
+
+    fn step(&mut self, step: &Step<'_>, state: &mut State) -> Result<Stepped, StepError> {
+        let (dt, alpha) = (step.dt, step.system.mass_damping());
+        let running = state.is_staggered_by(dt);
+        let load = LoadTime::around(state.t(), if running { dt } else { 0.0 }, dt);
+        step.acceleration(load, state, &mut self.a)?;
+        if running {
+            self.patches.accelerate(&mut self.a);
+        } else {
+            self.patches
+                .accelerate_start(&mut self.a, &state.v, alpha, dt);
+        }
+        let implicit = 1.0 / (1.0 + alpha * dt / 2.0);
+        let taken = if running { dt } else { dt / 2.0 };
+        state.a.resize(state.u.len(), 0.0);
+        let moving = state.u.iter_mut().zip(&mut state.v).zip(&mut state.a);
+        for (((u, v), kept), a) in moving.zip(&self.a) {
+            let change = if running {
+                dt * implicit * a
+            } else {
+                dt / 2.0 * ((a + alpha * *v) * implicit - alpha * *v)
+            };
+            let before = *v;
+            *v += change;
+            // Kept so that the velocity at the displacement's time can be had: M^-1 of the force is not
+            // the acceleration of a patch.
+            *kept = (*v - before) / taken;
+            *u += dt * *v;
+        }
+        Ok(Stepped {
+            work: StepReport {
+                solves: 1,
+                ..StepReport::ONE_FORCE
+            },
+            velocity: VelocityTime::MiddleOfStep,
+            acceleration: Acceleration::Kick,
+        })
+    }
+}
+
+/// Reasons for which patches cannot be made.
+#[derive(Debug, thiserror::Error)]
+enum PatchError {
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    #[error(transparent)]
+    Operators(#[from] OperatorError),
+    #[error(transparent)]
+    Factor(#[from] FactorError),
 }
 
 /// Cells of some elements, and the factor of `M + c K_patch` on them.
 #[derive(Debug)]
-pub(super) struct Patches {
-    elements: usize,
+struct Patches {
     /// Cells of the system, increasing.
     cells: Vec<u32>,
     /// Patches that share no cell.
@@ -161,7 +256,7 @@ impl Patches {
         operators: &LinearOperators,
         elements: &[ElementStiffness],
         dt: f64,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, PatchError> {
         let mut cells: Vec<u32> = elements
             .iter()
             .flat_map(|element| element.cells.iter().copied())
@@ -173,21 +268,17 @@ impl Patches {
             .iter()
             .map(|element| element.cells.iter().map(local).collect())
             .collect();
-        let pattern = Pattern::from_elements(cells.len(), members.iter().map(Vec::as_slice))
-            .map_err(|error| error.to_string())?;
+        let pattern = Pattern::from_elements(cells.len(), members.iter().map(Vec::as_slice))?;
         let layers = operators.stiffness().layers();
         let mut stiffness = BlockMatrix::zeros(Arc::new(pattern), layers);
         for (element, members) in elements.iter().zip(&members) {
-            stiffness
-                .add_element(members, &element.matrix)
-                .map_err(|error| error.to_string())?;
+            stiffness.add_element(members, &element.matrix)?;
         }
         let blocks = connected_parts(cells.len(), &members);
         let mass = dofs_of(&cells, layers)
             .map(|dof| operators.mass()[dof])
             .collect();
-        let own = LinearOperators::new(mass, stiffness, Damping::default(), Vec::new())
-            .map_err(|error| error.to_string())?;
+        let own = LinearOperators::new(mass, stiffness, Damping::default(), Vec::new())?;
         let mut factor = Factor::analyse(&own)?;
         let damping = operators.damping();
         // Divided by 1 + alpha dt/2, which mass damping multiplies all of P outside K_patch by.
@@ -199,7 +290,6 @@ impl Patches {
         };
         factor.factorise(&own, combination)?;
         Ok(Self {
-            elements: elements.len(),
             blocks,
             layers: layers.count(),
             right_side: vec![0.0; own.dofs()],
@@ -211,15 +301,15 @@ impl Patches {
     }
 
     /// Replaces the acceleration `a = M^-1 f` of the patches' cells by `(M + c K_patch)^-1 f`.
-    pub(super) fn accelerate(&mut self, a: &mut [f64]) {
+    fn accelerate(&mut self, a: &mut [f64]) {
         self.right_side.fill(0.0);
         self.solve(a, |a, _| a, |x, _| x);
     }
 
-    /// The same for the start from `v` (m/s), which holds at the displacement's time:
+    /// [`Patches::accelerate`] for the start from `v` (m/s), which holds at the displacement's time:
     /// `(M + c K_patch)(a' + alpha v) = M (a + alpha v) - dt/2 K_patch v`, so that a stiff patch
     /// does not set out with a velocity it could not keep.
-    pub(super) fn accelerate_start(&mut self, a: &mut [f64], v: &[f64], alpha: f64, dt: f64) {
+    fn accelerate_start(&mut self, a: &mut [f64], v: &[f64], alpha: f64, dt: f64) {
         for (own, dof) in self
             .velocity
             .iter_mut()
@@ -263,7 +353,7 @@ fn dofs_of_layers(cells: &[u32], layers: usize) -> impl Iterator<Item = usize> {
         .flat_map(move |cell| (0..layers).map(move |layer| *cell as usize * layers + layer))
 }
 
-/// Parts of which no element has cells of two.
+/// Number of connected parts; no element has cells in two of them.
 fn connected_parts(cells: usize, elements: &[Vec<u32>]) -> usize {
     let mut parent: Vec<usize> = (0..cells).collect();
     fn root(parent: &mut [usize], mut cell: usize) -> usize {

@@ -1,25 +1,6 @@
 //! Products with a dense matrix of many columns of length n, stored column by column.
 
-/// Numbers summed side by side, so that sums can be kept in vector registers. The order of additions
-/// does not depend on anything but the length.
-const LANES: usize = 8;
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (a, a_rest) = a.as_chunks::<LANES>();
-    let (b, b_rest) = b.as_chunks::<LANES>();
-    let mut sums = [0.0; LANES];
-    for (a, b) in a.iter().zip(b) {
-        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
-            *sum += a * b;
-        }
-    }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
-    sums.iter().sum::<f64>() + rest
-}
-
-pub(super) fn norm(a: &[f64]) -> f64 {
-    dot(a, a).sqrt()
-}
+use sinew_core::vectors::{dot, norm};
 
 /// `out[j] = column_j . x`.
 pub(super) fn project(columns: &[f64], x: &[f64], out: &mut [f64]) {
@@ -28,7 +9,7 @@ pub(super) fn project(columns: &[f64], x: &[f64], out: &mut [f64]) {
     }
 }
 
-/// Both projections in one pass over the matrix.
+/// Projections of two vectors in one pass over the matrix.
 pub(super) fn project_two(
     columns: &[f64],
     (x, y): (&[f64], &[f64]),

@@ -1,9 +1,11 @@
 //! The inverse of the stiffness, made symmetric by the masses.
 
 use sinew_core::LinearOperators;
+use sinew_core::vectors::{dot, noise, norm};
 
-use super::columns::{add, dot, norm, orthogonalise, project};
+use super::columns::{add, orthogonalise, project};
 use crate::implicit::factor::{Combination, Factor, symmetric_eigen};
+use crate::implicit::factor_error::FactorError;
 
 /// `A = M^1/2 (K + shift M)^-1 M^1/2` on the components that are not held. Its eigenvectors are
 /// M^1/2 times the modes, its eigenvalues 1/(omega^2 + shift).
@@ -18,7 +20,7 @@ pub(super) struct Inverse {
     pub(super) factorizations: u64,
 }
 
-/// Largest `||K x - b|| / ||b||` of a factor that is taken for one: rounding can let the
+/// Largest `||K x - b|| / ||b||` at which a factor is accepted: rounding can let the
 /// factorisation of a singular matrix pass.
 const SOLVED: f64 = 1e-6;
 
@@ -26,12 +28,12 @@ const SOLVED: f64 = 1e-6;
 /// far above rounding.
 const SHIFT: f64 = 1e-7;
 
-/// Largest omega^2 over the shift that is rounding of zero.
+/// Largest omega^2 over the shift that counts as zero.
 const RIGID: f64 = 1e-4;
 
 impl Inverse {
     /// Factorises K, or K + s^2 M where K has no inverse.
-    pub(super) fn new(operators: &LinearOperators) -> Result<Self, String> {
+    pub(super) fn new(operators: &LinearOperators) -> Result<Self, FactorError> {
         let held = held(operators);
         let masses = operators.mass().iter().zip(&held);
         let root = masses.map(|(mass, held)| if *held { 0.0 } else { mass.sqrt() });
@@ -103,7 +105,7 @@ impl Inverse {
 
     /// The rigid motions of a floating body, orthonormal, by block inverse iteration (Parlett, The
     /// Symmetric Eigenvalue Problem, chapter 14).
-    pub(super) fn rigid_motions(&mut self) -> Result<Vec<f64>, String> {
+    pub(super) fn rigid_motions(&mut self) -> Result<Vec<f64>, FactorError> {
         if self.shift == 0.0 {
             return Ok(Vec::new());
         }
@@ -119,8 +121,8 @@ impl Inverse {
         }
     }
 
-    /// Those of the `count` slowest motions that are rigid.
-    fn slowest(&mut self, count: usize, n: usize) -> Result<Vec<f64>, String> {
+    /// The rigid motions among the `count` slowest motions.
+    fn slowest(&mut self, count: usize, n: usize) -> Result<Vec<f64>, FactorError> {
         let mut block: Vec<f64> = (0..count as u64).flat_map(|i| noise(n, i + 1)).collect();
         block
             .chunks_exact_mut(n)
@@ -189,17 +191,4 @@ pub(super) fn held(operators: &LinearOperators) -> Vec<bool> {
         }
     }
     held
-}
-
-/// A fixed vector with parts in every direction.
-pub(super) fn noise(n: usize, seed: u64) -> Vec<f64> {
-    let mut seed = 0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(2 * seed + 1);
-    let value = |_| {
-        // xorshift64: Marsaglia, J. Stat. Softw. 8(14), 2003.
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
-    (0..n).map(value).collect()
 }

@@ -1,24 +1,31 @@
 //! `modal`: superposition of the modes that matter.
 
 mod basis;
+mod candidate;
 mod columns;
+mod failure;
 mod inverse;
-mod krylov;
+mod lanczos_basis;
+mod load_case;
 mod motion;
 mod search;
 mod small;
 
+use sinew_core::vectors::dot;
 use sinew_core::{
-    Accuracy, ChangingLoads, Clock, EnergyBehaviour, Fact, Integrator, LinearOperators,
-    LinearSystem, LoadOverStep, Needs, OptionError, Options, OtherDamping, Prepared, Properties,
-    Ramp, Revision, SetupError, StableStep, State, StepError, StepReport, System,
+    Accuracy, ChangingLoads, Clock, EnergyBehaviour, Fact, LinearOperators, LoadOverStep, Needs,
+    OptionError, Options, OtherDamping, Properties, Ramp, Revision, SetupError, State, Step,
+    StepError, StepReport, Stepped, System,
 };
 
-use self::basis::{Basis, Choice, Failure, LoadCase};
-use self::columns::{add, dot, lift_two, project_two};
+use self::basis::{Basis, Choice};
+use self::columns::{add, lift_two, project_two};
+use self::failure::Failure;
+use self::load_case::LoadCase;
 use self::motion::{Mode, Piece, Response, harmonic_rate};
-use crate::evaluate::begin;
-use crate::{Method, OptionHelp};
+use crate::exponential::Exponential;
+use crate::scheme::linear;
+use crate::{Frame, Method, OptionHelp, Scheme, SetUp, StepByHand};
 
 /// Modal superposition (Clough and Penzien, Dynamics of Structures, chapter 12): with the modes phi
 /// of `K phi = omega^2 M phi`, `phi' M phi = 1`, each `q = phi' M u` is an oscillator of its own,
@@ -27,8 +34,8 @@ use crate::{Method, OptionHelp};
 ///
 /// # Modes
 /// They come from the Lanczos method on `K^-1 M`, or on `(K + s^2 M)^-1 M` where the body floats, in
-/// a basis that starts from the static response to the loads, so that what loads do not excite never
-/// enters. Modes at the fast end of the basis have not converged; each stands for a bundle of modes,
+/// a basis that starts from the static response to the loads, so that modes that no load excites never
+/// enter. Modes at the fast end of the basis have not converged; each stands for a bundle of modes,
 /// which represents the loads better than any one of them. Systems of up to 256 degrees of freedom
 /// have all their modes taken.
 ///
@@ -36,8 +43,8 @@ use crate::{Method, OptionHelp};
 ///   the masses and over eight periods of the slowest mode, changes by less than the tolerance from
 ///   one basis to the next larger by a third. Then the modes of the smallest static response
 ///   |phi' F|/omega^2 are left out as far as the tolerance allows. Both shares together are
-///   [`Modal::estimated_error`], which is kept below four fifths of the tolerance. Where that takes a basis of more than half of the degrees of
-///   freedom, set-up fails. Damping is left out of the estimate. It holds for loads that are applied
+///   [`Frame::estimated_error`], which is kept below four fifths of the tolerance. Where that takes a
+///   basis of more than half of the degrees of freedom, set-up fails. Damping is left out of the estimate. It holds for loads that are applied
 ///   suddenly and stay: pulses shorter than the slowest periods and loads that switch excite fast
 ///   modes more, and may lose several times the share.
 /// * `modes = N`: rigid motions and the most excited modes of a basis of 2 N, or of `basis = P`.
@@ -45,20 +52,26 @@ use crate::{Method, OptionHelp};
 ///
 /// # States
 /// Modes are a property of the system alone, so that a run can be continued from any of its states.
-/// A state that lies outside them is refused, because loads and states excite different modes: what
-/// counts is the displacement outside the modes together with that which the velocity outside them
-/// would lead to, against the whole; the allowed share is the tolerance, or a tenth for `modes = N`.
-/// What is within the share is dropped.
+/// A state that lies outside them is refused, because loads and states excite different modes. The
+/// measure is the displacement outside the modes together with the displacement to which the velocity
+/// outside them would lead, against the whole; the allowed share is the tolerance, or a tenth for
+/// `modes = N`. A part within that share is dropped.
 ///
 /// # Work
 /// A step projects displacement and velocity to the modes and lifts them back: `sweeps` counts
 /// its 8 n m operations in products with K, rounded up. Set-up reports factorisations and solves;
 /// its dense work, which can be much more, is not counted.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Modal {
     choice: Choice,
-    prepared: Prepared,
-    basis_of: Option<Revision>,
+}
+
+/// The modes of a system, and the motion of each over a step.
+#[derive(Debug)]
+pub struct ModalSteps {
+    choice: Choice,
+    /// Identity of the matrices and loads of the modes.
+    basis_of: (Revision, Revision),
     basis: Basis,
     cases: Vec<LoadCase>,
     breakpoints: Vec<f64>,
@@ -67,6 +80,7 @@ pub struct Modal {
     /// For each load case, empty where its ramp is never sinusoidal.
     harmonic: Vec<Vec<Response>>,
     pieces: Vec<Piece>,
+    exponential: Exponential,
     q: Vec<f64>,
     p: Vec<f64>,
     u: Vec<f64>,
@@ -77,123 +91,114 @@ pub struct Modal {
 /// Share of a state that may lie outside a fixed number of modes.
 const LOST_BY_CHOICE: f64 = 0.1;
 
-/// Share of a state that is taken for rounding.
+/// Share of a state that counts as rounding.
 const ROUNDING: f64 = 1e-6;
 
 impl Modal {
-    /// As many modes as the tolerance needs; see the type.
+    /// The method with as many modes as the tolerance needs; see the type.
     #[must_use]
     pub fn with_tolerance(tolerance: f64) -> Self {
-        Self::with(Choice::Tolerance(tolerance))
-    }
-
-    /// A fixed number of modes; see the type.
-    #[must_use]
-    pub fn with_modes(count: usize) -> Self {
-        Self::with(Choice::Modes { count, basis: None })
-    }
-
-    fn with(choice: Choice) -> Self {
         Self {
-            choice,
-            prepared: Prepared::default(),
-            basis_of: None,
-            basis: Basis::default(),
-            cases: Vec::new(),
-            breakpoints: Vec::new(),
-            modes: Vec::new(),
-            linear: Vec::new(),
-            harmonic: Vec::new(),
-            pieces: Vec::new(),
-            q: Vec::new(),
-            p: Vec::new(),
-            u: Vec::new(),
-            v: Vec::new(),
-            sweeps: 0,
+            choice: Choice::Tolerance(tolerance),
         }
     }
 
+    /// The method with a fixed number of modes; see the type.
+    #[must_use]
+    pub fn with_modes(count: usize) -> Self {
+        Self {
+            choice: Choice::Modes { count, basis: None },
+        }
+    }
+}
+
+impl Frame<Modal> {
     /// Angular frequencies (rad/s) of the modes taken, in increasing order, 0 for rigid motions;
     /// empty before set-up.
     #[must_use]
     pub fn frequencies(&self) -> &[f64] {
-        &self.basis.frequencies
+        self.by_hand().map_or(&[], |steps| &steps.basis.frequencies)
     }
 
     /// The shape (kg^-1/2) of a mode, its modal mass being 1.
     #[must_use]
     pub fn shape(&self, mode: usize) -> Option<&[f64]> {
-        let n = self.u.len();
-        self.basis.shapes.get(mode * n..(mode + 1) * n)
+        let steps = self.by_hand()?;
+        let n = steps.u.len();
+        steps.basis.shapes.get(mode * n..(mode + 1) * n)
     }
 
     /// The share of the response to the loads that is estimated to be lost, where a tolerance was
     /// asked for and there are loads to estimate it from.
     #[must_use]
     pub fn estimated_error(&self) -> Option<f64> {
-        self.basis.estimate
+        self.by_hand()?.basis.estimate
     }
+}
 
-    fn take_basis(&mut self, operators: &LinearOperators) -> Result<StepReport, SetupError> {
-        let integrator = Self::ID;
-        self.basis_of = None;
-        self.cases = LoadCase::of(operators);
-        self.basis =
-            Basis::build(operators, &self.cases, self.choice).map_err(|failure| match failure {
-                Failure::Factorization(reason) => SetupError::Factorization { integrator, reason },
-                Failure::TooMany {
-                    basis,
-                    dofs,
-                    estimate,
-                } => SetupError::Unresolved {
-                    integrator,
-                    reason: format!(
-                        "the tolerance needs more than {basis} modes of {dofs} (estimated error \
+impl ModalSteps {
+    /// Finds the modes.
+    fn new(operators: &LinearOperators, choice: Choice) -> Result<Self, SetupError> {
+        let integrator = Modal::ID;
+        let cases = LoadCase::of(operators);
+        let basis = Basis::build(operators, &cases, choice).map_err(|failure| match failure {
+            Failure::Factorization(error) => error.at_set_up(integrator),
+            Failure::TooMany {
+                basis,
+                dofs,
+                estimate,
+            } => SetupError::Unresolved {
+                integrator,
+                reason: format!(
+                    "the tolerance needs more than {basis} modes of {dofs} (estimated error \
                          there {:.2} %); ask for a larger `tolerance` or for `modes`, or use \
                          `central-difference`",
-                        100.0 * estimate
-                    ),
-                },
-            })?;
+                    100.0 * estimate
+                ),
+            },
+        })?;
         let damping = operators.damping();
-        let modes = self.basis.frequencies.iter().map(|omega| Mode {
+        let modes = basis.frequencies.iter().map(|omega| Mode {
             omega: *omega,
             damping: damping.mass + damping.stiffness * omega * omega,
         });
-        self.modes = modes.collect();
-        let ramps = self.cases.iter().map(|case| &case.ramp);
-        self.breakpoints = ramps.flat_map(Ramp::breakpoints).collect();
-        self.breakpoints.sort_by(f64::total_cmp);
-        let (n, m) = (operators.dofs(), self.modes.len());
-        for (buffer, length) in [
-            (&mut self.u, n),
-            (&mut self.v, n),
-            (&mut self.q, m),
-            (&mut self.p, m),
-        ] {
-            buffer.clear();
-            buffer.resize(length, 0.0);
-        }
-        self.pieces = vec![Piece::default(); self.cases.len()];
+        let modes: Vec<Mode> = modes.collect();
+        let ramps = cases.iter().map(|case| &case.ramp);
+        let mut breakpoints: Vec<f64> = ramps.flat_map(Ramp::breakpoints).collect();
+        breakpoints.sort_by(f64::total_cmp);
+        let (n, m) = (operators.dofs(), modes.len());
         let stiffness = operators.stiffness();
         let sweep = 2 * stiffness.pattern().blocks() * stiffness.layers().count().pow(2);
-        self.sweeps = (8 * n * m).div_ceil(sweep.max(1)) as u64;
-        Ok(StepReport {
-            solves: self.basis.solves,
-            factorizations: self.basis.factorizations,
-            ..StepReport::default()
+        Ok(Self {
+            choice,
+            basis_of: (operators.revision(), operators.loads_revision()),
+            basis,
+            breakpoints,
+            linear: Vec::new(),
+            harmonic: Vec::new(),
+            pieces: vec![Piece::default(); cases.len()],
+            exponential: Exponential::with_capacity(4),
+            q: vec![0.0; m],
+            p: vec![0.0; m],
+            u: vec![0.0; n],
+            v: vec![0.0; n],
+            sweeps: (8 * n * m).div_ceil(sweep.max(1)) as u64,
+            cases,
+            modes,
         })
     }
 
     /// The exact responses within a step.
     fn take_responses(&mut self, dt: f64) {
-        let modes = &self.modes;
-        let linear = modes.iter().map(|mode| Response::to_linear(*mode, dt));
+        let (modes, room) = (&self.modes, &mut self.exponential);
+        let linear = modes
+            .iter()
+            .map(|mode| Response::to_linear(*mode, dt, room));
         self.linear = linear.collect();
         let harmonic = self.cases.iter().map(|case| {
             let rate = harmonic_rate(&case.ramp);
             let responses = rate.map(|rate| {
-                let of = |mode: &Mode| Response::to_harmonic(*mode, dt, rate);
+                let of = |mode: &Mode| Response::to_harmonic(*mode, dt, rate, room);
                 modes.iter().map(of).collect()
             });
             responses.unwrap_or_default()
@@ -201,7 +206,7 @@ impl Modal {
         self.harmonic = harmonic.collect();
     }
 
-    /// q and p from the state, and whether it may be replaced by them.
+    /// Projects the state to q and p, and checks that they may replace it.
     fn project(&mut self, system: &dyn System, state: &State) -> Result<StepReport, StepError> {
         let moving = state.u.iter().zip(&state.v).zip(system.mass());
         for ((u, v), ((from_u, from_v), mass)) in self.u.iter_mut().zip(&mut self.v).zip(moving) {
@@ -229,7 +234,7 @@ impl Modal {
             });
         }
         Err(StepError::Inaccurate {
-            integrator: Self::ID,
+            integrator: Modal::ID,
             t: state.t(),
             reason: format!(
                 "{:.3} % of the state lies outside the {} modes, which are those of the loads; {:.3} % may be dropped; take more `modes`, or use `central-difference`",
@@ -269,14 +274,14 @@ impl Modal {
     }
 
     /// Moves q and p by `h` (s) from time `start` (s), no breakpoint lying between.
-    fn advance(&mut self, start: f64, h: f64, whole_step: bool) {
+    fn move_modes(&mut self, start: f64, h: f64, whole_step: bool) {
         for (piece, case) in self.pieces.iter_mut().zip(&self.cases) {
             *piece = Piece::of(&case.ramp, start, h);
         }
         for (i, mode) in self.modes.iter().enumerate() {
             let linear = match whole_step {
                 true => self.linear[i],
-                false => Response::to_linear(*mode, h),
+                false => Response::to_linear(*mode, h, &mut self.exponential),
             };
             let [mut q, mut p] = linear.free(self.q[i], self.p[i]);
             for (case, piece) in self.pieces.iter().enumerate() {
@@ -290,7 +295,7 @@ impl Modal {
                 if let (Some(sizes), Some(rate)) = (piece.harmonic, rate) {
                     let response = match whole_step {
                         true => self.harmonic[case][i],
-                        false => Response::to_harmonic(*mode, h, rate),
+                        false => Response::to_harmonic(*mode, h, rate, &mut self.exponential),
                     };
                     push(response, sizes);
                 }
@@ -307,7 +312,6 @@ impl Default for Modal {
 }
 
 impl Method for Modal {
-    const ID: &'static str = "modal";
     const SUMMARY: &'static str =
         "superposition of the modes that the loads excite, exact in time; long set-up";
     const OPTIONS: &'static [OptionHelp] = &[
@@ -328,16 +332,15 @@ impl Method for Modal {
         },
     ];
 
+    const FACTORISES: bool = true;
+
+    /// Options for an error, which is the share of the response that the method leaves out.
+    fn options_for_error(error: f64) -> Vec<Options> {
+        vec![Options::new().with_number("tolerance", error)]
+    }
+
     fn from_options(options: &Options) -> Result<Self, OptionError> {
-        let refuse = |key: &str, expected| match options.get(key) {
-            None => Ok(()),
-            Some(found) => Err(OptionError::Value {
-                integrator: Self::ID.into(),
-                key: key.into(),
-                found: found.clone(),
-                expected,
-            }),
-        };
+        let refuse = |key, expected| options.read(Self::ID, key, expected, |_| None::<()>);
         let count = |key, least: f64, expected| {
             let fits = |value: f64| value >= least && value.fract() == 0.0 && value <= 1e9;
             let value = options.number(Self::ID, key, least, expected, fits)?;
@@ -346,10 +349,11 @@ impl Method for Modal {
         if let Some(modes) = count("modes", 1.0, "a whole number above 0")? {
             refuse("tolerance", "nothing beside `modes`")?;
             let basis = count("basis", modes as f64, "a whole number not below `modes`")?;
-            return Ok(Self::with(Choice::Modes {
+            let choice = Choice::Modes {
                 count: modes,
                 basis,
-            }));
+            };
+            return Ok(Self { choice });
         }
         refuse("basis", "nothing without `modes`")?;
         let expected = "a number above 0 and below 1";
@@ -359,16 +363,17 @@ impl Method for Modal {
     }
 }
 
-impl Integrator for Modal {
-    fn id(&self) -> &'static str {
-        Self::ID
-    }
+impl Scheme for Modal {
+    const ID: &'static str = "modal";
+
+    type ByHand = ModalSteps;
 
     fn properties(&self) -> Properties {
         Properties {
             accuracy: Accuracy::Exact,
             needs: Needs::Matrices,
             changing_loads: ChangingLoads::Exact(LoadOverStep::Any),
+            refuses_long_steps: false,
             energy: EnergyBehaviour::Conserved,
             other_damping: OtherDamping {
                 stiffness: Some(Accuracy::Exact),
@@ -377,36 +382,44 @@ impl Integrator for Modal {
         }
     }
 
-    fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
-        if self.prepared.is_for(system, dt) {
-            return Ok(StepReport::default());
-        }
-        let integrator = Self::ID;
-        let lacks = |needs| SetupError::Lacks { integrator, needs };
-        let operators = system
-            .as_linear()
-            .map(LinearSystem::operators)
-            .ok_or(lacks(Needs::Matrices.describe()))?;
-        let mut checked = Prepared::default();
-        checked.check(integrator, system, dt)?;
-        if operators.damping().extra.is_some() {
-            return Err(lacks(
-                "proportional damping (D = alpha M + beta K, no dashpots)",
-            ));
-        }
-        self.prepared = Prepared::default();
-        let mut work = StepReport::default();
-        if self.basis_of != Some(operators.revision()) {
-            work = self.take_basis(operators)?;
-            self.basis_of = Some(operators.revision());
-        }
-        self.take_responses(dt);
-        self.prepared = checked;
-        Ok(work)
+    fn depends_on_loads(&self) -> bool {
+        true
     }
 
-    fn stable_step(&self, _system: &dyn System) -> Result<StableStep, SetupError> {
-        Ok(StableStep::Any)
+    fn set_up(
+        &mut self,
+        system: &dyn System,
+        dt: f64,
+        before: Option<ModalSteps>,
+    ) -> Result<SetUp<ModalSteps>, SetupError> {
+        let integrator = Self::ID;
+        let operators = linear(system, integrator)?.operators();
+        if operators.damping().extra.is_some() {
+            let needs = "proportional damping (D = alpha M + beta K, no dashpots)";
+            return Err(SetupError::Lacks { integrator, needs });
+        }
+        let basis_of = (operators.revision(), operators.loads_revision());
+        let known = before.filter(|steps| steps.basis_of == basis_of);
+        let (mut steps, work) = match known {
+            Some(steps) => (steps, StepReport::default()),
+            None => {
+                let steps = ModalSteps::new(operators, self.choice)?;
+                let work = StepReport {
+                    solves: steps.basis.solves,
+                    factorizations: steps.basis.factorizations,
+                    ..StepReport::default()
+                };
+                (steps, work)
+            }
+        };
+        steps.take_responses(dt);
+        Ok(SetUp::by_hand(steps, work))
+    }
+}
+
+impl StepByHand for ModalSteps {
+    fn without_program(&self) -> &'static str {
+        "each mode reaches over all cells, and a sweep only over neighbours"
     }
 
     fn facts(&self) -> Vec<Fact> {
@@ -416,14 +429,16 @@ impl Integrator for Modal {
         facts
     }
 
-    fn step(
-        &mut self,
-        system: &dyn System,
-        state: &mut State,
-        dt: f64,
-    ) -> Result<StepReport, StepError> {
-        let mut work = begin(self, system, state, dt)?;
-        work += self.project(system, state)?;
+    fn step(&mut self, step: &Step<'_>, state: &mut State) -> Result<Stepped, StepError> {
+        let known = self.cases.iter().all(|case| !case.ramp.is_input());
+        if !known || step.inputs.forces().next().is_some() {
+            return Err(StepError::Setup(SetupError::Lacks {
+                integrator: Modal::ID,
+                needs: "loads known beforehand, by which it chooses its modes, not inputs",
+            }));
+        }
+        let (system, dt) = (step.system, step.dt);
+        let mut work = self.project(system, state)?;
         let t = state.t();
         let (next, mut start) = (t + dt, t);
         let margin = Clock::ROUNDING * t.abs().max(next.abs());
@@ -435,21 +450,19 @@ impl Integrator for Modal {
             }
             // Two ramps may bend at the same time.
             if end > start {
-                self.advance(start, end - start, false);
+                self.move_modes(start, end - start, false);
                 start = end;
             }
         }
         let whole_step = start == t;
         let rest = if whole_step { dt } else { next - start };
-        self.advance(start, rest, whole_step);
+        self.move_modes(start, rest, whole_step);
         lift_two(
             &self.basis.shapes,
             (&self.q, &self.p),
             (&mut state.u, &mut state.v),
         );
-        state.advance(dt);
         work.sweeps += self.sweeps;
-        system.accept(state);
-        Ok(work)
+        Ok(Stepped::at_same_time(work))
     }
 }

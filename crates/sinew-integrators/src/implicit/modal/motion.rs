@@ -4,43 +4,7 @@ use std::f64::consts::PI;
 
 use sinew_core::Ramp;
 
-type Matrix = [[f64; 4]; 4];
-
-/// `exp(a)` by scaling, a Taylor series and squaring (Moler and Van Loan, SIAM Review 45, 2003,
-/// method 3).
-fn exponential(a: &Matrix) -> Matrix {
-    let size = a
-        .iter()
-        .map(|row| row.iter().map(|x| x.abs()).sum::<f64>())
-        .fold(0.0, f64::max);
-    let halvings = if size > 0.5 && size.is_finite() {
-        (2.0 * size).log2().ceil() as i32
-    } else {
-        0
-    };
-    let scaled = a.map(|row| row.map(|x| x * 0.5_f64.powi(halvings)));
-    // Horner's scheme; (1/2)^16/16! is far below rounding.
-    let mut sum = identity();
-    for k in (1..=16).rev() {
-        sum = product(&scaled, &sum);
-        for (i, row) in sum.iter_mut().enumerate() {
-            row.iter_mut().for_each(|x| *x /= f64::from(k));
-            row[i] += 1.0;
-        }
-    }
-    for _ in 0..halvings {
-        sum = product(&sum, &sum);
-    }
-    sum
-}
-
-fn identity() -> Matrix {
-    std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))))
-}
-
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    std::array::from_fn(|i| std::array::from_fn(|j| (0..4).map(|k| a[i][k] * b[k][j]).sum()))
-}
+use crate::exponential::Exponential;
 
 /// A mode: q'' + damping q' + omega^2 q = force.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +15,7 @@ pub(super) struct Mode {
     pub(super) damping: f64,
 }
 
-/// What q and q' become within a time h: a vector (q, q') for each of q = 1, q' = 1 and two forces.
+/// Values of q and q' after a time h: a vector (q, q') for each of q = 1, q' = 1 and two forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Response {
     displacement: [f64; 2],
@@ -60,30 +24,36 @@ pub(super) struct Response {
 }
 
 impl Response {
-    /// Under the forces 1 and tau/h.
-    pub(super) fn to_linear(mode: Mode, h: f64) -> Self {
-        Self::of(mode, h, [[0.0, 1.0], [0.0, 0.0]])
+    /// The response under the forces 1 and tau/h.
+    pub(super) fn to_linear(mode: Mode, h: f64, room: &mut Exponential) -> Self {
+        Self::of(mode, h, room, [[0.0, 1.0], [0.0, 0.0]])
     }
 
-    /// Under the forces cos(rate tau) and -sin(rate tau).
-    pub(super) fn to_harmonic(mode: Mode, h: f64, rate: f64) -> Self {
-        Self::of(mode, h, [[0.0, -rate * h], [rate * h, 0.0]])
+    /// The response under the forces cos(rate tau) and -sin(rate tau).
+    pub(super) fn to_harmonic(mode: Mode, h: f64, rate: f64, room: &mut Exponential) -> Self {
+        Self::of(mode, h, room, [[0.0, -rate * h], [rate * h, 0.0]])
     }
 
     /// The force is the first component of a system z' = `generator` z/h that starts from a unit
     /// vector. Force and mode together are one linear system, whose exponential holds for any
     /// frequency and damping, at resonance and at rest (Van Loan, IEEE Trans. Automatic Control
     /// 23, 1978).
-    fn of(Mode { omega, damping }: Mode, h: f64, generator: [[f64; 2]; 2]) -> Self {
+    fn of(
+        Mode { omega, damping }: Mode,
+        h: f64,
+        room: &mut Exponential,
+        generator: [[f64; 2]; 2],
+    ) -> Self {
         // Displacements are scaled to the size of velocities.
         let scale = omega.max(1.0 / h);
         let [first, second] = generator;
-        let e = exponential(&[
+        let matrix = [
             [0.0, scale * h, 0.0, 0.0],
             [-omega * omega * h / scale, -damping * h, 1.0, 0.0],
             [0.0, 0.0, first[0], first[1]],
             [0.0, 0.0, second[0], second[1]],
-        ]);
+        ];
+        let (e, _) = room.of(4, |i, j| matrix[i][j]).as_chunks::<4>();
         Self {
             displacement: [e[0][0], scale * e[1][0]],
             velocity: [e[0][1] / scale, e[1][1]],
@@ -91,12 +61,12 @@ impl Response {
         }
     }
 
-    /// (q, q') at the end of the time, without force.
+    /// Free part of (q, q') at the end of the time.
     pub(super) fn free(&self, q: f64, p: f64) -> [f64; 2] {
         std::array::from_fn(|i| self.displacement[i] * q + self.velocity[i] * p)
     }
 
-    /// What two forces add.
+    /// Part of (q, q') due to the two forces.
     pub(super) fn forced(&self, sizes: [f64; 2]) -> [f64; 2] {
         std::array::from_fn(|i| self.forces[0][i] * sizes[0] + self.forces[1][i] * sizes[1])
     }
@@ -105,15 +75,15 @@ impl Response {
 /// A ramp within a piece of time that holds none of its breakpoints inside.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Piece {
-    /// Value at the start, and what is added linearly until the end.
+    /// Value at the start, and the amount added linearly until the end.
     pub(super) linear: [f64; 2],
     /// Factors of cos(rate tau) and -sin(rate tau).
     pub(super) harmonic: Option<[f64; 2]>,
 }
 
 impl Piece {
-    /// Of a ramp from `start` (s), `h` (s) long. What holds in the middle holds throughout, which
-    /// keeps rounding of the ends from mattering.
+    /// The piece of a ramp from `start` (s), `h` (s) long. The formula that holds in the middle is used
+    /// throughout, so that rounding of the ends does not matter.
     pub(super) fn of(ramp: &Ramp, start: f64, h: f64) -> Self {
         let middle = start + 0.5 * h;
         match ramp {
@@ -125,12 +95,22 @@ impl Piece {
                     harmonic: Some([-0.5 * cos, -0.5 * sin]),
                 }
             }
+            Ramp::Rate(of) if matches!(**of, Ramp::Sin2 { rise } if (0.0..rise).contains(&middle)) =>
+            {
+                // rate/2 sin(rate t)
+                let rate = harmonic_rate(of).unwrap_or(0.0);
+                let (sin, cos) = (rate * start).sin_cos();
+                Self {
+                    linear: [0.0; 2],
+                    harmonic: Some([0.5 * rate * sin, -0.5 * rate * cos]),
+                }
+            }
             _ => {
                 let mut derivatives = [0.0; 2];
                 ramp.derivatives_after(middle, &mut derivatives);
                 let rise = match ramp {
-                    Ramp::Table { .. } => derivatives[1] * h,
-                    Ramp::Step | Ramp::Sin2 { .. } | Ramp::Pulse { .. } => 0.0,
+                    Ramp::Table { .. } | Ramp::Linear => derivatives[1] * h,
+                    _ => 0.0,
                 };
                 Self {
                     linear: [derivatives[0] - 0.5 * rise, rise],
@@ -145,7 +125,8 @@ impl Piece {
 pub(super) fn harmonic_rate(ramp: &Ramp) -> Option<f64> {
     match ramp {
         Ramp::Sin2 { rise } => Some(PI / rise),
-        Ramp::Step | Ramp::Pulse { .. } | Ramp::Table { .. } => None,
+        Ramp::Rate(of) => harmonic_rate(of),
+        _ => None,
     }
 }
 
@@ -154,6 +135,10 @@ mod tests {
     use sinew_core::closed_form::DampedOscillator;
 
     use super::*;
+
+    fn room() -> Exponential {
+        Exponential::with_capacity(4)
+    }
 
     fn close(found: [f64; 2], expected: [f64; 2], omega: f64) {
         let size = expected[0].abs() * omega + expected[1].abs() + 1e-12;
@@ -166,7 +151,7 @@ mod tests {
         for omega in [0.3, 10.0, 900.0] {
             for damping in [0.0, 0.2 * omega, 1.999 * omega, 2.0 * omega, 5.0 * omega] {
                 for h in [1e-4, 1e-2, 0.5] {
-                    let response = Response::to_linear(Mode { omega, damping }, h);
+                    let response = Response::to_linear(Mode { omega, damping }, h, &mut room());
                     let free = response.free(0.3, -2.0);
                     let forced = response.forced([7.0, 0.0]);
                     let exact = DampedOscillator {
@@ -192,7 +177,7 @@ mod tests {
             damping: 0.0,
         };
         let h = 0.2;
-        let response = Response::to_linear(rigid, h);
+        let response = Response::to_linear(rigid, h, &mut room());
         close(response.free(1.0, 3.0), [1.6, 3.0], 1.0);
         close(response.forced([2.0, 0.0]), [h * h, 2.0 * h], 1.0);
         close(response.forced([0.0, 6.0]), [h * h, 3.0 * h], 1.0);
@@ -206,7 +191,7 @@ mod tests {
             omega: w,
             damping: 0.0,
         };
-        let found = Response::to_harmonic(mode, h, w).forced([1.0, 0.0]);
+        let found = Response::to_harmonic(mode, h, w, &mut room()).forced([1.0, 0.0]);
         let (sin, cos) = (w * h).sin_cos();
         close(found, [h * sin / (2.0 * w), (sin / w + h * cos) / 2.0], w);
     }

@@ -1,9 +1,14 @@
 //! The search for the modes that loads excite.
 
-use super::basis::{Candidate, Failure, LoadCase, SMALL, most_excited};
-use super::columns::{add, dot};
-use super::inverse::{Inverse, noise};
-use super::krylov::{Krylov, Ritz};
+use sinew_core::vectors::{dot, noise};
+
+use super::candidate::{CandidateMode, most_excited};
+use super::columns::add;
+use super::failure::Failure;
+use super::inverse::Inverse;
+use super::lanczos_basis::{LanczosBasis, Ritz};
+use super::load_case::LoadCase;
+use super::small::SMALL;
 
 /// Share of the degrees of freedom that a Lanczos basis may take up in the search for a tolerance.
 const SHARE: f64 = 0.5;
@@ -12,7 +17,7 @@ const SHARE: f64 = 0.5;
 /// and a run sees some of them.
 const MARGIN: f64 = 0.8;
 
-/// Lowest modes that are taken where nothing but the first state excites any.
+/// Number of lowest modes that are taken where only the first state excites any.
 const WITHOUT_LOADS: usize = 64;
 
 /// Size of the first Lanczos basis; each further one is larger by a third.
@@ -22,16 +27,16 @@ const FIRST: usize = 24;
 const CONVERGED: f64 = 1e-8;
 
 /// Columns, modes and the estimated error.
-pub(super) type Found = (Vec<f64>, Vec<Candidate>, Option<f64>);
+pub(super) type Found = (Vec<f64>, Vec<CandidateMode>, Option<f64>);
 
 /// The search for modes in Lanczos bases that start from the static response to each load case
-/// (Wilson, Yuan and Dickens, Earthquake Eng. Struct. Dyn. 10, 1982): what loads do not excite
-/// never enters. In the basis Q the equation of motion, multiplied by A, is
+/// (Wilson, Yuan and Dickens, Earthquake Eng. Struct. Dyn. 10, 1982): modes that no load excites
+/// never enter. In the basis Q the equation of motion, multiplied by A, is
 /// `T q'' + (alpha T + beta) q' + q = Q' A f` with `T = Q' A Q` (Nour-Omid and Clough, same journal
 /// 12, 1984), whose eigenvectors are the modes as far as they have converged and bundles of fast
 /// modes beyond; the static response is exact in any of these bases.
 pub(super) struct Search<'a> {
-    krylov: Krylov,
+    lanczos: LanczosBasis,
     cases: &'a [LoadCase],
     rigid_forces: Vec<Vec<f64>>,
     shift: f64,
@@ -78,7 +83,7 @@ impl<'a> Search<'a> {
             starts.iter_mut().for_each(|start| inverse.mask(start));
         }
         Self {
-            krylov: Krylov::new(rigid, starts, n),
+            lanczos: LanczosBasis::new(rigid, starts, n),
             cases,
             rigid_forces,
             shift: inverse.shift,
@@ -98,26 +103,26 @@ impl<'a> Search<'a> {
             return Ok(self.take(pairs, count, None));
         }
         let basis = basis.unwrap_or(wanted.saturating_mul(2)).max(wanted);
-        self.krylov.grow(basis.min(self.free), inverse);
+        self.lanczos.grow(basis.min(self.free), inverse);
         let pairs = self.pairs()?;
         Ok(self.take(pairs, count, None))
     }
 
     fn pairs(&self) -> Result<Vec<Ritz>, Failure> {
-        self.krylov.ritz_pairs().map_err(Failure::Factorization)
+        self.lanczos.ritz_pairs().map_err(Failure::Factorization)
     }
 
-    /// So many of the slowest modes, converged.
+    /// The `count` slowest modes, converged.
     fn slowest(&mut self, count: usize, inverse: &mut Inverse) -> Result<Vec<Ritz>, Failure> {
         let mut size = 2 * count + FIRST;
         loop {
-            self.krylov.grow(size, inverse);
+            self.lanczos.grow(size, inverse);
             let mut pairs = self.pairs()?;
             pairs.truncate(count);
             let found = pairs
                 .iter()
                 .all(|pair| pair.residual <= CONVERGED * pair.theta);
-            if found || self.krylov.exhausted() {
+            if found || self.lanczos.exhausted() {
                 return Ok(pairs);
             }
             size += size / 3;
@@ -125,7 +130,7 @@ impl<'a> Search<'a> {
     }
 
     /// Grows the basis until the response to suddenly applied loads changes by less than the
-    /// error aimed at, then leaves out what is least excited.
+    /// error aimed at, then leaves out the least excited modes.
     pub(super) fn within(
         mut self,
         tolerance: f64,
@@ -142,7 +147,7 @@ impl<'a> Search<'a> {
         let mut before: Option<Vec<Vec<f64>>> = None;
         let mut size = FIRST;
         loop {
-            self.krylov.grow(size, inverse);
+            self.lanczos.grow(size, inverse);
             let pairs = self.pairs()?;
             if instants.is_empty() {
                 let slowest = pairs.first().map_or(0.0, |pair| self.squared(pair));
@@ -150,7 +155,7 @@ impl<'a> Search<'a> {
             }
             let responses = self.responses(&pairs, &instants);
             let change = match &before {
-                _ if self.krylov.exhausted() => 0.0,
+                _ if self.lanczos.exhausted() => 0.0,
                 None => f64::INFINITY,
                 Some(before) => relative_change(before, &responses),
             };
@@ -179,7 +184,7 @@ impl<'a> Search<'a> {
         let mut responses = Vec::new();
         for (case, load) in self.cases.iter().enumerate() {
             for t in instants {
-                let mut response = vec![0.0; self.krylov.size()];
+                let mut response = vec![0.0; self.lanczos.size()];
                 for pair in pairs {
                     let swing = 1.0 - (self.squared(pair).sqrt() * t).cos();
                     let size = load.peak() * pair.excitation[case] * swing;
@@ -216,7 +221,7 @@ impl<'a> Search<'a> {
 
     fn take(self, pairs: Vec<Ritz>, count: usize, estimate: Option<f64>) -> Found {
         let n_rigid = self.rigid_forces.len();
-        let size = self.krylov.size();
+        let size = self.lanczos.size();
         let unit = |at: usize| {
             let mut unit = vec![0.0; n_rigid + size];
             unit[at] = 1.0;
@@ -226,7 +231,7 @@ impl<'a> Search<'a> {
             .rigid_forces
             .iter()
             .enumerate()
-            .map(|(i, forces)| Candidate {
+            .map(|(i, forces)| CandidateMode {
                 squared: 0.0,
                 vector: unit(i),
                 forces: forces.clone(),
@@ -234,7 +239,7 @@ impl<'a> Search<'a> {
         let elastic = pairs.into_iter().map(|pair| {
             let mut vector = vec![0.0; n_rigid];
             let excitation = pair.excitation.iter();
-            Candidate {
+            CandidateMode {
                 // Nothing elastic is without any stiffness.
                 squared: (pair.theta.recip() - self.shift).max(f64::MIN_POSITIVE),
                 forces: match self.cases.is_empty() {
@@ -248,7 +253,7 @@ impl<'a> Search<'a> {
             }
         });
         let modes = most_excited(rigid.chain(elastic).collect(), self.cases, count);
-        let columns = [self.krylov.rigid(), self.krylov.basis()].concat();
+        let columns = [self.lanczos.rigid(), self.lanczos.basis()].concat();
         (columns, modes, estimate)
     }
 }

@@ -2,10 +2,16 @@
 
 use sinew_core::LinearOperators;
 
-use super::basis::{Candidate, Candidates, LoadCase};
+use super::candidate::{CandidateMode, CandidateModes};
+use super::load_case::LoadCase;
 use crate::implicit::factor::symmetric_eigen;
+use crate::implicit::factor_error::FactorError;
 
-/// omega^2 over the largest that is rounding of zero.
+/// Degrees of freedom up to which all modes are found at once: choosing would cost more than it
+/// saves.
+pub(super) const SMALL: usize = 256;
+
+/// Ratio of omega^2 to the largest omega^2 that counts as zero.
 const RIGID: f64 = 1e-12;
 
 /// The eigenvectors of `M^-1/2 K M^-1/2` on the components that are not held.
@@ -13,7 +19,7 @@ pub(super) fn all_modes(
     operators: &LinearOperators,
     cases: &[LoadCase],
     held: &[bool],
-) -> Result<Candidates, String> {
+) -> Result<CandidateModes, FactorError> {
     let free: Vec<usize> = (0..held.len()).filter(|dof| !held[*dof]).collect();
     let (n, m) = (held.len(), free.len());
     let mut place = vec![usize::MAX; n];
@@ -42,7 +48,7 @@ pub(super) fn all_modes(
         columns[at * n + dof] = 1.0;
     }
     let modes = squares.iter().zip(vectors.chunks_exact(m.max(1)));
-    let modes = modes.map(|(squared, vector)| Candidate {
+    let modes = modes.map(|(squared, vector)| CandidateMode {
         squared: if *squared <= RIGID * largest {
             0.0
         } else {
@@ -59,7 +65,7 @@ pub(super) fn all_modes(
             .collect(),
         vector: vector.to_vec(),
     });
-    Ok(Candidates {
+    Ok(CandidateModes {
         modes: modes.collect(),
         columns,
     })

@@ -1,4 +1,4 @@
-//! Node orders, from VTK's to gmsh's.
+//! Turns VTK's order of a cell's nodes into gmsh's.
 
 use crate::cell_type::CellType;
 

@@ -1,10 +1,9 @@
-//! Data fields, in both versions alike.
+//! Data fields, which both versions write alike.
 
 use std::io::Write;
 
-use super::WriteMshError;
 use super::cells::vtk_index_of_gmsh_node;
-use super::full_or_empty;
+use super::error::{WriteMshError, full_or_empty};
 use super::sink::Sink;
 use crate::mesh::{CellBlock, CellIndex, Mesh};
 
@@ -151,7 +150,7 @@ fn has_value(row: &[f64]) -> bool {
     !row.iter().all(|x| x.is_nan())
 }
 
-/// The cells with values, and these; `width` is the number of values of a cell.
+/// The cells with values, and their values. `width` is the number of values of a cell.
 fn cell_rows<'r>(
     cells: &'r [WrittenCell],
     blocks: &'r [Vec<f64>],

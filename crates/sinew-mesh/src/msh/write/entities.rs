@@ -1,4 +1,4 @@
-//! The geometrical entities of a file of version 4.1: in it, groups belong to entities, and cells to an entity each.
+//! The geometrical entities of a file of version 4.1, where groups belong to entities and each cell to one entity.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::{self, Write};
@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use super::sink::Sink;
 use crate::mesh::{CellBlock, Entity, Mesh};
 
-/// Consecutive cells of a block that share an entity: what the file calls a block.
+/// Consecutive cells of a block that share an entity. The file calls them a block.
 pub(super) struct Part<'m> {
     pub(super) block: &'m CellBlock,
     /// Index of the first cell within the block.
@@ -190,7 +190,7 @@ impl FreshEntities {
     }
 }
 
-/// Where to start numbering cells that have no tags.
+/// The first number for cells that have no tags.
 pub(super) fn first_free_element_tag(mesh: &Mesh) -> u64 {
     let greatest = mesh
         .cells

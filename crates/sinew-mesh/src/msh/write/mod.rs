@@ -3,81 +3,19 @@
 mod cells;
 mod data;
 mod entities;
+mod error;
 mod sink;
 mod v2;
 mod v41;
 
 use std::io::{self, Write};
 
-use crate::mesh::Mesh;
-use sink::Sink;
+pub use error::WriteMshError;
+pub use sink::MshEncoding;
 
-/// A mesh cannot be written.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum WriteMshError {
-    /// The destination refused.
-    #[error("the mesh cannot be written: {0}")]
-    Io(#[from] io::Error),
-    /// A coordinate is infinite or not a number.
-    #[error(
-        "the node with tag {node_tag} has coordinates {point:?}; only finite numbers can be written"
-    )]
-    NotFinite {
-        /// Tag of the node.
-        node_tag: u64,
-        /// Its coordinates.
-        point: [f64; 3],
-    },
-    /// A name cannot stand on one line.
-    #[error("the name of group {tag} of dimension {dim} has a line break")]
-    BadName {
-        /// Dimension of the group.
-        dim: u8,
-        /// Tag of the group.
-        tag: i32,
-    },
-    /// The name of a data field cannot stand on one line.
-    #[error("the name of data field {name:?} has a line break or a double quote")]
-    BadFieldName {
-        /// The name.
-        name: String,
-    },
-    /// A node tag is 0 or occurs twice.
-    #[error("node tag {tag} {}", if *tag == 0 { "stands for no node" } else { "occurs twice" })]
-    BadNodeTag {
-        /// The tag.
-        tag: u64,
-    },
-    /// A tag does not fit where the format has 31 bits for it.
-    #[error("tag {tag} does not fit into the 31 bits that the format has for it there")]
-    TagTooLarge {
-        /// The tag.
-        tag: u64,
-    },
-    /// The fields of the mesh do not fit together.
-    #[error("{what} has {found} entries, but {expected} are needed")]
-    BadLength {
-        /// The field.
-        what: String,
-        /// Its length.
-        found: usize,
-        /// The length it should have.
-        expected: usize,
-    },
-    /// A cell names a node that does not exist.
-    #[error("cell {cell} of block {block} has node index {node}, but there are {nodes} nodes")]
-    NodeOutOfRange {
-        /// Index of the block.
-        block: usize,
-        /// Index of the cell in the block.
-        cell: usize,
-        /// The index it names.
-        node: u32,
-        /// Number of nodes.
-        nodes: usize,
-    },
-}
+use crate::mesh::Mesh;
+use error::full_or_empty;
+use sink::Sink;
 
 /// A version of the .msh format that can be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -88,22 +26,13 @@ pub enum MshVersion {
     V41,
 }
 
-/// How the numbers of a .msh file are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum MshEncoding {
-    /// As text, with the fewest digits that read back exactly.
-    Text,
-    /// As bytes, least significant first.
-    Binary,
-}
-
 /// Writes a mesh as a .msh file: points, cells, tags, physical groups, data fields and periodic links.
 ///
-/// Equal meshes give equal bytes, and every number reads back exactly. What the versions cannot hold is changed thus:
+/// Equal meshes give equal bytes, and every number reads back exactly. Contents that a version cannot hold are changed:
 ///
-/// * **4.1**: groups belong to geometrical entities there. A block whose cells differ in entity or groups is written as several
+/// * **4.1** attaches groups to geometrical entities. A block whose cells differ in entity or groups is written as several
 ///   blocks, and where one entity would have to be in different groups, or a cell has none, new entity numbers are given.
-/// * **2.2**: a cell has one group there. A cell in several is written once for each, as gmsh does; the copies
+/// * **2.2** has one group per cell. A cell in several groups is written once for each, as gmsh does; the copies
 ///   get new tags. Signs of group tags, entities of nodes and the boundaries between blocks of one cell type are lost. Tags
 ///   beyond 31 bits are replaced by counting from 1 (and links between nodes with such tags left out).
 /// * Points and cells without any value in a data field get no row in it.
@@ -205,17 +134,6 @@ fn check_node_tags(mesh: &Mesh) -> Result<(), WriteMshError> {
         Some((&tag, _)) => Err(WriteMshError::BadNodeTag { tag }),
         None => Ok(()),
     }
-}
-
-fn full_or_empty(what: &str, found: usize, expected: usize) -> Result<(), WriteMshError> {
-    if found == 0 || found == expected {
-        return Ok(());
-    }
-    Err(WriteMshError::BadLength {
-        what: what.to_owned(),
-        found,
-        expected,
-    })
 }
 
 fn write_physical_names(mesh: &Mesh, to: &mut Sink<impl Write>) -> io::Result<()> {

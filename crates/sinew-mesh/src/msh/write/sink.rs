@@ -1,13 +1,20 @@
-//! Where a writer's numbers go: as text, in rows, or as bytes.
+//! The sink of a writer's numbers: text in rows, or bytes.
 
 use std::io::{self, Write};
 
-use super::MshEncoding;
+/// Encoding of the numbers in a .msh file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum MshEncoding {
+    /// Text, with the fewest digits that read back exactly.
+    Text,
+    /// Bytes, least significant first.
+    Binary,
+}
 
 pub(super) struct Sink<W> {
     to: W,
     encoding: MshEncoding,
-    /// In text, whether the row has a number already.
+    /// Whether, in text, the row has a number already.
     is_inside_row: bool,
 }
 
@@ -34,12 +41,12 @@ impl<W: Write> Sink<W> {
         self.line("$EndMeshFormat")
     }
 
-    /// A line of text, whatever the encoding.
+    /// Writes a line of text, in either encoding.
     pub(super) fn line(&mut self, text: &str) -> io::Result<()> {
         writeln!(self.to, "{text}")
     }
 
-    /// The end of a section of numbers.
+    /// Writes the end of a section of numbers.
     pub(super) fn end(&mut self, section: &str) -> io::Result<()> {
         if self.is_binary() {
             self.line("")?;
@@ -80,7 +87,7 @@ impl<W: Write> Sink<W> {
         self.to.write_fmt(word)
     }
 
-    /// In text, ends a row.
+    /// Ends a row of text; does nothing in a binary file.
     pub(super) fn end_row(&mut self) -> io::Result<()> {
         if self.encoding == MshEncoding::Text {
             self.is_inside_row = false;

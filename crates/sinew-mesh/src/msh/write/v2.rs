@@ -1,11 +1,11 @@
-//! Version 2.2.
+//! Writes version 2.2.
 
 use std::io::Write;
 
-use super::WriteMshError;
 use super::cells::vtk_index_of_gmsh_node;
 use super::data::{self, WrittenCell};
 use super::entities::first_free_element_tag;
+use super::error::WriteMshError;
 use super::sink::Sink;
 use crate::mesh::{CellBlock, CellIndex, Mesh};
 
@@ -54,11 +54,11 @@ struct Row {
     at: CellIndex,
     tag: u64,
     physical: i32,
-    /// The cell stands in the file already, with another group.
+    /// Whether the cell stands in the file already, with another group.
     is_copy: bool,
 }
 
-/// Each cell, and after it a copy for each further group.
+/// The cells, each followed by a copy for each of its further groups.
 fn rows(mesh: &Mesh) -> Vec<Row> {
     let groups = |block: &CellBlock, cell: usize| block.physical.of(cell).len().max(1);
     let total: u64 = mesh
@@ -102,7 +102,7 @@ fn rows(mesh: &Mesh) -> Vec<Row> {
     rows
 }
 
-/// Rows of one block: in a binary file, under one header.
+/// Writes the rows of one block, in a binary file under one header.
 fn write_run(
     mesh: &Mesh,
     run: &[Row],
@@ -138,7 +138,7 @@ fn write_run(
     Ok(())
 }
 
-/// Text, in binary files, too.
+/// Writes the links, as text even in binary files.
 fn write_periodic(mesh: &Mesh, to: &mut Sink<impl Write>) -> Result<(), WriteMshError> {
     if mesh.periodic.is_empty() {
         return Ok(());

@@ -1,11 +1,11 @@
-//! Version 4.1.
+//! Writes version 4.1.
 
 use std::io::{self, Write};
 
-use super::WriteMshError;
 use super::cells::vtk_index_of_gmsh_node;
 use super::data::{self, WrittenCell};
 use super::entities::{Entities, Part};
+use super::error::WriteMshError;
 use super::sink::Sink;
 use crate::mesh::{CellIndex, Entity, Mesh};
 
@@ -72,7 +72,7 @@ fn write_nodes(mesh: &Mesh, entities: &Entities, to: &mut Sink<impl Write>) -> i
     to.end("Nodes")
 }
 
-/// Blocks, rows, least and greatest tag.
+/// Writes the header of a section: numbers of blocks and rows, least and greatest tag.
 fn write_header(
     blocks: usize,
     tags: impl Iterator<Item = u64>,

@@ -3,12 +3,12 @@
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 use sinew_measure::number::{milliseconds, percent, short, three};
 use sinew_measure::search::Pilot;
-use sinew_measure::{Advice, Answer, Outcome, Row};
+use sinew_measure::{Advice, Answer, Row, RowOutcome};
 
 const RULED_HEAD: TableStyle =
     TableStyle::new().header_separator(LineStyle::new('─', '─', '─', '─'));
 
-/// Head of the column that is shown where only a part of the scene was followed.
+/// Heading of the column that is shown only where pilots covered a part of the scene.
 const EXPECTED: &str = "expected\n[%]";
 
 const HEAD: [&str; 10] = [
@@ -24,13 +24,13 @@ const HEAD: [&str; 10] = [
     "verdicts",
 ];
 
-/// Instants at which loads change that are listed one by one.
+/// Number of instants of changing loads that are listed one by one.
 const LISTED_CHANGES: usize = 3;
 
-/// Rows of other integrators beneath the advised one.
+/// Number of rows for other integrators below the advised one.
 const RUNNERS_UP: usize = 3;
 
-/// The advice as people read it.
+/// The advice as text.
 pub(super) fn text(advice: &Advice) -> String {
     let mut paragraphs = vec![answer(advice)];
     let mut rows = Vec::new();
@@ -136,8 +136,8 @@ fn asked(advice: &Advice) -> String {
     }
 }
 
-/// The part of the scene that was followed, with the loads that change after it; nothing where that
-/// is all of it.
+/// The part of the scene that pilots covered, with the loads that change after it; empty where they
+/// covered all of it.
 fn up_to(advice: &Advice) -> String {
     if advice.covers_the_scene() {
         return String::new();
@@ -153,7 +153,7 @@ fn up_to(advice: &Advice) -> String {
     }
 }
 
-/// The instants after the part that was followed at which loads change.
+/// The instants after the covered part at which loads change.
 fn unseen_changes(advice: &Advice) -> Option<String> {
     let instants = advice.unseen_changes.iter();
     let mut listed: Vec<String> = instants.map(|t| format!("{t} s")).collect();
@@ -196,7 +196,7 @@ fn run(advice: &Advice, pilot: &Pilot) -> String {
     )
 }
 
-/// The error to expect over the whole scene, in per cent.
+/// The error expected over the whole scene (%).
 fn expected(row: &Row) -> String {
     let expected = row.expected_error;
     expected.map_or_else(|| "none".to_owned(), percent)
@@ -222,7 +222,7 @@ fn ten_times_better(advice: &Advice, best: &Pilot, tenfold: Option<&Pilot>) -> S
     )
 }
 
-/// How the figures came about, and what they do not say.
+/// The origin of the figures, and their limitations.
 fn provenance(advice: &Advice) -> String {
     let (whole, measured) = (advice.whole.duration, advice.measured.duration);
     let mut lines = vec![format!(
@@ -237,7 +237,7 @@ fn provenance(advice: &Advice) -> String {
         });
         lines.push(format!(
             "errors, costs and verdicts are those of the first {} s of {} s, all that the time for pilots allows; \
-             expected errors let phase errors grow on to {} s{unseen}: --pilot-seconds follows more",
+             expected errors let phase errors grow on to {} s{unseen}: raise --pilot-seconds to cover more",
             short(measured),
             short(whole),
             short(whole)
@@ -250,12 +250,12 @@ fn provenance(advice: &Advice) -> String {
         lines.push(format!("left out: {}: {reason}", method.label()));
     }
     let what = match (advice.choice_cut_short, advice.others_cut_short) {
-        (true, _) => Some("every candidate was followed, so that there may be something cheaper"),
+        (true, _) => Some("every candidate was tried, so there may be a cheaper one"),
         (false, true) => Some("all runners-up were followed to their own best"),
         (false, false) => None,
     };
     lines.extend(what.map(|what| {
-        format!("the time for pilots ran out before {what}: --pilot-seconds looks further")
+        format!("the time for pilots ran out before {what}: raise --pilot-seconds to look further")
     }));
     lines.join("\n")
 }
@@ -300,7 +300,7 @@ fn table(advice: &Advice, rows: &[(&str, &Pilot)]) -> String {
     lines.join("\n")
 }
 
-/// Sweeps per simulated second, and solves where there are any.
+/// Sweeps per simulated second, and solves if there are any.
 fn work(row: &Row) -> String {
     let sweeps = short(row.sweeps_per_s);
     match row.work.solves {
@@ -313,7 +313,7 @@ fn work(row: &Row) -> String {
 }
 
 fn verdicts(row: &Row) -> String {
-    if row.outcome == Outcome::Diverged {
+    if row.outcome == RowOutcome::Diverged {
         return "diverged".to_owned();
     }
     let mut words = vec![if row.bounded { "bounded" } else { "unbounded" }];

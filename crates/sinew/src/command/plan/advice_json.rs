@@ -1,18 +1,18 @@
-//! Advice as programs read it.
+//! Advice as JSON.
 
 use serde_json::{Value, json};
 use sinew_measure::search::Pilot;
-use sinew_measure::{Advice, Answer, Outcome};
+use sinew_measure::{Advice, Answer, RowOutcome};
 
 /// Advice as one JSON object. Each `null` in it is named, with its reason, in the list `missing`.
 pub(super) struct AdviceJson {
     /// The object.
     pub(super) object: Value,
-    /// Numbers that should be there and cannot be shown, in words.
+    /// Sentences about numbers that should be in the object and cannot be shown.
     pub(super) gaps: Vec<String>,
 }
 
-/// What is missing from the object, by the path of its field.
+/// The fields that are missing from the object, by their paths.
 #[derive(Default)]
 struct Missing {
     list: Vec<Value>,
@@ -20,13 +20,13 @@ struct Missing {
 }
 
 impl Missing {
-    /// Something that need not be there.
+    /// Adds a field that is null for a good reason.
     fn explain(&mut self, field: impl Into<String>, reason: &str) {
         self.list
             .push(json!({ "field": field.into(), "reason": reason }));
     }
 
-    /// A number that should be there.
+    /// Adds a number that should be in the object and cannot be shown.
     fn gap(&mut self, field: &str, value: Option<&str>, reason: &str) {
         let mut entry = json!({ "field": field, "reason": reason });
         if let (Some(entry), Some(value)) = (entry.as_object_mut(), value) {
@@ -43,7 +43,7 @@ impl Missing {
             let field = format!("{path}.row.{}", gap.field);
             self.gap(&field, gap.value.as_deref(), gap.reason);
         }
-        if row.outcome == Outcome::Diverged {
+        if row.outcome == RowOutcome::Diverged {
             for (field, value) in [
                 ("error", row.error),
                 ("max_u", row.max_u),
@@ -81,14 +81,14 @@ impl Missing {
     }
 }
 
-/// The advice. `met` is true only where the advised run was seen to keep to the tolerance over the
-/// whole scene; up to when it was stands in `met_until_s`, and what loads do after that in
-/// `unseen_load_changes_s`.
+/// Turns advice into JSON. `met` is true only where the measured error of the advised run keeps to the
+/// tolerance over the whole scene; `met_until_s` is the time up to which it does, and
+/// `unseen_load_changes_s` lists the later changes of loads.
 pub(super) fn as_json(advice: &Advice) -> AdviceJson {
     let mut missing = Missing::default();
     let refused = advice.refused.iter();
     let refused: Vec<Value> = refused
-        .map(|(method, reason)| json!({ "method": method.label(), "reason": reason }))
+        .map(|(method, reason)| json!({ "method": method.label(), "reason": reason.to_string() }))
         .collect();
     if advice.question.budget.is_none() {
         missing.explain("budget_cpu_s_per_s", "no budget was asked for");
@@ -97,9 +97,9 @@ pub(super) fn as_json(advice: &Advice) -> AdviceJson {
     if met_until.is_none() {
         missing.explain("met_until_s", "nothing measured keeps to what was asked");
     }
-    let reason = advice.written.as_ref().err().map_or("", String::as_str);
+    let reason = advice.written.as_ref().err().map(ToString::to_string);
     let written = advice.written.as_ref().ok();
-    let written = missing.maybe("as_written", advice, written, reason);
+    let written = missing.maybe("as_written", advice, written, &reason.unwrap_or_default());
     let answer = match &advice.answer {
         Answer::Met { cheapest, tenfold } => {
             let others = cheapest.iter().skip(1).enumerate();
@@ -168,13 +168,13 @@ pub(super) fn as_json(advice: &Advice) -> AdviceJson {
 
 #[cfg(test)]
 mod tests {
-    use sinew_measure::{Method, Question, Row, Span};
+    use sinew_measure::{Cost, MethodChoice, NotMeasured, Question, Row, Span};
 
     use super::*;
 
     fn pilot(row: Row) -> Pilot {
         Pilot {
-            method: Method::new("rk4"),
+            method: MethodChoice::new("rk4"),
             row: Row {
                 integrator: "rk4".into(),
                 dt: 0.01,
@@ -184,7 +184,7 @@ mod tests {
         }
     }
 
-    fn advice(answer: Answer, written: Result<Pilot, String>) -> Advice {
+    fn advice(answer: Answer, written: Result<Pilot, NotMeasured>) -> Advice {
         let span = Span {
             duration: 1.0,
             samples: 10,
@@ -194,6 +194,7 @@ mod tests {
                 tolerance: 0.01,
                 budget: None,
                 pilot_seconds: 10.0,
+                cost: Cost::CpuTime,
             },
             whole: span,
             measured: span,
@@ -208,7 +209,7 @@ mod tests {
         }
     }
 
-    /// The paths of all nulls.
+    /// The paths of all null fields.
     fn nulls(path: &str, value: &Value, found: &mut Vec<String>) {
         let below = |name: &str| match path {
             "" => name.to_owned(),
@@ -256,7 +257,7 @@ mod tests {
             ..Row::default()
         });
         let diverged = pilot(Row {
-            outcome: Outcome::Diverged,
+            outcome: RowOutcome::Diverged,
             ..Row::default()
         });
         let met = Answer::Met {
@@ -269,9 +270,12 @@ mod tests {
             within_tolerance: None,
             within_budget: None,
         };
-        let said = check(&advice(missed, Err("it takes too long".into())));
+        let said = check(&advice(missed, Err(NotMeasured::TooLong)));
         let missing = said.object["missing"].to_string();
-        assert!(missing.contains("it takes too long"), "{missing}");
+        assert!(
+            missing.contains("too little time for other pilots"),
+            "{missing}"
+        );
         assert_eq!(said.gaps, [] as [String; 0]);
     }
 
@@ -288,7 +292,7 @@ mod tests {
             cheapest: vec![odd.clone(), odd],
             tenfold: None,
         };
-        let said = check(&advice(met, Err("no time".into())));
+        let said = check(&advice(met, Err(NotMeasured::TooLong)));
         assert_eq!(
             said.gaps[3..],
             [

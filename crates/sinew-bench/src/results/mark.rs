@@ -1,0 +1,52 @@
+//! A pass mark of a hard case: the question, the measured figure and the verdict.
+
+use serde::{Deserialize, Serialize};
+
+/// A pass mark and the figure measured for it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Mark {
+    /// The case in words.
+    pub case: String,
+    /// The question, in words.
+    pub asked: String,
+    /// The measured figure in words, with its unit, or why there is none.
+    pub measured: String,
+    /// The measured figure; none where there is none or it is not finite.
+    #[serde(default)]
+    pub figure: Option<f64>,
+    /// The largest figure that passes.
+    #[serde(default)]
+    pub limit: Option<f64>,
+    /// The method and step that gave the figure.
+    pub by: String,
+    /// Whether it passes.
+    pub verdict: MarkVerdict,
+    /// A remark.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub note: String,
+}
+
+/// Whether a mark is passed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MarkVerdict {
+    /// The figure is within the limit.
+    Pass,
+    /// The figure is beyond the limit, or could not be measured.
+    #[default]
+    Fail,
+    /// The mark is about something that does not exist here.
+    NotApplicable,
+}
+
+impl MarkVerdict {
+    /// The word that tables show.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Fail => "FAIL",
+            Self::NotApplicable => "not applicable",
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Machines, which run programs.
+
+mod cells;
+mod combine;
+mod reference;
+
+use std::sync::Arc;
+
+use sinew_core::{Batch, State, StepError, System};
+
+pub use reference::ReferenceMachine;
+
+use crate::Program;
+
+/// Runs programs on the cells of a system.
+///
+/// Its internals (other precision, another numbering, another memory) are free; the
+/// [`State`] stays f64, node-major. Every machine gives the results of [`ReferenceMachine`], to its own
+/// rounding, and the same bits for every way of cutting a run into batches. [`crate::conformance`]
+/// checks that.
+pub trait Machine: Send + std::fmt::Debug {
+    /// Its name, as plans and results show it.
+    fn name(&self) -> &'static str;
+
+    /// Takes a program for a system, and room for what it needs: afterwards a batch allocates
+    /// nothing.
+    fn load(&mut self, program: Arc<Program>, system: &dyn System);
+
+    /// Takes the steps of a batch, each in as many parts as the program repeats. The velocity of `state`
+    /// holds at the displacement's time, or in the middle of a last part where the program leaves it there.
+    ///
+    /// # Errors
+    /// [`StepError::Refused`] when the system refuses a trial state.
+    fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError>;
+}

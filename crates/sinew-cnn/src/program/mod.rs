@@ -1,0 +1,111 @@
+//! Steps of explicit methods as programs of a cellular network.
+
+mod build;
+mod display;
+mod formula;
+mod guarded;
+mod number;
+mod physics;
+mod stretch;
+mod sweep;
+mod traffic;
+mod work;
+
+use std::sync::Arc;
+
+use sinew_core::{Acceleration, VelocityTime};
+
+pub use physics::Physics;
+pub use sweep::{
+    Clamp, Forces, LoadAt, Loads, OwnTerm, Product, Quotient, Register, Sweep, Term, Update,
+    Weight, When,
+};
+pub use traffic::Traffic;
+
+use crate::blocks::CellBlocks;
+
+/// A step of an explicit method for a cellular network with a stored program (Roska and
+/// Chua, IEEE Trans. Circuits Syst. II 40, 1993): sweeps over all cells, after each of which every
+/// cell combines its own registers.
+///
+/// A cell holds a few registers, each one value per layer. A sweep is the only place where a cell
+/// reads its neighbours; see [`Sweep`]. A program is a plain value: it can be printed, compared and
+/// tested without a mesh. A [`crate::Machine`] runs it.
+///
+/// ```
+/// use sinew_cnn::{LoadAt, Physics, Program, Register};
+/// use sinew_core::VelocityTime;
+///
+/// // Symplectic Euler with a step of 1 ms: v += dt M^-1 (F - K u - D v), u += dt v.
+/// let (u, v, dt) = (Register::U, Register::V, 1e-3);
+/// let mut program = Program::new(VelocityTime::Same);
+/// let physics = Physics::undamped();
+/// let force = program.net_force(&physics, u, v, LoadAt::StartOf);
+/// program.step.push(force.then(v.plus_q(dt)).then(u.plus(dt, v)));
+/// assert_eq!(program.products_a_step(), 1);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    names: Vec<&'static str>,
+    /// Registers that follow from those of the state when one is loaded.
+    pub entry: Vec<Update>,
+    /// A first step, from a velocity at the displacement's time; empty where it is like all others.
+    pub start: Vec<Sweep>,
+    /// A step.
+    pub step: Vec<Sweep>,
+    /// Time of V after a step.
+    pub velocity: VelocityTime,
+    /// Kind of acceleration in A after the last step of a batch.
+    pub acceleration: Acceleration,
+    /// P^-1, one block for each cell, of sweeps with [`Quotient::Blocks`].
+    pub blocks: Option<Arc<CellBlocks>>,
+    /// Limits (m/s) of [`Clamp::Vector`], one for each cell.
+    pub limits: Option<Arc<[f64]>>,
+    /// Number of times a step is made for one step of the caller.
+    pub repeats: u32,
+    /// Moments of loads, from which weights that follow a load are made.
+    pub moments: Option<Arc<Moments>>,
+    sources: Vec<Source>,
+}
+
+/// A register that holds `u + beta v`, so that one product serves K and stiffness damping.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Source {
+    register: Register,
+    u: Register,
+    v: Register,
+    beta: f64,
+}
+
+/// Linear functionals of the change of a load's factor r over a step: number i is `sum over j of
+/// weights[i][j] (r(t + times[j]) - r(t))`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moments {
+    /// Times since the beginning of the step (s).
+    pub times: Vec<f64>,
+    /// Weights of each functional, as many as times.
+    pub weights: Vec<Vec<f64>>,
+}
+
+impl Program {
+    /// The names of the registers, in the order of their numbers.
+    #[must_use]
+    pub fn registers(&self) -> &[&'static str] {
+        &self.names
+    }
+
+    /// This program made `times` as often for one step of the caller.
+    #[must_use]
+    pub fn repeated(self, times: u32) -> Self {
+        Self {
+            repeats: self.repeats.saturating_mul(times),
+            ..self
+        }
+    }
+
+    /// Name of a register.
+    #[must_use]
+    pub fn name(&self, register: Register) -> &'static str {
+        self.names.get(register.index()).copied().unwrap_or("?")
+    }
+}

@@ -1,0 +1,422 @@
+//! Batches of steps, with the checks and the bookkeeping that all methods share.
+
+use crate::guard::Guarding;
+use crate::system::loads_revision;
+use crate::{
+    Acceleration, Inputs, LoadTime, Revision, SetupError, State, StepError, StepReport,
+    SynchroniseError, System, Trial, VelocityTime, Watch,
+};
+
+/// Steps to take, and the work around each: sizes are checked, the clock is kept, a guard
+/// clamps, the system is told of the result, degrees of freedom are watched, divergence is found.
+pub struct Batch<'a> {
+    system: &'a dyn System,
+    inputs: &'a Inputs,
+    /// Length of a step, or of a part of one (s).
+    dt: f64,
+    /// Identity of the loads.
+    loads: Option<[Revision; 2]>,
+    steps: usize,
+    taken: usize,
+    /// Parts of a step, and those taken of the step under way.
+    parts: u32,
+    parts_taken: u32,
+    /// Work of the step under way.
+    step_work: StepReport,
+    work: StepReport,
+    divergence_limit: f64,
+    diverged: Option<usize>,
+    watch: Option<&'a mut Watch>,
+    guarding: Option<Guarding>,
+}
+
+/// One step of a batch.
+#[derive(Clone, Copy)]
+pub struct Step<'a> {
+    /// The system.
+    pub system: &'a dyn System,
+    /// Inputs from outside.
+    pub inputs: &'a Inputs,
+    /// Length (s).
+    pub dt: f64,
+}
+
+/// Result of a step, as the method reports it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stepped {
+    /// Work of the step.
+    pub work: StepReport,
+    /// The velocity's time.
+    pub velocity: VelocityTime,
+    /// Kind of acceleration that the state keeps.
+    pub acceleration: Acceleration,
+}
+
+impl Stepped {
+    /// A step to u and v at the same time that keeps no acceleration.
+    #[must_use]
+    pub fn at_same_time(work: StepReport) -> Self {
+        Self {
+            work,
+            velocity: VelocityTime::Same,
+            acceleration: Acceleration::None,
+        }
+    }
+}
+
+impl<'a> Step<'a> {
+    /// `out = f_ext - f_int` (N) at a trial point, one sweep.
+    ///
+    /// # Errors
+    /// [`StepError::Refused`] when the system refuses the point.
+    pub fn net_force(
+        &self,
+        load: LoadTime<'_>,
+        trial_dt: f64,
+        [u, v, internal]: [&[f64]; 3],
+        out: &mut [f64],
+    ) -> Result<(), StepError> {
+        let trial = Trial {
+            load: load.under(self.inputs),
+            dt: trial_dt,
+            u,
+            v,
+            internal,
+        };
+        let refused = |source| StepError::Refused {
+            t: load.t(),
+            source,
+        };
+        self.system.net_force(&trial, out).map_err(refused)
+    }
+
+    /// `out = M^-1 (f_ext - f_int)` (m/s^2) in a state, one sweep.
+    ///
+    /// # Errors
+    /// [`StepError::Refused`] when the system refuses the state.
+    pub fn acceleration(
+        &self,
+        load: LoadTime<'_>,
+        state: &State,
+        out: &mut [f64],
+    ) -> Result<(), StepError> {
+        self.net_force(load, 0.0, [&state.u, &state.v, &state.internal], out)?;
+        for (value, mass) in out.iter_mut().zip(self.system.mass()) {
+            *value /= mass;
+        }
+        Ok(())
+    }
+}
+
+impl<'a> Batch<'a> {
+    /// `steps` steps of `dt` (s).
+    #[must_use]
+    pub fn new(system: &'a dyn System, inputs: &'a Inputs, dt: f64, steps: usize) -> Self {
+        Self {
+            system,
+            inputs,
+            dt,
+            loads: loads_revision(system),
+            steps,
+            taken: 0,
+            parts: 1,
+            parts_taken: 0,
+            step_work: StepReport::default(),
+            work: StepReport::default(),
+            divergence_limit: f64::INFINITY,
+            diverged: None,
+            watch: None,
+            guarding: None,
+        }
+    }
+
+    /// Ends at the first step after which a displacement is not finite or above `limit` (m).
+    #[must_use]
+    pub fn with_divergence_limit(mut self, limit: f64) -> Self {
+        self.divergence_limit = limit;
+        self
+    }
+
+    /// Samples degrees of freedom after every step that stays within the limit.
+    #[must_use]
+    pub fn with_watch(mut self, watch: &'a mut Watch) -> Self {
+        self.watch = Some(watch);
+        self
+    }
+
+    pub(crate) fn check(
+        &self,
+        integrator: &'static str,
+        state: &mut State,
+    ) -> Result<(), SetupError> {
+        let dofs = self.system.dofs();
+        let lengths = [state.u.len(), state.v.len()];
+        if let Some(found) = lengths.into_iter().find(|length| *length != dofs) {
+            return Err(SetupError::StateSize {
+                integrator,
+                state: found,
+                system: dofs,
+            });
+        }
+        if state.acceleration != Acceleration::None && state.a.len() != dofs {
+            return Err(SetupError::StateSize {
+                integrator,
+                state: state.a.len(),
+                system: dofs,
+            });
+        }
+        if let (Some([matrices, loads]), Some(present)) = (state.loads, self.loads) {
+            let is_earlier = || {
+                let linear = self.system.as_linear();
+                linear.is_some_and(|linear| linear.operators().changed_since(matrices).is_some())
+            };
+            let is_same_body = present[0] == matrices || is_earlier();
+            if is_same_body && present[1] != loads && state.velocity != VelocityTime::Same {
+                return Err(SetupError::OtherLoads { integrator });
+            }
+            if is_same_body
+                && present != [matrices, loads]
+                && state.acceleration == Acceleration::Same
+            {
+                // It was kept under the loads or the rows before.
+                state.acceleration = Acceleration::None;
+            }
+        }
+        let internal = self.system.internal_variables();
+        if state.internal.len() != internal {
+            return Err(SetupError::Internal {
+                integrator,
+                state: state.internal.len(),
+                system: internal,
+            });
+        }
+        if let Some(dof) = self.inputs.highest_dof()
+            && dof as usize >= dofs
+        {
+            return Err(SetupError::ForceOutOfRange {
+                integrator,
+                dof,
+                dofs,
+            });
+        }
+        let loads = self.system.as_linear();
+        let loads = loads.map_or(&[][..], |linear| linear.operators().loads());
+        for load in loads {
+            if let Some(channel) = load.ramp.missing_input(self.inputs) {
+                return Err(SetupError::NoInput {
+                    integrator,
+                    channel: channel.0,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The system.
+    #[must_use]
+    pub fn system(&self) -> &'a dyn System {
+        self.system
+    }
+
+    /// Inputs from outside.
+    #[must_use]
+    pub fn inputs(&self) -> &'a Inputs {
+        self.inputs
+    }
+
+    /// Length of a step, or of the current part (s).
+    #[must_use]
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// Steps taken whole.
+    #[must_use]
+    pub fn taken(&self) -> usize {
+        self.taken
+    }
+
+    /// Work of the steps taken.
+    #[must_use]
+    pub fn work(&self) -> StepReport {
+        self.work
+    }
+
+    /// The degree of freedom that went farthest beyond the limit, where one did: the last step taken
+    /// is the first after which it had.
+    #[must_use]
+    pub fn diverged(&self) -> Option<usize> {
+        self.diverged
+    }
+
+    /// Whether there are steps left to take.
+    #[must_use]
+    pub fn goes_on(&self) -> bool {
+        self.taken < self.steps && self.diverged.is_none()
+    }
+
+    /// Whether the next step, or part of one, is the last.
+    #[must_use]
+    pub fn is_last(&self) -> bool {
+        self.taken + 1 >= self.steps && self.parts_taken + 1 == self.parts
+    }
+
+    /// The current step.
+    #[must_use]
+    pub fn step(&self) -> Step<'a> {
+        Step {
+            system: self.system,
+            inputs: self.inputs,
+            dt: self.dt,
+        }
+    }
+
+    /// Limits of the guard that clamps the steps, where there is one.
+    #[must_use]
+    pub fn guarding(&self) -> Option<&Guarding> {
+        self.guarding.as_ref()
+    }
+
+    /// Counts work that belongs to no step.
+    pub fn count(&mut self, work: StepReport) {
+        self.work += work;
+    }
+
+    /// Brings a staggered velocity to the displacement's time, for methods whose own is not
+    /// staggered. Only the first step after another method took the state does so.
+    ///
+    /// # Errors
+    /// [`StepError::Refused`] when the system refuses the state.
+    pub fn synchronise(&mut self, state: &mut State) -> Result<(), StepError> {
+        if state.velocity == VelocityTime::Same {
+            return Ok(());
+        }
+        let mut buffer = vec![0.0; state.u.len()];
+        let t = state.t();
+        state
+            .synchronise(self.system, self.inputs, &mut buffer)
+            .map_err(|error| match error {
+                SynchroniseError::Refused(source) => StepError::Refused { t, source },
+                mean @ SynchroniseError::Mean { .. } => StepError::Synchronise(mean),
+            })?;
+        self.work += StepReport::ONE_FORCE;
+        Ok(())
+    }
+
+    /// Takes all steps by calling `step` for each: it moves u, v and all else that the state keeps, and
+    /// leaves the clock to the batch.
+    ///
+    /// # Errors
+    /// The error of the first step that fails.
+    pub fn each(
+        &mut self,
+        state: &mut State,
+        mut step: impl FnMut(Step<'a>, &mut State) -> Result<Stepped, StepError>,
+    ) -> Result<(), StepError> {
+        while self.goes_on() {
+            if let Some(guarding) = &mut self.guarding {
+                guarding.remember(state, self.dt);
+            }
+            let mut stepped = step(self.step(), state)?;
+            if let Some(guarding) = &mut self.guarding {
+                let clamped = guarding.apply(state, self.dt, stepped.acceleration);
+                stepped.work.saturated = stepped.work.saturated.max(clamped);
+            }
+            self.end_step(state, stepped);
+        }
+        Ok(())
+    }
+
+    /// Ends a step, or a part of one, that moved the state and was clamped where it had to be.
+    /// [`Batch::each`] does so itself.
+    pub fn end_step(&mut self, state: &mut State, stepped: Stepped) {
+        state.end_step(self.dt, stepped.velocity, stepped.acceleration);
+        state.loads = self.loads;
+        self.system.accept(state);
+        self.step_work.add_part(stepped.work);
+        self.parts_taken += 1;
+        if self.parts_taken < self.parts {
+            return;
+        }
+        self.parts_taken = 0;
+        self.taken += 1;
+        self.work += std::mem::take(&mut self.step_work);
+        self.diverged = worst_beyond(&state.u, self.divergence_limit);
+        if let Some(watch) = &mut self.watch
+            && self.diverged.is_none()
+        {
+            watch.sample(state);
+        }
+    }
+
+    /// Steps, or parts of them, that are left.
+    #[must_use]
+    pub fn parts_left(&self) -> usize {
+        (self.steps - self.taken) * self.parts as usize - self.parts_taken as usize
+    }
+
+    /// Runs `body` on the next `parts` steps, or parts of them, at most, as far as they are whole
+    /// steps.
+    pub fn at_most<R>(&mut self, parts: usize, body: impl FnOnce(&mut Self) -> R) -> R {
+        let steps = self.steps;
+        self.steps = steps.min(self.taken + parts / self.parts as usize);
+        let result = body(self);
+        self.steps = steps;
+        result
+    }
+
+    /// Runs `body` on steps that are each cut into `parts` equal parts.
+    pub fn in_parts<R>(&mut self, parts: u32, body: impl FnOnce(&mut Self) -> R) -> R {
+        let (dt, whole) = (self.dt, self.parts);
+        self.dt = dt / f64::from(parts);
+        self.parts = whole.saturating_mul(parts);
+        let result = body(self);
+        (self.dt, self.parts) = (dt, whole);
+        result
+    }
+
+    /// Runs `body` on steps that are each clamped; the guard is given back.
+    pub fn guarded<R>(
+        &mut self,
+        guarding: Guarding,
+        body: impl FnOnce(&mut Self) -> R,
+    ) -> (Guarding, R) {
+        let before = self.guarding.replace(guarding);
+        let result = body(self);
+        let guarding = std::mem::replace(&mut self.guarding, before);
+        (guarding.unwrap_or_default(), result)
+    }
+}
+
+/// The degree of freedom farthest beyond `limit` (m); one that is not a number is farthest of all.
+#[must_use]
+pub fn worst_beyond(u: &[f64], limit: f64) -> Option<usize> {
+    // Without a branch, in words as wide as the values, so that several are compared at a time: this
+    // is done after each step.
+    let largest_finite = limit.min(f64::MAX);
+    let fine = |all, value: &f64| all & u64::from(value.abs() <= largest_finite);
+    if u.iter().fold(1, fine) == 1 {
+        return None;
+    }
+    let distance = |value: f64| {
+        if value.is_nan() {
+            f64::INFINITY
+        } else {
+            value.abs()
+        }
+    };
+    (0..u.len()).max_by(|&i, &j| distance(u[i]).total_cmp(&distance(u[j])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_worst_degree_of_freedom_is_named() {
+        assert_eq!(worst_beyond(&[1.0, -2.0], 3.0), None);
+        assert_eq!(worst_beyond(&[1.0, -5.0, 4.0], 3.0), Some(1));
+        assert_eq!(worst_beyond(&[1.0, 7.0, f64::NAN], 3.0), Some(2));
+        assert_eq!(worst_beyond(&[f64::INFINITY], f64::INFINITY), Some(0));
+    }
+}

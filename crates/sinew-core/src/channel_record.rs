@@ -1,0 +1,161 @@
+//! The values that a channel is given over time.
+
+use crate::ramp::Ramp;
+
+/// Values given to a channel so far.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Record {
+    pub(crate) value: Ramp,
+    pub(crate) rate: Ramp,
+}
+
+/// Course of a channel between two values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Between {
+    /// A value holds from its time on until the next: forces.
+    Hold,
+    /// Straight lines: positions, whose speed is then known to damping.
+    Line,
+}
+
+/// Reasons for which a channel's value is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InputError {
+    /// A value or time that is not finite.
+    #[error("input {channel}: {value} at t = {t} s: expected finite numbers")]
+    NotFinite {
+        /// Channel number.
+        channel: u32,
+        /// The value.
+        value: f64,
+        /// Its time (s).
+        t: f64,
+    },
+    /// A channel that these inputs do not have.
+    #[error("there is no input {channel}")]
+    NoChannel {
+        /// Channel number.
+        channel: u32,
+    },
+    /// A time that does not come after the last.
+    #[error("input {channel}: t = {t} s does not come after the last time given, {last} s")]
+    Order {
+        /// Channel number.
+        channel: u32,
+        /// The time (s).
+        t: f64,
+        /// The last time given (s).
+        last: f64,
+    },
+    /// A line whose slope is not finite.
+    #[error(
+        "input {channel}: the line from t = {last} s to {t} s is too steep: expected a finite slope"
+    )]
+    Slope {
+        /// Channel number.
+        channel: u32,
+        /// The time (s).
+        t: f64,
+        /// The last time given (s).
+        last: f64,
+    },
+}
+
+/// Refuses a value or time that is not finite.
+pub(crate) fn check_finite(channel: u32, t: f64, value: f64) -> Result<(), InputError> {
+    if t.is_finite() && value.is_finite() {
+        return Ok(());
+    }
+    Err(InputError::NotFinite { channel, value, t })
+}
+
+impl Record {
+    /// Values that hold, none yet.
+    pub(crate) fn hold() -> Self {
+        Self {
+            value: empty(),
+            rate: empty(),
+        }
+    }
+
+    /// Lines from a value at `t` (s) on.
+    pub(crate) fn line(t: f64, value: f64) -> Self {
+        Self {
+            value: Ramp::Table {
+                times: vec![t],
+                values: vec![value],
+            },
+            rate: empty(),
+        }
+    }
+
+    /// Adds a value.
+    pub(crate) fn set(&mut self, channel: u32, t: f64, value: f64) -> Result<(), InputError> {
+        check_finite(channel, t, value)?;
+        // A value that holds has no rate but at its jumps.
+        let is_line = matches!(self.value, Ramp::Table { .. });
+        let Some((times, values)) = points(&mut self.value) else {
+            return Ok(());
+        };
+        let before = times.last().copied().zip(values.last().copied());
+        if let Some((last, _)) = before
+            && t <= last
+        {
+            return Err(InputError::Order { channel, t, last });
+        }
+        if is_line
+            && let Some((rate_times, rates)) = points(&mut self.rate)
+            && let Some((last, from)) = before
+        {
+            let slope = (value - from) / (t - last);
+            if !slope.is_finite() {
+                return Err(InputError::Slope { channel, t, last });
+            }
+            // The line's slope in the place of the 0 that followed the last point.
+            if rate_times.last() == Some(&last) {
+                rate_times.pop();
+                rates.pop();
+            }
+            rate_times.extend([last, t]);
+            rates.extend([slope, 0.0]);
+        }
+        times.push(t);
+        values.push(value);
+        Ok(())
+    }
+
+    /// Forgets the values before the one that holds, or the line that passes, at `t` (s).
+    pub(crate) fn forget_before(&mut self, t: f64) {
+        for ramp in [&mut self.value, &mut self.rate] {
+            if let Some((times, values)) = points(ramp) {
+                let gone = times.partition_point(|time| *time <= t).saturating_sub(1);
+                times.drain(..gone);
+                values.drain(..gone);
+            }
+        }
+        // A line of one point is level, as at its beginning.
+        if let Some((times, _)) = points(&mut self.value)
+            && times.len() == 1
+            && let Some((times, rates)) = points(&mut self.rate)
+        {
+            times.clear();
+            rates.clear();
+        }
+    }
+}
+
+fn empty() -> Ramp {
+    Ramp::Hold {
+        times: Vec::new(),
+        values: Vec::new(),
+    }
+}
+
+/// Times and values of a ramp by points.
+fn points(ramp: &mut Ramp) -> Option<(&mut Vec<f64>, &mut Vec<f64>)> {
+    match ramp {
+        Ramp::Hold { times, values } | Ramp::Table { times, values } => Some((times, values)),
+        _ => None,
+    }
+}

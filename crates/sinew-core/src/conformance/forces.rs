@@ -1,0 +1,113 @@
+//! Laws on systems that show no matrices.
+
+use super::boxed::Boxed;
+use super::problems::{Dampers, FORCE, Problem, gentle_step, give, problems};
+use super::running::singly;
+use crate::spectrum::Spectrum;
+use crate::{
+    EvaluationError, ForceLaw, ForceModel, Inputs, Integrator, LinearModel, LinearSystem, LoadTime,
+    Needs, SetupError, StableStep, State, Trial,
+};
+
+/// The forces of a linear system that hides its matrices.
+struct Hidden {
+    inner: LinearModel,
+    /// Whether it tells its fastest motions.
+    knows_spectrum: bool,
+}
+
+/// A linear system that hides its matrices.
+fn hidden(inner: &LinearModel, knows_spectrum: bool) -> ForceModel<Hidden> {
+    let law = Hidden {
+        inner: inner.clone(),
+        knows_spectrum,
+    };
+    ForceModel::like(inner, law)
+}
+
+impl ForceLaw for Hidden {
+    fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
+        let operators = self.inner.operators();
+        operators.net_force(trial.load, trial.u, trial.v, out);
+        Ok(())
+    }
+    fn external_force(&self, when: LoadTime<'_>, out: &mut [f64]) {
+        self.inner.operators().external_force(when, out);
+    }
+    fn mass_damping(&self) -> f64 {
+        self.inner.operators().damping().mass
+    }
+    fn spectrum(&self, _about: Option<&State>) -> Option<Spectrum> {
+        let of_inner = || Spectrum::of(self.inner.operators());
+        self.knows_spectrum.then(of_inner)
+    }
+}
+
+/// Whether set-up or the stable step was refused because the system lacks something, by name.
+pub(super) fn lacks<T>(integrator: &dyn Integrator, answer: &Result<T, SetupError>) -> bool {
+    matches!(answer, Err(SetupError::Lacks { integrator: id, .. }) if *id == integrator.id())
+}
+
+/// On a system that evaluates its forces and shows no matrices, a method that declares to need
+/// forces only gives the same bits and the same work as with the matrices, under all kinds of
+/// damping; any other refuses it by name, at set-up and when asked for a stable step. Without a
+/// spectrum a stable step is unknown, with one it is that of the matrices.
+pub fn forces_are_enough_where_declared(make: &dyn Fn() -> Boxed) {
+    for damping in [
+        Dampers::NONE,
+        Dampers::MASS,
+        Dampers::STIFFNESS,
+        Dampers::DASHPOT,
+        Dampers::ALL,
+    ] {
+        for problem in problems(damping, FORCE) {
+            let dark = hidden(&problem.system, false);
+            let hidden = hidden(&problem.system, true);
+            match make().properties().needs {
+                Needs::Matrices => {
+                    for system in [&dark, &hidden] {
+                        let (mut integrator, dt) = (make(), 0.01);
+                        let answer = integrator.prepare(system, dt);
+                        assert!(lacks(&*integrator, &answer), "set-up: {answer:?}");
+                        let answer = make().stable_step(system);
+                        assert!(lacks(&*integrator, &answer), "stable step: {answer:?}");
+                    }
+                }
+                Needs::Forces => {
+                    forces_are_enough(make, &problem, &hidden, damping);
+                    let unknown = make().stable_step(&dark);
+                    assert_eq!(unknown, Ok(StableStep::Unknown));
+                    // A method that cuts steps by the stable one has nothing to cut them by.
+                    let (mut integrator, dt) = (make(), gentle_step(&*make(), &problem.system));
+                    let answer = integrator.prepare(&dark, dt);
+                    assert!(answer.is_ok() || lacks(&*integrator, &answer), "{answer:?}");
+                }
+            }
+        }
+    }
+}
+
+fn forces_are_enough(
+    make: &dyn Fn() -> Boxed,
+    problem: &Problem,
+    hidden: &ForceModel<Hidden>,
+    damping: Dampers,
+) {
+    let (system, start) = (&problem.system, &problem.start);
+    let what = format!("{}, {damping:?}", problem.name);
+    assert_eq!(
+        make().stable_step(hidden),
+        make().stable_step(system),
+        "{what}"
+    );
+    let dt = gentle_step(&*make(), system);
+    let mut inputs = Inputs::new();
+    give(&mut inputs, 3.0 * dt, &[(1, 0.4)]);
+    give(&mut inputs, 8.5 * dt, &[(0, -0.3), (1, 0.1)]);
+    let (shown, of_shown) = singly(&mut *make(), system, &inputs, start, dt, 30);
+    let (found, of_hidden) = singly(&mut *make(), hidden, &inputs, start, dt, 30);
+    for (step, (shown, found)) in shown.iter().zip(&found).enumerate() {
+        assert_eq!(shown, found, "{what}: step {step}");
+    }
+    assert_eq!(of_shown, of_hidden, "{what}: work");
+}

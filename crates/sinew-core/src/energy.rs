@@ -1,0 +1,18 @@
+//! Energies.
+
+/// Energies of a state (J).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Energy {
+    /// Kinetic energy, half v' M v.
+    pub kinetic: f64,
+    /// Energy stored in deformation.
+    pub elastic: f64,
+}
+
+impl Energy {
+    /// Kinetic and elastic together (J).
+    #[must_use]
+    pub fn total(self) -> f64 {
+        self.kinetic + self.elastic
+    }
+}

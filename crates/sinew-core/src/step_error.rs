@@ -1,0 +1,133 @@
+//! Errors of set-up and steps.
+
+use crate::evaluation_error::EvaluationError;
+use crate::synchronise::SynchroniseError;
+
+/// Reasons for which a method cannot run on a system.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SetupError {
+    /// The system lacks what the method needs.
+    #[error("`{integrator}` needs {needs}, which this system does not offer")]
+    Lacks {
+        /// Integrator id.
+        integrator: &'static str,
+        /// The missing part.
+        needs: &'static str,
+    },
+    /// A step that is not positive and finite.
+    #[error("`{integrator}`: dt = {dt} s: expected a finite step above 0")]
+    Step {
+        /// Integrator id.
+        integrator: &'static str,
+        /// The step (s).
+        dt: f64,
+    },
+    /// A mass that is not positive.
+    #[error("`{integrator}`: {cell} has a mass of {mass} kg: expected a finite mass above 0")]
+    Mass {
+        /// Integrator id.
+        integrator: &'static str,
+        /// The cell, in the system's words.
+        cell: String,
+        /// Its mass (kg).
+        mass: f64,
+    },
+    /// Internal variables of another number than the system's.
+    #[error("`{integrator}`: the state has {state} internal variables, the system has {system}")]
+    Internal {
+        /// Integrator id.
+        integrator: &'static str,
+        /// Internal variables of the state.
+        state: usize,
+        /// Internal variables of the system.
+        system: usize,
+    },
+    /// A load follows an input that the caller does not give.
+    #[error("`{integrator}`: a load follows input {channel}, which the inputs do not have")]
+    NoInput {
+        /// Integrator id.
+        integrator: &'static str,
+        /// The channel's number.
+        channel: u32,
+    },
+    /// A force from outside on a degree of freedom that does not exist.
+    #[error("`{integrator}`: a force acts on degree of freedom {dof}: there are {dofs} (0-based)")]
+    ForceOutOfRange {
+        /// Integrator id.
+        integrator: &'static str,
+        /// The degree of freedom named.
+        dof: u32,
+        /// Degrees of freedom of the system.
+        dofs: usize,
+    },
+    /// A staggered state under other loads than those that led to it.
+    #[error(
+        "`{integrator}`: the loads were replaced in mid-run; a velocity half a step behind follows from \
+         those before. Give loads that change as it happens through `Inputs`, or call \
+         `State::synchronise` before replacing them"
+    )]
+    OtherLoads {
+        /// Integrator id.
+        integrator: &'static str,
+    },
+    /// A state of another size than the system.
+    #[error("`{integrator}`: the state has {state} degrees of freedom, the system has {system}")]
+    StateSize {
+        /// Integrator id.
+        integrator: &'static str,
+        /// Length of the state's vectors.
+        state: usize,
+        /// Degrees of freedom of the system.
+        system: usize,
+    },
+    /// The method cannot be accurate at this step.
+    #[error("`{integrator}`: {reason}")]
+    Unresolved {
+        /// Integrator id.
+        integrator: &'static str,
+        /// The reason, and the remedy.
+        reason: String,
+    },
+    /// The matrix of an implicit step could not be factorised.
+    #[error("`{integrator}`: the matrix of the step could not be factorised: {reason}")]
+    Factorization {
+        /// Integrator id.
+        integrator: &'static str,
+        /// Message of the factorisation.
+        reason: String,
+    },
+}
+
+/// Reasons for which a step fails.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StepError {
+    /// Set-up failed.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A batch was run without set-up.
+    #[error("the integrator was not set up: call `prepare` first, or take steps by `Batch::take`")]
+    NotPrepared,
+    /// A velocity that no other step or method can go on from.
+    #[error(transparent)]
+    Synchronise(#[from] SynchroniseError),
+    /// The method found that its step would be wrong.
+    #[error("`{integrator}` at t = {t} s: {reason}")]
+    Inaccurate {
+        /// Integrator id.
+        integrator: &'static str,
+        /// Time of the state (s).
+        t: f64,
+        /// The reason, and the remedy.
+        reason: String,
+    },
+    /// The system refused a trial state.
+    #[error("at t = {t} s: {source}")]
+    Refused {
+        /// Time of the trial (s).
+        t: f64,
+        /// Error of the system.
+        source: EvaluationError,
+    },
+}

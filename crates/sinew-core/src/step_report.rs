@@ -1,0 +1,55 @@
+//! Counted work.
+
+use std::ops::AddAssign;
+
+/// The work of a step, or of many. Counts reproduce; seconds do not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StepReport {
+    /// Evaluations of F - K u - D v over all cells, or work of that size.
+    pub sweeps: u64,
+    /// Evaluations of a system's net force.
+    pub force_evaluations: u64,
+    /// Solutions of a linear system with a factor.
+    pub solves: u64,
+    /// Numeric factorisations.
+    pub factorizations: u64,
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Cells whose rows set-up read: all of a new system, those that changed afterwards.
+    pub cells_set_up: u64,
+    /// Degrees of freedom whose velocity was saturated; for a step taken in parts, in the part with
+    /// the most.
+    pub saturated: u64,
+}
+
+impl StepReport {
+    /// One force evaluation, which is one sweep.
+    pub const ONE_FORCE: Self = Self {
+        sweeps: 1,
+        force_evaluations: 1,
+        solves: 0,
+        factorizations: 0,
+        newton_iterations: 0,
+        cells_set_up: 0,
+        saturated: 0,
+    };
+
+    /// Adds the work of a part of the same step.
+    pub fn add_part(&mut self, part: Self) {
+        let saturated = self.saturated.max(part.saturated);
+        *self += part;
+        self.saturated = saturated;
+    }
+}
+
+impl AddAssign for StepReport {
+    fn add_assign(&mut self, other: Self) {
+        self.sweeps += other.sweeps;
+        self.force_evaluations += other.force_evaluations;
+        self.solves += other.solves;
+        self.factorizations += other.factorizations;
+        self.newton_iterations += other.newton_iterations;
+        self.cells_set_up += other.cells_set_up;
+        self.saturated += other.saturated;
+    }
+}

@@ -1,0 +1,195 @@
+//! The linear model of a body.
+
+mod field_error;
+mod forces;
+mod motion;
+mod nodes;
+mod reactions;
+mod strain;
+mod support_motion;
+mod system;
+
+pub use field_error::FieldError;
+pub use forces::NodalForces;
+pub use support_motion::SupportMotion;
+
+use std::sync::Arc;
+
+use sinew_core::{Damping, LinearOperators};
+use sinew_mesh::TetMesh;
+
+use crate::assembly::{self, Assembled};
+use crate::body::Body;
+use crate::error::{Cause, FemError, Item};
+use crate::loads::LoadsOnBody;
+use crate::material::Material;
+use crate::motion::{Motions, MovedPart};
+use crate::regions::regions;
+use crate::report::{ModelReport, MoveFacts};
+use crate::supports::Supports;
+use crate::volumes::volumes;
+use crate::{Problem, check};
+
+/// A linear model of a body: M, D, K over its moving nodes, loads, and the geometry behind them.
+#[derive(Clone, Debug)]
+pub struct Model {
+    body: Arc<Body>,
+    operators: LinearOperators,
+    region_of: Vec<u32>,
+    materials: Vec<Material>,
+    /// Lumped mass of each node (kg).
+    masses: Vec<f64>,
+    supports: Supports,
+    motions: Motions,
+    /// Source of each load of the operators.
+    load_items: Vec<Item>,
+    report: ModelReport,
+}
+
+impl Model {
+    /// Assembles a problem on a mesh.
+    ///
+    /// # Errors
+    /// [`FemError`] with the part of the problem at fault.
+    pub fn build(mesh: &TetMesh, problem: &Problem) -> Result<Self, FemError> {
+        check::numbers(problem)?;
+        let volumes = volumes(mesh)?;
+        let region_of = regions(mesh, problem)?;
+        let body = Arc::new(Body::new(mesh, volumes, problem)?);
+        Self::on_body(body, problem, region_of)
+    }
+
+    /// Assembles another problem on the mesh of this model in which the same components move by themselves, for
+    /// sweeps over materials, damping, loads and prescribed motions. The two models share the mesh and the
+    /// pattern of the matrices, so that an analysis of the pattern serves both. The result is that of
+    /// [`Model::build`] to the last bit.
+    ///
+    /// # Errors
+    /// Same as [`Model::build`], and [`Cause::OtherSupports`] where the problem holds or moves other components.
+    pub fn with_problem(&self, problem: &Problem) -> Result<Self, FemError> {
+        check::numbers(problem)?;
+        let Body { mesh, cells, .. } = &*self.body;
+        match cells.first_held_otherwise(mesh, problem)? {
+            None => {
+                let region_of = regions(mesh, problem)?;
+                Self::on_body(Arc::clone(&self.body), problem, region_of)
+            }
+            Some(node) => {
+                let ordinal = u64::from(node) + 1;
+                let tag = mesh
+                    .node_tags
+                    .get(node as usize)
+                    .copied()
+                    .unwrap_or(ordinal);
+                let cause = Cause::OtherSupports { tag };
+                Err(FemError::new(Item::Supports, cause))
+            }
+        }
+    }
+
+    /// Assembles the materials and loads of a problem, whose numbers were checked.
+    fn on_body(body: Arc<Body>, problem: &Problem, region_of: Vec<u32>) -> Result<Self, FemError> {
+        let masses = assembly::lumped_masses(&body, problem, &region_of);
+        let Assembled {
+            stiffness,
+            damping,
+            dashpots,
+            materials,
+            facts,
+        } = assembly::assemble(&body, problem, &region_of, &masses)?;
+        let motions = Motions::new(&body.mesh, problem)?;
+        let facts_of = |part: &MovedPart| MoveFacts {
+            nodes: part.nodes.len(),
+            jump: part.first_jump(),
+            loads: Vec::new(),
+        };
+        let mut moves: Vec<MoveFacts> = motions.parts().iter().map(facts_of).collect();
+        let loads = LoadsOnBody::new(&body, problem, &masses, &motions, &mut moves)?;
+        let report = ModelReport {
+            mass: masses.iter().sum(),
+            volume: body.volumes.iter().sum(),
+            regions: facts,
+            loads: loads.facts,
+            moves,
+            gravity: loads.gravity,
+            damping_matrix: damping.is_some(),
+            ..ModelReport::of_body(&body)
+        };
+        let damping = Damping {
+            mass: problem.damping.mass,
+            stiffness: problem.damping.stiffness,
+            extra: damping.map(Arc::new),
+        };
+        let moving = body.cells.nodes.iter();
+        let mass = moving.flat_map(|node| [masses[*node as usize]; 3]);
+        let operators = LinearOperators::new(mass.collect(), stiffness, damping, loads.moving)
+            .map_err(|error| FemError::new(Item::Mesh, error.into()))?;
+        let supports = Supports::new(&body, loads.held, dashpots);
+        let resting = Self {
+            body,
+            operators,
+            region_of,
+            materials,
+            masses,
+            supports,
+            motions,
+            load_items: loads.items,
+            report,
+        };
+        resting.in_motion()
+    }
+
+    /// Mesh node (0-based) of each cell, increasing.
+    #[must_use]
+    pub fn nodes(&self) -> &[u32] {
+        &self.body.cells.nodes
+    }
+
+    /// The cell of a mesh node (0-based); `None` where the node is held in x, y and z.
+    #[must_use]
+    pub fn cell_of_node(&self, node: u32) -> Option<u32> {
+        self.body.cells.of_node(node)
+    }
+
+    /// Whether each component is held although its cell moves, three a cell.
+    #[must_use]
+    pub fn pinned(&self) -> &[bool] {
+        &self.body.cells.pinned
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &TetMesh {
+        &self.body.mesh
+    }
+
+    /// The region (0-based place in the problem) of each tetrahedron.
+    #[must_use]
+    pub fn region_of(&self) -> &[u32] {
+        &self.region_of
+    }
+
+    /// Counts and resultants.
+    #[must_use]
+    pub fn report(&self) -> &ModelReport {
+        &self.report
+    }
+
+    /// The part of the problem that a load of the operators comes from: a load, gravity or a prescribed motion, which
+    /// acts through the stiffness and damping that couple its nodes to others.
+    #[must_use]
+    pub fn item_of_load(&self, load: usize) -> Option<Item> {
+        self.load_items.get(load).copied()
+    }
+
+    /// Stiffness matrix (N/m) of a tetrahedron, held vertices included: 12 x 12, row-major and
+    /// vertex-major.
+    fn whole_stiffness(&self, tet: usize) -> [f64; 144] {
+        let mesh = &self.body.mesh;
+        let material = &self.materials[self.region_of[tet] as usize];
+        // Assembly refused flat tetrahedra.
+        material
+            .stiffness(&mesh.points, &mesh.tets[tet])
+            .unwrap_or([0.0; 144])
+    }
+}

@@ -1,0 +1,154 @@
+//! Supports in motion: their loads on the body, and their positions.
+
+use sinew_core::{Load, LoadTime, Ramp};
+
+use super::Model;
+use super::field_error::{FieldError, require_inputs};
+use crate::error::{Cause, FemError, Item};
+use crate::{Course, SupportMotion};
+
+impl Model {
+    /// This model with the pull of its prescribed motions among the loads: for each course `d r(t)` the loads
+    /// `-K_fp d r(t)` and `-D_fp d r'(t)`. Mass damping acts on the velocity of the moved nodes alone, and
+    /// so is part of their reactions only.
+    pub(super) fn in_motion(mut self) -> Result<Self, FemError> {
+        if self.motions.is_empty() {
+            return Ok(self);
+        }
+        let mut loads = self.operators.loads().to_vec();
+        for (index, part) in self.motions.parts().iter().enumerate() {
+            let item = Item::Move(index);
+            for course in &part.courses {
+                let SupportMotion { stiffness, damping } = self
+                    .support_motion(&part.pattern(course))
+                    .map_err(FemError::at(item))?;
+                if let (Some(instant), false) = (course.ramp.first_jump(), damping.is_empty()) {
+                    return Err(FemError::new(item, Cause::PositionJumps { instant }));
+                }
+                let mut pull = |ramp: Ramp, mut entries: Vec<(u32, f64)>| {
+                    if !entries.is_empty() {
+                        entries.iter_mut().for_each(|(_, force)| *force = -*force);
+                        loads.push(Load { ramp, entries });
+                        self.load_items.push(item);
+                    }
+                };
+                pull(course.ramp.clone(), stiffness);
+                pull(course.ramp.rate(), damping);
+            }
+        }
+        self.operators = self
+            .operators
+            .with_loads(loads)
+            .map_err(|error| FemError::new(Item::Mesh, error.into()))?;
+        Ok(self)
+    }
+
+    /// The courses of a component (0, 1, 2 for x, y, z) of a mesh node (0-based) that is moved; empty where the
+    /// component is held or moves by itself.
+    #[must_use]
+    pub fn courses(&self, node: u32, axis: usize) -> &[Course] {
+        let part = self.motions.part_of(node, axis);
+        let part = part.and_then(|part| self.motions.parts().get(part));
+        part.map_or(&[], |part| &part.courses)
+    }
+
+    /// Writes the displacements (m) of all nodes of the mesh at a time (s), with the displacement `u` (m) of the degrees
+    /// of freedom then: zero where nodes are held, the prescribed motion where they are moved.
+    ///
+    /// # Errors
+    /// Same as [`Model::to_nodes`], and [`FieldError::NoInput`] where a motion follows an input that the time does not
+    /// bring.
+    pub fn displacements_at<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        u: &[f64],
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
+        self.field_at(when.into(), 0, u, out)
+    }
+
+    /// Writes the velocities (m/s) of all nodes of the mesh at a time (s), with the velocity `v` (m/s) of the degrees of
+    /// freedom then (see [`sinew_core::State::velocity_at_t`]); as [`Model::displacements_at`].
+    ///
+    /// # Errors
+    /// Same as [`Model::displacements_at`].
+    pub fn velocities_at<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        v: &[f64],
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
+        self.field_at(when.into(), 1, v, out)
+    }
+
+    /// Writes the positions (m) of all nodes of the mesh at a time (s), with the displacement `u` (m) of the degrees
+    /// of freedom then; as [`Model::displacements_at`].
+    ///
+    /// # Errors
+    /// Same as [`Model::displacements_at`].
+    pub fn positions<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        u: &[f64],
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
+        self.field_at(when.into(), 0, u, out)?;
+        for (point, out) in self.body.mesh.points.iter().zip(out) {
+            for (point, out) in point.iter().zip(out) {
+                *out += point;
+            }
+        }
+        Ok(())
+    }
+
+    /// The displacement (m) of a mesh node (0-based) at a time (s); as [`Model::displacements_at`].
+    ///
+    /// # Errors
+    /// Same as [`Model::displacements_at`], and [`FieldError::Place`] for a node that does not exist.
+    pub fn node_displacement<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        u: &[f64],
+        node: u32,
+    ) -> Result<[f64; 3], FieldError> {
+        self.require_dofs("the displacement", u)?;
+        self.require_node(node)?;
+        Ok(self.at_nodes(when.into(), 0, Some(u))?(node))
+    }
+
+    /// A function that gives the field number `order` of displacement, velocity and acceleration at each node, from the
+    /// `values` of the degrees of freedom.
+    pub(super) fn at_nodes<'a>(
+        &'a self,
+        when: LoadTime<'_>,
+        order: usize,
+        values: Option<&'a [f64]>,
+    ) -> Result<impl Fn(u32) -> [f64; 3] + 'a, FieldError> {
+        require_inputs(self.motions.ramps(), when.inputs())?;
+        let at = self.motions.at(when);
+        Ok(move |node| {
+            let own = values.map_or([0.0; 3], |values| self.body.cells.at_node(values, node));
+            sum(own, self.motions.field(&at, order, node))
+        })
+    }
+
+    fn field_at(
+        &self,
+        when: LoadTime<'_>,
+        order: usize,
+        values: &[f64],
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
+        self.require_dofs("the vector", values)?;
+        self.require_nodes("the output", out)?;
+        let at_node = self.at_nodes(when, order, Some(values))?;
+        for (node, out) in (0..).zip(out) {
+            *out = at_node(node);
+        }
+        Ok(())
+    }
+}
+
+fn sum(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|axis| a[axis] + b[axis])
+}

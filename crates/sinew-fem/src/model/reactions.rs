@@ -1,0 +1,223 @@
+//! Forces of the supports on a body.
+
+use sinew_core::{LoadTime, Ramp};
+
+use super::Model;
+use super::field_error::{FieldError, require_inputs};
+use crate::On;
+use crate::border::Border;
+
+impl Model {
+    /// Nodes (0-based) that are held or moved in some direction, increasing.
+    #[must_use]
+    pub fn held_nodes(&self) -> &[u32] {
+        &self.body.cells.held_nodes
+    }
+
+    /// Lumped mass of each node of the mesh (kg), held ones included.
+    #[must_use]
+    pub fn node_masses(&self) -> &[f64] {
+        &self.masses
+    }
+
+    /// Writes the force (N) of the supports on the body at each node of the mesh, at a time (s), with
+    /// displacement `u` (m) and velocity `v` (m/s) at that time (see
+    /// [`sinew_core::State::velocity_at_t`]); zero in components that move by themselves.
+    ///
+    /// At each held or moved component p it is `M_p (a_p + alpha v_p) + (K u + D v)_p - F_p(t)`: the force
+    /// of its prescribed motion, the pull of all other components, less the model's own loads on p, so that all
+    /// reactions together are minus all loads where nothing moves. A velocity reached by a jump takes an
+    /// impulse, which is not a force. Loads that were given to the system in other ways are not
+    /// included; add those of [`NodalForces::dropped`](super::NodalForces) by hand.
+    ///
+    /// The first call sums up the rows of the held nodes; later ones allocate nothing but a few numbers for each
+    /// prescribed motion beyond the eighth.
+    ///
+    /// # Errors
+    /// [`FieldError::Length`] unless `u` and `v` have one entry for each degree of freedom and `out` one
+    /// for each node of the mesh, and [`FieldError::NoInput`] where a motion, or a load on held components, follows
+    /// an input that the time does not bring.
+    pub fn reactions<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        u: &[f64],
+        v: &[f64],
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
+        self.require_dofs("the displacement", u)?;
+        self.require_dofs("the velocity", v)?;
+        self.require_nodes("the output", out)?;
+        let when = when.into();
+        let force = self.forces_in_motion(when, u, v)?;
+        self.held_forces(when, force, out);
+        Ok(())
+    }
+
+    /// The force (N) of the supports on the body at all nodes of a part of the mesh together, see
+    /// [`Model::reactions`]. Nodes that are neither held nor moved add nothing. Looks the nodes up on each
+    /// call: for every frame, use [`On::nodes`] once and then [`Model::reaction_of_nodes`].
+    ///
+    /// # Errors
+    /// Same as [`Model::reactions`], and [`FieldError::Place`] if the mesh has no such part.
+    pub fn reaction<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        u: &[f64],
+        v: &[f64],
+        on: &On,
+    ) -> Result<[f64; 3], FieldError> {
+        let nodes = on.nodes(&self.body.mesh)?;
+        self.reaction_of_nodes(when, u, v, &nodes)
+    }
+
+    /// The force (N) of the supports on the body at a node (0-based), see [`Model::reactions`].
+    ///
+    /// # Errors
+    /// Same as [`Model::reaction`].
+    pub fn node_reaction<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        u: &[f64],
+        v: &[f64],
+        node: u32,
+    ) -> Result<[f64; 3], FieldError> {
+        self.reaction_of_nodes(when, u, v, &[node])
+    }
+
+    /// The force (N) of the supports on the body at some nodes (0-based) together, each as often as it is
+    /// named, see [`Model::reactions`].
+    ///
+    /// # Errors
+    /// Same as [`Model::reaction`].
+    pub fn reaction_of_nodes<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        u: &[f64],
+        v: &[f64],
+        nodes: &[u32],
+    ) -> Result<[f64; 3], FieldError> {
+        self.require_dofs("the displacement", u)?;
+        self.require_dofs("the velocity", v)?;
+        let when = when.into();
+        let force_in_motion = self.forces_in_motion(when, u, v)?;
+        let mut sum = [0.0; 3];
+        for &node in nodes {
+            self.require_node(node)?;
+            let mut force = force_in_motion(node);
+            for load in &self.supports.loads {
+                if let Ok(at) = load.forces.binary_search_by_key(&node, |(node, _)| *node) {
+                    subtract(&mut force, value(&load.ramp, when), &load.forces[at].1);
+                }
+            }
+            subtract(&mut sum, -1.0, &self.held_part(node, force));
+        }
+        Ok(sum)
+    }
+
+    /// Writes the force (N) of supports that move in any way. `motion` has the displacement (m), velocity
+    /// (m/s) and acceleration (m/s^2) of all nodes of the mesh, held or not. At each held component p the
+    /// force is `M_p (a_p + alpha v_p) + K_p u + D_p v - F_p(t)`, alpha M being the mass damping and D all
+    /// other damping. Motions that the problem prescribes are those of [`Model::reactions`].
+    ///
+    /// # Errors
+    /// [`FieldError::Length`] unless all have one entry for each node of the mesh, and [`FieldError::NoInput`] where
+    /// a load on held components follows an input that the time does not bring.
+    pub fn moving_reactions<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        motion: [&[[f64; 3]]; 3],
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
+        let names = ["the displacement", "the velocity", "the acceleration"];
+        for (what, field) in names.into_iter().zip(motion) {
+            self.require_nodes(what, field)?;
+        }
+        self.require_nodes("the output", out)?;
+        let when = when.into();
+        self.require_held_inputs(when)?;
+        let [u, v, a] = motion.map(|field| move |node: u32| field[node as usize]);
+        self.held_forces(when, self.row_forces(u, v, a), out);
+        Ok(())
+    }
+
+    fn require_held_inputs(&self, when: LoadTime<'_>) -> Result<(), FieldError> {
+        let ramps = self.supports.loads.iter().map(|load| &load.ramp);
+        require_inputs(ramps, when.inputs())
+    }
+
+    /// Forces of `row_forces`, with the prescribed motion.
+    fn forces_in_motion<'a>(
+        &'a self,
+        when: LoadTime<'_>,
+        u: &'a [f64],
+        v: &'a [f64],
+    ) -> Result<impl Fn(u32) -> [f64; 3] + 'a, FieldError> {
+        self.require_held_inputs(when)?;
+        Ok(self.row_forces(
+            self.at_nodes(when, 0, Some(u))?,
+            self.at_nodes(when, 1, Some(v))?,
+            self.at_nodes(when, 2, None)?,
+        ))
+    }
+
+    pub(super) fn border(&self) -> &Border {
+        self.supports
+            .border(&self.body, |tet| self.whole_stiffness(tet))
+    }
+
+    /// M (a + alpha v) + K u + D v (N) at a held node, D being the damping other than alpha M.
+    fn row_forces(
+        &self,
+        u: impl Fn(u32) -> [f64; 3],
+        v: impl Fn(u32) -> [f64; 3],
+        a: impl Fn(u32) -> [f64; 3],
+    ) -> impl Fn(u32) -> [f64; 3] {
+        let damping = self.operators.damping();
+        let (alpha, beta, border) = (damping.mass, damping.stiffness, self.border());
+        move |node| {
+            let mut force = border.internal_force(node, beta, &u, &v);
+            let mass = self.masses[node as usize];
+            subtract(&mut force, -mass, &a(node));
+            subtract(&mut force, -mass * alpha, &v(node));
+            force
+        }
+    }
+
+    fn held_forces(
+        &self,
+        when: LoadTime<'_>,
+        force: impl Fn(u32) -> [f64; 3],
+        out: &mut [[f64; 3]],
+    ) {
+        out.fill([0.0; 3]);
+        for &node in self.held_nodes() {
+            out[node as usize] = self.held_part(node, force(node));
+        }
+        for load in &self.supports.loads {
+            let factor = value(&load.ramp, when);
+            for (node, force) in &load.forces {
+                subtract(&mut out[*node as usize], factor, force);
+            }
+        }
+    }
+
+    /// The components that are held; zero in those that move by themselves.
+    fn held_part(&self, node: u32, force: [f64; 3]) -> [f64; 3] {
+        let cells = &self.body.cells;
+        std::array::from_fn(|axis| match cells.free_dof(node, axis) {
+            Some(_) => 0.0,
+            None => force[axis],
+        })
+    }
+}
+
+/// The factor at an instant.
+fn value(ramp: &Ramp, when: LoadTime<'_>) -> f64 {
+    ramp.known(when.inputs()).value(when.t())
+}
+
+fn subtract(sum: &mut [f64; 3], factor: f64, force: &[f64; 3]) {
+    for (sum, force) in sum.iter_mut().zip(force) {
+        *sum -= factor * force;
+    }
+}

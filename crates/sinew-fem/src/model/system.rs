@@ -1,0 +1,97 @@
+//! The traits by which integrators see a model.
+
+use sinew_core::{
+    ElementStiffness, Elements, Energy, Equations, Layers, LinearOperators, LinearSystem, LoadTime,
+    Revision, Scales, System,
+};
+
+use super::Model;
+use crate::elements::moving_part;
+use crate::tetra;
+
+impl System for Model {
+    fn dofs(&self) -> usize {
+        self.operators.dofs()
+    }
+
+    fn mass(&self) -> &[f64] {
+        self.operators.mass()
+    }
+
+    fn revision(&self) -> Revision {
+        self.operators.revision()
+    }
+
+    fn layers(&self) -> Layers {
+        Layers::Three
+    }
+
+    fn equations(&self) -> Equations<'_> {
+        Equations::Linear(self)
+    }
+
+    /// The energy of the degrees of freedom, without the energy that supports in motion hold and store.
+    fn energy(&self, u: &[f64], v: &[f64]) -> Option<Energy> {
+        Some(self.operators.energy(u, v))
+    }
+
+    fn inverted_elements(&self, when: LoadTime<'_>, u: &[f64]) -> Option<usize> {
+        if u.len() != self.dofs() {
+            return None;
+        }
+        let displacement = self.at_nodes(when, 0, Some(u)).ok()?;
+        let moved = |node: u32| {
+            let [x, y, z] = self.body.mesh.points[node as usize];
+            let [ux, uy, uz] = displacement(node);
+            [x + ux, y + uy, z + uz]
+        };
+        // Elements have positive volume at rest; one that is not a number counts as inverted.
+        let upright = |tet: &&[u32; 4]| tetra::signed_volume(&tet.map(moved)) > 0.0;
+        let tets = &self.body.mesh.tets;
+        Some(tets.len() - tets.iter().filter(upright).count())
+    }
+
+    fn extent(&self) -> Option<f64> {
+        Some(self.body.extent)
+    }
+
+    fn scales(&self) -> Option<Scales<'_>> {
+        Some(Scales {
+            cell_size: &self.body.cell_size,
+        })
+    }
+
+    fn cell_name(&self, dof: usize) -> String {
+        let axis = ["x", "y", "z"][dof % 3];
+        let node = self.body.cells.nodes.get(dof / 3);
+        match node.and_then(|node| self.body.mesh.node_tags.get(*node as usize)) {
+            Some(tag) => format!("node {tag} ({axis})"),
+            None => format!("degree of freedom {dof}"),
+        }
+    }
+}
+
+impl LinearSystem for Model {
+    fn operators(&self) -> &LinearOperators {
+        &self.operators
+    }
+
+    fn elements(&self) -> Option<&dyn Elements> {
+        Some(self)
+    }
+}
+
+impl Elements for Model {
+    fn count(&self) -> usize {
+        self.body.mesh.tets.len()
+    }
+
+    fn name(&self, element: usize) -> String {
+        self.body.tet_name(element)
+    }
+
+    fn stiffness(&self, element: usize, out: &mut ElementStiffness) {
+        let (whole, tet) = (self.whole_stiffness(element), &self.body.mesh.tets[element]);
+        moving_part(&whole, tet, &self.body.cells, out);
+    }
+}

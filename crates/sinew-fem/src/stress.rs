@@ -1,0 +1,62 @@
+//! Strain and stress in six components.
+//!
+//! The order is xx, yy, zz, xy, yz, zx, as VTK has it. The shear entries are those of the tensor: of
+//! strain, `xy = (du_x/dy + du_y/dx)/2`, half of the engineering shear.
+
+/// The small strain of a tetrahedron: the symmetric part of the displacement's gradient.
+/// `gradients` are those of the shape functions (1/m), see [`crate::tetra::gradients`], and
+/// `displacements` (m) those of the vertices in the same order.
+#[must_use]
+pub fn strain(gradients: &[[f64; 3]; 4], displacements: &[[f64; 3]; 4]) -> [f64; 6] {
+    let derivative = |component: usize, along: usize| -> f64 {
+        let vertices = gradients.iter().zip(displacements);
+        vertices.map(|(g, u)| u[component] * g[along]).sum()
+    };
+    let shear = |i, j| (derivative(i, j) + derivative(j, i)) / 2.0;
+    [
+        derivative(0, 0),
+        derivative(1, 1),
+        derivative(2, 2),
+        shear(0, 1),
+        shear(1, 2),
+        shear(2, 0),
+    ]
+}
+
+/// The stress (Pa) `lambda tr(strain) I + 2 mu strain` of isotropic linear elasticity with Lame's
+/// constants (Pa).
+#[must_use]
+pub fn isotropic(strain: &[f64; 6], lambda: f64, mu: f64) -> [f64; 6] {
+    let [xx, yy, zz, ..] = *strain;
+    let pressure = lambda * (xx + yy + zz);
+    let mut stress = strain.map(|component| 2.0 * mu * component);
+    for normal in &mut stress[..3] {
+        *normal += pressure;
+    }
+    stress
+}
+
+/// The equivalent stress (Pa) of von Mises: `sqrt(3/2 s:s)`, s being the deviator.
+#[must_use]
+pub fn von_mises(stress: &[f64; 6]) -> f64 {
+    let [xx, yy, zz, xy, yz, zx] = *stress;
+    let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+    let shear = xy * xy + yz * yz + zx * zx;
+    (0.5 * normal + 3.0 * shear).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn von_mises_of_tension_shear_and_pressure() {
+        assert_eq!(von_mises(&[0.0, -7.0, 0.0, 0.0, 0.0, 0.0]), 7.0);
+        assert_eq!(von_mises(&[-5.0, -5.0, -5.0, 0.0, 0.0, 0.0]), 0.0);
+        for axis in 3..6 {
+            let mut shear = [0.0; 6];
+            shear[axis] = 2.0;
+            assert!((von_mises(&shear) - 2.0 * 3.0_f64.sqrt()).abs() < 1e-15);
+        }
+    }
+}

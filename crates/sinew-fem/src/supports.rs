@@ -1,0 +1,56 @@
+//! Loads, dashpots and matrix rows of held components, which M, D, K and the loads of a model leave out.
+
+use std::sync::OnceLock;
+
+use sinew_core::Ramp;
+
+use crate::body::Body;
+use crate::border::Border;
+use crate::motion::Motions;
+use crate::network::Dashpot;
+
+/// The part of a load that falls on held components: `ramp(t)` times `forces`.
+#[derive(Clone, Debug)]
+pub(crate) struct HeldLoad {
+    pub(crate) ramp: Ramp,
+    /// (node, force (N)), nodes increasing; components that move are zero.
+    pub(crate) forces: Vec<(u32, [f64; 3])>,
+}
+
+impl HeldLoad {
+    /// The prescribed motions, by their places, of the components that it falls on.
+    pub(crate) fn moved_by(&self, motions: &Motions) -> impl Iterator<Item = usize> {
+        self.forces.iter().flat_map(move |(node, force)| {
+            let loaded = (0..3).filter(|axis| force[*axis] != 0.0);
+            loaded.filter_map(move |axis| motions.part_of(*node, axis))
+        })
+    }
+}
+
+/// Everything that acts on held components.
+#[derive(Clone, Debug)]
+pub(crate) struct Supports {
+    pub(crate) loads: Vec<HeldLoad>,
+    /// Dashpots with an end that is held.
+    dashpots: Vec<Dashpot>,
+    /// Summed up at the first request: most runs ask for no reaction.
+    border: OnceLock<Border>,
+}
+
+impl Supports {
+    pub(crate) fn new(body: &Body, loads: Vec<HeldLoad>, mut dashpots: Vec<Dashpot>) -> Self {
+        let held = |node: &u32| body.cells.held_nodes.binary_search(node).is_ok();
+        dashpots.retain(|dashpot| dashpot.nodes.iter().any(held));
+        Self {
+            loads,
+            dashpots,
+            border: OnceLock::new(),
+        }
+    }
+
+    /// The rows of held nodes; `element` makes a tetrahedron's 12 x 12 matrix.
+    pub(crate) fn border(&self, body: &Body, element: impl Fn(usize) -> [f64; 144]) -> &Border {
+        let rows = || Border::new(&body.mesh, &body.cells.held_nodes, element, &self.dashpots);
+        self.border.get_or_init(rows)
+    }
+}

@@ -1,0 +1,253 @@
+//! The frame that all methods have in common.
+
+use std::sync::Arc;
+
+use sinew_cnn::{Machine, Program, ReferenceMachine};
+use sinew_core::{
+    Batch, Fact, Guarding, Integrator, LoadOverStep, Prepared, Properties, SetupError, StableStep,
+    State, StepError, StepReport, System, VelocityTime,
+};
+
+use crate::scheme::{Scheme, StepByHand, Steps};
+use crate::stepper::Stepper;
+
+/// A method as an integrator: checks, set-up once per system and step, the machine that runs its
+/// program.
+pub struct Frame<M: Scheme> {
+    scheme: M,
+    prepared: Prepared,
+    ready: Ready<M::ByHand>,
+}
+
+enum Ready<S> {
+    Not,
+    Program(Box<Loaded>),
+    ByHand(Box<S>),
+}
+
+/// A program and the machine that runs it.
+struct Loaded {
+    program: Arc<Program>,
+    machine: ReferenceMachine,
+    /// Limits of the guarded program that the machine runs, with its step (s).
+    guarded_by: Option<(Arc<[f64]>, f64)>,
+}
+
+impl<M: Scheme> Frame<M> {
+    /// An integrator that uses this method.
+    #[must_use]
+    pub fn new(scheme: M) -> Self {
+        Self {
+            scheme,
+            prepared: Prepared::default(),
+            ready: Ready::Not,
+        }
+    }
+
+    /// The method.
+    #[must_use]
+    pub fn scheme(&self) -> &M {
+        &self.scheme
+    }
+
+    /// The method's steps, where set-up made steps that are no program.
+    #[must_use]
+    pub fn by_hand(&self) -> Option<&M::ByHand> {
+        match &self.ready {
+            Ready::ByHand(steps) => Some(steps),
+            Ready::Not | Ready::Program(_) => None,
+        }
+    }
+}
+
+impl<M: Scheme> Stepper for Frame<M> {
+    fn program(&self) -> Option<Program> {
+        match &self.ready {
+            Ready::Program(loaded) => Some(Program::clone(&loaded.program)),
+            Ready::Not | Ready::ByHand(_) => None,
+        }
+    }
+
+    fn without_program(&self) -> &'static str {
+        match &self.ready {
+            Ready::ByHand(steps) => steps.without_program(),
+            Ready::Not | Ready::Program(_) => "it is not set up",
+        }
+    }
+}
+
+impl<M: Scheme> Integrator for Frame<M> {
+    fn id(&self) -> &'static str {
+        M::ID
+    }
+
+    fn properties(&self) -> Properties {
+        self.scheme.properties()
+    }
+
+    fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
+        let same = if self.scheme.depends_on_loads() {
+            self.prepared.is_for_loads(system, dt)
+        } else {
+            self.prepared.is_for(system, dt)
+        };
+        if same {
+            return Ok(StepReport::default());
+        }
+        if let Some(cells) = self.prepared.changed_cells(system, dt)
+            && self.scheme.survives_change_of_rows()
+        {
+            let layers = system.layers().count();
+            let dofs = cells.iter().map(|cell| *cell as usize * layers);
+            let dofs = dofs.flat_map(|first| first..first + layers);
+            Prepared::check_masses(M::ID, system, dofs)?;
+            self.prepared.done(system, dt);
+            return Ok(StepReport {
+                cells_set_up: cells.len() as u64,
+                ..StepReport::default()
+            });
+        }
+        self.prepared.forget();
+        let before = match std::mem::replace(&mut self.ready, Ready::Not) {
+            Ready::ByHand(steps) => Some(*steps),
+            Ready::Not | Ready::Program(_) => None,
+        };
+        self.check_needs(system)?;
+        Prepared::check(M::ID, system, dt)?;
+        let made = self.scheme.set_up(system, dt, before)?;
+        self.ready = match made.steps {
+            Steps::ByHand(steps) => Ready::ByHand(steps),
+            Steps::Program(program) => {
+                let program = Arc::new(program.complete());
+                let mut machine = ReferenceMachine::default();
+                machine.load(Arc::clone(&program), system);
+                Ready::Program(Box::new(Loaded {
+                    program,
+                    machine,
+                    guarded_by: None,
+                }))
+            }
+        };
+        self.prepared.done(system, dt);
+        let cells = system.dofs() / system.layers().count();
+        Ok(StepReport {
+            cells_set_up: cells as u64,
+            ..made.work
+        })
+    }
+
+    fn stable_step_about(
+        &self,
+        system: &dyn System,
+        state: Option<&State>,
+    ) -> Result<StableStep, SetupError> {
+        self.check_needs(system)?;
+        self.scheme.stable_step(system, state)
+    }
+
+    fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
+        let needed = self.scheme.properties().changing_loads.needed();
+        let Some(refused) = first_refused(needed, batch, state) else {
+            return self.ready.run(batch, state);
+        };
+        let before = ((refused - state.t()) / batch.dt() + 1e-9).floor();
+        batch.at_most(before.max(0.0) as usize, |batch| {
+            self.ready.run(batch, state)
+        })?;
+        if !batch.goes_on() {
+            return Ok(());
+        }
+        Err(StepError::Inaccurate {
+            integrator: M::ID,
+            t: state.t(),
+            reason: format!(
+                "a load changes at t = {refused} s, and is not {} of {} s; {}",
+                needed.describe(),
+                batch.dt(),
+                self.scheme.load_remedy()
+            ),
+        })
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let mut facts = self.scheme.facts();
+        if let Ready::ByHand(steps) = &self.ready {
+            facts.extend(steps.facts());
+        }
+        facts
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.scheme.remarks()
+    }
+}
+
+impl<M: Scheme> Frame<M> {
+    fn check_needs(&self, system: &dyn System) -> Result<(), SetupError> {
+        self.scheme.properties().needs.check(M::ID, system)
+    }
+}
+
+/// The first instant (s) at which a load breaks a method's condition over a step of the batch.
+fn first_refused(needed: LoadOverStep, batch: &Batch<'_>, state: &State) -> Option<f64> {
+    if needed == LoadOverStep::Any {
+        return None;
+    }
+    let linear = batch.system().as_linear()?;
+    let dt = batch.dt();
+    // A staggered method looks back by a step too.
+    let back = if state.is_staggered_by(dt) { dt } else { 0.0 };
+    let t = state.t() - back;
+    let end = t + back + batch.parts_left() as f64 * dt;
+    let inputs = batch.inputs();
+    // A pulse that ends where the first step begins may miss it by rounding.
+    let loads = linear.operators().loads_between(inputs, t - dt, end);
+    let broken = loads.filter_map(|load| {
+        let ramp = load.ramp.known(inputs);
+        needed.first_broken(ramp, t, dt, end)
+    });
+    broken.reduce(f64::min)
+}
+
+impl<S: StepByHand> Ready<S> {
+    fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
+        let staggered = match self {
+            Self::Not => false,
+            Self::Program(loaded) => loaded.program.velocity != VelocityTime::Same,
+            Self::ByHand(steps) => steps.is_staggered(),
+        };
+        if batch.goes_on() && !(staggered && state.is_staggered_by(batch.dt())) {
+            batch.synchronise(state)?;
+        }
+        match self {
+            Self::Not => Err(StepError::NotPrepared),
+            Self::ByHand(steps) => batch.each(state, |step, state| steps.step(&step, state)),
+            Self::Program(loaded) => {
+                loaded.guard(batch);
+                loaded.machine.run(batch, state)
+            }
+        }
+    }
+}
+
+impl Loaded {
+    /// Gives the machine the guarded program where the batch is guarded, and the plain one otherwise.
+    fn guard(&mut self, batch: &Batch<'_>) {
+        let dt = batch.dt();
+        let wanted = batch.guarding().map(Guarding::limits);
+        let same = match (&self.guarded_by, wanted) {
+            (None, None) => true,
+            (Some((limits, step)), Some(wanted)) => Arc::ptr_eq(limits, wanted) && *step == dt,
+            _ => false,
+        };
+        if same {
+            return;
+        }
+        let program = match wanted {
+            Some(limits) => Arc::new(self.program.guarded(Arc::clone(limits), dt)),
+            None => Arc::clone(&self.program),
+        };
+        self.guarded_by = wanted.map(|limits| (Arc::clone(limits), dt));
+        self.machine.load(program, batch.system());
+    }
+}

@@ -1,0 +1,31 @@
+//! Errors of factors and of dense eigenproblems.
+
+use sinew_core::SetupError;
+
+/// Reasons for which a matrix cannot be factorised, or a dense eigenproblem not be solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FactorError {
+    /// The matrix has an eigenvalue at or below zero, up to rounding.
+    #[error("it is not positive definite")]
+    NotPositiveDefinite,
+    /// The factor or its work space does not fit into memory.
+    #[error("not enough memory")]
+    OutOfMemory,
+    /// The factor has more entries than can be counted.
+    #[error("it is too large")]
+    TooLarge,
+    /// The iteration for the eigenvalues of a dense matrix did not converge.
+    #[error("a dense eigenproblem did not converge")]
+    Eigenproblem,
+}
+
+impl FactorError {
+    /// The error of a method's set-up.
+    pub(crate) fn at_set_up(self, integrator: &'static str) -> SetupError {
+        SetupError::Factorization {
+            integrator,
+            reason: self.to_string(),
+        }
+    }
+}

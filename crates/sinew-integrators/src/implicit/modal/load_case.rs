@@ -1,0 +1,46 @@
+//! Loads grouped by their ramps.
+
+use sinew_core::{LinearOperators, Ramp};
+
+/// Loads with one ramp, added up.
+#[derive(Clone, Debug)]
+pub(super) struct LoadCase {
+    pub(super) ramp: Ramp,
+    /// The force (N) on each degree of freedom.
+    pub(super) force: Vec<f64>,
+}
+
+impl LoadCase {
+    /// The loads of a system, those with equal ramps added up.
+    pub(super) fn of(operators: &LinearOperators) -> Vec<Self> {
+        let mut cases: Vec<Self> = Vec::new();
+        for load in operators.loads() {
+            let at = cases.iter().position(|case| case.ramp == load.ramp);
+            let at = at.unwrap_or_else(|| {
+                cases.push(Self {
+                    ramp: load.ramp.clone(),
+                    force: vec![0.0; operators.dofs()],
+                });
+                cases.len() - 1
+            });
+            for &(dof, force) in &load.entries {
+                cases[at].force[dof as usize] += force;
+            }
+        }
+        cases.retain(|case| case.force.iter().any(|force| *force != 0.0));
+        cases
+    }
+
+    /// Largest size of the ramp.
+    pub(super) fn peak(&self) -> f64 {
+        match &self.ramp {
+            Ramp::Table { values, .. } | Ramp::Hold { values, .. } => {
+                values.iter().fold(0.0, |peak, x| x.abs().max(peak))
+            }
+            Ramp::Step | Ramp::Sin2 { .. } | Ramp::Pulse { .. } => 1.0,
+            // Half of what it rises and falls by.
+            Ramp::Rate(_) => 0.5 * self.ramp.variation(),
+            Ramp::Linear | Ramp::Input(_) | Ramp::InputRate(_) => 1.0,
+        }
+    }
+}

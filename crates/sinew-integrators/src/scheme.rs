@@ -1,0 +1,154 @@
+//! Interface between a method and its frame.
+
+use std::convert::Infallible;
+
+use sinew_cnn::Program;
+use sinew_core::{
+    Fact, LinearSystem, Needs, Properties, SetupError, StableStep, State, Step, StepError,
+    StepReport, Stepped, System,
+};
+
+/// A method whose steps are made by set-up and framed by [`crate::Frame`].
+pub trait Scheme: Send + Sized + 'static {
+    /// The name users type.
+    const ID: &'static str;
+
+    /// Steps that no program of sweeps expresses; [`Infallible`] where a program always
+    /// does.
+    type ByHand: StepByHand + 'static;
+
+    /// Properties that it declares.
+    fn properties(&self) -> Properties;
+
+    /// Whether its steps are others under other loads, so that set-up has to look at them again.
+    fn depends_on_loads(&self) -> bool {
+        false
+    }
+
+    /// Whether its steps stay the same where the values of some rows change: the steps of a program that
+    /// holds nothing but numbers.
+    fn survives_change_of_rows(&self) -> bool {
+        false
+    }
+
+    /// Remedy where loads break the condition of [`Properties::changing_loads`].
+    fn load_remedy(&self) -> &'static str {
+        "choose a dt that meets that instant"
+    }
+
+    /// The largest stable step for motions about a state, or about rest. The system has the parts
+    /// named by [`Properties::needs`].
+    ///
+    /// # Errors
+    /// [`SetupError`] when the system lacks what the answer needs.
+    fn stable_step(
+        &self,
+        _system: &dyn System,
+        _about: Option<&State>,
+    ) -> Result<StableStep, SetupError> {
+        Ok(StableStep::Any)
+    }
+
+    /// Makes its steps of `dt` (s) on a system. The step and the masses are sound, and the system
+    /// has the parts named by [`Properties::needs`]. Parts of `before`, its last steps on any system, may
+    /// be reused.
+    ///
+    /// # Errors
+    /// [`SetupError`] when the method cannot run there.
+    fn set_up(
+        &mut self,
+        system: &dyn System,
+        dt: f64,
+        before: Option<Self::ByHand>,
+    ) -> Result<SetUp<Self::ByHand>, SetupError>;
+
+    /// Facts that set-up found, for reports; may cost as much as set-up did.
+    fn facts(&self) -> Vec<Fact> {
+        Vec::new()
+    }
+
+    /// Remarks of set-up that a user should read, one sentence each.
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
+}
+
+/// Result of set-up.
+pub struct SetUp<S> {
+    /// The steps.
+    pub steps: Steps<S>,
+    /// The work of making them.
+    pub work: StepReport,
+}
+
+/// The steps of a method on a system.
+pub enum Steps<S> {
+    /// A program, which a machine runs.
+    Program(Box<Program>),
+    /// Steps that no program of sweeps expresses.
+    ByHand(Box<S>),
+}
+
+impl<S> From<Program> for SetUp<S> {
+    fn from(program: Program) -> Self {
+        Self {
+            steps: Steps::Program(Box::new(program)),
+            work: StepReport::default(),
+        }
+    }
+}
+
+impl<S> SetUp<S> {
+    /// Steps by hand, with the work of their set-up.
+    pub fn by_hand(steps: S, work: StepReport) -> Self {
+        Self {
+            steps: Steps::ByHand(Box::new(steps)),
+            work,
+        }
+    }
+}
+
+/// Steps with all that they need, made by set-up.
+pub trait StepByHand: Send {
+    /// Whether the velocity stays in the middle of the last step.
+    fn is_staggered(&self) -> bool {
+        false
+    }
+
+    /// Moves u and v over a step. The velocity holds at the displacement's time, or in the middle of
+    /// a last step of the same length where steps are staggered.
+    ///
+    /// # Errors
+    /// [`StepError`] when the system refuses a trial state or the step would be wrong.
+    fn step(&mut self, step: &Step<'_>, state: &mut State) -> Result<Stepped, StepError>;
+
+    /// Reason why no program of sweeps expresses them.
+    fn without_program(&self) -> &'static str;
+
+    /// Facts that the steps found, for reports.
+    fn facts(&self) -> Vec<Fact> {
+        Vec::new()
+    }
+}
+
+impl StepByHand for Infallible {
+    fn step(&mut self, _step: &Step<'_>, _state: &mut State) -> Result<Stepped, StepError> {
+        match *self {}
+    }
+
+    fn without_program(&self) -> &'static str {
+        match *self {}
+    }
+}
+
+/// The matrices and loads of a system.
+///
+/// # Errors
+/// [`SetupError::Lacks`] when it shows none.
+pub(crate) fn linear<'a>(
+    system: &'a dyn System,
+    integrator: &'static str,
+) -> Result<&'a dyn LinearSystem, SetupError> {
+    let linear = system.as_linear();
+    linear.ok_or_else(|| Needs::Matrices.lacking(integrator))
+}

@@ -1,0 +1,18 @@
+//! Integrators that may have a program.
+
+use sinew_cnn::Program;
+use sinew_core::Integrator;
+
+/// An integrator that may have a program.
+pub trait Stepper: Integrator {
+    /// The program of a step as set-up made it; `None` before set-up and where no program of sweeps
+    /// expresses the method.
+    fn program(&self) -> Option<Program> {
+        None
+    }
+
+    /// Reason why there is no program, where set-up made none.
+    fn without_program(&self) -> &'static str {
+        "its steps are not sweeps with coefficients that are known beforehand"
+    }
+}

@@ -1,0 +1,127 @@
+//! The choice of a method: an integrator by name, with options.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Number, Value};
+use sinew_core::{Integrator, OptionError, OptionValue, Options, SetupError, StableStep};
+use sinew_scene::Simulation;
+
+use crate::case::Case;
+use crate::row::label;
+
+/// An integrator with its options.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MethodChoice {
+    /// Integrator id.
+    pub integrator: String,
+    /// Options that differ from the defaults.
+    pub options: Options,
+}
+
+impl MethodChoice {
+    /// An integrator with default options.
+    #[must_use]
+    pub fn new(integrator: impl Into<String>) -> Self {
+        Self {
+            integrator: integrator.into(),
+            options: Options::new(),
+        }
+    }
+
+    /// As it is compared with others on a case: the scene's own integrator has the scene's options,
+    /// every other its defaults. Those that saturate say at which voltage.
+    #[must_use]
+    pub fn on(case: &Case, integrator: &str) -> Self {
+        Self::of_scene(case.simulation(), integrator)
+    }
+
+    /// As [`MethodChoice::on`], where there is no case yet.
+    #[must_use]
+    pub fn of_scene(simulation: &Simulation, integrator: &str) -> Self {
+        let mut method = Self::new(integrator);
+        let settings = simulation.settings();
+        if settings.integrator == integrator {
+            method.options = settings.options.clone();
+        }
+        method.showing_defaults()
+    }
+
+    /// Adds options, in the place of its own under the same keys.
+    #[must_use]
+    pub fn with_options(mut self, options: &Options) -> Self {
+        for (key, value) in options.iter() {
+            self.options.insert(key, value.clone());
+        }
+        self
+    }
+
+    /// Writes out the defaults that change what a run means.
+    #[must_use]
+    pub fn showing_defaults(mut self) -> Self {
+        let entry = sinew_integrators::entry(&self.integrator);
+        for help in entry.map_or(&[][..], |entry| entry.options) {
+            if let (Some(default), None) = (help.shown_default, self.options.get(help.key)) {
+                self.options.insert(help.key, OptionValue::Number(default));
+            }
+        }
+        self
+    }
+
+    /// Its largest stable step on a scene.
+    ///
+    /// # Errors
+    /// [`MethodError`] when its options do not fit or the system lacks what it needs.
+    pub fn stable_step(&self, simulation: &Simulation) -> Result<StableStep, MethodError> {
+        Ok(self.build()?.stable_step(simulation.system())?)
+    }
+
+    /// The integrator, not set up yet.
+    ///
+    /// # Errors
+    /// [`OptionError`] for an unknown integrator or options that do not fit.
+    pub fn build(&self) -> Result<Box<dyn Integrator>, OptionError> {
+        let built = sinew_integrators::build(&self.integrator, &self.options)?;
+        Ok(built)
+    }
+
+    /// The options as a row keeps them.
+    pub(crate) fn json_options(&self) -> BTreeMap<String, Value> {
+        let options = self.options.iter();
+        options
+            .map(|(key, value)| (key.to_owned(), json(value)))
+            .collect()
+    }
+
+    /// Name and options, as in `cnn Q=4`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        label(&self.integrator, &self.json_options())
+    }
+}
+
+/// Why a method cannot be used on a scene.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MethodError {
+    /// The integrator is unknown, or its options do not fit.
+    #[error(transparent)]
+    Options(#[from] OptionError),
+    /// The system lacks what it needs.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+}
+
+fn json(value: &OptionValue) -> Value {
+    match value {
+        OptionValue::Number(number) => Number::from_f64(*number).map_or(Value::Null, Value::Number),
+        OptionValue::Text(text) => Value::String(text.clone()),
+        OptionValue::Table(entries) => {
+            let entries = entries.iter();
+            Value::Object(
+                entries
+                    .map(|(key, value)| (key.clone(), json(value)))
+                    .collect(),
+            )
+        }
+    }
+}

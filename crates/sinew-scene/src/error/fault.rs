@@ -1,0 +1,135 @@
+//! The kinds of mistakes in a scene.
+
+use super::no_step::NoStableStep;
+use super::words::{did_you_mean, quoted, quoted_or_none};
+
+/// A mistake in a scene.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Fault {
+    /// The scene file cannot be read.
+    #[error("cannot read the scene: {0}")]
+    Unreadable(std::io::Error),
+    /// The text is not TOML.
+    #[error("not TOML: {message}")]
+    Syntax {
+        /// The message of the TOML parser.
+        message: String,
+    },
+    /// A key that means nothing in its table.
+    #[error("unknown key `{key}`{}", did_you_mean(*nearest))]
+    UnknownKey {
+        /// The key given.
+        key: String,
+        /// The most similar key of the table, if one is similar.
+        nearest: Option<&'static str>,
+        /// The keys of the table.
+        known: &'static [&'static str],
+    },
+    /// A required key that is missing.
+    #[error("`{key}` is missing: expected {expected}")]
+    Missing {
+        /// The key.
+        key: &'static str,
+        /// The values that fit.
+        expected: String,
+    },
+    /// A value of the right type that does not fit.
+    #[error("{key} = {found}: expected {expected}")]
+    Value {
+        /// The key.
+        key: String,
+        /// The value as written.
+        found: String,
+        /// The values that fit.
+        expected: String,
+    },
+    /// A value of the wrong type.
+    #[error("{key} = {found}: expected {expected}, found {kind}")]
+    Type {
+        /// The key.
+        key: String,
+        /// The value as written.
+        found: String,
+        /// The values that fit.
+        expected: String,
+        /// The type of the value.
+        kind: &'static str,
+    },
+    /// None or several of a set of keys of which exactly one must be given.
+    #[error("expected exactly one of {}, found {}", quoted(of), if found.is_empty() { "none".into() } else { quoted(found) })]
+    NotExactlyOne {
+        /// The keys of which one must be given.
+        of: &'static [&'static str],
+        /// The keys that are given.
+        found: Vec<&'static str>,
+    },
+    /// A key that makes no sense together with the others.
+    #[error("`{key}` {reason}")]
+    Misplaced {
+        /// The key.
+        key: &'static str,
+        /// The reason, as the end of a sentence that begins with the key.
+        reason: String,
+    },
+    /// A name that is in use.
+    #[error("{key} = \"{name}\" is taken by {by}")]
+    Taken {
+        /// The key that holds the name.
+        key: &'static str,
+        /// The name.
+        name: String,
+        /// The table that uses it.
+        by: String,
+    },
+    /// A load that does not exist.
+    #[error(
+        "no load is named \"{name}\"; the named loads are {}",
+        quoted_or_none(known)
+    )]
+    UnknownLoad {
+        /// The name given.
+        name: String,
+        /// The names of the loads.
+        known: Vec<String>,
+    },
+    /// An impossible ramp.
+    #[error(transparent)]
+    Ramp(#[from] sinew_core::RampError),
+    /// An integrator that does not exist, or an option it refuses.
+    #[error(transparent)]
+    Integrator(#[from] sinew_core::OptionError),
+    /// A mesh file that cannot be read.
+    #[error(transparent)]
+    MeshFile(#[from] sinew_mesh::MshFileError),
+    /// A table of positions that cannot be used.
+    #[error(transparent)]
+    MotionTable(#[from] crate::simulation::MotionTableError),
+    /// A mesh that is not a body of tetrahedra.
+    #[error(transparent)]
+    Tetrahedra(#[from] sinew_mesh::TetMeshError),
+    /// A cube that cannot be generated.
+    #[error(transparent)]
+    Cube(#[from] sinew_mesh::structured::StructuredError),
+    /// A group of `[[initial]]` that the mesh does not have.
+    #[error(transparent)]
+    UnknownGroup(#[from] sinew_mesh::UnknownGroup),
+    /// A body that cannot be modelled.
+    #[error("{}", .0.cause())]
+    Model(sinew_fem::FemError),
+    /// An oscillator that cannot be built.
+    #[error(transparent)]
+    Oscillator(#[from] sinew_core::OperatorError),
+    /// dt = "auto" with an integrator that sets no step on this scene.
+    #[error("dt = \"auto\" needs an integrator with a largest stable step: {0}")]
+    NoStableStep(#[from] NoStableStep),
+    /// A static state that cannot be solved for.
+    #[cfg(feature = "implicit")]
+    #[error("no static state: {0}")]
+    Static(#[from] sinew_integrators::StaticError),
+    /// A static state in a program that was built without the feature `implicit`.
+    #[error(
+        "this program cannot solve for a static state: it was built without the feature `implicit`"
+    )]
+    StaticNotBuilt,
+}

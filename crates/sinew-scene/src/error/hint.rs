@@ -1,0 +1,48 @@
+//! Hints at what to do about a fault.
+
+use sinew_core::OptionError;
+
+use super::fault::Fault;
+use super::words::quoted;
+use crate::nearest::nearest;
+use crate::scene::keys::AT_THE_TOP;
+
+/// The hint that follows from a fault, if there is one.
+pub(super) fn following_from(fault: &Fault) -> Option<String> {
+    match fault {
+        Fault::UnknownKey { key, known, .. } if stands_on_top(key, known) => Some(format!(
+            "`{key}` stands at the top of the file, before the first [table]"
+        )),
+        Fault::UnknownKey { known, .. } => Some(format!("the keys here are {}", quoted(known))),
+        Fault::Integrator(OptionError::UnknownIntegrator { id, known }) => {
+            suggestion(nearest(id, known.iter().copied()))
+        }
+        Fault::Integrator(OptionError::Unknown { key, known, .. }) => {
+            takers(key).or_else(|| suggestion(nearest(key, known.iter().copied())))
+        }
+        Fault::NoStableStep(_) => Some(
+            "give dt in s; `sinew plan --tolerance` finds one that is accurate enough".to_owned(),
+        ),
+        Fault::UnknownLoad { name, known } => {
+            suggestion(nearest(name, known.iter().map(String::as_str)))
+        }
+        _ => None,
+    }
+}
+
+/// Whether a key belongs at the top of the file and was found in a table.
+fn stands_on_top(key: &str, known: &[&str]) -> bool {
+    AT_THE_TOP.contains(&key) && !known.contains(&key)
+}
+
+/// A sentence that names the integrators that take an option.
+fn takers(key: &str) -> Option<String> {
+    let entries = sinew_integrators::entries();
+    let takes = |entry: &&sinew_integrators::Entry| entry.options.iter().any(|o| o.key == key);
+    let takers: Vec<&str> = entries.iter().filter(takes).map(|entry| entry.id).collect();
+    (!takers.is_empty()).then(|| format!("`{key}` is an option of {}", quoted(&takers)))
+}
+
+fn suggestion(nearest: Option<&str>) -> Option<String> {
+    nearest.map(|name| format!("did you mean `{name}`?"))
+}

@@ -1,0 +1,46 @@
+//! Errors of dt = "auto".
+
+use sinew_core::{OptionError, SetupError};
+
+/// Why an integrator cannot say up to which step it is stable.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StableStepError {
+    /// An option that the integrator refuses.
+    #[error(transparent)]
+    Option(#[from] OptionError),
+    /// A system that lacks what the answer needs.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+}
+
+/// Why an integrator sets no step on a scene.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoStableStep {
+    /// Nothing vibrates or is damped.
+    #[error("nothing in this scene limits the step of `{integrator}`")]
+    Unlimited {
+        /// Integrator id.
+        integrator: String,
+    },
+    /// The motion grows at every step.
+    #[error("`{integrator}` is stable at no step on this scene")]
+    Never {
+        /// Integrator id.
+        integrator: String,
+    },
+    /// The integrator is stable whatever the step.
+    #[error("`{integrator}` is stable at any step")]
+    Any {
+        /// Integrator id.
+        integrator: String,
+    },
+    /// The integrator does not know.
+    #[error("`{integrator}` cannot tell up to which step it is stable")]
+    Unknown {
+        /// Integrator id.
+        integrator: String,
+    },
+    /// The integrator cannot say up to which step it is stable.
+    #[error(transparent)]
+    NoAnswer(#[from] StableStepError),
+}

@@ -1,0 +1,16 @@
+//! Sections of a plan.
+
+/// One section of a plan.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlanSection {
+    /// Its subject.
+    pub heading: &'static str,
+    /// Its text, line by line.
+    pub lines: Vec<String>,
+}
+
+impl PlanSection {
+    pub(super) fn new(heading: &'static str, lines: Vec<String>) -> Self {
+        Self { heading, lines }
+    }
+}

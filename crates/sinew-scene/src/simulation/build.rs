@@ -1,0 +1,94 @@
+//! From a scene to a simulation.
+
+use std::sync::OnceLock;
+
+use sinew_core::{LinearModel, LinearOperators, Load, OperatorError, Ramp, State};
+use sinew_mesh::TetMesh;
+
+use super::Simulation;
+use super::body::{self, MeshAndWarnings};
+use super::model::SceneModel;
+use super::{probe, start, step};
+use crate::error::{Fault, SceneError};
+use crate::scene::{Body, Oscillator, Places, Scene, Subject};
+
+impl Scene {
+    /// Reads the mesh, assembles the matrices and finds the state at t = 0.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the line of the scene that cannot be fulfilled.
+    pub fn build(self) -> Result<Simulation, SceneError> {
+        self.assemble(body::mesh)
+    }
+
+    /// As [`Scene::build`], on the given mesh (m) in place of the one that `[mesh]` names. An
+    /// oscillator ignores it.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the line of the scene that does not fit this mesh.
+    pub fn build_on(self, mesh: TetMesh) -> Result<Simulation, SceneError> {
+        self.assemble(|_, _| Ok((mesh, Vec::new())))
+    }
+
+    fn assemble(
+        self,
+        mesh: impl FnOnce(&Body, &Places) -> Result<MeshAndWarnings, SceneError>,
+    ) -> Result<Simulation, SceneError> {
+        let (model, initial, probes) = match self.subject() {
+            Subject::Body(body) => {
+                let mesh = mesh(body, self.places())?;
+                let model = body::build(body, mesh, self.places())?;
+                let initial = start::state(body, self.places(), &model)?;
+                let probes = probe::of_body(&body.probes, &model);
+                (SceneModel::Body(Box::new(model)), initial, probes)
+            }
+            Subject::Oscillator(oscillator) => {
+                let model = oscillator_model(oscillator).map_err(|error| {
+                    let place = self.places().oscillator.as_ref();
+                    let place = place.unwrap_or(&self.places().document);
+                    place.fault(Fault::Oscillator(error))
+                })?;
+                let initial = State::new(vec![oscillator.displacement], vec![oscillator.velocity]);
+                (
+                    SceneModel::Oscillator(model),
+                    initial,
+                    vec![probe::of_oscillator()],
+                )
+            }
+        };
+        let stable_step = OnceLock::new();
+        let stable = || {
+            let found = stable_step.get_or_init(|| step::stable(self.settings(), model.system()));
+            found.clone()
+        };
+        let dt = step::seconds(self.settings(), stable)
+            .map_err(|fault| self.places().run.value_fault("dt", fault.into()))?;
+        Ok(Simulation {
+            dt,
+            scene: self,
+            model,
+            initial,
+            probes,
+            stable_step,
+        })
+    }
+}
+
+fn oscillator_model(oscillator: &Oscillator) -> Result<LinearModel, OperatorError> {
+    let Oscillator {
+        mass,
+        stiffness,
+        damping,
+        force,
+        ..
+    } = *oscillator;
+    let mut operators = LinearOperators::oscillator(mass, stiffness, damping)?;
+    if force != 0.0 {
+        let load = Load {
+            ramp: Ramp::Step,
+            entries: vec![(0, force)],
+        };
+        operators = operators.with_loads(vec![load])?;
+    }
+    Ok(LinearModel::new(operators))
+}

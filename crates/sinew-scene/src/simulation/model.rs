@@ -1,0 +1,62 @@
+//! The models that integrators move.
+
+use sinew_core::{LinearModel, System};
+use sinew_mesh::{TetMesh, UnknownGroup};
+
+/// The thing that moves, with its matrices.
+#[derive(Debug)]
+pub enum SceneModel {
+    /// A body of tetrahedra.
+    Body(Box<BodyModel>),
+    /// One mass on a spring.
+    Oscillator(LinearModel),
+}
+
+/// A body of tetrahedra: its mesh and its matrices.
+#[derive(Debug)]
+pub struct BodyModel {
+    /// The mesh.
+    pub mesh: TetMesh,
+    /// Warnings of the reader of the mesh file.
+    pub mesh_warnings: Vec<String>,
+    /// The problem as a whole, prescribed motions included.
+    pub problem: sinew_fem::Problem,
+    /// The system to integrate.
+    pub model: sinew_fem::Model,
+}
+
+impl SceneModel {
+    /// The system to integrate.
+    #[must_use]
+    pub fn system(&self) -> &dyn System {
+        match self {
+            Self::Body(body) => &body.model,
+            Self::Oscillator(model) => model,
+        }
+    }
+
+    /// Mesh and matrices, where a body moves.
+    #[must_use]
+    pub fn body(&self) -> Option<&BodyModel> {
+        match self {
+            Self::Body(body) => Some(body),
+            Self::Oscillator(_) => None,
+        }
+    }
+}
+
+impl BodyModel {
+    /// The cells of the nodes of a group, or of the whole body where no group is named, and the number
+    /// of these nodes including held ones.
+    pub(crate) fn cells_of(&self, group: Option<&str>) -> Result<(Vec<u32>, usize), UnknownGroup> {
+        let Some(name) = group else {
+            let cells = (0..).take(self.model.nodes().len()).collect();
+            return Ok((cells, self.mesh.points.len()));
+        };
+        let nodes = self.mesh.group_nodes(self.mesh.group(name)?);
+        let cells = nodes
+            .iter()
+            .filter_map(|node| self.model.cell_of_node(*node));
+        Ok((cells.collect(), nodes.len()))
+    }
+}

@@ -1,0 +1,45 @@
+//! What the tests of scenes share: scenes built and run as commands do.
+
+#![allow(dead_code, reason = "each test file uses some of these")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::Path;
+
+use sinew_core::{State, simulate};
+use sinew_scene::output::{Delivery, Destination};
+use sinew_scene::{ProbeCsv, Scene, SceneError, SceneSource, Simulation};
+
+/// Reads and builds the scene that stands in a file called `scene.toml`.
+pub(crate) fn try_build(text: &str) -> Result<Simulation, SceneError> {
+    Scene::parse(SceneSource::new("scene.toml", text)).and_then(Scene::build)
+}
+
+/// Builds a scene that is as it should be.
+pub(crate) fn build(text: &str) -> Simulation {
+    try_build(text).unwrap()
+}
+
+/// Runs a simulation to its end: the last state, and the file of its probes.
+pub(crate) fn run(simulation: &Simulation, folder: &Path) -> (State, String) {
+    let path = folder.join("probes.csv");
+    let output = Destination::new(&path, &[]).unwrap().open().unwrap();
+    let mut csv = ProbeCsv::new(output, simulation.probes()).unwrap();
+    let mut state = simulation.initial_state().clone();
+    let mut integrator = simulation.integrator().unwrap();
+    simulate(
+        simulation.system(),
+        &mut *integrator,
+        &mut state,
+        &simulation.run(),
+        &mut csv,
+    )
+    .unwrap();
+    assert_eq!(csv.finish().unwrap(), Delivery::Whole);
+    (state, fs::read_to_string(path).unwrap())
+}
+
+/// The numbers in a row of a CSV file.
+pub(crate) fn numbers(row: &str) -> Vec<f64> {
+    row.split(',').map(|cell| cell.parse().unwrap()).collect()
+}

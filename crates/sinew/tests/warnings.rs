@@ -1,0 +1,129 @@
+//! Warnings of `sinew run` and `sinew plan`.
+
+#![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use common::sinew;
+use sinew::mesh::Mesh;
+use sinew::mesh::structured::{self, Split};
+
+fn scenes() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let files = [folder.join("hard"), folder]
+        .into_iter()
+        .flat_map(|folder| fs::read_dir(folder).unwrap())
+        .map(|entry| entry.unwrap().path());
+    files
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "toml")
+        })
+        .collect()
+}
+
+/// The warnings of the plan, which are its last paragraph.
+fn warned_by_plan(scene: &Path) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let said = sinew(folder.path(), &["plan", scene.to_str().unwrap()]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let lines = said.out.lines();
+    let warnings = lines.skip_while(|line| !line.starts_with("warning "));
+    warnings.map(|line| line[12..].to_owned()).collect()
+}
+
+fn warned_by_run(scene: &Path) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let said = sinew(folder.path(), &["run", scene.to_str().unwrap()]);
+    let warnings = said
+        .err
+        .lines()
+        .filter_map(|line| line.strip_prefix("warning: "));
+    warnings.map(str::to_owned).collect()
+}
+
+#[test]
+fn run_warns_of_all_that_the_plan_of_each_scene_warns_of() {
+    let scenes = scenes();
+    assert!(scenes.len() >= 18, "{scenes:?}");
+    let mut warned = 0;
+    for scene in scenes {
+        let planned = warned_by_plan(&scene);
+        assert_eq!(planned, warned_by_run(&scene), "{}", scene.display());
+        warned += planned.len();
+    }
+    assert!(warned > 0, "no scene has a warning to compare");
+}
+
+const TAP: &str = r#"
+[mesh]
+file = "cube.msh"
+[[region]]
+group = "tissue"
+density = 1060.0
+model = "springs"
+youngs_modulus = 3500.0
+springs = { rule = "lloyd", damping_ratio = 0.1 }
+[[fixed]]
+group = "bottom"
+[[load]]
+group = "top"
+traction = [0.0, 0.0, -0.1]
+ramp = { kind = "pulse", from = 0.0131, to = 0.0137 }
+[run]
+duration = 0.5
+integrator = "newmark"
+dt = 0.005
+"#;
+
+/// A cube with a node that belongs to no tetrahedron.
+fn cube_and_a_stray_node() -> Mesh {
+    let mut mesh = structured::cube(2, 0.1, Split::Kuhn).unwrap().to_mesh();
+    mesh.points.push([1.0; 3]);
+    mesh.node_tags.push(mesh.points.len() as u64);
+    if let Some(entity) = mesh.node_entities.last().copied() {
+        mesh.node_entities.push(entity);
+    }
+    mesh
+}
+
+#[test]
+fn each_kind_of_warning_is_given_by_plan_and_by_run() {
+    let cases: [(&str, &str, &[&str]); 4] = [
+        ("", "", &["[[load]] 1 on `top` changes twice"]),
+        (
+            "newmark\"\ndt = 0.005",
+            "central-difference\"\ndt = 0.02",
+            &["times the stable step of", "changes twice"],
+        ),
+        (
+            "newmark",
+            "forward-euler",
+            &["nothing is known about the step", "changes twice"],
+        ),
+        (
+            "duration = 0.5",
+            "duration = 0.004",
+            &["is longer than the duration"],
+        ),
+    ];
+    for (from, to, expected) in cases {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = folder.path().join("tap.toml");
+        assert!(TAP.contains(from));
+        fs::write(&scene, TAP.replacen(from, to, 1)).unwrap();
+        let mut file = fs::File::create(folder.path().join("cube.msh")).unwrap();
+        sinew::mesh::write_msh41_ascii(&cube_and_a_stray_node(), &mut file).unwrap();
+        let planned = warned_by_plan(&scene);
+        assert_eq!(planned, warned_by_run(&scene), "{to}");
+        assert_eq!(planned.len(), 1 + expected.len(), "{planned:?}");
+        let expected = ["nodes in no tetrahedron, dropped"].iter().chain(expected);
+        for (warning, expected) in planned.iter().zip(expected) {
+            assert!(warning.contains(expected), "{warning}");
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Crates that must stay cheap to depend on.
+
+use std::path::Path;
+
+use super::breach::{Breach, RuleError};
+use super::workspace::cargo;
+
+/// A crate whose tree of dependencies is kept small.
+pub(super) struct Light {
+    name: &'static str,
+    /// Whether its default features are on.
+    with_features: bool,
+    /// Libraries that have no place in its tree.
+    banned: &'static [&'static str],
+    /// The most crates in its tree, itself included, where there is such a bound.
+    most: Option<usize>,
+}
+
+pub(super) const LIGHT: &[Light] = &[
+    Light {
+        name: "sinew-core",
+        with_features: true,
+        banned: HEAVY,
+        most: None,
+    },
+    Light {
+        name: "sinew-mesh",
+        with_features: true,
+        banned: HEAVY,
+        most: Some(9),
+    },
+    Light {
+        name: "sinew",
+        with_features: false,
+        banned: COMMAND,
+        most: None,
+    },
+];
+
+const HEAVY: &[&str] = &["faer", "nalgebra", "rayon"];
+
+/// Libraries of the `sinew` command, which the library of that name must not bring along.
+const COMMAND: &[&str] = &["clap", "comfy-table", "miette"];
+
+/// Checks the trees of the light crates, without what their tests need.
+pub(super) fn check(root: &Path, crates: &[Light]) -> Result<Vec<Breach>, RuleError> {
+    let mut breaches = Vec::new();
+    for light in crates {
+        let mut arguments = vec!["tree", "-p", light.name, "-e", "normal", "--prefix", "none"];
+        if !light.with_features {
+            arguments.push("--no-default-features");
+        }
+        breaches.extend(check_tree(light, &cargo(root, &arguments)?));
+    }
+    Ok(breaches)
+}
+
+/// Checks a tree as `cargo tree --prefix none` prints it.
+fn check_tree(light: &Light, tree: &str) -> Vec<Breach> {
+    let first_words = tree
+        .lines()
+        .filter_map(|line| line.split_whitespace().next());
+    let mut names: Vec<&str> = first_words.collect();
+    names.sort_unstable();
+    names.dedup();
+    let heavy = light.banned.iter().filter(|heavy| names.contains(heavy));
+    let mut breaches: Vec<Breach> = heavy
+        .map(|library| Breach::Heavy {
+            name: light.name,
+            library,
+        })
+        .collect();
+    let count = names.len();
+    if let Some(most) = light.most.filter(|most| count > *most) {
+        breaches.push(Breach::ManyCrates {
+            name: light.name,
+            count,
+            most,
+        });
+    }
+    breaches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rules::tree;
+
+    fn said(tree: &str) -> Vec<String> {
+        let light = Light {
+            name: "a",
+            with_features: true,
+            banned: HEAVY,
+            most: Some(2),
+        };
+        let breaches = check_tree(&light, tree);
+        breaches.iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn a_heavy_library_and_a_crate_too_many_are_named() {
+        assert!(said("a v0.1.0 (/a)\nb v1.0.0\nb v1.0.0 (*)\n").is_empty());
+        assert_eq!(
+            said("a v0.1.0 (/a)\nrayon v1.0.0\nb v1.0.0\n"),
+            [
+                "`a` pulls in rayon",
+                "`a` pulls in 3 crates, itself included; at most 2 are allowed"
+            ]
+        );
+    }
+
+    #[test]
+    fn what_only_tests_need_does_not_count() {
+        let package = |name: &str, more: &str| {
+            format!("[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n{more}")
+        };
+        let needs_rayon = |table: &str| {
+            let rayon = package("rayon", "");
+            let a = package(
+                "a",
+                &format!("[{table}]\nrayon = {{ path = \"../rayon\" }}\n"),
+            );
+            let tree = tree([
+                (
+                    "Cargo.toml",
+                    "[workspace]\nresolver = \"3\"\nmembers = [\"a\", \"rayon\"]\n",
+                ),
+                ("a/Cargo.toml", &a),
+                ("a/src/lib.rs", ""),
+                ("rayon/Cargo.toml", &rayon),
+                ("rayon/src/lib.rs", ""),
+            ]);
+            let light = Light {
+                name: "a",
+                with_features: true,
+                banned: HEAVY,
+                most: None,
+            };
+            check(tree.path(), &[light]).unwrap().len()
+        };
+        assert_eq!(needs_rayon("dev-dependencies"), 0);
+        assert_eq!(needs_rayon("dependencies"), 1);
+    }
+}

@@ -1,0 +1,126 @@
+//! The dependencies that crates may have on each other.
+
+use std::collections::BTreeMap;
+
+use super::breach::Breach;
+use super::workspace::Package;
+
+/// The crates of the workspace that each may depend on. Data walks one way; nothing walks back.
+pub(super) const ROOMS: &[(&str, &[&str])] = &[
+    ("sinew-sparse", &[]),
+    ("sinew-mesh", &[]),
+    ("sinew-core", &["sinew-sparse"]),
+    ("sinew-fem", &["sinew-core", "sinew-mesh", "sinew-sparse"]),
+    ("sinew-cnn", &["sinew-core", "sinew-sparse"]),
+    ("sinew-testkit", &["sinew-core", "sinew-fem", "sinew-mesh"]),
+    (
+        "sinew-integrators",
+        &["sinew-core", "sinew-cnn", "sinew-sparse"],
+    ),
+    (
+        "sinew-scene",
+        &["sinew-core", "sinew-mesh", "sinew-fem", "sinew-integrators"],
+    ),
+    (
+        "sinew-measure",
+        &["sinew-core", "sinew-integrators", "sinew-scene"],
+    ),
+    (
+        "sinew-bench",
+        &[
+            "sinew-core",
+            "sinew-mesh",
+            "sinew-fem",
+            "sinew-cnn",
+            "sinew-integrators",
+            "sinew-scene",
+            "sinew-measure",
+        ],
+    ),
+    (
+        "sinew",
+        &[
+            "sinew-sparse",
+            "sinew-core",
+            "sinew-mesh",
+            "sinew-fem",
+            "sinew-cnn",
+            "sinew-integrators",
+            "sinew-scene",
+            "sinew-measure",
+        ],
+    ),
+    ("xtask", &["sinew-bench", "sinew-measure", "sinew-mesh"]),
+];
+
+/// Libraries that only one crate may name.
+pub(super) const PRIVATE: &[(&str, &str)] =
+    &[("faer", "sinew-integrators"), ("nalgebra", "sinew-fem")];
+
+/// Checks that every crate has a room and depends on no other than it may.
+pub(super) fn check(packages: &[Package]) -> Vec<Breach> {
+    let rooms: BTreeMap<&str, &[&str]> = ROOMS.iter().copied().collect();
+    let mut breaches = Vec::new();
+    for package in packages {
+        let name = &package.name;
+        let Some(allowed) = rooms.get(name.as_str()) else {
+            breaches.push(Breach::NoRoom { name: name.clone() });
+            continue;
+        };
+        for other in &package.needs {
+            let is_ours = rooms.contains_key(other.as_str());
+            if is_ours && !allowed.contains(&other.as_str()) {
+                breaches.push(Breach::Dependency {
+                    name: name.clone(),
+                    other: other.clone(),
+                });
+            }
+            for (library, owner) in PRIVATE {
+                if other == library && name != owner {
+                    breaches.push(Breach::PrivateLibrary {
+                        library,
+                        owner,
+                        name: name.clone(),
+                    });
+                }
+            }
+        }
+    }
+    breaches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(name: &str, needs: &[&str]) -> Vec<String> {
+        let needs = needs.iter().map(ToString::to_string).collect();
+        let package = Package {
+            name: name.to_owned(),
+            needs,
+            ..Package::default()
+        };
+        check(&[package]).iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn a_crate_that_keeps_to_its_room_is_fine() {
+        assert!(said("sinew-fem", &["sinew-mesh", "nalgebra", "thiserror"]).is_empty());
+    }
+
+    #[test]
+    fn a_way_back_a_foreign_library_and_a_crate_without_a_room_are_named() {
+        assert_eq!(
+            said("sinew-mesh", &["sinew-fem"]),
+            ["`sinew-mesh` must not depend on `sinew-fem`"]
+        );
+        assert_eq!(
+            said("sinew-core", &["faer"]),
+            ["only `sinew-integrators` may depend on faer, not `sinew-core`"]
+        );
+        assert_eq!(
+            said("sinew-new", &[]),
+            ["crate `sinew-new` has no place in xtask/src/rules/rooms.rs"]
+        );
+    }
+}
