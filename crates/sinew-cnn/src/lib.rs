@@ -35,7 +35,7 @@ mod templates;
 
 pub use blocks::CellBlocks;
 pub use gauss_seidel::GaussSeidel;
-pub use machine::{Machine, ReferenceMachine};
+pub use machine::{FollowedLoad, Machine, ReferenceMachine, StepTime};
 pub use majorant::{Blend, DampingShare, GammaRule, Majorant};
 pub use power_iteration::largest_eigenvalue;
 pub use program::{

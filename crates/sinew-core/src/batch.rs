@@ -330,23 +330,61 @@ impl<'a> Batch<'a> {
     /// Ends a step, or a part of one, that moved the state and was clamped where it had to be.
     /// [`Batch::each`] does so itself.
     pub fn end_step(&mut self, state: &mut State, stepped: Stepped) {
+        if self.end_part(state, stepped) {
+            self.diverged = worst_beyond(&state.u, self.divergence_limit);
+            self.sample(state);
+        }
+    }
+
+    /// Ends a step, or a part of one, of a machine that holds u and v in a form of its own and knows that
+    /// no displacement is beyond [`Batch::divergence_limit`]. The state needs to hold what
+    /// [`Batch::watched`] names, and all of u and v only where [`Batch::looks_at_steps`].
+    pub fn end_step_within_limit(&mut self, state: &mut State, stepped: Stepped) {
+        if self.end_part(state, stepped) {
+            self.sample(state);
+        }
+    }
+
+    /// Ends a part, on the clock and for the system; whether it ends a step.
+    fn end_part(&mut self, state: &mut State, stepped: Stepped) -> bool {
         state.end_step(self.dt, stepped.velocity, stepped.acceleration);
         state.loads = self.loads;
         self.system.accept(state);
         self.step_work.add_part(stepped.work);
         self.parts_taken += 1;
         if self.parts_taken < self.parts {
-            return;
+            return false;
         }
         self.parts_taken = 0;
         self.taken += 1;
         self.work += std::mem::take(&mut self.step_work);
-        self.diverged = worst_beyond(&state.u, self.divergence_limit);
+        true
+    }
+
+    fn sample(&mut self, state: &State) {
         if let Some(watch) = &mut self.watch
             && self.diverged.is_none()
         {
             watch.sample(state);
         }
+    }
+
+    /// Whether the system looks at the state after every step, or part of one.
+    #[must_use]
+    pub fn looks_at_steps(&self) -> bool {
+        self.system.looks_at_steps()
+    }
+
+    /// The degrees of freedom whose displacements are sampled after every step.
+    #[must_use]
+    pub fn watched(&self) -> &[u32] {
+        self.watch.as_ref().map_or(&[], |watch| watch.dofs())
+    }
+
+    /// Displacement (m) beyond which the batch ends.
+    #[must_use]
+    pub fn divergence_limit(&self) -> f64 {
+        self.divergence_limit
     }
 
     /// Steps, or parts of them, that are left.

@@ -16,6 +16,11 @@ struct Change {
 }
 
 impl Changes {
+    /// Whether nothing changed.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Remembers that the rows of these cells changed after a revision.
     pub(crate) fn push(&mut self, before: Revision, cells: Vec<u32>) {
         if self.0.len() == REMEMBERED {

@@ -139,6 +139,12 @@ pub trait Integrator: Send {
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
+
+    /// The machine, precision and instructions by which set-up will have steps taken, for reports; `None`
+    /// for loops of its own.
+    fn kernel(&self) -> Option<String> {
+        None
+    }
 }
 
 /// A number that set-up found.

@@ -47,6 +47,10 @@ impl System for LinearModel {
         Equations::Linear(self)
     }
 
+    fn looks_at_steps(&self) -> bool {
+        false
+    }
+
     fn energy(&self, u: &[f64], v: &[f64]) -> Option<Energy> {
         Some(self.operators.energy(u, v))
     }

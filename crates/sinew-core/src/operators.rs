@@ -237,6 +237,12 @@ impl LinearOperators {
         self.matrices.changes.since(revision)
     }
 
+    /// Whether rows changed since the matrices were made.
+    #[must_use]
+    pub fn has_changed(&self) -> bool {
+        !self.matrices.changes.is_empty()
+    }
+
     /// Lumped mass of each degree of freedom (kg).
     #[must_use]
     pub fn mass(&self) -> &[f64] {

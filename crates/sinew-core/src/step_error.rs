@@ -15,6 +15,16 @@ pub enum SetupError {
         /// The missing part.
         needs: &'static str,
     },
+    /// Single precision for steps that are computed in double precision only.
+    #[error(
+        "`{integrator}`: these steps are computed in f64 only: {reason}; leave `precision` out"
+    )]
+    SinglePrecision {
+        /// Integrator id.
+        integrator: &'static str,
+        /// Reason.
+        reason: &'static str,
+    },
     /// A step that is not positive and finite.
     #[error("`{integrator}`: dt = {dt} s: expected a finite step above 0")]
     Step {

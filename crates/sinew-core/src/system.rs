@@ -65,6 +65,17 @@ pub trait System: Send + Sync {
     /// part of a step that is cut; laws with memory update the state's internal variables here.
     fn accept(&self, _state: &mut State) {}
 
+    /// Whether [`System::accept`] looks at the state. Where it does not, machines that hold u and v in a form
+    /// of their own need not write them out after each step.
+    fn looks_at_steps(&self) -> bool {
+        true
+    }
+
+    /// Positions of the cells at rest (m), where the system has them: machines look for rows that repeat.
+    fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
+        None
+    }
+
     /// Energies, where the system knows them.
     fn energy(&self, _u: &[f64], _v: &[f64]) -> Option<Energy> {
         None

@@ -28,6 +28,12 @@ impl Watch {
         self.dofs.is_empty()
     }
 
+    /// The degrees of freedom that it watches.
+    #[must_use]
+    pub fn dofs(&self) -> &[u32] {
+        &self.dofs
+    }
+
     /// Adds a sample.
     pub fn sample(&mut self, state: &State) {
         self.times.push(state.t());

@@ -52,6 +52,7 @@ impl<E: Explicit> Method for E {
     const SUMMARY: &'static str = E::SUMMARY;
     const OPTIONS: &'static [OptionHelp] = E::OPTIONS;
     const SUBSTEPS: bool = true;
+    const PROGRAMS: bool = true;
     const GUARD: GuardOption = E::GUARD;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {

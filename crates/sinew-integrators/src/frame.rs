@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
-use sinew_cnn::{Machine, Program, ReferenceMachine};
+use sinew_cnn::{Machine, Program};
 use sinew_core::{
     Batch, Fact, Guarding, Integrator, LoadOverStep, Prepared, Properties, SetupError, StableStep,
     State, StepError, StepReport, System, VelocityTime,
 };
+
+use sinew_machines::{Chosen, PrecisionName, Settings};
 
 use crate::scheme::{Scheme, StepByHand, Steps};
 use crate::stepper::Stepper;
@@ -15,6 +17,7 @@ use crate::stepper::Stepper;
 /// program.
 pub struct Frame<M: Scheme> {
     scheme: M,
+    machine: Settings,
     prepared: Prepared,
     ready: Ready<M::ByHand>,
 }
@@ -28,7 +31,7 @@ enum Ready<S> {
 /// A program and the machine that runs it.
 struct Loaded {
     program: Arc<Program>,
-    machine: ReferenceMachine,
+    machine: Chosen,
     /// Limits of the guarded program that the machine runs, with its step (s).
     guarded_by: Option<(Arc<[f64]>, f64)>,
 }
@@ -39,9 +42,16 @@ impl<M: Scheme> Frame<M> {
     pub fn new(scheme: M) -> Self {
         Self {
             scheme,
+            machine: Settings::default(),
             prepared: Prepared::default(),
             ready: Ready::Not,
         }
+    }
+
+    /// Runs its programs on a machine with these settings.
+    #[must_use]
+    pub fn on(self, machine: Settings) -> Self {
+        Self { machine, ..self }
     }
 
     /// The method.
@@ -116,10 +126,16 @@ impl<M: Scheme> Integrator for Frame<M> {
         Prepared::check(M::ID, system, dt)?;
         let made = self.scheme.set_up(system, dt, before)?;
         self.ready = match made.steps {
+            Steps::ByHand(steps) if self.machine.precision != PrecisionName::F64 => {
+                return Err(SetupError::SinglePrecision {
+                    integrator: M::ID,
+                    reason: steps.without_program(),
+                });
+            }
             Steps::ByHand(steps) => Ready::ByHand(steps),
             Steps::Program(program) => {
                 let program = Arc::new(program.complete());
-                let mut machine = ReferenceMachine::default();
+                let mut machine = Chosen::new(self.machine);
                 machine.load(Arc::clone(&program), system);
                 Ready::Program(Box::new(Loaded {
                     program,
@@ -179,6 +195,13 @@ impl<M: Scheme> Integrator for Frame<M> {
 
     fn remarks(&self) -> Vec<String> {
         self.scheme.remarks()
+    }
+
+    fn kernel(&self) -> Option<String> {
+        match &self.ready {
+            Ready::Program(loaded) => Some(loaded.machine.kernel()),
+            Ready::Not | Ready::ByHand(_) => None,
+        }
     }
 }
 

@@ -20,6 +20,7 @@ mod frame;
 #[cfg(feature = "implicit")]
 pub mod implicit;
 mod limits;
+mod machine_options;
 mod method;
 mod option_help;
 pub mod propagator;
@@ -31,6 +32,7 @@ pub use explicit_method::Explicit;
 pub use frame::Frame;
 #[cfg(feature = "implicit")]
 pub use implicit::{FactorError, StaticError, static_solution};
+pub use machine_options::MACHINE_OPTIONS;
 pub use method::{ConservedEnergy, Method};
 pub use option_help::{OptionHelp, OptionLabel};
 pub use registry::{Entry, build, entries, entry, ids};

@@ -2,6 +2,8 @@
 
 use sinew_core::{Fact, OptionError, Options};
 
+use sinew_machines::Settings;
+
 use crate::explicit::GuardOption;
 use crate::frame::Frame;
 use crate::option_help::{OptionHelp, OptionLabel};
@@ -26,6 +28,9 @@ pub trait Method: Scheme {
 
     /// Meaning of the option `saturation` for it: methods that can grow without bound take a guard.
     const GUARD: GuardOption = GuardOption::None;
+
+    /// Whether its steps are programs, so that it takes the options of machines.
+    const PROGRAMS: bool = false;
 
     /// Builds it. Keys outside [`Method::OPTIONS`] have been refused before.
     ///
@@ -61,7 +66,12 @@ pub trait Method: Scheme {
 
     /// Makes it an integrator.
     fn integrator(self) -> Box<dyn Stepper> {
-        Box::new(Frame::new(self))
+        self.on_machine(Settings::default())
+    }
+
+    /// Makes it an integrator whose programs run on a machine with these settings.
+    fn on_machine(self, machine: Settings) -> Box<dyn Stepper> {
+        Box::new(Frame::new(self).on(machine))
     }
 }
 

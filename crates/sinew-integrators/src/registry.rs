@@ -1,8 +1,10 @@
 //! Integrators by name.
 
 use sinew_core::{Fact, OptionError, Options};
+use sinew_machines::Settings;
 
 use crate::explicit::{GuardOption, Guarded, Substepped, Substeps};
+use crate::machine_options::{MACHINE_OPTIONS, take_settings};
 use crate::{ConservedEnergy, Method, OptionHelp, OptionLabel, Stepper};
 
 /// Calls `$then! { name: Type, .. }` with every integrator there is: the one list that the
@@ -48,6 +50,8 @@ pub struct Entry {
     pub substeps: bool,
     /// Meaning of `saturation` for it.
     pub guard: GuardOption,
+    /// Whether its steps are programs, which take the options of machines.
+    pub programs: bool,
     /// Whether its set-up factorises a matrix of the whole body.
     pub factorises: bool,
     /// Options of the variants that comparisons show besides the plain method.
@@ -57,7 +61,7 @@ pub struct Entry {
     /// The energy that it conserves, from the facts of its set-up.
     pub conserved_energy: fn(&[Fact]) -> ConservedEnergy,
     labels: &'static [(&'static str, OptionLabel)],
-    build: fn(&Options) -> Result<Box<dyn Stepper>, OptionError>,
+    build: fn(&Options, Settings) -> Result<Box<dyn Stepper>, OptionError>,
 }
 
 impl std::fmt::Debug for Entry {
@@ -76,12 +80,13 @@ impl Entry {
             options: M::OPTIONS,
             substeps: M::SUBSTEPS,
             guard: M::GUARD,
+            programs: M::PROGRAMS,
             factorises: M::FACTORISES,
             variants: M::variants,
             options_for_error: M::options_for_error,
             conserved_energy: M::conserved_energy,
             labels: M::LABELS,
-            build: |options| Ok(M::from_options(options)?.integrator()),
+            build: |options, machine| Ok(M::from_options(options)?.on_machine(machine)),
         }
     }
 
@@ -106,11 +111,15 @@ impl Entry {
         if self.substeps {
             known.push(Substeps::KEY);
         }
+        if self.programs {
+            known.extend(MACHINE_OPTIONS.iter().map(|help| help.key));
+        }
         options.only(self.id, &known)?;
         let mut options = options.clone();
+        let machine = take_settings(&mut options, self.id)?;
         let substeps = Substeps::take_from(&mut options, self.id)?;
         let guard = self.guard.take_from(&mut options, self.id)?;
-        let mut integrator = (self.build)(&options)?;
+        let mut integrator = (self.build)(&options, machine)?;
         // Within the parts, so that each of them is guarded.
         if let Some(guard) = guard {
             integrator = Box::new(Guarded::new(integrator, guard));
@@ -185,7 +194,7 @@ mod tests {
         assert!(refusal("euler", Options::new()).starts_with("unknown integrator `euler`"));
         assert_eq!(
             refusal("rk4", Options::new().with_number("gamma", 4.0)),
-            "`rk4` has no option `gamma`; it takes `saturation`, `substeps`"
+            "`rk4` has no option `gamma`; it takes `saturation`, `substeps`, `machine`, `precision`, `threads`"
         );
         let cases = [
             ("cnn", "saturation", OptionValue::Number(-4.0)),

@@ -7,8 +7,10 @@ mod common;
 
 use common::{inner, plain, saturation};
 use sinew_cnn::conformance::{CountingAllocator, Method};
-use sinew_cnn::{Program, ReferenceMachine};
+use sinew_cnn::{Machine, Program, ReferenceMachine};
 use sinew_core::{EnergyBehaviour, Needs, OptionValue, Options, Properties, System};
+use sinew_machines::{Chosen, Kind, Settings};
+use sinew_sparse::simd::InstructionSet;
 
 #[global_allocator]
 static ALLOCATOR: CountingAllocator = CountingAllocator;
@@ -80,6 +82,19 @@ fn methods() -> Vec<Method> {
 sinew_cnn::machine_conformance!(reference, methods(), || Box::new(
     ReferenceMachine::default()
 ));
+
+/// The kernels for any matrix, with these instructions where the machine has them.
+fn general(set: InstructionSet) -> Box<dyn Machine> {
+    Box::new(Chosen::new(Settings {
+        kind: Kind::General,
+        instructions: Some(set),
+        ..Settings::default()
+    }))
+}
+
+sinew_cnn::machine_conformance!(portable, methods(), || general(InstructionSet::Portable));
+sinew_cnn::machine_conformance!(avx2, methods(), || general(InstructionSet::Avx2));
+sinew_cnn::machine_conformance!(avx512, methods(), || general(InstructionSet::Avx512));
 
 /// The suite runs what the methods make: no entry of the list is refused everywhere.
 #[test]

@@ -25,8 +25,11 @@ mod error;
 mod matrix;
 mod pattern;
 mod product;
+pub mod simd;
+pub mod sweep;
 pub mod vectors;
 
 pub use error::AssemblyError;
 pub use matrix::{BlockMatrix, Layers};
 pub use pattern::Pattern;
+pub use sweep::clamp_vector;

@@ -14,6 +14,7 @@ pub(super) const PURE: &[&str] = &[
     "crates/sinew-core/src",
     "crates/sinew-fem/src",
     "crates/sinew-cnn/src",
+    "crates/sinew-machines/src",
     "crates/sinew-integrators/src",
 ];
 

@@ -12,10 +12,14 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
     ("sinew-core", &["sinew-sparse"]),
     ("sinew-fem", &["sinew-core", "sinew-mesh", "sinew-sparse"]),
     ("sinew-cnn", &["sinew-core", "sinew-sparse"]),
+    (
+        "sinew-machines",
+        &["sinew-core", "sinew-cnn", "sinew-sparse"],
+    ),
     ("sinew-testkit", &["sinew-core", "sinew-fem", "sinew-mesh"]),
     (
         "sinew-integrators",
-        &["sinew-core", "sinew-cnn", "sinew-sparse"],
+        &["sinew-core", "sinew-cnn", "sinew-machines", "sinew-sparse"],
     ),
     (
         "sinew-scene",
@@ -32,6 +36,8 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-mesh",
             "sinew-fem",
             "sinew-cnn",
+            "sinew-machines",
+            "sinew-sparse",
             "sinew-integrators",
             "sinew-scene",
             "sinew-measure",
@@ -45,6 +51,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-mesh",
             "sinew-fem",
             "sinew-cnn",
+            "sinew-machines",
             "sinew-integrators",
             "sinew-scene",
             "sinew-measure",

@@ -5,7 +5,8 @@ use std::ops::Range;
 use sinew_core::{State, clamp_vector};
 
 use super::combine::{Bound, Follower, MOST, combine};
-use crate::program::{Clamp, OwnTerm, Program, Quotient, Register, Sweep, Update, Weight};
+use super::host::FollowedLoad;
+use crate::program::{Clamp, OwnTerm, Program, Quotient, Register, Sweep, Update};
 
 /// Degrees of freedom over which a cell's map runs at a time, so that they stay in the first cache;
 /// whole cells of one and of three layers.
@@ -47,26 +48,6 @@ impl Registers<'_> {
     }
 }
 
-/// The weights of a step that follow a load.
-#[derive(Default)]
-pub(super) struct Weights<'a> {
-    /// Changes of the load's factor up to the times of the program's moments.
-    pub(super) changes: &'a [f64],
-    pub(super) moments: &'a [Vec<f64>],
-}
-
-impl Weights<'_> {
-    fn value(&self, weight: Weight) -> f64 {
-        match weight {
-            Weight::Number(number) => number,
-            Weight::OfLoad { moment, .. } => {
-                let weights = self.moments[moment as usize].iter();
-                weights.zip(self.changes).map(|(w, c)| w * c).sum()
-            }
-        }
-    }
-}
-
 /// All cells after a sweep.
 pub(super) struct Cells<'a> {
     pub(super) program: &'a Program,
@@ -75,7 +56,8 @@ pub(super) struct Cells<'a> {
     pub(super) q: &'a mut [f64],
     pub(super) mass: &'a [f64],
     pub(super) layers: usize,
-    pub(super) weights: Weights<'a>,
+    /// The load that weights follow.
+    pub(super) followed: &'a FollowedLoad,
 }
 
 /// The degrees of freedom of a chunk at which a clamp was reached.
@@ -184,14 +166,14 @@ impl Cells<'_> {
         let mut moved = next.map_or(Vec::new(), |next| self.registers.take(next.target));
         let out = &mut target[range.clone()];
         // What the target itself weighs has to be known before it is written for the first time.
-        let mut own = update.weight_of(update.target, &self.weights);
+        let mut own = update.weight_of(update.target, self.followed);
         let mut parts: [(f64, &[f64]); MOST] = [(0.0, &[]); MOST];
         let mut count = 0;
         let others = update.terms.iter();
         let others = others.filter(|term| term.register != update.target);
         let others = others.map(|term| {
             let values = self.registers.get(term.register);
-            (self.weights.value(term.weight), &values[range.clone()])
+            (self.followed.weight(term.weight), &values[range.clone()])
         });
         let of_q = (update.of_q != 0.0).then(|| (update.of_q, &self.q[range.clone()]));
         for part in others.chain(of_q) {
@@ -210,7 +192,7 @@ impl Cells<'_> {
             _ => None,
         };
         let follower = next.map(|next| {
-            let weight = |register| next.weight_of(register, &self.weights).unwrap_or(0.0);
+            let weight = |register| next.weight_of(register, self.followed).unwrap_or(0.0);
             Follower {
                 out: &mut moved[range.clone()],
                 own: weight(next.target),
@@ -255,11 +237,11 @@ impl Cells<'_> {
 
 impl Update {
     /// The weight of a register, where it is read.
-    fn weight_of(&self, register: Register, weights: &Weights<'_>) -> Option<f64> {
+    fn weight_of(&self, register: Register, followed: &FollowedLoad) -> Option<f64> {
         let terms = self.terms.iter();
         let terms = terms.filter(|term| term.register == register);
         terms
-            .map(|term| weights.value(term.weight))
+            .map(|term| followed.weight(term.weight))
             .reduce(|a, b| a + b)
     }
 

@@ -2,12 +2,14 @@
 
 mod cells;
 mod combine;
+mod host;
 mod reference;
 
 use std::sync::Arc;
 
 use sinew_core::{Batch, State, StepError, System};
 
+pub use host::{FollowedLoad, StepTime};
 pub use reference::ReferenceMachine;
 
 use crate::Program;
@@ -21,6 +23,11 @@ use crate::Program;
 pub trait Machine: Send + std::fmt::Debug {
     /// Its name, as plans and results show it.
     fn name(&self) -> &'static str;
+
+    /// Its name with the precision and the instructions that it uses, as rows show it.
+    fn kernel(&self) -> String {
+        self.name().to_owned()
+    }
 
     /// Takes a program for a system, and room for what it needs: afterwards a batch allocates
     /// nothing.

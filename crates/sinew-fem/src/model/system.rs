@@ -30,6 +30,19 @@ impl System for Model {
         Equations::Linear(self)
     }
 
+    fn looks_at_steps(&self) -> bool {
+        false
+    }
+
+    fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
+        let nodes = self.body.cells.nodes.iter();
+        Some(
+            nodes
+                .map(|node| self.body.mesh.points[*node as usize])
+                .collect(),
+        )
+    }
+
     /// The energy of the degrees of freedom, without the energy that supports in motion hold and store.
     fn energy(&self, u: &[f64], v: &[f64]) -> Option<Energy> {
         Some(self.operators.energy(u, v))

@@ -112,6 +112,8 @@ impl Method for CnnStabilised {
         }
     }
 
+    const PROGRAMS: bool = true;
+
     fn from_options(options: &Options) -> Result<Self, OptionError> {
         let inner = options.read(Self::ID, INNER, INNER_EXPECTED, inner_of)?;
         let rules = "\"power\" or \"gershgorin\"";

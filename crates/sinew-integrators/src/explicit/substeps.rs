@@ -179,6 +179,10 @@ impl Integrator for Substepped {
         batch.in_parts(parts, |batch| self.inner.run(batch, state))
     }
 
+    fn kernel(&self) -> Option<String> {
+        self.inner.kernel()
+    }
+
     fn facts(&self) -> Vec<Fact> {
         let mut facts = self.inner.facts();
         if let Some((_, _, parts)) = self.parts {

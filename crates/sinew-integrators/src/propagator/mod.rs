@@ -172,6 +172,8 @@ impl Method for Propagator {
         ]
     }
 
+    const PROGRAMS: bool = true;
+
     fn from_options(options: &Options) -> Result<Self, OptionError> {
         let kinds = "\"chebyshev\", \"two-step\" or \"krylov\"";
         let kind = options.read(ID, KIND, kinds, |value| match value.word()? {

@@ -20,6 +20,11 @@ pub(crate) fn run() -> Result<(), Failure> {
         for option in entry.options.iter().copied().chain(entry.guard.help()) {
             say(&format!("{:20}   {}: {}", "", option.key, option.help))?;
         }
+        if entry.programs {
+            for option in sinew_integrators::MACHINE_OPTIONS {
+                say(&format!("{:20}   {}: {}", "", option.key, option.help))?;
+            }
+        }
         if entry.substeps {
             say(&format!(
                 "{:20}   substeps: parts each step is cut into, or \"auto\"; default 1",

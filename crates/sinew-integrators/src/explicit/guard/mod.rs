@@ -188,6 +188,10 @@ impl Integrator for Guarded {
         result
     }
 
+    fn kernel(&self) -> Option<String> {
+        self.inner.kernel()
+    }
+
     fn facts(&self) -> Vec<Fact> {
         let mut facts = self.inner.facts();
         if let Guard::Auto = self.guard {

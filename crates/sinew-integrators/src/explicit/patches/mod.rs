@@ -52,6 +52,8 @@ impl Method for PatchedCentralDifference {
     const SUBSTEPS: bool = true;
     const GUARD: GuardOption = <CentralDifference as Explicit>::GUARD;
 
+    const PROGRAMS: bool = true;
+
     fn from_options(options: &Options) -> Result<Self, OptionError> {
         let expected = "\"auto\" or \"off\"";
         let auto = options.read(Self::ID, KEY, expected, |value| match value.word()? {

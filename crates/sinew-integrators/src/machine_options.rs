@@ -1,0 +1,73 @@
+//! `machine`, `precision`, `threads`: where a method's program runs.
+
+use std::num::NonZero;
+
+use sinew_core::{OptionError, Options};
+use sinew_machines::{Kind, PrecisionName, Settings, Threads};
+
+use crate::OptionHelp;
+
+const MACHINE: OptionHelp = OptionHelp {
+    key: "machine",
+    help: "\"auto\" (templates where rows repeat on a lattice, else the general kernels), \"reference\" \
+           (plain loops), \"general\" or \"repeated\"; default \"auto\"",
+    shown_default: None,
+};
+
+const PRECISION: OptionHelp = OptionHelp {
+    key: "precision",
+    help: "\"f64\" or \"f32\": half the memory and twice the lanes, with errors of rounding; default \"f64\"",
+    shown_default: None,
+};
+
+const THREADS: OptionHelp = OptionHelp {
+    key: "threads",
+    help: "the largest number of threads, or \"auto\" for one a processor; fewer where they do not pay, \
+           with the same bits for every number; default 1",
+    shown_default: None,
+};
+
+/// The options of every method that is a program.
+pub const MACHINE_OPTIONS: &[OptionHelp] = &[MACHINE, PRECISION, THREADS];
+
+/// Takes the machine's settings out of the options.
+///
+/// # Errors
+/// [`OptionError::Value`] for a machine or a precision that there is not.
+pub(crate) fn take_settings(
+    options: &mut Options,
+    integrator: &str,
+) -> Result<Settings, OptionError> {
+    let kinds = "\"auto\", \"reference\", \"general\" or \"repeated\"";
+    let kind = options.read(integrator, MACHINE.key, kinds, |value| match value.word() {
+        Some("auto") => Some(Kind::Auto),
+        Some("reference") => Some(Kind::Reference),
+        Some("general") => Some(Kind::General),
+        Some("repeated") => Some(Kind::Repeated),
+        _ => None,
+    })?;
+    let precisions = "\"f64\" or \"f32\"";
+    let precision = options.read(integrator, PRECISION.key, precisions, |value| {
+        match value.word() {
+            Some("f64") => Some(PrecisionName::F64),
+            Some("f32") => Some(PrecisionName::F32),
+            _ => None,
+        }
+    })?;
+    let counts = "a whole number from 1 on, or \"auto\"";
+    let threads = options.read(integrator, THREADS.key, counts, |value| {
+        match value.word() {
+            Some("auto") => Some(Threads::All),
+            _ => NonZero::new(value.count(u32::MAX)?).map(Threads::UpTo),
+        }
+    })?;
+    for help in MACHINE_OPTIONS {
+        options.remove(help.key);
+    }
+    Ok(Settings {
+        kind: kind.unwrap_or_default(),
+        precision: precision.unwrap_or_default(),
+        threads: threads.unwrap_or_default(),
+        ..Settings::default()
+    })
+}

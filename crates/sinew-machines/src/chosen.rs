@@ -1,0 +1,149 @@
+//! The machine that fits a system.
+
+use std::num::NonZero;
+use std::sync::Arc;
+
+use sinew_cnn::{Machine, Program, ReferenceMachine};
+use sinew_core::{Batch, Equations, State, StepError, System};
+use sinew_sparse::simd::InstructionSet;
+use sinew_sparse::sweep::Precision;
+
+use crate::{FastMachine, Layout};
+
+/// Kinds of machines.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kind {
+    /// The fastest that takes the system.
+    #[default]
+    Auto,
+    /// Plain loops, the meaning of a program.
+    Reference,
+    /// Kernels for any matrix.
+    General,
+    /// Kernels for rows that repeat on a lattice.
+    Repeated,
+}
+
+/// Precisions that a machine may compute in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PrecisionName {
+    /// 64 bits.
+    #[default]
+    F64,
+    /// 32 bits.
+    F32,
+}
+
+/// What a machine should be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Settings {
+    /// Its kind.
+    pub kind: Kind,
+    /// The precision that it computes in.
+    pub precision: PrecisionName,
+    /// Its instructions; `None` for the best there are.
+    pub instructions: Option<InstructionSet>,
+    /// The largest number of threads.
+    pub threads: Threads,
+}
+
+/// Numbers of threads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Threads {
+    /// The calling thread alone.
+    #[default]
+    One,
+    /// At most so many, and no more than the system gives processors to this process.
+    UpTo(NonZero<u32>),
+    /// As many as it gives.
+    All,
+}
+
+impl Threads {
+    /// Their largest number on this machine.
+    #[must_use]
+    pub fn most(self) -> usize {
+        let all = || std::thread::available_parallelism().map_or(1, NonZero::get);
+        match self {
+            Self::One => 1,
+            Self::UpTo(most) => all().min(most.get() as usize),
+            Self::All => all(),
+        }
+    }
+}
+
+/// Cells below which a sweep is too short for kernels.
+const FEWEST_CELLS: usize = 16;
+
+/// A machine chosen for each system that it is given, as its settings say: the reference machine where
+/// forces follow from a law, templates where rows repeat, and the general kernels everywhere else.
+#[derive(Debug, Default)]
+pub struct Chosen {
+    settings: Settings,
+    machine: Option<Box<dyn Machine>>,
+}
+
+impl Chosen {
+    /// A machine with these settings.
+    #[must_use]
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            settings,
+            machine: None,
+        }
+    }
+
+    fn choose(&self, system: &dyn System) -> Box<dyn Machine> {
+        match self.settings.precision {
+            PrecisionName::F64 => self.choose_in::<f64>(system),
+            PrecisionName::F32 => self.choose_in::<f32>(system),
+        }
+    }
+
+    fn choose_in<T: Precision>(&self, system: &dyn System) -> Box<dyn Machine> {
+        let Equations::Linear(linear) = system.equations() else {
+            return Box::new(ReferenceMachine::default());
+        };
+        let cells = linear.operators().stiffness().pattern().cells();
+        let layout = match self.settings.kind {
+            Kind::Auto if cells < FEWEST_CELLS && T::NAME == f64::NAME => {
+                return Box::new(ReferenceMachine::default());
+            }
+            Kind::Reference => return Box::new(ReferenceMachine::default()),
+            Kind::General => None,
+            Kind::Auto | Kind::Repeated => Layout::<T>::repeated(linear),
+        };
+        let layout = layout.unwrap_or_else(|| Layout::general(linear.operators()));
+        let machine = FastMachine::new(layout).with_threads(self.settings.threads.most());
+        Box::new(match self.settings.instructions {
+            Some(set) => machine.with_instructions(set),
+            None => machine,
+        })
+    }
+}
+
+impl Machine for Chosen {
+    fn name(&self) -> &'static str {
+        self.machine
+            .as_ref()
+            .map_or("none", |machine| machine.name())
+    }
+
+    fn kernel(&self) -> String {
+        let machine = self.machine.as_ref();
+        machine.map_or_else(|| "none".to_owned(), |machine| machine.kernel())
+    }
+
+    fn load(&mut self, program: Arc<Program>, system: &dyn System) {
+        let mut machine = self.choose(system);
+        machine.load(program, system);
+        self.machine = Some(machine);
+    }
+
+    fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
+        match &mut self.machine {
+            Some(machine) => machine.run(batch, state),
+            None => Err(StepError::NotPrepared),
+        }
+    }
+}

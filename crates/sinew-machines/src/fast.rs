@@ -1,0 +1,529 @@
+//! The machine whose sweeps are kernels.
+
+use std::ops::Range;
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+
+use sinew_cnn::{FollowedLoad, Loads, Machine, Program, StepTime, Sweep};
+use sinew_core::{
+    Acceleration, Batch, Equations, LinearOperators, Revision, State, Step, StepError, StepReport,
+    Stepped, System, VelocityTime,
+};
+use sinew_sparse::simd::InstructionSet;
+use sinew_sparse::sweep::{self as kernel, Field, Fields, Outcome, Precision, Rows};
+
+use crate::compiled::{Compiled, Constant, Variant};
+use crate::crew::{Crew, Host};
+use crate::forces::Forces;
+use crate::layout::Layout;
+
+/// Runs programs on the cells of a linear system in the order of a [`Layout`], each sweep in one pass.
+#[derive(Debug)]
+pub struct FastMachine<T> {
+    layout: Arc<Layout<T>>,
+    set: InstructionSet,
+    threads: usize,
+    /// Locked by the host while no other thread uses it, so that workers may read it during a sweep.
+    loaded: Option<RwLock<Loaded<T>>>,
+}
+
+/// A program with the vectors that it works on.
+#[derive(Debug)]
+struct Loaded<T> {
+    program: Arc<Program>,
+    /// Identity of the matrices.
+    matrices: Revision,
+    sweeps: Compiled<T>,
+    fields: Fields<T>,
+    /// The vector of each code.
+    table: Vec<Field>,
+    /// Number of the vector of forces.
+    forces_field: usize,
+    forces: Forces,
+    followed: FollowedLoad,
+    /// The sweep under way.
+    current: Current<T>,
+}
+
+/// A sweep of a program that is under way.
+#[derive(Clone, Copy, Debug)]
+struct Current<T> {
+    part: Part,
+    number: usize,
+    is_last: bool,
+    /// Size that displacements may have (m).
+    limit: T,
+}
+
+impl<T: Precision> FastMachine<T> {
+    /// A machine with the matrices of a system in this layout.
+    #[must_use]
+    pub fn new(layout: Arc<Layout<T>>) -> Self {
+        Self {
+            layout,
+            set: InstructionSet::best(),
+            threads: 1,
+            loaded: None,
+        }
+    }
+
+    /// Uses up to so many threads, in batches that are long enough.
+    #[must_use]
+    pub fn with_threads(self, threads: usize) -> Self {
+        Self {
+            threads: threads.max(1),
+            ..self
+        }
+    }
+
+    /// Uses these instructions, where the machine has them.
+    #[must_use]
+    pub fn with_instructions(mut self, set: InstructionSet) -> Self {
+        if set.is_available() {
+            self.set = set;
+        }
+        self
+    }
+
+    /// The instructions that it uses.
+    #[must_use]
+    pub fn instructions(&self) -> InstructionSet {
+        self.set
+    }
+
+    /// The layout of its matrices.
+    #[must_use]
+    pub fn layout(&self) -> &Layout<T> {
+        &self.layout
+    }
+
+    /// Takes rows and masses again that changed since the program was loaded.
+    fn follow_changes(&mut self, operators: &LinearOperators) {
+        let Some(loaded) = self.loaded.as_mut().map(own) else {
+            return;
+        };
+        let changed = operators.changed_since(loaded.matrices);
+        let cells = changed.filter(|cells| {
+            matches!(self.layout.stiffness, Rows::General(_))
+                && Arc::make_mut(&mut self.layout).take_rows(operators, cells)
+        });
+        match cells {
+            Some(cells) => {
+                loaded.write_constants(&self.layout, operators.mass(), cells.into_iter());
+                loaded.matrices = operators.revision();
+            }
+            None => {
+                let program = Arc::clone(&loaded.program);
+                self.layout = Layout::general(operators);
+                let loaded = Loaded::new(program, &self.layout, operators);
+                self.loaded = Some(RwLock::new(loaded));
+            }
+        }
+    }
+}
+
+impl<T: Precision> Machine for FastMachine<T> {
+    fn name(&self) -> &'static str {
+        match self.layout.stiffness {
+            Rows::General(_) => "general",
+            Rows::Lattice(_) => "repeated",
+        }
+    }
+
+    fn kernel(&self) -> String {
+        format!("{} {} {}", self.name(), T::NAME, self.set.name())
+    }
+
+    fn load(&mut self, program: Arc<Program>, system: &dyn System) {
+        self.loaded = None;
+        if let Equations::Linear(linear) = system.equations() {
+            let loaded = Loaded::new(program, &self.layout, linear.operators());
+            self.loaded = Some(RwLock::new(loaded));
+        }
+    }
+
+    fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
+        let Equations::Linear(linear) = batch.system().equations() else {
+            return Err(StepError::NotPrepared);
+        };
+        let operators = linear.operators();
+        let before = self.loaded.as_mut().map(|loaded| own(loaded).matrices);
+        if before.is_some_and(|before| before != operators.revision()) {
+            self.follow_changes(operators);
+        }
+        let Some(loaded) = &mut self.loaded else {
+            return Err(StepError::NotPrepared);
+        };
+        let program = Arc::clone(&own(loaded).program);
+        if program.acceleration != Acceleration::None {
+            state.a.resize(state.u.len(), 0.0);
+        }
+        let (layout, set) = (&*self.layout, self.set);
+        let chunks = own(loaded).chunks();
+        let loaded = &*loaded;
+        let work = |chunks| read(loaded).make(layout, set, chunks);
+        batch.in_parts(program.repeats, |batch| {
+            let sweeps = batch.parts_left() * program.step.len();
+            let threads = layout.threads_for(chunks, sweeps).min(self.threads);
+            Crew::gather(threads, chunks, &work, |host| {
+                let running = Running {
+                    loaded,
+                    layout,
+                    operators,
+                    host,
+                };
+                running.steps(&program, batch, state);
+            });
+        });
+        Ok(())
+    }
+}
+
+impl<T: Precision> Loaded<T> {
+    fn new(program: Arc<Program>, layout: &Layout<T>, operators: &LinearOperators) -> Self {
+        let layers = operators.stiffness().layers().count();
+        let sweeps = Compiled::<T>::new(&program, layers);
+        let mut count = 0;
+        let mut next = |used: bool| {
+            let field = count;
+            count += Field::from(used);
+            field
+        };
+        let mut table = Vec::new();
+        for (used, doubled) in sweeps.registers.iter().zip(&sweeps.doubled) {
+            let first = next(*used);
+            table.push(first);
+            table.push(if *doubled { next(true) } else { first });
+        }
+        let registers = table.len();
+        table.extend(sweeps.constants.iter().map(|(_, used)| next(*used)));
+        let positions = layout.numbering.positions();
+        let mut loaded = Self {
+            matrices: operators.revision(),
+            fields: Fields::new(count as usize, layers, positions, layout.reach),
+            forces_field: table[registers] as usize,
+            forces: Forces::new::<T>(operators, positions),
+            followed: FollowedLoad::of(&program),
+            current: Current {
+                part: Part::Entry,
+                number: 0,
+                is_last: true,
+                limit: T::of(T::LARGEST),
+            },
+            program,
+            sweeps,
+            table,
+        };
+        let cells = 0..layout.numbering.cells() as u32;
+        loaded.write_constants(layout, operators.mass(), cells);
+        loaded
+    }
+
+    /// Writes what stays the same from step to step, for some cells.
+    fn write_constants(
+        &mut self,
+        layout: &Layout<T>,
+        mass: &[f64],
+        cells: impl Iterator<Item = u32> + Clone,
+    ) {
+        let layers = self.fields.layers();
+        let constants = &self.sweeps.constants;
+        let registers = self.table.len() - constants.len();
+        let used = constants.iter().zip(&self.table[registers..]);
+        for ((constant, used), field) in used {
+            // Forces are written as a sweep asks for them.
+            if !used || *constant == Constant::Forces {
+                continue;
+            }
+            for layer in 0..layers {
+                let values = self.fields.layer(*field as usize, layer);
+                for cell in cells.clone() {
+                    let position = layout.numbering.position(cell);
+                    let cell = cell as usize;
+                    let dof = cell * layers + layer;
+                    let value = match constant {
+                        Constant::Forces => continue,
+                        Constant::InverseMass => 1.0 / mass[dof],
+                        Constant::Mass => mass[dof],
+                        Constant::Live => 1.0,
+                        Constant::Limits => {
+                            let limits = self.program.limits.as_ref();
+                            limits.map_or(0.0, |limits| limits[cell])
+                        }
+                        Constant::Row(row) => {
+                            let blocks = self.program.blocks.as_ref();
+                            let at = (cell * layers + row) * layers + layer;
+                            blocks.map_or(0.0, |blocks| blocks.entries()[at])
+                        }
+                    };
+                    values[position] = T::of(value);
+                }
+            }
+        }
+    }
+
+    /// The vector of a register.
+    fn field(&self, register: usize) -> usize {
+        self.table[2 * register] as usize
+    }
+}
+
+/// A batch under way.
+struct Running<'a, 'c, T> {
+    loaded: &'a RwLock<Loaded<T>>,
+    layout: &'a Layout<T>,
+    operators: &'a LinearOperators,
+    host: &'a mut Host<'c>,
+}
+
+/// Which sweeps of a program.
+#[derive(Clone, Copy, Debug)]
+enum Part {
+    Entry,
+    Start,
+    Step,
+}
+
+impl<T: Precision> Running<'_, '_, T> {
+    /// Takes all steps, or parts of them, of a batch.
+    fn steps(mut self, program: &Program, batch: &mut Batch<'_>, state: &mut State) {
+        let running = program.velocity != VelocityTime::Same && state.is_staggered_by(batch.dt());
+        let mut starts = !program.start.is_empty() && !running;
+        let limit = T::of(batch.divergence_limit().min(T::LARGEST));
+        let entry = Current {
+            part: Part::Entry,
+            number: 0,
+            is_last: true,
+            limit,
+        };
+        write(self.loaded).begin(self.layout, state);
+        if !program.entry.is_empty() {
+            self.make(entry);
+        }
+        let mut written = true;
+        while batch.goes_on() {
+            let (part, sweeps) = if starts {
+                (Part::Start, &program.start)
+            } else {
+                (Part::Step, &program.step)
+            };
+            starts = false;
+            let (step, is_last) = (batch.step(), batch.is_last());
+            let mut work = StepReport::default();
+            let mut exceeded = false;
+            for (number, sweep) in sweeps.iter().enumerate() {
+                let current = Current {
+                    part,
+                    number,
+                    is_last,
+                    limit,
+                };
+                if let Some(outcome) = self.sweep(sweep, current, &step, state.t()) {
+                    exceeded |= outcome.exceeded;
+                    work += StepReport {
+                        saturated: outcome.saturated,
+                        ..sweep.work()
+                    };
+                }
+            }
+            let acceleration = match is_last {
+                true => program.acceleration,
+                false => Acceleration::None,
+            };
+            let stepped = Stepped {
+                work,
+                velocity: program.velocity,
+                acceleration,
+            };
+            written = is_last || exceeded || batch.looks_at_steps();
+            if written {
+                write(self.loaded).show(self.layout, state);
+            } else if !batch.watched().is_empty() {
+                write(self.loaded).show_watched(self.layout, batch.watched(), state);
+            }
+            if exceeded {
+                batch.end_step(state, stepped);
+            } else {
+                batch.end_step_within_limit(state, stepped);
+            }
+        }
+        if !written {
+            write(self.loaded).show(self.layout, state);
+        }
+    }
+
+    /// Makes one sweep, where the step needs it.
+    fn sweep(
+        &mut self,
+        sweep: &Sweep,
+        current: Current<T>,
+        step: &Step<'_>,
+        t: f64,
+    ) -> Option<Outcome> {
+        let when = StepTime::new(step, t);
+        if !when.needs(sweep.when, Some(self.operators)) {
+            return None;
+        }
+        let mut loaded = write(self.loaded);
+        loaded.take_loads(self.layout, sweep, self.operators, when);
+        drop(loaded);
+        Some(self.make(current))
+    }
+
+    fn make(&mut self, current: Current<T>) -> Outcome {
+        write(self.loaded).prepare(current);
+        let outcome = self.host.sweep();
+        write(self.loaded).swap();
+        outcome
+    }
+}
+
+impl<T: Precision> Loaded<T> {
+    /// Number of chunks of a sweep.
+    fn chunks(&self) -> usize {
+        self.fields.positions().div_ceil(kernel::CHUNK * T::LANES)
+    }
+
+    /// Begins a batch.
+    fn begin(&mut self, layout: &Layout<T>, state: &State) {
+        self.followed.forget();
+        self.forces.forget();
+        self.take(layout, state);
+    }
+
+    /// Takes the loads of a sweep, and the weights that follow one.
+    fn take_loads(
+        &mut self,
+        layout: &Layout<T>,
+        sweep: &Sweep,
+        operators: &LinearOperators,
+        when: StepTime<'_>,
+    ) {
+        if sweep.loads != Loads::None {
+            let target = (&mut self.fields, self.forces_field);
+            let loads = (sweep.loads, when);
+            self.forces.set(target, &layout.numbering, operators, loads);
+        }
+        self.followed.follow(sweep, Some(operators), when);
+    }
+
+    /// Prepares a sweep.
+    fn prepare(&mut self, current: Current<T>) {
+        self.current = current;
+        let followed = &self.followed;
+        let variant = current.of(&mut self.sweeps);
+        variant.resolve(&self.table, |weight| followed.weight(weight));
+    }
+
+    /// Makes the sweep that was prepared, on a range of chunks that no other thread makes.
+    fn make(&self, layout: &Layout<T>, set: InstructionSet, chunks: Range<usize>) -> Outcome {
+        let (stiffness, dashpots) = (&layout.stiffness, layout.dashpots.as_ref());
+        let sweep = kernel::Sweep {
+            map: self.current.variant(&self.sweeps).map(),
+            matrices: &[stiffness, dashpots.unwrap_or(stiffness)],
+            fields: &self.fields,
+            loaded: &self.forces.loaded,
+            limit: self.current.limit,
+        };
+        run(&sweep, set, chunks)
+    }
+
+    /// Ends the sweep that was prepared.
+    fn swap(&mut self) {
+        for register in &self.current.variant(&self.sweeps).swapped {
+            self.table.swap(2 * register, 2 * register + 1);
+        }
+    }
+
+    /// Takes u, v and, where there is one, the acceleration of a state.
+    fn take(&mut self, layout: &Layout<T>, state: &State) {
+        for (register, values) in [&state.u, &state.v, &state.a].into_iter().enumerate() {
+            if !self.sweeps.registers[register] || values.len() != state.u.len() {
+                continue;
+            }
+            let field = self.field(register);
+            let layers = self.fields.layers();
+            for layer in 0..layers {
+                let out = self.fields.layer(field, layer);
+                let of_layer = values.iter().skip(layer).step_by(layers);
+                for (cell, value) in of_layer.enumerate() {
+                    out[layout.numbering.position(cell as u32)] = T::of(*value);
+                }
+            }
+        }
+    }
+
+    /// Writes u, v and, where the program has one, the acceleration of a state.
+    fn show(&mut self, layout: &Layout<T>, state: &mut State) {
+        let values = [&mut state.u, &mut state.v, &mut state.a];
+        for (register, values) in values.into_iter().enumerate() {
+            if !self.sweeps.registers[register] {
+                continue;
+            }
+            let field = self.field(register);
+            let layers = self.fields.layers();
+            for layer in 0..layers {
+                let from = self.fields.layer(field, layer);
+                let of_layer = values.iter_mut().skip(layer).step_by(layers);
+                for (cell, value) in of_layer.enumerate() {
+                    *value = from[layout.numbering.position(cell as u32)].to_f64();
+                }
+            }
+        }
+    }
+
+    /// Writes the displacements that are watched.
+    fn show_watched(&mut self, layout: &Layout<T>, watched: &[u32], state: &mut State) {
+        let field = self.field(0);
+        let layers = self.fields.layers();
+        for dof in watched {
+            let (cell, layer) = (*dof as usize / layers, *dof as usize % layers);
+            let position = layout.numbering.position(cell as u32);
+            state.u[*dof as usize] = self.fields.layer(field, layer)[position].to_f64();
+        }
+    }
+}
+
+impl<T> Current<T> {
+    fn of<'s>(&self, sweeps: &'s mut Compiled<T>) -> &'s mut Variant<T> {
+        let sweep = match self.part {
+            Part::Entry => &mut sweeps.entry,
+            Part::Start => &mut sweeps.start[self.number],
+            Part::Step => &mut sweeps.step[self.number],
+        };
+        &mut sweep.variants[usize::from(self.is_last)]
+    }
+
+    fn variant<'s>(&self, sweeps: &'s Compiled<T>) -> &'s Variant<T> {
+        let sweep = match self.part {
+            Part::Entry => &sweeps.entry,
+            Part::Start => &sweeps.start[self.number],
+            Part::Step => &sweeps.step[self.number],
+        };
+        &sweep.variants[usize::from(self.is_last)]
+    }
+}
+
+/// What a lock holds, whatever became of other threads.
+fn own<T>(lock: &mut RwLock<T>) -> &mut T {
+    lock.get_mut().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn read<T>(lock: &RwLock<T>) -> RwLockReadGuard<'_, T> {
+    lock.read().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn write<T>(lock: &RwLock<T>) -> RwLockWriteGuard<'_, T> {
+    lock.write().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Makes a sweep on a range of chunks.
+#[allow(unsafe_code, reason = "a machine hands out each chunk once")]
+fn run<T: Precision>(
+    sweep: &kernel::Sweep<'_, T>,
+    set: InstructionSet,
+    chunks: Range<usize>,
+) -> Outcome {
+    // SAFETY: the fields belong to one machine, which runs one sweep at a time: it prepares the next under
+    // the lock that every thread holds while it makes chunks, and its crew hands out each chunk once.
+    unsafe { sweep.run(set, chunks) }
+}

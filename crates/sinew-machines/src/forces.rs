@@ -1,0 +1,73 @@
+//! Loads in the order of a machine.
+
+use sinew_cnn::{Loads, StepTime};
+use sinew_core::{LinearOperators, Load};
+use sinew_sparse::sweep::{CHUNK, Fields, Numbering, Precision};
+
+/// The forces of a sweep: written again only when a load's factor changes.
+#[derive(Debug, Default)]
+pub(crate) struct Forces {
+    /// Address of each load that is in the field, and its factor. Loads stay where they are during a batch.
+    present: Vec<(usize, f64)>,
+    wanted: Vec<(usize, f64)>,
+    /// Positions and layers that are not 0.
+    touched: Vec<(u32, u32)>,
+    /// Whether a chunk has any.
+    pub(crate) loaded: Vec<bool>,
+}
+
+impl Forces {
+    /// Room for the loads of a system.
+    pub(crate) fn new<T: Precision>(operators: &LinearOperators, positions: usize) -> Self {
+        let loads = operators.loads();
+        let entries = loads.iter().map(|load| load.entries.len()).sum();
+        Self {
+            present: Vec::with_capacity(loads.len() + 1),
+            wanted: Vec::with_capacity(loads.len() + 1),
+            touched: Vec::with_capacity(entries),
+            loaded: vec![false; positions.div_ceil(CHUNK * T::LANES)],
+        }
+    }
+
+    /// Forgets which loads are in the field, so that the next ones are written.
+    pub(crate) fn forget(&mut self) {
+        self.present.clear();
+    }
+
+    /// Writes the loads of a sweep.
+    pub(crate) fn set<T: Precision>(
+        &mut self,
+        (fields, field): (&mut Fields<T>, usize),
+        numbering: &Numbering,
+        operators: &LinearOperators,
+        (loads, step): (Loads, StepTime<'_>),
+    ) {
+        self.wanted.clear();
+        step.for_each_load(loads, operators, |load, factor| {
+            self.wanted
+                .push((std::ptr::from_ref::<Load>(load) as usize, factor));
+        });
+        if self.wanted == self.present && !self.wanted.is_empty() {
+            return;
+        }
+        for (position, layer) in self.touched.drain(..) {
+            fields.layer(field, layer as usize)[position as usize] = T::default();
+        }
+        self.loaded.fill(false);
+        let layers = fields.layers();
+        step.for_each_load(loads, operators, |load, factor| {
+            for &(dof, force) in &load.entries {
+                let (cell, layer) = (dof as usize / layers, dof as usize % layers);
+                if cell >= numbering.cells() {
+                    continue;
+                }
+                let position = numbering.position(cell as u32);
+                let value = &mut fields.layer(field, layer)[position];
+                *value = *value + T::of(factor * force);
+                self.touched.push((position as u32, layer as u32));
+                self.loaded[position / (CHUNK * T::LANES)] = true;
+            }
+        });
+        std::mem::swap(&mut self.present, &mut self.wanted);
+    }
+}

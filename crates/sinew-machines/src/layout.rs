@@ -1,0 +1,120 @@
+//! Matrices in the order of a machine.
+
+use std::sync::Arc;
+
+use sinew_core::{LinearOperators, LinearSystem};
+use sinew_sparse::sweep::{Grid, Lattice, Numbering, Precision, Rows, Sell};
+
+/// The matrices of a system as kernels read them.
+#[derive(Clone, Debug)]
+pub struct Layout<T> {
+    pub(crate) numbering: Numbering,
+    /// Positions before the first and after the last that products read.
+    pub(crate) reach: usize,
+    pub(crate) stiffness: Rows<T>,
+    pub(crate) dashpots: Option<Rows<T>>,
+}
+
+/// The layout for any matrix.
+struct General<T>(Arc<Layout<T>>);
+
+/// The layout of a lattice, where there is one.
+struct Repeated<T>(Option<Arc<Layout<T>>>);
+
+/// Work of a batch (microseconds, about) below which threads are not begun.
+const BEGIN: usize = 2_000;
+
+/// Work of a sweep (microseconds, about) that is worth a thread.
+const SHARE: usize = 30;
+
+impl<T: Precision> Layout<T> {
+    /// The rows of any matrix, each by itself; made once for all clones of the operators.
+    #[must_use]
+    pub fn general(operators: &LinearOperators) -> Arc<Self> {
+        let of = |operators: &LinearOperators| {
+            let stiffness = operators.stiffness();
+            let numbering = Numbering::near_neighbours(stiffness.pattern(), T::LANES);
+            let rows = |matrix| Rows::General(Sell::new(matrix, &numbering));
+            let extra = operators.damping().extra.as_ref();
+            General(Arc::new(Self {
+                stiffness: rows(stiffness),
+                dashpots: extra.map(|extra| rows(extra)),
+                reach: 0,
+                numbering,
+            }))
+        };
+        Arc::clone(&operators.derived::<General<T>>(of).0)
+    }
+
+    /// Templates on a lattice, where cells are on one and few templates make all rows; made once for all
+    /// clones of the operators. Rows that changed since the matrices were made have none, so that they
+    /// need not be looked for again.
+    #[must_use]
+    pub fn repeated(system: &dyn LinearSystem) -> Option<Arc<Self>> {
+        if system.operators().has_changed() {
+            return None;
+        }
+        let of = |operators: &LinearOperators| {
+            Repeated(Self::on_lattice(operators, system.cell_positions()).map(Arc::new))
+        };
+        system.operators().derived::<Repeated<T>>(of).0.clone()
+    }
+
+    fn on_lattice(operators: &LinearOperators, points: Option<Vec<[f64; 3]>>) -> Option<Self> {
+        let stiffness = operators.stiffness();
+        let points = points.filter(|points| points.len() == stiffness.pattern().cells())?;
+        let grid = Grid::find(&points, T::LANES)?;
+        let rows = |matrix| Lattice::new(matrix, &grid).map(Rows::Lattice);
+        let dashpots = match &operators.damping().extra {
+            Some(extra) => Some(rows(extra)?),
+            None => None,
+        };
+        Some(Self {
+            stiffness: rows(stiffness)?,
+            dashpots,
+            reach: grid.reach(),
+            numbering: grid.numbering().clone(),
+        })
+    }
+
+    /// Number of templates, where rows repeat.
+    #[must_use]
+    pub fn templates(&self) -> Option<usize> {
+        match &self.stiffness {
+            Rows::General(_) => None,
+            Rows::Lattice(lattice) => Some(lattice.templates()),
+        }
+    }
+
+    /// Bytes of the matrices that a sweep with all of them reads.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.stiffness.bytes() + self.dashpots.as_ref().map_or(0, Rows::bytes)
+    }
+
+    /// The number of threads that pays for sweeps over so many chunks: as many as each get work for some tens
+    /// of microseconds in a sweep, and one where a batch ends before others have begun.
+    pub(crate) fn threads_for(&self, chunks: usize, sweeps: usize) -> usize {
+        // Microseconds, about: rows of blocks are read from memory, templates are not.
+        let (work, vectors) = match self.stiffness {
+            Rows::General(_) => (4, T::LANES),
+            Rows::Lattice(_) => (1, 8),
+        };
+        let of_sweep = chunks * work * vectors / 8;
+        if of_sweep.saturating_mul(sweeps) < BEGIN {
+            return 1;
+        }
+        (of_sweep / SHARE).max(1)
+    }
+
+    /// Takes the rows of some cells again; whether it can.
+    pub(crate) fn take_rows(&mut self, operators: &LinearOperators, cells: &[u32]) -> bool {
+        let Rows::General(sell) = &mut self.stiffness else {
+            return false;
+        };
+        for cell in cells {
+            sell.set_row(operators.stiffness(), &self.numbering, *cell);
+        }
+        true
+    }
+}

@@ -1,0 +1,107 @@
+//! Templates on a lattice against the general kernels and the reference machine.
+
+#![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+#[path = "common/bodies.rs"]
+mod bodies;
+
+use bodies::{body, bump, difference, held_cube, leapfrog, run};
+use sinew_cnn::ReferenceMachine;
+use sinew_core::{LinearSystem, System};
+use sinew_fem::{Fixed, Law, Model, Problem, Region, SpringRule};
+use sinew_machines::{FastMachine, Layout};
+use sinew_mesh::structured::{Split, cube};
+
+/// The number of templates of a body, after its motion by them has been compared with the reference
+/// machine's.
+fn templates(system: &Model) -> usize {
+    let steps = leapfrog(system, 0.9);
+    let start = bump(system);
+    let expected = run(
+        &mut ReferenceMachine::default(),
+        (system, &start),
+        (&steps.0, steps.1),
+        100,
+    );
+    let layout = Layout::<f64>::repeated(system).unwrap();
+    let count = layout.templates().unwrap();
+    let mut repeated = FastMachine::new(layout);
+    let mut general = FastMachine::new(Layout::<f64>::general(system.operators()));
+    for machine in [&mut repeated, &mut general] {
+        let found = run(machine, (system, &start), (&steps.0, steps.1), 100);
+        let off = difference(&expected, &found);
+        assert!(off < 1e-12, "{machine:?}: {off:.1e}");
+    }
+    count
+}
+
+#[test]
+fn a_cube_held_at_its_sides_has_a_template_for_its_inside_and_one_for_each_free_face() {
+    assert_eq!(templates(&held_cube(9, Split::Kuhn)), 3);
+}
+
+#[test]
+fn a_free_cube_has_a_template_for_each_kind_of_node() {
+    // Inside, 6 faces, 12 edges and 8 corners, the corners on the diagonal of their own.
+    let mesh = cube(9, 0.1, Split::Kuhn).unwrap();
+    let law = bodies::TISSUE;
+    let regions = vec![Region {
+        group: None,
+        density: 1060.0,
+        law,
+    }];
+    let model = Model::build(
+        &mesh,
+        &Problem {
+            regions,
+            ..Problem::default()
+        },
+    )
+    .unwrap();
+    assert_eq!(templates(&model), 27);
+}
+
+#[test]
+fn mirrored_cells_have_a_template_for_each_parity() {
+    let found = templates(&held_cube(10, Split::Mirrored));
+    // Each plane has at most 2 x 2 kinds of nodes; two kinds of planes inside and two free faces.
+    assert!(found <= 16, "{found}");
+}
+
+#[test]
+fn springs_repeat_as_tetrahedra_do() {
+    let mesh = cube(9, 0.1, Split::Kuhn).unwrap();
+    let law = Law::Springs {
+        youngs_modulus: 3500.0,
+        rule: SpringRule::VanGelder,
+        calibrate: true,
+        damping_ratio: 0.1,
+    };
+    let problem = Problem {
+        regions: vec![Region {
+            group: None,
+            density: 1060.0,
+            law,
+        }],
+        fixed: vec![Fixed {
+            on: "sides".into(),
+            axes: [true; 3],
+        }],
+        ..Problem::default()
+    };
+    let model = Model::build(&mesh, &problem).unwrap();
+    assert!(model.operators().damping().extra.is_some());
+    assert_eq!(templates(&model), 3);
+}
+
+#[test]
+fn a_body_on_no_lattice_has_none() {
+    let mut mesh = cube(6, 0.1, Split::Kuhn).unwrap();
+    for point in &mut mesh.points {
+        point[0] += 2e-3 * (40.0 * point[1]).sin();
+    }
+    let model = body(&mesh, "bottom");
+    assert!(Layout::<f64>::repeated(&model).is_none());
+    assert!(model.cell_positions().is_some());
+}

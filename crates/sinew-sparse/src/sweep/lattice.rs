@@ -1,0 +1,134 @@
+//! Rows that repeat on a lattice.
+
+#![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
+
+use std::ops::Range;
+
+use crate::simd::{Lanes, Real};
+
+/// Rows of a matrix on the positions of a lattice, each template stored once: what neighbours a row
+/// reads, and by which blocks, is the same for all rows of a template, so that neither blocks nor
+/// columns are read from memory.
+#[derive(Clone, Debug)]
+pub struct Lattice<T> {
+    pub(super) layers: usize,
+    pub(super) positions: usize,
+    /// Longest offset.
+    pub(super) reach: usize,
+    /// First block of each template; one more at the end.
+    pub(super) starts: Vec<u32>,
+    /// Distance (positions) to the neighbour of each block.
+    pub(super) offsets: Vec<i32>,
+    /// Entries of each block, row by row.
+    pub(super) blocks: Vec<T>,
+    /// First run of each chunk; one more at the end.
+    pub(super) first_run: Vec<u32>,
+    pub(super) runs: Vec<Run>,
+}
+
+/// Positions one after the other with the same template.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Run {
+    pub(super) template: u32,
+    /// First position.
+    pub(super) first: u32,
+    /// Vectors of positions; the last may reach beyond the run, into what a later run computes.
+    pub(super) vectors: u32,
+}
+
+impl<T: Real> Lattice<T> {
+    /// Number of templates.
+    #[must_use]
+    pub fn templates(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    pub(super) fn is_on(&self, positions: usize, layers: usize) -> bool {
+        self.positions == positions && self.layers == layers
+    }
+
+    /// Bytes that a product reads of the matrix.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.blocks[..]) + size_of_val(&self.offsets[..]) + size_of_val(&self.runs[..])
+    }
+
+    /// `out = A source` for a chunk.
+    ///
+    /// # Safety
+    /// The instruction set of `V` is available. `source` and `out` are the first positions of their
+    /// layers, `out` that of the chunk: `source` valid for all positions and as far before and after
+    /// them as an offset goes, `out` for the chunk and one vector more. L is the number of layers.
+    #[inline(always)]
+    pub(super) unsafe fn product<V: Lanes<T>, const L: usize>(
+        &self,
+        chunk: usize,
+        first: usize,
+        source: [*const T; L],
+        out: [*mut T; L],
+    ) {
+        debug_assert!(L == self.layers);
+        let runs = self.first_run[chunk] as usize..self.first_run[chunk + 1] as usize;
+        for run in &self.runs[runs] {
+            let template = run.template as usize;
+            let blocks = self.starts[template] as usize..self.starts[template + 1] as usize;
+            let (mut at, mut left) = (run.first as usize, run.vectors as usize);
+            // SAFETY: as for this function; runs end within a vector after their chunk.
+            unsafe {
+                while left > 0 {
+                    let from = source.map(|source| source.add(at));
+                    let to = out.map(|out| out.add(at - first));
+                    let taken = match left {
+                        1 => self.vectors::<V, L, 1>(blocks.clone(), from, to),
+                        2 => self.vectors::<V, L, 2>(blocks.clone(), from, to),
+                        _ => self.vectors::<V, L, 3>(blocks.clone(), from, to),
+                    };
+                    at += taken * T::LANES;
+                    left -= taken;
+                }
+            }
+        }
+    }
+
+    /// N vectors of positions at a time, so that each block is read once for all of them; returns N.
+    ///
+    /// # Safety
+    /// As for [`Lattice::product`], for the positions from `from` and `to` on.
+    #[inline(always)]
+    unsafe fn vectors<V: Lanes<T>, const L: usize, const N: usize>(
+        &self,
+        blocks: Range<usize>,
+        from: [*const T; L],
+        to: [*mut T; L],
+    ) -> usize {
+        // SAFETY: blocks have L L entries and an offset each; pointers as for this function.
+        unsafe {
+            let mut sum = [[V::splat(T::default()); N]; L];
+            let mut entry = self.blocks.as_ptr().add(blocks.start * L * L);
+            for block in blocks {
+                let offset = *self.offsets.as_ptr().add(block) as isize;
+                let mut x = [[V::splat(T::default()); N]; L];
+                for j in 0..L {
+                    for n in 0..N {
+                        x[j][n] = V::load(from[j].offset(offset).add(n * T::LANES));
+                    }
+                }
+                for sum in &mut sum {
+                    for x in &x {
+                        let factor = V::splat(*entry);
+                        entry = entry.add(1);
+                        for n in 0..N {
+                            sum[n] = x[n].mul_add(factor, sum[n]);
+                        }
+                    }
+                }
+            }
+            for i in 0..L {
+                for n in 0..N {
+                    sum[i][n].store(to[i].add(n * T::LANES));
+                }
+            }
+        }
+        N
+    }
+}

@@ -1,0 +1,82 @@
+//! Kernels for each precision and instruction set.
+
+#![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
+
+use std::ops::Range;
+
+use super::chunk::{Outcome, Sweep, run};
+use crate::simd::{Array, InstructionSet, Real};
+#[cfg(target_arch = "x86_64")]
+use crate::simd::{Avx2, Avx512};
+
+/// A precision that there are kernels for.
+pub trait Precision: Real {
+    /// Its name, as scenes and results show it.
+    const NAME: &'static str;
+
+    /// [`Sweep::run`] for a checked sweep.
+    ///
+    /// # Safety
+    /// As for [`Sweep::run`], on an instruction set that is available.
+    #[doc(hidden)]
+    unsafe fn run(sweep: &Sweep<'_, Self>, set: InstructionSet, chunks: Range<usize>) -> Outcome;
+}
+
+macro_rules! precision {
+    ($number:ty, $name:literal, $lanes:literal, $of256:ident, $of512:ident) => {
+        impl Precision for $number {
+            const NAME: &'static str = $name;
+
+            unsafe fn run(
+                sweep: &Sweep<'_, Self>,
+                set: InstructionSet,
+                chunks: Range<usize>,
+            ) -> Outcome {
+                type Portable = Array<$number, $lanes>;
+                #[cfg(target_arch = "x86_64")]
+                type Wide = Avx2<std::arch::x86_64::$of256>;
+                #[cfg(target_arch = "x86_64")]
+                type Widest = Avx512<std::arch::x86_64::$of512>;
+
+                #[cfg(target_arch = "x86_64")]
+                #[target_feature(enable = "avx2,fma")]
+                unsafe fn avx2<const L: usize>(
+                    sweep: &Sweep<'_, $number>,
+                    chunks: Range<usize>,
+                ) -> Outcome {
+                    // SAFETY: promised by the caller of this function.
+                    unsafe { run::<$number, Wide, L>(sweep, chunks) }
+                }
+
+                #[cfg(target_arch = "x86_64")]
+                #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
+                unsafe fn avx512<const L: usize>(
+                    sweep: &Sweep<'_, $number>,
+                    chunks: Range<usize>,
+                ) -> Outcome {
+                    // SAFETY: promised by the caller of this function.
+                    unsafe { run::<$number, Widest, L>(sweep, chunks) }
+                }
+
+                // SAFETY: promised by the caller of this function; the set is available.
+                unsafe {
+                    match (set, sweep.fields.layers()) {
+                        #[cfg(target_arch = "x86_64")]
+                        (InstructionSet::Avx512, 1) => avx512::<1>(sweep, chunks),
+                        #[cfg(target_arch = "x86_64")]
+                        (InstructionSet::Avx512, _) => avx512::<3>(sweep, chunks),
+                        #[cfg(target_arch = "x86_64")]
+                        (InstructionSet::Avx2, 1) => avx2::<1>(sweep, chunks),
+                        #[cfg(target_arch = "x86_64")]
+                        (InstructionSet::Avx2, _) => avx2::<3>(sweep, chunks),
+                        (_, 1) => run::<$number, Portable, 1>(sweep, chunks),
+                        (_, _) => run::<$number, Portable, 3>(sweep, chunks),
+                    }
+                }
+            }
+        }
+    };
+}
+
+precision!(f64, "f64", 8, __m256d, __m512d);
+precision!(f32, "f32", 16, __m256, __m512);

@@ -1,0 +1,361 @@
+//! Cells on a lattice, and the templates that their rows repeat.
+
+use std::collections::HashMap;
+
+use super::lattice::{Lattice, Run};
+use super::{CHUNK, Numbering};
+use crate::BlockMatrix;
+use crate::simd::Real;
+
+/// Share of the spacing by which a cell may miss its place.
+const OFF_PLACE: f64 = 1e-4;
+
+/// Most places for each cell: kernels compute at empty ones too.
+const MOST_PLACES: f64 = 2.0;
+
+/// Difference between entries that counts as rounding of the same template, as a share of the largest
+/// entry of the matrix: coordinates of cells are rounded.
+const SAME: f64 = 1e-13;
+
+/// Fewest cells for each template, on average: with fewer, little is repeated.
+const FEWEST_CELLS: usize = 8;
+
+/// Templates into which others are merged.
+const MERGED_INTO: usize = 32;
+
+/// Places of cells on a lattice: one position more than there are cells along each line, and one line
+/// more in each plane, so that beyond a body's sides every position is empty.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    numbering: Numbering,
+    /// Distance between lines and between planes (positions).
+    pitch: [usize; 2],
+    /// Cells along each axis, from its first to its last.
+    extent: [usize; 3],
+    place: Vec<[i32; 3]>,
+}
+
+impl Grid {
+    /// The lattice of cells at these points, for kernels with so many lanes; `None` where they are on
+    /// none, or too far apart.
+    #[must_use]
+    pub fn find(points: &[[f64; 3]], lanes: usize) -> Option<Self> {
+        let axes = [0, 1, 2].map(|axis| places(points, axis));
+        let [Some(x), Some(y), Some(z)] = axes else {
+            return None;
+        };
+        let extent = [&x, &y, &z].map(|axis| 1 + axis.iter().max().copied().unwrap_or(0) as usize);
+        let pitch_of_lines = extent[0] + 1;
+        let pitch_of_planes = pitch_of_lines.checked_mul(extent[1] + 1)?;
+        let positions = pitch_of_planes.checked_mul(extent[2])?;
+        if positions as f64 > MOST_PLACES * points.len() as f64 + 64.0 {
+            return None;
+        }
+        let positions = positions.next_multiple_of(lanes);
+        if positions > i32::MAX as usize {
+            return None;
+        }
+        let place: Vec<[i32; 3]> = (0..points.len()).map(|i| [x[i], y[i], z[i]]).collect();
+        let at = |[x, y, z]: &[i32; 3]| {
+            *x as u32 + *y as u32 * pitch_of_lines as u32 + *z as u32 * pitch_of_planes as u32
+        };
+        let position: Vec<u32> = place.iter().map(at).collect();
+        let mut taken = vec![false; positions];
+        if position
+            .iter()
+            .any(|position| std::mem::replace(&mut taken[*position as usize], true))
+        {
+            return None;
+        }
+        Some(Self {
+            numbering: Numbering::at(position, positions),
+            pitch: [pitch_of_lines, pitch_of_planes],
+            extent,
+            place,
+        })
+    }
+
+    /// The cells' positions.
+    #[must_use]
+    pub fn numbering(&self) -> &Numbering {
+        &self.numbering
+    }
+
+    /// Distance (positions) to the farthest neighbour of a cell.
+    #[must_use]
+    pub fn reach(&self) -> usize {
+        self.pitch[1] + self.pitch[0] + 1
+    }
+
+    /// Cells along each axis.
+    #[must_use]
+    pub fn extent(&self) -> [usize; 3] {
+        self.extent
+    }
+
+    /// Distance between neighbours on the lattice; `None` where they are not next to each other.
+    fn offset(&self, cell: usize, neighbour: usize) -> Option<i32> {
+        let (from, to) = (self.place[cell], self.place[neighbour]);
+        let step = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+        let near = step.iter().all(|step| step.abs() <= 1);
+        let pitch = self.pitch.map(|pitch| pitch as i32);
+        near.then_some(step[0] + step[1] * pitch[0] + step[2] * pitch[1])
+    }
+
+    fn is_empty(&self, position: i64) -> bool {
+        let position = usize::try_from(position).ok();
+        let inside = position.filter(|position| *position < self.numbering.positions());
+        inside.is_none_or(|position| self.numbering.cell(position).is_none())
+    }
+}
+
+/// Place of each point along an axis, in equal steps from the first; `None` where they are not.
+fn places(points: &[[f64; 3]], axis: usize) -> Option<Vec<i32>> {
+    let mut sorted: Vec<f64> = points.iter().map(|point| point[axis]).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let (first, last) = (*sorted.first()?, *sorted.last()?);
+    let extent = last - first;
+    if !extent.is_finite() {
+        return None;
+    }
+    if extent == 0.0 {
+        return Some(vec![0; points.len()]);
+    }
+    let gaps = sorted.windows(2).map(|pair| pair[1] - pair[0]);
+    let spacing = gaps
+        .filter(|gap| *gap > 1e-6 * extent)
+        .fold(extent, f64::min);
+    // Of many rounded gaps the smallest is a little too small; the whole extent says it better.
+    let spacing = extent / (extent / spacing).round();
+    let place = |point: &[f64; 3]| {
+        let steps = (point[axis] - first) / spacing;
+        let near = steps.round();
+        ((steps - near).abs() <= OFF_PLACE).then_some(near as i32)
+    };
+    points.iter().map(place).collect()
+}
+
+/// Rows that differ by their numbers only in rounding.
+struct Template {
+    offsets: Vec<i32>,
+    blocks: Vec<f64>,
+    rows: usize,
+}
+
+impl<T: Real> Lattice<T> {
+    /// The rows of a matrix on a lattice; `None` where too few repeat, or where a cell's neighbours are
+    /// not next to it.
+    #[must_use]
+    pub fn new(matrix: &BlockMatrix, grid: &Grid) -> Option<Self> {
+        let (templates, mut of_cell) = find(matrix, grid)?;
+        merge(&templates, grid, &mut of_cell);
+        let used = number_used(templates.len(), &mut of_cell);
+        let layers = matrix.layers().count();
+        let mut lattice = Self {
+            layers,
+            positions: grid.numbering().positions(),
+            reach: grid.reach(),
+            starts: vec![0],
+            offsets: Vec::new(),
+            blocks: Vec::new(),
+            first_run: vec![0],
+            runs: Vec::new(),
+        };
+        for template in used {
+            let Template {
+                offsets, blocks, ..
+            } = &templates[template];
+            lattice.offsets.extend(offsets);
+            lattice
+                .blocks
+                .extend(blocks.iter().map(|entry| T::of(*entry)));
+            lattice.starts.push(lattice.offsets.len() as u32);
+        }
+        lattice.add_runs(grid, &of_cell);
+        Some(lattice)
+    }
+
+    /// Runs of equal templates, chunk by chunk. Positions without a cell may belong to any.
+    fn add_runs(&mut self, grid: &Grid, of_cell: &[u32]) {
+        let numbering = grid.numbering();
+        let chunk = CHUNK * T::LANES;
+        for from in (0..numbering.positions()).step_by(chunk) {
+            let to = (from + chunk).min(numbering.positions());
+            // Template, first and last position.
+            let mut open: Option<(u32, usize, usize)> = None;
+            for position in from..to {
+                let Some(cell) = numbering.cell(position) else {
+                    continue;
+                };
+                let template = of_cell[cell as usize];
+                open = match open {
+                    Some((same, first, last))
+                        if same == template && position - last <= T::LANES =>
+                    {
+                        Some((same, first, position))
+                    }
+                    _ => {
+                        self.close(open);
+                        Some((template, position, position))
+                    }
+                };
+            }
+            self.close(open);
+            self.first_run.push(self.runs.len() as u32);
+        }
+    }
+
+    fn close(&mut self, run: Option<(u32, usize, usize)>) {
+        if let Some((template, first, last)) = run {
+            self.runs.push(Run {
+                template,
+                first: first as u32,
+                vectors: (last + 1 - first).div_ceil(T::LANES) as u32,
+            });
+        }
+    }
+}
+
+/// The templates of all rows, and which is whose.
+fn find(matrix: &BlockMatrix, grid: &Grid) -> Option<(Vec<Template>, Vec<u32>)> {
+    let cells = matrix.pattern().cells();
+    let layers = matrix.layers().count();
+    let sizes = matrix.values().iter().map(|entry| entry.abs());
+    let same = SAME * sizes.fold(0.0, f64::max);
+    let mut templates: Vec<Template> = Vec::new();
+    let mut of_cell = Vec::with_capacity(cells);
+    // Templates by their offsets and a sum of their entries, which rounding may move to the next number.
+    let mut known: HashMap<(Vec<i32>, i64), Vec<u32>> = HashMap::new();
+    let mut row: Vec<(i32, &[f64])> = Vec::new();
+    let mut key = (Vec::new(), 0);
+    for cell in 0..cells {
+        row.clear();
+        for (column, block) in matrix.row_blocks(cell) {
+            row.push((grid.offset(cell, column)?, block));
+        }
+        row.sort_unstable_by_key(|(offset, _)| *offset);
+        let sum: f64 = row.iter().flat_map(|(_, block)| block.iter()).sum();
+        let entries = row.len() * layers * layers;
+        let width = 4.0 * same * entries as f64;
+        let step = if width > 0.0 {
+            (sum / width).floor() as i64
+        } else {
+            0
+        };
+        key.0.clear();
+        key.0.extend(row.iter().map(|(offset, _)| *offset));
+        let mut found = None;
+        for near in [step, step - 1, step + 1] {
+            key.1 = near;
+            let like = |number: &&u32| {
+                let blocks = templates[**number as usize].blocks.iter();
+                let row = row.iter().flat_map(|(_, block)| block.iter());
+                row.zip(blocks).all(|(a, b)| (a - b).abs() <= same)
+            };
+            found = known
+                .get(&key)
+                .and_then(|numbers| numbers.iter().find(like));
+            if found.is_some() {
+                break;
+            }
+        }
+        let number = match found {
+            Some(number) => *number,
+            None => {
+                let number = templates.len() as u32;
+                if templates.len() * FEWEST_CELLS > cells.max(64 * FEWEST_CELLS) {
+                    return None;
+                }
+                key.1 = step;
+                known.entry(key.clone()).or_default().push(number);
+                templates.push(Template {
+                    offsets: key.0.clone(),
+                    blocks: row
+                        .iter()
+                        .flat_map(|(_, block)| block.iter().copied())
+                        .collect(),
+                    rows: 0,
+                });
+                number
+            }
+        };
+        templates[number as usize].rows += 1;
+        of_cell.push(number);
+    }
+    Some((templates, of_cell))
+}
+
+/// Gives a row that lacks neighbours the template of rows that have them, where what it lacks is empty
+/// and adds nothing: rows beside held cells.
+fn merge(templates: &[Template], grid: &Grid, of_cell: &mut [u32]) {
+    let mut frequent: Vec<usize> = (0..templates.len()).collect();
+    frequent.sort_by_key(|number| std::cmp::Reverse(templates[*number].rows));
+    frequent.truncate(MERGED_INTO);
+    let sizes = templates.iter().flat_map(|template| &template.blocks);
+    let same = SAME * sizes.fold(0.0, |most: f64, entry| entry.abs().max(most));
+    // The larger templates of each, with the neighbours that they have more.
+    let larger: Vec<Vec<(usize, Vec<i32>)>> = templates
+        .iter()
+        .map(|small| {
+            let larger = frequent.iter();
+            let larger = larger.filter_map(|number| {
+                let more = templates[*number].more_than(small, same)?;
+                Some((*number, more))
+            });
+            larger.collect()
+        })
+        .collect();
+    for (cell, number) in of_cell.iter_mut().enumerate() {
+        let position = grid.numbering().position(cell as u32) as i64;
+        let fits = |(_, more): &&(usize, Vec<i32>)| {
+            let mut more = more.iter();
+            more.all(|offset| grid.is_empty(position + i64::from(*offset)))
+        };
+        if let Some((larger, _)) = larger[*number as usize].iter().find(fits) {
+            *number = *larger as u32;
+        }
+    }
+}
+
+impl Template {
+    /// The offsets that this has and `small` has not, where all else is the same.
+    fn more_than(&self, small: &Self, same: f64) -> Option<Vec<i32>> {
+        if self.offsets.len() <= small.offsets.len() {
+            return None;
+        }
+        let len = self.blocks.len() / self.offsets.len();
+        let mut more = Vec::new();
+        let mut blocks = small
+            .offsets
+            .iter()
+            .zip(small.blocks.chunks_exact(len))
+            .peekable();
+        for (offset, block) in self.offsets.iter().zip(self.blocks.chunks_exact(len)) {
+            match blocks.next_if(|(of_small, _)| *of_small == offset) {
+                Some((_, of_small)) => {
+                    let mut entries = block.iter().zip(of_small);
+                    if !entries.all(|(a, b)| (a - b).abs() <= same) {
+                        return None;
+                    }
+                }
+                None => more.push(*offset),
+            }
+        }
+        blocks.peek().is_none().then_some(more)
+    }
+}
+
+/// The templates that are used, renumbered in `of_cell`.
+fn number_used(templates: usize, of_cell: &mut [u32]) -> Vec<usize> {
+    let mut number = vec![u32::MAX; templates];
+    let mut used = Vec::new();
+    for template in of_cell {
+        let new = &mut number[*template as usize];
+        if *new == u32::MAX {
+            *new = used.len() as u32;
+            used.push(*template as usize);
+        }
+        *template = *new;
+    }
+    used
+}
