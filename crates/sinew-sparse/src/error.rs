@@ -12,6 +12,12 @@ pub enum AssemblyError {
         /// Number of cells.
         cells: usize,
     },
+    /// More elements than 32-bit numbers.
+    #[error("{elements} elements: at most {} can be numbered", u32::MAX)]
+    TooManyElements {
+        /// Number of elements.
+        elements: usize,
+    },
     /// Two cells of an element are not neighbours in the pattern.
     #[error("cells {row} and {column} are not neighbours in the pattern")]
     NotNeighbours {

@@ -22,6 +22,7 @@
 //! ```
 
 mod error;
+mod incidence;
 mod matrix;
 mod pattern;
 mod product;

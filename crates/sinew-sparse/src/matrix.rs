@@ -58,17 +58,22 @@ impl BlockMatrix {
     /// # Errors
     /// Same as [`BlockMatrix::add_element`].
     pub fn check_element(&self, nodes: &[u32], element: &[f64]) -> Result<(), AssemblyError> {
+        self.check_size(nodes, element)?;
+        for &row in nodes {
+            for &column in nodes {
+                self.position(row, column)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_size(&self, nodes: &[u32], element: &[f64]) -> Result<(), AssemblyError> {
         let side = nodes.len() * self.layers.count();
         if element.len() != side * side {
             return Err(AssemblyError::ElementSize {
                 found: element.len(),
                 expected: side * side,
             });
-        }
-        for &row in nodes {
-            for &column in nodes {
-                self.position(row, column)?;
-            }
         }
         Ok(())
     }
@@ -79,21 +84,51 @@ impl BlockMatrix {
     /// [`AssemblyError`] when a cell or a neighbour pair is unknown to the pattern or the size
     /// does not fit; nothing is added then.
     pub fn add_element(&mut self, nodes: &[u32], element: &[f64]) -> Result<(), AssemblyError> {
-        self.check_element(nodes, element)?;
-        let layers = self.layers.count();
-        let side = nodes.len() * layers;
-        for (a, &row) in nodes.iter().enumerate() {
-            for (b, &column) in nodes.iter().enumerate() {
-                let start = self.position(row, column)? * self.layers.block_len();
-                for i in 0..layers {
-                    for j in 0..layers {
-                        self.values[start + i * layers + j] +=
-                            element[(a * layers + i) * side + b * layers + j];
+        self.check_size(nodes, element)?;
+        if nodes.is_empty() {
+            return Ok(());
+        }
+        // Tetrahedra, of which there are millions, allocate nothing.
+        let mut few = [0; 16];
+        let mut many = Vec::new();
+        let pairs = nodes.len() * nodes.len();
+        let positions = match few.get_mut(..pairs) {
+            Some(few) => few,
+            None => {
+                many.resize(pairs, 0);
+                &mut many
+            }
+        };
+        let each_pair = nodes
+            .iter()
+            .flat_map(|a| nodes.iter().map(move |b| (*a, *b)));
+        for (position, (row, column)) in positions.iter_mut().zip(each_pair) {
+            *position = self.position(row, column)?;
+        }
+        match self.layers {
+            Layers::One => self.add_at::<1>(positions, nodes.len(), element),
+            Layers::Three => self.add_at::<3>(positions, nodes.len(), element),
+        }
+        Ok(())
+    }
+
+    /// Adds the blocks of an element of `nodes` cells at their positions, both in row-major order.
+    fn add_at<const L: usize>(&mut self, positions: &[usize], nodes: usize, element: &[f64]) {
+        let side = nodes * L;
+        let rows = positions
+            .chunks_exact(nodes)
+            .zip(element.chunks_exact(L * side));
+        for (positions, rows) in rows {
+            for (b, position) in positions.iter().enumerate() {
+                let block = &mut self.values[position * L * L..(position + 1) * L * L];
+                let rows = rows.chunks_exact(side);
+                for (values, row) in block.as_chunks_mut::<L>().0.iter_mut().zip(rows) {
+                    for (value, added) in values.iter_mut().zip(&row[b * L..(b + 1) * L]) {
+                        *value += added;
                     }
                 }
             }
         }
-        Ok(())
     }
 
     /// Adds `block` (row-major, `layers` x `layers`) at (`row`, `column`).
@@ -228,6 +263,30 @@ mod tests {
             matrix.block(1, 0).unwrap(),
             [6.0, 8.0, 10.0, 18.0, 20.0, 22.0, 30.0, 32.0, 34.0]
         );
+    }
+
+    #[test]
+    fn an_element_of_any_number_of_cells_adds_its_blocks() {
+        for layers in [Layers::One, Layers::Three] {
+            let pattern = Arc::new(Pattern::from_elements(7, [[0, 1, 2, 3, 4, 5, 6]]).unwrap());
+            for nodes in [&[][..], &[4], &[3, 0], &[6, 2, 4, 0], &[5, 1, 0, 3, 6]] {
+                let (len, count) = (layers.count(), nodes.len());
+                let side = count * len;
+                let element: Vec<f64> = (0..side * side).map(|k| k as f64).collect();
+                let mut whole = BlockMatrix::zeros(Arc::clone(&pattern), layers);
+                let mut blocks = whole.clone();
+                whole.add_element(nodes, &element).unwrap();
+                for (a, row) in nodes.iter().enumerate() {
+                    for (b, column) in nodes.iter().enumerate() {
+                        let entry =
+                            |k: usize| element[(a * len + k / len) * side + b * len + k % len];
+                        let block: Vec<f64> = (0..len * len).map(entry).collect();
+                        blocks.add_block(*row, *column, &block).unwrap();
+                    }
+                }
+                assert_eq!(whole, blocks, "{layers:?}, {nodes:?}");
+            }
+        }
     }
 
     #[test]

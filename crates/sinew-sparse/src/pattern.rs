@@ -1,6 +1,7 @@
 //! Neighbourhoods of cells.
 
 use crate::error::AssemblyError;
+use crate::incidence::Incidence;
 
 /// A symmetric neighbourhood relation on cells, each cell being its own neighbour.
 ///
@@ -10,7 +11,8 @@ use crate::error::AssemblyError;
 pub struct Pattern {
     row_start: Vec<usize>,
     columns: Vec<u32>,
-    diagonal: Vec<usize>,
+    /// Place of the cell itself among its neighbours.
+    diagonal: Vec<u32>,
 }
 
 impl Pattern {
@@ -19,7 +21,8 @@ impl Pattern {
     /// `cells` is the number of cells; each element lists cell indices in `0..cells`.
     ///
     /// # Errors
-    /// [`AssemblyError::CellOutOfRange`] when an element names a cell that does not exist.
+    /// [`AssemblyError::CellOutOfRange`] when an element names a cell that does not exist, and
+    /// [`AssemblyError::TooManyElements`].
     pub fn from_elements<E>(
         cells: usize,
         elements: impl IntoIterator<Item = E>,
@@ -27,43 +30,75 @@ impl Pattern {
     where
         E: AsRef<[u32]>,
     {
-        let mut neighbours: Vec<Vec<u32>> = (0..cells as u32).map(|cell| vec![cell]).collect();
-        for element in elements {
-            let element = element.as_ref();
-            for &row in element {
-                let list = neighbours
-                    .get_mut(row as usize)
-                    .ok_or(AssemblyError::CellOutOfRange { cell: row, cells })?;
-                for &column in element {
-                    if column as usize >= cells {
-                        return Err(AssemblyError::CellOutOfRange {
-                            cell: column,
-                            cells,
-                        });
-                    }
-                    // Lists stay short (a tetrahedral mesh has about 14 neighbours a node).
-                    if !list.contains(&column) {
-                        list.push(column);
+        let incidence = Incidence::new(cells, elements)?;
+        // The last row in which each cell was listed.
+        let mut listed = vec![None; cells];
+        let mut pattern = Self::with_room(cells, 0);
+        for cell in 0..cells as u32 {
+            let start = pattern.columns.len();
+            listed[cell as usize] = Some(cell);
+            pattern.columns.push(cell);
+            for element in incidence.elements_at(cell) {
+                for &other in element {
+                    if listed[other as usize].replace(cell) != Some(cell) {
+                        pattern.columns.push(other);
                     }
                 }
             }
+            pattern.columns[start..].sort_unstable();
+            pattern.end_row(cell);
         }
+        pattern.columns.shrink_to_fit();
+        Ok(pattern)
+    }
+
+    /// The pattern of those cells that `keep` chooses, numbered anew in the same order: what remains of a matrix
+    /// when the rows and columns of the other cells are struck out.
+    #[must_use]
+    pub fn restricted(&self, keep: impl Fn(u32) -> bool) -> Self {
+        let mut number = vec![None; self.cells()];
+        let mut kept = 0;
+        for (number, cell) in number.iter_mut().zip(0..) {
+            if keep(cell) {
+                *number = Some(kept);
+                kept += 1;
+            }
+        }
+        let kept_cells = || {
+            (0..)
+                .zip(&number)
+                .filter_map(|(cell, new)| Some((cell, (*new)?)))
+        };
+        let columns_of = |cell: usize| {
+            let columns = self.neighbours(cell).iter();
+            columns.filter_map(|column| number[*column as usize])
+        };
+        let blocks = kept_cells().map(|(cell, _)| columns_of(cell).count());
+        let mut pattern = Self::with_room(kept as usize, blocks.sum());
+        for (cell, new) in kept_cells() {
+            pattern.columns.extend(columns_of(cell));
+            pattern.end_row(new);
+        }
+        pattern
+    }
+
+    /// A pattern without rows, and with room for `cells` of them and `blocks` blocks.
+    fn with_room(cells: usize, blocks: usize) -> Self {
         let mut row_start = Vec::with_capacity(cells + 1);
-        let mut columns = Vec::with_capacity(neighbours.iter().map(Vec::len).sum());
-        let mut diagonal = Vec::with_capacity(cells);
         row_start.push(0);
-        for (cell, mut list) in neighbours.into_iter().enumerate() {
-            list.sort_unstable();
-            let before = list.partition_point(|&other| (other as usize) < cell);
-            diagonal.push(columns.len() + before);
-            columns.append(&mut list);
-            row_start.push(columns.len());
-        }
-        Ok(Self {
+        Self {
             row_start,
-            columns,
-            diagonal,
-        })
+            columns: Vec::with_capacity(blocks),
+            diagonal: Vec::with_capacity(cells),
+        }
+    }
+
+    /// Ends the row of a cell, whose columns were added in increasing order.
+    fn end_row(&mut self, cell: u32) {
+        let start = self.row_start[self.diagonal.len()];
+        let before = self.columns[start..].partition_point(|other| *other < cell);
+        self.diagonal.push(before as u32);
+        self.row_start.push(self.columns.len());
     }
 
     /// Number of cells.
@@ -97,10 +132,10 @@ impl Pattern {
     }
 
     pub(crate) fn find(&self, row: usize, column: usize) -> Option<usize> {
-        if row == column {
-            return self.diagonal.get(row).copied();
-        }
         let range = self.row(row);
+        if row == column {
+            return Some(range.start + *self.diagonal.get(row)? as usize);
+        }
         let column = u32::try_from(column).ok()?;
         let offset = self.columns[range.clone()].binary_search(&column).ok()?;
         Some(range.start + offset)
@@ -118,6 +153,25 @@ mod tests {
         assert_eq!(pattern.neighbours(1), [0, 1, 3, 4]);
         assert_eq!(pattern.neighbours(2), [2], "a cell of no element is alone");
         assert_eq!(pattern.blocks(), 3 + 4 + 1 + 4 + 3);
+    }
+
+    #[test]
+    fn a_restricted_pattern_is_that_of_the_elements_without_the_other_cells() {
+        let elements: [&[u32]; 4] = [&[0, 3, 5], &[5, 2], &[1, 4, 3], &[2, 4]];
+        let whole = Pattern::from_elements(7, elements).unwrap();
+        let keep = |cell: u32| cell != 3 && cell != 0;
+        // 1, 2, 4, 5 and 6 become 0 to 4.
+        let number = |cell: u32| cell - if cell > 3 { 2 } else { 1 };
+        let parts = elements.map(|element| {
+            let kept = element.iter().copied().filter(|cell| keep(*cell));
+            kept.map(number).collect::<Vec<u32>>()
+        });
+        assert_eq!(
+            whole.restricted(keep),
+            Pattern::from_elements(5, parts).unwrap()
+        );
+        assert_eq!(whole.restricted(|_| true), whole);
+        assert_eq!(whole.restricted(|_| false).cells(), 0);
     }
 
     #[test]
