@@ -257,7 +257,7 @@ impl Grid {
         on_face: &dyn Fn([usize; 3], [usize; 3]) -> bool,
     ) -> Vec<[u32; 3]> {
         let mut triangles = Vec::new();
-        for tet in tets {
+        for tet in self.tets_at_surface(tets) {
             for face in OUTWARD_FACES {
                 let nodes = face.map(|i| tet[i]);
                 let [a, b, c] = nodes.map(|node| self.position(node));
@@ -269,5 +269,19 @@ impl Grid {
             }
         }
         triangles
+    }
+
+    /// The tetrahedra of the hexahedra at the surface of the box, in order.
+    fn tets_at_surface<'a>(&self, tets: &'a [[u32; 4]]) -> impl Iterator<Item = &'a [u32; 4]> {
+        let [nx, ny, nz] = self.cells;
+        let hexahedra = tets.as_chunks::<6>().0.iter().enumerate();
+        let at_surface = hexahedra.filter(move |(index, _)| {
+            let row = index / nx;
+            let places = [(index % nx, nx), (row % ny, ny), (row / ny, nz)];
+            places
+                .into_iter()
+                .any(|(place, cells)| place == 0 || place + 1 == cells)
+        });
+        at_surface.flat_map(|(_, tets)| tets)
     }
 }

@@ -82,8 +82,19 @@ impl TetMesh {
             .iter()
             .map(|&triangle| (sorted(triangle), None))
             .collect();
+        // Most faces of a large mesh have a corner away from all triangles, and are not looked up.
+        let mut is_corner = vec![false; self.points.len()];
+        for &node in triangles.iter().flatten() {
+            if let Some(is_corner) = is_corner.get_mut(node as usize) {
+                *is_corner = true;
+            }
+        }
         for (tet, nodes) in self.tets.iter().enumerate() {
+            let at_corner = nodes.map(|node| is_corner[node as usize]);
             for (&opposite, face) in nodes.iter().zip(OUTWARD_FACES) {
+                if !face.into_iter().all(|i| at_corner[i]) {
+                    continue;
+                }
                 let Some(entry) = adjacent.get_mut(&sorted(face.map(|i| nodes[i]))) else {
                     continue;
                 };
