@@ -32,10 +32,7 @@ impl Border {
         dashpots: &[Dashpot],
     ) -> Self {
         let mut border = Self::zero(mesh, nodes);
-        for (index, tet) in mesh.tets.iter().enumerate() {
-            if !tet.iter().any(|node| border.row(*node).is_some()) {
-                continue;
-            }
+        for (index, tet) in tets_at(mesh, nodes) {
             let matrix = element(index);
             for (a, row) in tet.iter().enumerate() {
                 for (b, column) in tet.iter().enumerate() {
@@ -65,7 +62,7 @@ impl Border {
 
     fn zero(mesh: &TetMesh, nodes: &[u32]) -> Self {
         let mut neighbours: Vec<Vec<u32>> = nodes.iter().map(|node| vec![*node]).collect();
-        for tet in &mesh.tets {
+        for (_, tet) in tets_at(mesh, nodes) {
             for node in tet {
                 if let Ok(row) = nodes.binary_search(node) {
                     neighbours[row].extend(tet);
@@ -142,6 +139,19 @@ impl Border {
             (self.columns[at], stiffness, damping.unwrap_or_default())
         })
     }
+}
+
+/// The tetrahedra that have some of the nodes, with their indices.
+fn tets_at<'a>(
+    mesh: &'a TetMesh,
+    nodes: &[u32],
+) -> impl Iterator<Item = (usize, &'a [u32; 4])> + use<'a> {
+    let mut wanted = vec![false; mesh.points.len()];
+    for &node in nodes {
+        wanted[node as usize] = true;
+    }
+    let tets = mesh.tets.iter().enumerate();
+    tets.filter(move |(_, tet)| tet.iter().any(|node| wanted[*node as usize]))
 }
 
 fn add(sum: &mut [f64; 9], block: [f64; 9]) {

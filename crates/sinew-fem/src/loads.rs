@@ -32,6 +32,7 @@ impl LoadsOnBody {
     /// Shares out the loads and, with the lumped `masses` of the nodes (kg), gravity. Notes in the facts of the
     /// prescribed motions the loads that fall on them.
     pub(crate) fn new(
+        mesh: &TetMesh,
         body: &Body,
         problem: &Problem,
         masses: &[f64],
@@ -42,7 +43,7 @@ impl LoadsOnBody {
         let mut items = Vec::new();
         for (index, spec) in problem.loads.iter().enumerate() {
             let item = Item::Load(index);
-            let parts = assemble(body, motions, spec, item)?;
+            let parts = assemble(mesh, body, motions, spec, item)?;
             let mut on_moved = false;
             for part in parts.held.iter().flat_map(|held| held.moved_by(motions)) {
                 on_moved = true;
@@ -87,12 +88,13 @@ struct Parts {
 
 /// A load shared out to nodes.
 fn assemble(
+    mesh: &TetMesh,
     body: &Body,
     motions: &Motions,
     load: &LoadSpec,
     item: Item,
 ) -> Result<Parts, FemError> {
-    let (mesh, cells, on) = (&body.mesh, &body.cells, &load.on);
+    let (cells, on) = (&body.cells, &load.on);
     let mut nodal: Vec<(u32, Vector3<f64>)> = Vec::new();
     match load.kind {
         LoadKind::Traction(traction) => {

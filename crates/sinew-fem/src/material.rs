@@ -2,6 +2,8 @@
 
 use sinew_mesh::TetMesh;
 
+use crate::error::{Cause, FemError, Item};
+use crate::graph::Graph;
 use crate::network::Network;
 use crate::springs::Spring;
 use crate::{Law, SpringRule, springs, stress, tetra};
@@ -21,20 +23,21 @@ pub(crate) enum Material {
 
 impl Material {
     /// The material that a law makes of some tetrahedra of `volume` (m^3) together, and their springs
-    /// where it is a network.
+    /// where it is a network. `graph` is that of the mesh.
     pub(crate) fn new(
         law: &Law,
         mesh: &TetMesh,
+        graph: &mut Graph<'_>,
         members: &[u32],
         volume: f64,
-    ) -> (Self, Option<Network>) {
+    ) -> Result<(Self, Option<Network>), FemError> {
         match *law {
             Law::Linear {
                 youngs_modulus,
                 poissons_ratio,
             } => {
                 let lame = tetra::lame(youngs_modulus, poissons_ratio);
-                (Self::Continuum { lame }, None)
+                Ok((Self::Continuum { lame }, None))
             }
             Law::Springs {
                 youngs_modulus,
@@ -43,7 +46,9 @@ impl Material {
                 damping_ratio,
             } => {
                 let tets = members.iter().map(|tet| &mesh.tets[*tet as usize]);
-                let springs = springs::springs(&mesh.points, tets, youngs_modulus, rule);
+                let graph = graph.pattern()?;
+                let springs = springs::springs_on(graph, &mesh.points, tets, youngs_modulus, rule)
+                    .map_err(|error| FemError::new(Item::Mesh, Cause::Operators(error.into())))?;
                 let mut network = Network::new(&mesh.points, springs, volume, damping_ratio);
                 let calibration = if calibrate {
                     network.calibrate(youngs_modulus)
@@ -54,7 +59,7 @@ impl Material {
                     youngs_modulus: youngs_modulus * calibration,
                     rule,
                 };
-                (material, Some(network))
+                Ok((material, Some(network)))
             }
         }
     }
@@ -64,8 +69,7 @@ impl Material {
     pub(crate) fn stiffness(&self, points: &[[f64; 3]], tet: &[u32; 4]) -> Option<[f64; 144]> {
         match *self {
             Self::Continuum { lame: (lambda, mu) } => {
-                let vertices = tet.map(|node| points[node as usize]);
-                tetra::stiffness(&vertices, lambda, mu)
+                tetra::stiffness(&tetra::vertices(points, *tet), lambda, mu)
             }
             Self::Springs {
                 youngs_modulus,

@@ -1,5 +1,7 @@
 //! Counts and resultants of a model.
 
+use sinew_mesh::TetMesh;
+
 use crate::body::Body;
 use crate::springs::NetworkModulus;
 
@@ -49,18 +51,18 @@ pub struct ModelReport {
 
 impl ModelReport {
     /// The part that materials and loads do not change.
-    pub(crate) fn of_body(body: &Body) -> Self {
-        let mesh_dofs = 3 * body.mesh.points.len();
+    pub(crate) fn of_body(mesh: &TetMesh, body: &Body) -> Self {
+        let mesh_dofs = 3 * mesh.points.len();
         let held_components = body.cells.held_components;
         Self {
-            nodes: body.mesh.points.len(),
-            tets: body.mesh.tets.len(),
+            nodes: mesh.points.len(),
+            tets: mesh.tets.len(),
             edges: body.edges,
             mesh_dofs,
             held_components,
             free_dofs: mesh_dofs - held_components,
             blocks: body.pattern.blocks(),
-            notes: body.mesh.notes.clone(),
+            notes: mesh.notes.clone(),
             ..Self::default()
         }
     }

@@ -4,7 +4,10 @@
 //! 20(1), 268-280) could not be obtained; this is a reconstruction from the two stiffness rules of
 //! the literature and pairwise dashpots.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix6, Vector3, Vector6};
+use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern};
 
 use crate::SpringRule;
 use crate::tetra;
@@ -38,6 +41,38 @@ pub fn springs<'a>(
     )
 }
 
+/// [`springs`], for a million tetrahedra: `graph` has their edges, so that no list of all contributions is made and
+/// sorted.
+pub(crate) fn springs_on<'a>(
+    graph: &Arc<Pattern>,
+    points: &[[f64; 3]],
+    tets: impl Iterator<Item = &'a [u32; 4]>,
+    youngs_modulus: f64,
+    rule: SpringRule,
+) -> Result<Vec<Spring>, AssemblyError> {
+    // The stiffness of each edge, in the row of its lower node.
+    let mut sums = BlockMatrix::zeros(Arc::clone(graph), Layers::One);
+    for tet in tets {
+        for Spring {
+            nodes: [a, b],
+            stiffness,
+        } in of_tetrahedron(points, tet, youngs_modulus, rule)
+        {
+            sums.add_block(a, b, &[stiffness])?;
+        }
+    }
+    let edges = || {
+        (0..graph.cells()).flat_map(|a| {
+            let row = sums.row_blocks(a).filter(move |(b, _)| *b > a);
+            let row = row.map(move |(b, stiffness)| ([a as u32, b as u32], stiffness[0]));
+            row.filter(|(_, stiffness)| *stiffness != 0.0)
+        })
+    };
+    let mut springs = Vec::with_capacity(edges().count());
+    springs.extend(edges().map(|(nodes, stiffness)| Spring { nodes, stiffness }));
+    Ok(springs)
+}
+
 /// The springs that one tetrahedron adds to its six edges.
 fn of_tetrahedron(
     points: &[[f64; 3]],
@@ -45,21 +80,24 @@ fn of_tetrahedron(
     youngs_modulus: f64,
     rule: SpringRule,
 ) -> [Spring; 6] {
-    let vertices = tet.map(|node| points[node as usize]);
+    let vertices = tetra::vertices(points, *tet);
     let volume = tetra::signed_volume(&vertices).abs();
-    EDGES.map(|[a, b]| {
-        let stiffness = match rule {
-            SpringRule::Lloyd => {
-                let equivalent = (12.0 * volume / 2.0_f64.sqrt()).cbrt();
-                2.0 * 2.0_f64.sqrt() / 25.0 * youngs_modulus * equivalent
-            }
-            SpringRule::VanGelder => {
-                let length = Vector3::from(vertices[b]) - Vector3::from(vertices[a]);
-                youngs_modulus * volume / length.norm_squared()
-            }
-        };
-        let nodes = [tet[a].min(tet[b]), tet[a].max(tet[b])];
-        Spring { nodes, stiffness }
+    let stiffness = match rule {
+        SpringRule::Lloyd => {
+            let equivalent = (12.0 * volume / 2.0_f64.sqrt()).cbrt();
+            [2.0 * 2.0_f64.sqrt() / 25.0 * youngs_modulus * equivalent; 6]
+        }
+        SpringRule::VanGelder => EDGES.map(|[a, b]| {
+            let length = Vector3::from(vertices[b]) - Vector3::from(vertices[a]);
+            youngs_modulus * volume / length.norm_squared()
+        }),
+    };
+    std::array::from_fn(|edge| {
+        let [a, b] = EDGES[edge].map(|vertex| tet[vertex]);
+        Spring {
+            nodes: [a.min(b), a.max(b)],
+            stiffness: stiffness[edge],
+        }
     })
 }
 
@@ -208,4 +246,28 @@ fn sphere_directions() -> impl Iterator<Item = Vector3<f64>> {
         .flat_map(move |i| side().flat_map(move |j| side().map(move |k| (i, j, k))))
         .filter(|(i, j, k)| i.abs().max(j.abs()).max(k.abs()) == N)
         .map(|(i, j, k)| Vector3::new(f64::from(i), f64::from(j), f64::from(k)).normalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use sinew_mesh::structured::{Split, cube};
+
+    use super::*;
+
+    #[test]
+    fn springs_on_a_graph_are_the_sorted_sums_to_the_last_bit() {
+        let mut mesh = cube(3, 0.1, Split::Mirrored).unwrap();
+        // Uneven in every direction, so that the order of a sum matters.
+        for (index, coordinate) in mesh.points.as_flattened_mut().iter_mut().enumerate() {
+            *coordinate += 0.004 * (index as f64 * 1.7).sin();
+        }
+        let graph = Arc::new(Pattern::from_elements(mesh.points.len(), &mesh.tets).unwrap());
+        // A part of the body, in another order than that of the mesh.
+        let part = || mesh.tets.iter().rev().step_by(3);
+        for rule in [SpringRule::Lloyd, SpringRule::VanGelder] {
+            let on_graph = springs_on(&graph, &mesh.points, part(), 3500.0, rule).unwrap();
+            assert_eq!(on_graph, springs(&mesh.points, part(), 3500.0, rule));
+            assert!(on_graph.len() < (graph.blocks() - graph.cells()) / 2);
+        }
+    }
 }

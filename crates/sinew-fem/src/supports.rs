@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use sinew_core::Ramp;
+use sinew_mesh::TetMesh;
 
 use crate::body::Body;
 use crate::border::Border;
@@ -38,19 +39,27 @@ pub(crate) struct Supports {
 }
 
 impl Supports {
-    pub(crate) fn new(body: &Body, loads: Vec<HeldLoad>, mut dashpots: Vec<Dashpot>) -> Self {
+    /// `dashpots` are those of the whole body.
+    pub(crate) fn new(body: &Body, loads: Vec<HeldLoad>, dashpots: &[Dashpot]) -> Self {
         let held = |node: &u32| body.cells.held_nodes.binary_search(node).is_ok();
-        dashpots.retain(|dashpot| dashpot.nodes.iter().any(held));
+        let at_supports = dashpots
+            .iter()
+            .filter(|dashpot| dashpot.nodes.iter().any(held));
         Self {
             loads,
-            dashpots,
+            dashpots: at_supports.copied().collect(),
             border: OnceLock::new(),
         }
     }
 
     /// The rows of held nodes; `element` makes a tetrahedron's 12 x 12 matrix.
-    pub(crate) fn border(&self, body: &Body, element: impl Fn(usize) -> [f64; 144]) -> &Border {
-        let rows = || Border::new(&body.mesh, &body.cells.held_nodes, element, &self.dashpots);
+    pub(crate) fn border(
+        &self,
+        mesh: &TetMesh,
+        body: &Body,
+        element: impl Fn(usize) -> [f64; 144],
+    ) -> &Border {
+        let rows = || Border::new(mesh, &body.cells.held_nodes, element, &self.dashpots);
         self.border.get_or_init(rows)
     }
 }

@@ -10,6 +10,13 @@ pub fn lame(youngs_modulus: f64, poissons_ratio: f64) -> (f64, f64) {
     (lambda, mu)
 }
 
+/// The vertices (m) of a tetrahedron, given by its nodes.
+pub(crate) fn vertices(points: &[[f64; 3]], [a, b, c, d]: [u32; 4]) -> [[f64; 3]; 4] {
+    // Spelled out, since `map` is not inlined where millions of tetrahedra are visited.
+    let at = |node: u32| points[node as usize];
+    [at(a), at(b), at(c), at(d)]
+}
+
 /// Signed volume (m^3); positive when the fourth vertex sees the first three anticlockwise.
 #[must_use]
 pub fn signed_volume(vertices: &[[f64; 3]; 4]) -> f64 {
@@ -51,19 +58,18 @@ fn gradients_of(edges: Matrix3<f64>) -> Option<Matrix4x3<f64>> {
 /// `None` when the vertices lie in one plane.
 #[must_use]
 pub fn stiffness(vertices: &[[f64; 3]; 4], lambda: f64, mu: f64) -> Option<[f64; 144]> {
-    let edges = edge_matrix(vertices);
-    let volume = edges.determinant().abs() / 6.0;
-    let gradients = gradients_of(edges)?;
+    let volume = edge_matrix(vertices).determinant().abs() / 6.0;
+    let gradients = gradients(vertices)?;
     let mut matrix = [0.0; 144];
-    for a in 0..4 {
-        for b in 0..4 {
-            let (ga, gb) = (gradients.row(a), gradients.row(b));
-            let dot = ga.dot(&gb);
+    for (ga, rows) in gradients.iter().zip(matrix.as_chunks_mut::<36>().0) {
+        let (lambda_ga, mu_ga) = (ga.map(|g| lambda * g), ga.map(|g| mu * g));
+        for (b, gb) in gradients.iter().enumerate() {
+            let dot = ga[0] * gb[0] + ga[1] * gb[1] + ga[2] * gb[2];
             for i in 0..3 {
                 for j in 0..3 {
                     let isotropic = if i == j { mu * dot } else { 0.0 };
-                    matrix[(3 * a + i) * 12 + 3 * b + j] =
-                        volume * (lambda * ga[i] * gb[j] + mu * ga[j] * gb[i] + isotropic);
+                    rows[12 * i + 3 * b + j] =
+                        volume * (lambda_ga[i] * gb[j] + mu_ga[j] * gb[i] + isotropic);
                 }
             }
         }

@@ -52,7 +52,7 @@ impl QuarterTurn {
 /// A body turned as a whole: mesh, supports, loads and start.
 pub(crate) fn turned(simulation: &Simulation, turn: QuarterTurn) -> Result<Twin, HardError> {
     let (built, problem) = body(simulation).ok_or(HardError::NoBody)?;
-    let mut mesh = built.mesh.clone();
+    let mut mesh = TetMesh::clone(&built.mesh);
     for point in &mut mesh.points {
         *point = turn.of(*point);
     }
@@ -88,7 +88,7 @@ pub(crate) fn in_units(simulation: &Simulation, per_metre: f64) -> Result<Twin, 
     let Some((built, problem)) = body(simulation) else {
         return oscillator_in_units(simulation.system(), start, per_metre);
     };
-    let mut mesh = built.mesh.clone();
+    let mut mesh = TetMesh::clone(&built.mesh);
     mesh.points
         .iter_mut()
         .flatten()

@@ -64,7 +64,7 @@ impl Model {
     }
 
     pub(super) fn require_vector(&self, node: u32, vector: &[f64; 3]) -> Result<(), ForceError> {
-        let nodes = self.body.mesh.points.len();
+        let nodes = self.mesh.points.len();
         if node as usize >= nodes {
             return Err(ForceError::NodeOutOfRange { node, nodes });
         }

@@ -18,21 +18,23 @@ use std::sync::Arc;
 use sinew_core::{Damping, LinearOperators};
 use sinew_mesh::TetMesh;
 
-use crate::assembly::{self, Assembled};
+use crate::assembly::{Assembled, assemble};
 use crate::body::Body;
 use crate::error::{Cause, FemError, Item};
+use crate::graph::Graph;
 use crate::loads::LoadsOnBody;
+use crate::lumped::Lumped;
 use crate::material::Material;
 use crate::motion::{Motions, MovedPart};
 use crate::regions::regions;
 use crate::report::{ModelReport, MoveFacts};
 use crate::supports::Supports;
-use crate::volumes::volumes;
-use crate::{Problem, check};
+use crate::{Problem, check, volumes};
 
 /// A linear model of a body: M, D, K over its moving nodes, loads, and the geometry behind them.
 #[derive(Clone, Debug)]
 pub struct Model {
+    mesh: Arc<TetMesh>,
     body: Arc<Body>,
     operators: LinearOperators,
     region_of: Vec<u32>,
@@ -47,16 +49,33 @@ pub struct Model {
 }
 
 impl Model {
-    /// Assembles a problem on a mesh.
+    /// Assembles a problem on a mesh, of which the model has a copy. [`Model::build_on`] needs none.
     ///
     /// # Errors
     /// [`FemError`] with the part of the problem at fault.
     pub fn build(mesh: &TetMesh, problem: &Problem) -> Result<Self, FemError> {
+        Self::build_keeping(mesh, problem, || Arc::new(mesh.clone()))
+    }
+
+    /// Assembles a problem on a mesh that the model shares with its owner, to the same result as [`Model::build`].
+    ///
+    /// # Errors
+    /// Same as [`Model::build`].
+    pub fn build_on(mesh: Arc<TetMesh>, problem: &Problem) -> Result<Self, FemError> {
+        Self::build_keeping(&mesh, problem, || Arc::clone(&mesh))
+    }
+
+    fn build_keeping(
+        mesh: &TetMesh,
+        problem: &Problem,
+        kept: impl FnOnce() -> Arc<TetMesh>,
+    ) -> Result<Self, FemError> {
         check::numbers(problem)?;
-        let volumes = volumes(mesh)?;
+        volumes::check(mesh)?;
         let region_of = regions(mesh, problem)?;
-        let body = Arc::new(Body::new(mesh, volumes, problem)?);
-        Self::on_body(body, problem, region_of)
+        let mut graph = Graph::of(mesh);
+        let body = Arc::new(Body::new(mesh, graph.pattern()?, problem)?);
+        Self::on_body(mesh, graph, body, problem, region_of, kept)
     }
 
     /// Assembles another problem on the mesh of this model in which the same components move by themselves, for
@@ -68,11 +87,12 @@ impl Model {
     /// Same as [`Model::build`], and [`Cause::OtherSupports`] where the problem holds or moves other components.
     pub fn with_problem(&self, problem: &Problem) -> Result<Self, FemError> {
         check::numbers(problem)?;
-        let Body { mesh, cells, .. } = &*self.body;
-        match cells.first_held_otherwise(mesh, problem)? {
+        let (mesh, body) = (&self.mesh, Arc::clone(&self.body));
+        match body.cells.first_held_otherwise(mesh, problem)? {
             None => {
                 let region_of = regions(mesh, problem)?;
-                Self::on_body(Arc::clone(&self.body), problem, region_of)
+                let kept = || Arc::clone(mesh);
+                Self::on_body(mesh, Graph::of(mesh), body, problem, region_of, kept)
             }
             Some(node) => {
                 let ordinal = u64::from(node) + 1;
@@ -87,33 +107,42 @@ impl Model {
         }
     }
 
-    /// Assembles the materials and loads of a problem, whose numbers were checked.
-    fn on_body(body: Arc<Body>, problem: &Problem, region_of: Vec<u32>) -> Result<Self, FemError> {
-        let masses = assembly::lumped_masses(&body, problem, &region_of);
+    /// Assembles the materials and loads of a problem, whose numbers were checked. `kept` gives the mesh that the model is
+    /// to have; a copy is made at the end, when all that only building needs is gone.
+    fn on_body(
+        mesh: &TetMesh,
+        graph: Graph<'_>,
+        body: Arc<Body>,
+        problem: &Problem,
+        region_of: Vec<u32>,
+        kept: impl FnOnce() -> Arc<TetMesh>,
+    ) -> Result<Self, FemError> {
+        let lumped = Lumped::new(mesh, problem, &region_of);
         let Assembled {
             stiffness,
             damping,
             dashpots,
             materials,
             facts,
-        } = assembly::assemble(&body, problem, &region_of, &masses)?;
-        let motions = Motions::new(&body.mesh, problem)?;
+        } = assemble(mesh, &body, problem, graph, &region_of, &lumped)?;
+        let Lumped { masses, volume, .. } = lumped;
+        let motions = Motions::new(mesh, problem)?;
         let facts_of = |part: &MovedPart| MoveFacts {
             nodes: part.nodes.len(),
             jump: part.first_jump(),
             loads: Vec::new(),
         };
         let mut moves: Vec<MoveFacts> = motions.parts().iter().map(facts_of).collect();
-        let loads = LoadsOnBody::new(&body, problem, &masses, &motions, &mut moves)?;
+        let loads = LoadsOnBody::new(mesh, &body, problem, &masses, &motions, &mut moves)?;
         let report = ModelReport {
             mass: masses.iter().sum(),
-            volume: body.volumes.iter().sum(),
+            volume,
             regions: facts,
             loads: loads.facts,
             moves,
             gravity: loads.gravity,
             damping_matrix: damping.is_some(),
-            ..ModelReport::of_body(&body)
+            ..ModelReport::of_body(mesh, &body)
         };
         let damping = Damping {
             mass: problem.damping.mass,
@@ -124,8 +153,10 @@ impl Model {
         let mass = moving.flat_map(|node| [masses[*node as usize]; 3]);
         let operators = LinearOperators::new(mass.collect(), stiffness, damping, loads.moving)
             .map_err(|error| FemError::new(Item::Mesh, error.into()))?;
-        let supports = Supports::new(&body, loads.held, dashpots);
+        let supports = Supports::new(&body, loads.held, &dashpots);
+        drop(dashpots);
         let resting = Self {
+            mesh: kept(),
             body,
             operators,
             region_of,
@@ -160,7 +191,7 @@ impl Model {
     /// The mesh.
     #[must_use]
     pub fn mesh(&self) -> &TetMesh {
-        &self.body.mesh
+        &self.mesh
     }
 
     /// The region (0-based place in the problem) of each tetrahedron.
@@ -185,7 +216,7 @@ impl Model {
     /// Stiffness matrix (N/m) of a tetrahedron, held vertices included: 12 x 12, row-major and
     /// vertex-major.
     fn whole_stiffness(&self, tet: usize) -> [f64; 144] {
-        let mesh = &self.body.mesh;
+        let mesh = &self.mesh;
         let material = &self.materials[self.region_of[tet] as usize];
         // Assembly refused flat tetrahedra.
         material

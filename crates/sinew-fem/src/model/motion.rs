@@ -93,7 +93,7 @@ impl Model {
         out: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
         self.field_at(when.into(), 0, u, out)?;
-        for (point, out) in self.body.mesh.points.iter().zip(out) {
+        for (point, out) in self.mesh.points.iter().zip(out) {
             for (point, out) in point.iter().zip(out) {
                 *out += point;
             }

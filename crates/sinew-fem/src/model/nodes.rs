@@ -51,7 +51,7 @@ impl Model {
     }
 
     pub(super) fn require_node(&self, node: u32) -> Result<(), FieldError> {
-        let nodes = self.body.mesh.points.len();
+        let nodes = self.mesh.points.len();
         if node as usize >= nodes {
             return Err(Cause::NodeOutOfRange { node, nodes }.into());
         }
@@ -59,6 +59,6 @@ impl Model {
     }
 
     pub(super) fn require_nodes<T>(&self, what: &'static str, of: &[T]) -> Result<(), FieldError> {
-        require_length(what, of.len(), self.body.mesh.points.len())
+        require_length(what, of.len(), self.mesh.points.len())
     }
 }

@@ -66,7 +66,7 @@ impl Model {
         v: &[f64],
         on: &On,
     ) -> Result<[f64; 3], FieldError> {
-        let nodes = on.nodes(&self.body.mesh)?;
+        let nodes = on.nodes(&self.mesh)?;
         self.reaction_of_nodes(when, u, v, &nodes)
     }
 
@@ -162,7 +162,7 @@ impl Model {
 
     pub(super) fn border(&self) -> &Border {
         self.supports
-            .border(&self.body, |tet| self.whole_stiffness(tet))
+            .border(&self.mesh, &self.body, |tet| self.whole_stiffness(tet))
     }
 
     /// M (a + alpha v) + K u + D v (N) at a held node, D being the damping other than alpha M.

@@ -80,15 +80,15 @@ impl Model {
     /// An edge between two regions is in both: the springs of all regions together make K.
     #[must_use]
     pub fn springs(&self, region: usize) -> Option<Vec<Spring>> {
-        let mesh = &self.body.mesh;
+        let mesh = &self.mesh;
         let tets = mesh.tets.iter().zip(&self.region_of);
         let members = tets.filter_map(|(tet, of)| (*of as usize == region).then_some(tet));
         self.materials.get(region)?.springs(&mesh.points, members)
     }
 
     fn strain_of(&self, displacement: impl Fn(u32) -> [f64; 3], tet: usize) -> [f64; 6] {
-        let nodes = self.body.mesh.tets[tet];
-        let vertices = nodes.map(|node| self.body.mesh.points[node as usize]);
+        let nodes = self.mesh.tets[tet];
+        let vertices = nodes.map(|node| self.mesh.points[node as usize]);
         let displacements = nodes.map(displacement);
         // A model has no flat tetrahedra.
         let gradients = tetra::gradients(&vertices).unwrap_or_default();

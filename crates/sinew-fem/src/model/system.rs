@@ -54,13 +54,13 @@ impl System for Model {
         }
         let displacement = self.at_nodes(when, 0, Some(u)).ok()?;
         let moved = |node: u32| {
-            let [x, y, z] = self.body.mesh.points[node as usize];
+            let [x, y, z] = self.mesh.points[node as usize];
             let [ux, uy, uz] = displacement(node);
             [x + ux, y + uy, z + uz]
         };
         // Elements have positive volume at rest; one that is not a number counts as inverted.
         let upright = |tet: &&[u32; 4]| tetra::signed_volume(&tet.map(moved)) > 0.0;
-        let tets = &self.body.mesh.tets;
+        let tets = &self.mesh.tets;
         Some(tets.len() - tets.iter().filter(upright).count())
     }
 
@@ -77,7 +77,7 @@ impl System for Model {
     fn cell_name(&self, dof: usize) -> String {
         let axis = ["x", "y", "z"][dof % 3];
         let node = self.body.cells.nodes.get(dof / 3);
-        match node.and_then(|node| self.body.mesh.node_tags.get(*node as usize)) {
+        match node.and_then(|node| self.mesh.node_tags.get(*node as usize)) {
             Some(tag) => format!("node {tag} ({axis})"),
             None => format!("degree of freedom {dof}"),
         }
@@ -96,15 +96,18 @@ impl LinearSystem for Model {
 
 impl Elements for Model {
     fn count(&self) -> usize {
-        self.body.mesh.tets.len()
+        self.mesh.tets.len()
     }
 
     fn name(&self, element: usize) -> String {
-        self.body.tet_name(element)
+        match self.mesh.tet_tags.get(element) {
+            Some(tag) => format!("tetrahedron {tag}"),
+            None => format!("tetrahedron number {element}"),
+        }
     }
 
     fn stiffness(&self, element: usize, out: &mut ElementStiffness) {
-        let (whole, tet) = (self.whole_stiffness(element), &self.body.mesh.tets[element]);
+        let (whole, tet) = (self.whole_stiffness(element), &self.mesh.tets[element]);
         moving_part(&whole, tet, &self.body.cells, out);
     }
 }

@@ -1,5 +1,7 @@
 //! The mesh of a scene and the matrices on it.
 
+use std::sync::Arc;
+
 use sinew_fem::{Cause, Course, FemError, Item, Model, Moving, On};
 use sinew_mesh::{TetMesh, structured};
 
@@ -22,7 +24,9 @@ pub(super) fn build(
     for (index, motion) in body.motions.iter().enumerate() {
         problem.moves.push(moving(motion, places, index)?);
     }
-    let model = Model::build(&mesh, &problem).map_err(|error| refused(error, body, places))?;
+    let mesh = Arc::new(mesh);
+    let model = Model::build_on(Arc::clone(&mesh), &problem)
+        .map_err(|error| refused(error, body, places))?;
     Ok(BodyModel {
         mesh,
         mesh_warnings,

@@ -1,5 +1,7 @@
 //! The models that integrators move.
 
+use std::sync::Arc;
+
 use sinew_core::{LinearModel, System};
 use sinew_mesh::{TetMesh, UnknownGroup};
 
@@ -15,8 +17,8 @@ pub enum SceneModel {
 /// A body of tetrahedra: its mesh and its matrices.
 #[derive(Debug)]
 pub struct BodyModel {
-    /// The mesh.
-    pub mesh: TetMesh,
+    /// The mesh, shared with the model.
+    pub mesh: Arc<TetMesh>,
     /// Warnings of the reader of the mesh file.
     pub mesh_warnings: Vec<String>,
     /// The problem as a whole, prescribed motions included.
