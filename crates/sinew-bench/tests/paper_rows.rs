@@ -89,7 +89,12 @@ fn every_method_runs() {
     for kind in ["chebyshev 4", "chebyshev 8"] {
         expected.push(format!("cnn-stabilised {kind}"));
     }
-    for kind in ["two-step", "two-step tolerance=0.001", "krylov"] {
+    for kind in [
+        "two-step",
+        "two-step tolerance=0.001",
+        "two-step fit=load",
+        "krylov",
+    ] {
         expected.push(format!("propagator {kind}"));
     }
     let mut found: Vec<String> = cube().rows.iter().map(Row::label).collect();

@@ -3,7 +3,7 @@
 use sinew_sparse::vectors::{dot, noise, scale};
 
 /// Lanczos steps after which the estimate is taken as it is.
-const MAX_STEPS: usize = 600;
+pub(crate) const MAX_STEPS: usize = 600;
 
 /// The largest eigenvalue of `M^-1 S` for a symmetric positive semidefinite S and a diagonal M.
 /// `multiply(x, out)` writes `out = S x`. See [`largest_eigenvalue_of_pencil`].
@@ -28,35 +28,16 @@ pub fn largest_eigenvalue_of_pencil(
     mut multiply: impl FnMut(&[f64], &mut [f64]),
     mut solve: impl FnMut(&[f64], &mut [f64]),
 ) -> f64 {
-    // Each basis vector is kept as q and as its image P q, called dual here.
-    let mut dual = noise(n, 0);
-    let mut primal = vec![0.0; n];
-    solve(&dual, &mut primal);
-    let length = dot(&primal, &dual).max(0.0).sqrt();
-    if length == 0.0 {
+    let Some(mut iteration) = Lanczos::start(noise(n, 0), &mut solve) else {
         return 0.0;
-    }
-    scale(&mut dual, 1.0 / length);
-    scale(&mut primal, 1.0 / length);
-    let mut previous_dual = vec![0.0; n];
-    let mut next = vec![0.0; n];
-    let (mut diagonal, mut off_diagonal) = (Vec::new(), Vec::new());
+    };
     let mut estimate = 0.0;
     let mut settled = false;
     for step in 1..=MAX_STEPS {
-        multiply(&primal, &mut next);
-        let alpha = dot(&next, &primal);
-        let beta_before = off_diagonal.last().copied().unwrap_or(0.0);
-        for ((next, dual), previous) in next.iter_mut().zip(&dual).zip(&previous_dual) {
-            *next -= alpha * dual + beta_before * previous;
-        }
-        diagonal.push(alpha);
-        solve(&next, &mut primal);
-        let beta = dot(&next, &primal).max(0.0).sqrt();
-        // Rounding costs the basis its orthogonality, so that n steps need not be enough.
-        let exhausted = beta <= 1e-14 * alpha.abs().max(estimate);
+        iteration.advance(&mut multiply, &mut solve);
+        let exhausted = iteration.is_exhausted(estimate);
         if exhausted || step % 10 == 0 || step == MAX_STEPS {
-            let better = largest_of_tridiagonal(&diagonal, &off_diagonal);
+            let better = largest_of_tridiagonal(&iteration.diagonal, &iteration.off_diagonal);
             // Twice in a row: of two eigenvalues close together the lower one may hold the estimate
             // for a while.
             let before = std::mem::replace(&mut settled, better - estimate <= 1e-11 * better);
@@ -65,13 +46,83 @@ pub fn largest_eigenvalue_of_pencil(
                 break;
             }
         }
-        off_diagonal.push(beta);
-        scale(&mut next, 1.0 / beta);
-        scale(&mut primal, 1.0 / beta);
-        std::mem::swap(&mut previous_dual, &mut dual);
-        std::mem::swap(&mut dual, &mut next);
     }
     estimate
+}
+
+/// The Lanczos iteration for `P^-1 S`: the tridiagonal matrix that `P^-1 S` is in an orthonormal basis of
+/// P's inner product, row by row.
+pub(crate) struct Lanczos {
+    pub(crate) diagonal: Vec<f64>,
+    /// Shorter by one than the diagonal.
+    pub(crate) off_diagonal: Vec<f64>,
+    // Each basis vector is kept as q and as its image P q, called dual here.
+    dual: Vec<f64>,
+    primal: Vec<f64>,
+    previous_dual: Vec<f64>,
+    /// The next dual vector, and in `primal` the vector itself, both still of this length.
+    next: Vec<f64>,
+    beta: Option<f64>,
+}
+
+impl Lanczos {
+    /// The iteration from `P^-1 dual`; `None` where that is 0.
+    pub(crate) fn start(
+        mut dual: Vec<f64>,
+        solve: &mut impl FnMut(&[f64], &mut [f64]),
+    ) -> Option<Self> {
+        let n = dual.len();
+        let mut primal = vec![0.0; n];
+        solve(&dual, &mut primal);
+        let length = dot(&primal, &dual).max(0.0).sqrt();
+        if length == 0.0 {
+            return None;
+        }
+        scale(&mut dual, 1.0 / length);
+        scale(&mut primal, 1.0 / length);
+        Some(Self {
+            diagonal: Vec::new(),
+            off_diagonal: Vec::new(),
+            dual,
+            primal,
+            previous_dual: vec![0.0; n],
+            next: vec![0.0; n],
+            beta: None,
+        })
+    }
+
+    /// Makes the next row, with one product and one solution.
+    pub(crate) fn advance(
+        &mut self,
+        multiply: &mut impl FnMut(&[f64], &mut [f64]),
+        solve: &mut impl FnMut(&[f64], &mut [f64]),
+    ) {
+        if let Some(beta) = self.beta {
+            self.off_diagonal.push(beta);
+            scale(&mut self.next, 1.0 / beta);
+            scale(&mut self.primal, 1.0 / beta);
+            std::mem::swap(&mut self.previous_dual, &mut self.dual);
+            std::mem::swap(&mut self.dual, &mut self.next);
+        }
+        multiply(&self.primal, &mut self.next);
+        let alpha = dot(&self.next, &self.primal);
+        let before = self.beta.unwrap_or(0.0);
+        let known = self.dual.iter().zip(&self.previous_dual);
+        for (next, (dual, previous)) in self.next.iter_mut().zip(known) {
+            *next -= alpha * dual + before * previous;
+        }
+        self.diagonal.push(alpha);
+        solve(&self.next, &mut self.primal);
+        self.beta = Some(dot(&self.next, &self.primal).max(0.0).sqrt());
+    }
+
+    /// Whether the basis spans all that its start can reach, seen beside the size of an eigenvalue. Rounding
+    /// costs the basis its orthogonality, so that n steps need not be enough.
+    pub(crate) fn is_exhausted(&self, eigenvalue: f64) -> bool {
+        let alpha = self.diagonal.last().copied().unwrap_or(0.0);
+        self.beta
+            .is_some_and(|beta| beta <= 1e-14 * alpha.abs().max(eigenvalue))
+    }
 }
 
 /// Bisection on the Sturm sequence of a symmetric tridiagonal matrix.

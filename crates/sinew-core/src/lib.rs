@@ -54,6 +54,7 @@ mod ramp;
 mod recorder;
 mod revision;
 mod simulate;
+mod spectral_measure;
 pub mod spectrum;
 mod state;
 mod state_bytes;

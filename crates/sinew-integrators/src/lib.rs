@@ -20,6 +20,7 @@ mod frame;
 #[cfg(feature = "implicit")]
 pub mod implicit;
 mod limits;
+mod load_case;
 mod machine_options;
 mod method;
 mod option_help;

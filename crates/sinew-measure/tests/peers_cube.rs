@@ -166,3 +166,35 @@ fn errors_for_the_sweeps_that_the_marks_allow() {
         assert!(found.0 <= error && found.1 <= share_of_scipy, "{found:?}");
     }
 }
+
+/// The mark in sweeps: .6 % for 720 a second. The estimate, which is over eight periods of the load's mean frequency,
+/// is near the error of the whole second.
+#[test]
+fn a_fit_to_the_load_takes_720_sweeps_for_an_error_of_six_per_mille() {
+    let text = |text: &str| OptionValue::Text(text.into());
+    let fitted = Options::new()
+        .with("kind", text("two-step"))
+        .with("fit", text("load"));
+    let mut case = locked();
+    for (options, error, sweeps) in [
+        (fitted.clone(), 6e-3, 720.0),
+        (fitted.clone().with_number("tolerance", 6e-3), 6e-3, 720.0),
+        (fitted.clone().with_number("tolerance", 1e-3), 1e-3, 820.0),
+        (fitted.with_number("tolerance", 2e-6), 4e-6, 1020.0),
+    ] {
+        let mut method = MethodChoice::new("propagator");
+        method.options = options;
+        let row = measure(&mut case, &method, 0.01, Effort::QUICK).unwrap();
+        let (found, estimate) = (row.error.unwrap(), row.facts["estimated_error"]);
+        println!(
+            "{}: {found:.2e}, {} sweeps/s",
+            method.label(),
+            row.sweeps_per_s
+        );
+        assert!(found <= error && row.sweeps_per_s <= sweeps, "{row:?}");
+        assert!(
+            found <= 2.0 * estimate && estimate <= 2.0 * found,
+            "{found} {estimate}"
+        );
+    }
+}

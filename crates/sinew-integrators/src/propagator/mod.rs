@@ -4,7 +4,10 @@ mod chebyshev;
 mod cut;
 mod first_step;
 mod krylov;
+mod load_fit;
+mod peaks;
 mod quadrature;
+mod recurrence;
 mod resolution;
 mod series;
 mod sweeps;
@@ -12,6 +15,7 @@ mod two_step;
 
 use chebyshev::Chebyshev;
 use krylov::Krylov;
+use load_fit::LoadFit;
 use resolution::{HIGHEST_DEGREE, ID, LOOSE, Resolution};
 use sinew_core::{
     Accuracy, ChangingLoads, EnergyBehaviour, Fact, LoadOverStep, Needs, OptionError, OptionValue,
@@ -36,9 +40,20 @@ use crate::{Method, OptionHelp, OptionLabel, Scheme, SetUp};
 #[derive(Debug)]
 pub struct Propagator {
     kind: PropagatorKind,
+    fit: Fit,
     resolution: Resolution,
-    /// Series for these matrices and this step.
-    made: Option<((Revision, f64), Series)>,
+    made: Option<Made>,
+}
+
+/// Series with what they were made for.
+#[derive(Debug)]
+struct Made {
+    matrices: Revision,
+    /// The loads, where the series depend on them.
+    loads: Option<Revision>,
+    /// Step (s).
+    dt: f64,
+    series: Series,
 }
 
 /// Kinds of polynomials, with the error that their tolerance bounds.
@@ -82,9 +97,29 @@ impl PropagatorKind {
     }
 }
 
+/// What the polynomial of the two-step form is fitted to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Fit {
+    /// All modes alike: the tolerance bounds the error of every mode, see [`PropagatorKind::TwoStep`].
+    #[default]
+    Uniform,
+    /// The modes that the loads excite, in the measure in which they excite them: fewer sweeps.
+    ///
+    /// The tolerance bounds an estimate of the error of a run from rest under these loads, applied suddenly and
+    /// kept: its mean square over eight periods of the loads' mean frequency (Rayleigh's quotient of the static
+    /// displacement), over that of the displacement, in the norm of the masses. It is no bound of a step.
+    /// Initial motions, forces from outside and pulses of few steps excite faster modes, and may be off by more. No
+    /// mode grows in any case: stability is kept for all of the spectrum, whatever excites it.
+    ///
+    /// The fact `estimated_error` is the estimate; `amplitude` is the largest amplitude of any mode that starts with
+    /// a velocity, over that of the exact motion, at most 2.
+    Load,
+}
+
 /// The series that all steps have in common.
 #[derive(Debug)]
 enum Series {
+    LoadFit(Box<LoadFit>),
     TwoStep(Box<TwoStep>),
     Chebyshev(Box<Chebyshev>),
 }
@@ -114,9 +149,19 @@ impl Propagator {
         )
     }
 
+    /// The two-step form fitted to the loads, of the smallest degree whose estimated error meets `tolerance`.
+    #[must_use]
+    pub fn fitted_to_loads(tolerance: f64) -> Self {
+        Self {
+            fit: Fit::Load,
+            ..Self::with_tolerance(PropagatorKind::TwoStep, tolerance)
+        }
+    }
+
     fn new(kind: PropagatorKind, resolution: Resolution) -> Self {
         Self {
             kind,
+            fit: Fit::Uniform,
             resolution,
             made: None,
         }
@@ -126,10 +171,19 @@ impl Propagator {
 const TOLERANCE: &str = "tolerance";
 const DEGREE: &str = "degree";
 const KIND: &str = "kind";
+const FIT: &str = "fit";
 
 fn of_kind(kind: &str) -> Options {
     Options::new().with(KIND, OptionValue::Text(kind.into()))
 }
+
+/// The two-step form with this fit.
+fn of_fit(fit: &str) -> Options {
+    of_kind("two-step").with(FIT, OptionValue::Text(fit.into()))
+}
+
+/// Estimated error below which weights would be rounding.
+const LEAST_ESTIMATE: f64 = 1e-6;
 
 impl Method for Propagator {
     const SUMMARY: &'static str = "the exact motion over a step as a polynomial: sweeps only";
@@ -140,13 +194,18 @@ impl Method for Propagator {
             shown_default: None,
         },
         OptionHelp {
+            key: FIT,
+            help: "with kind = \"two-step\", what the polynomial is fitted to: \"uniform\" (default; every mode alike, with a bound of each mode's error) or \"load\" (the modes that the loads excite, in their measure: fewer sweeps, with an estimate for these loads instead of a bound). Either is stable for every motion",
+            shown_default: None,
+        },
+        OptionHelp {
             key: TOLERANCE,
-            help: "largest error of a step in the energy norm, relative to the distance from equilibrium (\"chebyshev\"); two fifths of the largest error of any mode's sin(omega dt/2), so of the phase, not of the step (\"two-step\"); estimated error of a step relative to its change (\"krylov\"); default 1e-10",
+            help: "largest error of a step in the energy norm, relative to the distance from equilibrium (\"chebyshev\"); two fifths of the largest error of any mode's sin(omega dt/2), so of the phase, not of the step (\"two-step\"); estimated error of a run from rest under these loads, suddenly applied and kept, over eight periods of their mean frequency (fit = \"load\", default 1e-2), which forces from outside, initial motions and short pulses may pass; estimated error of a step relative to its change (\"krylov\"); default 1e-10",
             shown_default: None,
         },
         OptionHelp {
             key: DEGREE,
-            help: "degree of the polynomial; default: the smallest that meets the tolerance",
+            help: "degree of the polynomial; default: the smallest that meets the tolerance. A step takes a sweep and two more per degree, with fit = \"load\" one per degree",
             shown_default: None,
         },
     ];
@@ -157,19 +216,25 @@ impl Method for Propagator {
         vec![
             of_kind("two-step"),
             of_kind("two-step").with_number(TOLERANCE, 1e-3),
+            of_fit("load"),
             of_kind("krylov"),
         ]
     }
 
     /// Options for an error of a run. Errors of steps add up; a tenth of the error leaves room for that and
     /// costs few degrees. The two-step form's tolerance is one of frequencies: the phase error grows.
+    ///
+    /// A fit to the loads estimates the error of a run; half of it leaves room for what the estimate leaves out.
     fn options_for_error(error: f64) -> Vec<Options> {
-        vec![
+        let fitted = (0.5 * error > LEAST_ESTIMATE)
+            .then(|| of_fit("load").with_number(TOLERANCE, 0.5 * error));
+        let options = vec![
             Options::new(),
             Options::new().with_number(TOLERANCE, 0.1 * error),
             of_kind("two-step").with_number(TOLERANCE, 0.01 * error),
             of_kind("krylov").with_number(TOLERANCE, 0.1 * error),
-        ]
+        ];
+        options.into_iter().chain(fitted).collect()
     }
 
     const PROGRAMS: bool = true;
@@ -182,18 +247,47 @@ impl Method for Propagator {
             "krylov" => Some(PropagatorKind::Krylov),
             _ => None,
         })?;
-        let expected = "a number above 0 and below 1";
-        let share = |x: f64| x > 0.0 && x < 1.0;
+        let fit = options.read(ID, FIT, "\"uniform\" or \"load\"", |value| {
+            match value.word()? {
+                "uniform" => Some(Fit::Uniform),
+                "load" => Some(Fit::Load),
+                _ => None,
+            }
+        })?;
+        let kind = kind.unwrap_or_default();
+        if kind != PropagatorKind::TwoStep {
+            options.read(
+                ID,
+                FIT,
+                "nothing without kind = \"two-step\"",
+                |_| None::<()>,
+            )?;
+        }
+        let fit = fit.unwrap_or_default();
+        let (expected, least) = match fit {
+            Fit::Uniform => ("a number above 0 and below 1", 0.0),
+            Fit::Load => (
+                "a number above 1e-6 and below 1 for fit = \"load\"",
+                LEAST_ESTIMATE,
+            ),
+        };
+        let share = |x: f64| x > least && x < 1.0;
         let expected_degree = "a whole number from 1 to 500";
         let degree = options.read(ID, DEGREE, expected_degree, |value| {
             value.count(HIGHEST_DEGREE as u32)
         })?;
-        let default = if degree.is_some() { LOOSE } else { 1e-10 };
+        let default = match (degree, fit) {
+            (None, Fit::Uniform) => 1e-10,
+            _ => LOOSE,
+        };
         let resolution = Resolution {
             tolerance: options.number(ID, TOLERANCE, default, expected, share)?,
             degree: degree.map(|degree| degree as usize),
         };
-        Ok(Self::new(kind.unwrap_or_default(), resolution))
+        Ok(Self {
+            fit,
+            ..Self::new(kind, resolution)
+        })
     }
 }
 
@@ -231,7 +325,7 @@ impl Scheme for Propagator {
     }
 
     fn depends_on_loads(&self) -> bool {
-        self.kind == PropagatorKind::Chebyshev
+        self.kind == PropagatorKind::Chebyshev || self.fit == Fit::Load
     }
 
     fn set_up(
@@ -241,12 +335,18 @@ impl Scheme for Propagator {
         _before: Option<Krylov>,
     ) -> Result<SetUp<Krylov>, SetupError> {
         let (operators, resolution) = (linear(system, ID)?.operators(), self.resolution);
-        let of = (operators.revision(), dt);
-        let known = self.made.take().filter(|(known, _)| *known == of);
+        let loads = (self.fit == Fit::Load).then(|| operators.loads_revision());
+        let matrices = operators.revision();
+        let of = (matrices, loads, dt);
+        let made = self.made.take();
+        let known = made.filter(|made| (made.matrices, made.loads, made.dt) == of);
         let series = match (known, self.kind) {
-            (Some((_, series)), _) => series,
+            (Some(made), _) => made.series,
             (None, PropagatorKind::Chebyshev) => {
                 Series::Chebyshev(Box::new(Chebyshev::new(operators, dt, resolution)?))
+            }
+            (None, PropagatorKind::TwoStep) if self.fit == Fit::Load => {
+                Series::LoadFit(Box::new(LoadFit::new(operators, dt, resolution)?))
             }
             (None, PropagatorKind::TwoStep) => {
                 Series::TwoStep(Box::new(TwoStep::new(operators, dt, resolution)?))
@@ -261,15 +361,22 @@ impl Scheme for Propagator {
                 series.program(operators.loads().iter().map(|load| &load.ramp))
             }
             Series::TwoStep(series) => series.program(),
+            Series::LoadFit(series) => series.program(),
         };
-        self.made = Some((of, series));
+        self.made = Some(Made {
+            matrices,
+            loads,
+            dt,
+            series,
+        });
         Ok(program.into())
     }
 
     fn facts(&self) -> Vec<Fact> {
-        match &self.made {
-            Some((_, Series::Chebyshev(series))) => series.facts(),
-            Some((_, Series::TwoStep(series))) => series.facts(),
+        match self.made.as_ref().map(|made| &made.series) {
+            Some(Series::Chebyshev(series)) => series.facts(),
+            Some(Series::TwoStep(series)) => series.facts(),
+            Some(Series::LoadFit(series)) => series.facts(),
             None => Vec::new(),
         }
     }

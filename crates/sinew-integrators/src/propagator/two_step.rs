@@ -1,22 +1,17 @@
 //! The propagator in two-step form.
 
-use sinew_cnn::{LoadAt, Loads, Program, Register, Sweep, When};
+use sinew_cnn::{LoadAt, Program, When};
 use sinew_core::closed_form::Mode;
 use sinew_core::spectrum::Spectrum;
-use sinew_core::{Acceleration, Fact, LinearOperators, SetupError, VelocityTime};
+use sinew_core::{Fact, LinearOperators, SetupError};
 
 use super::chebyshev::LARGEST_EIGENVALUE_MARGIN;
 use super::first_step::FirstStep;
+use super::peaks::{POINTS_PER_DEGREE, largest_value};
 use super::quadrature::quadrature;
-use super::resolution::{HIGHEST_DEGREE, ID, Resolution};
+use super::recurrence::{KickRegisters, Recurrence, mass_damping, net_force};
+use super::resolution::{HIGHEST_DEGREE, Resolution};
 use super::series::{evaluate, interpolate, nodes, tails};
-use super::sweeps::ChebyshevVectors;
-
-/// Points per degree among which the largest value of a polynomial is looked for.
-const POINTS_PER_DEGREE: usize = 32;
-
-/// Share of the largest value that a peak has at one of these points: cos(pi/64), rounded down.
-const SEEN_OF_A_PEAK: f64 = 0.99;
 
 /// Least by which sin(w dt/2) is kept below 1: rounding of it.
 const LEAST_ROOM: f64 = 1e-13;
@@ -54,18 +49,11 @@ pub(super) struct TwoStep {
     divided: Vec<f64>,
     s_at_zero: f64,
     alpha: f64,
-    decay: f64,
-    /// Series of the effect of a jump of the load, for half the jump; empty without damping.
-    of_jump: Vec<f64>,
-    first_step: FirstStep,
-    interval: f64,
-    dt: f64,
-    /// Time of the velocity after a step.
-    velocity: VelocityTime,
+    recurrence: Recurrence,
 }
 
 /// S of one mode.
-fn half_sine(lambda: f64, alpha: f64, dt: f64) -> f64 {
+pub(super) fn half_sine(lambda: f64, alpha: f64, dt: f64) -> f64 {
     // An undamped mode of lambda - alpha^2/4 from 0 with velocity 1 over half a step is sin(w dt/2)/w.
     let mode = Mode {
         lambda: lambda - alpha * alpha / 4.0,
@@ -81,15 +69,7 @@ impl TwoStep {
         dt: f64,
         resolution: Resolution,
     ) -> Result<Self, SetupError> {
-        let damping = operators.damping();
-        if damping.extra.is_some() || damping.stiffness != 0.0 {
-            return Err(SetupError::Lacks {
-                integrator: ID,
-                needs: "mass damping at most for kind = \"two-step\"; \"chebyshev\" takes \
-                        proportional damping, \"krylov\" any",
-            });
-        }
-        let alpha = damping.mass;
+        let alpha = mass_damping(operators)?;
         let omega = Spectrum::of(operators).omega_max;
         let interval = omega.powi(2) * (1.0 + LARGEST_EIGENVALUE_MARGIN);
         let count = (48.0 + 0.75 * omega * dt).min(2.0 * HIGHEST_DEGREE as f64) as usize;
@@ -128,103 +108,62 @@ impl TwoStep {
             sine_error,
             s_at_zero,
             alpha,
-            decay: root_of_decay * root_of_decay,
-            first_step: FirstStep::new(&s, interval, alpha, dt, root_of_decay),
-            of_jump: jump_series(operators, interval, dt, 2 * degree),
+            recurrence: Recurrence {
+                decay: root_of_decay * root_of_decay,
+                first_step: FirstStep::new(&s, interval, alpha, dt, root_of_decay),
+                of_jump: jump_series(operators, interval, dt, 2 * degree),
+                interval,
+                dt,
+                velocity: Recurrence::velocity_time(omega, dt),
+            },
             s,
             divided,
-            interval,
-            dt,
-            velocity: match omega * dt <= 2.0 {
-                true => VelocityTime::MiddleOfStep,
-                false => VelocityTime::MeanOverStep,
-            },
         })
     }
 
     /// The step as a program.
     pub(super) fn program(&self) -> Program {
-        let dt = self.dt;
-        let (u, v, a) = (Register::U, Register::V, Register::A);
-        let mut program = Program::new(self.velocity);
-        program.acceleration = Acceleration::Kick;
-        let [r, sum, y] = ["r", "sum", "y"].map(|name| program.register(name));
-        let room = ["c", "d"].map(|name| program.register(name));
-        let vectors = ChebyshevVectors {
-            interval: self.interval,
-            room,
-        };
-        let keep = || a.becomes([(v, 1.0)]).in_last_step();
-        let force = |at| Sweep::of_stiffness(1.0, u, Loads::at(at)).then(r.becomes_q());
-
-        let FirstStep {
-            of_velocity,
-            of_force,
-        } = &self.first_step;
-        let first = sum.becomes([(v, of_velocity[0]), (r, of_force[0])]);
-        program.start.push(force(LoadAt::From).then(first));
-        for (start, series) in [(v, of_velocity), (r, of_force)] {
-            let add = |k: usize, x| vec![sum.plus(series[k], x)];
-            let sweeps = vectors.sweeps(start, series.len(), When::Always, add);
-            program.start.extend(sweeps);
-        }
-        // The acceleration that leads from v to the mean velocity of the step.
-        let kick = a.becomes([(sum, 2.0 / (dt * dt)), (v, -2.0 / dt)]);
-        let last = Sweep::local().then(kick.in_last_step());
-        let last = last.then(v.becomes([(sum, 1.0 / dt)]));
-        program.start.push(last.then(u.plus(dt, v)));
-
         // y = S r - alpha^2/4 (S - S0)/lambda r, then G r = e^-eta (S y - alpha^2/4 S0 (S - S0)/lambda r).
         let quarter = self.alpha * self.alpha / 4.0;
         let damped = quarter != 0.0;
-        let divided = program.named("divided");
-        let add = |k: usize, x| {
-            let mut updates = vec![match k {
-                0 => y.becomes([(x, self.s[0])]),
-                _ => y.plus(self.s[k], x),
-            }];
-            if damped {
-                updates.push(match k {
-                    0 => divided.becomes([(x, self.divided[0])]),
-                    _ => divided.plus(self.divided[k], x),
-                });
+        let of_sum = self.recurrence.decay.sqrt();
+        self.recurrence.program(of_sum, ["y"], |program, with| {
+            let KickRegisters {
+                r, sum, vectors, ..
+            } = with;
+            let (r, sum, [y]) = (*r, *sum, with.own);
+            let divided = program.named("divided");
+            let add = |k: usize, x| {
+                let mut updates = vec![match k {
+                    0 => y.becomes([(x, self.s[0])]),
+                    _ => y.plus(self.s[k], x),
+                }];
+                if damped {
+                    updates.push(match k {
+                        0 => divided.becomes([(x, self.divided[0])]),
+                        _ => divided.plus(self.divided[k], x),
+                    });
+                }
+                updates
+            };
+            let mut sweeps = vec![net_force(LoadAt::Around, r)];
+            sweeps[0].updates.extend(add(0, r));
+            sweeps.extend(vectors.sweeps(r, self.s.len(), When::Always, add));
+            let s_0 = self.s[0];
+            if let Some(last) = sweeps.last_mut() {
+                if damped {
+                    last.updates.push(y.plus(-quarter, divided));
+                    let of_divided = -quarter * self.s_at_zero;
+                    last.updates
+                        .push(sum.becomes([(divided, of_divided), (y, s_0)]));
+                } else {
+                    last.updates.push(sum.becomes([(y, s_0)]));
+                }
             }
-            updates
-        };
-        let mut sweeps = vec![force(LoadAt::Around)];
-        sweeps[0].updates.extend(add(0, r));
-        sweeps.extend(vectors.sweeps(r, self.s.len(), When::Always, add));
-        let s_0 = self.s[0];
-        if let Some(last) = sweeps.last_mut() {
-            if damped {
-                last.updates.push(y.plus(-quarter, divided));
-                let of_divided = -quarter * self.s_at_zero;
-                last.updates
-                    .push(sum.becomes([(divided, of_divided), (y, s_0)]));
-            } else {
-                last.updates.push(sum.becomes([(y, s_0)]));
-            }
-        }
-        let add = |k: usize, x| vec![sum.plus(self.s[k], x)];
-        sweeps.extend(vectors.sweeps(y, self.s.len(), When::Always, add));
-        if let Some(last) = sweeps.last_mut() {
-            last.updates.push(keep());
-            let kick = v.becomes([(v, self.decay), (sum, self.decay.sqrt() / dt)]);
-            last.updates.push(kick);
-        }
-        if let Some(first) = self.of_jump.first() {
-            let add = |k: usize, x| vec![v.plus(self.of_jump[k] / dt, x)];
-            let jump = Sweep::of_stiffness(0.0, u, Loads::HalfJump).without_neighbours();
-            let jump = jump.when(When::LoadsJump).then(r.becomes_q());
-            sweeps.push(jump.then(v.plus(first / dt, r)));
-            let terms = self.of_jump.len();
-            sweeps.extend(vectors.sweeps(r, terms, When::LoadsJump, add));
-        }
-        let taken = a.becomes([(a, -1.0 / dt), (v, 1.0 / dt)]);
-        let last = Sweep::local().then(taken.in_last_step());
-        sweeps.push(last.then(u.plus(dt, v)));
-        program.step = sweeps;
-        program
+            let add = |k: usize, x| vec![sum.plus(self.s[k], x)];
+            sweeps.extend(vectors.sweeps(y, self.s.len(), When::Always, add));
+            sweeps
+        })
     }
 
     pub(super) fn facts(&self) -> Vec<Fact> {
@@ -282,31 +221,5 @@ fn largest_swing(s: &[f64], interval: f64, alpha: f64) -> f64 {
         let square = lambda - alpha * alpha / 4.0;
         square.max(0.0).sqrt() * evaluate(s, lambda, interval).abs()
     };
-    let points = POINTS_PER_DEGREE * (s.len() + 1);
-    let width = std::f64::consts::PI / points as f64;
-    let seen: Vec<f64> = (0..=points)
-        .map(|point| swing(point as f64 * width))
-        .collect();
-    let largest = seen.iter().copied().fold(0.0, f64::max);
-    // Peaks of nearly the same height: the highest of them may be seen less well than another.
-    let near = (0..=points).filter(|point| seen[*point] >= SEEN_OF_A_PEAK * largest);
-    let peaks = near.map(|point| peak_about(&swing, point as f64 * width, width));
-    // Rounding of a value.
-    peaks.fold(largest, f64::max) * (1.0 + 1e-14)
-}
-
-/// The largest value of a function within `width` of a point, by golden section.
-fn peak_about(function: &impl Fn(f64) -> f64, centre: f64, width: f64) -> f64 {
-    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
-    let (mut low, mut high) = (centre - width, centre + width);
-    // Where a maximum is found to the square root of rounding, its value is to rounding.
-    for _ in 0..40 {
-        let (left, right) = (high - golden * (high - low), low + golden * (high - low));
-        if function(left) >= function(right) {
-            high = right;
-        } else {
-            low = left;
-        }
-    }
-    function(0.5 * (low + high))
+    largest_value(swing, POINTS_PER_DEGREE * (s.len() + 1))
 }

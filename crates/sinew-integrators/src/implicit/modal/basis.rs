@@ -6,9 +6,9 @@ use super::candidate::{CandidateMode, most_excited};
 use super::columns::add;
 use super::failure::Failure;
 use super::inverse::{Inverse, held};
-use super::load_case::LoadCase;
 use super::search::Search;
 use super::small::{self, SMALL};
+use crate::load_case::LoadCase;
 
 /// Number of modes.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Candidate modes.
 
-use super::load_case::LoadCase;
+use crate::load_case::LoadCase;
 
 /// A mode that may be taken.
 #[derive(Debug)]

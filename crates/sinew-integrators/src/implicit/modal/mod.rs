@@ -6,7 +6,6 @@ mod columns;
 mod failure;
 mod inverse;
 mod lanczos_basis;
-mod load_case;
 mod motion;
 mod search;
 mod small;
@@ -21,9 +20,9 @@ use sinew_core::{
 use self::basis::{Basis, Choice};
 use self::columns::{add, lift_two, project_two};
 use self::failure::Failure;
-use self::load_case::LoadCase;
 use self::motion::{Mode, Piece, Response, harmonic_rate};
 use crate::exponential::Exponential;
+use crate::load_case::LoadCase;
 use crate::scheme::linear;
 use crate::{Frame, Method, OptionHelp, Scheme, SetUp, StepByHand};
 

@@ -7,8 +7,8 @@ use super::columns::add;
 use super::failure::Failure;
 use super::inverse::Inverse;
 use super::lanczos_basis::{LanczosBasis, Ritz};
-use super::load_case::LoadCase;
 use super::small::SMALL;
+use crate::load_case::LoadCase;
 
 /// Share of the degrees of freedom that a Lanczos basis may take up in the search for a tolerance.
 const SHARE: f64 = 0.5;

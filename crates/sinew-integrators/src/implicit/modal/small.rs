@@ -3,9 +3,9 @@
 use sinew_core::LinearOperators;
 
 use super::candidate::{CandidateMode, CandidateModes};
-use super::load_case::LoadCase;
 use crate::implicit::factor::symmetric_eigen;
 use crate::implicit::factor_error::FactorError;
+use crate::load_case::LoadCase;
 
 /// Degrees of freedom up to which all modes are found at once: choosing would cost more than it
 /// saves.

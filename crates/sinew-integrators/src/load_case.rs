@@ -4,15 +4,15 @@ use sinew_core::{LinearOperators, Ramp};
 
 /// Loads with one ramp, added up.
 #[derive(Clone, Debug)]
-pub(super) struct LoadCase {
-    pub(super) ramp: Ramp,
+pub(crate) struct LoadCase {
+    pub(crate) ramp: Ramp,
     /// The force (N) on each degree of freedom.
-    pub(super) force: Vec<f64>,
+    pub(crate) force: Vec<f64>,
 }
 
 impl LoadCase {
     /// The loads of a system, those with equal ramps added up.
-    pub(super) fn of(operators: &LinearOperators) -> Vec<Self> {
+    pub(crate) fn of(operators: &LinearOperators) -> Vec<Self> {
         let mut cases: Vec<Self> = Vec::new();
         for load in operators.loads() {
             let at = cases.iter().position(|case| case.ramp == load.ramp);
@@ -32,7 +32,7 @@ impl LoadCase {
     }
 
     /// Largest size of the ramp.
-    pub(super) fn peak(&self) -> f64 {
+    pub(crate) fn peak(&self) -> f64 {
         match &self.ramp {
             Ramp::Table { values, .. } | Ramp::Hold { values, .. } => {
                 values.iter().fold(0.0, |peak, x| x.abs().max(peak))
