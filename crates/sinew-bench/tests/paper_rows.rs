@@ -97,6 +97,7 @@ fn every_method_runs() {
     ] {
         expected.push(format!("propagator {kind}"));
     }
+    expected.push("modal vectors=ritz".to_owned());
     let mut found: Vec<String> = cube().rows.iter().map(Row::label).collect();
     assert_eq!(found.len(), 3 * expected.len());
     found.sort();

@@ -16,8 +16,8 @@ use common::build;
 use common::tissue::{DENSITY, body, linear};
 use sinew_core::closed_form::DampedOscillator;
 use sinew_core::{
-    Accuracy, Between, ChangingLoads, Inputs, LinearSystem, LoadOverStep, Options, Properties,
-    Ramp, StableStep, State, StepError, System,
+    Accuracy, Between, ChangingLoads, Inputs, LinearSystem, LoadOverStep, OptionValue, Options,
+    Properties, Ramp, StableStep, State, StepError, System,
 };
 use sinew_fem::{Course, Fixed, Law, Model, Moving, On, Problem, Rayleigh, SpringRule};
 use sinew_integrators::entries;
@@ -175,14 +175,14 @@ impl Tower {
 
 /// Relative error of a method over the duration in `coarse` times `refinement` steps; `None` where it refuses the loads.
 fn error(
-    id: &str,
+    (id, options): (&str, &Options),
     model: &Model,
     expected: impl Fn(f64) -> f64,
     coarse: usize,
     refinement: usize,
 ) -> Option<f64> {
     let tip = model.dofs() - 1;
-    let mut integrator = build(id, &Options::new());
+    let mut integrator = build(id, options);
     let mut state = State::at_rest(model.dofs());
     let dt = DURATION / (coarse * refinement) as f64;
     let (mut sum, mut size) = (0.0, 0.0);
@@ -252,7 +252,8 @@ fn every_method_follows_a_moving_base_at_its_order() {
                 };
                 let coarse = 20 * (DURATION / 20.0 / dt).ceil() as usize;
                 let what = format!("{}, {damping:?}, {way:?}", entry.id);
-                let error = |refinement| error(entry.id, &model, expected, coarse, refinement);
+                let method = (entry.id, &Options::new());
+                let error = |refinement| error(method, &model, expected, coarse, refinement);
                 match declared(&properties, smooth, stiffness > 0.0) {
                     None => {
                         let needed = properties.changing_loads.needed();
@@ -297,6 +298,24 @@ fn every_method_follows_a_moving_base_at_its_order() {
     assert!(taken > 150, "{taken}");
 }
 
+/// A way is a load, or two with stiffness damping, of which Ritz vectors are made.
+#[cfg(feature = "implicit")]
+#[test]
+fn ritz_vectors_follow_a_moving_base() {
+    let law = linear(5e3, 0.0);
+    let ritz = Options::new().with("vectors", OptionValue::Text("ritz".into()));
+    for (mass, stiffness) in [(0.0, 0.0), (3.0, 2e-3)] {
+        let damping = Rayleigh { mass, stiffness };
+        let theory = Tower::elastic(5e3, damping);
+        for (way, _) in ways() {
+            let model = tower(law, damping, way.courses());
+            let expected = |t: f64| theory.at(&way, t)[0];
+            let error = error(("modal", &ritz), &model, expected, 40, 1).unwrap();
+            assert!(error <= 1e-9, "{way:?}: {error:e}");
+        }
+    }
+}
+
 /// Springs with dashpots: the base pulls through both.
 #[test]
 fn dashpots_see_the_velocity_of_the_base() {
@@ -333,7 +352,7 @@ fn dashpots_see_the_velocity_of_the_base() {
             refusals.push(entry.id);
             continue;
         }
-        let error = error(entry.id, &model, expected, 400, 4).unwrap();
+        let error = error((entry.id, &Options::new()), &model, expected, 400, 4).unwrap();
         assert!(error <= 5e-3, "{}: {error:e}", entry.id);
     }
     assert_eq!(refusals, ["propagator", "modal"]);

@@ -12,6 +12,6 @@ mod static_solution;
 pub use factor_error::FactorError;
 pub use generalized_alpha::GeneralizedAlpha;
 pub use implicit_euler::ImplicitEuler;
-pub use modal::{Modal, ModalSteps};
+pub use modal::{Modal, ModalSteps, Vectors};
 pub use newmark::Newmark;
 pub use static_solution::{StaticError, static_solution};

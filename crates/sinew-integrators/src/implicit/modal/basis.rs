@@ -19,6 +19,16 @@ pub(super) enum Choice {
     Tolerance(f64),
 }
 
+/// Vectors that stand for the motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Vectors {
+    /// Modes, the most excited of a Lanczos basis.
+    #[default]
+    Eigen,
+    /// Ritz vectors of the loads: the most excited of such a basis, and what is left of the static responses.
+    Ritz,
+}
+
 /// The modes taken, with unit modal masses.
 #[derive(Debug, Default)]
 pub(super) struct Basis {
@@ -43,11 +53,12 @@ impl Basis {
         operators: &LinearOperators,
         cases: &[LoadCase],
         choice: Choice,
+        vectors: Vectors,
     ) -> Result<Self, Failure> {
         let root: Vec<f64> = operators.mass().iter().map(|mass| mass.sqrt()).collect();
         let held = held(operators);
         let free = held.iter().filter(|held| !**held).count();
-        if free <= SMALL {
+        if free <= SMALL && vectors == Vectors::Eigen {
             let candidates =
                 small::all_modes(operators, cases, &held).map_err(Failure::Factorization)?;
             let modes = match choice {
@@ -68,11 +79,17 @@ impl Basis {
         let mut inverse = Inverse::new(operators).map_err(Failure::Factorization)?;
         let rigid = inverse.rigid_motions().map_err(Failure::Factorization)?;
         let search = Search::new(rigid, cases, &mut inverse, free);
-        let (candidates, modes, estimate) = match choice {
-            Choice::Modes { count, basis } => search.so_many(count, basis, &mut inverse)?,
-            Choice::Tolerance(tolerance) => search.within(tolerance, &mut inverse)?,
+        let (candidates, modes, estimate) = match (vectors, choice) {
+            (Vectors::Ritz, choice) => {
+                let damping = operators.damping();
+                let damping = [damping.mass, damping.stiffness];
+                search.ritz(choice, damping, &mut inverse)?
+            }
+            (_, Choice::Modes { count, basis }) => search.so_many(count, basis, &mut inverse)?,
+            (_, Choice::Tolerance(tolerance)) => search.within(tolerance, &mut inverse)?,
         };
         let mut basis = Self::of(modes, &candidates, &root, cases.len());
+        basis.complete = basis.frequencies.len() == free;
         basis.estimate = estimate;
         basis.keep(inverse);
         Ok(basis)

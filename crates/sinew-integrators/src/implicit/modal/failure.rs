@@ -6,6 +6,12 @@ use crate::implicit::factor_error::FactorError;
 #[derive(Debug)]
 pub(super) enum Failure {
     Factorization(FactorError),
+    /// Vectors of the loads are asked for, and there are no loads.
+    NoLoads,
+    /// Fewer vectors are asked for than there are static responses and rigid motions.
+    TooFew {
+        needed: usize,
+    },
     /// The tolerance needs more modes than may be taken.
     TooMany {
         basis: usize,

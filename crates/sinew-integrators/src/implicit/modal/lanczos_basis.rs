@@ -30,7 +30,7 @@ pub(super) struct LanczosBasis {
 }
 
 /// A Rayleigh-Ritz approximation to an eigenvector of A.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Ritz {
     /// Eigenvalue.
     pub(super) theta: f64,
@@ -76,6 +76,11 @@ impl LanczosBasis {
     /// Whether the basis spans all that the starts can reach.
     pub(super) fn exhausted(&self) -> bool {
         self.size() == self.len()
+    }
+
+    /// Number of starts that were independent.
+    pub(super) fn width(&self) -> usize {
+        self.width
     }
 
     pub(super) fn rigid(&self) -> &[f64] {

@@ -7,16 +7,18 @@ mod failure;
 mod inverse;
 mod lanczos_basis;
 mod motion;
+mod ritz;
 mod search;
 mod small;
 
 use sinew_core::vectors::dot;
 use sinew_core::{
     Accuracy, ChangingLoads, Clock, EnergyBehaviour, Fact, LinearOperators, LoadOverStep, Needs,
-    OptionError, Options, OtherDamping, Properties, Ramp, Revision, SetupError, State, Step,
-    StepError, StepReport, Stepped, System,
+    OptionError, OptionValue, Options, OtherDamping, Properties, Ramp, Revision, SetupError, State,
+    Step, StepError, StepReport, Stepped, System,
 };
 
+pub use self::basis::Vectors;
 use self::basis::{Basis, Choice};
 use self::columns::{add, lift_two, project_two};
 use self::failure::Failure;
@@ -49,6 +51,17 @@ use crate::{Frame, Method, OptionHelp, Scheme, SetUp, StepByHand};
 /// * `modes = N`: rigid motions and the most excited modes of a basis of 2 N, or of `basis = P`.
 ///   Without loads, the slowest modes, all converged.
 ///
+/// # Ritz vectors
+/// With `vectors = "ritz"`, load-dependent Ritz vectors (Wilson, Yuan and Dickens, Earthquake Eng. Struct. Dyn. 10,
+/// 1982) take the place of modes: the most excited vectors of a basis of twice as many, which takes a factor and a
+/// solution for each, and one vector for what is left of the static response to each ramp's loads, prescribed
+/// motions included. So the static part of a response is exact with any number of vectors: static correction by
+/// augmentation (Dickens, Nakagawa and Wittbrodt, Computers & Structures 62, 1997). There are at least as many
+/// vectors as different ramps. With `tolerance` they are the fewest that the tolerance allows.
+///
+/// [`Frame::estimated_error`], which a plan says before the run, is that of the response to suddenly applied loads,
+/// with damping: what the vectors lose of their basis, and what the last quarter of the basis changed.
+///
 /// # States
 /// Modes are a property of the system alone, so that a run can be continued from any of its states.
 /// A state that lies outside them is refused, because loads and states excite different modes. The
@@ -63,6 +76,9 @@ use crate::{Frame, Method, OptionHelp, Scheme, SetUp, StepByHand};
 #[derive(Clone, Copy, Debug)]
 pub struct Modal {
     choice: Choice,
+    vectors: Vectors,
+    /// Number of Ritz vectors and their estimated error.
+    stated: Option<(usize, f64)>,
 }
 
 /// The modes of a system, and the motion of each over a step.
@@ -97,16 +113,26 @@ impl Modal {
     /// The method with as many modes as the tolerance needs; see the type.
     #[must_use]
     pub fn with_tolerance(tolerance: f64) -> Self {
-        Self {
-            choice: Choice::Tolerance(tolerance),
-        }
+        Self::of(Choice::Tolerance(tolerance))
     }
 
     /// The method with a fixed number of modes; see the type.
     #[must_use]
     pub fn with_modes(count: usize) -> Self {
+        Self::of(Choice::Modes { count, basis: None })
+    }
+
+    /// The method with these vectors.
+    #[must_use]
+    pub fn with_vectors(self, vectors: Vectors) -> Self {
+        Self { vectors, ..self }
+    }
+
+    fn of(choice: Choice) -> Self {
         Self {
-            choice: Choice::Modes { count, basis: None },
+            choice,
+            vectors: Vectors::Eigen,
+            stated: None,
         }
     }
 }
@@ -137,11 +163,27 @@ impl Frame<Modal> {
 
 impl ModalSteps {
     /// Finds the modes.
-    fn new(operators: &LinearOperators, choice: Choice) -> Result<Self, SetupError> {
+    fn new(
+        operators: &LinearOperators,
+        choice: Choice,
+        vectors: Vectors,
+    ) -> Result<Self, SetupError> {
         let integrator = Modal::ID;
         let cases = LoadCase::of(operators);
-        let basis = Basis::build(operators, &cases, choice).map_err(|failure| match failure {
+        let basis = Basis::build(operators, &cases, choice, vectors);
+        let basis = basis.map_err(|failure| match failure {
             Failure::Factorization(error) => error.at_set_up(integrator),
+            Failure::NoLoads => SetupError::Lacks {
+                integrator,
+                needs: "loads to take vectors from for vectors = \"ritz\"",
+            },
+            Failure::TooFew { needed } => SetupError::Unresolved {
+                integrator,
+                reason: format!(
+                    "these loads need {needed} vectors at least for vectors = \"ritz\": one for each ramp, \
+                     and the rigid motions of a body that floats; ask for more `modes`"
+                ),
+            },
             Failure::TooMany {
                 basis,
                 dofs,
@@ -310,6 +352,11 @@ impl Default for Modal {
     }
 }
 
+/// Ritz vectors of the loads.
+fn ritz() -> Options {
+    Options::new().with("vectors", OptionValue::Text("ritz".into()))
+}
+
 impl Method for Modal {
     const SUMMARY: &'static str =
         "superposition of the modes that the loads excite, exact in time; long set-up";
@@ -325,6 +372,11 @@ impl Method for Modal {
             shown_default: None,
         },
         OptionHelp {
+            key: "vectors",
+            help: "\"eigen\" (default; modes, the most excited ones) or \"ritz\" (vectors made from the loads by a factor and two solutions for each; the static response is exact, and the estimated error is said before the run)",
+            shown_default: None,
+        },
+        OptionHelp {
             key: "basis",
             help: "with `modes`: size of the Lanczos basis they are taken from; default twice as many",
             shown_default: None,
@@ -333,9 +385,16 @@ impl Method for Modal {
 
     const FACTORISES: bool = true;
 
+    fn variants() -> Vec<Options> {
+        vec![ritz()]
+    }
+
     /// Options for an error, which is the share of the response that the method leaves out.
     fn options_for_error(error: f64) -> Vec<Options> {
-        vec![Options::new().with_number("tolerance", error)]
+        vec![
+            Options::new().with_number("tolerance", error),
+            ritz().with_number("tolerance", error),
+        ]
     }
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
@@ -345,20 +404,33 @@ impl Method for Modal {
             let value = options.number(Self::ID, key, least, expected, fits)?;
             Ok(options.get(key).map(|_| value as usize))
         };
+        let kinds = "\"eigen\" or \"ritz\"";
+        let vectors = options.read(Self::ID, "vectors", kinds, |value| match value.word()? {
+            "eigen" => Some(Vectors::Eigen),
+            "ritz" => Some(Vectors::Ritz),
+            _ => None,
+        })?;
+        let vectors = vectors.unwrap_or_default();
         if let Some(modes) = count("modes", 1.0, "a whole number above 0")? {
             refuse("tolerance", "nothing beside `modes`")?;
             let basis = count("basis", modes as f64, "a whole number not below `modes`")?;
+            if vectors == Vectors::Ritz {
+                refuse(
+                    "basis",
+                    "nothing with vectors = \"ritz\", which are all of their basis",
+                )?;
+            }
             let choice = Choice::Modes {
                 count: modes,
                 basis,
             };
-            return Ok(Self { choice });
+            return Ok(Self::of(choice).with_vectors(vectors));
         }
         refuse("basis", "nothing without `modes`")?;
         let expected = "a number above 0 and below 1";
         let fits = |x| x > 0.0 && x < 1.0;
         let tolerance = options.number(Self::ID, "tolerance", 1e-2, expected, fits)?;
-        Ok(Self::with_tolerance(tolerance))
+        Ok(Self::with_tolerance(tolerance).with_vectors(vectors))
     }
 }
 
@@ -402,7 +474,7 @@ impl Scheme for Modal {
         let (mut steps, work) = match known {
             Some(steps) => (steps, StepReport::default()),
             None => {
-                let steps = ModalSteps::new(operators, self.choice)?;
+                let steps = ModalSteps::new(operators, self.choice, self.vectors)?;
                 let work = StepReport {
                     solves: steps.basis.solves,
                     factorizations: steps.basis.factorizations,
@@ -412,7 +484,20 @@ impl Scheme for Modal {
             }
         };
         steps.take_responses(dt);
+        let ritz = self.vectors == Vectors::Ritz;
+        let estimate = steps.basis.estimate.filter(|_| ritz);
+        self.stated = estimate.map(|estimate| (steps.modes.len(), estimate));
         Ok(SetUp::by_hand(steps, work))
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let stated = self.stated.map(|(vectors, estimate)| {
+            format!(
+                "`modal`: {vectors} Ritz vectors of the loads are estimated to lose {:.2} % of the response to suddenly applied loads",
+                100.0 * estimate
+            )
+        });
+        stated.into_iter().collect()
     }
 }
 

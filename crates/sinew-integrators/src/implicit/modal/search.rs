@@ -1,5 +1,6 @@
 //! The search for the modes that loads excite.
 
+use sinew_core::closed_form::Mode;
 use sinew_core::vectors::{dot, noise};
 
 use super::candidate::{CandidateMode, most_excited};
@@ -15,7 +16,7 @@ const SHARE: f64 = 0.5;
 
 /// Share of the tolerance that the estimate is held to: it is a mean over all phases of the modes,
 /// and a run sees some of them.
-const MARGIN: f64 = 0.8;
+pub(super) const MARGIN: f64 = 0.8;
 
 /// Number of lowest modes that are taken where only the first state excites any.
 const WITHOUT_LOADS: usize = 64;
@@ -36,11 +37,13 @@ pub(super) type Found = (Vec<f64>, Vec<CandidateMode>, Option<f64>);
 /// 12, 1984), whose eigenvectors are the modes as far as they have converged and bundles of fast
 /// modes beyond; the static response is exact in any of these bases.
 pub(super) struct Search<'a> {
-    lanczos: LanczosBasis,
-    cases: &'a [LoadCase],
-    rigid_forces: Vec<Vec<f64>>,
+    pub(super) lanczos: LanczosBasis,
+    pub(super) cases: &'a [LoadCase],
+    pub(super) rigid_forces: Vec<Vec<f64>>,
     shift: f64,
-    free: usize,
+    pub(super) free: usize,
+    /// alpha (1/s) and beta (s) of the responses by which errors are estimated.
+    pub(super) damping: [f64; 2],
 }
 
 impl<'a> Search<'a> {
@@ -88,6 +91,7 @@ impl<'a> Search<'a> {
             rigid_forces,
             shift: inverse.shift,
             free,
+            damping: [0.0; 2],
         }
     }
 
@@ -108,7 +112,7 @@ impl<'a> Search<'a> {
         Ok(self.take(pairs, count, None))
     }
 
-    fn pairs(&self) -> Result<Vec<Ritz>, Failure> {
+    pub(super) fn pairs(&self) -> Result<Vec<Ritz>, Failure> {
         self.lanczos.ritz_pairs().map_err(Failure::Factorization)
     }
 
@@ -142,6 +146,17 @@ impl<'a> Search<'a> {
             return Ok(self.take(pairs, count, None));
         }
         let aim = MARGIN * tolerance;
+        let (pairs, change) = self.converged(aim, inverse)?;
+        Ok(self.thin_out(pairs, aim, change))
+    }
+
+    /// The pairs of the first basis of which the response changes by so little from the last one that half of the
+    /// squared error aimed at is left, with that change.
+    pub(super) fn converged(
+        &mut self,
+        aim: f64,
+        inverse: &mut Inverse,
+    ) -> Result<(Vec<Ritz>, f64), Failure> {
         let most = ((SHARE * self.free as f64) as usize).max(SMALL);
         let mut instants = Vec::new();
         let mut before: Option<Vec<Vec<f64>>> = None;
@@ -161,7 +176,7 @@ impl<'a> Search<'a> {
             };
             // Half of the allowed square is kept for the modes that are left out.
             if change <= aim * std::f64::consts::FRAC_1_SQRT_2 {
-                return Ok(self.thin_out(pairs, aim, change));
+                return Ok((pairs, change));
             }
             if size >= most {
                 return Err(Failure::TooMany {
@@ -175,18 +190,32 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn squared(&self, pair: &Ritz) -> f64 {
+    pub(super) fn squared(&self, pair: &Ritz) -> f64 {
         (pair.theta.recip() - self.shift).max(0.0)
     }
 
-    /// Parts along the basis of the undamped responses to each load case, suddenly applied.
-    fn responses(&self, pairs: &[Ritz], instants: &[f64]) -> Vec<Vec<f64>> {
+    /// The response of a mode to a load suddenly applied, over the static one.
+    fn swing(&self, squared: f64, t: f64) -> f64 {
+        let [alpha, beta] = self.damping;
+        if alpha == 0.0 && beta == 0.0 {
+            return 1.0 - (squared.sqrt() * t).cos();
+        }
+        let mode = Mode {
+            lambda: squared,
+            damping: alpha + beta * squared,
+        };
+        let (s, s_rate) = mode.impulse(t);
+        1.0 - (s_rate + mode.damping * s)
+    }
+
+    /// Parts along the basis of the responses to each load case, suddenly applied.
+    pub(super) fn responses(&self, pairs: &[Ritz], instants: &[f64]) -> Vec<Vec<f64>> {
         let mut responses = Vec::new();
         for (case, load) in self.cases.iter().enumerate() {
             for t in instants {
-                let mut response = vec![0.0; self.lanczos.size()];
+                let mut response = vec![0.0; pairs.first().map_or(0, |pair| pair.vector.len())];
                 for pair in pairs {
-                    let swing = 1.0 - (self.squared(pair).sqrt() * t).cos();
+                    let swing = self.swing(self.squared(pair), *t);
                     let size = load.peak() * pair.excitation[case] * swing;
                     add(&pair.vector, &[size], 1.0, &mut response);
                 }
@@ -196,13 +225,15 @@ impl<'a> Search<'a> {
         responses
     }
 
+    /// Squared size of a pair's static response to all load cases.
+    pub(super) fn excitation(&self, pair: &Ritz) -> f64 {
+        let parts = pair.excitation.iter().zip(self.cases);
+        parts.map(|(part, case)| (case.peak() * part).powi(2)).sum()
+    }
+
     /// Leaves out the least excited modes as far as the error aimed at allows.
     fn thin_out(self, pairs: Vec<Ritz>, aim: f64, change: f64) -> Found {
-        let size = |pair: &Ritz| -> f64 {
-            let parts = pair.excitation.iter().zip(self.cases);
-            parts.map(|(part, case)| (case.peak() * part).powi(2)).sum()
-        };
-        let mut sizes: Vec<f64> = pairs.iter().map(size).collect();
+        let mut sizes: Vec<f64> = pairs.iter().map(|pair| self.excitation(pair)).collect();
         sizes.sort_by(f64::total_cmp);
         let total: f64 = sizes.iter().sum();
         let allowed = (aim * aim - change * change) * total;
@@ -219,7 +250,7 @@ impl<'a> Search<'a> {
         self.take(pairs, count, Some(estimate))
     }
 
-    fn take(self, pairs: Vec<Ritz>, count: usize, estimate: Option<f64>) -> Found {
+    pub(super) fn take(self, pairs: Vec<Ritz>, count: usize, estimate: Option<f64>) -> Found {
         let n_rigid = self.rigid_forces.len();
         let size = self.lanczos.size();
         let unit = |at: usize| {
@@ -259,7 +290,7 @@ impl<'a> Search<'a> {
 }
 
 /// Instants over eight periods of the slowest mode, spread evenly by the golden ratio.
-fn sample_times(slowest: f64) -> Vec<f64> {
+pub(super) fn sample_times(slowest: f64) -> Vec<f64> {
     const COUNT: u32 = 48;
     let span = 8.0 * std::f64::consts::TAU / slowest.max(f64::MIN_POSITIVE);
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
@@ -269,7 +300,7 @@ fn sample_times(slowest: f64) -> Vec<f64> {
 }
 
 /// `||now - before|| / ||now||`; the parts known before come first.
-fn relative_change(before: &[Vec<f64>], now: &[Vec<f64>]) -> f64 {
+pub(super) fn relative_change(before: &[Vec<f64>], now: &[Vec<f64>]) -> f64 {
     let (mut difference, mut size) = (0.0, 0.0);
     for (before, now) in before.iter().zip(now) {
         for (i, value) in now.iter().enumerate() {
