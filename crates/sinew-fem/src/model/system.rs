@@ -35,12 +35,8 @@ impl System for Model {
     }
 
     fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
-        let nodes = self.body.cells.nodes.iter();
-        Some(
-            nodes
-                .map(|node| self.body.mesh.points[*node as usize])
-                .collect(),
-        )
+        let place = |node: &u32| self.mesh.points[*node as usize];
+        Some(self.body.cells.nodes.iter().map(place).collect())
     }
 
     /// The energy of the degrees of freedom, without the energy that supports in motion hold and store.
