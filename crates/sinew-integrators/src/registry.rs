@@ -37,6 +37,9 @@ macro_rules! for_each_integrator {
     };
 }
 
+/// Builds an integrator from its own options, on a machine with these settings.
+type Build = fn(&Options, Settings) -> Result<Box<dyn Stepper>, OptionError>;
+
 /// An integrator that can be built by name.
 #[derive(Clone, Copy)]
 pub struct Entry {
@@ -61,7 +64,7 @@ pub struct Entry {
     /// The energy that it conserves, from the facts of its set-up.
     pub conserved_energy: fn(&[Fact]) -> ConservedEnergy,
     labels: &'static [(&'static str, OptionLabel)],
-    build: fn(&Options, Settings) -> Result<Box<dyn Stepper>, OptionError>,
+    build: Build,
 }
 
 impl std::fmt::Debug for Entry {

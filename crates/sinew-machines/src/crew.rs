@@ -3,7 +3,6 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::thread::{self, Thread};
-use std::time::Duration;
 
 use sinew_sparse::sweep::Outcome;
 
@@ -15,9 +14,6 @@ const SPINS: u32 = 4_000;
 
 /// Times that the host lets others run before it sleeps.
 const YIELDS: u32 = 20;
-
-/// Longest sleep of the host between two looks.
-const NAP: Duration = Duration::from_micros(50);
 
 /// Sweeps after which late workers are counted.
 const WATCHED: u32 = 32;
@@ -44,6 +40,9 @@ pub(crate) struct Crew<'a> {
     closed: AtomicBool,
     /// Whether each worker sleeps.
     asleep: Vec<AtomicBool>,
+    host: Thread,
+    /// Whether the host sleeps until all chunks are done.
+    host_asleep: AtomicBool,
     saturated: AtomicU64,
     exceeded: AtomicBool,
 }
@@ -93,6 +92,8 @@ impl<'a> Crew<'a> {
             turn: AtomicUsize::new(0),
             closed: AtomicBool::new(false),
             asleep: (1..threads).map(|_| AtomicBool::new(false)).collect(),
+            host: thread::current(),
+            host_asleep: AtomicBool::new(false),
             saturated: AtomicU64::new(0),
             exceeded: AtomicBool::new(false),
         };
@@ -141,7 +142,7 @@ impl<'a> Crew<'a> {
                 }
                 let chunks = first..(first + BLOCK).min(end);
                 // Also where the work panics, so that the host does not wait for ever.
-                let _done = Done(&self.done, chunks.len());
+                let _done = Done(self, chunks.len());
                 let outcome = (self.work)(chunks);
                 self.saturated
                     .fetch_add(outcome.saturated, Ordering::Relaxed);
@@ -175,12 +176,16 @@ impl<'a> Crew<'a> {
     }
 }
 
-/// Chunks that are done as soon as this is dropped.
-struct Done<'a>(&'a AtomicUsize, usize);
+/// A number of chunks that are done as soon as this is dropped.
+struct Done<'a>(&'a Crew<'a>, usize);
 
 impl Drop for Done<'_> {
     fn drop(&mut self) {
-        self.0.fetch_add(self.1, Ordering::Release);
+        let crew = self.0;
+        let done = crew.done.fetch_add(self.1, Ordering::SeqCst) + self.1;
+        if done == crew.chunks && crew.host_asleep.load(Ordering::SeqCst) {
+            crew.host.unpark();
+        }
     }
 }
 
@@ -224,7 +229,11 @@ impl Host<'_> {
             } else if looks <= SPINS + YIELDS {
                 thread::yield_now();
             } else {
-                thread::park_timeout(NAP);
+                crew.host_asleep.store(true, Ordering::SeqCst);
+                if crew.done.load(Ordering::SeqCst) < crew.chunks {
+                    thread::park();
+                }
+                crew.host_asleep.store(false, Ordering::SeqCst);
             }
         }
         self.watched += 1;

@@ -8,7 +8,7 @@
 
 use std::arch::x86_64::*;
 
-use super::Lanes;
+use super::lanes::Lanes;
 
 /// Two 256-bit vectors.
 #[derive(Clone, Copy)]

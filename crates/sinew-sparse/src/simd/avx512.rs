@@ -8,7 +8,7 @@
 
 use std::arch::x86_64::*;
 
-use super::Lanes;
+use super::lanes::Lanes;
 
 /// A 512-bit vector.
 #[derive(Clone, Copy)]

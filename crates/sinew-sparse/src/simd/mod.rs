@@ -1,6 +1,6 @@
 //! Vectors of numbers that one instruction works on, for each instruction set.
 //!
-//! Kernels are written once over [`Lanes`] and compiled once for each [`InstructionSet`]; which one runs is
+//! Kernels are written once over a trait of vectors and compiled once for each [`InstructionSet`]; which one runs is
 //! chosen when the program runs, so that a portable build uses what the machine has. All code that
 //! touches a kernel's memory by address stands here and in [`crate::sweep`].
 
@@ -8,41 +8,15 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod lanes;
 mod portable;
 mod real;
 mod set;
 
+pub(crate) use lanes::Lanes;
 pub(crate) use portable::Array;
 pub use real::Real;
 pub use set::InstructionSet;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) use {avx2::Avx2, avx512::Avx512};
-
-/// A vector of `T::LANES` numbers: 64 bytes, whatever the instruction set, so that layouts in memory do
-/// not depend on it.
-///
-/// # Safety
-/// Every method may be called only where the instruction set of the implementation is available. Pointers
-/// have to be valid for `T::LANES` numbers (indices included) and need no alignment.
-#[allow(unsafe_code, reason = "one contract for all methods stands above")]
-pub(crate) trait Lanes<T: Real>: Copy {
-    unsafe fn splat(value: T) -> Self;
-    unsafe fn load(from: *const T) -> Self;
-    unsafe fn store(self, to: *mut T);
-    /// The numbers at `from + index`.
-    unsafe fn gather(from: *const T, index: *const u32) -> Self;
-    unsafe fn mul(self, other: Self) -> Self;
-    /// Asks for the 64 bytes at an address, which need not be valid, to be brought near.
-    unsafe fn prefetch(from: *const T);
-    /// `self factor + other`, rounded once where the instruction set can.
-    unsafe fn mul_add(self, factor: Self, other: Self) -> Self;
-    /// The number of the same sign whose size is `limit` at most; not a number stays so.
-    unsafe fn clamp(self, limit: Self) -> Self;
-    /// 0 where the size is below `tiny`.
-    unsafe fn flush(self, tiny: Self) -> Self;
-    /// One bit for each lane whose size is at least `limit`.
-    unsafe fn reaches(self, limit: Self) -> u32;
-    /// One bit for each lane whose size is not at most `limit`: larger, or not a number.
-    unsafe fn exceeds(self, limit: Self) -> u32;
-}

@@ -2,7 +2,7 @@
 
 #![allow(unsafe_code, reason = "the contract stands at `Lanes`")]
 
-use super::Lanes;
+use super::lanes::Lanes;
 
 /// Numbers in an array of `N = T::LANES`.
 #[derive(Clone, Copy)]
@@ -101,7 +101,7 @@ macro_rules! array {
 
             #[inline(always)]
             unsafe fn exceeds(self, limit: Self) -> u32 {
-                self.bits(|value| !(value.abs() <= limit.0[0]))
+                self.bits(|value| value.is_nan() || value.abs() > limit.0[0])
             }
         }
     };

@@ -6,10 +6,9 @@ use std::ops::Range;
 
 use super::clamp::{ROUNDING, clamp_within};
 use super::map::{CellMap, Clamp, Field, Quotient, Update};
-use super::precision::Precision;
 use super::rows::Rows;
 use super::{CHUNK, Fields};
-use crate::simd::{InstructionSet, Lanes};
+use crate::simd::{InstructionSet, Lanes, Real};
 
 /// A sweep over the vectors of all cells.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +23,19 @@ pub struct Sweep<'a, T> {
     pub loaded: &'a [bool],
     /// Size that values of watched updates may have.
     pub limit: T,
+}
+
+/// A precision that there are kernels for.
+pub trait Precision: Real {
+    /// Its name, as scenes and results show it.
+    const NAME: &'static str;
+
+    /// [`Sweep::run`] for a checked sweep.
+    ///
+    /// # Safety
+    /// As for [`Sweep::run`], on an instruction set that is available.
+    #[doc(hidden)]
+    unsafe fn run(sweep: &Sweep<'_, Self>, set: InstructionSet, chunks: Range<usize>) -> Outcome;
 }
 
 /// What the cells of some chunks reached.

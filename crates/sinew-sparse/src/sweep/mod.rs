@@ -6,24 +6,28 @@
 //! thread and in the same order of operations whatever the number of threads, so that the bits do not
 //! depend on it.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "kernels count lanes and layers of several arrays at once"
+)]
+
 mod chunk;
 mod clamp;
 mod fields;
+mod kernels;
 mod lattice;
 mod map;
 mod numbering;
-mod precision;
 mod rows;
 mod sell;
 mod templates;
 
-pub use chunk::{Outcome, Sweep};
+pub use chunk::{Outcome, Precision, Sweep};
 pub use clamp::clamp_vector;
 pub use fields::Fields;
 pub use lattice::Lattice;
 pub use map::{CellMap, Clamp, Field, Own, Product, Quotient, Update};
 pub use numbering::Numbering;
-pub use precision::Precision;
 pub use rows::Rows;
 pub use sell::Sell;
 pub use templates::Grid;

@@ -4,23 +4,10 @@
 
 use std::ops::Range;
 
-use super::chunk::{Outcome, Sweep, run};
-use crate::simd::{Array, InstructionSet, Real};
+use super::chunk::{Outcome, Precision, Sweep, run};
+use crate::simd::{Array, InstructionSet};
 #[cfg(target_arch = "x86_64")]
 use crate::simd::{Avx2, Avx512};
-
-/// A precision that there are kernels for.
-pub trait Precision: Real {
-    /// Its name, as scenes and results show it.
-    const NAME: &'static str;
-
-    /// [`Sweep::run`] for a checked sweep.
-    ///
-    /// # Safety
-    /// As for [`Sweep::run`], on an instruction set that is available.
-    #[doc(hidden)]
-    unsafe fn run(sweep: &Sweep<'_, Self>, set: InstructionSet, chunks: Range<usize>) -> Outcome;
-}
 
 macro_rules! precision {
     ($number:ty, $name:literal, $lanes:literal, $of256:ident, $of512:ident) => {

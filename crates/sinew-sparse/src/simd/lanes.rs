@@ -1,0 +1,31 @@
+//! What kernels need of vectors.
+
+use super::real::Real;
+
+/// A vector of `T::LANES` numbers: 64 bytes, whatever the instruction set, so that layouts in memory do
+/// not depend on it.
+///
+/// # Safety
+/// Every method may be called only where the instruction set of the implementation is available. Pointers
+/// have to be valid for `T::LANES` numbers (indices included) and need no alignment.
+#[allow(unsafe_code, reason = "one contract for all methods stands above")]
+pub(crate) trait Lanes<T: Real>: Copy {
+    unsafe fn splat(value: T) -> Self;
+    unsafe fn load(from: *const T) -> Self;
+    unsafe fn store(self, to: *mut T);
+    /// The numbers at `from + index`.
+    unsafe fn gather(from: *const T, index: *const u32) -> Self;
+    unsafe fn mul(self, other: Self) -> Self;
+    /// Asks for the 64 bytes at an address, which need not be valid, to be brought near.
+    unsafe fn prefetch(from: *const T);
+    /// `self factor + other`, rounded once where the instruction set can.
+    unsafe fn mul_add(self, factor: Self, other: Self) -> Self;
+    /// The number of the same sign whose size is `limit` at most; not a number stays so.
+    unsafe fn clamp(self, limit: Self) -> Self;
+    /// 0 where the size is below `tiny`.
+    unsafe fn flush(self, tiny: Self) -> Self;
+    /// One bit for each lane whose size is at least `limit`.
+    unsafe fn reaches(self, limit: Self) -> u32;
+    /// One bit for each lane whose size is not at most `limit`: larger, or not a number.
+    unsafe fn exceeds(self, limit: Self) -> u32;
+}
