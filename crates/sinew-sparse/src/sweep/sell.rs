@@ -9,7 +9,7 @@ use crate::BlockMatrix;
 use crate::simd::{Lanes, Real};
 
 /// Blocks by which memory is asked for before it is needed: a product streams through it.
-const AHEAD: usize = 4;
+const AHEAD: usize = 8;
 
 /// A block matrix in sliced ELLPACK form, SELL-C-sigma (Kreutzer et al., SIAM J. Sci. Comput. 36,
 /// 2014): as many rows as a vector has lanes stand side by side, entry by entry, so that one instruction works
