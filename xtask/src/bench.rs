@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use sinew_bench::hard::HardBench;
+use sinew_bench::kernels::KernelBench;
 use sinew_bench::output::{OutputFolder, say};
 use sinew_bench::report::{WriteError, terminal, write_all};
 use sinew_bench::results::BenchResults;
@@ -44,6 +45,9 @@ pub(crate) struct Arguments {
     /// with 1 if a mark is not passed
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "beside"])]
     hard: bool,
+    /// Measure the kernels of all machines instead, beside plain loops
+    #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "beside"])]
+    kernels: bool,
     /// Run another program on the peers' cube in turn with our cheapest methods and print the ratios
     /// of CPU time, nothing else; numpy and scipy are installed by pip into target/
     #[arg(long, value_enum, value_name = "PROGRAM", conflicts_with_all = ["scenes", "steps", "out"])]
@@ -53,6 +57,9 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.hard {
         return run_hard(arguments);
+    }
+    if arguments.kernels {
+        return run_kernels(arguments);
     }
     let scenes = if arguments.scenes.is_empty() {
         let scene = |name: &&str| root().join("scenes").join(name);
@@ -92,6 +99,30 @@ fn run_hard(arguments: &Arguments) -> Result<(), Failure> {
     bar.finish();
     let results = results.map_err(Failure::input)?;
     conclude(&results, &folder)
+}
+
+/// Measures the kernels.
+fn run_kernels(arguments: &Arguments) -> Result<(), Failure> {
+    let bench = KernelBench {
+        meshes: root().join("meshes"),
+        quick: arguments.quick,
+    };
+    let folder = folder(
+        arguments,
+        "bench-kernels",
+        &[bench.meshes.join("organ.msh")],
+    );
+    let name = "kernels.json";
+    folder.check(&[name.to_owned()])?;
+    let bar = Bar::new();
+    let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
+    bar.finish();
+    let results = results.map_err(Failure::chore)?;
+    let json = serde_json::to_vec_pretty(&results).map_err(Failure::chore)?;
+    let written = folder.write(name, &json)?;
+    say(&results.to_string())?;
+    say(&format!("\nresults: {}", written.display()))?;
+    Ok(())
 }
 
 fn folder(arguments: &Arguments, default: &str, inputs: &[PathBuf]) -> OutputFolder {

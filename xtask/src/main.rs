@@ -16,6 +16,11 @@ mod rules;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use sinew_bench::kernels::CountingAllocator;
+
+/// Counts what the kernels' bench asks about.
+#[global_allocator]
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 /// Chores of the sinew repository.
 #[derive(Parser)]

@@ -6,6 +6,7 @@
 mod bench;
 pub mod beside;
 pub mod hard;
+pub mod kernels;
 mod machine;
 pub mod peers;
 pub mod report;

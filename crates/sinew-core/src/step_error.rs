@@ -25,6 +25,19 @@ pub enum SetupError {
         /// Reason.
         reason: &'static str,
     },
+    /// A precision that rounds more than the error asked for.
+    #[error(
+        "`{integrator}`: f32 may be off by {expected:.0e}, more than the tolerance of {asked:e}; take \
+         precision = \"f64\", or a tolerance from {expected:.0e} on"
+    )]
+    Rounding {
+        /// Integrator id.
+        integrator: &'static str,
+        /// The error asked for (relative).
+        asked: f64,
+        /// The error of rounding (relative).
+        expected: f64,
+    },
     /// A step that is not positive and finite.
     #[error("`{integrator}`: dt = {dt} s: expected a finite step above 0")]
     Step {

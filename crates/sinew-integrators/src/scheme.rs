@@ -20,6 +20,12 @@ pub trait Scheme: Send + Sized + 'static {
     /// Properties that it declares.
     fn properties(&self) -> Properties;
 
+    /// The error (relative) that its user asked for, where there is such an option: a precision that rounds
+    /// more than that is refused.
+    fn asked_error(&self) -> Option<f64> {
+        None
+    }
+
     /// Whether its steps are others under other loads, so that set-up has to look at them again.
     fn depends_on_loads(&self) -> bool {
         false

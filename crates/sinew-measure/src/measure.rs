@@ -99,6 +99,7 @@ pub fn measure_with(
     Ok(Row {
         case: case.id().to_owned(),
         integrator: name.to_owned(),
+        kernel: integrator.kernel(),
         dt,
         steps: report.steps as u64,
         sweeps_per_s: report.work.sweeps as f64 / simulated,

@@ -62,6 +62,9 @@ pub struct Row {
     /// Options that differ from the integrator's defaults.
     #[serde(default)]
     pub options: BTreeMap<String, Value>,
+    /// The machine, precision and instructions by which its program ran; none for loops of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kernel: Option<String>,
     /// Step (s).
     #[serde(deserialize_with = "gaps::null_is_nan")]
     pub dt: f64,

@@ -312,6 +312,10 @@ impl Scheme for Propagator {
         }
     }
 
+    fn asked_error(&self) -> Option<f64> {
+        Some(self.resolution.tolerance)
+    }
+
     fn load_remedy(&self) -> &'static str {
         match self.kind {
             PropagatorKind::Chebyshev => "choose a dt that meets that instant",

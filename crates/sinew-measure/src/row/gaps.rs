@@ -67,6 +67,7 @@ impl Row {
             case: _,
             integrator: _,
             options: _,
+            kernel: _,
             dt,
             steps: _,
             sweeps_per_s,

@@ -1,0 +1,127 @@
+//! The bodies of a bench of kernels.
+
+use sinew_core::{OptionError, Ramp, SetupError};
+use sinew_fem::{FemError, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region};
+use sinew_mesh::structured::{Split, StructuredError, cube};
+use sinew_mesh::{GroupMembers, MshFileError, TetMesh, TetMeshError, read_msh_file};
+
+use super::KernelBench;
+
+/// A body with its model.
+pub(super) struct Body {
+    pub(super) name: String,
+    pub(super) nodes: usize,
+    pub(super) tets: usize,
+    pub(super) model: Model,
+}
+
+/// Reasons for which a bench of kernels cannot run.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum KernelBenchError {
+    /// A mesh file that cannot be read.
+    #[error(transparent)]
+    File(#[from] MshFileError),
+    /// A mesh without tetrahedra.
+    #[error(transparent)]
+    Mesh(#[from] TetMeshError),
+    /// A cube that cannot be made.
+    #[error(transparent)]
+    Cube(#[from] StructuredError),
+    /// A body that cannot be built.
+    #[error(transparent)]
+    Body(#[from] FemError),
+    /// A method that cannot be built.
+    #[error(transparent)]
+    Options(#[from] OptionError),
+    /// A method that cannot be set up.
+    #[error(transparent)]
+    Method(#[from] SetupError),
+}
+
+/// The peers' cube at several sizes, a body that no lattice fits, and an organ.
+pub(super) fn bodies(bench: &KernelBench) -> Result<Vec<Body>, KernelBenchError> {
+    let sizes: &[usize] = if bench.quick { &[6] } else { &[10, 20, 40] };
+    let mut bodies = Vec::new();
+    for cells in sizes {
+        let mesh = cube(*cells, 0.1, Split::Kuhn)?;
+        bodies.push(body(
+            format!("cube {}^3", cells + 1),
+            &mesh,
+            "sides",
+            "top",
+        )?);
+    }
+    if !bench.quick {
+        let mut mesh = cube(20, 0.1, Split::Kuhn)?;
+        scatter(&mut mesh);
+        bodies.push(body("scattered 21^3".into(), &mesh, "sides", "top")?);
+        let organ = read_msh_file(bench.meshes.join("organ.msh"))?.to_tet_mesh()?;
+        bodies.push(body(
+            "organ.msh".into(),
+            &organ,
+            "attachment",
+            "inclusion-surface",
+        )?);
+    }
+    Ok(bodies)
+}
+
+/// Moves nodes by up to a tenth of a cell and numbers them in leaps, as mesh generators leave them.
+fn scatter(mesh: &mut TetMesh) {
+    let count = mesh.points.len();
+    let shift = |node: usize, axis: usize| 5e-4 * ((12.9898 * (3 * node + axis) as f64).sin());
+    let points = mesh.points.iter().enumerate();
+    let moved: Vec<[f64; 3]> = points
+        .map(|(node, point)| std::array::from_fn(|axis| point[axis] + shift(node, axis)))
+        .collect();
+    // Prime to the number of nodes of a cube of 20 cells, 21^3.
+    let leap = 5003;
+    let number = |node: u32| (node as usize * leap % count) as u32;
+    for (node, point) in moved.into_iter().enumerate() {
+        mesh.points[number(node as u32) as usize] = point;
+    }
+    for tet in &mut mesh.tets {
+        *tet = tet.map(number);
+    }
+    for group in &mut mesh.groups {
+        if let GroupMembers::Triangles(triangles) = &mut group.members {
+            for triangle in triangles {
+                *triangle = triangle.map(number);
+            }
+        }
+    }
+}
+
+fn body(name: String, mesh: &TetMesh, held: &str, pressed: &str) -> Result<Body, KernelBenchError> {
+    let problem = Problem {
+        regions: vec![Region {
+            group: None,
+            density: 1060.0,
+            law: Law::Linear {
+                youngs_modulus: 3500.0,
+                poissons_ratio: 0.45,
+            },
+        }],
+        fixed: vec![Fixed {
+            on: held.into(),
+            axes: [true; 3],
+        }],
+        loads: vec![LoadSpec {
+            on: pressed.into(),
+            kind: LoadKind::Pressure(100.0),
+            ramp: Ramp::Step,
+        }],
+        damping: Rayleigh {
+            mass: 20.0,
+            ..Rayleigh::default()
+        },
+        ..Problem::default()
+    };
+    Ok(Body {
+        name,
+        nodes: mesh.points.len(),
+        tets: mesh.tets.len(),
+        model: Model::build(mesh, &problem)?,
+    })
+}

@@ -1,0 +1,201 @@
+//! Laps in turn: plain loops, then each machine.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use sinew_cnn::conformance::CountingAllocator;
+use sinew_cnn::{Machine, Program, ReferenceMachine};
+use sinew_core::{Batch, Inputs, Layers, LinearSystem, Options, State, System};
+use sinew_machines::{FastMachine, Kind, Layout, PrecisionName};
+use sinew_measure::thread_cpu_time;
+use sinew_sparse::sweep::Precision;
+
+use super::baseline::Baseline;
+use super::bodies::{Body, KernelBenchError};
+use super::memory::bandwidth;
+use super::{KernelRow, Variant, variants};
+
+/// Share of the stable step that steps take.
+const SHARE: f64 = 0.9;
+
+/// Degrees of freedom that a lap moves, about.
+const LAP: usize = 2_000_000;
+
+/// A machine with a state of its own.
+struct Runner {
+    variant: Variant,
+    machine: Box<dyn Machine>,
+    instructions: &'static str,
+    templates: Option<usize>,
+    /// Bytes of matrices.
+    bytes: usize,
+    state: State,
+    /// Time of the baseline's lap, and of the lap after it (s).
+    laps: Vec<[f64; 2]>,
+    /// Largest difference from the plain machine after the first lap, relative.
+    difference: f64,
+}
+
+/// Measures all machines on a body.
+pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBenchError> {
+    let model = &body.model;
+    let omega = (model as &dyn System).spectrum(None);
+    let dt = SHARE * 2.0 / omega.map_or(1.0, |spectrum| spectrum.omega_max);
+    let Some(program) = program(model, dt)? else {
+        return Ok(Vec::new());
+    };
+    let alpha = model.operators().damping().mass;
+    let dofs = model.operators().dofs();
+    let (steps, laps) = match quick {
+        true => (4, 3),
+        false => ((LAP / dofs).max(8), 15),
+    };
+    let mut runners: Vec<Runner> = variants()
+        .into_iter()
+        .filter_map(|variant| runner(variant, model, &program))
+        .collect();
+    let mut baseline = Baseline::new(model);
+    let mut expected = State::at_rest(dofs);
+    for lap in 0..laps {
+        for runner in &mut runners {
+            let several = runner.variant.threads > 1;
+            let of_baseline = timed(several, || baseline.steps(steps, dt, alpha));
+            let mut batch = Batch::new(model, Inputs::none(), dt, steps);
+            let mut done = Ok(());
+            let of_machine = timed(several, || {
+                done = runner.machine.run(&mut batch, &mut runner.state)
+            });
+            debug_assert!(done.is_ok());
+            runner.laps.push([of_baseline, of_machine]);
+        }
+        if lap == 0 {
+            let mut reference = ReferenceMachine::default();
+            reference.load(Arc::clone(&program), model);
+            let mut batch = Batch::new(model, Inputs::none(), dt, steps);
+            let done = reference.run(&mut batch, &mut expected);
+            debug_assert!(done.is_ok());
+            for runner in &mut runners {
+                runner.laps.clear();
+                runner.note_difference(&expected);
+            }
+        }
+    }
+    let layers = Layers::Three;
+    let cells = dofs / layers.count();
+    let vectors = program.traffic().vector_bytes(layers) * cells as f64;
+    let mut rows = Vec::new();
+    for mut runner in runners {
+        let allocations = runner.allocations(model, dt);
+        let number = match runner.variant.precision {
+            PrecisionName::F64 => 1.0,
+            PrecisionName::F32 => 0.5,
+        };
+        let bytes_per_step = runner.bytes as f64 + number * vectors;
+        let mut ratios: Vec<f64> = runner.laps.iter().map(|[b1, own]| b1 / own).collect();
+        ratios.sort_unstable_by(f64::total_cmp);
+        let mut times: Vec<f64> = runner
+            .laps
+            .iter()
+            .map(|[_, own]| own / steps as f64)
+            .collect();
+        times.sort_unstable_by(f64::total_cmp);
+        let step_s = times[times.len() / 2];
+        rows.push(KernelRow {
+            mesh: body.name.clone(),
+            nodes: body.nodes,
+            tets: body.tets,
+            kernel: match runner.variant.kind {
+                Kind::Repeated => "template lattice".into(),
+                _ => "general".into(),
+            },
+            precision: match runner.variant.precision {
+                PrecisionName::F64 => "f64",
+                PrecisionName::F32 => "f32",
+            },
+            instructions: runner.instructions,
+            threads: runner.variant.threads,
+            ratio_to_b1: ratios[ratios.len() / 2],
+            ratios: [ratios[0], ratios[ratios.len() - 1]],
+            step_s,
+            difference: runner.difference,
+            bytes_per_step,
+            share_of_bandwidth: bytes_per_step / step_s / bandwidth(bytes_per_step as usize),
+            templates: runner.templates,
+            allocations_per_step: allocations,
+        });
+    }
+    Ok(rows)
+}
+
+/// The step of central difference as a program.
+fn program(model: &dyn System, dt: f64) -> Result<Option<Arc<Program>>, KernelBenchError> {
+    let mut method = sinew_integrators::build("central-difference", &Options::new())?;
+    method.prepare(model, dt)?;
+    Ok(method.program().map(Arc::new))
+}
+
+/// A machine of this kind; `None` where the body has no templates.
+fn runner(variant: Variant, model: &sinew_fem::Model, program: &Arc<Program>) -> Option<Runner> {
+    match variant.precision {
+        PrecisionName::F64 => runner_in::<f64>(variant, model, program),
+        PrecisionName::F32 => runner_in::<f32>(variant, model, program),
+    }
+}
+
+fn runner_in<T: Precision>(
+    variant: Variant,
+    model: &sinew_fem::Model,
+    program: &Arc<Program>,
+) -> Option<Runner> {
+    let layout = match variant.kind {
+        Kind::Repeated => Layout::<T>::repeated(model)?,
+        _ => Layout::general(model.operators()),
+    };
+    let (templates, bytes) = (layout.templates(), layout.bytes());
+    let mut machine = FastMachine::new(layout).with_threads(variant.threads);
+    machine.load(Arc::clone(program), model);
+    Some(Runner {
+        variant,
+        instructions: machine.instructions().name(),
+        machine: Box::new(machine),
+        templates,
+        bytes,
+        state: State::at_rest(model.dofs()),
+        laps: Vec::new(),
+        difference: 0.0,
+    })
+}
+
+impl Runner {
+    fn note_difference(&mut self, expected: &State) {
+        let size = |values: &[f64]| values.iter().fold(0.0, |most: f64, x| x.abs().max(most));
+        let pairs = self.state.u.iter().zip(&expected.u);
+        let off: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
+        self.difference = size(&off) / size(&expected.u);
+    }
+
+    /// Allocations in a step of a batch of ten; `None` where the program's allocator does not count.
+    fn allocations(&mut self, model: &dyn System, dt: f64) -> Option<f64> {
+        let counts = CountingAllocator::count(|| drop(std::hint::black_box(vec![0_u8; 100])));
+        if counts == 0 {
+            return None;
+        }
+        let mut batch = Batch::new(model, Inputs::none(), dt, 10);
+        let count = CountingAllocator::count(|| {
+            let done = self.machine.run(&mut batch, &mut self.state);
+            debug_assert!(done.is_ok());
+        });
+        Some(count as f64 / 10.0)
+    }
+}
+
+/// Seconds that some work takes: of this thread's CPU time, or on the wall where there are several.
+fn timed(several: bool, work: impl FnOnce()) -> f64 {
+    let (wall, cpu) = (Instant::now(), thread_cpu_time());
+    work();
+    let spent: Duration = match several {
+        true => wall.elapsed(),
+        false => thread_cpu_time() - cpu,
+    };
+    spent.as_secs_f64()
+}

@@ -1,0 +1,62 @@
+//! A bench of kernels as people read it.
+
+use std::fmt;
+
+use comfy_table::{CellAlignment, ContentArrangement, Table};
+
+use super::{KernelResults, KernelRow};
+use crate::report::ruled::{self, RULED_HEAD};
+use crate::report::three;
+
+const HEAD: [&str; 9] = [
+    "body",
+    "kernel",
+    "precision",
+    "threads",
+    "times B1",
+    "lowest .. highest",
+    "off [relative]",
+    "MB a step",
+    "of bandwidth",
+];
+
+impl fmt::Display for KernelResults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "Steps of central difference with mass damping; B1 is one scalar CSR product in f64 with the update, in \
+             turn, medians.\nCPU time; wall time where there are several threads. `off`: largest difference from the \
+             plain loops.\n"
+        )?;
+        let mut table = Table::new();
+        table
+            .load_style(RULED_HEAD)
+            .set_content_arrangement(ContentArrangement::Disabled)
+            .set_header(HEAD);
+        for row in &self.rows {
+            table.add_row(cells(row));
+        }
+        for column in table.column_iter_mut().skip(3) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+        f.write_str(&ruled::lines(table, 2))
+    }
+}
+
+fn cells(row: &KernelRow) -> [String; 9] {
+    let kernel = match row.templates {
+        Some(count) => format!("{} ({count} templates) {}", row.kernel, row.instructions),
+        None => format!("{} {}", row.kernel, row.instructions),
+    };
+    [
+        row.mesh.clone(),
+        kernel,
+        row.precision.to_owned(),
+        row.threads.to_string(),
+        three(row.ratio_to_b1),
+        format!("{} .. {}", three(row.ratios[0]), three(row.ratios[1])),
+        format!("{:.1e}", row.difference),
+        three(1e-6 * row.bytes_per_step),
+        format!("{:.0} %", 100.0 * row.share_of_bandwidth),
+    ]
+}

@@ -1,0 +1,42 @@
+//! A small bench of kernels.
+
+#![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::PathBuf;
+
+use sinew_bench::kernels::{CountingAllocator, KernelBench};
+use sinew_bench::machine;
+
+#[global_allocator]
+static ALLOCATOR: CountingAllocator = CountingAllocator;
+
+#[test]
+fn every_machine_takes_the_same_steps_and_allocates_nothing() {
+    let bench = KernelBench {
+        meshes: PathBuf::new(),
+        quick: true,
+    };
+    let results = bench.run("a test".into(), machine(), |_| {}).unwrap();
+    let kernels = ["general", "template lattice"];
+    for kernel in kernels {
+        for (precision, rounding) in [("f64", 1e-13), ("f32", 1e-5)] {
+            let mut rows = results.rows.iter();
+            let row = rows.find(|row| (row.kernel.as_str(), row.precision) == (kernel, precision));
+            let row = row.unwrap();
+            assert!(row.difference < rounding, "{row:?}");
+            assert_eq!(row.threads, 1);
+            assert_eq!(row.allocations_per_step, Some(0.0), "{row:?}");
+            assert!(
+                row.ratio_to_b1 > 0.0 && row.share_of_bandwidth > 0.0,
+                "{row:?}"
+            );
+            assert_eq!(row.templates, (kernel == kernels[1]).then_some(3));
+        }
+    }
+    let text = results.to_string();
+    assert!(
+        text.contains("cube 7^3") && text.contains("template lattice (3 templates)"),
+        "{text}"
+    );
+}
