@@ -6,7 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Lists of runs, which are about certain methods.
-const LISTS: [&str; 5] = [
+const LISTS: [&str; 6] = [
+    "sinew-bench/src/kernels/laps.rs",
     "sinew-bench/src/hard/cases.rs",
     "sinew-bench/src/hard/methods.rs",
     "sinew-bench/src/hard/maps.rs",

@@ -3,7 +3,7 @@
 #![cfg(test)]
 
 use sinew_core::{
-    Batch, EnergyBehaviour, Integrator, LoadTime, Needs, Prepared, Properties, SetupError,
+    Batch, EnergyBehaviour, Integrator, LoadTime, Needs, Options, Prepared, Properties, SetupError,
     StableStep, State, StepError, StepReport, Stepped, System,
 };
 use sinew_measure::{
@@ -66,7 +66,9 @@ fn cube() -> Case {
 #[test]
 fn its_row_is_that_of_its_built_in_twin_under_its_own_name() {
     let mut case = cube();
-    let twin = MethodChoice::new("symplectic-euler");
+    // The plain loops, whose order of operations the foreign one has.
+    let plain = Options::new().with_text("machine", "reference");
+    let twin = MethodChoice::new("symplectic-euler").with_options(&plain);
     // A step that meets the instants of the error, one that does not, and one that diverges.
     for (dt, ends) in [
         (0.004, RowOutcome::Finished),
@@ -81,6 +83,8 @@ fn its_row_is_that_of_its_built_in_twin_under_its_own_name() {
         assert_eq!(theirs.label(), "mine");
         let renamed = Row {
             integrator: ours.integrator.clone(),
+            options: ours.options.clone(),
+            kernel: Some("reference".into()),
             setup_cpu_s: ours.setup_cpu_s,
             ..theirs
         };

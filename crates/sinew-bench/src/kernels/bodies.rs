@@ -1,11 +1,11 @@
 //! The bodies of a bench of kernels.
 
+use std::path::Path;
+
 use sinew_core::{OptionError, Ramp, SetupError};
 use sinew_fem::{FemError, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region};
 use sinew_mesh::structured::{Split, StructuredError, cube};
 use sinew_mesh::{GroupMembers, MshFileError, TetMesh, TetMeshError, read_msh_file};
-
-use super::KernelBench;
 
 /// A body with its model.
 pub(super) struct Body {
@@ -40,8 +40,8 @@ pub enum KernelBenchError {
 }
 
 /// The peers' cube at several sizes, a body that no lattice fits, and an organ.
-pub(super) fn bodies(bench: &KernelBench) -> Result<Vec<Body>, KernelBenchError> {
-    let sizes: &[usize] = if bench.quick { &[6] } else { &[10, 20, 40] };
+pub(super) fn bodies(meshes: &Path, quick: bool) -> Result<Vec<Body>, KernelBenchError> {
+    let sizes: &[usize] = if quick { &[6] } else { &[10, 20, 40] };
     let mut bodies = Vec::new();
     for cells in sizes {
         let mesh = cube(*cells, 0.1, Split::Kuhn)?;
@@ -52,11 +52,11 @@ pub(super) fn bodies(bench: &KernelBench) -> Result<Vec<Body>, KernelBenchError>
             "top",
         )?);
     }
-    if !bench.quick {
+    if !quick {
         let mut mesh = cube(20, 0.1, Split::Kuhn)?;
         scatter(&mut mesh);
         bodies.push(body("scattered 21^3".into(), &mesh, "sides", "top")?);
-        let organ = read_msh_file(bench.meshes.join("organ.msh"))?.to_tet_mesh()?;
+        let organ = read_msh_file(meshes.join("organ.msh"))?.to_tet_mesh()?;
         bodies.push(body(
             "organ.msh".into(),
             &organ,

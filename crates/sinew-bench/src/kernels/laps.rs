@@ -13,7 +13,8 @@ use sinew_sparse::sweep::Precision;
 use super::baseline::Baseline;
 use super::bodies::{Body, KernelBenchError};
 use super::memory::bandwidth;
-use super::{KernelRow, Variant, variants};
+use super::row::KernelRow;
+use super::variant::{Variant, variants};
 
 /// Share of the stable step that steps take.
 const SHARE: f64 = 0.9;
@@ -63,7 +64,7 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
             let mut batch = Batch::new(model, Inputs::none(), dt, steps);
             let mut done = Ok(());
             let of_machine = timed(several, || {
-                done = runner.machine.run(&mut batch, &mut runner.state)
+                done = runner.machine.run(&mut batch, &mut runner.state);
             });
             debug_assert!(done.is_ok());
             runner.laps.push([of_baseline, of_machine]);

@@ -4,7 +4,8 @@ use std::fmt;
 
 use comfy_table::{CellAlignment, ContentArrangement, Table};
 
-use super::{KernelResults, KernelRow};
+use super::KernelResults;
+use super::row::KernelRow;
 use crate::report::ruled::{self, RULED_HEAD};
 use crate::report::three;
 

@@ -8,8 +8,8 @@ use super::numbering::Numbering;
 use crate::BlockMatrix;
 use crate::simd::{Lanes, Real};
 
-/// Blocks by which memory is asked for before it is needed: a product streams through it.
-const AHEAD: usize = 8;
+/// Bytes above which a matrix lies in memory rather than in a cache.
+const IN_CACHE: usize = 32 << 20;
 
 /// A block matrix in sliced ELLPACK form, SELL-C-sigma (Kreutzer et al., SIAM J. Sci. Comput. 36,
 /// 2014): as many rows as a vector has lanes stand side by side, entry by entry, so that one instruction works
@@ -24,6 +24,8 @@ pub struct Sell<T> {
     columns: Vec<u32>,
     /// Entries of each block, entry by entry and lane by lane.
     values: Vec<T>,
+    /// Blocks by which memory is asked for before it is needed: a product streams through it.
+    ahead: usize,
 }
 
 impl<T: Real> Sell<T> {
@@ -48,7 +50,11 @@ impl<T: Real> Sell<T> {
             starts,
             columns: vec![0; blocks as usize * lanes],
             values: vec![T::default(); blocks as usize * entries],
+            ahead: 4,
         };
+        if sell.bytes() > IN_CACHE {
+            sell.ahead = 8;
+        }
         for position in 0..numbering.positions() {
             // Filling reads the row's own position.
             let (slice, lane) = (position / lanes, position % lanes);
@@ -118,10 +124,10 @@ impl<T: Real> Sell<T> {
                 let mut sum = [V::splat(T::default()); L];
                 for _ in blocks {
                     let x: [V; L] = std::array::from_fn(|j| V::gather(source[j], column));
-                    V::prefetch(column.wrapping_add(AHEAD * lanes).cast());
+                    V::prefetch(column.wrapping_add(self.ahead * lanes).cast());
                     for sum in &mut sum {
                         for x in x {
-                            V::prefetch(value.wrapping_add(L * L * AHEAD * lanes));
+                            V::prefetch(value.wrapping_add(L * L * self.ahead * lanes));
                             *sum = V::load(value).mul_add(x, *sum);
                             value = value.add(lanes);
                         }

@@ -1,0 +1,40 @@
+//! A row of a bench of kernels.
+
+use serde::Serialize;
+
+/// Steps of a program on one machine.
+#[derive(Clone, Debug, Serialize)]
+pub struct KernelRow {
+    /// The body.
+    pub mesh: String,
+    /// Its nodes, held ones too.
+    pub nodes: usize,
+    /// Its tetrahedra.
+    pub tets: usize,
+    /// The machine: "template" in the name where rows are stored once.
+    pub kernel: String,
+    /// "f64" or "f32".
+    pub precision: &'static str,
+    /// Instructions.
+    pub instructions: &'static str,
+    /// Threads that it may use.
+    pub threads: usize,
+    /// Time of a step of plain loops over its own, median of alternating laps: CPU time, or wall time where
+    /// there are several threads.
+    pub ratio_to_b1: f64,
+    /// Lowest and highest ratio.
+    pub ratios: [f64; 2],
+    /// Time of a step (s), of this computer only.
+    pub step_s: f64,
+    /// Largest difference of a displacement from the plain machine's after the steps of a lap, relative to
+    /// the largest displacement.
+    pub difference: f64,
+    /// Bytes that a step moves: matrices or templates, and vectors.
+    pub bytes_per_step: f64,
+    /// Those bytes in the time of a step over what one thread reads of as many, measured in the same run.
+    pub share_of_bandwidth: f64,
+    /// Templates, where rows are stored once.
+    pub templates: Option<usize>,
+    /// Allocations of the calling thread in a step; `None` where nothing counts them.
+    pub allocations_per_step: Option<f64>,
+}
