@@ -47,7 +47,8 @@ impl Forces {
             self.wanted
                 .push((std::ptr::from_ref::<Load>(load) as usize, factor));
         });
-        if self.wanted == self.present && !self.wanted.is_empty() {
+        // Without loads there may still be those of the batch before.
+        if self.wanted == self.present && (!self.wanted.is_empty() || self.touched.is_empty()) {
             return;
         }
         for (position, layer) in self.touched.drain(..) {

@@ -181,7 +181,7 @@ pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<
         1e-4,
     );
     give(single, &mut |asked| {
-        Ok(asked.not_applicable("there is no f32 kernel"))
+        Ok(asked.not_applicable("measured by the tests of sinew-machines"))
     });
     let rotated = asked(
         "90 degree rotated copy of a scene",
