@@ -46,11 +46,15 @@ pub(crate) fn take_settings(
         Some("repeated") => Some(Kind::Repeated),
         _ => None,
     })?;
-    let precisions = "\"f64\" or \"f32\"";
+    let is_plain = kind == Some(Kind::Reference);
+    let precisions = match is_plain {
+        true => "\"f64\", in which machine = \"reference\" computes",
+        false => "\"f64\" or \"f32\"",
+    };
     let precision = options.read(integrator, PRECISION.key, precisions, |value| {
         match value.word() {
             Some("f64") => Some(PrecisionName::F64),
-            Some("f32") => Some(PrecisionName::F32),
+            Some("f32") if !is_plain => Some(PrecisionName::F32),
             _ => None,
         }
     })?;

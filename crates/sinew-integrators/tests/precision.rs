@@ -62,6 +62,20 @@ fn other_words_than_those_listed_are_refused() {
 }
 
 #[test]
+fn the_plain_loops_do_not_pass_for_single_precision() {
+    let options = plain()
+        .with_text("precision", "f32")
+        .with_text("machine", "reference");
+    let refused = sinew_integrators::build("rk4", &options).err().unwrap();
+    assert!(
+        refused
+            .to_string()
+            .contains("in which machine = \"reference\" computes"),
+        "{refused}"
+    );
+}
+
+#[test]
 fn a_run_says_on_which_kernel_it_is() {
     let system = cube(3);
     let kernel = |precision: &str, machine: &str| {
