@@ -2,10 +2,8 @@
 
 use std::fmt;
 
-use comfy_table::{CellAlignment, ContentArrangement, Table};
-
 use super::laps::{Beside, Pair};
-use crate::report::ruled::{self, RULED_HEAD};
+use crate::report::ruled;
 use crate::report::{milliseconds, percent, three};
 
 const HEAD: [&str; 7] = [
@@ -37,17 +35,7 @@ impl fmt::Display for Beside {
             f,
             "Each of our laps follows one of theirs, {laps} pairs each, one thread; CPU time of the steps alone, medians.\n"
         )?;
-        let mut table = Table::new();
-        table
-            .load_style(RULED_HEAD)
-            .set_content_arrangement(ContentArrangement::Disabled)
-            .set_header(HEAD);
-        for pair in &self.pairs {
-            table.add_row(cells(pair));
-        }
-        for column in table.column_iter_mut().skip(2) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
+        let table = ruled::table(HEAD, self.pairs.iter().map(cells), 2);
         f.write_str(&ruled::lines(table, 2))
     }
 }

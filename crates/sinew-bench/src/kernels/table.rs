@@ -2,11 +2,9 @@
 
 use std::fmt;
 
-use comfy_table::{CellAlignment, ContentArrangement, Table};
-
 use super::KernelResults;
 use super::row::KernelRow;
-use crate::report::ruled::{self, RULED_HEAD};
+use crate::report::ruled;
 use crate::report::three;
 
 const HEAD: [&str; 9] = [
@@ -29,17 +27,7 @@ impl fmt::Display for KernelResults {
              turn, medians.\nCPU time; wall time where there are several threads. `off`: largest difference from the \
              plain loops.\n"
         )?;
-        let mut table = Table::new();
-        table
-            .load_style(RULED_HEAD)
-            .set_content_arrangement(ContentArrangement::Disabled)
-            .set_header(HEAD);
-        for row in &self.rows {
-            table.add_row(cells(row));
-        }
-        for column in table.column_iter_mut().skip(3) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
+        let table = ruled::table(HEAD, self.rows.iter().map(cells), 3);
         f.write_str(&ruled::lines(table, 2))
     }
 }
