@@ -25,6 +25,14 @@ pub enum SetupError {
         /// Reason.
         reason: &'static str,
     },
+    /// A machine that does not run the system or the method.
+    #[error("`{integrator}`: {reason}")]
+    Machine {
+        /// Integrator id.
+        integrator: &'static str,
+        /// Reason and remedy.
+        reason: String,
+    },
     /// A precision that rounds more than the error asked for.
     #[error(
         "`{integrator}`: f32 may be off by {expected:.0e}, more than the tolerance of {asked:e}; take \

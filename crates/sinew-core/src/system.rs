@@ -76,6 +76,12 @@ pub trait System: Send + Sync {
         None
     }
 
+    /// The largest ratio of any material's stiffness against compression to that against shear, `(lambda + 2 mu)/mu`,
+    /// where the system knows it: what rounding a stiffness costs grows with it.
+    fn stiffness_contrast(&self) -> Option<f64> {
+        None
+    }
+
     /// Energies, where the system knows them.
     fn energy(&self, _u: &[f64], _v: &[f64]) -> Option<Energy> {
         None

@@ -64,6 +64,17 @@ impl Material {
         }
     }
 
+    /// Its stiffness against compression over that against shear, `(lambda + 2 mu)/mu`.
+    pub(crate) fn stiffness_contrast(&self) -> f64 {
+        match *self {
+            Self::Continuum {
+                lame: (first, shear),
+            } => (first + 2.0 * shear) / shear,
+            // lambda = mu for any springs (Cauchy's relations).
+            Self::Springs { .. } => 3.0,
+        }
+    }
+
     /// Stiffness matrix (N/m) of a tetrahedron, 12 x 12, row-major and vertex-major; `None` where it is
     /// flat.
     pub(crate) fn stiffness(&self, points: &[[f64; 3]], tet: &[u32; 4]) -> Option<[f64; 144]> {

@@ -26,6 +26,7 @@ mod method;
 mod option_help;
 pub mod propagator;
 mod registry;
+mod rounding;
 mod scheme;
 mod stepper;
 
@@ -37,5 +38,6 @@ pub use machine_options::MACHINE_OPTIONS;
 pub use method::{ConservedEnergy, Method};
 pub use option_help::{OptionHelp, OptionLabel};
 pub use registry::{Entry, build, entries, entry, ids};
+pub use rounding::LEAST_F32_ROUNDING;
 pub use scheme::{Scheme, SetUp, StepByHand, Steps};
 pub use stepper::Stepper;

@@ -11,6 +11,12 @@ pub trait Stepper: Integrator {
         None
     }
 
+    /// What computes its steps, and what that costs in error, one sentence each; empty before set-up and
+    /// for steps that no machine takes.
+    fn computed_by(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Reason why there is no program, where set-up made none.
     fn without_program(&self) -> &'static str {
         "its steps are not sweeps with coefficients that are known beforehand"

@@ -8,7 +8,7 @@ use sinew_core::{Batch, Equations, State, StepError, System};
 use sinew_sparse::simd::InstructionSet;
 use sinew_sparse::sweep::Precision;
 
-use crate::{FastMachine, Layout};
+use crate::{FastMachine, Layout, Unfit};
 
 /// Kinds of machines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,6 +45,38 @@ pub struct Settings {
     pub instructions: Option<InstructionSet>,
     /// The largest number of threads.
     pub threads: Threads,
+}
+
+impl Settings {
+    /// Whether a system fits what they ask for; what is left to the machine always does.
+    ///
+    /// # Errors
+    /// [`Unfit`] where it does not.
+    pub fn check(&self, system: &dyn System) -> Result<(), Unfit> {
+        match self.precision {
+            PrecisionName::F64 => self.check_in::<f64>(system),
+            PrecisionName::F32 => self.check_in::<f32>(system),
+        }
+    }
+
+    fn check_in<T: Precision>(&self, system: &dyn System) -> Result<(), Unfit> {
+        let Equations::Linear(linear) = system.equations() else {
+            return match self.kind {
+                Kind::General => Err(Unfit::Law("general")),
+                Kind::Repeated => Err(Unfit::Law("repeated")),
+                Kind::Auto | Kind::Reference if self.precision == PrecisionName::F32 => {
+                    Err(Unfit::LawInSinglePrecision)
+                }
+                Kind::Auto | Kind::Reference => Ok(()),
+            };
+        };
+        // Rows that have changed had their templates.
+        let changed = linear.operators().has_changed();
+        if self.kind == Kind::Repeated && !changed && Layout::<T>::repeated(linear).is_none() {
+            return Err(Unfit::NoTemplates);
+        }
+        Ok(())
+    }
 }
 
 /// Numbers of threads.
@@ -132,6 +164,11 @@ impl Machine for Chosen {
     fn kernel(&self) -> String {
         let machine = self.machine.as_ref();
         machine.map_or_else(|| "none".to_owned(), |machine| machine.kernel())
+    }
+
+    fn in_words(&self) -> String {
+        let machine = self.machine.as_ref();
+        machine.map_or_else(|| "nothing yet".to_owned(), |machine| machine.in_words())
     }
 
     fn load(&mut self, program: Arc<Program>, system: &dyn System) {

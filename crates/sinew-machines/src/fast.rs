@@ -133,6 +133,18 @@ impl<T: Precision> Machine for FastMachine<T> {
         format!("{} {} {}", self.name(), T::NAME, self.set.name())
     }
 
+    fn in_words(&self) -> String {
+        let threads = match self.threads {
+            1 => "one thread".to_owned(),
+            most => format!("up to {most} threads"),
+        };
+        let (numbers, set) = (T::NAME, self.set.name());
+        format!(
+            "{} in {numbers} by {set}, {threads}",
+            self.layout.in_words()
+        )
+    }
+
     fn load(&mut self, program: Arc<Program>, system: &dyn System) {
         self.loaded = None;
         if let Equations::Linear(linear) = system.equations() {

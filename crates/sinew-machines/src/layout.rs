@@ -13,6 +13,8 @@ pub struct Layout<T> {
     pub(crate) reach: usize,
     pub(crate) stiffness: Rows<T>,
     pub(crate) dashpots: Option<Rows<T>>,
+    /// Blocks of the matrices, each row by itself.
+    blocks: usize,
 }
 
 /// The layout for any matrix.
@@ -41,6 +43,7 @@ impl<T: Precision> Layout<T> {
                 dashpots: extra.map(|extra| rows(extra)),
                 reach: 0,
                 numbering,
+                blocks: blocks(operators),
             }))
         };
         Arc::clone(&operators.derived::<General<T>>(of).0)
@@ -74,7 +77,26 @@ impl<T: Precision> Layout<T> {
             dashpots,
             reach: grid.reach(),
             numbering: grid.numbering().clone(),
+            blocks: blocks(operators),
         })
+    }
+
+    /// The rows that kernels compute with, and what templates save.
+    pub(crate) fn in_words(&self) -> String {
+        let cells = self.numbering.cells();
+        match &self.stiffness {
+            Rows::General(_) => format!("rows of any mesh ({cells}, {})", size(self.bytes())),
+            Rows::Lattice(rows) => {
+                let layers = rows.layers();
+                let block = layers * layers * size_of::<T>() + size_of::<u32>();
+                format!(
+                    "{} templates in the place of {cells} rows ({} for {})",
+                    rows.templates(),
+                    size(self.bytes()),
+                    size(self.blocks * block)
+                )
+            }
+        }
     }
 
     /// Number of templates, where rows repeat.
@@ -116,5 +138,22 @@ impl<T: Precision> Layout<T> {
             sell.set_row(operators.stiffness(), &self.numbering, *cell);
         }
         true
+    }
+}
+
+/// Blocks of the matrices that sweeps read.
+fn blocks(operators: &LinearOperators) -> usize {
+    let extra = operators.damping().extra.as_ref();
+    let matrices = [Some(operators.stiffness()), extra];
+    let matrices = matrices.into_iter().flatten();
+    matrices.map(|matrix| matrix.pattern().blocks()).sum()
+}
+
+/// A number of bytes in words.
+fn size(bytes: usize) -> String {
+    match bytes {
+        0..10_000 => format!("{bytes} bytes"),
+        10_000..10_000_000 => format!("{} kB", bytes / 1000),
+        _ => format!("{} MB", bytes / 1_000_000),
     }
 }

@@ -12,7 +12,9 @@ mod crew;
 mod fast;
 mod forces;
 mod layout;
+mod unfit;
 
 pub use chosen::{Chosen, Kind, PrecisionName, Settings, Threads};
 pub use fast::FastMachine;
 pub use layout::Layout;
+pub use unfit::Unfit;

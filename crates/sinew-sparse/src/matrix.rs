@@ -189,7 +189,7 @@ impl BlockMatrix {
     }
 
     /// The blocks of one row with their columns, in increasing column order.
-    pub fn row_blocks(&self, row: usize) -> impl Iterator<Item = (usize, &[f64])> {
+    pub fn row_blocks(&self, row: usize) -> impl Iterator<Item = (usize, &[f64])> + Clone {
         let len = self.layers.block_len();
         let range = self.pattern.row(row);
         self.pattern

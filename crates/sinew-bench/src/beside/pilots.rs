@@ -45,6 +45,7 @@ pub fn pilots(
     for error in ERRORS {
         let goal = Goal::error(error);
         search.seek(goal);
+        search.try_single_precision(goal);
         if let Some(pilot) = search.cheapest(goal) {
             targets.push(Target {
                 error: Some(error),

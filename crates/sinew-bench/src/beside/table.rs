@@ -6,9 +6,10 @@ use super::laps::{Beside, Pair};
 use crate::report::ruled;
 use crate::report::{milliseconds, percent, three};
 
-const HEAD: [&str; 7] = [
+const HEAD: [&str; 8] = [
     "wanted",
     "ours",
+    "computed by",
     "dt\n[ms]",
     "our error\n[%]",
     "CPU of ours\nover theirs",
@@ -40,7 +41,7 @@ impl fmt::Display for Beside {
     }
 }
 
-fn cells(pair: &Pair) -> [String; 7] {
+fn cells(pair: &Pair) -> [String; 8] {
     let row = &pair.target.row;
     let wanted = match pair.target.error {
         None => "the same".to_owned(),
@@ -50,6 +51,9 @@ fn cells(pair: &Pair) -> [String; 7] {
     [
         wanted,
         row.label(),
+        row.kernel
+            .clone()
+            .unwrap_or_else(|| "no machine".to_owned()),
         milliseconds(row.dt),
         row.error.map_or_else(|| "none".to_owned(), percent),
         three(pair.median()),
@@ -81,6 +85,7 @@ mod tests {
                 row: Row {
                     integrator: "rk4".into(),
                     dt: 1e-4,
+                    kernel: Some("general f64 avx2".into()),
                     error: Some(7.5e-7),
                     ..Row::default()
                 },
@@ -102,8 +107,8 @@ mod tests {
         assert_eq!(
             cells,
             [
-                "error", "at", "most", "1e-4", "%", "rk4", "0.1", "7.50e-5", "0.600", "0.500",
-                "..", "0.900", "0.00100"
+                "error", "at", "most", "1e-4", "%", "rk4", "general", "f64", "avx2", "0.1",
+                "7.50e-5", "0.600", "0.500", "..", "0.900", "0.00100"
             ]
         );
     }

@@ -29,6 +29,11 @@ pub trait Machine: Send + std::fmt::Debug {
         self.name().to_owned()
     }
 
+    /// What it computes with, for plans: kernels, numbers, threads.
+    fn in_words(&self) -> String {
+        "plain loops in f64".to_owned()
+    }
+
     /// Takes a program for a system, and room for what it needs: afterwards a batch allocates
     /// nothing.
     fn load(&mut self, program: Arc<Program>, system: &dyn System);

@@ -7,6 +7,7 @@ use sinew_core::{
 
 use super::Model;
 use crate::elements::moving_part;
+use crate::material::Material;
 use crate::tetra;
 
 impl System for Model {
@@ -37,6 +38,11 @@ impl System for Model {
     fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
         let place = |node: &u32| self.mesh.points[*node as usize];
         Some(self.body.cells.nodes.iter().map(place).collect())
+    }
+
+    fn stiffness_contrast(&self) -> Option<f64> {
+        let contrasts = self.materials.iter().map(Material::stiffness_contrast);
+        contrasts.reduce(f64::max)
     }
 
     /// The energy of the degrees of freedom, without the energy that supports in motion hold and store.

@@ -135,6 +135,10 @@ impl Stepper for Substepped {
         Some(self.inner.program()?.repeated(parts))
     }
 
+    fn computed_by(&self) -> Vec<String> {
+        self.inner.computed_by()
+    }
+
     fn without_program(&self) -> &'static str {
         self.inner.without_program()
     }

@@ -224,6 +224,7 @@ fn answer(
     };
     search.seek(goal);
     also(search);
+    search.try_single_precision(goal);
     search.confirm(goal);
     if search.cheapest(goal).is_none() {
         search.seek(any_cost);
@@ -236,6 +237,7 @@ fn answer(
         return (missed, cut_short);
     }
     search.seek(tenth);
+    search.try_single_precision(tenth);
     let cut_short = search.cut_short();
     search.survey(goal, RUNNERS_UP_WITHIN);
     let cheapest = advised_first(search, goal);

@@ -18,6 +18,9 @@ pub use goal::Goal;
 pub(crate) use pilots::ramps;
 pub use pilots::{CasePilots, Pilot, PilotError, Pilots, UnfitLoads};
 
+use sinew_core::Options;
+use sinew_integrators::LEAST_F32_ROUNDING;
+
 use crate::Span;
 use crate::method_choice::MethodChoice;
 use crate::timing::Effort;
@@ -28,6 +31,9 @@ const NOISE: f64 = 0.1;
 
 /// Most pilots of one candidate for one goal.
 const MOST_PILOTS: usize = 16;
+
+/// Most runs that are made again for one goal.
+const MOST_AGAIN: usize = 4;
 
 /// A search over candidates; what it has measured for one goal serves the next.
 #[derive(Debug)]
@@ -143,6 +149,37 @@ impl<P: Pilots> Search<P> {
         })
     }
 
+    /// Makes the cheapest runs for a goal again in single precision, where that may serve: kernels then take half
+    /// the memory, and errors are measured as ever.
+    pub fn try_single_precision(&mut self, goal: Goal) {
+        // Errors of rounding add to the method's own.
+        if goal.error < 2.0 * LEAST_F32_ROUNDING {
+            return;
+        }
+        // Twice as fast is the most.
+        let within = 2.0 * self.lowest_cost(goal, |_| true);
+        let duration = self.duration;
+        let mut close: Vec<Pilot> = self.meeting(goal).cloned().collect();
+        close.retain(|pilot| pilot.row.total_cpu_s(duration) <= within);
+        close.sort_by(|a, b| {
+            let cost = |pilot: &Pilot| pilot.row.total_cpu_s(duration);
+            cost(a).total_cmp(&cost(b))
+        });
+        let close = close.into_iter().filter_map(|pilot| {
+            let single = in_single_precision(&pilot.method)?;
+            Some((single, pilot.row))
+        });
+        for (method, row) in close.take(MOST_AGAIN) {
+            let run = row.cpu_s_per_s * self.span.duration;
+            if row.setup_cpu_s + 2.0 * run > self.pilots.left() {
+                self.cut_short = true;
+                continue;
+            }
+            // What refuses single precision stays as it is.
+            let _ = self.include(&method, row.dt);
+        }
+    }
+
     /// Measures the cost of the cheapest runs for a goal again and longer, so that the choice
     /// between them does not hang on one short time.
     pub fn confirm(&mut self, goal: Goal) {
@@ -150,12 +187,11 @@ impl<P: Pilots> Search<P> {
             repeats: 5,
             budget: 0.1,
         };
-        const MOST: usize = 4;
         let within = 1.5 * self.lowest_cost(goal, |_| true);
         let duration = self.duration;
         let close = self.by_method(goal).into_iter();
         let close = close.filter(|pilot| pilot.row.total_cpu_s(duration) <= within);
-        let close: Vec<Pilot> = close.take(MOST).cloned().collect();
+        let close: Vec<Pilot> = close.take(MOST_AGAIN).cloned().collect();
         for pilot in close {
             let row = &pilot.row;
             let run = row.cpu_s_per_s * self.span.duration;
@@ -273,6 +309,17 @@ impl<P: Pilots> Search<P> {
         trail.insert(parts, measured);
         true
     }
+}
+
+/// A method in single precision; `None` where no machine runs it, or where its options say what does.
+fn in_single_precision(method: &MethodChoice) -> Option<MethodChoice> {
+    let entry = sinew_integrators::entry(&method.integrator)?;
+    let chosen = ["precision", "machine"];
+    let is_chosen = chosen.iter().any(|key| method.options.get(key).is_some());
+    (entry.programs && !is_chosen).then(|| {
+        let single = Options::new().with_text("precision", "f32");
+        method.clone().with_options(&single)
+    })
 }
 
 #[cfg(test)]

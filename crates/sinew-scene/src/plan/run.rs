@@ -49,14 +49,16 @@ pub(super) fn section(simulation: &Simulation) -> PlanSection {
             lines.extend(stiffest_element(simulation));
         }
     }
-    // The remarks of a method with patches name the elements in them. Methods without a largest
-    // stable step make no such remarks, and their set-up is costly.
+    // The remarks of a method with patches name the elements in them. Methods that are no programs
+    // make no such remarks, and their set-up is costly.
     let entries = sinew_integrators::entries();
-    let has_limit = entries.iter().any(|entry| entry.id == id && entry.substeps);
-    if has_limit
+    let mut own = entries.iter().filter(|entry| entry.id == id);
+    let tells = own.any(|entry| entry.substeps || entry.programs);
+    if tells
         && let Ok(mut integrator) = simulation.integrator()
         && integrator.prepare(simulation.system(), *dt).is_ok()
     {
+        lines.extend(integrator.computed_by());
         lines.extend(integrator.remarks());
     }
     PlanSection::new("run", lines)

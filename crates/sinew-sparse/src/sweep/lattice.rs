@@ -43,6 +43,12 @@ impl<T: Real> Lattice<T> {
         self.starts.len() - 1
     }
 
+    /// Number of layers.
+    #[must_use]
+    pub fn layers(&self) -> usize {
+        self.layers
+    }
+
     pub(super) fn is_on(&self, positions: usize, layers: usize) -> bool {
         self.positions == positions && self.layers == layers
     }

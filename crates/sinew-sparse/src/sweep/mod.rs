@@ -18,6 +18,7 @@ mod kernels;
 mod lattice;
 mod map;
 mod numbering;
+mod rounding;
 mod rows;
 mod sell;
 mod templates;

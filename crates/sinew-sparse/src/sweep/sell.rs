@@ -5,6 +5,7 @@
 use std::ops::Range;
 
 use super::numbering::Numbering;
+use super::rounding::round_row;
 use crate::BlockMatrix;
 use crate::simd::{Lanes, Real};
 
@@ -74,14 +75,16 @@ impl<T: Real> Sell<T> {
         let position = numbering.position(cell);
         let (slice, lane) = (position / lanes, position % lanes);
         let entries = self.layers * self.layers;
-        let row = matrix.row_blocks(cell as usize);
-        for (block, (column, of_block)) in self.blocks(slice).zip(row) {
-            self.columns[block * lanes + lane] = numbering.position(column as u32) as u32;
-            let values = &mut self.values[block * entries * lanes..];
-            for (values, entry) in values.chunks_exact_mut(lanes).zip(of_block) {
-                values[lane] = T::of(*entry);
-            }
+        let first = self.blocks(slice).start;
+        let neighbours = matrix.pattern().neighbours(cell as usize);
+        for (block, neighbour) in (first..).zip(neighbours) {
+            self.columns[block * lanes + lane] = numbering.position(*neighbour) as u32;
         }
+        let own = neighbours.partition_point(|neighbour| *neighbour < cell);
+        let row = matrix.row_blocks(cell as usize).map(|(_, block)| block);
+        round_row(row, own, self.layers, |block, entry, value| {
+            self.values[((first + block) * entries + entry) * lanes + lane] = value;
+        });
     }
 
     /// Bytes that a product reads of the matrix.

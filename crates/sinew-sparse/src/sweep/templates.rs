@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::lattice::{Lattice, Run};
+use super::rounding::round_row;
 use super::{CHUNK, Numbering};
 use crate::BlockMatrix;
 use crate::simd::Real;
@@ -166,9 +167,18 @@ impl<T: Real> Lattice<T> {
                 offsets, blocks, ..
             } = &templates[template];
             lattice.offsets.extend(offsets);
-            lattice
-                .blocks
-                .extend(blocks.iter().map(|entry| T::of(*entry)));
+            let entries = layers * layers;
+            let first = lattice.blocks.len();
+            lattice.blocks.resize(first + blocks.len(), T::default());
+            let own = offsets.partition_point(|offset| *offset < 0);
+            round_row(
+                blocks.chunks_exact(entries),
+                own,
+                layers,
+                |block, entry, value| {
+                    lattice.blocks[first + block * entries + entry] = value;
+                },
+            );
             lattice.starts.push(lattice.offsets.len() as u32);
         }
         lattice.add_runs(grid, &of_cell);

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use sinew_core::{Outcome, RunReport, simulate};
+use sinew_core::{OptionError, OptionValue, Outcome, RunReport, simulate};
+use sinew_integrators::Stepper;
 use sinew_scene::output::{Delivery, Destination, Voice, complain};
 use sinew_scene::{ProbeCsv, Reaction, Scene, Simulation};
 
@@ -18,6 +19,10 @@ pub(crate) struct Arguments {
     /// the current folder]
     #[arg(long, value_name = "FILE")]
     probes: Option<PathBuf>,
+    /// The largest number of threads for methods that machines run, or auto for one a processor: fewer
+    /// where they do not pay, and the same bits for every number [default: that of the scene, or auto]
+    #[arg(long, value_name = "N|auto", value_parser = threads)]
+    threads: Option<OptionValue>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -36,7 +41,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in simulation.warnings() {
         complain(&format!("warning: {warning}"));
     }
-    let mut integrator = simulation.integrator()?;
+    let mut integrator = integrator(&simulation, arguments.threads.as_ref())?;
     let system = simulation.system();
     integrator.prepare(system, simulation.dt())?;
     let mut csv = ProbeCsv::new(destination.open()?, simulation.probes())?;
@@ -46,8 +51,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     // Where the reader of the motion closed its pipe, nobody wants a summary.
     if csv.finish()? == Delivery::Whole {
         voice.say(&summary(&simulation, &report))?;
-        for remark in integrator.remarks() {
-            voice.say(&remark)?;
+        for remark in integrator.computed_by().iter().chain(&integrator.remarks()) {
+            voice.say(remark)?;
         }
         for probe in simulation.probes() {
             let u: Vec<String> = probe
@@ -77,6 +82,38 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             place: system.cell_name(dof),
         }),
         Outcome::Finished | Outcome::Stopped => Ok(()),
+    }
+}
+
+/// The scene's integrator with as many threads as were asked for, or as the scene asks for, or as help. Methods that no
+/// machine runs have none.
+fn integrator(
+    simulation: &Simulation,
+    threads: Option<&OptionValue>,
+) -> Result<Box<dyn Stepper>, OptionError> {
+    const KEY: &str = "threads";
+    let settings = simulation.settings();
+    let mut options = settings.options.clone();
+    let programs =
+        sinew_integrators::entry(&settings.integrator).is_some_and(|entry| entry.programs);
+    match threads {
+        Some(threads) => options.insert(KEY, threads.clone()),
+        None if programs && options.get(KEY).is_none() => {
+            options.insert(KEY, OptionValue::Text("auto".to_owned()));
+        }
+        None => {}
+    }
+    sinew_integrators::build(&settings.integrator, &options)
+}
+
+fn threads(text: &str) -> Result<OptionValue, &'static str> {
+    const EXPECTED: &str = "expected a whole number from 1 on, or auto";
+    if text == "auto" {
+        return Ok(OptionValue::Text(text.to_owned()));
+    }
+    match text.parse::<u32>() {
+        Ok(count) if count > 0 => Ok(OptionValue::Number(f64::from(count))),
+        _ => Err(EXPECTED),
     }
 }
 

@@ -129,6 +129,10 @@ impl Stepper for Guarded {
         Some(guarded.repeated(parts))
     }
 
+    fn computed_by(&self) -> Vec<String> {
+        self.inner.computed_by()
+    }
+
     fn without_program(&self) -> &'static str {
         self.inner.without_program()
     }

@@ -1,0 +1,23 @@
+//! Settings that a system does not fit.
+
+/// Why a machine with the settings asked for cannot run a system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Unfit {
+    /// Templates were asked for where rows do not repeat.
+    #[error(
+        "machine = \"repeated\" needs equal rows on a lattice, and this body has none; take \"auto\" or \"general\""
+    )]
+    NoTemplates,
+    /// Kernels were asked for where forces follow from a law.
+    #[error(
+        "machine = {0:?} runs matrices, and the forces of this system follow from a law; take \"auto\""
+    )]
+    Law(&'static str),
+    /// Single precision was asked for where forces follow from a law.
+    #[error(
+        "precision = \"f32\" is for systems with matrices, and the forces of this one follow from a law; leave \
+         `precision` out"
+    )]
+    LawInSinglePrecision,
+}
