@@ -134,15 +134,12 @@ impl<T: Precision> Machine for FastMachine<T> {
     }
 
     fn in_words(&self) -> String {
+        let (rows, set) = (self.layout.in_words(), self.set.name());
         let threads = match self.threads {
-            1 => "one thread".to_owned(),
-            most => format!("up to {most} threads"),
+            1 => String::new(),
+            most => format!(", up to {most} threads"),
         };
-        let (numbers, set) = (T::NAME, self.set.name());
-        format!(
-            "{} in {numbers} by {set}, {threads}",
-            self.layout.in_words()
-        )
+        format!("{rows} in {} by {set}{threads}", T::NAME)
     }
 
     fn load(&mut self, program: Arc<Program>, system: &dyn System) {

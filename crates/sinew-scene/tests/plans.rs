@@ -23,6 +23,15 @@ fn plan(text: &str) -> Plan {
     build(text).plan()
 }
 
+/// A plan's text with the same instructions on every computer.
+fn anywhere(plan: &Plan) -> String {
+    let mut text = plan.to_string();
+    for set in ["portable", "avx2", "avx512"] {
+        text = text.replace(&format!(" by {set}"), " by SIMD");
+    }
+    text
+}
+
 /// The paper's cube from the generator, which makes the same mesh as the file holds.
 fn papers_cube() -> Plan {
     let scene = fs::read_to_string(PAPERS_CUBE).unwrap();
@@ -33,7 +42,7 @@ fn papers_cube() -> Plan {
 
 #[test]
 fn the_papers_cube() {
-    insta::assert_snapshot!(papers_cube(), @r#"
+    insta::assert_snapshot!(anywhere(&papers_cube()), @r#"
     The paper's cube, reproduction scene
     mesh        cube of 10 x 10 x 10 cells, edge 0.2 m, split "kuhn"
                 1331 nodes, 6000 tetrahedra, 7930 edges; 0.008 m3, 8.48 kg
@@ -52,6 +61,7 @@ fn the_papers_cube() {
                 50 steps for 1 s, error taken at 51 instants
                 `cnn` is stable up to dt = 0.001253 s
                 no element sets the step alone: all allow about the same
+                computed by 3 templates in the place of 891 rows (3028 bytes for 854 kB) in f64 by SIMD
     warning     dt = 0.02 s is 15.96 times the stable step of `cnn`, 0.001253 s
     "#);
 }
@@ -111,6 +121,7 @@ fn the_papers_oscillator() {
     run         `cnn`, dt = 0.02 s, saturation = 4
                 50 steps for 1 s, error taken at 51 instants
                 `cnn` is stable up to dt = 0.01 s
+                computed by plain loops in f64
     warning     dt = 0.02 s is 2 times the stable step of `cnn`, 0.01 s
     ");
 }
