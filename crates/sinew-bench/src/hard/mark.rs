@@ -44,14 +44,6 @@ impl Asked {
             ..Mark::default()
         }
     }
-
-    /// The mark that does not apply.
-    pub(crate) fn not_applicable(self, reason: impl Into<String>) -> Mark {
-        Mark {
-            verdict: MarkVerdict::NotApplicable,
-            ..self.not_measured(reason)
-        }
-    }
 }
 
 impl Mark {

@@ -173,7 +173,8 @@ pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<
         1e-10,
     );
     give(energy, &mut |asked| {
-        long_run::check(asked, measured.case("long-run")?, steps(100_000, 10_000))
+        let steps = steps(100_000, 10_000);
+        long_run::check(asked, measured.case("long-run")?, steps, "f64")
     });
     let single = asked(
         "1e5 steps at .95 critical steps",
@@ -181,7 +182,8 @@ pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<
         1e-4,
     );
     give(single, &mut |asked| {
-        Ok(asked.not_applicable("measured by the tests of sinew-machines"))
+        let steps = steps(100_000, 10_000);
+        long_run::check(asked, measured.case("long-run")?, steps, "f32")
     });
     let rotated = asked(
         "90 degree rotated copy of a scene",

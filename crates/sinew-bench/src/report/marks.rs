@@ -50,11 +50,10 @@ pub(super) fn section(marks: &[Mark]) -> String {
     let count = |verdict| marks.iter().filter(|mark| mark.verdict == verdict).count();
     let mut out = format!(
         "<section>\n<h2 id=\"marks\">Pass marks of the hard cases</h2>\n\
-         <p>{} passed, {} failed, {} not applicable. Figures are measured in this run; limits were \
+         <p>{} passed, {} failed. Figures are measured in this run; limits were \
          set before it.</p>\n<div class=\"wide\"><table class=\"marks\">\n<thead><tr>",
         count(MarkVerdict::Pass),
         count(MarkVerdict::Fail),
-        count(MarkVerdict::NotApplicable),
     );
     for head in HEADS {
         // Writing into a String cannot fail.
@@ -90,7 +89,6 @@ fn class(verdict: MarkVerdict) -> &'static str {
     match verdict {
         MarkVerdict::Pass => "pass",
         MarkVerdict::Fail => "fail",
-        MarkVerdict::NotApplicable => "none",
     }
 }
 
@@ -98,7 +96,6 @@ fn symbol(verdict: MarkVerdict) -> &'static str {
     match verdict {
         MarkVerdict::Pass => "✓",
         MarkVerdict::Fail => "✗",
-        MarkVerdict::NotApplicable => "–",
     }
 }
 
@@ -119,7 +116,6 @@ mod tests {
         vec![
             mark(MarkVerdict::Pass, "5.92 %"),
             mark(MarkVerdict::Fail, "12.5 %"),
-            mark(MarkVerdict::NotApplicable, "no kernel"),
         ]
     }
 
@@ -133,7 +129,7 @@ mod tests {
         let page = section(&marks());
         let row = page.lines().find(|line| line.contains("12.5 %")).unwrap();
         assert!(row.contains("class=\"fail\"") && row.contains("✗ FAIL"));
-        assert!(page.contains("1 passed, 1 failed, 1 not applicable"));
+        assert!(page.contains("1 passed, 1 failed"));
         assert!(!page.contains("<case>"));
     }
 

@@ -35,8 +35,6 @@ pub enum MarkVerdict {
     /// The figure is beyond the limit, or could not be measured.
     #[default]
     Fail,
-    /// The mark is about something that does not exist here.
-    NotApplicable,
 }
 
 impl MarkVerdict {
@@ -46,7 +44,6 @@ impl MarkVerdict {
         match self {
             Self::Pass => "pass",
             Self::Fail => "FAIL",
-            Self::NotApplicable => "not applicable",
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The energy of central difference over many steps.
 
+use sinew_core::Options;
 use sinew_measure::{Case, MethodChoice};
 
 use crate::hard::error::HardError;
@@ -11,10 +12,16 @@ use crate::results::Mark;
 /// Share of the critical step.
 const SHARE: f64 = 0.95;
 
-/// The largest relative change of the half-step energy.
-pub(crate) fn check(asked: Asked, case: &Case, steps: usize) -> Result<Mark, HardError> {
+/// The largest relative change of the half-step energy, in steps computed in "f64" or "f32".
+pub(crate) fn check(
+    asked: Asked,
+    case: &Case,
+    steps: usize,
+    precision: &str,
+) -> Result<Mark, HardError> {
     let critical = case.critical_step().ok_or(HardError::NothingVibrates)?;
-    let method = MethodChoice::new("central-difference");
+    let options = Options::new().with_text("precision", precision);
+    let method = MethodChoice::new("central-difference").with_options(&options);
     let (_, energies) = run_with_energies(case, &method, SHARE * critical, steps)?;
     let by = format!(
         "{}, {} critical steps, {steps} steps",
