@@ -4,6 +4,7 @@
 //! chosen when the program runs, so that a portable build uses what the machine has. All code that
 //! touches a kernel's memory by address stands here and in [`crate::sweep`].
 
+mod at;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
@@ -13,6 +14,7 @@ mod portable;
 mod real;
 mod set;
 
+pub(crate) use at::At;
 pub(crate) use lanes::Lanes;
 pub(crate) use portable::Array;
 pub use real::Real;

@@ -8,7 +8,7 @@ use super::clamp::{ROUNDING, clamp_within};
 use super::map::{CellMap, Clamp, Field, Quotient, Update};
 use super::rows::Rows;
 use super::{CHUNK, Fields};
-use crate::simd::{InstructionSet, Lanes, Real};
+use crate::simd::{At, InstructionSet, Lanes, Real};
 
 /// A sweep over the vectors of all cells.
 #[derive(Clone, Copy, Debug)]
@@ -105,22 +105,17 @@ struct Place<'a, T, const L: usize> {
 }
 
 impl<T: Precision, const L: usize> Place<'_, T, L> {
-    /// The chunk's first position in each layer of a vector.
+    /// The chunk's first position in each layer of a vector, for its positions only.
     #[inline(always)]
-    fn of(&self, field: Field) -> [*mut T; L] {
-        let first = self.fields.pointer(field as usize);
-        let stride = self.fields.stride();
-        // SAFETY: layers lie a stride apart, and the chunk begins within each.
-        std::array::from_fn(|layer| unsafe { first.add(layer * stride + self.first) })
+    fn of(&self, field: Field) -> [At<T>; L] {
+        self.whole(field)
+            .map(|layer| layer.add(self.first).first(self.vectors * T::LANES))
     }
 
-    /// Position 0 in each layer of a vector.
+    /// Position 0 in each layer of a vector, for all positions and the room around them.
     #[inline(always)]
-    fn whole(&self, field: Field) -> [*const T; L] {
-        let first = self.fields.pointer(field as usize).cast_const();
-        let stride = self.fields.stride();
-        // SAFETY: layers lie a stride apart.
-        std::array::from_fn(|layer| unsafe { first.add(layer * stride) })
+    fn whole(&self, field: Field) -> [At<T>; L] {
+        std::array::from_fn(|layer| self.fields.at(field as usize, layer))
     }
 }
 
@@ -133,11 +128,13 @@ impl Buffer {
         Self([[[0; 8]; CHUNK + 1]; 3])
     }
 
+    /// The first value of each layer.
     #[inline(always)]
-    fn layers<T, const L: usize>(&mut self) -> [*mut T; L] {
-        let first = self.0.as_mut_ptr();
-        // SAFETY: there are three layers, and L is at most that.
-        std::array::from_fn(|layer| unsafe { first.add(layer).cast::<T>() })
+    fn layers<T: Real, const L: usize>(&mut self) -> [At<T>; L] {
+        const { assert!(L <= 3, "layers of a buffer") };
+        let all = self.0.as_mut_ptr().cast::<T>();
+        let values = (CHUNK + 1) * T::LANES;
+        std::array::from_fn(|layer| At::new(all.wrapping_add(layer * values), 0, values))
     }
 }
 
@@ -211,8 +208,8 @@ unsafe fn rho<T: Precision, V: Lanes<T>, const L: usize>(
     chunk: usize,
     vectors: Range<usize>,
     place: &Place<'_, T, L>,
-    product: [*mut T; L],
-    q: [*mut T; L],
+    product: [At<T>; L],
+    q: [At<T>; L],
 ) {
     let loaded = sweep.loaded.get(chunk).copied().unwrap_or(true);
     let forces = sweep.map.forces.filter(|_| loaded);
@@ -228,13 +225,13 @@ unsafe fn rho<T: Precision, V: Lanes<T>, const L: usize>(
                 let forces = forces.map(|forces| place.of(forces)[layer]);
                 for n in 0..place.vectors {
                     let at = n * T::LANES;
-                    let value = V::load(product.add(at));
+                    let value = product.add(at).load::<V>();
                     let sum = match forces {
-                        Some(forces) => value.mul_add(factor, V::load(forces.add(at))),
+                        Some(forces) => value.mul_add(factor, forces.add(at).load::<V>()),
                         None if is_first => value.mul(factor),
-                        None => value.mul_add(factor, V::load(q.add(at))),
+                        None => value.mul_add(factor, q.add(at).load::<V>()),
                     };
-                    sum.store(q.add(at));
+                    q.add(at).store(sum);
                 }
             }
             is_first = false;
@@ -244,10 +241,10 @@ unsafe fn rho<T: Precision, V: Lanes<T>, const L: usize>(
             for layer in 0..L {
                 for at in (0..place.vectors).map(|n| n * T::LANES) {
                     let value = match forces {
-                        Some(forces) => V::load(forces[layer].add(at)),
+                        Some(forces) => forces[layer].add(at).load::<V>(),
                         None => V::splat(T::default()),
                     };
-                    value.store(q[layer].add(at));
+                    q[layer].add(at).store(value);
                 }
             }
         }
@@ -259,7 +256,7 @@ unsafe fn rho<T: Precision, V: Lanes<T>, const L: usize>(
 unsafe fn quotient<T: Precision, V: Lanes<T>, const L: usize>(
     map: &CellMap<T>,
     place: &Place<'_, T, L>,
-    q: [*mut T; L],
+    q: [At<T>; L],
 ) {
     // SAFETY: as for `run`.
     unsafe {
@@ -279,10 +276,10 @@ unsafe fn quotient<T: Precision, V: Lanes<T>, const L: usize>(
                 }
                 for layer in 0..L {
                     for at in (0..place.vectors).map(|n| n * T::LANES) {
-                        let value = V::load(q[layer].add(at));
-                        value
-                            .mul(V::load(inverse[layer].add(at)))
-                            .store(q[layer].add(at));
+                        let value = q[layer].add(at).load::<V>();
+                        q[layer]
+                            .add(at)
+                            .store(value.mul(inverse[layer].add(at).load::<V>()));
                     }
                 }
                 for own in &map.own {
@@ -309,23 +306,23 @@ unsafe fn quotient<T: Precision, V: Lanes<T>, const L: usize>(
                 let live = place.of(live);
                 for layer in 0..L {
                     for at in (0..place.vectors).map(|n| n * T::LANES) {
-                        let value = V::load(q[layer].add(at));
-                        value
-                            .mul(V::load(live[layer].add(at)))
-                            .store(q[layer].add(at));
+                        let value = q[layer].add(at).load::<V>();
+                        q[layer]
+                            .add(at)
+                            .store(value.mul(live[layer].add(at).load::<V>()));
                     }
                 }
             }
             Quotient::Blocks { rows, .. } => {
-                let rows: [[*mut T; L]; L] = std::array::from_fn(|i| place.of(rows + i as Field));
+                let rows: [[At<T>; L]; L] = std::array::from_fn(|i| place.of(rows + i as Field));
                 for at in (0..place.vectors).map(|n| n * T::LANES) {
-                    let rho: [V; L] = std::array::from_fn(|j| V::load(q[j].add(at)));
+                    let rho: [V; L] = std::array::from_fn(|j| q[j].add(at).load::<V>());
                     for (row, q) in rows.iter().zip(q) {
-                        let mut sum = V::load(row[0].add(at)).mul(rho[0]);
+                        let mut sum = row[0].add(at).load::<V>().mul(rho[0]);
                         for (entry, rho) in row.iter().zip(rho).skip(1) {
-                            sum = V::load(entry.add(at)).mul_add(rho, sum);
+                            sum = entry.add(at).load::<V>().mul_add(rho, sum);
                         }
-                        sum.store(q.add(at));
+                        q.add(at).store(sum);
                     }
                 }
             }
@@ -337,22 +334,22 @@ unsafe fn quotient<T: Precision, V: Lanes<T>, const L: usize>(
 #[inline(always)]
 unsafe fn add_own<T: Precision, V: Lanes<T>, const L: usize>(
     factor: V,
-    mass: Option<[*mut T; L]>,
-    field: [*mut T; L],
+    mass: Option<[At<T>; L]>,
+    field: [At<T>; L],
     place: &Place<'_, T, L>,
-    q: [*mut T; L],
+    q: [At<T>; L],
 ) {
     // SAFETY: as for `run`.
     unsafe {
         for layer in 0..L {
             for at in (0..place.vectors).map(|n| n * T::LANES) {
                 let weight = match mass {
-                    Some(mass) => factor.mul(V::load(mass[layer].add(at))),
+                    Some(mass) => factor.mul(mass[layer].add(at).load::<V>()),
                     None => factor,
                 };
-                let value = V::load(field[layer].add(at));
-                let sum = value.mul_add(weight, V::load(q[layer].add(at)));
-                sum.store(q[layer].add(at));
+                let value = field[layer].add(at).load::<V>();
+                let sum = value.mul_add(weight, q[layer].add(at).load::<V>());
+                q[layer].add(at).store(sum);
             }
         }
     }
@@ -366,7 +363,7 @@ const MOST: usize = 4;
 unsafe fn combine<T: Precision, V: Lanes<T>, const L: usize>(
     update: &Update<T>,
     place: &Place<'_, T, L>,
-    q: [*mut T; L],
+    q: [At<T>; L],
 ) {
     let zero = T::default();
     let target = place.of(update.target);
@@ -376,7 +373,7 @@ unsafe fn combine<T: Precision, V: Lanes<T>, const L: usize>(
     let terms = update.terms.iter();
     let terms = terms.map(|(weight, field)| (*weight, place.of(*field)));
     // A register that is written may be read by the first parts only.
-    let own = |part: &(T, [*mut T; L])| part.1[0] == target[0];
+    let own = |part: &(T, [At<T>; L])| part.1[0] == target[0];
     let first = terms.clone().filter(own);
     let others = terms.filter(|part| !own(part)).chain(of_q);
     // SAFETY: as for `run`.
@@ -396,9 +393,9 @@ unsafe fn combine<T: Precision, V: Lanes<T>, const L: usize>(
 
 #[inline(always)]
 unsafe fn sum<T: Precision, V: Lanes<T>, const L: usize>(
-    parts: &[(T, [*mut T; L]); MOST],
+    parts: &[(T, [At<T>; L]); MOST],
     count: usize,
-    target: [*mut T; L],
+    target: [At<T>; L],
     vectors: usize,
 ) {
     // SAFETY: as for `run`.
@@ -415,8 +412,8 @@ unsafe fn sum<T: Precision, V: Lanes<T>, const L: usize>(
 
 #[inline(always)]
 unsafe fn sum_of<T: Precision, V: Lanes<T>, const L: usize, const N: usize>(
-    parts: &[(T, [*mut T; L]); MOST],
-    target: [*mut T; L],
+    parts: &[(T, [At<T>; L]); MOST],
+    target: [At<T>; L],
     vectors: usize,
 ) {
     // SAFETY: as for `run`.
@@ -424,17 +421,17 @@ unsafe fn sum_of<T: Precision, V: Lanes<T>, const L: usize, const N: usize>(
         let tiny = V::splat(T::of(T::TINY));
         let weights: [V; N] = std::array::from_fn(|k| V::splat(parts[k].0));
         for layer in 0..L {
-            let from: [*mut T; N] = std::array::from_fn(|k| parts[k].1[layer]);
+            let from: [At<T>; N] = std::array::from_fn(|k| parts[k].1[layer]);
             for at in (0..vectors).map(|n| n * T::LANES) {
                 let mut sum = V::splat(T::default());
                 for k in 0..N {
-                    let value = V::load(from[k].add(at));
+                    let value = from[k].add(at).load::<V>();
                     sum = match k {
                         0 => value.mul(weights[k]),
                         _ => value.mul_add(weights[k], sum),
                     };
                 }
-                sum.flush(tiny).store(target[layer].add(at));
+                target[layer].add(at).store(sum.flush(tiny));
             }
         }
     }
@@ -453,9 +450,9 @@ unsafe fn bound_components<T: Precision, V: Lanes<T>, const L: usize>(
         for (target, marks) in place.of(target).into_iter().zip(marks) {
             for (n, mark) in marks.iter_mut().enumerate().take(place.vectors) {
                 let at = target.add(n * T::LANES);
-                let value = V::load(at);
+                let value = at.load::<V>();
                 *mark |= value.reaches(limit);
-                value.clamp(limit).store(at);
+                at.store(value.clamp(limit));
             }
         }
     }
@@ -477,14 +474,14 @@ unsafe fn bound_vectors<T: Precision, V: Lanes<T>, const L: usize>(
             let at = n * T::LANES + lane;
             // SAFETY: as for `run`.
             unsafe {
-                let read = |layers: [*mut T; L]| layers.map(|layer| (*layer.add(at)).to_f64());
+                let read = |layers: [At<T>; L]| layers.map(|layer| layer.add(at).read().to_f64());
                 let mut vector = read(target);
                 let measured = from.map(read);
-                let limit = factor.to_f64() * (*limits.add(at)).to_f64();
+                let limit = factor.to_f64() * limits.add(at).read().to_f64();
                 let measured = measured.as_ref().map(|from| &from[..]);
                 if clamp_within(&mut vector, measured, limit, rounding) {
                     for (layer, value) in vector.into_iter().enumerate() {
-                        *target[layer].add(at) = T::of(value);
+                        target[layer].add(at).write(T::of(value));
                         marks[layer][n] |= 1 << lane;
                     }
                 }
@@ -506,7 +503,7 @@ unsafe fn exceeds<T: Precision, V: Lanes<T>, const L: usize>(
         let limit = V::splat(limit);
         for layer in place.of(target) {
             for n in 0..place.vectors {
-                any |= V::load(layer.add(n * T::LANES)).exceeds(limit);
+                any |= layer.add(n * T::LANES).load::<V>().exceeds(limit);
             }
         }
     }

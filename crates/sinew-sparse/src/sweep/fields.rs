@@ -5,7 +5,7 @@
 use std::cell::UnsafeCell;
 use std::marker::PhantomData;
 
-use crate::simd::Real;
+use crate::simd::{At, Real};
 
 /// 64 bytes at an address that a cache line begins at.
 #[repr(C, align(64))]
@@ -27,7 +27,7 @@ pub struct Fields<T> {
 }
 
 // SAFETY: the cells are plain bytes; whoever shares them between threads promises in
-// `Fields::pointer`'s contract that no position is written by one thread while another one uses it.
+// `Fields::at`'s contract that no position is written by one thread while another one uses it.
 unsafe impl<T: Send> Send for Fields<T> {}
 // SAFETY: as above.
 unsafe impl<T: Sync> Sync for Fields<T> {}
@@ -75,14 +75,19 @@ impl<T: Real> Fields<T> {
         self.front
     }
 
-    /// Distance between two layers of a vector.
-    pub(super) fn stride(&self) -> usize {
-        self.stride
+    /// Position 0 of a layer of a vector, with the room around its positions. Values may be written through it
+    /// while no other thread uses them.
+    #[inline(always)]
+    pub(super) fn at(&self, field: usize, layer: usize) -> At<T> {
+        assert!(layer < self.layers, "a layer by its number");
+        // SAFETY: layers lie a stride apart, and the vector has this one.
+        let first = unsafe { self.pointer(field).add(layer * self.stride) };
+        At::new(first, self.front, self.stride - self.front)
     }
 
-    /// Position 0 of the first layer of a vector; `front` positions before it and all up to the
-    /// stride's end are valid. Values may be written through it while no other thread uses them.
-    pub(super) fn pointer(&self, field: usize) -> *mut T {
+    /// Position 0 of the first layer of a vector.
+    #[inline(always)]
+    fn pointer(&self, field: usize) -> *mut T {
         let at = field * self.layers * self.stride + self.front;
         assert!(field < self.count(), "a vector by its number");
         let first = UnsafeCell::raw_get(self.lines.as_ptr()).cast::<T>();

@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use crate::simd::{Lanes, Real};
+use crate::simd::{At, Lanes, Real};
 
 /// Rows of a matrix on the positions of a lattice, each template stored once: what neighbours a row
 /// reads, and by which blocks, is the same for all rows of a template, so that neither blocks nor
@@ -70,8 +70,8 @@ impl<T: Real> Lattice<T> {
         &self,
         chunk: usize,
         first: usize,
-        source: [*const T; L],
-        out: [*mut T; L],
+        source: [At<T>; L],
+        out: [At<T>; L],
     ) {
         debug_assert!(L == self.layers);
         let runs = self.first_run[chunk] as usize..self.first_run[chunk + 1] as usize;
@@ -104,24 +104,25 @@ impl<T: Real> Lattice<T> {
     unsafe fn vectors<V: Lanes<T>, const L: usize, const N: usize>(
         &self,
         blocks: Range<usize>,
-        from: [*const T; L],
-        to: [*mut T; L],
+        from: [At<T>; L],
+        to: [At<T>; L],
     ) -> usize {
         // SAFETY: blocks have L L entries and an offset each; pointers as for this function.
         unsafe {
             let mut sum = [[V::splat(T::default()); N]; L];
-            let mut entry = self.blocks.as_ptr().add(blocks.start * L * L);
+            let mut entry = At::start_of(&self.blocks).add(blocks.start * L * L);
+            let offsets = At::start_of(&self.offsets);
             for block in blocks {
-                let offset = *self.offsets.as_ptr().add(block) as isize;
+                let offset = offsets.add(block).read() as isize;
                 let mut x = [[V::splat(T::default()); N]; L];
                 for j in 0..L {
                     for n in 0..N {
-                        x[j][n] = V::load(from[j].offset(offset).add(n * T::LANES));
+                        x[j][n] = from[j].offset(offset).add(n * T::LANES).load::<V>();
                     }
                 }
                 for sum in &mut sum {
                     for x in &x {
-                        let factor = V::splat(*entry);
+                        let factor = V::splat(entry.read());
                         entry = entry.add(1);
                         for n in 0..N {
                             sum[n] = x[n].mul_add(factor, sum[n]);
@@ -131,7 +132,7 @@ impl<T: Real> Lattice<T> {
             }
             for i in 0..L {
                 for n in 0..N {
-                    sum[i][n].store(to[i].add(n * T::LANES));
+                    to[i].add(n * T::LANES).store(sum[i][n]);
                 }
             }
         }

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::fields::Fields;
 use super::{CHUNK, Lattice, Sell};
-use crate::simd::{Lanes, Real};
+use crate::simd::{At, Lanes, Real};
 
 /// A matrix as kernels read it.
 #[derive(Clone, Debug)]
@@ -47,8 +47,8 @@ impl<T: Real> Rows<T> {
         &self,
         chunk: usize,
         vectors: Range<usize>,
-        source: [*const T; L],
-        out: [*mut T; L],
+        source: [At<T>; L],
+        out: [At<T>; L],
     ) {
         debug_assert_eq!(vectors.start, chunk * CHUNK);
         // SAFETY: as for this function.

@@ -7,7 +7,7 @@ use std::ops::Range;
 use super::numbering::Numbering;
 use super::rounding::round_row;
 use crate::BlockMatrix;
-use crate::simd::{Lanes, Real};
+use crate::simd::{At, Lanes, Real};
 
 /// Bytes above which a matrix lies in memory rather than in a cache.
 const IN_CACHE: usize = 32 << 20;
@@ -111,8 +111,8 @@ impl<T: Real> Sell<T> {
     pub(super) unsafe fn product<V: Lanes<T>, const L: usize>(
         &self,
         slices: Range<usize>,
-        source: [*const T; L],
-        out: [*mut T; L],
+        source: [At<T>; L],
+        out: [At<T>; L],
     ) {
         debug_assert!(slices.end < self.starts.len() && L == self.layers);
         let lanes = T::LANES;
@@ -122,23 +122,23 @@ impl<T: Real> Sell<T> {
             // SAFETY: `columns` and `values` have as many vectors as the last start says, and each
             // column is a position.
             unsafe {
-                let mut column = self.columns.as_ptr().add(blocks.start * lanes);
-                let mut value = self.values.as_ptr().add(blocks.start * L * L * lanes);
+                let mut column = At::start_of(&self.columns).add(blocks.start * lanes);
+                let mut value = At::start_of(&self.values).add(blocks.start * L * L * lanes);
                 let mut sum = [V::splat(T::default()); L];
                 for _ in blocks {
-                    let x: [V; L] = std::array::from_fn(|j| V::gather(source[j], column));
-                    V::prefetch(column.wrapping_add(self.ahead * lanes).cast());
+                    let x: [V; L] = std::array::from_fn(|j| source[j].gather(column));
+                    column.add(self.ahead * lanes).prefetch_index::<T, V>();
                     for sum in &mut sum {
                         for x in x {
-                            V::prefetch(value.wrapping_add(L * L * self.ahead * lanes));
-                            *sum = V::load(value).mul_add(x, *sum);
+                            value.add(L * L * self.ahead * lanes).prefetch::<V>();
+                            *sum = value.load::<V>().mul_add(x, *sum);
                             value = value.add(lanes);
                         }
                     }
                     column = column.add(lanes);
                 }
                 for (sum, out) in sum.into_iter().zip(out) {
-                    sum.store(out.add((slice - first) * lanes));
+                    out.add((slice - first) * lanes).store(sum);
                 }
             }
         }
