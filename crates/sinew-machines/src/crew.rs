@@ -18,11 +18,55 @@ const YIELDS: u32 = 20;
 /// Sweeps after which late workers are counted.
 const WATCHED: u32 = 32;
 
-/// Late sweeps of those for which the host goes on alone.
-const MOST_LATE: u32 = 4;
+/// Late sweeps of those that the host puts up with: each may cost it a slice of the scheduler, milliseconds.
+const MOST_LATE: u32 = 1;
 
 /// Most sweeps that it goes on alone.
 const LONGEST_ALONE: u32 = 4096;
+
+/// The host's memory of late workers, kept from batch to batch: on a machine that others use, every batch would
+/// find out again.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Patience {
+    watched: u32,
+    late: u32,
+    /// Sweeps that are still made alone, and how many the next time.
+    alone: u32,
+    next_alone: u32,
+}
+
+impl Default for Patience {
+    fn default() -> Self {
+        Self {
+            watched: 0,
+            late: 0,
+            alone: 0,
+            next_alone: WATCHED,
+        }
+    }
+}
+
+impl Patience {
+    /// Whether so many sweeps are made alone anyway.
+    pub(crate) fn is_alone_for(&self, sweeps: usize) -> bool {
+        self.alone as usize >= sweeps
+    }
+
+    /// Notes a sweep with others.
+    fn note(&mut self, late: bool) {
+        self.watched += 1;
+        self.late += u32::from(late);
+        if self.late > MOST_LATE {
+            self.alone = self.next_alone;
+            self.next_alone = (2 * self.next_alone).min(LONGEST_ALONE);
+            (self.watched, self.late) = (0, 0);
+        } else if self.watched == WATCHED {
+            // Others are in time again.
+            self.next_alone = (self.next_alone / 2).max(WATCHED);
+            (self.watched, self.late) = (0, 0);
+        }
+    }
+}
 
 /// Threads that take part in sweeps for as long as a batch lasts. Every chunk is computed by one thread,
 /// whichever; each begins with its own share, so that its rows stay in its cache, and then takes what
@@ -54,17 +98,13 @@ pub(crate) struct Host<'a> {
     /// `None` where the host is alone.
     crew: Option<&'a Crew<'a>>,
     workers: Vec<Thread>,
-    watched: u32,
-    late: u32,
-    /// Sweeps that are still made alone, and how many the next time.
-    alone: u32,
-    next_alone: u32,
+    patience: &'a mut Patience,
 }
 
 impl<'a> Crew<'a> {
     /// Runs `body` with so many threads, itself included, for sweeps over `chunks` chunks, each made by `work`.
     pub(crate) fn gather<R>(
-        threads: usize,
+        (threads, patience): (usize, &mut Patience),
         chunks: usize,
         work: &'a (dyn Fn(Range<usize>) -> Outcome + Sync),
         body: impl FnOnce(&mut Host<'_>) -> R,
@@ -74,10 +114,7 @@ impl<'a> Crew<'a> {
             chunks,
             crew: None,
             workers: Vec::new(),
-            watched: 0,
-            late: 0,
-            alone: 0,
-            next_alone: WATCHED,
+            patience,
         };
         if threads <= 1 {
             return body(&mut host);
@@ -193,9 +230,9 @@ impl Host<'_> {
     /// Makes a sweep that has been prepared.
     pub(crate) fn sweep(&mut self) -> Outcome {
         let crew = match self.crew {
-            Some(crew) if self.alone == 0 => crew,
+            Some(crew) if self.patience.alone == 0 => crew,
             _ => {
-                self.alone = self.alone.saturating_sub(1);
+                self.patience.alone = self.patience.alone.saturating_sub(1);
                 return (self.work)(0..self.chunks);
             }
         };
@@ -236,15 +273,7 @@ impl Host<'_> {
                 crew.host_asleep.store(false, Ordering::SeqCst);
             }
         }
-        self.watched += 1;
-        self.late += u32::from(looks > SPINS);
-        if self.late > MOST_LATE {
-            self.alone = self.next_alone;
-            self.next_alone = (2 * self.next_alone).min(LONGEST_ALONE);
-            (self.watched, self.late) = (0, 0);
-        } else if self.watched == WATCHED {
-            (self.watched, self.late) = (0, 0);
-        }
+        self.patience.note(looks > SPINS);
     }
 }
 
@@ -270,7 +299,7 @@ mod tests {
                 }
                 outcome
             };
-            Crew::gather(threads, chunks, &work, |host| {
+            Crew::gather((threads, &mut Patience::default()), chunks, &work, |host| {
                 for sweep in 1..=2000 {
                     let outcome = host.sweep();
                     assert_eq!((outcome.saturated, outcome.exceeded), (36 * 37 / 2, true));
@@ -281,5 +310,56 @@ mod tests {
                 }
             });
         }
+    }
+
+    #[test]
+    fn a_host_of_late_workers_goes_on_alone_for_longer_and_longer_and_tries_again() {
+        let mut patience = Patience::default();
+        let mut alone = 0;
+        for expected in [32, 64, 128] {
+            assert!(!patience.is_alone_for(1));
+            patience.note(true);
+            patience.note(false);
+            assert!(!patience.is_alone_for(1));
+            patience.note(true);
+            assert!(patience.is_alone_for(expected) && !patience.is_alone_for(expected + 1));
+            alone += patience.alone;
+            patience.alone = 0;
+        }
+        assert_eq!(alone, 32 + 64 + 128);
+        // A few late sweeps now and then are none of that.
+        for sweep in 0..20 * WATCHED {
+            patience.note(sweep % WATCHED == 3);
+            assert!(!patience.is_alone_for(1));
+        }
+        assert_eq!(patience.next_alone, WATCHED);
+    }
+
+    /// Chunks of which each takes a while that a worker sleeps through: the host finds out, and makes the rest itself.
+    #[test]
+    fn sleeping_workers_are_not_waited_for_in_every_sweep() {
+        let host = thread::current().id();
+        let by_others = AtomicUsize::new(0);
+        let work = |range: Range<usize>| {
+            if thread::current().id() != host {
+                by_others.fetch_add(range.len(), Ordering::Relaxed);
+                thread::sleep(std::time::Duration::from_millis(2));
+            }
+            Outcome::default()
+        };
+        let mut patience = Patience::default();
+        let sweeps = 300;
+        for _ in 0..10 {
+            Crew::gather((2, &mut patience), 8, &work, |host| {
+                for _ in 0..sweeps / 10 {
+                    host.sweep();
+                }
+            });
+        }
+        // Two late sweeps before each time alone, of 32, 64 and 128 sweeps.
+        assert!(
+            by_others.load(Ordering::Relaxed) <= 4 * 2 * 8,
+            "{by_others:?}"
+        );
     }
 }

@@ -12,7 +12,7 @@ use sinew_sparse::simd::InstructionSet;
 use sinew_sparse::sweep::{self as kernel, Field, Fields, Outcome, Precision, Rows};
 
 use crate::compiled::{Compiled, Constant, Variant};
-use crate::crew::{Crew, Host};
+use crate::crew::{Crew, Host, Patience};
 use crate::forces::Forces;
 use crate::layout::Layout;
 
@@ -22,6 +22,7 @@ pub struct FastMachine<T> {
     layout: Arc<Layout<T>>,
     set: InstructionSet,
     threads: usize,
+    patience: Patience,
     /// Locked by the host while no other thread uses it, so that workers may read it during a sweep.
     loaded: Option<RwLock<Loaded<T>>>,
 }
@@ -62,6 +63,7 @@ impl<T: Precision> FastMachine<T> {
             layout,
             set: InstructionSet::best(),
             threads: 1,
+            patience: Patience::default(),
             loaded: None,
         }
     }
@@ -168,12 +170,15 @@ impl<T: Precision> Machine for FastMachine<T> {
         }
         let (layout, set) = (&*self.layout, self.set);
         let chunks = own(loaded).chunks();
-        let loaded = &*loaded;
+        let (loaded, patience) = (&*loaded, &mut self.patience);
         let work = |chunks| read(loaded).make(layout, set, chunks);
         batch.in_parts(program.repeats, |batch| {
             let sweeps = batch.parts_left() * program.step.len();
-            let threads = layout.threads_for(chunks, sweeps).min(self.threads);
-            Crew::gather(threads, chunks, &work, |host| {
+            let threads = match patience.is_alone_for(sweeps) {
+                true => 1,
+                false => layout.threads_for(chunks, sweeps).min(self.threads),
+            };
+            Crew::gather((threads, patience), chunks, &work, |host| {
                 let running = Running {
                     loaded,
                     layout,
