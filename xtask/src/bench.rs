@@ -11,6 +11,7 @@ use sinew_bench::{Bench, machine, revision};
 
 use crate::beside::{self, Program};
 use crate::failure::Failure;
+use crate::generated;
 use crate::progress::Bar;
 use crate::repository::root;
 
@@ -38,14 +39,15 @@ pub(crate) struct Arguments {
     #[arg(long)]
     quick: bool,
     /// The folder for results.json, report.html and the plots, checked before anything is measured
-    /// [default: target/bench, target/bench-hard]
+    /// [default: target/bench, target/bench-hard, target/bench-kernels]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Measure the hard cases under scenes/hard instead: failures, stability maps and pass marks; exits
     /// with 1 if a mark is not passed
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "beside"])]
     hard: bool,
-    /// Measure the kernels of all machines instead, beside plain loops
+    /// Measure the kernels of all machines instead, beside plain loops and what the computer can do, and guard
+    /// what makes them fast; exits with 1 if a guard does not hold
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "beside"])]
     kernels: bool,
     /// Run another program on the peers' cube in turn with our cheapest methods and print the ratios
@@ -105,6 +107,11 @@ fn run_hard(arguments: &Arguments) -> Result<(), Failure> {
 fn run_kernels(arguments: &Arguments) -> Result<(), Failure> {
     let bench = KernelBench {
         meshes: root().join("meshes"),
+        generated: if arguments.quick {
+            None
+        } else {
+            generated::block()?
+        },
         quick: arguments.quick,
     };
     let folder = folder(
@@ -112,8 +119,8 @@ fn run_kernels(arguments: &Arguments) -> Result<(), Failure> {
         "bench-kernels",
         &[bench.meshes.join("organ.msh")],
     );
-    let name = "kernels.json";
-    folder.check(&[name.to_owned()])?;
+    let (name, page) = ("kernels.json", "kernels.html");
+    folder.check(&[name, page].map(str::to_owned))?;
     let bar = Bar::new();
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();
@@ -121,8 +128,19 @@ fn run_kernels(arguments: &Arguments) -> Result<(), Failure> {
     let json = serde_json::to_vec_pretty(&results).map_err(Failure::chore)?;
     let written = folder.write(name, &json)?;
     say(&results.to_string())?;
-    say(&format!("\nresults: {}", written.display()))?;
-    Ok(())
+    let page = folder.write(page, results.html().as_bytes())?;
+    say(&format!(
+        "\nresults: {}\npage:    {}",
+        written.display(),
+        page.display()
+    ))?;
+    let failed = results.guards.iter().filter(|guard| !guard.holds());
+    let failed: Vec<String> = failed.map(ToString::to_string).collect();
+    if failed.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::Chore(format!("guards: {}", failed.join("; "))))
+    }
 }
 
 fn folder(arguments: &Arguments, default: &str, inputs: &[PathBuf]) -> OutputFolder {

@@ -8,7 +8,7 @@ use sinew_bench::output::say;
 
 use crate::failure::Failure;
 use crate::repository::root;
-use crate::{compare, rules};
+use crate::{compare, memory, rules};
 
 /// A run of cargo and what it checks.
 struct Step {
@@ -112,9 +112,19 @@ pub(crate) fn run() -> Result<(), Failure> {
         let seconds = begin.elapsed().as_secs();
         say(&format!("== {}: fine after {seconds} s", step.name))?;
     }
+    watch_memory_if_possible()?;
     compare_if_possible()?;
     let seconds = start.elapsed().as_secs();
     Ok(say(&format!("\nall fine after {seconds} s"))?)
+}
+
+/// Runs the kernels' tests under valgrind, where it is installed.
+fn watch_memory_if_possible() -> Result<(), Failure> {
+    say("\n== kernels under valgrind: part of cargo xtask memory")?;
+    match memory::has_valgrind() {
+        true => memory::under_valgrind(),
+        false => Ok(say("== SKIPPED: there is no valgrind")?),
+    }
 }
 
 /// Compares with programs that Python and pip bring, where there are Python and pip.

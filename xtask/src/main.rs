@@ -1,4 +1,4 @@
-//! Repository chores: `cargo xtask bench | reproduce | meshes | compare | docs | rules | ci`.
+//! Repository chores: `cargo xtask bench | native | memory | reproduce | meshes | compare | docs | rules | ci`.
 
 mod bench;
 mod beside;
@@ -6,7 +6,10 @@ mod ci;
 mod compare;
 mod docs;
 mod failure;
+mod generated;
+mod memory;
 mod meshes;
+mod native;
 mod progress;
 mod python;
 mod repository;
@@ -34,6 +37,10 @@ struct Arguments {
 enum Chore {
     /// Measure error, cost and stability of integrators on scenes.
     Bench(bench::Arguments),
+    /// Compare the kernels' speed in a portable build with one for this very processor.
+    Native,
+    /// Run the kernels' tests under a program that watches memory: Miri or valgrind.
+    Memory,
     /// Draw the paper's figures and check its claims one by one.
     Reproduce(reproduce::Arguments),
     /// Write the repository's structured meshes again.
@@ -51,6 +58,8 @@ enum Chore {
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().chore {
         Chore::Bench(arguments) => bench::run(&arguments),
+        Chore::Native => native::run(),
+        Chore::Memory => memory::run(),
         Chore::Reproduce(arguments) => reproduce::run(&arguments),
         Chore::Meshes => meshes::run(),
         Chore::Compare => compare::run(),

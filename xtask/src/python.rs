@@ -21,6 +21,8 @@ pub(crate) struct Packages {
     pub(crate) folder: &'static str,
     /// Names and versions in pip's form.
     pub(crate) names: &'static [&'static str],
+    /// Whether they bring libraries that lie beside the modules, which pip's `--target` leaves out.
+    pub(crate) beside_libraries: bool,
 }
 
 /// A Python that finds the installed packages.
@@ -47,9 +49,14 @@ impl Python {
         if !folder.exists() {
             install(program, packages, &folder)?;
         }
+        // With --prefix modules lie deeper, where depends on the system.
+        let inside = packages
+            .beside_libraries
+            .then(|| modules(&folder))
+            .flatten();
         Ok(Self {
             program,
-            packages: folder,
+            packages: inside.unwrap_or(folder),
         })
     }
 
@@ -95,7 +102,11 @@ fn install(program: &str, packages: &Packages, folder: &Path) -> Result<(), Fail
     let installed = pip(&["install", "--quiet", "--disable-pip-version-check"])
         .args(["--only-binary", ":all:"])
         .args(packages.names)
-        .arg("--target")
+        .arg(if packages.beside_libraries {
+            "--prefix"
+        } else {
+            "--target"
+        })
         .arg(&partial)
         .output()
         .map_err(|error| error.to_string())
@@ -111,6 +122,25 @@ fn install(program: &str, packages: &Packages, folder: &Path) -> Result<(), Fail
             "`{program} -m pip install {names}` failed: {reason}"
         ))
     })
+}
+
+/// The folder of modules under a prefix.
+fn modules(prefix: &Path) -> Option<PathBuf> {
+    let inside = |folder: PathBuf| {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        entries.map(|entry| entry.path()).collect::<Vec<_>>()
+    };
+    let libraries = [
+        prefix.join("lib"),
+        prefix.join("local/lib"),
+        prefix.join("Lib"),
+    ];
+    let mut folders: Vec<PathBuf> = libraries.into_iter().flat_map(inside).collect();
+    folders.extend([prefix.join("Lib")]);
+    let mut packages = folders
+        .iter()
+        .flat_map(|folder| ["site-packages", "dist-packages"].map(|name| folder.join(name)));
+    packages.find(|folder| folder.is_dir())
 }
 
 /// The last line that a failed program printed, which is its reason, after warnings and traces.

@@ -15,6 +15,7 @@ static ALLOCATOR: CountingAllocator = CountingAllocator;
 fn every_machine_takes_the_same_steps_and_allocates_nothing() {
     let bench = KernelBench {
         meshes: PathBuf::new(),
+        generated: None,
         quick: true,
     };
     let results = bench.run("a test".into(), machine(), |_| {}).unwrap();
@@ -34,6 +35,25 @@ fn every_machine_takes_the_same_steps_and_allocates_nothing() {
             assert_eq!(row.templates, (kernel == kernels[1]).then_some(3));
         }
     }
+    for row in &results.rows {
+        // Two operations for each byte at least where blocks of f64 are read, of 8 bytes an entry.
+        let least = if row.kernel == "general" { 0.1 } else { 0.5 };
+        assert!(row.intensity > least && row.gflops > 0.0, "{row:?}");
+        let roof = results.roofs.multiply_adds.iter();
+        let mut roof = roof.filter(|rate| rate.precision == row.precision);
+        assert!(
+            roof.any(|rate| 1e9 * row.gflops < rate.operations_per_s),
+            "{row:?}"
+        );
+    }
+    assert!(results.guards.len() > 4);
+    assert!(results.guards.iter().all(|guard| guard.ratio > 0.0));
+    let page = results.html();
+    assert!(page.contains("Kernels on one thread") && page.contains("template lattice f32"));
+    assert!(
+        !page.contains("http://") || page.matches("http://").count() == 1,
+        "SVG's own name"
+    );
     let text = results.to_string();
     assert!(
         text.contains("cube 7^3") && text.contains("template lattice (3 templates)"),

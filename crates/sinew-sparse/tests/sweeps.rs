@@ -379,3 +379,13 @@ fn a_vector_that_is_not_there_is_refused() {
     map.updates.push(update(99, &[(1.0, U)], 0.0));
     case.sweep(&mut case.filled(), &map, InstructionSet::Portable, 1.0);
 }
+
+#[test]
+fn rows_share_a_template_where_only_empty_places_tell_them_apart() {
+    let templates = |kind| Case::<f64>::new(kind, 3, [5, 4, 7]).templates();
+    assert_eq!(templates(Kind::General), None);
+    assert_eq!(templates(Kind::Merged), Some(1));
+    // Inside, 6 faces, 12 edges and 8 corners.
+    assert_eq!(templates(Kind::Border), Some(27));
+    assert!(templates(Kind::Cut) > Some(1));
+}

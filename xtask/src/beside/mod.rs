@@ -17,6 +17,7 @@ const PACKAGES: Packages = Packages {
     needed_by: "--beside scipy",
     folder: "scipy",
     names: &["numpy", "scipy"],
+    beside_libraries: false,
 };
 
 /// Another program to compare with.

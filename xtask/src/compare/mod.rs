@@ -16,6 +16,7 @@ const PACKAGES: Packages = Packages {
     needed_by: "compare",
     folder: "meshio",
     names: &["meshio==5.3.5", "pyvista", "numpy"],
+    beside_libraries: false,
 };
 
 pub(crate) fn run() -> Result<(), Failure> {

@@ -39,32 +39,45 @@ pub enum KernelBenchError {
     Method(#[from] SetupError),
 }
 
-/// The peers' cube at several sizes, a body that no lattice fits, and an organ.
-pub(super) fn bodies(meshes: &Path, quick: bool) -> Result<Vec<Body>, KernelBenchError> {
+/// The peers' cube at several sizes, a body that no lattice fits, an organ and, where there is one, a larger mesh
+/// of a mesh generator.
+pub(super) fn bodies(
+    meshes: &Path,
+    generated: Option<&Path>,
+    quick: bool,
+) -> Result<Vec<Body>, KernelBenchError> {
     let sizes: &[usize] = if quick { &[6] } else { &[10, 20, 40] };
     let mut bodies = Vec::new();
     for cells in sizes {
-        let mesh = cube(*cells, 0.1, Split::Kuhn)?;
-        bodies.push(body(
-            format!("cube {}^3", cells + 1),
-            &mesh,
-            "sides",
-            "top",
-        )?);
+        bodies.push(cube_body(*cells)?);
     }
     if !quick {
         let mut mesh = cube(20, 0.1, Split::Kuhn)?;
         scatter(&mut mesh);
         bodies.push(body("scattered 21^3".into(), &mesh, "sides", "top")?);
         let organ = read_msh_file(meshes.join("organ.msh"))?.to_tet_mesh()?;
-        bodies.push(body(
-            "organ.msh".into(),
-            &organ,
-            "attachment",
-            "inclusion-surface",
-        )?);
+        bodies.push(body("organ.msh".into(), &organ, "attachment", "capsule")?);
+    }
+    if let Some(path) = generated {
+        let mesh = read_msh_file(path)?.to_tet_mesh()?;
+        bodies.push(body("gmsh block".into(), &mesh, "bottom", "top")?);
     }
     Ok(bodies)
+}
+
+/// The peers' cube with so many cells along an edge.
+pub(super) fn cube_body(cells: usize) -> Result<Body, KernelBenchError> {
+    let mesh = cube(cells, 0.1, Split::Kuhn)?;
+    body(format!("cube {}^3", cells + 1), &mesh, "sides", "top")
+}
+
+/// A cube without loads whose mass damping (1/s) is another.
+pub(super) fn damped_cube(cells: usize, mass: f64) -> Result<Model, KernelBenchError> {
+    let mesh = cube(cells, 0.1, Split::Kuhn)?;
+    let mut problem = problem("sides", "top");
+    problem.loads.clear();
+    problem.damping.mass = mass;
+    Ok(Model::build(&mesh, &problem)?)
 }
 
 /// Moves nodes by up to a tenth of a cell and numbers them in leaps, as mesh generators leave them.
@@ -94,7 +107,16 @@ fn scatter(mesh: &mut TetMesh) {
 }
 
 fn body(name: String, mesh: &TetMesh, held: &str, pressed: &str) -> Result<Body, KernelBenchError> {
-    let problem = Problem {
+    Ok(Body {
+        name,
+        nodes: mesh.points.len(),
+        tets: mesh.tets.len(),
+        model: Model::build(mesh, &problem(held, pressed))?,
+    })
+}
+
+fn problem(held: &str, pressed: &str) -> Problem {
+    Problem {
         regions: vec![Region {
             group: None,
             density: 1060.0,
@@ -117,11 +139,5 @@ fn body(name: String, mesh: &TetMesh, held: &str, pressed: &str) -> Result<Body,
             ..Rayleigh::default()
         },
         ..Problem::default()
-    };
-    Ok(Body {
-        name,
-        nodes: mesh.points.len(),
-        tets: mesh.tets.len(),
-        model: Model::build(mesh, &problem)?,
-    })
+    }
 }

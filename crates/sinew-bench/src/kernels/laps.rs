@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use sinew_cnn::conformance::CountingAllocator;
-use sinew_cnn::{Machine, Program, ReferenceMachine};
+use sinew_cnn::{Machine, Program, Quotient, ReferenceMachine, Sweep, When};
 use sinew_core::{Batch, Inputs, Layers, LinearSystem, Options, State, System};
 use sinew_machines::{FastMachine, Kind, Layout, PrecisionName};
 use sinew_measure::thread_cpu_time;
@@ -40,9 +40,7 @@ struct Runner {
 /// Measures all machines on a body.
 pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBenchError> {
     let model = &body.model;
-    let omega = (model as &dyn System).spectrum(None);
-    let dt = SHARE * 2.0 / omega.map_or(1.0, |spectrum| spectrum.omega_max);
-    let Some(program) = program(model, dt)? else {
+    let Some((program, dt)) = central_difference(model)? else {
         return Ok(Vec::new());
     };
     let alpha = model.operators().damping().mass;
@@ -84,6 +82,7 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
     let layers = Layers::Three;
     let cells = dofs / layers.count();
     let vectors = program.traffic().vector_bytes(layers) * cells as f64;
+    let operations = operations(&program, model);
     let mut rows = Vec::new();
     for mut runner in runners {
         let allocations = runner.allocations(model, dt);
@@ -120,6 +119,9 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
             step_s,
             difference: runner.difference,
             bytes_per_step,
+            operations_per_step: operations,
+            gflops: 1e-9 * operations / step_s,
+            intensity: operations / bytes_per_step,
             share_of_bandwidth: bytes_per_step / step_s / bandwidth(bytes_per_step as usize),
             templates: runner.templates,
             allocations_per_step: allocations,
@@ -128,11 +130,35 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
     Ok(rows)
 }
 
-/// The step of central difference as a program.
-fn program(model: &dyn System, dt: f64) -> Result<Option<Arc<Program>>, KernelBenchError> {
+/// A step of central difference as a program, with its length (s).
+pub(super) fn central_difference(
+    model: &dyn System,
+) -> Result<Option<(Arc<Program>, f64)>, KernelBenchError> {
+    let omega = model.spectrum(None);
+    let dt = SHARE * 2.0 / omega.map_or(1.0, |spectrum| spectrum.omega_max);
     let mut method = sinew_integrators::build("central-difference", &Options::new())?;
     method.prepare(model, dt)?;
-    Ok(method.program().map(Arc::new))
+    Ok(method.program().map(|program| (Arc::new(program), dt)))
+}
+
+/// Floating-point operations of a step: two for each entry of a matrix, in whatever way it is stored, and those
+/// of the cells' own maps.
+fn operations(program: &Program, model: &dyn LinearSystem) -> f64 {
+    let stiffness = model.operators().stiffness();
+    let entries = stiffness.pattern().blocks() * stiffness.layers().block_len();
+    let always = program
+        .step
+        .iter()
+        .filter(|sweep| sweep.when == When::Always);
+    let of_sweep = |sweep: &Sweep| {
+        let updates = sweep.updates.iter().filter(|update| !update.last_only);
+        let terms = updates.map(|update| update.terms.len() + usize::from(update.of_q != 0.0));
+        2 * (sweep.own.len() + terms.sum::<usize>()) + usize::from(sweep.quotient == Quotient::Mass)
+    };
+    let own: usize = always.map(of_sweep).sum();
+    let repeats = f64::from(program.repeats);
+    repeats * (2 * program.traffic().products / program.repeats as usize * entries) as f64
+        + repeats * (own * stiffness.dofs()) as f64
 }
 
 /// A machine of this kind; `None` where the body has no templates.

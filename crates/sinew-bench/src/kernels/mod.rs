@@ -2,8 +2,11 @@
 
 mod baseline;
 mod bodies;
+mod guards;
 mod laps;
 mod memory;
+mod page;
+mod roofs;
 mod row;
 mod table;
 mod variant;
@@ -13,6 +16,8 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 pub use bodies::KernelBenchError;
+pub use guards::{Guard, Limit};
+pub use roofs::{OperationRate, ReadRate, Roofs};
 pub use row::KernelRow;
 pub use sinew_cnn::conformance::CountingAllocator;
 
@@ -24,6 +29,9 @@ use crate::results::Machine;
 pub struct KernelBench {
     /// Folder of the repository's meshes.
     pub meshes: PathBuf,
+    /// A mesh of some ten thousand tetrahedra from a mesh generator, with surfaces "bottom" and "top", where there
+    /// is one.
+    pub generated: Option<PathBuf>,
     /// One small body and few laps, to see that everything runs.
     pub quick: bool,
 }
@@ -35,6 +43,10 @@ pub struct KernelResults {
     pub revision: String,
     /// The computer.
     pub machine: Machine,
+    /// What one thread of it can do at most.
+    pub roofs: Roofs,
+    /// Ratios that tell when kernels lost what makes them fast.
+    pub guards: Vec<Guard>,
     /// One row for each body, machine, precision and number of threads.
     pub rows: Vec<KernelRow>,
 }
@@ -51,16 +63,26 @@ impl KernelBench {
         mut progress: impl FnMut(Progress),
     ) -> Result<KernelResults, KernelBenchError> {
         let mut rows = Vec::new();
-        let bodies = bodies::bodies(&self.meshes, self.quick)?;
-        let of = bodies.len();
+        let bodies = bodies::bodies(&self.meshes, self.generated.as_deref(), self.quick)?;
+        let of = bodies.len() + 2;
         for (done, body) in bodies.into_iter().enumerate() {
             let what = body.name.clone();
             progress(Progress::Run { done, of, what });
             rows.extend(laps::rows(&body, self.quick)?);
         }
+        let mut next = |done, what: &str| {
+            let what = what.to_owned();
+            progress(Progress::Run { done, of, what });
+        };
+        next(of - 2, "what the computer can do");
+        let roofs = Roofs::measure(self.quick);
+        next(of - 1, "guards");
+        let guards = guards::guards(self.quick)?;
         Ok(KernelResults {
             revision,
             machine,
+            roofs,
+            guards,
             rows,
         })
     }

@@ -31,7 +31,14 @@ pub struct KernelRow {
     pub difference: f64,
     /// Bytes that a step moves: matrices or templates, and vectors.
     pub bytes_per_step: f64,
-    /// Those bytes in the time of a step over what one thread reads of as many, measured in the same run.
+    /// Floating-point operations of a step: two for each entry of the matrix, however it is stored, and those of
+    /// the cells' own maps.
+    pub operations_per_step: f64,
+    /// Operations a second, in thousands of millions.
+    pub gflops: f64,
+    /// Operations for each byte that a step moves.
+    pub intensity: f64,
+    /// The bytes of a step in the time of a step over what one thread reads of as many, measured in the same run.
     pub share_of_bandwidth: f64,
     /// Templates, where rows are stored once.
     pub templates: Option<usize>,

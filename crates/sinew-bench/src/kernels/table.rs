@@ -3,11 +3,12 @@
 use std::fmt;
 
 use super::KernelResults;
+use super::roofs::{OperationRate, Roofs};
 use super::row::KernelRow;
 use crate::report::ruled;
 use crate::report::three;
 
-const HEAD: [&str; 9] = [
+pub(super) const HEAD: [&str; 11] = [
     "body",
     "kernel",
     "precision",
@@ -16,6 +17,8 @@ const HEAD: [&str; 9] = [
     "lowest .. highest",
     "off [relative]",
     "MB a step",
+    "flop a byte",
+    "GFLOP/s",
     "of bandwidth",
 ];
 
@@ -28,11 +31,44 @@ impl fmt::Display for KernelResults {
              plain loops.\n"
         )?;
         let table = ruled::table(HEAD, self.rows.iter().map(cells), 3);
-        f.write_str(&ruled::lines(table, 2))
+        writeln!(f, "{}\n", ruled::lines(table, 2))?;
+        writeln!(f, "{}", self.roofs)?;
+        for guard in &self.guards {
+            let verdict = if guard.holds() { "" } else { "FAIL " };
+            writeln!(f, "{verdict}{guard}")?;
+        }
+        Ok(())
     }
 }
 
-fn cells(row: &KernelRow) -> [String; 9] {
+impl fmt::Display for Roofs {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "One thread of this computer reads")?;
+        for read in &self.reads {
+            let (rate, size) = (
+                three(1e-9 * read.bytes_per_s),
+                three(1e-6 * read.bytes as f64),
+            );
+            write!(f, " {rate} GB/s of {} ({size} MB)", read.memory)?;
+        }
+        write!(f, "; it multiplies and adds")?;
+        for rate in &self.multiply_adds {
+            let OperationRate {
+                instructions,
+                precision,
+                ..
+            } = rate;
+            write!(
+                f,
+                " {} GFLOP/s ({instructions} {precision})",
+                three(1e-9 * rate.operations_per_s)
+            )?;
+        }
+        writeln!(f, ".")
+    }
+}
+
+pub(super) fn cells(row: &KernelRow) -> [String; 11] {
     let kernel = match row.templates {
         Some(count) => format!("{} ({count} templates) {}", row.kernel, row.instructions),
         None => format!("{} {}", row.kernel, row.instructions),
@@ -46,6 +82,8 @@ fn cells(row: &KernelRow) -> [String; 9] {
         format!("{} .. {}", three(row.ratios[0]), three(row.ratios[1])),
         format!("{:.1e}", row.difference),
         three(1e-6 * row.bytes_per_step),
+        three(row.intensity),
+        three(row.gflops),
         format!("{:.0} %", 100.0 * row.share_of_bandwidth),
     ]
 }

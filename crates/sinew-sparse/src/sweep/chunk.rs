@@ -36,6 +36,20 @@ pub trait Precision: Real {
     /// As for [`Sweep::run`], on an instruction set that is available.
     #[doc(hidden)]
     unsafe fn run(sweep: &Sweep<'_, Self>, set: InstructionSet, chunks: Range<usize>) -> Outcome;
+
+    /// [`super::multiply_adds`].
+    ///
+    /// # Safety
+    /// The instruction set is available.
+    #[doc(hidden)]
+    unsafe fn multiply_adds(set: InstructionSet, rounds: u32) -> Self;
+
+    /// [`super::read_all`].
+    ///
+    /// # Safety
+    /// The instruction set is available.
+    #[doc(hidden)]
+    unsafe fn read_all(set: InstructionSet, values: &[Self]) -> Self;
 }
 
 /// What the cells of some chunks reached.

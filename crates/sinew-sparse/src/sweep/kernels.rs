@@ -5,6 +5,9 @@
 use std::ops::Range;
 
 use super::chunk::{Outcome, Precision, Sweep, run};
+#[cfg(target_arch = "x86_64")]
+use super::peak::{AVX2, AVX512};
+use super::peak::{PORTABLE, chains, sum_all};
 use crate::simd::{Array, InstructionSet};
 #[cfg(target_arch = "x86_64")]
 use crate::simd::{Avx2, Avx512};
@@ -58,6 +61,60 @@ macro_rules! precision {
                         (InstructionSet::Avx2, _) => avx2::<3>(sweep, chunks),
                         (_, 1) => run::<$number, Portable, 1>(sweep, chunks),
                         (_, _) => run::<$number, Portable, 3>(sweep, chunks),
+                    }
+                }
+            }
+
+            unsafe fn multiply_adds(set: InstructionSet, rounds: u32) -> Self {
+                #[cfg(target_arch = "x86_64")]
+                #[target_feature(enable = "avx2,fma")]
+                unsafe fn avx2(rounds: u32) -> $number {
+                    // SAFETY: promised by the caller of this function.
+                    unsafe { chains::<$number, Avx2<std::arch::x86_64::$of256>, AVX2>(rounds) }
+                }
+
+                #[cfg(target_arch = "x86_64")]
+                #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
+                unsafe fn avx512(rounds: u32) -> $number {
+                    // SAFETY: promised by the caller of this function.
+                    unsafe { chains::<$number, Avx512<std::arch::x86_64::$of512>, AVX512>(rounds) }
+                }
+
+                // SAFETY: promised by the caller of this function.
+                unsafe {
+                    match set {
+                        #[cfg(target_arch = "x86_64")]
+                        InstructionSet::Avx512 => avx512(rounds),
+                        #[cfg(target_arch = "x86_64")]
+                        InstructionSet::Avx2 => avx2(rounds),
+                        _ => chains::<$number, Array<$number, $lanes>, PORTABLE>(rounds),
+                    }
+                }
+            }
+
+            unsafe fn read_all(set: InstructionSet, values: &[Self]) -> Self {
+                #[cfg(target_arch = "x86_64")]
+                #[target_feature(enable = "avx2,fma")]
+                unsafe fn avx2(values: &[$number]) -> $number {
+                    // SAFETY: promised by the caller of this function.
+                    unsafe { sum_all::<$number, Avx2<std::arch::x86_64::$of256>, AVX2>(values) }
+                }
+
+                #[cfg(target_arch = "x86_64")]
+                #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
+                unsafe fn avx512(values: &[$number]) -> $number {
+                    // SAFETY: promised by the caller of this function.
+                    unsafe { sum_all::<$number, Avx512<std::arch::x86_64::$of512>, AVX512>(values) }
+                }
+
+                // SAFETY: promised by the caller of this function.
+                unsafe {
+                    match set {
+                        #[cfg(target_arch = "x86_64")]
+                        InstructionSet::Avx512 => avx512(values),
+                        #[cfg(target_arch = "x86_64")]
+                        InstructionSet::Avx2 => avx2(values),
+                        _ => sum_all::<$number, Array<$number, $lanes>, PORTABLE>(values),
                     }
                 }
             }

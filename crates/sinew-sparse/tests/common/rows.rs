@@ -26,6 +26,8 @@ pub(crate) enum Kind {
     Border,
     /// Templates that rows at the border share with those inside.
     Merged,
+    /// The same with a cut between cells, whose rows lack neighbours where other cells are.
+    Cut,
 }
 
 /// Cells with two matrices and all vectors of a test.
@@ -55,8 +57,8 @@ impl<T> std::fmt::Debug for Case<T> {
 
 /// Bodies whose rows end within a vector, within a chunk and at its end, on one chunk and on several.
 pub(crate) fn cases<T: Precision>() -> Vec<Case<T>> {
-    // Interpreted, a few: one layer of one kind, three of another, on more than one chunk in f64.
-    if cfg!(miri) {
+    // Watched or interpreted, a few: one layer of one kind, three of another, on more than one chunk in f64.
+    if cfg!(miri) || std::env::var_os("SINEW_SMALL_TESTS").is_some() {
         let [one, three] = [(Kind::Merged, 1), (Kind::General, 3)];
         return [one, three]
             .map(|(kind, layers)| Case::new(kind, layers, [5, 3, 9]))
@@ -64,7 +66,7 @@ pub(crate) fn cases<T: Precision>() -> Vec<Case<T>> {
     }
     let mut cases = Vec::new();
     for size in [[2, 1, 1], [5, 4, 7], [8, 4, 8], [13, 4, 10], [3, 16, 9]] {
-        for kind in [Kind::General, Kind::Border, Kind::Merged] {
+        for kind in [Kind::General, Kind::Border, Kind::Merged, Kind::Cut] {
             for layers in [1, 3] {
                 cases.push(Case::new(kind, layers, size));
             }
@@ -93,7 +95,10 @@ impl<T: Precision> Case<T> {
             for b in a + 1..cells {
                 let leaps = kind == Kind::General && (a * 7919 + b * 104_729) % cells == 3;
                 let thinned = kind == Kind::General && scattered(a + b * cells) > 0.0;
-                if near(a, b) && !thinned || leaps {
+                let across =
+                    |cell: usize| place(cell)[0] < size[0] / 2 && place(cell)[2] > size[2] / 2;
+                let cut = kind == Kind::Cut && across(a) != across(b);
+                if near(a, b) && !thinned && !cut || leaps {
                     links.push([a as u32, b as u32]);
                 }
             }
@@ -156,6 +161,14 @@ impl<T: Precision> Case<T> {
             matrices,
             rows,
             loaded,
+        }
+    }
+
+    /// Number of templates, where there are any.
+    pub(crate) fn templates(&self) -> Option<usize> {
+        match &self.rows[0] {
+            Rows::General(_) => None,
+            Rows::Lattice(lattice) => Some(lattice.templates()),
         }
     }
 

@@ -1,0 +1,49 @@
+//! Machines whose laps are compared.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use sinew_cnn::{Machine, Program};
+use sinew_core::{Batch, Inputs, State};
+use sinew_fem::Model;
+use sinew_measure::thread_cpu_time;
+
+/// A machine on a model, with a motion of its own.
+pub(super) struct Runner<'a> {
+    machine: Box<dyn Machine>,
+    model: &'a Model,
+    dt: f64,
+    pub(super) state: State,
+}
+
+impl<'a> Runner<'a> {
+    pub(super) fn new(
+        mut machine: Box<dyn Machine>,
+        (model, program, dt): (&'a Model, &Arc<Program>, f64),
+        state: &State,
+    ) -> Self {
+        machine.load(Arc::clone(program), model);
+        Self {
+            machine,
+            model,
+            dt,
+            state: state.clone(),
+        }
+    }
+
+    /// Takes steps; their wall time and CPU time of this thread (s).
+    pub(super) fn take(&mut self, steps: usize) -> (f64, f64) {
+        let mut batch = Batch::new(self.model, Inputs::none(), self.dt, steps);
+        let (wall, cpu) = (Instant::now(), thread_cpu_time());
+        let done = self.machine.run(&mut batch, &mut self.state);
+        debug_assert!(done.is_ok());
+        let cpu = (thread_cpu_time() - cpu).as_secs_f64();
+        (wall.elapsed().as_secs_f64(), cpu)
+    }
+}
+
+/// The middle of some values.
+pub(super) fn median(values: &mut [f64]) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values[values.len() / 2]
+}

@@ -1,0 +1,124 @@
+//! `cargo xtask memory`: the kernels' tests under a program that watches memory.
+
+use std::path::PathBuf;
+use std::process::Command;
+
+use sinew_bench::output::say;
+
+use crate::failure::Failure;
+use crate::repository::root;
+
+/// The tests: sweeps of every kind against their definition.
+const TESTS: [&str; 6] = [
+    "test",
+    "-psinew-sparse",
+    "--no-default-features",
+    "--lib",
+    "--test",
+    "sweeps",
+];
+
+/// Runs the tests under valgrind (the portable and the AVX2 kernels; it knows no AVX-512), and under Miri (the portable ones),
+/// whichever is there.
+///
+/// # Errors
+/// [`Failure::Input`] where neither is.
+pub(crate) fn run() -> Result<(), Failure> {
+    let (valgrind, miri) = (has_valgrind(), has_miri());
+    if valgrind {
+        under_valgrind()?;
+    } else {
+        say("SKIPPED: valgrind: there is none")?;
+    }
+    if miri {
+        under_miri()?;
+    } else {
+        say("SKIPPED: Miri: `rustup +nightly component add miri rust-src` installs it")?;
+    }
+    match valgrind || miri {
+        true => Ok(()),
+        false => Err(Failure::Input("memory needs valgrind or Miri".into())),
+    }
+}
+
+/// Whether valgrind is installed.
+pub(crate) fn has_valgrind() -> bool {
+    succeeds(Command::new("valgrind").arg("--version"))
+}
+
+fn has_miri() -> bool {
+    succeeds(Command::new("cargo").args(["+nightly", "miri", "--version"]))
+}
+
+fn succeeds(command: &mut Command) -> bool {
+    command.output().is_ok_and(|output| output.status.success())
+}
+
+/// Runs the tests of sweeps under valgrind.
+pub(crate) fn under_valgrind() -> Result<(), Failure> {
+    let build = Command::new(env!("CARGO"))
+        .args(TESTS)
+        .args(["--no-run", "--message-format=json"])
+        .current_dir(root())
+        .output()
+        .map_err(Failure::chore)?;
+    if !build.status.success() {
+        let said = String::from_utf8_lossy(&build.stderr).into_owned();
+        return Err(Failure::Chore(said));
+    }
+    for binary in binaries(&String::from_utf8_lossy(&build.stdout)) {
+        say(&format!("== valgrind {}", binary.display()))?;
+        let mut valgrind = Command::new("valgrind");
+        // Small bodies, as under Miri; no AVX-512, which it reports as missing by itself.
+        valgrind
+            .env("SINEW_SMALL_TESTS", "1")
+            .args(["--quiet", "--error-exitcode=1", "--leak-check=no"])
+            .arg(&binary)
+            .arg("--test-threads=1")
+            .current_dir(root());
+        let status = valgrind.status().map_err(Failure::chore)?;
+        if !status.success() {
+            return Err(Failure::Chore(format!("valgrind: {status}")));
+        }
+    }
+    Ok(())
+}
+
+/// The programs that a build made, of cargo's messages.
+fn binaries(messages: &str) -> Vec<PathBuf> {
+    let messages = messages
+        .lines()
+        .filter_map(|line| serde_json::from_str(line).ok());
+    let executable = |message: serde_json::Value| Some(message["executable"].as_str()?.into());
+    messages.filter_map(executable).collect()
+}
+
+fn under_miri() -> Result<(), Failure> {
+    say("== cargo +nightly miri, some minutes")?;
+    let status = Command::new("cargo")
+        .args(["+nightly", "miri"])
+        .args(TESTS)
+        .args(["--target-dir", "target/miri"])
+        .current_dir(root())
+        .env_remove("RUSTUP_TOOLCHAIN")
+        .env_remove("RUSTC")
+        .env_remove("RUSTDOC")
+        .status()
+        .map_err(Failure::chore)?;
+    match status.success() {
+        true => Ok(()),
+        false => Err(Failure::Chore(format!("Miri: {status}"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn programs_are_found_among_messages() {
+        let messages = "{\"reason\":\"a\",\"executable\":null}\nno JSON\n\
+                        {\"reason\":\"b\",\"executable\":\"/x/sweeps\"}\n";
+        assert_eq!(binaries(messages), [PathBuf::from("/x/sweeps")]);
+    }
+}
