@@ -94,7 +94,7 @@ fn binaries(messages: &str) -> Vec<PathBuf> {
 }
 
 fn under_miri() -> Result<(), Failure> {
-    say("== cargo +nightly miri, some minutes")?;
+    say("== cargo +nightly miri, half an hour")?;
     let status = Command::new("cargo")
         .args(["+nightly", "miri"])
         .args(TESTS)
