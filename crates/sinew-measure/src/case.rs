@@ -9,12 +9,16 @@ use sinew_core::spectrum::Spectrum;
 use sinew_scene::{Scene, SceneError, SceneModel, Simulation};
 
 use crate::cpu_time::thread_cpu_time;
-use crate::reference::{Pace, ReferenceError, Track, follow_at};
+use crate::reference::{Course, Pace, ReferenceError, ReferenceMethod, Track, follow_by};
 use crate::row::CaseInfo;
 
 /// Displacement over the reference's largest at which an oscillator counts as diverged; a body
 /// counts as diverged at a hundred times its size.
 const OSCILLATOR_LIMIT: f64 = 1e6;
+
+/// Tetrahedra from which on a reference is solved by Faber series: by the Taylor series it would take
+/// minutes of CPU time for a tenth of a second.
+const LARGE: usize = 100_000;
 
 /// A scene with its reference solution.
 #[derive(Debug)]
@@ -22,7 +26,7 @@ pub struct Case {
     id: String,
     simulation: Simulation,
     span: Span,
-    pace: Pace,
+    course: Course,
     critical_step: Option<f64>,
     reference_cpu_s: f64,
     samples: Arc<Track>,
@@ -79,6 +83,14 @@ pub enum CaseError {
     },
 }
 
+/// The course of a scene's reference: at a pace of the Taylor series, unless the body is large.
+pub(crate) fn course(simulation: &Simulation, pace: Pace) -> Course {
+    match simulation.model() {
+        SceneModel::Body(body) if body.mesh.tets.len() >= LARGE => Course::Faber,
+        SceneModel::Body(_) | SceneModel::Oscillator(_) => Course::Taylor(pace),
+    }
+}
+
 impl Case {
     /// Reads a scene, builds its model and solves its reference. The id is the file's stem.
     ///
@@ -129,9 +141,10 @@ impl Case {
     ) -> Result<Self, CaseError> {
         let id = id.into();
         let times = span.instants();
+        let course = course(&simulation, pace);
         let before = thread_cpu_time();
-        let samples = follow_at(
-            pace,
+        let samples = follow_by(
+            course,
             simulation.system(),
             simulation.initial_state(),
             &times,
@@ -153,7 +166,7 @@ impl Case {
             every_step: BTreeMap::new(),
             simulation,
             span,
-            pace,
+            course,
         })
     }
 
@@ -242,8 +255,8 @@ impl Case {
         }
         let times: Vec<f64> = (0..=steps).map(|step| step as f64 * dt).collect();
         let simulation = &self.simulation;
-        let track = follow_at(
-            self.pace,
+        let track = follow_by(
+            self.course,
             simulation.system(),
             simulation.initial_state(),
             &times,
@@ -266,10 +279,16 @@ impl Case {
             title: self.simulation.scene().title().to_owned(),
             dofs: self.simulation.system().dofs(),
             duration_s: self.span.duration,
-            reference: format!(
-                "Taylor series of the {kind}'s motion in time, to rounding; checked against the same with other steps ({} sweeps in all)",
-                track.sweeps
-            ),
+            reference: match track.method {
+                ReferenceMethod::Taylor => format!(
+                    "Taylor series of the {kind}'s motion in time, to rounding; checked against the same with other steps ({} sweeps in all)",
+                    track.sweeps
+                ),
+                ReferenceMethod::Faber => format!(
+                    "Faber series of the {kind}'s motion in long steps; checked by its Taylor series over a fifth of the time ({} sweeps in all)",
+                    track.sweeps
+                ),
+            },
             reference_error: track.error,
             max_u_m: track.max_u,
             late_amplitude_m: track.late_amplitude,

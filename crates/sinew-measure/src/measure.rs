@@ -93,6 +93,10 @@ pub fn measure_with(
         sinew_core::Outcome::Diverged { t, .. } => Some(t),
         _ => None,
     };
+    let error = match diverged_at {
+        None => finite(comparison.norm.relative()),
+        Some(_) => None,
+    };
     let late_amplitude = comparison.late.amplitude();
     let pairs = steps * system.dofs() as f64;
     let settled = late_amplitude <= (2.0 * track.late_amplitude).max(1e-3 * track.max_u);
@@ -111,10 +115,10 @@ pub fn measure_with(
         diverged_at_s: diverged_at,
         bounded: diverged_at.is_none() && comparison.max_u <= 10.0 * track.max_u,
         settles: diverged_at.is_none() && settled,
-        error: match diverged_at {
-            None => finite(comparison.norm.relative()),
-            Some(_) => None,
-        },
+        error,
+        error_is_below: error
+            .filter(|error| *error < track.least_error())
+            .map(|_| track.least_error()),
         expected_error: match (diverged_at, &comparison.history) {
             (None, Some(history)) => {
                 let expected = history.expected_over(case.whole().duration);

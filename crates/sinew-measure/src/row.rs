@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::number;
+
 mod gaps;
 mod label;
 mod pareto;
@@ -85,6 +87,10 @@ pub struct Row {
     /// Relative L2 error of the displacement (fraction, 1 = as wrong as returning zero); none only
     /// when diverged.
     pub error: Option<f64>,
+    /// Bound (fraction) below which the error lies, where the reference cannot measure one so small:
+    /// a hundred times its own error. `error` is then the difference from it and no figure to quote.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_is_below: Option<f64>,
     /// Relative L2 error to expect over the whole scene (fraction), with phase errors that grow on
     /// and without loads that change later, never less than the measured one; only where a first part
     /// of the scene was compared.
@@ -224,6 +230,22 @@ impl Row {
     #[must_use]
     pub fn label(&self) -> String {
         label(&self.integrator, &self.options)
+    }
+
+    /// The error in per cent without the sign, as in `1.23`, or as in `< 4.5e-8` where the reference can
+    /// say no more; none where there is no error.
+    #[must_use]
+    pub fn error_in_percent(&self) -> Option<String> {
+        match self.error_is_below {
+            Some(bound) => Some(format!("< {}", number::percent(bound))),
+            None => self.error.map(number::percent),
+        }
+    }
+
+    /// The largest error (fraction) that the run may have by what the reference can tell.
+    #[must_use]
+    pub fn error_at_most(&self) -> Option<f64> {
+        self.error_is_below.or(self.error)
     }
 
     /// The error, where it means something: of a run that finished bounded with nothing saturated.

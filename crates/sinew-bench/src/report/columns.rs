@@ -59,7 +59,7 @@ static COLUMNS: [Column; 13] = [
         unit: "%",
         explained: "relative L2 error of the displacement; returning zero scores 100 %",
         cell: verdict::error,
-        key: Some(|row| row.error.unwrap_or(f64::INFINITY)),
+        key: Some(|row| row.error_at_most().unwrap_or(f64::INFINITY)),
     },
     Column {
         head: "CPU",

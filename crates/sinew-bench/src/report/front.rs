@@ -51,7 +51,7 @@ pub fn front_members(results: &BenchResults, case: &str) -> Vec<FrontMember> {
         .iter()
         .map(|group| {
             let member = member(group, above);
-            above = group.last().and_then(|row| row.error);
+            above = group.last().and_then(|row| row.error_at_most());
             member
         })
         .collect()
@@ -59,7 +59,7 @@ pub fn front_members(results: &BenchResults, case: &str) -> Vec<FrontMember> {
 
 fn member(group: &[&Row], above: Option<f64>) -> FrontMember {
     let (first, last) = (group[0], group[group.len() - 1]);
-    let error = |row: &Row| format!("{} %", number::percent(row.error.unwrap_or(f64::NAN)));
+    let error = |row: &Row| format!("{} %", row.error_in_percent().unwrap_or_default());
     let from = above.map_or_else(
         || "the largest".to_owned(),
         |error| format!("{} %", number::percent(error)),
@@ -113,7 +113,7 @@ pub fn paper_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String>
             "The paper's network ({PAPER}) is on the front beyond forward Euler's limit {limit}: \
              at {} ms with an error of {} %.",
             number::milliseconds(row.dt),
-            number::percent(row.error.unwrap_or(f64::NAN))
+            row.error_in_percent().unwrap_or_default()
         ));
     }
     let errors = beyond.iter().filter_map(|row| row.error);

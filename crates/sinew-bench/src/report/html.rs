@@ -80,7 +80,8 @@ impl Page {
              <li><b>Error</b> is the relative L2 error of the displacement over all free degrees of \
              freedom and the sampled instants, against the reference of the case. <b>Returning zero \
              scores 100&nbsp;%</b>, so a larger error is worse than doing nothing. An error below the \
-             reference's own estimated error says nothing.</li>\n\
+             reference's own estimated error says nothing; \"&lt; x\" is one below what the reference \
+             of a large body can tell, a hundred times its own error.</li>\n\
              <li><b>Stable is not accurate.</b> A run can be bounded and wrong. Each run therefore \
              has three verdicts: is it bounded, does it settle as the reference does, and how large \
              is its error.</li>\n<li>",

@@ -188,6 +188,9 @@ fn draw_cell(svg: &mut Svg, frame: Frame, run: &Row) {
     );
     // The symbol already says "unbounded" and "diverged".
     let text = match (run.outcome, run.error, run.diverged_at_s) {
+        (RowOutcome::Finished, Some(_), _) if run.error_is_below.is_some() => {
+            format!("{} %", run.error_in_percent().unwrap_or_default())
+        }
         (RowOutcome::Finished, Some(error), _) => {
             shown(100.0 * error, |x| format!("{} %", number::three(x)))
         }

@@ -33,7 +33,10 @@ pub(super) fn error(row: &Row) -> String {
             Some(t) => format!("diverged at t={} s", number::short(t)),
             None => "diverged".to_owned(),
         },
-        (RowOutcome::Finished, Some(error)) if row.bounded => shown(error, number::percent),
+        (RowOutcome::Finished, Some(error)) if row.bounded => match row.error_is_below {
+            Some(_) => row.error_in_percent().unwrap_or_default(),
+            None => shown(error, number::percent),
+        },
         (RowOutcome::Finished, Some(error)) => {
             format!("unbounded ({})", shown(error, number::percent))
         }
@@ -67,6 +70,12 @@ mod tests {
         let fine = row(RowOutcome::Finished, true, Some(25.2), None);
         assert_eq!(error(&fine), "2520");
         assert_eq!(error_with_unit(&fine), "2520 %");
+        let tiny = Row {
+            error_is_below: Some(2e-9),
+            ..row(RowOutcome::Finished, true, Some(1e-12), None)
+        };
+        assert_eq!(error(&tiny), "< 2.00e-7");
+        assert_eq!(error_with_unit(&tiny), "< 2.00e-7 %");
         let unbounded = row(RowOutcome::Finished, false, Some(4e30), None);
         assert_eq!(error(&unbounded), "unbounded (4.00e32)");
         assert_eq!(error_with_unit(&unbounded), "unbounded (4.00e32 %)");

@@ -110,7 +110,7 @@ fn point(row: &Row) -> Point {
 
 /// The error as drawn: infinite where it has no place in the frame.
 fn shown_error(row: &Row) -> f64 {
-    match (row.outcome, row.error) {
+    match (row.outcome, row.error_at_most()) {
         (RowOutcome::Finished, Some(error)) if row.bounded && error <= LARGEST_SHOWN_ERROR => {
             error.max(LEAST_SHOWN_ERROR)
         }

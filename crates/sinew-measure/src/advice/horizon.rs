@@ -1,16 +1,18 @@
 //! The part of a scene that pilots can follow in the time they have.
 
-use sinew_core::LinearSystem;
 use sinew_core::spectrum::Spectrum;
 use sinew_scene::Simulation;
 
 use super::error::AdviceError;
-use crate::case::Span;
+use crate::case::{Span, course};
 use crate::cpu_time::thread_cpu_time;
-use crate::reference::{Pace, Taylor};
+use crate::reference::{Course, Expansion, Pace, Taylor};
 
 /// The reference is solved twice, the second time in steps of two thirds: 1 + 3/2 solutions.
 const SOLUTIONS: f64 = 2.5;
+
+/// A reference by Faber series is checked over a fifth of the time, at thrice the cost.
+const SOLUTIONS_BY_FABER: f64 = 1.6;
 
 /// Steps of the reference whose cost is measured.
 const TRIAL_STEPS: f64 = 4.0;
@@ -92,22 +94,35 @@ impl<'a> ReferenceCost<'a> {
     /// CPU time (s) per simulated second of a checked reference at a pace.
     fn per_second(&self, pace: Pace) -> f64 {
         let linear = self.simulation.system().as_linear();
-        let operators = linear.map(LinearSystem::operators);
-        let (Some(operators), Some(spectrum)) = (operators, &self.spectrum) else {
+        let (Some(linear), Some(spectrum)) = (linear, &self.spectrum) else {
             // The reference says what is missing.
             return 0.0;
         };
-        let mut taylor = Taylor::within(operators, spectrum, pace.refinement());
-        let trial = TRIAL_STEPS * taylor.longest_step();
-        if trial == 0.0 {
-            return f64::INFINITY;
-        }
-        if trial.is_infinite() {
-            return 0.0;
-        }
         let mut state = self.simulation.initial_state().clone();
-        let before = thread_cpu_time();
-        taylor.advance(&mut state, trial, |_| {});
-        SOLUTIONS * (thread_cpu_time() - before).as_secs_f64() / trial
+        match course(self.simulation, pace) {
+            Course::Taylor(pace) => {
+                let refinement = pace.refinement();
+                let mut taylor = Taylor::within(linear.operators(), spectrum, refinement);
+                let trial = TRIAL_STEPS * taylor.longest_step();
+                if trial == 0.0 {
+                    return f64::INFINITY;
+                }
+                if trial.is_infinite() {
+                    return 0.0;
+                }
+                let before = thread_cpu_time();
+                taylor.advance(&mut state, trial, |_| {});
+                SOLUTIONS * (thread_cpu_time() - before).as_secs_f64() / trial
+            }
+            Course::Faber => {
+                let mut expansion = Expansion::new(linear.operators(), spectrum);
+                let trial = expansion.longest_step();
+                let before = thread_cpu_time();
+                expansion.step(&mut state, &[trial], |_, _| {});
+                // A breakpoint may have ended the step.
+                let spent = (thread_cpu_time() - before).as_secs_f64();
+                SOLUTIONS_BY_FABER * spent / state.t()
+            }
+        }
     }
 }

@@ -74,6 +74,12 @@ pub struct Advice {
     /// Instants (s) after that part at which loads jump or have kinks, increasing; no run saw what
     /// follows.
     pub unseen_changes: Vec<f64>,
+    /// The method of the reference and its check, in words.
+    pub reference: String,
+    /// The reference's own estimated relative error (fraction).
+    pub reference_error: f64,
+    /// Errors (fraction) below this are too small for the reference; 0 for one to rounding.
+    pub least_error: f64,
     /// The run as the scene has it, or why it cannot be made.
     pub written: Result<Pilot, NotMeasured>,
     /// The answer.
@@ -142,6 +148,9 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
         refused.extend(unknown.map(|candidate| (candidate.method, LeftOut::StabilityUnknown)));
     }
 
+    let reference = case.info().reference;
+    let reference_error = case.samples().error;
+    let least_error = case.samples().least_error();
     let own = OwnRun::of(&case);
     let own_s = own.least_cpu_s(&case);
     let pilots = CasePilots::new(&mut case)
@@ -200,6 +209,9 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
         whole,
         measured,
         unseen_changes,
+        reference,
+        reference_error,
+        least_error,
         written,
         answer,
         refused,

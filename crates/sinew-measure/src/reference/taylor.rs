@@ -10,14 +10,26 @@ const REACH: f64 = 0.5;
 /// Terms of the series. At |lambda| h = 1/2 the last is below 2^-24/24!, far under rounding.
 const TERMS: usize = 24;
 
+/// Largest |lambda| h of a check: terms up to e^12 leave ten digits of the fastest motion.
+const REACH_OF_CHECK: f64 = 12.0;
+
+/// Terms of a check. At |lambda| h = 12 the last is below 12^50/50! = 3e-11.
+const TERMS_OF_CHECK: usize = 50;
+
+/// Derivatives of a load's factor that count in a check: between breakpoints a factor turns by at most
+/// pi, and pi^32/32! is 3e-20.
+const DERIVATIVES_OF_CHECK: usize = 32;
+
 /// Steps a linear system by the Taylor series of its motion (Moler and Van Loan, SIAM Review 45,
 /// 2003, method 1 on steps in which it is safe), load derivatives included.
 #[derive(Debug)]
 pub struct Taylor<'a> {
     operators: &'a LinearOperators,
     longest_step: f64,
+    terms: usize,
     breakpoints: Vec<f64>,
-    ramps: Vec<[f64; TERMS]>,
+    /// Derivatives of each load's factor; those beyond are 0.
+    ramps: Vec<Vec<f64>>,
     displacement: Vec<f64>,
     velocity: Vec<f64>,
     next: Vec<f64>,
@@ -35,6 +47,25 @@ impl<'a> Taylor<'a> {
     /// As [`Taylor::new`], where the spectrum of the matrices is known.
     #[must_use]
     pub fn within(operators: &'a LinearOperators, spectrum: &Spectrum, refinement: f64) -> Self {
+        let series = Self::with(operators, spectrum, REACH, [TERMS; 2]);
+        Self {
+            longest_step: series.longest_step / refinement,
+            ..series
+        }
+    }
+
+    /// The series in long steps of many terms, which costs a tenth and is right to about ten digits.
+    pub(crate) fn checking(operators: &'a LinearOperators, spectrum: &Spectrum) -> Self {
+        let counts = [TERMS_OF_CHECK, DERIVATIVES_OF_CHECK];
+        Self::with(operators, spectrum, REACH_OF_CHECK, counts)
+    }
+
+    fn with(
+        operators: &'a LinearOperators,
+        spectrum: &Spectrum,
+        reach: f64,
+        [terms, derivatives]: [usize; 2],
+    ) -> Self {
         let damping = spectrum.mass_damping + spectrum.damping_max;
         // |lambda|^2 <= d |lambda| + w^2 for every root.
         let half = damping / 2.0;
@@ -48,9 +79,10 @@ impl<'a> Taylor<'a> {
         breakpoints.sort_by(f64::total_cmp);
         Self {
             operators,
-            longest_step: REACH / fastest / refinement,
+            longest_step: reach / fastest,
+            terms,
             breakpoints,
-            ramps: vec![[0.0; TERMS]; loads.len()],
+            ramps: vec![vec![0.0; derivatives]; loads.len()],
             displacement: vec![0.0; dofs],
             velocity: vec![0.0; dofs],
             next: vec![0.0; dofs],
@@ -95,12 +127,13 @@ impl<'a> Taylor<'a> {
         self.displacement.copy_from_slice(&state.u);
         self.velocity.copy_from_slice(&state.v);
         let mut weight = 1.0;
-        for k in 0..TERMS {
+        for k in 0..self.terms {
             self.next.fill(0.0);
             let mut loaded = false;
             for (load, derivatives) in self.operators.loads().iter().zip(&self.ramps) {
-                let factor = weight * derivatives[k];
-                loaded |= derivatives[k..].iter().any(|derivative| *derivative != 0.0);
+                let rest = derivatives.get(k..).unwrap_or_default();
+                let factor = weight * rest.first().unwrap_or(&0.0);
+                loaded |= rest.iter().any(|derivative| *derivative != 0.0);
                 if factor != 0.0 {
                     for &(dof, force) in &load.entries {
                         self.next[dof as usize] += factor * force;

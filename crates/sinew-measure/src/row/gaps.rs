@@ -76,6 +76,7 @@ impl Row {
             bounded: _,
             settles: _,
             error,
+            error_is_below,
             expected_error,
             max_u,
             late_amplitude,
@@ -97,6 +98,7 @@ impl Row {
         gaps.number("sweeps_per_s", *sweeps_per_s);
         gaps.maybe("diverged_at_s", *diverged_at_s);
         gaps.finished("error", *error, *outcome);
+        gaps.maybe("error_is_below", *error_is_below);
         gaps.maybe("expected_error", *expected_error);
         gaps.finished("max_u", *max_u, *outcome);
         gaps.finished("late_amplitude", *late_amplitude, *outcome);

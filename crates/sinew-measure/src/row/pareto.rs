@@ -36,7 +36,7 @@ pub fn mark_pareto(rows: &mut [Row]) {
 }
 
 fn point(row: &Row) -> Option<(f64, f64)> {
-    let error = row.error.filter(|&e| e < 1.0)?;
+    let error = row.error_at_most().filter(|&e| e < 1.0)?;
     (row.outcome == RowOutcome::Finished && row.cpu_s_per_s.is_finite())
         .then_some((row.cpu_s_per_s, error))
 }

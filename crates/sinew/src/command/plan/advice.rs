@@ -172,8 +172,8 @@ fn unseen_changes(advice: &Advice) -> Option<String> {
 /// A run with its error and its cost.
 fn run(advice: &Advice, pilot: &Pilot) -> String {
     let row = &pilot.row;
-    let mut error = match row.error {
-        Some(error) => format!("{} %", percent(error)),
+    let mut error = match row.error_in_percent() {
+        Some(error) => format!("{error} %"),
         None => "none".to_owned(),
     };
     if row.expected_error.is_some() {
@@ -243,6 +243,14 @@ fn provenance(advice: &Advice) -> String {
             short(whole)
         ));
     }
+    if advice.least_error > 0.0 {
+        lines.push(format!(
+            "reference: {}; itself within {} %, errors below {} % are shown as such",
+            advice.reference,
+            percent(advice.reference_error),
+            percent(advice.least_error)
+        ));
+    }
     if let Err(reason) = &advice.written {
         lines.push(format!("the run as written was not measured: {reason}"));
     }
@@ -277,7 +285,7 @@ fn table(advice: &Advice, rows: &[(&str, &Pilot)]) -> String {
             (*label).to_owned(),
             row.label(),
             milliseconds(row.dt),
-            row.error.map_or_else(|| "none".to_owned(), percent),
+            row.error_in_percent().unwrap_or_else(|| "none".to_owned()),
             expected(row),
             three(row.cpu_s_per_s),
             three(row.setup_cpu_s),

@@ -82,8 +82,9 @@ impl Missing {
 }
 
 /// Turns advice into JSON. `met` is true only where the measured error of the advised run keeps to the
-/// tolerance over the whole scene; `met_until_s` is the time up to which it does, and
-/// `unseen_load_changes_s` lists the later changes of loads.
+/// tolerance over the whole scene; `met_until_s` is the time up to which it does,
+/// `unseen_load_changes_s` lists the later changes of loads, and a row's `error_is_below` is a bound where
+/// its error is too small for the reference, of which `reference_error` is the own error.
 pub(super) fn as_json(advice: &Advice) -> AdviceJson {
     let mut missing = Missing::default();
     let refused = advice.refused.iter();
@@ -149,6 +150,8 @@ pub(super) fn as_json(advice: &Advice) -> AdviceJson {
         "measured_s": advice.measured.duration,
         "met_until_s": met_until,
         "unseen_load_changes_s": advice.unseen_changes,
+        "reference": advice.reference,
+        "reference_error": advice.reference_error,
         "pilots": advice.pilots,
         "spent_cpu_s": advice.spent_s,
         "choice_cut_short": advice.choice_cut_short,
@@ -199,6 +202,9 @@ mod tests {
             whole: span,
             measured: span,
             unseen_changes: Vec::new(),
+            reference: "a closed form".to_owned(),
+            reference_error: 1e-12,
+            least_error: 0.0,
             written,
             answer,
             refused: Vec::new(),
