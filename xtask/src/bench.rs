@@ -7,6 +7,7 @@ use sinew_bench::kernels::KernelBench;
 use sinew_bench::output::{OutputFolder, say};
 use sinew_bench::report::{WriteError, terminal, write_all};
 use sinew_bench::results::BenchResults;
+use sinew_bench::scale::ScaleBench;
 use sinew_bench::{Bench, machine, revision};
 
 use crate::beside::{self, Program};
@@ -39,7 +40,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     quick: bool,
     /// The folder for results.json, report.html and the plots, checked before anything is measured
-    /// [default: target/bench, target/bench-hard, target/bench-kernels]
+    /// [default: target/bench, target/bench-hard, ..]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Measure the hard cases under scenes/hard instead: failures, stability maps and pass marks; exits
@@ -50,6 +51,10 @@ pub(crate) struct Arguments {
     /// what makes them fast; exits with 1 if a guard does not hold
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "beside"])]
     kernels: bool,
+    /// Measure methods on cubes from 10 to 60 cells a side instead: error, time, set-up and memory over size, and
+    /// the largest scene in real time; about 15 minutes
+    #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "kernels", "beside"])]
+    scale: bool,
     /// Run another program on the peers' cube in turn with our cheapest methods and print the ratios
     /// of CPU time, nothing else; numpy and scipy are installed by pip into target/
     #[arg(long, value_enum, value_name = "PROGRAM", conflicts_with_all = ["scenes", "steps", "out"])]
@@ -62,6 +67,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.kernels {
         return run_kernels(arguments);
+    }
+    if arguments.scale {
+        return run_scale(arguments);
     }
     let scenes = if arguments.scenes.is_empty() {
         let scene = |name: &&str| root().join("scenes").join(name);
@@ -141,6 +149,30 @@ fn run_kernels(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         Err(Failure::Chore(format!("guards: {}", failed.join("; "))))
     }
+}
+
+/// Measures methods over the size of a body.
+fn run_scale(arguments: &Arguments) -> Result<(), Failure> {
+    let bench = ScaleBench {
+        quick: arguments.quick,
+    };
+    let folder = folder(arguments, "bench-scale", &[]);
+    let [json, picture] = ["scale.json", "real-time.svg"];
+    folder.check(&[json.to_owned(), picture.to_owned()])?;
+    let bar = Bar::new();
+    let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
+    bar.finish();
+    let results = results.map_err(Failure::chore)?;
+    let rows = serde_json::to_vec_pretty(&results).map_err(Failure::chore)?;
+    let rows = folder.write(json, &rows)?;
+    let picture = folder.write(picture, results.plot().svg().as_bytes())?;
+    say(&results.to_string())?;
+    say(&format!(
+        "\nresults: {}\nplot:    {}",
+        rows.display(),
+        picture.display()
+    ))?;
+    Ok(())
 }
 
 fn folder(arguments: &Arguments, default: &str, inputs: &[PathBuf]) -> OutputFolder {

@@ -280,6 +280,34 @@ fn a_method_that_cannot_run_is_listed_with_its_reason_and_the_others_run() {
 }
 
 #[test]
+fn a_bench_over_sizes_looks_at_its_folder_first_and_takes_no_scene() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = |name: &str| directory.path().join(name);
+    std::fs::write(path("file"), "old").unwrap();
+    std::fs::create_dir_all(path("taken/scale.json")).unwrap();
+    std::fs::create_dir_all(path("drawn/real-time.svg")).unwrap();
+    for (out, expected) in [
+        ("file", "file: it is no folder"),
+        ("taken", "taken/scale.json: it is a folder"),
+        ("drawn", "drawn/real-time.svg: it is a folder"),
+    ] {
+        let mut command = Command::cargo_bin("xtask").unwrap();
+        let command = command.args(["bench", "--scale", "--quick", "--out"]);
+        let output = command.arg(path(out)).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(expected), "{said}");
+        assert_eq!(output.stdout, b"");
+    }
+    for other in [["--scene", "a.toml"], ["--integrator", "rk4"]] {
+        let mut command = Command::cargo_bin("xtask").unwrap();
+        let output = command.args(["bench", "--scale"]).args(other).output();
+        let said = String::from_utf8(output.unwrap().stderr).unwrap();
+        assert!(said.contains("cannot be used with"), "{said}");
+    }
+}
+
+#[test]
 fn another_program_needs_python_and_takes_no_scene() {
     let beside = |arguments: &[&str]| {
         let nothing = tempfile::tempdir().unwrap();

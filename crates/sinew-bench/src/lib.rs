@@ -12,6 +12,7 @@ pub mod peers;
 pub mod report;
 pub mod reproduce;
 pub mod results;
+pub mod scale;
 
 pub use sinew_scene::output;
 

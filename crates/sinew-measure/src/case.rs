@@ -129,6 +129,19 @@ impl Case {
         Self::at_pace(Pace::Short, id, simulation, span)
     }
 
+    /// As [`Case::new`], with the reference of large bodies whatever the size: for rows that are compared
+    /// over sizes.
+    ///
+    /// # Errors
+    /// [`CaseError::Reference`].
+    pub fn with_affordable_reference(
+        id: impl Into<String>,
+        simulation: Simulation,
+    ) -> Result<Self, CaseError> {
+        let span = Span::of(&simulation);
+        Self::by(Course::Faber, id.into(), simulation, span)
+    }
+
     /// As [`Case::over`], with a reference at a pace.
     ///
     /// # Errors
@@ -139,9 +152,17 @@ impl Case {
         simulation: Simulation,
         span: Span,
     ) -> Result<Self, CaseError> {
-        let id = id.into();
-        let times = span.instants();
         let course = course(&simulation, pace);
+        Self::by(course, id.into(), simulation, span)
+    }
+
+    fn by(
+        course: Course,
+        id: String,
+        simulation: Simulation,
+        span: Span,
+    ) -> Result<Self, CaseError> {
+        let times = span.instants();
         let before = thread_cpu_time();
         let samples = follow_by(
             course,

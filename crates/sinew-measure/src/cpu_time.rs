@@ -1,4 +1,4 @@
-//! CPU time of the calling thread.
+//! CPU time of the calling thread and of the process.
 
 use std::time::Duration;
 
@@ -17,6 +17,21 @@ pub fn thread_cpu_time() -> Duration {
         use std::time::Instant;
         static START: OnceLock<Instant> = OnceLock::new();
         START.get_or_init(Instant::now).elapsed()
+    }
+}
+
+/// CPU time of all threads of the process since some fixed instant. Wall time where the platform has no such
+/// clock.
+#[must_use]
+pub fn process_cpu_time() -> Duration {
+    #[cfg(unix)]
+    {
+        let now = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+        Duration::new(now.tv_sec.unsigned_abs(), now.tv_nsec.unsigned_abs() as u32)
+    }
+    #[cfg(not(unix))]
+    {
+        thread_cpu_time()
     }
 }
 

@@ -22,7 +22,7 @@ mod timing;
 pub use advice::{Advice, AdviceError, Answer, LeftOut, NotMeasured, Question, advise};
 pub use case::{Case, CaseError, Span};
 pub use cost::Cost;
-pub use cpu_time::thread_cpu_time;
+pub use cpu_time::{process_cpu_time, thread_cpu_time};
 pub use measure::{MeasureError, measure, measure_with};
 pub use method_choice::{MethodChoice, MethodError};
 pub use one_thread::{ThreadError, on_one_thread};

@@ -115,7 +115,7 @@ impl<'a> ReferenceCost<'a> {
                 SOLUTIONS * (thread_cpu_time() - before).as_secs_f64() / trial
             }
             Course::Faber => {
-                let mut expansion = Expansion::new(linear.operators(), spectrum);
+                let mut expansion = Expansion::new(linear.operators(), spectrum, f64::INFINITY);
                 let trial = expansion.longest_step();
                 let before = thread_cpu_time();
                 expansion.step(&mut state, &[trial], |_, _| {});

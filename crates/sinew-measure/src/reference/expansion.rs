@@ -16,6 +16,10 @@ const MARGIN: f64 = 0.01;
 /// Largest capacity times step. A longer step takes fewer products per second, and more looks.
 const REACH: f64 = 32.0;
 
+/// Steps of a run, at least, so that a check has some to choose from; as long as they reach this far.
+const STEPS: f64 = 5.0;
+const LEAST_REACH: f64 = 10.0;
+
 /// Largest capacity times the time between two looks at the motion.
 const GAP: f64 = 4.0;
 
@@ -36,6 +40,8 @@ const CHUNK: usize = 2048;
 pub(crate) struct Expansion<'a> {
     operators: &'a LinearOperators,
     ellipse: Ellipse,
+    /// The longest step (s) it takes.
+    longest_step: f64,
     breakpoints: Vec<f64>,
     /// Derivatives of each load's factor, times powers of the step, under the last two polynomials.
     factors: [Vec<[f64; DERIVATIVES]>; 2],
@@ -50,8 +56,8 @@ pub(crate) struct Expansion<'a> {
 }
 
 impl<'a> Expansion<'a> {
-    /// The series for these matrices.
-    pub(crate) fn new(operators: &'a LinearOperators, spectrum: &Spectrum) -> Self {
+    /// The series for these matrices and a run of some duration (s).
+    pub(crate) fn new(operators: &'a LinearOperators, spectrum: &Spectrum, duration: f64) -> Self {
         let damping = spectrum.mass_damping + spectrum.damping_max;
         let factors = vec![[0.0; DERIVATIVES]; operators.loads().len()];
         let at_rest = State::at_rest(operators.dofs());
@@ -66,9 +72,12 @@ impl<'a> Expansion<'a> {
             true => raised(spectrum.omega_max),
             false => 1.0,
         };
+        let ellipse = Ellipse::round(omega, raised(damping));
+        let reach = (ellipse.capacity * duration / STEPS).clamp(LEAST_REACH, REACH);
         Self {
             operators,
-            ellipse: Ellipse::round(omega, raised(damping)),
+            ellipse,
+            longest_step: reach / ellipse.capacity,
             breakpoints,
             factors: [factors.clone(), factors],
             now: at_rest.clone(),
@@ -81,7 +90,7 @@ impl<'a> Expansion<'a> {
 
     /// The longest step (s) it takes.
     pub(crate) fn longest_step(&self) -> f64 {
-        REACH / self.ellipse.capacity
+        self.longest_step
     }
 
     /// Takes a step from `state`, whose velocity must hold at its time, towards the last of `times` (s),
@@ -111,7 +120,7 @@ impl<'a> Expansion<'a> {
         let stop = self.breakpoints.get(passed).copied();
         let stop = stop.unwrap_or(f64::INFINITY);
         let gap = GAP / self.ellipse.capacity;
-        let farthest = start + self.longest_step() * (1.0 + 1e-9);
+        let farthest = start + self.longest_step * (1.0 + 1e-9);
         let mut instants = Vec::with_capacity(LOOKS);
         let mut last = start;
         for &time in times {

@@ -153,7 +153,9 @@ pub(crate) fn follow_by(
         }
         Course::Faber => {
             let checks = SpotChecks::new(operators, &spectrum);
-            by_faber(Expansion::new(operators, &spectrum), checks, start, times)
+            let duration = times.last().map_or(0.0, |end| end - start.t());
+            let expansion = Expansion::new(operators, &spectrum, duration);
+            by_faber(expansion, checks, start, times)
         }
     };
     if track.error <= ALLOWED {

@@ -1,0 +1,164 @@
+//! Methods, precisions and threads of a bench over sizes.
+
+use sinew_core::{OptionValue, Options};
+use sinew_measure::MethodChoice;
+
+use super::cube::{DURATION, SAMPLES};
+
+/// How a method's step follows from the body.
+#[derive(Clone, Copy, Debug)]
+enum StepRule {
+    /// At most this share of the critical step.
+    Share(f64),
+    /// This step (s), whatever the body.
+    Fixed(f64),
+}
+
+/// Number of threads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Threads {
+    One,
+    Several,
+}
+
+/// A method with precision and threads.
+#[derive(Clone, Debug)]
+pub(super) struct Variant {
+    pub(super) name: &'static str,
+    integrator: &'static str,
+    options: Options,
+    rule: StepRule,
+    pub(super) precision: &'static str,
+    pub(super) threads: Threads,
+    /// Whether it factorises a matrix; it is no program then.
+    pub(super) factorises: bool,
+}
+
+/// Threads where there are several.
+const SEVERAL: usize = 2;
+
+pub(super) fn has_several_threads() -> bool {
+    sinew_machines::Threads::All.most() >= SEVERAL
+}
+
+/// All methods in all precisions and with all numbers of threads that they can take.
+pub(super) fn variants() -> Vec<Variant> {
+    let two_step = Options::new()
+        .with("kind", OptionValue::Text("two-step".into()))
+        .with("tolerance", OptionValue::Number(1e-2));
+    // A little above .9, so that a step of .9 that divides the instants but for rounding is one.
+    let share = 0.901;
+    let programs = [
+        (
+            "central-difference",
+            "central-difference",
+            Options::new(),
+            StepRule::Share(share),
+        ),
+        (
+            "cnn-stabilised",
+            "cnn-stabilised",
+            Options::new(),
+            StepRule::Share(2.0 * share),
+        ),
+        ("two-step", "propagator", two_step, StepRule::Fixed(5e-3)),
+    ];
+    let mut variants = Vec::new();
+    for (name, integrator, options, rule) in programs {
+        for precision in ["f64", "f32"] {
+            for threads in [Threads::One, Threads::Several] {
+                variants.push(Variant {
+                    name,
+                    integrator,
+                    options: options.clone(),
+                    rule,
+                    precision,
+                    threads,
+                    factorises: false,
+                });
+            }
+        }
+    }
+    variants.push(Variant {
+        name: "newmark",
+        integrator: "newmark",
+        options: Options::new(),
+        rule: StepRule::Fixed(1e-3),
+        precision: "f64",
+        threads: Threads::One,
+        factorises: true,
+    });
+    variants
+}
+
+impl Threads {
+    pub(super) fn count(self) -> usize {
+        match self {
+            Self::One => 1,
+            Self::Several => SEVERAL,
+        }
+    }
+}
+
+impl Variant {
+    /// Method, precision and threads, as in `two-step, f32, 2 threads`.
+    pub(super) fn label(&self) -> String {
+        let threads = match self.threads {
+            Threads::One => "1 thread".to_owned(),
+            Threads::Several => format!("{SEVERAL} threads"),
+        };
+        format!("{}, {}, {threads}", self.name, self.precision)
+    }
+
+    /// The integrator with its options.
+    pub(super) fn method(&self) -> MethodChoice {
+        let method = MethodChoice::new(self.integrator);
+        let mut options = self.options.clone();
+        if !self.factorises {
+            options.insert("precision", OptionValue::Text(self.precision.into()));
+            options.insert("threads", OptionValue::Number(self.threads.count() as f64));
+        }
+        method.with_options(&options)
+    }
+
+    /// The step (s) on a body with this critical step (s): the longest that its rule allows and that meets
+    /// all instants.
+    pub(super) fn step(&self, critical: f64) -> f64 {
+        let interval = DURATION / SAMPLES as f64;
+        let most = match self.rule {
+            StepRule::Share(share) => share * critical,
+            StepRule::Fixed(step) => step,
+        };
+        interval / (interval / most - 1e-9).ceil().max(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_meet_the_instants_and_keep_to_their_share() {
+        let interval = DURATION / SAMPLES as f64;
+        for variant in variants() {
+            for critical in [2.02e-3, 5.05e-4, 3.3e-4] {
+                let dt = variant.step(critical);
+                let parts = interval / dt;
+                assert!((parts - parts.round()).abs() < 1e-9);
+                match variant.rule {
+                    StepRule::Share(share) => {
+                        assert!(dt <= share * critical && dt > 0.8 * share * critical);
+                    }
+                    StepRule::Fixed(step) => assert!((dt / step - 1.0).abs() < 1e-12),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn programs_run_in_both_precisions_and_factors_in_one() {
+        let count = |name| variants().iter().filter(|v| v.name == name).count();
+        assert_eq!(count("central-difference"), 4);
+        assert_eq!(count("newmark"), 1);
+    }
+}

@@ -1,0 +1,149 @@
+//! One run on one cube, measured.
+
+use std::time::Instant;
+
+use sinew_cnn::conformance::CountingAllocator;
+use sinew_core::{Equations, Layers, LinearOperators, LinearSystem, Revision, System, simulate};
+use sinew_measure::{Effort, MeasureError, measure, on_one_thread, process_cpu_time};
+
+use super::ScaleError;
+use super::cube::{Cube, DURATION};
+use super::methods::Variant;
+use super::row::ScaleRow;
+
+/// Most laps, and the time (s) after which no further one is begun.
+const LAPS: usize = 5;
+const BUDGET: f64 = 2.0;
+
+/// Measures a method on a cube.
+pub(super) fn row(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, ScaleError> {
+    // Products that are no program's share a pool of threads.
+    on_one_thread(|| row_here(cube, variant))?
+}
+
+fn row_here(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, ScaleError> {
+    let dt = variant.step(cube.critical_step);
+    let method = variant.method();
+    let compared = measure(&mut cube.case, &method, dt, Effort::UNTIMED)?;
+
+    let system = cube.case.simulation().system();
+    let fresh = Fresh::of(system)?;
+    let system = fresh.as_ref().map_or(system, |fresh| fresh as &dyn System);
+    let start = cube.case.simulation().initial_state();
+    let run = cube.case.run(dt);
+    let mut state = start.clone();
+    let before = CountingAllocator::live_bytes();
+    let mut integrator = method.build().map_err(MeasureError::from)?;
+    let (cpu, wall) = (process_cpu_time(), Instant::now());
+    integrator.prepare(system, dt).map_err(MeasureError::from)?;
+    let setup_wall_s = wall.elapsed().as_secs_f64();
+    let setup_cpu_s = (process_cpu_time() - cpu).as_secs_f64();
+
+    let (mut laps, mut spent) = (Vec::new(), 0.0);
+    while laps.is_empty() || laps.len() < LAPS && spent < BUDGET {
+        state.clone_from(start);
+        let (cpu, wall) = (process_cpu_time(), Instant::now());
+        simulate(system, &mut *integrator, &mut state, &run, &mut ())
+            .map_err(MeasureError::from)?;
+        let lap = [
+            (process_cpu_time() - cpu).as_secs_f64(),
+            wall.elapsed().as_secs_f64(),
+        ];
+        spent += lap[1];
+        laps.push(lap);
+    }
+    let bytes = CountingAllocator::live_bytes().saturating_sub(before);
+    let body = &cube.body;
+    Ok(ScaleRow {
+        mesh: body.mesh.clone(),
+        nodes: body.nodes,
+        tets: body.tets,
+        integrator: variant.name,
+        dt,
+        step_over_critical: dt / cube.critical_step,
+        precision: variant.precision,
+        threads: variant.threads.count(),
+        kernel: compared.kernel,
+        steps: compared.steps,
+        sweeps_per_s: compared.sweeps_per_s,
+        simulated_s: DURATION,
+        error: compared.error,
+        error_is_below: compared.error_is_below,
+        reference_error: body.reference_error,
+        cpu_s_per_s: median(laps.iter().map(|lap| lap[0])) / DURATION,
+        wall_s_per_s: median(laps.iter().map(|lap| lap[1])) / DURATION,
+        laps: laps.len(),
+        setup_cpu_s,
+        setup_wall_s,
+        bytes_per_tet: (bytes > 0).then(|| bytes as f64 / body.tets as f64),
+    })
+}
+
+fn median(times: impl Iterator<Item = f64>) -> f64 {
+    let mut times: Vec<f64> = times.collect();
+    times.sort_unstable_by(f64::total_cmp);
+    times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// A body on matrices of its own, of which nothing has been derived yet: what a method's first set-up finds.
+struct Fresh<'a> {
+    body: &'a dyn System,
+    operators: LinearOperators,
+}
+
+impl<'a> Fresh<'a> {
+    /// `None` for a body without matrices.
+    fn of(body: &'a dyn System) -> Result<Option<Self>, ScaleError> {
+        let Some(linear) = body.as_linear() else {
+            return Ok(None);
+        };
+        let of = linear.operators();
+        let operators = LinearOperators::new(
+            of.mass().to_vec(),
+            of.stiffness().as_ref().clone(),
+            of.damping().clone(),
+            of.loads().to_vec(),
+        )?;
+        Ok(Some(Self { body, operators }))
+    }
+}
+
+impl System for Fresh<'_> {
+    fn dofs(&self) -> usize {
+        self.body.dofs()
+    }
+
+    fn layers(&self) -> Layers {
+        self.body.layers()
+    }
+
+    fn mass(&self) -> &[f64] {
+        self.operators.mass()
+    }
+
+    fn revision(&self) -> Revision {
+        self.operators.revision()
+    }
+
+    fn equations(&self) -> Equations<'_> {
+        Equations::Linear(self)
+    }
+
+    fn looks_at_steps(&self) -> bool {
+        self.body.looks_at_steps()
+    }
+
+    fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
+        self.body.cell_positions()
+    }
+
+    fn extent(&self) -> Option<f64> {
+        self.body.extent()
+    }
+}
+
+impl LinearSystem for Fresh<'_> {
+    fn operators(&self) -> &LinearOperators {
+        &self.operators
+    }
+}
