@@ -42,7 +42,7 @@ fn two_cubes_have_rows_fits_and_a_plot() {
         );
         assert!(double.kernel.as_ref().unwrap().contains("f64"));
         assert!(single.kernel.as_ref().unwrap().contains("f32"));
-        assert!(double.step_over_critical <= 0.901 && double.step_over_critical > 0.89);
+        assert!((double.step_over_critical / 0.9 - 1.0).abs() < 1e-9);
         assert!(single.bytes_per_tet < double.bytes_per_tet);
         let row = find("two-step", "f64", mesh);
         assert!(row.error.unwrap() < 0.02, "{row:?}");

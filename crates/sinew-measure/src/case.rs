@@ -129,7 +129,7 @@ impl Case {
         Self::at_pace(Pace::Short, id, simulation, span)
     }
 
-    /// As [`Case::new`], with the reference of large bodies whatever the size: for rows that are compared
+    /// As [`Case::over`], with the reference of large bodies whatever the size: for rows that are compared
     /// over sizes.
     ///
     /// # Errors
@@ -137,8 +137,8 @@ impl Case {
     pub fn with_affordable_reference(
         id: impl Into<String>,
         simulation: Simulation,
+        span: Span,
     ) -> Result<Self, CaseError> {
-        let span = Span::of(&simulation);
         Self::by(Course::Faber, id.into(), simulation, span)
     }
 

@@ -43,4 +43,4 @@ pub use work_precision::work_precision;
 pub(crate) use write::file_names;
 pub use write::{WriteError, Written, write_all};
 
-pub(crate) use sinew_measure::number::{self, milliseconds, percent, short, three};
+pub(crate) use sinew_measure::number::{self, milliseconds, percent, short, three, two};

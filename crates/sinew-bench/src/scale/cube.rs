@@ -5,17 +5,20 @@ use std::time::Instant;
 use sinew_cnn::conformance::CountingAllocator;
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{LinearSystem, System};
-use sinew_measure::Case;
+use sinew_measure::{Case, Span};
 use sinew_scene::{Scene, SceneSource};
 
-use super::ScaleError;
+use super::error::ScaleError;
 use super::row::ScaleBody;
 
-/// Simulated time (s): a pressure wave crosses the cube three times.
-pub(super) const DURATION: f64 = 0.1;
+/// Simulated time (s), about: a pressure wave crosses the cube three times.
+const DURATION: f64 = 0.1;
 
 /// Instants at which errors are taken.
-pub(super) const SAMPLES: usize = 5;
+const SAMPLES: usize = 5;
+
+/// Share of the critical step that the steps of central difference take; they meet all instants.
+pub(super) const SHARE: f64 = 0.9;
 
 /// A cube with its reference.
 pub(super) struct Cube {
@@ -58,27 +61,35 @@ impl Cube {
             None => (0, 0),
         };
         let begun = Instant::now();
-        let case = Case::with_affordable_reference(name(cells), simulation)?;
+        let system = simulation.system().as_linear();
+        let operators = system.map(LinearSystem::operators);
+        let omega = operators.map_or(0.0, |operators| Spectrum::of(operators).omega_max);
+        let critical_step = 2.0 / omega;
+        let steps = (DURATION / (SAMPLES as f64 * SHARE * critical_step)).round();
+        let span = Span {
+            duration: SAMPLES as f64 * steps.max(1.0) * SHARE * critical_step,
+            samples: SAMPLES,
+        };
+        let case = Case::with_affordable_reference(name(cells), simulation, span)?;
         let reference_wall_s = begun.elapsed().as_secs_f64();
         let info = case.info();
         let system = case.simulation().system();
-        let operators = system.as_linear().map(LinearSystem::operators);
-        let omega = operators.map_or(0.0, |operators| Spectrum::of(operators).omega_max);
         Ok(Self {
-            critical_step: 2.0 / omega,
+            critical_step,
             body: ScaleBody {
                 mesh: info.id,
                 nodes,
                 tets,
                 dofs: System::dofs(system),
-                simulated_s: DURATION,
-                critical_step_s: 2.0 / omega,
+                simulated_s: span.duration,
+                critical_step_s: critical_step,
                 build_wall_s,
                 bytes_per_tet: (bytes > 0).then(|| bytes as f64 / tets as f64),
                 reference: info.reference,
                 reference_error: info.reference_error,
                 reference_sweeps: case.samples().sweeps,
-                reference_sweeps_per_omega_t: case.samples().sweeps as f64 / (omega * DURATION),
+                reference_sweeps_per_omega_t: case.samples().sweeps as f64
+                    / (omega * span.duration),
                 reference_wall_s,
             },
             case,

@@ -1,6 +1,7 @@
 //! Methods over the size of a body: error, time, set-up and memory, and the largest body in real time.
 
 mod cube;
+mod error;
 mod fit;
 mod methods;
 mod newmark;
@@ -10,9 +11,8 @@ mod run;
 mod table;
 
 use serde::Serialize;
-use sinew_measure::{CaseError, MeasureError, ThreadError};
-use sinew_scene::SceneError;
 
+pub use error::ScaleError;
 pub use fit::{Exponents, ScaleFit};
 pub use row::{ScaleBody, ScaleRow, ScaleSkipped};
 
@@ -48,27 +48,6 @@ pub struct ScaleResults {
     pub fits: Vec<ScaleFit>,
     /// What did not run, and why.
     pub skipped: Vec<ScaleSkipped>,
-}
-
-/// Why a bench over sizes cannot go on.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ScaleError {
-    /// A cube cannot be built.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// A cube has no reference.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// A method cannot run.
-    #[error(transparent)]
-    Measure(#[from] MeasureError),
-    /// A body's matrices cannot be put together again.
-    #[error(transparent)]
-    Operators(#[from] sinew_core::OperatorError),
-    /// The measuring thread cannot be started.
-    #[error(transparent)]
-    Thread(#[from] ThreadError),
 }
 
 impl ScaleBench {

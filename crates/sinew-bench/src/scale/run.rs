@@ -6,8 +6,8 @@ use sinew_cnn::conformance::CountingAllocator;
 use sinew_core::{Equations, Layers, LinearOperators, LinearSystem, Revision, System, simulate};
 use sinew_measure::{Effort, MeasureError, measure, on_one_thread, process_cpu_time};
 
-use super::ScaleError;
-use super::cube::{Cube, DURATION};
+use super::cube::Cube;
+use super::error::ScaleError;
 use super::methods::Variant;
 use super::row::ScaleRow;
 
@@ -22,7 +22,7 @@ pub(super) fn row(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, ScaleE
 }
 
 fn row_here(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, ScaleError> {
-    let dt = variant.step(cube.critical_step);
+    let dt = variant.step(cube.critical_step, cube.case.span().interval());
     let method = variant.method();
     let compared = measure(&mut cube.case, &method, dt, Effort::UNTIMED)?;
 
@@ -54,6 +54,7 @@ fn row_here(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, ScaleError> 
     }
     let bytes = CountingAllocator::live_bytes().saturating_sub(before);
     let body = &cube.body;
+    let simulated = body.simulated_s;
     Ok(ScaleRow {
         mesh: body.mesh.clone(),
         nodes: body.nodes,
@@ -66,12 +67,12 @@ fn row_here(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, ScaleError> 
         kernel: compared.kernel,
         steps: compared.steps,
         sweeps_per_s: compared.sweeps_per_s,
-        simulated_s: DURATION,
+        simulated_s: simulated,
         error: compared.error,
         error_is_below: compared.error_is_below,
         reference_error: body.reference_error,
-        cpu_s_per_s: median(laps.iter().map(|lap| lap[0])) / DURATION,
-        wall_s_per_s: median(laps.iter().map(|lap| lap[1])) / DURATION,
+        cpu_s_per_s: median(laps.iter().map(|lap| lap[0])) / simulated,
+        wall_s_per_s: median(laps.iter().map(|lap| lap[1])) / simulated,
         laps: laps.len(),
         setup_cpu_s,
         setup_wall_s,

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::row::{ScaleBody, ScaleRow};
 use super::{ScaleFit, ScaleResults};
-use crate::report::{milliseconds, percent, ruled, short, three};
+use crate::report::{milliseconds, percent, ruled, three, two};
 
 const BODIES: [&str; 8] = [
     "body",
@@ -49,8 +49,8 @@ impl fmt::Display for ScaleResults {
         let simulated = self.bodies.first().map_or(0.0, |body| body.simulated_s);
         writeln!(
             f,
-            "The peers' cube with mass damping 20/s at several sizes; {} s simulated. CPU time is that of all threads.\n",
-            short(simulated)
+            "The peers' cube with mass damping 20/s at several sizes; about {} s simulated. CPU time is that of all threads.\n",
+            two(simulated)
         )?;
         let bodies = ruled::table(BODIES, self.bodies.iter().map(body), 1);
         writeln!(f, "{}\n", ruled::lines(bodies, 2))?;
