@@ -24,6 +24,7 @@
 mod error;
 mod incidence;
 mod matrix;
+pub mod ordering;
 mod pattern;
 mod product;
 pub mod simd;

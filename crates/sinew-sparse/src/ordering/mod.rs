@@ -1,0 +1,17 @@
+//! Orders in which the unknowns of a symmetric matrix are eliminated, so that its factor fills in little.
+//!
+//! All of it works on the graph of cells, whose blocks a factor takes as wholes: with three layers that graph has a ninth of
+//! the entries.
+
+mod coarsening;
+mod elimination;
+mod graph;
+mod initial;
+mod minimum_degree;
+mod nested_dissection;
+mod random;
+mod refinement;
+mod separator;
+
+pub use elimination::Elimination;
+pub use nested_dissection::nested_dissection;
