@@ -33,7 +33,7 @@ mod stepper;
 pub use explicit_method::Explicit;
 pub use frame::Frame;
 #[cfg(feature = "implicit")]
-pub use implicit::{FactorError, StaticError, static_solution};
+pub use implicit::{Combination, Factor, FactorError, StaticError, static_solution};
 pub use machine_options::MACHINE_OPTIONS;
 pub use method::{ConservedEnergy, Method};
 pub use option_help::{OptionHelp, OptionLabel};

@@ -1,33 +1,44 @@
 //! Sparse Cholesky factors of combinations of M, D and K, and dense eigenproblems. The only user of
-//! faer.
+//! faer, with its own files beside it.
+
+mod cell_order;
+mod panels;
+mod structure;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::PermRef;
-use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
-    factorize_symbolic_cholesky,
+    CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
-use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, MatRef, Par, Side, Spec};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{MatRef, Par, Side, Spec};
 use sinew_core::{Layers, LinearOperators, Pattern};
 
+use self::cell_order::cell_order;
+use self::panels::Panels;
+use self::structure::{buffer, lower_triangle, of_faer};
 use super::factor_error::FactorError;
 
 /// `mass M + stiffness K + extra D_extra`, where D_extra is the damping that is not proportional.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Combination {
-    pub(crate) mass: f64,
-    pub(crate) stiffness: f64,
-    pub(crate) extra: f64,
+pub struct Combination {
+    /// Factor of M.
+    pub mass: f64,
+    /// Factor of K.
+    pub stiffness: f64,
+    /// Factor of `D_extra`.
+    pub extra: f64,
 }
 
 impl Combination {
     /// `M + d D + k K` with D = alpha M + beta K + extra.
-    pub(crate) fn of_step(operators: &LinearOperators, d: f64, k: f64) -> Self {
+    #[must_use]
+    pub fn of_step(operators: &LinearOperators, d: f64, k: f64) -> Self {
         let damping = operators.damping();
         Self {
             mass: 1.0 + d * damping.mass,
@@ -37,23 +48,32 @@ impl Combination {
     }
 
     /// K alone.
-    pub(crate) const STATIC: Self = Self {
+    pub const STATIC: Self = Self {
         mass: 0.0,
         stiffness: 1.0,
         extra: 0.0,
     };
 }
 
-/// A factor, with its analysis and buffers kept for the next one on the same pattern.
-pub(crate) struct Factor {
+/// The sparse Cholesky factor of a [`Combination`], with its analysis and buffers kept for the next one on the same pattern.
+///
+/// Cells are eliminated by nested dissection or by approximate minimum degree, whichever takes fewer operations.
+pub struct Factor {
     pattern: Arc<Pattern>,
     layers: Layers,
+    /// Degrees of freedom in the order of elimination.
+    forward: Vec<usize>,
     symbolic: SymbolicCholesky<usize>,
+    panels: Panels,
     column_start: Vec<usize>,
     row_index: Vec<usize>,
     entries: Vec<f64>,
     values: Vec<f64>,
+    /// Work space of the numeric factorisation.
     scratch: MemBuffer,
+    /// The right-hand side in the order of elimination, and as many numbers for products.
+    sorted: Vec<f64>,
+    products: Vec<f64>,
 }
 
 impl std::fmt::Debug for Factor {
@@ -67,10 +87,13 @@ impl std::fmt::Debug for Factor {
 
 impl Factor {
     /// Orders and analyses the pattern of `operators`.
-    pub(crate) fn analyse(operators: &LinearOperators) -> Result<Self, FactorError> {
+    ///
+    /// # Errors
+    /// [`FactorError`] when there is no memory for it.
+    pub fn analyse(operators: &LinearOperators) -> Result<Self, FactorError> {
         let stiffness = operators.stiffness();
         let (pattern, layers) = (Arc::clone(stiffness.pattern()), stiffness.layers());
-        let (forward, inverse) = dof_ordering(&pattern, layers)?;
+        let (forward, inverse) = dof_order(&cell_order(&pattern)?, layers);
         let (column_start, row_index) = lower_triangle(&pattern, layers);
         let n = stiffness.dofs();
         let structure = SymbolicSparseColMatRef::new_checked(n, n, &column_start, None, &row_index);
@@ -82,11 +105,14 @@ impl Factor {
         )
         .map_err(of_faer)?;
         let numeric = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
-        let solve = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
-        let scratch = buffer(StackReq::or(numeric, solve))?;
+        let scratch = buffer(numeric)?;
         Ok(Self {
             values: vec![0.0; symbolic.len_val()],
             entries: vec![0.0; row_index.len()],
+            sorted: vec![0.0; n],
+            products: vec![0.0; n],
+            panels: Panels::of(&symbolic),
+            forward,
             pattern,
             layers,
             symbolic,
@@ -97,13 +123,23 @@ impl Factor {
     }
 
     /// Whether the analysis holds for these matrices.
-    pub(crate) fn fits(&self, operators: &LinearOperators) -> bool {
+    #[must_use]
+    pub fn fits(&self, operators: &LinearOperators) -> bool {
         let stiffness = operators.stiffness();
         Arc::ptr_eq(&self.pattern, stiffness.pattern()) && self.layers == stiffness.layers()
     }
 
+    /// Numbers that the factor holds, zeros inside its panels included.
+    #[must_use]
+    pub fn stored(&self) -> usize {
+        self.values.len()
+    }
+
     /// Factorises a combination of the matrices.
-    pub(crate) fn factorise(
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositiveDefinite`].
+    pub fn factorise(
         &mut self,
         operators: &LinearOperators,
         combination: Combination,
@@ -166,14 +202,18 @@ impl Factor {
     }
 
     /// Replaces `right_hand_side` by the solution. Allocates nothing.
-    pub(crate) fn solve(&mut self, right_hand_side: &mut [f64]) {
-        let n = right_hand_side.len();
-        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(right_hand_side, n, 1),
-            Par::Seq,
-            MemStack::new(&mut self.scratch),
-        );
+    ///
+    /// # Panics
+    /// Where it is shorter than the matrix.
+    pub fn solve(&mut self, right_hand_side: &mut [f64]) {
+        for (sorted, dof) in self.sorted.iter_mut().zip(&self.forward) {
+            *sorted = right_hand_side[*dof];
+        }
+        self.panels
+            .solve(&self.values, &mut self.sorted, &mut self.products);
+        for (sorted, dof) in self.sorted.iter().zip(&self.forward) {
+            right_hand_side[*dof] = *sorted;
+        }
     }
 }
 
@@ -194,61 +234,14 @@ pub(crate) fn symmetric_eigen(
     Ok((values, vectors.map(|(i, j)| eigen.U()[(i, j)]).collect()))
 }
 
-/// Approximate minimum degree on the graph of cells, which is three times smaller each way than
-/// that of degrees of freedom, spread to all layers. Returns the permutation and its inverse.
-fn dof_ordering(
-    pattern: &Pattern,
-    layers: Layers,
-) -> Result<(Vec<usize>, Vec<usize>), FactorError> {
-    let cells = pattern.cells();
-    let (column_start, row_index) = lower_triangle(pattern, Layers::One);
-    let structure =
-        SymbolicSparseColMatRef::new_checked(cells, cells, &column_start, None, &row_index);
-    let (mut forward, mut inverse) = (vec![0; cells], vec![0; cells]);
-    let mut scratch = buffer(amd::order_scratch::<usize>(cells, row_index.len()))?;
-    amd::order(
-        &mut forward,
-        &mut inverse,
-        structure,
-        amd::Control::default(),
-        MemStack::new(&mut scratch),
-    )
-    .map_err(of_faer)?;
+/// The degrees of freedom of cells in an order of elimination, and the place of each in it.
+fn dof_order(cells: &[u32], layers: Layers) -> (Vec<usize>, Vec<usize>) {
     let layers = layers.count();
-    let spread = |order: Vec<usize>| -> Vec<usize> {
-        let dofs = order.into_iter();
-        dofs.flat_map(|cell| (0..layers).map(move |layer| cell * layers + layer))
-            .collect()
-    };
-    Ok((spread(forward), spread(inverse)))
-}
-
-/// Column starts and row indices of the lower triangle, diagonal included.
-fn lower_triangle(pattern: &Pattern, layers: Layers) -> (Vec<usize>, Vec<usize>) {
-    let layers = layers.count();
-    let mut column_start = vec![0];
-    let mut row_index = Vec::new();
-    for cell in 0..pattern.cells() {
-        for layer in 0..layers {
-            let diagonal = cell * layers + layer;
-            let dofs = pattern
-                .neighbours(cell)
-                .iter()
-                .flat_map(|other| (0..layers).map(move |layer| *other as usize * layers + layer));
-            row_index.extend(dofs.filter(|dof| *dof >= diagonal));
-            column_start.push(row_index.len());
-        }
+    let dofs = cells.iter().map(|cell| *cell as usize * layers);
+    let forward: Vec<usize> = dofs.flat_map(|dof| dof..dof + layers).collect();
+    let mut inverse = vec![0; forward.len()];
+    for (place, dof) in forward.iter().enumerate() {
+        inverse[*dof] = place;
     }
-    (column_start, row_index)
-}
-
-fn buffer(request: StackReq) -> Result<MemBuffer, FactorError> {
-    MemBuffer::try_new(request).map_err(|_| FactorError::OutOfMemory)
-}
-
-fn of_faer(error: FaerError) -> FactorError {
-    match error {
-        FaerError::IndexOverflow => FactorError::TooLarge,
-        _ => FactorError::OutOfMemory,
-    }
+    (forward, inverse)
 }

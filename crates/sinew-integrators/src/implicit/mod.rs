@@ -9,6 +9,7 @@ mod modal;
 mod newmark;
 mod static_solution;
 
+pub use factor::{Combination, Factor};
 pub use factor_error::FactorError;
 pub use generalized_alpha::GeneralizedAlpha;
 pub use implicit_euler::ImplicitEuler;
