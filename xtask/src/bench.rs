@@ -57,6 +57,9 @@ pub(crate) struct Arguments {
     scale: bool,
     /// Run another program on the peers' cube in turn with our cheapest methods and print the ratios
     /// of CPU time, nothing else; numpy and scipy are installed by pip into target/
+    /// Run another program in turn with ours and print the ratios of CPU time, nothing else: scipy (installed by pip into
+    /// target/) with our cheapest methods on the peers' cube, or CHOLMOD (skipped where it is not installed) with our
+    /// sparse factors
     #[arg(long, value_enum, value_name = "PROGRAM", conflicts_with_all = ["scenes", "steps", "out"])]
     beside: Option<Program>,
 }

@@ -1,7 +1,9 @@
-//! `cargo xtask bench --beside scipy`.
+//! `cargo xtask bench --beside PROGRAM`.
 
+mod cholmod;
 mod scipy;
 
+use sinew_bench::beside::factor::{EffectiveMatrix, FactorTable, run_factor_laps};
 use sinew_bench::beside::{ExportError, Exported, Rounds, export, run_beside};
 use sinew_bench::output::{OutputFolder, say};
 use sinew_bench::{Bench, peers, scene_files};
@@ -10,6 +12,7 @@ use sinew_measure::Case;
 use crate::failure::Failure;
 use crate::python::{Packages, Python};
 use crate::repository::root;
+use cholmod::Driver;
 use scipy::Scipy;
 
 /// The packages that `xtask/python/central_difference.py` imports.
@@ -25,10 +28,47 @@ const PACKAGES: Packages = Packages {
 pub(crate) enum Program {
     /// scipy's sparse matrices, central difference at 1 ms.
     Scipy,
+    /// CHOLMOD's sparse Cholesky factors, on Newmark's matrices at 20 ms.
+    Cholmod,
 }
 
-/// Runs the program and our cheapest methods in turn on the peers' cube and prints their ratios.
-pub(crate) fn run(Program::Scipy: Program, bench: &Bench) -> Result<(), Failure> {
+/// Runs the program in turn with ours and prints ratios of CPU time.
+pub(crate) fn run(program: Program, bench: &Bench) -> Result<(), Failure> {
+    match program {
+        Program::Scipy => beside_scipy(bench),
+        Program::Cholmod => beside_cholmod(bench),
+    }
+}
+
+/// Factorises and solves in turn with CHOLMOD, where it is installed.
+fn beside_cholmod(bench: &Bench) -> Result<(), Failure> {
+    let folder = root().join("target").join("beside").join("cholmod");
+    let driver = match Driver::build(&folder) {
+        Ok(driver) => driver,
+        Err(missing) => {
+            say(&format!("skipped: {missing}"))?;
+            return Ok(());
+        }
+    };
+    let sizes: &[(usize, usize)] = match bench.quick {
+        true => &[(11, 3)],
+        false => &[(11, 31), (21, 15), (31, 5)],
+    };
+    let mut pairs = Vec::new();
+    for (side, rounds) in sizes {
+        let matrix = EffectiveMatrix::of_cube(*side).map_err(Failure::chore)?;
+        let folder = folder.join(side.to_string());
+        matrix.export(&folder)?;
+        let mut cholmod = driver.start(&folder).map_err(Failure::Chore)?;
+        let pair = run_factor_laps(&matrix, &mut cholmod, Rounds(*rounds));
+        pairs.push(pair.map_err(Failure::chore)?);
+    }
+    say(&FactorTable(pairs).to_string())?;
+    Ok(())
+}
+
+/// Runs scipy and our cheapest methods in turn on the peers' cube.
+fn beside_scipy(bench: &Bench) -> Result<(), Failure> {
     let integrators = bench.methods().map_err(Failure::input)?;
     let target = root().join("target");
     let scene = root().join("scenes").join(format!("{}.toml", peers::CASE));

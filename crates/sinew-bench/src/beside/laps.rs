@@ -236,6 +236,6 @@ fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 }
 
 /// The middle of sorted values.
-fn median(sorted: &[f64]) -> f64 {
+pub(super) fn median(sorted: &[f64]) -> f64 {
     sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
 }

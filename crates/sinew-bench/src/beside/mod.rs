@@ -4,6 +4,7 @@
 //! lap of ours therefore follows a lap of the other one, and their ratio counts, not their times.
 
 mod export;
+pub mod factor;
 mod laps;
 mod pilots;
 mod table;
