@@ -55,8 +55,6 @@ pub(crate) struct Arguments {
     /// the largest scene in real time; about 15 minutes
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "kernels", "beside"])]
     scale: bool,
-    /// Run another program on the peers' cube in turn with our cheapest methods and print the ratios
-    /// of CPU time, nothing else; numpy and scipy are installed by pip into target/
     /// Run another program in turn with ours and print the ratios of CPU time, nothing else: scipy (installed by pip into
     /// target/) with our cheapest methods on the peers' cube, or CHOLMOD (skipped where it is not installed) with our
     /// sparse factors

@@ -1,5 +1,8 @@
 //! Orders of elimination of any graph.
 
+#![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use proptest::prelude::*;
 use sinew_sparse::Pattern;
 use sinew_sparse::ordering::{Elimination, nested_dissection};
