@@ -1,9 +1,9 @@
 //! The baseline: plain loops over a compressed sparse row matrix of numbers.
 
 use sinew_core::LinearSystem;
-use sinew_fem::Model;
+use sinew_fem::{Model, Rayleigh};
 
-/// B1: one scalar product of K with u in f64, then the update of central difference.
+/// B1: one scalar product of K with w = u + beta v in f64, then the update of central difference.
 pub(super) struct Baseline {
     starts: Vec<u32>,
     columns: Vec<u32>,
@@ -14,6 +14,7 @@ pub(super) struct Baseline {
     load: Vec<f64>,
     u: Vec<f64>,
     v: Vec<f64>,
+    w: Vec<f64>,
     force: Vec<f64>,
 }
 
@@ -44,30 +45,47 @@ impl Baseline {
             load,
             u: vec![0.0; dofs],
             v: vec![0.0; dofs],
+            w: vec![0.0; dofs],
             force: vec![0.0; dofs],
         }
     }
 
-    /// Takes steps of `dt` (s) with mass damping `alpha` (1/s).
-    pub(super) fn steps(&mut self, steps: usize, dt: f64, alpha: f64) {
-        let kept = (1.0 - 0.5 * alpha * dt) / (1.0 + 0.5 * alpha * dt);
-        let kick = dt / (1.0 + 0.5 * alpha * dt);
+    /// Takes steps of `dt` (s) with mass damping `alpha` and stiffness damping `beta`, entry by entry as the equations are
+    /// written: one product with w = u + beta v.
+    pub(super) fn steps(&mut self, steps: usize, dt: f64, damping: Rayleigh) {
+        for _ in 0..steps {
+            for row in 0..self.force.len() {
+                let mut sum = 0.0;
+                for entry in self.starts[row] as usize..self.starts[row + 1] as usize {
+                    sum += self.values[entry] * self.w[self.columns[entry] as usize];
+                }
+                self.force[row] = self.load[row] - sum;
+            }
+            self.update(dt, damping);
+        }
+    }
+
+    /// The same steps, written so that the compiler need not check the bounds of values and columns.
+    pub(super) fn steps_without_checks(&mut self, steps: usize, dt: f64, damping: Rayleigh) {
         for _ in 0..steps {
             for (row, force) in self.force.iter_mut().enumerate() {
                 let entries = self.starts[row] as usize..self.starts[row + 1] as usize;
-                let mut sum = 0.0;
-                for (value, column) in self.values[entries.clone()]
-                    .iter()
-                    .zip(&self.columns[entries])
-                {
-                    sum += value * self.u[*column as usize];
-                }
-                *force = self.load[row] - sum;
+                let of_row = self.values[entries.clone()].iter();
+                let of_row = of_row.zip(&self.columns[entries]);
+                let terms = of_row.map(|(value, column)| value * self.w[*column as usize]);
+                *force = self.load[row] - terms.sum::<f64>();
             }
-            for (row, force) in self.force.iter().enumerate() {
-                self.v[row] = kept * self.v[row] + kick * self.inverse[row] * force;
-                self.u[row] += dt * self.v[row];
-            }
+            self.update(dt, damping);
+        }
+    }
+
+    fn update(&mut self, dt: f64, Rayleigh { mass, stiffness }: Rayleigh) {
+        let kept = (1.0 - 0.5 * mass * dt) / (1.0 + 0.5 * mass * dt);
+        let kick = dt / (1.0 + 0.5 * mass * dt);
+        for (row, force) in self.force.iter().enumerate() {
+            self.v[row] = kept * self.v[row] + kick * self.inverse[row] * force;
+            self.u[row] += dt * self.v[row];
+            self.w[row] = self.u[row] + stiffness * self.v[row];
         }
     }
 }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use sinew_cnn::conformance::CountingAllocator;
 use sinew_cnn::{Machine, Program, Quotient, ReferenceMachine, Sweep, When};
 use sinew_core::{Batch, Inputs, Layers, LinearSystem, Options, State, System};
+use sinew_fem::Rayleigh;
 use sinew_machines::{FastMachine, Kind, Layout, PrecisionName};
 use sinew_measure::thread_cpu_time;
 use sinew_sparse::sweep::Precision;
@@ -43,7 +44,10 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
     let Some((program, dt)) = central_difference(model)? else {
         return Ok(Vec::new());
     };
-    let alpha = model.operators().damping().mass;
+    let damping = Rayleigh {
+        mass: model.operators().damping().mass,
+        stiffness: model.operators().damping().stiffness,
+    };
     let dofs = model.operators().dofs();
     let (steps, laps) = match quick {
         true => (4, 3),
@@ -55,10 +59,15 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
         .collect();
     let mut baseline = Baseline::new(model);
     let mut expected = State::at_rest(dofs);
+    // Of the plain loops with and without checks (s).
+    let mut plain: Vec<f64> = Vec::with_capacity(laps);
     for lap in 0..laps {
+        let with = timed(false, || baseline.steps(steps, dt, damping));
+        let without = timed(false, || baseline.steps_without_checks(steps, dt, damping));
+        plain.push(with / without);
         for runner in &mut runners {
             let several = runner.variant.threads > 1;
-            let of_baseline = timed(several, || baseline.steps(steps, dt, alpha));
+            let of_baseline = timed(several, || baseline.steps(steps, dt, damping));
             let mut batch = Batch::new(model, Inputs::none(), dt, steps);
             let mut done = Ok(());
             let of_machine = timed(several, || {
@@ -83,6 +92,8 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
     let cells = dofs / layers.count();
     let vectors = program.traffic().vector_bytes(layers) * cells as f64;
     let operations = operations(&program, model);
+    plain.sort_unstable_by(f64::total_cmp);
+    let gain_without_checks = plain[plain.len() / 2];
     let mut rows = Vec::new();
     for mut runner in runners {
         let allocations = runner.allocations(model, dt);
@@ -115,6 +126,7 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
             instructions: runner.instructions,
             threads: runner.variant.threads,
             ratio_to_b1: ratios[ratios.len() / 2],
+            ratio_to_b1_without_checks: ratios[ratios.len() / 2] / gain_without_checks,
             ratios: [ratios[0], ratios[ratios.len() - 1]],
             step_s,
             difference: runner.difference,

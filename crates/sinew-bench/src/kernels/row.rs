@@ -22,7 +22,9 @@ pub struct KernelRow {
     /// Time of a step of plain loops over its own, median of alternating laps: CPU time, or wall time where
     /// there are several threads.
     pub ratio_to_b1: f64,
-    /// Lowest and highest ratio.
+    /// The same over plain loops that check no bounds of values and columns.
+    pub ratio_to_b1_without_checks: f64,
+    /// Lowest and highest ratio to B1.
     pub ratios: [f64; 2],
     /// Time of a step (s), of this computer only.
     pub step_s: f64,

@@ -8,13 +8,14 @@ use super::row::KernelRow;
 use crate::report::ruled;
 use crate::report::three;
 
-pub(super) const HEAD: [&str; 11] = [
+pub(super) const HEAD: [&str; 12] = [
     "body",
     "kernel",
     "precision",
     "threads",
     "times B1",
     "lowest .. highest",
+    "unchecked",
     "off [relative]",
     "MB a step",
     "flop a byte",
@@ -26,8 +27,8 @@ impl fmt::Display for KernelResults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "Steps of central difference with mass damping; B1 is one scalar CSR product in f64 with the update, in \
-             turn, medians.\nCPU time; wall time where there are several threads. `off`: largest difference from the \
+            "Steps of central difference with mass damping; B1 is one scalar CSR product in f64 with the update, entry by \
+             entry, in turn, medians; unchecked: beside the same loops without checks of bounds.\nCPU time; wall time where there are several threads. `off`: largest difference from the \
              plain loops.\n"
         )?;
         let table = ruled::table(HEAD, self.rows.iter().map(cells), 3);
@@ -68,7 +69,7 @@ impl fmt::Display for Roofs {
     }
 }
 
-pub(super) fn cells(row: &KernelRow) -> [String; 11] {
+pub(super) fn cells(row: &KernelRow) -> [String; 12] {
     let kernel = match row.templates {
         Some(count) => format!("{} ({count} templates) {}", row.kernel, row.instructions),
         None => format!("{} {}", row.kernel, row.instructions),
@@ -80,6 +81,7 @@ pub(super) fn cells(row: &KernelRow) -> [String; 11] {
         row.threads.to_string(),
         three(row.ratio_to_b1),
         format!("{} .. {}", three(row.ratios[0]), three(row.ratios[1])),
+        three(row.ratio_to_b1_without_checks),
         format!("{:.1e}", row.difference),
         three(1e-6 * row.bytes_per_step),
         three(row.intensity),
