@@ -27,9 +27,9 @@ impl KernelResults {
         );
         page.push_str(&format!("<p>{}</p>\n", escape(&self.roofs.to_string())));
         page.push_str(
-            "<h2>Rows</h2>\n<p>`times B1`: time of one scalar CSR product in f64 with the update over that of a step, \
-             in turn, medians; CPU time, or wall time where there are several threads. `off`: largest difference from \
-             the plain loops.</p>\n<div class=\"wide\"><table>\n<thead><tr>",
+            "<h2>Rows</h2>\n<p>times B1: time of one scalar CSR product in f64 with the update, entry by entry, over that of a \
+             step, in turn, medians; CPU time, or wall time where there are several threads. unchecked: beside the same loops \
+             without checks of bounds. off: largest difference from the plain loops.</p>\n<div class=\"wide\"><table>\n<thead><tr>",
         );
         for head in HEAD {
             page.push_str(&format!("<th>{head}</th>"));

@@ -44,28 +44,28 @@ impl fmt::Display for KernelResults {
 
 impl fmt::Display for Roofs {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "One thread of this computer reads")?;
-        for read in &self.reads {
+        let reads = self.reads.iter().map(|read| {
             let (rate, size) = (
                 three(1e-9 * read.bytes_per_s),
                 three(1e-6 * read.bytes as f64),
             );
-            write!(f, " {rate} GB/s of {} ({size} MB)", read.memory)?;
-        }
-        write!(f, "; it multiplies and adds")?;
-        for rate in &self.multiply_adds {
+            format!("{rate} GB/s of {} ({size} MB)", read.memory)
+        });
+        let rates = self.multiply_adds.iter().map(|rate| {
             let OperationRate {
                 instructions,
                 precision,
                 ..
             } = rate;
-            write!(
-                f,
-                " {} GFLOP/s ({instructions} {precision})",
-                three(1e-9 * rate.operations_per_s)
-            )?;
-        }
-        writeln!(f, ".")
+            let rate = three(1e-9 * rate.operations_per_s);
+            format!("{rate} GFLOP/s ({instructions} {precision})")
+        });
+        let [reads, rates] =
+            [reads.collect::<Vec<_>>(), rates.collect()].map(|list| list.join(", "));
+        writeln!(
+            f,
+            "One thread of this computer reads {reads}; it multiplies and adds {rates}."
+        )
     }
 }
 
