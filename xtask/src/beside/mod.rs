@@ -1,6 +1,7 @@
 //! `cargo xtask bench --beside PROGRAM`.
 
 mod cholmod;
+mod conversation;
 mod scipy;
 
 use sinew_bench::beside::factor::{EffectiveMatrix, FactorTable, run_factor_laps};

@@ -21,6 +21,7 @@ use crate::case::{Case, Span};
 use crate::cpu_time::thread_cpu_time;
 use crate::method_choice::{MethodChoice, MethodError};
 use crate::one_thread::on_one_thread;
+use crate::reference::TOLD_APART;
 use crate::search::{CasePilots, Goal, Pilot, PilotError, Search, candidates, ramps};
 use horizon::horizon;
 
@@ -30,10 +31,6 @@ const FOR_THE_REFERENCE: f64 = 0.5;
 /// Other integrators are followed to their own best while that may cost this many times the
 /// cheapest run.
 const RUNNERS_UP_WITHIN: f64 = 4.0;
-
-/// Smallest tolerance over the reference's own error: even a tenth of the tolerance is then ten times
-/// larger than that error.
-const TOLD_APART: f64 = 100.0;
 
 /// Why a method is no candidate for the answer.
 #[derive(Debug, thiserror::Error)]

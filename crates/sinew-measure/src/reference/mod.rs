@@ -15,5 +15,5 @@ mod track;
 pub use error_norm::ErrorNorm;
 pub(crate) use expansion::Expansion;
 pub use taylor::Taylor;
-pub(crate) use track::{Course, LateRange, Pace, follow_by};
+pub(crate) use track::{Course, LateRange, Pace, TOLD_APART, follow_by};
 pub use track::{ReferenceError, ReferenceMethod, Track, follow, follow_affordably};
