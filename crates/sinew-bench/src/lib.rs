@@ -9,6 +9,7 @@ pub mod hard;
 pub mod kernels;
 mod machine;
 pub mod peers;
+mod pressed;
 pub mod report;
 pub mod reproduce;
 pub mod results;

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
-use sinew_core::{OptionError, Ramp, SetupError};
-use sinew_fem::{FemError, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region};
+use sinew_core::{OptionError, SetupError};
+use sinew_fem::{FemError, Model, Problem, Rayleigh};
 use sinew_mesh::structured::{Split, StructuredError, cube};
 use sinew_mesh::{GroupMembers, MshFileError, TetMesh, TetMeshError, read_msh_file};
+
+use crate::pressed;
 
 /// A body with its model.
 pub(super) struct Body {
@@ -115,29 +117,13 @@ fn body(name: String, mesh: &TetMesh, held: &str, pressed: &str) -> Result<Body,
     })
 }
 
+/// The peers' tissue with mass damping.
 fn problem(held: &str, pressed: &str) -> Problem {
     Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law: Law::Linear {
-                youngs_modulus: 3500.0,
-                poissons_ratio: 0.45,
-            },
-        }],
-        fixed: vec![Fixed {
-            on: held.into(),
-            axes: [true; 3],
-        }],
-        loads: vec![LoadSpec {
-            on: pressed.into(),
-            kind: LoadKind::Pressure(100.0),
-            ramp: Ramp::Step,
-        }],
         damping: Rayleigh {
             mass: 20.0,
             ..Rayleigh::default()
         },
-        ..Problem::default()
+        ..pressed::problem(held, pressed)
     }
 }

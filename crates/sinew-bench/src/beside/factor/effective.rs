@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use sinew_core::{LinearSystem, Ramp};
-use sinew_fem::{FemError, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region};
+use sinew_core::LinearSystem;
+use sinew_fem::{FemError, Model};
 use sinew_integrators::Combination;
 use sinew_mesh::structured::{Split, StructuredError, cube};
 use sinew_scene::output::{OutputError, OutputFolder};
+
+use crate::pressed::problem;
 
 /// Step (s).
 const DT: f64 = 0.02;
@@ -46,27 +48,7 @@ impl EffectiveMatrix {
     /// [`EffectiveMatrixError`].
     pub fn of_cube(side: usize) -> Result<Self, EffectiveMatrixError> {
         let mesh = cube(side - 1, 0.1, Split::Kuhn)?;
-        let problem = Problem {
-            regions: vec![Region {
-                group: None,
-                density: 1060.0,
-                law: Law::Linear {
-                    youngs_modulus: 3500.0,
-                    poissons_ratio: 0.45,
-                },
-            }],
-            fixed: vec![Fixed {
-                on: "sides".into(),
-                axes: [true; 3],
-            }],
-            loads: vec![LoadSpec {
-                on: "top".into(),
-                kind: LoadKind::Pressure(100.0),
-                ramp: Ramp::Step,
-            }],
-            ..Problem::default()
-        };
-        let model = Model::build(&mesh, &problem)?;
+        let model = Model::build(&mesh, &problem("sides", "top"))?;
         let mut matrix = Self {
             side,
             force: vec![0.0; model.operators().dofs()],
