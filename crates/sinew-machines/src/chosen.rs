@@ -143,7 +143,8 @@ impl Chosen {
             }
             Kind::Reference => return Box::new(ReferenceMachine::default()),
             Kind::General => None,
-            Kind::Auto | Kind::Repeated => Layout::<T>::repeated(linear),
+            Kind::Auto => Layout::<T>::repeated(linear).filter(|layout| layout.pays()),
+            Kind::Repeated => Layout::<T>::repeated(linear),
         };
         let layout = layout.unwrap_or_else(|| Layout::general(linear.operators()));
         let machine = FastMachine::new(layout).with_threads(self.settings.threads.most());

@@ -29,6 +29,14 @@ const BEGIN: usize = 2_000;
 /// Work of a sweep (microseconds, about) that is worth a thread.
 const SHARE: usize = 30;
 
+/// Bytes of matrices that stay in a second cache, and in a third.
+const SECOND_CACHE: usize = 2 << 20;
+const THIRD_CACHE: usize = 32 << 20;
+
+/// Time of a cell's map for a vector of positions, about, in that of the product of a vector with a template's block. A
+/// block that is read takes 4 of these in the second cache, 8 in the third and 12 in memory.
+const MAP: usize = 8;
+
 impl<T: Precision> Layout<T> {
     /// The rows of any matrix, each by itself; made once for all clones of the operators.
     #[must_use]
@@ -79,6 +87,23 @@ impl<T: Precision> Layout<T> {
             numbering: grid.numbering().clone(),
             blocks: blocks(operators),
         })
+    }
+
+    /// Whether templates take less time than rows that are read from memory. Short runs fill vectors badly, which free
+    /// surfaces and holes bring about, and the rows of a small body stay in a cache.
+    pub(crate) fn pays(&self) -> bool {
+        let Rows::Lattice(lattice) = &self.stiffness else {
+            return true;
+        };
+        let layers = lattice.layers();
+        let bytes = self.blocks * (layers * layers * size_of::<T>() + size_of::<u32>());
+        let block = match bytes {
+            0..SECOND_CACHE => 4,
+            SECOND_CACHE..THIRD_CACHE => 8,
+            _ => 12,
+        };
+        let of_rows = block * self.blocks / T::LANES + MAP * self.numbering.cells() / T::LANES;
+        lattice.vectors_of_blocks() + MAP * lattice.vectors_of_positions() < of_rows
     }
 
     /// The rows that kernels compute with, and what templates save.

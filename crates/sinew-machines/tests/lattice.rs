@@ -7,10 +7,11 @@
 mod bodies;
 
 use bodies::{body, bump, difference, held_cube, leapfrog, run};
-use sinew_cnn::ReferenceMachine;
+use sinew_cnn::{Machine, ReferenceMachine};
 use sinew_core::{LinearSystem, System};
 use sinew_fem::{Fixed, Law, Model, Problem, Region, SpringRule};
-use sinew_machines::{FastMachine, Layout};
+use sinew_machines::{Chosen, FastMachine, Layout, Settings};
+use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
 /// The number of templates of a body, after its motion by them has been compared with the reference
@@ -104,4 +105,62 @@ fn a_body_on_no_lattice_has_none() {
     let model = body(&mesh, "bottom");
     assert!(Layout::<f64>::repeated(&model).is_none());
     assert!(model.cell_positions().is_some());
+}
+
+/// A body of voxels: the boxes of a cube whose middles lie in an ellipsoid along its diagonal, in an eighth of its volume.
+fn voxels(cells: usize) -> Model {
+    let grid = cube(cells, 0.1, Split::Kuhn).unwrap();
+    let width = 0.1 / cells as f64;
+    let inside = |tet: &[u32; 4]| {
+        let corner = |axis: usize| tet.map(|node| grid.points[node as usize][axis]);
+        let middle = |axis: usize| {
+            let mean = corner(axis).iter().sum::<f64>() / 4.0;
+            ((mean / width).floor() + 0.5) * width - 0.05
+        };
+        let x = [middle(0), middle(1), middle(2)];
+        let along = x.iter().sum::<f64>() / 3.0_f64.sqrt();
+        let across = x.iter().map(|x| x * x).sum::<f64>() - along * along;
+        along * along / 0.0033 + across / 0.0007 < 1.0
+    };
+    let tets: Vec<[u32; 4]> = grid.tets.iter().copied().filter(inside).collect();
+    let mut number = vec![None; grid.points.len()];
+    let mut points = Vec::new();
+    let tets = tets.iter().map(|tet| {
+        tet.map(|node| {
+            *number[node as usize].get_or_insert_with(|| {
+                points.push(grid.points[node as usize]);
+                points.len() as u32 - 1
+            })
+        })
+    });
+    let tets = tets.collect();
+    let mesh = TetMesh {
+        tets,
+        points,
+        groups: Vec::new(),
+        ..grid
+    };
+    let problem = Problem {
+        regions: vec![Region {
+            group: None,
+            density: 1060.0,
+            law: bodies::TISSUE,
+        }],
+        ..Problem::default()
+    };
+    Model::build(&mesh, &problem).unwrap()
+}
+
+/// Small ones stay in a cache, where short runs cost more than they save: templates take 1.3 times as long on a ball of 12
+/// cells, and .6 on this body of 24.
+#[test]
+fn voxels_repeat_and_are_taken_by_templates_where_that_pays() {
+    for (cells, taken) in [(16, "general"), (24, "repeated")] {
+        let system = voxels(cells);
+        assert!(templates(&system) > 20, "{cells}");
+        let (program, _) = leapfrog(&system, 0.9);
+        let mut machine = Chosen::new(Settings::default());
+        machine.load(program, &system);
+        assert_eq!(machine.name(), taken, "{cells}");
+    }
 }

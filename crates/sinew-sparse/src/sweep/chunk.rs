@@ -175,6 +175,14 @@ pub(super) unsafe fn run<T: Precision, V: Lanes<T>, const L: usize>(
         .any(|update| update.clamp.is_some());
     let all = sweep.fields.positions() / T::LANES;
     for chunk in chunks {
+        // Empty places hold zeros, which every map keeps.
+        if sweep
+            .matrices
+            .first()
+            .is_some_and(|rows| rows.is_empty(chunk))
+        {
+            continue;
+        }
         let vectors = chunk * CHUNK..((chunk + 1) * CHUNK).min(all);
         let place = Place::<T, L> {
             fields: sweep.fields,

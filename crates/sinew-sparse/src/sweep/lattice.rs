@@ -4,6 +4,7 @@
 
 use std::ops::Range;
 
+use super::CHUNK;
 use crate::simd::{At, Lanes, Real};
 
 /// Rows of a matrix on the positions of a lattice, each template stored once: what neighbours a row
@@ -47,6 +48,28 @@ impl<T: Real> Lattice<T> {
     #[must_use]
     pub fn layers(&self) -> usize {
         self.layers
+    }
+
+    /// Vectors of blocks that a product multiplies with: short runs and empty places among them are multiplied too.
+    #[must_use]
+    pub fn vectors_of_blocks(&self) -> usize {
+        let of_run = |run: &Run| {
+            let template = run.template as usize;
+            let blocks = self.starts[template + 1] - self.starts[template];
+            run.vectors as usize * blocks as usize
+        };
+        self.runs.iter().map(of_run).sum()
+    }
+
+    /// Vectors of positions in chunks that have rows.
+    #[must_use]
+    pub fn vectors_of_positions(&self) -> usize {
+        let chunks = 0..self.first_run.len() - 1;
+        CHUNK * chunks.filter(|chunk| !self.is_empty(*chunk)).count()
+    }
+
+    pub(super) fn is_empty(&self, chunk: usize) -> bool {
+        self.first_run[chunk] == self.first_run[chunk + 1]
     }
 
     pub(super) fn is_on(&self, positions: usize, layers: usize) -> bool {

@@ -27,6 +27,14 @@ impl<T: Real> Rows<T> {
         }
     }
 
+    /// Whether a chunk has no rows at all.
+    pub(super) fn is_empty(&self, chunk: usize) -> bool {
+        match self {
+            Self::General(_) => false,
+            Self::Lattice(lattice) => lattice.is_empty(chunk),
+        }
+    }
+
     /// Whether it is a matrix on the positions of these vectors, none of which it reads beyond their room.
     pub(super) fn fits(&self, fields: &Fields<T>) -> bool {
         match self {

@@ -11,8 +11,8 @@ use crate::simd::Real;
 /// Share of the spacing by which a cell may miss its place.
 const OFF_PLACE: f64 = 1e-4;
 
-/// Most places for each cell: kernels compute at empty ones too.
-const MOST_PLACES: f64 = 2.0;
+/// Most places for each cell: vectors have room for empty ones too.
+const MOST_PLACES: f64 = 12.0;
 
 /// Difference between entries that counts as rounding of the same template, as a share of the largest
 /// entry of the matrix: coordinates of cells are rounded.
