@@ -76,8 +76,8 @@ pub trait System: Send + Sync {
         None
     }
 
-    /// The largest ratio of any material's stiffness against compression to that against shear, `(lambda + 2 mu)/mu`,
-    /// where the system knows it: what rounding a stiffness costs grows with it.
+    /// The largest stiffness of any material against compression, `lambda + 2 mu`, over the smallest of any against shear,
+    /// mu, where the system knows them: what rounding a stiffness costs grows with it.
     fn stiffness_contrast(&self) -> Option<f64> {
         None
     }

@@ -64,14 +64,14 @@ impl Material {
         }
     }
 
-    /// Its stiffness against compression over that against shear, `(lambda + 2 mu)/mu`.
-    pub(crate) fn stiffness_contrast(&self) -> f64 {
+    /// Its stiffness (Pa) against compression, `lambda + 2 mu`, and against shear, mu.
+    pub(crate) fn compression_and_shear(&self) -> (f64, f64) {
         match *self {
             Self::Continuum {
                 lame: (first, shear),
-            } => (first + 2.0 * shear) / shear,
-            // lambda = mu for any springs (Cauchy's relations).
-            Self::Springs { .. } => 3.0,
+            } => (first + 2.0 * shear, shear),
+            // nu = 1/4 and thus lambda = mu for any springs (Cauchy's relations).
+            Self::Springs { youngs_modulus, .. } => (1.2 * youngs_modulus, 0.4 * youngs_modulus),
         }
     }
 

@@ -11,7 +11,9 @@ use sinew_core::{
     Equations, EvaluationError, ForceLaw, Layers, LoadTime, OptionError, Revision, SetupError,
     State, System, Trial,
 };
-use sinew_fem::{Law, Model};
+use sinew_fem::{Law, Model, Problem, Region};
+use sinew_mesh::structured::{self, Split};
+use sinew_mesh::{Group, GroupMembers};
 
 /// A mass on a string of 1 m.
 struct Pendulum {
@@ -189,4 +191,44 @@ fn machines_that_do_not_fit_are_refused_and_none_takes_their_place() {
     let message = build("propagator", &krylov).prepare(&cube(3), 1e-3);
     let message = message.unwrap_err().to_string();
     assert!(message.contains("no machine runs these steps"), "{message}");
+}
+
+#[test]
+fn stiffnesses_too_far_apart_for_24_bits_are_refused() {
+    let law = |factor: f64| Law::Linear {
+        youngs_modulus: factor * 3500.0,
+        poissons_ratio: 0.45,
+    };
+    let mut mesh = structured::cube(3, 0.1, Split::Kuhn).unwrap();
+    let count = mesh.tets.len() as u32;
+    mesh.groups = [("stiff", 1, 0..6), ("soft", 2, 6..count)]
+        .map(|(name, tag, members)| Group {
+            name: name.into(),
+            dim: 3,
+            tag,
+            members: GroupMembers::Tets(members.collect()),
+        })
+        .into();
+    let prepared = |factor: f64| {
+        let region = |group: &str, law: Law| Region {
+            group: Some(group.into()),
+            density: 1060.0,
+            law,
+        };
+        let problem = Problem {
+            regions: vec![region("stiff", law(factor)), region("soft", law(1.0))],
+            ..Problem::default()
+        };
+        let model = Model::build(&mesh, &problem).unwrap();
+        let options = plain().with_text("precision", "f32");
+        let mut method = sinew_integrators::build("rk4", &options).unwrap();
+        method
+            .prepare(&model, 1e-5)
+            .map(|_| method.computed_by().join("; "))
+    };
+    // (lambda + 2 mu)/mu is 11 at nu = .45.
+    let said = prepared(1e3).unwrap();
+    assert!(said.contains("off by about 1.6e-2 of their size"), "{said}");
+    let refused = prepared(1e6).unwrap_err().to_string();
+    assert!(refused.contains("may be off by 1639 %"), "{refused}");
 }

@@ -159,9 +159,7 @@ impl<T: Precision> Layout<T> {
         let Rows::General(sell) = &mut self.stiffness else {
             return false;
         };
-        for cell in cells {
-            sell.set_row(operators.stiffness(), &self.numbering, *cell);
-        }
+        sell.take_rows(operators.stiffness(), &self.numbering, cells);
         true
     }
 }

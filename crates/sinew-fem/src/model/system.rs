@@ -41,8 +41,10 @@ impl System for Model {
     }
 
     fn stiffness_contrast(&self) -> Option<f64> {
-        let contrasts = self.materials.iter().map(Material::stiffness_contrast);
-        contrasts.reduce(f64::max)
+        let of = |material: &Material| material.compression_and_shear();
+        let stiffest = self.materials.iter().map(|material| of(material).0);
+        let softest = self.materials.iter().map(|material| of(material).1);
+        Some(stiffest.reduce(f64::max)? / softest.reduce(f64::min)?)
     }
 
     /// The energy of the degrees of freedom, without the energy that supports in motion hold and store.

@@ -54,12 +54,14 @@ pub(super) fn section(simulation: &Simulation) -> PlanSection {
     let entries = sinew_integrators::entries();
     let mut own = entries.iter().filter(|entry| entry.id == id);
     let tells = own.any(|entry| entry.substeps || entry.programs);
-    if tells
-        && let Ok(mut integrator) = simulation.integrator()
-        && integrator.prepare(simulation.system(), *dt).is_ok()
-    {
-        lines.extend(integrator.computed_by());
-        lines.extend(integrator.remarks());
+    if tells && let Ok(mut integrator) = simulation.integrator() {
+        match integrator.prepare(simulation.system(), *dt) {
+            Ok(_) => {
+                lines.extend(integrator.computed_by());
+                lines.extend(integrator.remarks());
+            }
+            Err(refused) => lines.push(format!("it is refused: {refused}")),
+        }
     }
     PlanSection::new("run", lines)
 }

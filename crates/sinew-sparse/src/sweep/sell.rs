@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use super::numbering::Numbering;
-use super::rounding::round_row;
+use super::rounding::{Units, round_row};
 use crate::BlockMatrix;
 use crate::simd::{At, Lanes, Real};
 
@@ -25,6 +25,7 @@ pub struct Sell<T> {
     columns: Vec<u32>,
     /// Entries of each block, entry by entry and lane by lane.
     values: Vec<T>,
+    units: Units,
     /// Blocks by which memory is asked for before it is needed: a product streams through it.
     ahead: usize,
 }
@@ -51,6 +52,7 @@ impl<T: Real> Sell<T> {
             starts,
             columns: vec![0; blocks as usize * lanes],
             values: vec![T::default(); blocks as usize * entries],
+            units: Units::of::<T>(matrix),
             ahead: 4,
         };
         if sell.bytes() > IN_CACHE {
@@ -69,8 +71,23 @@ impl<T: Real> Sell<T> {
         sell
     }
 
-    /// Takes the values of a cell's row again.
-    pub fn set_row(&mut self, matrix: &BlockMatrix, numbering: &Numbering, cell: u32) {
+    /// Takes the rows of some cells again. Where digits are few, their neighbours' rows follow, so that the matrix
+    /// stays symmetric.
+    pub fn take_rows(&mut self, matrix: &BlockMatrix, numbering: &Numbering, cells: &[u32]) {
+        for cell in cells {
+            self.units.renew::<T>(matrix, *cell as usize);
+        }
+        for cell in cells {
+            self.set_row(matrix, numbering, *cell);
+            if !self.units.is_empty() {
+                for neighbour in matrix.pattern().neighbours(*cell as usize) {
+                    self.set_row(matrix, numbering, *neighbour);
+                }
+            }
+        }
+    }
+
+    fn set_row(&mut self, matrix: &BlockMatrix, numbering: &Numbering, cell: u32) {
         let lanes = T::LANES;
         let position = numbering.position(cell);
         let (slice, lane) = (position / lanes, position % lanes);
@@ -81,9 +98,12 @@ impl<T: Real> Sell<T> {
             self.columns[block * lanes + lane] = numbering.position(*neighbour) as u32;
         }
         let own = neighbours.partition_point(|neighbour| *neighbour < cell);
-        let row = matrix.row_blocks(cell as usize).map(|(_, block)| block);
+        let cell = cell as usize;
+        let row = matrix.row_blocks(cell);
+        let row = row.map(|(column, block)| (block, self.units.between(cell, column)));
+        let values = &mut self.values;
         round_row(row, own, self.layers, |block, entry, value| {
-            self.values[((first + block) * entries + entry) * lanes + lane] = value;
+            values[((first + block) * entries + entry) * lanes + lane] = value;
         });
     }
 

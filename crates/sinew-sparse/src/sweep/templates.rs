@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::lattice::{Lattice, Run};
-use super::rounding::round_row;
+use super::rounding::{Units, round_row};
 use super::{CHUNK, Numbering};
 use crate::BlockMatrix;
 use crate::simd::Real;
@@ -15,8 +15,18 @@ const OFF_PLACE: f64 = 1e-4;
 const MOST_PLACES: f64 = 12.0;
 
 /// Difference between entries that counts as rounding of the same template, as a share of the largest
-/// entry of the matrix: coordinates of cells are rounded.
+/// entry of the row: coordinates of cells are rounded.
 const SAME: f64 = 1e-13;
+
+/// The difference between entries of a row that counts as rounding. In powers of two, so that rows that are equal but
+/// for rounding have the same.
+fn same<'a>(entries: impl Iterator<Item = &'a f64>) -> f64 {
+    let largest = entries.fold(0.0, |most: f64, entry| entry.abs().max(most));
+    match largest > 0.0 {
+        true => SAME * largest.log2().ceil().exp2(),
+        false => 0.0,
+    }
+}
 
 /// Fewest cells for each template, on average: with fewer, little is repeated.
 const FEWEST_CELLS: usize = 8;
@@ -139,6 +149,8 @@ fn places(points: &[[f64; 3]], axis: usize) -> Option<Vec<i32>> {
 /// Rows that differ by their numbers only in rounding.
 struct Template {
     offsets: Vec<i32>,
+    /// Unit of each block's entries, see [`units`].
+    units: Vec<f64>,
     blocks: Vec<f64>,
     rows: usize,
 }
@@ -148,7 +160,7 @@ impl<T: Real> Lattice<T> {
     /// not next to it.
     #[must_use]
     pub fn new(matrix: &BlockMatrix, grid: &Grid) -> Option<Self> {
-        let (templates, mut of_cell) = find(matrix, grid)?;
+        let (templates, mut of_cell) = find(matrix, &Units::of::<T>(matrix), grid)?;
         merge(&templates, grid, &mut of_cell);
         let used = number_used(templates.len(), &mut of_cell);
         let layers = matrix.layers().count();
@@ -164,21 +176,20 @@ impl<T: Real> Lattice<T> {
         };
         for template in used {
             let Template {
-                offsets, blocks, ..
+                offsets,
+                units,
+                blocks,
+                ..
             } = &templates[template];
             lattice.offsets.extend(offsets);
             let entries = layers * layers;
             let first = lattice.blocks.len();
             lattice.blocks.resize(first + blocks.len(), T::default());
             let own = offsets.partition_point(|offset| *offset < 0);
-            round_row(
-                blocks.chunks_exact(entries),
-                own,
-                layers,
-                |block, entry, value| {
-                    lattice.blocks[first + block * entries + entry] = value;
-                },
-            );
+            let row = blocks.chunks_exact(entries).zip(units.iter().copied());
+            round_row(row, own, layers, |block, entry, value| {
+                lattice.blocks[first + block * entries + entry] = value;
+            });
             lattice.starts.push(lattice.offsets.len() as u32);
         }
         lattice.add_runs(grid, &of_cell);
@@ -227,24 +238,27 @@ impl<T: Real> Lattice<T> {
 }
 
 /// The templates of all rows, and which is whose.
-fn find(matrix: &BlockMatrix, grid: &Grid) -> Option<(Vec<Template>, Vec<u32>)> {
+fn find(matrix: &BlockMatrix, units: &Units, grid: &Grid) -> Option<(Vec<Template>, Vec<u32>)> {
     let cells = matrix.pattern().cells();
     let layers = matrix.layers().count();
-    let sizes = matrix.values().iter().map(|entry| entry.abs());
-    let same = SAME * sizes.fold(0.0, f64::max);
     let mut templates: Vec<Template> = Vec::new();
     let mut of_cell = Vec::with_capacity(cells);
     // Templates by their offsets and a sum of their entries, which rounding may move to the next number.
     let mut known: HashMap<(Vec<i32>, i64), Vec<u32>> = HashMap::new();
-    let mut row: Vec<(i32, &[f64])> = Vec::new();
+    let mut row: Vec<(i32, &[f64], f64)> = Vec::new();
     let mut key = (Vec::new(), 0);
     for cell in 0..cells {
         row.clear();
         for (column, block) in matrix.row_blocks(cell) {
-            row.push((grid.offset(cell, column)?, block));
+            row.push((
+                grid.offset(cell, column)?,
+                block,
+                units.between(cell, column),
+            ));
         }
-        row.sort_unstable_by_key(|(offset, _)| *offset);
-        let sum: f64 = row.iter().flat_map(|(_, block)| block.iter()).sum();
+        row.sort_unstable_by_key(|(offset, ..)| *offset);
+        let same = same(row.iter().flat_map(|(_, block, _)| block.iter()));
+        let sum: f64 = row.iter().flat_map(|(_, block, _)| block.iter()).sum();
         let entries = row.len() * layers * layers;
         let width = 4.0 * same * entries as f64;
         let step = if width > 0.0 {
@@ -253,14 +267,16 @@ fn find(matrix: &BlockMatrix, grid: &Grid) -> Option<(Vec<Template>, Vec<u32>)> 
             0
         };
         key.0.clear();
-        key.0.extend(row.iter().map(|(offset, _)| *offset));
+        key.0.extend(row.iter().map(|(offset, ..)| *offset));
         let mut found = None;
         for near in [step, step - 1, step + 1] {
             key.1 = near;
             let like = |number: &&u32| {
-                let blocks = templates[**number as usize].blocks.iter();
-                let row = row.iter().flat_map(|(_, block)| block.iter());
-                row.zip(blocks).all(|(a, b)| (a - b).abs() <= same)
+                let template = &templates[**number as usize];
+                let units = row.iter().map(|(.., unit)| unit);
+                let entries = row.iter().flat_map(|(_, block, _)| block.iter());
+                let mut pairs = entries.zip(&template.blocks);
+                units.eq(&template.units) && pairs.all(|(a, b)| (a - b).abs() <= same)
             };
             found = known
                 .get(&key)
@@ -280,9 +296,10 @@ fn find(matrix: &BlockMatrix, grid: &Grid) -> Option<(Vec<Template>, Vec<u32>)> 
                 known.entry(key.clone()).or_default().push(number);
                 templates.push(Template {
                     offsets: key.0.clone(),
+                    units: row.iter().map(|(.., unit)| *unit).collect(),
                     blocks: row
                         .iter()
-                        .flat_map(|(_, block)| block.iter().copied())
+                        .flat_map(|(_, block, _)| block.iter().copied())
                         .collect(),
                     rows: 0,
                 });
@@ -301,15 +318,13 @@ fn merge(templates: &[Template], grid: &Grid, of_cell: &mut [u32]) {
     let mut frequent: Vec<usize> = (0..templates.len()).collect();
     frequent.sort_by_key(|number| std::cmp::Reverse(templates[*number].rows));
     frequent.truncate(MERGED_INTO);
-    let sizes = templates.iter().flat_map(|template| &template.blocks);
-    let same = SAME * sizes.fold(0.0, |most: f64, entry| entry.abs().max(most));
     // The larger templates of each, with the neighbours that they have more.
     let larger: Vec<Vec<(usize, Vec<i32>)>> = templates
         .iter()
         .map(|small| {
             let larger = frequent.iter();
             let larger = larger.filter_map(|number| {
-                let more = templates[*number].more_than(small, same)?;
+                let more = templates[*number].more_than(small)?;
                 Some((*number, more))
             });
             larger.collect()
@@ -328,27 +343,30 @@ fn merge(templates: &[Template], grid: &Grid, of_cell: &mut [u32]) {
 }
 
 impl Template {
+    /// Offset and unit of each block, with its entries.
+    fn places(&self) -> impl Iterator<Item = ((i32, f64), &[f64])> {
+        let len = self.blocks.len() / self.offsets.len();
+        let places = self.offsets.iter().copied().zip(self.units.iter().copied());
+        places.zip(self.blocks.chunks_exact(len))
+    }
+
     /// The offsets that this has and `small` has not, where all else is the same.
-    fn more_than(&self, small: &Self, same: f64) -> Option<Vec<i32>> {
+    fn more_than(&self, small: &Self) -> Option<Vec<i32>> {
         if self.offsets.len() <= small.offsets.len() {
             return None;
         }
-        let len = self.blocks.len() / self.offsets.len();
+        let same = same(self.blocks.iter());
         let mut more = Vec::new();
-        let mut blocks = small
-            .offsets
-            .iter()
-            .zip(small.blocks.chunks_exact(len))
-            .peekable();
-        for (offset, block) in self.offsets.iter().zip(self.blocks.chunks_exact(len)) {
-            match blocks.next_if(|(of_small, _)| *of_small == offset) {
-                Some((_, of_small)) => {
-                    let mut entries = block.iter().zip(of_small);
-                    if !entries.all(|(a, b)| (a - b).abs() <= same) {
+        let mut blocks = small.places().peekable();
+        for (place, block) in self.places() {
+            match blocks.next_if(|(of_small, _)| of_small.0 == place.0) {
+                Some((of_small, entries)) => {
+                    let mut pairs = block.iter().zip(entries);
+                    if of_small.1 != place.1 || !pairs.all(|(a, b)| (a - b).abs() <= same) {
                         return None;
                     }
                 }
-                None => more.push(*offset),
+                None => more.push(place.0),
             }
         }
         blocks.peek().is_none().then_some(more)
