@@ -6,8 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Lists of runs, which are about certain methods.
-const LISTS: [&str; 6] = [
+const LISTS: [&str; 8] = [
     "sinew-bench/src/kernels/laps.rs",
+    "sinew-bench/src/scale/methods.rs",
+    "sinew-bench/src/scale/newmark.rs",
     "sinew-bench/src/hard/cases.rs",
     "sinew-bench/src/hard/methods.rs",
     "sinew-bench/src/hard/maps.rs",
