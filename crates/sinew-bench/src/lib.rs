@@ -8,6 +8,7 @@ pub mod beside;
 pub mod hard;
 pub mod kernels;
 mod machine;
+mod median;
 pub mod peers;
 mod pressed;
 pub mod report;

@@ -9,7 +9,7 @@ use crate::OptionHelp;
 
 const MACHINE: OptionHelp = OptionHelp {
     key: "machine",
-    help: "\"auto\" (templates where rows repeat on a lattice, else the general kernels), \"reference\" \
+    help: "\"auto\" (templates where rows repeat on a lattice and that pays, else the general kernels), \"reference\" \
            (plain loops), \"general\" or \"repeated\"; default \"auto\"",
     shown_default: None,
 };

@@ -48,10 +48,10 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Whether a system fits what they ask for; what is left to the machine always does.
+    /// Checks that what they ask for can be had on a system.
     ///
     /// # Errors
-    /// [`Unfit`] where it does not.
+    /// [`Unfit`] where it cannot.
     pub fn check(&self, system: &dyn System) -> Result<(), Unfit> {
         match self.precision {
             PrecisionName::F64 => self.check_in::<f64>(system),
@@ -108,7 +108,7 @@ impl Threads {
 const FEWEST_CELLS: usize = 16;
 
 /// A machine chosen for each system that it is given, as its settings say: the reference machine where
-/// forces follow from a law, templates where rows repeat, and the general kernels everywhere else.
+/// forces follow from a law, templates where rows repeat and that pays, and the general kernels everywhere else.
 #[derive(Debug, Default)]
 pub struct Chosen {
     settings: Settings,

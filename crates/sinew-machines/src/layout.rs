@@ -95,9 +95,7 @@ impl<T: Precision> Layout<T> {
         let Rows::Lattice(lattice) = &self.stiffness else {
             return true;
         };
-        let layers = lattice.layers();
-        let bytes = self.blocks * (layers * layers * size_of::<T>() + size_of::<u32>());
-        let block = match bytes {
+        let block = match self.bytes_of_rows(lattice) {
             0..SECOND_CACHE => 4,
             SECOND_CACHE..THIRD_CACHE => 8,
             _ => 12,
@@ -106,19 +104,23 @@ impl<T: Precision> Layout<T> {
         lattice.vectors_of_blocks() + MAP * lattice.vectors_of_positions() < of_rows
     }
 
+    /// Bytes of the rows that templates stand for, each by itself.
+    fn bytes_of_rows(&self, lattice: &Lattice<T>) -> usize {
+        let layers = lattice.layers();
+        self.blocks * (layers * layers * size_of::<T>() + size_of::<u32>())
+    }
+
     /// The rows that kernels compute with, and what templates save.
     pub(crate) fn in_words(&self) -> String {
         let cells = self.numbering.cells();
         match &self.stiffness {
             Rows::General(_) => format!("rows of any mesh ({cells}, {})", size(self.bytes())),
             Rows::Lattice(rows) => {
-                let layers = rows.layers();
-                let block = layers * layers * size_of::<T>() + size_of::<u32>();
                 format!(
                     "{} templates in the place of {cells} rows ({} for {})",
                     rows.templates(),
                     size(self.bytes()),
-                    size(self.blocks * block)
+                    size(self.bytes_of_rows(rows))
                 )
             }
         }

@@ -5,6 +5,7 @@ use std::error::Error;
 use sinew_core::{Integrator, Run, SimulateError, State, simulate};
 
 use super::pilots::{Target, pilots};
+use crate::median::median_of_sorted;
 use sinew_measure::reference::ErrorNorm;
 use sinew_measure::{
     Case, MeasureError, MethodChoice, ThreadError, on_one_thread, thread_cpu_time,
@@ -85,7 +86,7 @@ impl Pair {
     /// Median of the ratios.
     #[must_use]
     pub fn median(&self) -> f64 {
-        median(&self.ratios)
+        median_of_sorted(&self.ratios)
     }
 }
 
@@ -158,7 +159,7 @@ fn run_here(
         }
     }
     laps.sort_by(f64::total_cmp);
-    let lap = median(&laps);
+    let lap = median_of_sorted(&laps);
     let pairs = targets.into_iter().zip(ratios).map(|(target, mut ratios)| {
         ratios.sort_by(f64::total_cmp);
         Pair {
@@ -233,9 +234,4 @@ fn apart(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
         return f64::INFINITY;
     }
     ErrorNorm::between(a, b)
-}
-
-/// The middle of sorted values.
-pub(super) fn median(sorted: &[f64]) -> f64 {
-    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
 }

@@ -16,6 +16,7 @@ use super::bodies::{Body, KernelBenchError};
 use super::memory::bandwidth;
 use super::row::KernelRow;
 use super::variant::{Variant, variants};
+use crate::median::median;
 
 /// Share of the stable step that steps take.
 const SHARE: f64 = 0.9;
@@ -97,8 +98,7 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
     let cells = dofs / layers.count();
     let vectors = program.traffic().vector_bytes(layers) * cells as f64;
     let operations = operations(&program, model);
-    plain.sort_unstable_by(f64::total_cmp);
-    let gain_without_checks = plain[plain.len() / 2];
+    let gain_without_checks = median(&mut plain);
     let mut rows = Vec::new();
     for mut runner in runners {
         let allocations = runner.allocations(model, dt);
@@ -108,14 +108,13 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
         };
         let bytes_per_step = runner.bytes as f64 + number * vectors;
         let mut ratios: Vec<f64> = runner.laps.iter().map(|[b1, own]| b1 / own).collect();
-        ratios.sort_unstable_by(f64::total_cmp);
+        let ratio_to_b1 = median(&mut ratios);
         let mut times: Vec<f64> = runner
             .laps
             .iter()
             .map(|[_, own]| own / steps as f64)
             .collect();
-        times.sort_unstable_by(f64::total_cmp);
-        let step_s = times[times.len() / 2];
+        let step_s = median(&mut times);
         rows.push(KernelRow {
             mesh: body.name.clone(),
             nodes: body.nodes,
@@ -130,8 +129,8 @@ pub(super) fn rows(body: &Body, quick: bool) -> Result<Vec<KernelRow>, KernelBen
             },
             instructions: runner.instructions,
             threads: runner.variant.threads,
-            ratio_to_b1: ratios[ratios.len() / 2],
-            ratio_to_b1_without_checks: ratios[ratios.len() / 2] / gain_without_checks,
+            ratio_to_b1,
+            ratio_to_b1_without_checks: ratio_to_b1 / gain_without_checks,
             ratios: [ratios[0], ratios[ratios.len() - 1]],
             step_s,
             difference: runner.difference,

@@ -78,7 +78,8 @@ impl ScaleBench {
             fits: Vec::new(),
             skipped: Vec::new(),
         };
-        let (variants, of) = (variants(), self.sizes().len() * variants().len());
+        let variants = variants();
+        let of = self.sizes().len() * variants.len();
         let mut done = 0;
         for cells in self.sizes() {
             let mut show = |done, what| progress(Progress::Run { done, of, what });

@@ -22,12 +22,8 @@ pub(super) fn refused(rows: &[ScaleRow], tets: f64) -> Option<String> {
 }
 
 fn judged(rows: &[ScaleRow], tets: f64, most: f64) -> Option<String> {
-    let mut before = rows.iter().filter(|row| row.integrator == "newmark");
-    let mut last = before.next_back();
-    let Some(row) = last.take() else {
-        // A body smaller than the smallest one, or one after a factor that was not tried.
-        return None;
-    };
+    // The first body has none before it, and is tried.
+    let row = rows.iter().rfind(|row| row.integrator == "newmark")?;
     let times = tets / row.tets as f64;
     let bytes = row
         .bytes_per_tet

@@ -10,6 +10,7 @@ use super::cube::Cube;
 use super::error::ScaleError;
 use super::methods::Variant;
 use super::row::ScaleRow;
+use crate::median::median;
 
 /// Most laps, and the time (s) after which no further one is begun.
 const LAPS: usize = 5;
@@ -39,18 +40,16 @@ fn row_here(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, ScaleError> 
     let setup_wall_s = wall.elapsed().as_secs_f64();
     let setup_cpu_s = (process_cpu_time() - cpu).as_secs_f64();
 
-    let (mut laps, mut spent) = (Vec::new(), 0.0);
-    while laps.is_empty() || laps.len() < LAPS && spent < BUDGET {
+    let (mut cpu_times, mut wall_times, mut spent) = (Vec::new(), Vec::new(), 0.0);
+    while wall_times.is_empty() || wall_times.len() < LAPS && spent < BUDGET {
         state.clone_from(start);
         let (cpu, wall) = (process_cpu_time(), Instant::now());
         simulate(system, &mut *integrator, &mut state, &run, &mut ())
             .map_err(MeasureError::from)?;
-        let lap = [
-            (process_cpu_time() - cpu).as_secs_f64(),
-            wall.elapsed().as_secs_f64(),
-        ];
-        spent += lap[1];
-        laps.push(lap);
+        cpu_times.push((process_cpu_time() - cpu).as_secs_f64());
+        let wall = wall.elapsed().as_secs_f64();
+        wall_times.push(wall);
+        spent += wall;
     }
     let bytes = CountingAllocator::live_bytes().saturating_sub(before);
     let body = &cube.body;
@@ -71,19 +70,13 @@ fn row_here(cube: &mut Cube, variant: &Variant) -> Result<ScaleRow, ScaleError> 
         error: compared.error,
         error_is_below: compared.error_is_below,
         reference_error: body.reference_error,
-        cpu_s_per_s: median(laps.iter().map(|lap| lap[0])) / simulated,
-        wall_s_per_s: median(laps.iter().map(|lap| lap[1])) / simulated,
-        laps: laps.len(),
+        cpu_s_per_s: median(&mut cpu_times) / simulated,
+        wall_s_per_s: median(&mut wall_times) / simulated,
+        laps: wall_times.len(),
         setup_cpu_s,
         setup_wall_s,
         bytes_per_tet: (bytes > 0).then(|| bytes as f64 / body.tets as f64),
     })
-}
-
-fn median(times: impl Iterator<Item = f64>) -> f64 {
-    let mut times: Vec<f64> = times.collect();
-    times.sort_unstable_by(f64::total_cmp);
-    times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 /// A body on matrices of its own, of which nothing has been derived yet: what a method's first set-up finds.
@@ -136,6 +129,10 @@ impl System for Fresh<'_> {
 
     fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
         self.body.cell_positions()
+    }
+
+    fn stiffness_contrast(&self) -> Option<f64> {
+        self.body.stiffness_contrast()
     }
 
     fn extent(&self) -> Option<f64> {

@@ -21,9 +21,9 @@ pub use pilots::{CasePilots, Pilot, PilotError, Pilots, UnfitLoads};
 use sinew_core::Options;
 use sinew_integrators::LEAST_F32_ROUNDING;
 
-use crate::Span;
 use crate::method_choice::MethodChoice;
 use crate::timing::Effort;
+use crate::{Row, Span};
 use trail::{Aim, Trail};
 
 /// Costs that differ by less than this share count as equal: times repeat no better.
@@ -170,14 +170,20 @@ impl<P: Pilots> Search<P> {
             Some((single, pilot.row))
         });
         for (method, row) in close.take(MOST_AGAIN) {
-            let run = row.cpu_s_per_s * self.span.duration;
-            if row.setup_cpu_s + 2.0 * run > self.pilots.left() {
-                self.cut_short = true;
-                continue;
+            let known = |run: &Pilot| run.method == method && run.row.dt == row.dt;
+            if !self.runs().any(known) && self.can_repeat(&row, 0.0) {
+                // What refuses single precision stays as it is.
+                let _ = self.include(&method, row.dt);
             }
-            // What refuses single precision stays as it is.
-            let _ = self.include(&method, row.dt);
         }
+    }
+
+    /// Whether there is time for a run like this one again, timed for `least` (s) or more.
+    fn can_repeat(&mut self, row: &Row, least: f64) -> bool {
+        let run = row.cpu_s_per_s * self.span.duration;
+        let can = row.setup_cpu_s + (2.0 * run).max(least) <= self.pilots.left();
+        self.cut_short |= !can;
+        can
     }
 
     /// Measures the cost of the cheapest runs for a goal again and longer, so that the choice
@@ -194,9 +200,7 @@ impl<P: Pilots> Search<P> {
         let close: Vec<Pilot> = close.take(MOST_AGAIN).cloned().collect();
         for pilot in close {
             let row = &pilot.row;
-            let run = row.cpu_s_per_s * self.span.duration;
-            if row.setup_cpu_s + (2.0 * run).max(EFFORT.budget) > self.pilots.left() {
-                self.cut_short = true;
+            if !self.can_repeat(row, EFFORT.budget) {
                 continue;
             }
             if let Ok(mut again) = self.pilots.measure(&pilot.method, row.dt, EFFORT) {

@@ -4,8 +4,9 @@ use sinew_core::LinearSystem;
 use sinew_integrators::{Factor, FactorError};
 use sinew_measure::{ThreadError, on_one_thread, thread_cpu_time};
 
-use super::super::laps::{RivalError, Rounds, median};
+use super::super::laps::{RivalError, Rounds};
 use super::effective::EffectiveMatrix;
+use crate::median::median_of_sorted;
 
 /// Another library with the factor of one matrix.
 pub trait FactorLibrary {
@@ -128,6 +129,6 @@ impl FactorPair {
     /// Medians of the ratios: factorisation and solution.
     #[must_use]
     pub fn medians(&self) -> [f64; 2] {
-        [median(&self.factorise), median(&self.solve)]
+        [&self.factorise, &self.solve].map(|ratios| median_of_sorted(ratios))
     }
 }

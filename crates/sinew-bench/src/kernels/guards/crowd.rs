@@ -7,9 +7,10 @@ use sinew_fem::Model;
 use sinew_machines::{FastMachine, Layout};
 
 use super::guard::{Guard, Limit};
-use super::runner::{Runner, median};
+use super::runner::Runner;
 use crate::kernels::bodies::{KernelBenchError, cube_body};
 use crate::kernels::laps::central_difference;
+use crate::median::median;
 
 /// Wall time of several threads over that of one, at most.
 const MOST: f64 = 1.1;

@@ -6,9 +6,10 @@ use sinew_fem::Model;
 use sinew_machines::{FastMachine, Layout};
 
 use super::guard::{Guard, Limit};
-use super::runner::{Runner, median};
+use super::runner::Runner;
 use crate::kernels::bodies::{KernelBenchError, damped_cube};
 use crate::kernels::laps::central_difference;
+use crate::median::median;
 
 /// Slowest stretch over the beginning, at most.
 const MOST: f64 = 1.1;

@@ -7,9 +7,10 @@ use sinew_sparse::simd::InstructionSet;
 use sinew_sparse::sweep::Precision;
 
 use super::guard::{Guard, Limit};
-use super::runner::{Runner, median};
+use super::runner::Runner;
 use crate::kernels::bodies::{KernelBenchError, cube_body};
 use crate::kernels::laps::central_difference;
+use crate::median::median;
 
 /// By how much the best set is faster at least; less, and a kernel was compiled without it.
 const LEAST: f64 = 1.2;

@@ -41,9 +41,3 @@ impl<'a> Runner<'a> {
         (wall.elapsed().as_secs_f64(), cpu)
     }
 }
-
-/// The middle of some values.
-pub(super) fn median(values: &mut [f64]) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    values[values.len() / 2]
-}
