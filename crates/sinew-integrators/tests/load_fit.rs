@@ -14,7 +14,7 @@ use proptest::prelude::*;
 use sinew_core::spectrum::critical_step;
 use sinew_core::{
     BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
-    OptionValue, Options, Pattern, Ramp, State, System,
+    OptionValue, Options, Pattern, Ramp, SetupError, State, StepError, System,
 };
 use sinew_integrators::Stepper;
 use sinew_testkit::body::bodies_up_to;
@@ -68,6 +68,15 @@ fn modes(squares: &[f64], forces: &[f64], alpha: f64) -> LinearModel {
 /// Largest amplitude of any mode about its equilibrium in so many steps, over that of the exact motion, from a
 /// velocity alone and from a displacement alone.
 fn largest_amplitude(system: &LinearModel, dt: f64, tolerance: f64, steps: usize) -> f64 {
+    try_largest_amplitude(system, dt, tolerance, steps).unwrap()
+}
+
+fn try_largest_amplitude(
+    system: &LinearModel,
+    dt: f64,
+    tolerance: f64,
+    steps: usize,
+) -> Result<f64, StepError> {
     let operators = system.operators();
     let n = operators.dofs();
     let mut force = vec![0.0; n];
@@ -83,20 +92,21 @@ fn largest_amplitude(system: &LinearModel, dt: f64, tolerance: f64, steps: usize
     let mut largest = 0.0_f64;
     for mut state in [still, State::new(off, vec![0.0; n])] {
         for _ in 0..steps {
-            integrator.step(system, &mut state, dt).unwrap();
+            integrator.step(system, &mut state, dt)?;
             for (u, rest) in state.u.iter().zip(&rest) {
                 largest = largest.max((u - rest).abs());
             }
         }
     }
-    largest
+    Ok(largest)
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     /// However loosely it is fitted, to whichever of the modes, undamped, damped or creeping: no mode swings wider
-    /// than twice the exact motion, 2000 steps later too.
+    /// than twice the exact motion, 2000 steps later too. What has no such fit is refused: one body in thousands, in
+    /// which motion dies within a step or the tolerance is tight.
     #[test]
     fn no_mode_of_a_random_spectrum_grows(
         squares in prop::collection::vec(1e-4..1.0, 1..40),
@@ -111,8 +121,14 @@ proptest! {
         forces[loaded % squares.len()] = 1.0;
         forces[0] += 0.2;
         let system = modes(&squares, &forces, alpha);
-        let found = largest_amplitude(&system, dt, tolerance, 2000);
-        prop_assert!(found <= 2.0 + 1e-6, "{found}");
+        match try_largest_amplitude(&system, dt, tolerance, 2000) {
+            Ok(found) => prop_assert!(found <= 2.0 + 1e-6, "{found}"),
+            Err(StepError::Setup(SetupError::Unresolved { reason, .. })) => {
+                let hard = alpha * dt > 10.0 || tolerance < 1e-3;
+                prop_assert!(hard, "{reason}");
+            }
+            Err(error) => prop_assert!(false, "{error}"),
+        }
     }
 
     /// The displacements of bodies at random, under loads that jump, damped or creeping: with a fine fit they are
@@ -134,8 +150,8 @@ proptest! {
         });
         let system = altered(&model, mass_damping(2.0 * ratio / limit), loads.to_vec());
         let start = State::at_rest(model.dofs());
-        let (mut state, mut integrator) = (start.clone(), fitted(2e-6));
-        let expected = exponentials(&system, &start, dt, 12);
+        let (mut state, mut integrator) = (start.clone(), fitted(1.1e-6));
+        let expected = exponentials(&system, &start, dt, 36);
         let expected: Vec<Vec<f64>> = expected.into_iter().map(|state| state.u).collect();
         let mut found = Vec::new();
         for _ in 0..expected.len() {

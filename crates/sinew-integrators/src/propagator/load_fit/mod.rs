@@ -1,5 +1,6 @@
 //! The two-step form with a polynomial fitted to the loads.
 
+mod amplitude;
 mod barrier;
 mod constrained;
 mod dense;
@@ -26,7 +27,7 @@ const LEAST_TURN: f64 = 1e-3;
 /// Distances kept from the double roots of the recurrence, the first that keeps amplitudes being taken.
 const ROOMS: [f64; 3] = [1e-9, 1e-3, 0.1];
 
-/// Largest amplitude of a mode with an initial velocity, over that of the exact motion.
+/// Largest amplitude of a mode that is taken, over that of the exact motion.
 const WIDEST: f64 = 2.0;
 
 /// The two-step form with a polynomial G of its own, `v+ = e^(-2 eta) v- + G(M^-1 K) M^-1 (F - K u)/dt`, of the least

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use sinew_core::closed_form::Mode;
 
+use super::amplitude::{ModeRecurrence, exact_from_velocity};
 use super::dense::solve;
 use super::excitation::ExcitedMode;
 use crate::propagator::first_step::FirstStep;
@@ -46,7 +47,7 @@ pub(super) struct Start {
     pub(super) first_step: FirstStep,
     /// Series of `2 g - G`, the effect of a jump for half the jump; empty without damping.
     pub(super) of_jump: Vec<f64>,
-    /// Largest amplitude of any mode with an initial velocity, over that of the exact motion.
+    /// Largest amplitude of any mode, from a velocity or from a displacement alone, over that of the exact motion.
     pub(super) amplitude: f64,
     /// Error of the response to a jump of the loads that s brings about, relative to the response.
     pub(super) error: f64,
@@ -118,11 +119,8 @@ impl Fitted<'_> {
         });
         let amplitudes = everywhere.chain(close).map(|angle| {
             let x = x_of(angle);
-            if x == 0.0 {
-                return 0.0;
-            }
             let s = evaluate(&of_velocity, x * self.interval, self.interval);
-            s.abs() * self.turn(x) / (self.decay() * self.divisor(x))
+            self.amplitude(x, s)
         });
         let amplitude = amplitudes.fold(0.0, f64::max);
         let errors = self.modes.iter().map(|mode| {
@@ -152,6 +150,23 @@ impl Fitted<'_> {
             amplitude,
             error,
         }
+    }
+
+    /// The largest amplitude of a mode with this s/dt, from a velocity and from a displacement alone, over that of
+    /// the exact motion.
+    fn amplitude(&self, x: f64, s: f64) -> f64 {
+        let lambda = x * self.interval;
+        if lambda == 0.0 {
+            return 0.0;
+        }
+        let decay = self.decay();
+        let mean = 0.5 * (1.0 + decay * decay - self.value(x));
+        let recurrence = ModeRecurrence { mean, decay };
+        let exact = exact_from_velocity(lambda, self.alpha) / self.dt;
+        // 1 - lambda g of a first step from a displacement.
+        let kept = mean + 0.5 * self.alpha * self.dt * s;
+        let from_velocity = recurrence.largest(0.0, s) / exact;
+        from_velocity.max(recurrence.largest(1.0, kept))
     }
 
     /// s/dt of the exact motion.
