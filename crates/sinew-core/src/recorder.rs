@@ -1,6 +1,6 @@
 //! Recorders, which see states while a simulation runs.
 
-use crate::{EvaluationError, Inputs, State, System};
+use crate::{EvaluationError, Inputs, State, StepReport, System};
 
 /// Whether a simulation goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +30,10 @@ pub struct Moment<'a> {
     pub inputs: &'a Inputs,
     /// The state.
     pub state: &'a State,
+    /// Steps taken since the simulation began.
+    pub step: usize,
+    /// Work of these steps.
+    pub work: StepReport,
 }
 
 impl Moment<'_> {
@@ -126,6 +130,33 @@ impl<'a> Recorders<'a> {
             next: None,
         });
         self
+    }
+
+    /// Adds a recorder that its owner keeps.
+    #[must_use]
+    pub fn with_lent(self, recorder: &'a mut dyn Recorder) -> Self {
+        self.with(Lent(recorder))
+    }
+}
+
+/// A recorder that another owns.
+struct Lent<'a>(&'a mut dyn Recorder);
+
+impl Recorder for Lent<'_> {
+    fn next(&mut self, step: usize) -> Option<usize> {
+        self.0.next(step)
+    }
+
+    fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        self.0.record(moment)
+    }
+
+    fn watches(&self) -> Vec<u32> {
+        self.0.watches()
+    }
+
+    fn watched(&mut self, t: f64, u: &[f64]) -> Result<Verdict, RecordError> {
+        self.0.watched(t, u)
     }
 }
 

@@ -132,6 +132,8 @@ pub fn simulate_under(
                 system,
                 inputs,
                 state,
+                step: report.steps,
+                work: report.work,
             };
             if recorder.record(&moment)? == Verdict::Stop {
                 verdict = Verdict::Stop;

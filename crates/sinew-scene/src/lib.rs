@@ -47,8 +47,8 @@ pub use error::{Fault, NoStableStep, SceneError, StableStepError};
 pub use plan::{Plan, PlanSection};
 pub use probe_csv::ProbeCsv;
 pub use scene::{
-    Body, Initial, MeshSource, Motion, Oscillator, ProbePoint, RunSettings, Scene, Subject,
-    TimeStep, Way,
+    Body, Initial, Instants, MeshSource, Motion, Oscillator, OutputSettings, ProbePoint,
+    RunSettings, Scene, Subject, TimeStep, Way,
 };
 pub use simulation::{
     BodyModel, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe, Reaction,

@@ -22,8 +22,10 @@ enum Command {
     /// Describe what a scene builds, what it leaves out and which steps are stable; with --tolerance,
     /// also advise the cheapest integrator and step.
     Plan(command::plan::Arguments),
-    /// Run a scene and write the motion of its probes.
+    /// Run a scene: the motion of its probes as CSV, or with --out a folder with fields and tables.
     Run(command::run::Arguments),
+    /// Go on with a run that was interrupted or killed.
+    Resume(command::resume::Arguments),
     /// Inspect, check and convert mesh files.
     #[command(subcommand)]
     Mesh(command::mesh::Command),
@@ -39,6 +41,7 @@ fn main() -> ExitCode {
     let outcome = match arguments.command {
         Command::Plan(arguments) => command::plan::run(&arguments),
         Command::Run(arguments) => command::run::run(&arguments),
+        Command::Resume(arguments) => command::resume::run(&arguments),
         Command::Mesh(arguments) => command::mesh::run(&arguments),
         Command::Integrators => command::integrators::run(),
     };

@@ -1,5 +1,7 @@
 //! The linear model of a body.
 
+mod deformation;
+mod energy;
 mod field_error;
 mod forces;
 mod motion;
@@ -9,6 +11,7 @@ mod strain;
 mod support_motion;
 mod system;
 
+pub use deformation::Deformation;
 pub use field_error::FieldError;
 pub use forces::NodalForces;
 pub use support_motion::SupportMotion;

@@ -63,6 +63,10 @@ pub struct Array<'a> {
 pub enum Values<'a> {
     /// Floating-point numbers; NaN stands for a missing value.
     F64(Cow<'a, [f64]>),
+    /// Floating-point numbers in half the room.
+    F32(Cow<'a, [f32]>),
+    /// Flags and small counts.
+    U8(Cow<'a, [u8]>),
     /// Whole numbers.
     I64(Cow<'a, [i64]>),
 }
@@ -88,6 +92,30 @@ impl<'a> Array<'a> {
         }
     }
 
+    /// Numbers in half the room, `components` for each point or cell in turn. Takes a slice or a `Vec`.
+    #[must_use]
+    pub fn of_singles(
+        name: &'a str,
+        components: usize,
+        values: impl Into<Cow<'a, [f32]>>,
+    ) -> Array<'a> {
+        Array {
+            name,
+            components,
+            values: Values::F32(values.into()),
+        }
+    }
+
+    /// A flag or a small count for each point or cell. Takes a slice or a `Vec`.
+    #[must_use]
+    pub fn of_flags(name: &'a str, values: impl Into<Cow<'a, [u8]>>) -> Array<'a> {
+        Array {
+            name,
+            components: 1,
+            values: Values::U8(values.into()),
+        }
+    }
+
     /// A vector for each point or cell.
     #[must_use]
     pub fn of_vectors(name: &'a str, values: &'a [[f64; 3]]) -> Array<'a> {
@@ -103,6 +131,8 @@ impl Values<'_> {
     pub(super) fn len(&self) -> usize {
         match self {
             Values::F64(values) => values.len(),
+            Values::F32(values) => values.len(),
+            Values::U8(values) => values.len(),
             Values::I64(values) => values.len(),
         }
     }
@@ -110,6 +140,8 @@ impl Values<'_> {
     pub(super) fn vtk_type(&self) -> &'static str {
         match self {
             Values::F64(_) => "Float64",
+            Values::F32(_) => "Float32",
+            Values::U8(_) => "UInt8",
             Values::I64(_) => "Int64",
         }
     }

@@ -35,6 +35,7 @@ pub(super) fn escaped(text: &str) -> String {
 #[derive(Clone, Copy)]
 pub(super) enum Numbers<'a> {
     F64(&'a [f64]),
+    F32(&'a [f32]),
     I64(&'a [i64]),
     U8(&'a [u8]),
     U32(&'a [&'a [u32]]),
@@ -44,6 +45,8 @@ impl<'a> From<&'a Values<'_>> for Numbers<'a> {
     fn from(values: &'a Values<'_>) -> Numbers<'a> {
         match values {
             Values::F64(values) => Numbers::F64(values),
+            Values::F32(values) => Numbers::F32(values),
+            Values::U8(values) => Numbers::U8(values),
             Values::I64(values) => Numbers::I64(values),
         }
     }
@@ -53,6 +56,7 @@ impl Numbers<'_> {
     fn byte_length(self) -> u64 {
         let (count, size) = match self {
             Numbers::F64(values) => (values.len(), 8),
+            Numbers::F32(values) => (values.len(), 4),
             Numbers::I64(values) => (values.len(), 8),
             Numbers::U8(values) => (values.len(), 1),
             Numbers::U32(lists) => (lists.iter().map(|list| list.len()).sum(), 4),
@@ -65,6 +69,9 @@ impl Numbers<'_> {
         to.write_all(&self.byte_length().to_le_bytes())?;
         match self {
             Numbers::F64(values) => values
+                .iter()
+                .try_for_each(|x| to.write_all(&x.to_le_bytes())),
+            Numbers::F32(values) => values
                 .iter()
                 .try_for_each(|x| to.write_all(&x.to_le_bytes())),
             Numbers::I64(values) => values

@@ -41,6 +41,28 @@ pub enum OutputError {
         /// The path.
         path: PathBuf,
     },
+    /// A folder that holds other things than an earlier result of the same kind.
+    #[error("cannot write into {}: it holds {}; name a new folder", path.display(), others(names))]
+    Foreign {
+        /// The path.
+        path: PathBuf,
+        /// Names of the others in it.
+        names: Vec<String>,
+    },
+    /// A folder that another process writes into.
+    #[error("cannot write into {}: another run writes into it; name another folder", path.display())]
+    Busy {
+        /// The path.
+        path: PathBuf,
+    },
+    /// A folder without an earlier result.
+    #[error("there is no {kind} in {} to go on with; name the folder that `--out` named", path.display())]
+    NoResult {
+        /// The path.
+        path: PathBuf,
+        /// The kind of result.
+        kind: &'static str,
+    },
     /// A file that this run reads.
     #[error("cannot write {}: this run reads it{}; name another file", path.display(), as_input(path, input))]
     Input {
@@ -100,6 +122,21 @@ impl OutputError {
     #[must_use]
     pub fn is_refusal(&self) -> bool {
         !matches!(self, Self::Failed { .. })
+    }
+}
+
+/// A few of the names of other things.
+fn others(names: &[String]) -> String {
+    const SHOWN: usize = 3;
+    let shown = names
+        .iter()
+        .take(SHOWN)
+        .cloned()
+        .collect::<Vec<_>>()
+        .join(", ");
+    match names.len().saturating_sub(SHOWN) {
+        0 => format!("{shown}, which no run of this kind has written"),
+        more => format!("{shown} and {more} more, which no run of this kind has written"),
     }
 }
 

@@ -31,12 +31,21 @@ impl WholeFile {
         Ok(started)
     }
 
-    /// Completes the file and gives it its name, replacing one of that name.
-    pub(super) fn finish(mut self) -> io::Result<()> {
+    /// Completes the file, makes sure that the disk has it and gives it its name, replacing one of that name.
+    pub(super) fn finish(self) -> io::Result<()> {
+        self.complete(File::sync_all)
+    }
+
+    /// As [`WholeFile::finish`], but the disk gets it when the system pleases.
+    pub(super) fn finish_lightly(self) -> io::Result<()> {
+        self.complete(|_| Ok(()))
+    }
+
+    fn complete(mut self, secure: impl FnOnce(&File) -> io::Result<()>) -> io::Result<()> {
         if let Some(file) = self.file.take() {
             let written = file.into_inner().map_err(io::IntoInnerError::into_error);
             let named = written
-                .and_then(|file| file.sync_all())
+                .and_then(|file| secure(&file))
                 .and_then(|()| fs::rename(&self.temporary, &self.path));
             if named.is_err() {
                 // The first error is reported; usually there is nothing left to remove.
@@ -68,6 +77,20 @@ impl Drop for WholeFile {
             let _ = fs::remove_file(&self.temporary);
         }
     }
+}
+
+/// Whether a name in a folder (with `/` after its own folders) is that of a temporary file whose process is gone.
+pub(super) fn is_left_behind(name: &str) -> bool {
+    let name = name.rsplit('/').next().unwrap_or(name);
+    let numbers = name
+        .strip_prefix(".sinew-")
+        .and_then(|rest| rest.strip_suffix(".tmp"));
+    let process = numbers.and_then(|numbers| numbers.split_once('-')?.0.parse::<u32>().ok());
+    // Where the system lists no processes, none is taken to be gone.
+    let lists = Path::new("/proc/self").exists();
+    process.is_some_and(|process| {
+        lists && process != std::process::id() && !Path::new(&format!("/proc/{process}")).exists()
+    })
 }
 
 /// Creates a file in the same folder, so that renaming never copies, under a name that no other writer

@@ -8,6 +8,7 @@ mod load;
 mod mesh;
 mod motion;
 mod oscillator;
+mod output;
 mod probe;
 mod ramp;
 mod region;
@@ -24,6 +25,7 @@ use keys::GRAVITY;
 pub use mesh::MeshSource;
 pub use motion::{Motion, Way};
 pub use oscillator::Oscillator;
+pub use output::{Instants, OutputSettings};
 pub use probe::ProbePoint;
 pub use run::{RunSettings, TimeStep};
 
@@ -38,6 +40,7 @@ pub struct Scene {
     title: String,
     subject: Subject,
     settings: RunSettings,
+    output: OutputSettings,
     places: Places,
 }
 
@@ -107,6 +110,7 @@ const KEYS: &[&str] = &[
     "initial",
     "run",
     "probe",
+    "output",
 ];
 
 impl Scene {
@@ -158,6 +162,12 @@ impl Scene {
     #[must_use]
     pub fn settings(&self) -> &RunSettings {
         &self.settings
+    }
+
+    /// What a run of it writes into its folder.
+    #[must_use]
+    pub fn output(&self) -> &OutputSettings {
+        &self.output
     }
 
     pub(crate) fn places(&self) -> &Places {
@@ -246,10 +256,13 @@ impl Scene {
             .ok_or_else(|| document.missing("run", "a table [run]"))?;
         let settings = RunSettings::read(&run)?;
         places.run = run.into_place();
+        let output = document.table("output", output::KEYS)?;
+        let output = output.as_ref().map(OutputSettings::read).transpose()?;
         Ok(Self {
             title,
             subject,
             settings,
+            output: output.unwrap_or_default(),
             places,
         })
     }

@@ -74,6 +74,19 @@ impl Simulation {
         self.dt
     }
 
+    /// Shortens all steps alike so that a whole number of them ends at the duration; the step (s) that it was before,
+    /// where it did not.
+    pub fn end_at_duration(&mut self) -> Option<f64> {
+        let before = self.dt;
+        let even = self.settings().duration / self.run().steps.max(1) as f64;
+        // Steps that divide the duration but for rounding stay as they are written.
+        if (before - even).abs() <= 1e-9 * before {
+            return None;
+        }
+        self.dt = even;
+        Some(before)
+    }
+
     /// Points whose motion is recorded; for an oscillator, its mass.
     #[must_use]
     pub fn probes(&self) -> &[Probe] {

@@ -40,7 +40,8 @@ impl Probe {
     }
 
     /// The displacement (m) that is prescribed in a direction at time `t` (s); 0 where none is.
-    pub(crate) fn prescribed(&self, axis: usize, t: f64) -> f64 {
+    #[must_use]
+    pub fn prescribed(&self, axis: usize, t: f64) -> f64 {
         let courses = self.courses.get(axis).into_iter().flatten();
         // A scene has no inputs.
         let along = |course: &Course| course.displacement_at(t, axis).unwrap_or(f64::NAN);

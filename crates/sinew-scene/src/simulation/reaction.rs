@@ -50,19 +50,13 @@ pub enum ReactionError {
 }
 
 impl Simulation {
-    /// The forces of the scene's supports and motions in a state, in the order of the scene; none for an
-    /// oscillator. See [`sinew_fem::Model::reactions`], also for single nodes. A node of two parts counts in
-    /// both.
-    ///
-    /// # Errors
-    /// [`ReactionError`] when the state is that of another system or the system refuses it.
-    pub fn reactions(&self, state: &State) -> Result<Vec<Reaction>, ReactionError> {
-        let (Subject::Body(body), Some(built)) = (self.scene().subject(), self.model().body())
-        else {
-            return Ok(Vec::new());
+    /// The tables by which parts of the body are held or moved, with these parts, in the order of the scene; none for
+    /// an oscillator.
+    #[must_use]
+    pub fn held_parts(&self) -> Vec<(ReactionOf, On)> {
+        let Subject::Body(body) = self.scene().subject() else {
+            return Vec::new();
         };
-        let mut v = vec![0.0; state.u.len()];
-        state.velocity_at_t(self.system(), Inputs::none(), &mut v)?;
         let fixed = body.problem.fixed.iter().enumerate();
         let fixed = fixed.map(|(index, fixed)| (ReactionOf::Fixed(index), fixed.on.clone()));
         let moves = body.motions.iter().enumerate();
@@ -70,10 +64,25 @@ impl Simulation {
             let on = On::Group(motion.group.clone());
             (ReactionOf::Move(index), on)
         });
+        fixed.chain(moves).collect()
+    }
+
+    /// The forces of the scene's supports and motions in a state, in the order of the scene; none for an
+    /// oscillator. See [`sinew_fem::Model::reactions`], also for single nodes. A node of two parts counts in
+    /// both.
+    ///
+    /// # Errors
+    /// [`ReactionError`] when the state is that of another system or the system refuses it.
+    pub fn reactions(&self, state: &State) -> Result<Vec<Reaction>, ReactionError> {
+        let Some(built) = self.model().body() else {
+            return Ok(Vec::new());
+        };
+        let mut v = vec![0.0; state.u.len()];
+        state.velocity_at_t(self.system(), Inputs::none(), &mut v)?;
         let reaction = |(by, on): (ReactionOf, On)| {
             let force = built.model.reaction(state.t(), &state.u, &v, &on)?;
             Ok(Reaction { by, on, force })
         };
-        fixed.chain(moves).map(reaction).collect()
+        self.held_parts().into_iter().map(reaction).collect()
     }
 }

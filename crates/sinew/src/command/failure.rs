@@ -9,6 +9,7 @@ use sinew_core::{OptionError, SetupError, SimulateError};
 use sinew_measure::advice::AdviceError;
 use sinew_mesh::vtu::WriteVtuError;
 use sinew_mesh::{MshFileError, WriteMshError};
+use sinew_record::RecordRunError;
 use sinew_scene::output::{OutputError, complain};
 use sinew_scene::{ReactionError, RefusedLoad, SceneError};
 
@@ -17,6 +18,9 @@ const REFUSED: u8 = 2;
 
 /// Exit code for findings, and for failures after the input was accepted.
 const FAILED: u8 = 1;
+
+/// Exit code after an interruption, that of shells for Ctrl-C.
+const INTERRUPTED: u8 = 130;
 
 /// Why a command did not succeed.
 #[derive(Debug, thiserror::Error)]
@@ -94,6 +98,20 @@ pub(crate) enum Failure {
         /// The degree of freedom in the system's words.
         place: String,
     },
+    /// A run that someone ended before its time.
+    #[error("interrupted at t = {t:.6} s{remedy}")]
+    Interrupted {
+        /// Time (s).
+        t: f64,
+        /// What goes on with it; empty where nothing does.
+        remedy: String,
+    },
+    /// A run that leaves no result in its folder.
+    #[error(transparent)]
+    Record(#[from] RecordRunError),
+    /// Signals that cannot be listened to.
+    #[error("cannot listen to signals: {0}")]
+    Signals(io::Error),
     /// Advice from which numbers are missing.
     #[error("missing from the advice: {}", gaps.join("; "))]
     Gaps {
@@ -118,8 +136,24 @@ impl Failure {
             | Self::WriteMsh { .. }
             | Self::WriteVtu { .. }
             | Self::SharedOutput { .. } => REFUSED,
-            Self::Output(error) if error.is_refusal() => REFUSED,
+            Self::Output(error) | Self::Record(RecordRunError::Output(error))
+                if error.is_refusal() =>
+            {
+                REFUSED
+            }
+            Self::Record(
+                RecordRunError::Scene(_)
+                | RecordRunError::Option(_)
+                | RecordRunError::Setup(_)
+                | RecordRunError::Checkpoint { .. }
+                | RecordRunError::Unusable { .. }
+                | RecordRunError::OtherInput { .. }
+                | RecordRunError::NoInput { .. },
+            ) => REFUSED,
+            Self::Interrupted { .. } => INTERRUPTED,
             Self::Output(_)
+            | Self::Record(_)
+            | Self::Signals(_)
             | Self::Findings
             | Self::Run(_)
             | Self::Reactions(_)

@@ -2,23 +2,33 @@
 
 use std::path::{Path, PathBuf};
 
-use sinew_core::{OptionError, OptionValue, Outcome, RunReport, simulate};
+use sinew_core::{OptionError, OptionValue, Outcome, Recorders, RunReport, simulate};
 use sinew_integrators::Stepper;
-use sinew_scene::output::{Delivery, Destination, Voice, complain};
+use sinew_record::{Companion, Ended, Request, RunEnd, RunFolder};
+use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
 use sinew_scene::{ProbeCsv, Reaction, Scene, Simulation};
 
 use super::Failure;
+use super::interruption::Interruption;
+use super::onlooker::Onlooker;
 
-/// A scene and the destination of its probes.
+/// What no run knows of itself.
+const ERROR_NOT_KNOWN: &str =
+    "the error of this run is not known: `sinew plan --tolerance` measures it";
+
+/// A scene and the destination of what the run gives.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The scene file.
     scene: PathBuf,
+    /// The folder for fields, tables, summary and report: a new one, or that of an earlier run, which
+    /// is replaced
+    #[arg(long, value_name = "DIR", conflicts_with = "probes")]
+    out: Option<PathBuf>,
     /// The CSV file for the motion of the probes: a new file, a writable file that the run does not
-    /// read, a device or a pipe, or - for standard output [default: the scene's name with .csv, in
-    /// the current folder]
-    #[arg(long, value_name = "FILE")]
-    probes: Option<PathBuf>,
+    /// read, a device or a pipe, or - for standard output
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    probes: PathBuf,
     /// The largest number of threads for methods that machines run, or auto for one a processor: fewer
     /// where they do not pay, and the same bits for every number [default: that of the scene, or auto]
     #[arg(long, value_name = "N|auto", value_parser = threads)]
@@ -26,31 +36,156 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let interruption = Interruption::listen().map_err(Failure::Signals)?;
     let scene = Scene::load(&arguments.scene)?;
-    let path = match &arguments.probes {
-        Some(path) => path.clone(),
-        None => default_probes(&arguments.scene),
+    let destination = match &arguments.out {
+        Some(folder) => {
+            if RunFolder::check(folder, &scene)? == Tenant::Earlier {
+                let path = folder.display();
+                complain(&format!(
+                    "{path}: the results of an earlier run in it will be replaced"
+                ));
+            }
+            None
+        }
+        None => Some(Destination::new(&arguments.probes, &scene.input_files())?),
     };
-    let destination = Destination::new(&path, &scene.input_files())?;
-    let voice = Voice::apart_from(&destination);
-
-    let simulation = scene.build()?;
+    let mut simulation = scene.build()?;
     if let Some(refused) = simulation.refused_load() {
         return Err(refused.into());
     }
-    for warning in simulation.warnings() {
+    let mut warnings = simulation.warnings();
+    warnings.extend(shorten(&mut simulation));
+    for warning in &warnings {
         complain(&format!("warning: {warning}"));
     }
     let mut integrator = integrator(&simulation, arguments.threads.as_ref())?;
+    match (destination, &arguments.out) {
+        (None, Some(path)) => {
+            // Before the folder is made, so that what cannot run leaves none.
+            integrator.prepare(simulation.system(), simulation.dt())?;
+            let request = Request {
+                threads: arguments.threads.as_ref().map(in_words),
+                warnings,
+            };
+            let folder = RunFolder::create(path, &simulation, &request)?;
+            in_folder(path, &folder, &simulation, &mut *integrator, interruption)
+        }
+        (Some(destination), _) => {
+            let path = &arguments.probes;
+            probes_alone(
+                path,
+                destination,
+                &simulation,
+                &mut *integrator,
+                interruption,
+            )
+        }
+        (None, None) => Ok(()),
+    }
+}
+
+/// Shortens the steps of a simulation so that they end at its duration, and says so.
+pub(crate) fn shorten(simulation: &mut Simulation) -> Option<String> {
+    let before = simulation.end_at_duration()?;
+    let (duration, dt) = (simulation.settings().duration, simulation.dt());
+    Some(format!(
+        "steps of {before} s do not end at the duration, {duration} s: all are shortened to {dt} s"
+    ))
+}
+
+/// Runs a simulation into its folder and says what came out.
+pub(crate) fn in_folder(
+    path: &Path,
+    folder: &RunFolder,
+    simulation: &Simulation,
+    integrator: &mut dyn Stepper,
+    interruption: Interruption,
+) -> Result<(), Failure> {
+    let duration = simulation.settings().duration;
+    let mut onlooker = Onlooker::new(interruption, simulation.run().steps, duration);
+    let end = folder.run(simulation, integrator, &mut onlooker);
+    onlooker.finish();
+    let end = end?;
+    for line in summary_of(simulation, &end, path) {
+        complain(&line);
+    }
+    match end.ended {
+        Ended::Finished => Ok(()),
+        Ended::Diverged { t, place } => Err(Failure::Diverged { t, place }),
+        Ended::Interrupted { t } => Err(Failure::Interrupted {
+            t,
+            remedy: format!("; `sinew resume {}` goes on", path.display()),
+        }),
+    }
+}
+
+/// At most fifteen lines about a run.
+fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> Vec<String> {
+    let (steps, wall) = end.own;
+    let own = steps as f64 * simulation.dt();
+    let (sweeps, solves) = end.work;
+    let mut lines = vec![
+        format!(
+            "{}: {} steps of {} s by `{}`: {sweeps} sweeps, {solves} solves",
+            simulation.scene().title(),
+            end.steps,
+            simulation.dt(),
+            simulation.settings().integrator,
+        ),
+        format!(
+            "{own:.4} s in {wall:.2} s, outputs included: {:.3} times real time",
+            own / wall.max(1e-9)
+        ),
+    ];
+    if simulation.model().body().is_some() {
+        let (u, t, node) = end.largest;
+        lines.push(format!(
+            "largest displacement in {} frames: {u:.6e} m at t = {t:.6} s, node {node}",
+            end.frames
+        ));
+    }
+    if end.saturated > 0.0 {
+        lines.push(format!(
+            "guarded: {:.3} % of all velocities were saturated; the motion is bounded, not accurate",
+            100.0 * end.saturated
+        ));
+    }
+    let warnings = end.warnings.iter();
+    lines.extend(warnings.map(|warning| format!("warning: {warning}")));
+    lines.push(ERROR_NOT_KNOWN.to_owned());
+    lines.push(format!(
+        "{}: fields.pvd for ParaView, tables, summary.json",
+        path.display()
+    ));
+    lines
+}
+
+/// Runs a simulation and writes the motion of its probes alone.
+fn probes_alone(
+    path: &Path,
+    destination: Destination,
+    simulation: &Simulation,
+    integrator: &mut dyn Stepper,
+    interruption: Interruption,
+) -> Result<(), Failure> {
+    let voice = Voice::apart_from(&destination);
     let system = simulation.system();
     integrator.prepare(system, simulation.dt())?;
     let mut csv = ProbeCsv::new(destination.open()?, simulation.probes())?;
     let mut state = simulation.initial_state().clone();
     let settings = simulation.run();
-    let report = simulate(system, &mut *integrator, &mut state, &settings, &mut csv)?;
+    let mut onlooker = Onlooker::new(interruption, settings.steps, simulation.settings().duration);
+    let mut recorders = Recorders::new()
+        .with_lent(&mut csv)
+        .with_lent(&mut onlooker);
+    let report = simulate(system, integrator, &mut state, &settings, &mut recorders);
+    drop(recorders);
+    onlooker.finish();
+    let report = report?;
     // Where the reader of the motion closed its pipe, nobody wants a summary.
     if csv.finish()? == Delivery::Whole {
-        voice.say(&summary(&simulation, &report))?;
+        voice.say(&summary(simulation, &report))?;
         for remark in integrator.computed_by().iter().chain(&integrator.remarks()) {
             voice.say(remark)?;
         }
@@ -74,12 +209,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 state.t()
             ))?;
         }
-        voice.say(&format!("probes: {}", path.display()))?;
+        if voice == Voice::StandardOutput {
+            voice.say(&format!("probes: {}", path.display()))?;
+        }
     }
     match report.outcome {
         Outcome::Diverged { t, dof } => Err(Failure::Diverged {
             t,
             place: system.cell_name(dof),
+        }),
+        Outcome::Stopped if onlooker.is_interrupted() => Err(Failure::Interrupted {
+            t: state.t(),
+            remedy: String::new(),
         }),
         Outcome::Finished | Outcome::Stopped => Ok(()),
     }
@@ -87,7 +228,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The scene's integrator with as many threads as were asked for, or as the scene asks for, or as help. Methods that no
 /// machine runs have none.
-fn integrator(
+pub(crate) fn integrator(
     simulation: &Simulation,
     threads: Option<&OptionValue>,
 ) -> Result<Box<dyn Stepper>, OptionError> {
@@ -106,7 +247,7 @@ fn integrator(
     sinew_integrators::build(&settings.integrator, &options)
 }
 
-fn threads(text: &str) -> Result<OptionValue, &'static str> {
+pub(crate) fn threads(text: &str) -> Result<OptionValue, &'static str> {
     const EXPECTED: &str = "expected a whole number from 1 on, or auto";
     if text == "auto" {
         return Ok(OptionValue::Text(text.to_owned()));
@@ -117,11 +258,13 @@ fn threads(text: &str) -> Result<OptionValue, &'static str> {
     }
 }
 
-/// The scene's file name with .csv in place of its last extension.
-fn default_probes(scene: &Path) -> PathBuf {
-    let mut name = scene.file_stem().unwrap_or_default().to_owned();
-    name.push(".csv");
-    name.into()
+/// An option as a command line has it.
+fn in_words(threads: &OptionValue) -> String {
+    match threads {
+        OptionValue::Number(count) => count.to_string(),
+        OptionValue::Text(text) => text.clone(),
+        other => format!("{other:?}"),
+    }
 }
 
 fn summary(simulation: &Simulation, report: &RunReport) -> String {
@@ -143,6 +286,7 @@ fn summary(simulation: &Simulation, report: &RunReport) -> String {
             "\nguarded: {share:.3} % of all velocities were saturated; the motion is bounded, not accurate"
         ));
     }
-    text.push_str("\nthe error of this run is not known: `sinew plan --tolerance` measures it");
+    text.push('\n');
+    text.push_str(ERROR_NOT_KNOWN);
     text
 }

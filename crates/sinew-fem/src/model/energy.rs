@@ -1,0 +1,68 @@
+//! Energies and loads over all nodes, held and moved ones included.
+
+use sinew_core::LoadTime;
+
+use super::Model;
+use super::field_error::{FieldError, require_inputs};
+use crate::error::Item;
+
+impl Model {
+    /// The elastic energy (J) of the body with this displacement (m) of each node of the mesh, that of elements with
+    /// held or moved nodes included; summed up element by element.
+    ///
+    /// # Errors
+    /// [`FieldError::Length`] unless `displacement` has one entry for each node of the mesh.
+    pub fn elastic_energy(&self, displacement: &[[f64; 3]]) -> Result<f64, FieldError> {
+        self.require_nodes("the displacement", displacement)?;
+        let energy = |(tet, nodes): (usize, &[u32; 4])| {
+            let moved = nodes.map(|node| displacement[node as usize]);
+            let u = moved.as_flattened();
+            let rows = self.whole_stiffness(tet);
+            let rows = rows.as_chunks::<12>().0.iter().zip(u);
+            let twice: f64 = rows.map(|(row, u_i)| u_i * dot(row, u)).sum();
+            0.5 * twice
+        };
+        Ok(self.mesh.tets.iter().enumerate().map(energy).sum())
+    }
+
+    /// Writes the forces (N) of loads and gravity at each node of the mesh at a time (s), held components included, without
+    /// those by which prescribed motions act on their neighbours.
+    ///
+    /// # Errors
+    /// [`FieldError::Length`] unless `out` has one entry for each node of the mesh, and [`FieldError::NoInput`] where a
+    /// load follows an input that the time does not bring.
+    pub fn load_forces<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
+        self.require_nodes("the output", out)?;
+        let when = when.into();
+        let loads = self.operators.loads().iter().zip(&self.load_items);
+        let loads = loads.filter(|(_, item)| !matches!(item, Item::Move(_)));
+        let held = self.supports.loads.iter().map(|load| &load.ramp);
+        let ramps = loads.clone().map(|(load, _)| &load.ramp).chain(held);
+        require_inputs(ramps, when.inputs())?;
+        out.fill([0.0; 3]);
+        for (load, _) in loads {
+            let factor = load.ramp.known(when.inputs()).value(when.t());
+            for (dof, force) in &load.entries {
+                let node = self.body.cells.nodes[*dof as usize / 3];
+                out[node as usize][*dof as usize % 3] += factor * force;
+            }
+        }
+        for load in &self.supports.loads {
+            let factor = load.ramp.known(when.inputs()).value(when.t());
+            for (node, force) in &load.forces {
+                for (out, force) in out[*node as usize].iter_mut().zip(force) {
+                    *out += factor * force;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

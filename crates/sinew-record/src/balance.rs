@@ -1,0 +1,243 @@
+//! The balance of energy of a run.
+
+use serde::{Deserialize, Serialize};
+use sinew_core::{LinearOperators, Moment};
+use sinew_fem::Model;
+use sinew_scene::{SceneModel, Simulation};
+
+use crate::error::RecordRunError;
+
+/// Energies (J) of a run at an instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Energies {
+    pub(crate) t: f64,
+    pub(crate) kinetic: f64,
+    pub(crate) elastic: f64,
+    /// Work of loads and gravity since the beginning.
+    pub(crate) loads: f64,
+    /// Work of supports in motion since the beginning.
+    pub(crate) supports: f64,
+    /// Energy that damping took since the beginning.
+    pub(crate) damped: f64,
+    /// What the energy gained beyond all that: what the method, and the distance of the rows, bring in or take away.
+    pub(crate) remainder: f64,
+}
+
+/// Sums of a balance, all that a checkpoint keeps of it beside the last motion.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Sums {
+    first: f64,
+    loads: f64,
+    supports: f64,
+    damped: f64,
+}
+
+/// Motion at the last row: time (s), displacement (m) and velocity (m/s) of the degrees of freedom.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct LastRow {
+    pub(crate) t: f64,
+    pub(crate) u: Vec<f64>,
+    pub(crate) v: Vec<f64>,
+}
+
+/// Sums up, from row to row, what loads, moved supports and damping do.
+///
+/// Between two rows forces are taken as the mean of both ends and velocities as `du/dt`, so that for the mean
+/// acceleration method (Newmark with gamma 1/2 and beta 1/4), with a row for every step, nothing remains but rounding.
+pub(crate) struct Balance<'a> {
+    simulation: &'a Simulation,
+    pub(crate) sums: Sums,
+    pub(crate) last: Option<LastRow>,
+    /// Forces and displacements at the last row.
+    acting: Option<Acting>,
+}
+
+/// Forces (N) and displacements (m) that do work.
+struct Acting {
+    /// Of degrees of freedom, or of all nodes where some are moved.
+    loads: Vec<f64>,
+    u: Vec<f64>,
+    /// Of moved nodes; empty where there are none.
+    supports: Vec<f64>,
+}
+
+impl<'a> Balance<'a> {
+    pub(crate) fn new(simulation: &'a Simulation) -> Self {
+        Self {
+            simulation,
+            sums: Sums::default(),
+            last: None,
+            acting: None,
+        }
+    }
+
+    /// Goes on after a row that was written by an earlier run.
+    pub(crate) fn resumed(
+        simulation: &'a Simulation,
+        sums: Sums,
+        last: LastRow,
+    ) -> Result<Self, RecordRunError> {
+        let mut balance = Self::new(simulation);
+        balance.sums = sums;
+        balance.acting = Some(balance.acting(&last)?);
+        balance.last = Some(last);
+        Ok(balance)
+    }
+
+    fn operators(&self) -> Option<&'a LinearOperators> {
+        Some(self.simulation.system().as_linear()?.operators())
+    }
+
+    /// The body, where parts of it are moved.
+    fn moved_body(&self) -> Option<&'a Model> {
+        let body = self.simulation.model().body()?;
+        (!body.problem.moves.is_empty()).then_some(&body.model)
+    }
+
+    /// The next row.
+    pub(crate) fn row(&mut self, moment: &Moment<'_>) -> Result<Energies, RecordRunError> {
+        let mut v = vec![0.0; moment.state.u.len()];
+        moment.velocity(&mut v)?;
+        let here = LastRow {
+            t: moment.state.t(),
+            u: moment.state.u.clone(),
+            v,
+        };
+        let acting = self.acting(&here)?;
+        let (kinetic, elastic) = self.stored(&here, &acting)?;
+        match (&self.acting, &self.last) {
+            (Some(before), Some(last)) => {
+                let work = |before: &[f64], after: &[f64], u_before: &[f64]| -> f64 {
+                    let forces = before.iter().zip(after);
+                    let moved = acting.u.iter().zip(u_before);
+                    let terms = forces.zip(moved);
+                    terms
+                        .map(|((before, after), (u, u_before))| {
+                            0.5 * (before + after) * (u - u_before)
+                        })
+                        .sum()
+                };
+                self.sums.loads += work(&before.loads, &acting.loads, &before.u);
+                self.sums.supports += work(&before.supports, &acting.supports, &before.u);
+                self.sums.damped += self.damped(last, &here, &before.u, &acting.u)?;
+            }
+            _ => self.sums.first = kinetic + elastic,
+        }
+        self.acting = Some(acting);
+        let t = here.t;
+        self.last = Some(here);
+        let Sums {
+            first,
+            loads,
+            supports,
+            damped,
+        } = self.sums;
+        Ok(Energies {
+            t,
+            kinetic,
+            elastic,
+            loads,
+            supports,
+            damped,
+            remainder: kinetic + elastic - first - loads - supports + damped,
+        })
+    }
+
+    fn acting(&self, row: &LastRow) -> Result<Acting, RecordRunError> {
+        let Some(model) = self.moved_body() else {
+            let mut loads = vec![0.0; row.u.len()];
+            self.simulation
+                .system()
+                .external_force(row.t.into(), &mut loads);
+            return Ok(Acting {
+                loads,
+                u: row.u.clone(),
+                supports: Vec::new(),
+            });
+        };
+        let nodes = model.mesh().points.len();
+        let mut u = vec![[0.0; 3]; nodes];
+        let (mut loads, mut supports) = (u.clone(), u.clone());
+        model.displacements_at(row.t, &row.u, &mut u)?;
+        model.load_forces(row.t, &mut loads)?;
+        model.reactions(row.t, &row.u, &row.v, &mut supports)?;
+        Ok(Acting {
+            loads: loads.into_flattened(),
+            u: u.into_flattened(),
+            supports: supports.into_flattened(),
+        })
+    }
+
+    /// Kinetic and elastic energy.
+    fn stored(&self, row: &LastRow, acting: &Acting) -> Result<(f64, f64), RecordRunError> {
+        let Some(model) = self.moved_body() else {
+            let energy = match self.simulation.model() {
+                SceneModel::Body(_) => self.simulation.system().energy(&row.u, &row.v),
+                SceneModel::Oscillator(_) => self
+                    .operators()
+                    .map(|operators| operators.energy(&row.u, &row.v)),
+            };
+            return Ok(energy.map_or((f64::NAN, f64::NAN), |energy| {
+                (energy.kinetic, energy.elastic)
+            }));
+        };
+        let mut v = vec![[0.0; 3]; model.mesh().points.len()];
+        model.velocities_at(row.t, &row.v, &mut v)?;
+        let moving = v.iter().zip(model.node_masses());
+        let kinetic = moving.map(|(v, mass)| 0.5 * mass * v.iter().map(|v| v * v).sum::<f64>());
+        let elastic = model.elastic_energy(acting.u.as_chunks::<3>().0)?;
+        Ok((kinetic.sum(), elastic))
+    }
+
+    /// Energy (J) that damping takes between two rows: `w' D w dt` with `w = du/dt`.
+    fn damped(
+        &self,
+        last: &LastRow,
+        here: &LastRow,
+        u_before: &[f64],
+        u_after: &[f64],
+    ) -> Result<f64, RecordRunError> {
+        let span = here.t - last.t;
+        let Some(operators) = self.operators() else {
+            return Ok(0.0);
+        };
+        let damping = operators.damping();
+        if span <= 0.0
+            || (damping.mass == 0.0 && damping.stiffness == 0.0 && damping.extra.is_none())
+        {
+            return Ok(0.0);
+        }
+        let mean = |after: &[f64], before: &[f64]| -> Vec<f64> {
+            let ends = after.iter().zip(before);
+            ends.map(|(after, before)| (after - before) / span)
+                .collect()
+        };
+        let own = mean(&here.u, &last.u);
+        let power = |product: &dyn Fn(&mut [f64])| -> f64 {
+            let mut force = vec![0.0; own.len()];
+            product(&mut force);
+            -force
+                .iter()
+                .zip(&own)
+                .map(|(force, w)| force * w)
+                .sum::<f64>()
+        };
+        let Some(model) = self.moved_body() else {
+            return Ok(span * power(&|out| operators.subtract_damping(&own, out)));
+        };
+        let w = mean(u_after, u_before);
+        let w = w.as_chunks::<3>().0;
+        let moving = w.iter().zip(model.node_masses());
+        let of_mass = moving.map(|(w, mass)| mass * w.iter().map(|w| w * w).sum::<f64>());
+        let of_mass = damping.mass * of_mass.sum::<f64>();
+        let of_stiffness = match damping.stiffness {
+            0.0 => 0.0,
+            beta => 2.0 * beta * model.elastic_energy(w)?,
+        };
+        let of_dashpots = damping
+            .extra
+            .as_ref()
+            .map_or(0.0, |extra| power(&|out| extra.subtract_product(&own, out)));
+        Ok(span * (of_mass + of_stiffness + of_dashpots))
+    }
+}

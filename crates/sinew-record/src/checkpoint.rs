@@ -1,0 +1,112 @@
+//! The file from which a run goes on.
+
+use sinew_core::State;
+use sinew_scene::Simulation;
+use sinew_scene::output::OwnedFolder;
+
+use crate::balance::LastRow;
+use crate::error::RecordRunError;
+use crate::progress::Progress;
+
+/// Its name.
+pub(crate) const NAME: &str = "checkpoint.bin";
+
+/// The first line, with the version of what follows.
+const HEAD: &str = "sinew checkpoint 1";
+
+/// Everything from which a run goes on: a line of JSON, then the state as `sinew-core` writes it, then numbers.
+#[derive(Debug)]
+pub(crate) struct Checkpoint {
+    pub(crate) progress: Progress,
+    pub(crate) state: State,
+    /// The motion at the last row of energies.
+    pub(crate) row: LastRow,
+    /// Displacements (m) of the surface where it was largest so far.
+    pub(crate) largest: Vec<f64>,
+}
+
+impl Checkpoint {
+    pub(crate) fn write(
+        folder: &OwnedFolder,
+        simulation: &Simulation,
+        progress: &Progress,
+        state: &State,
+        row: &LastRow,
+        largest: &[f64],
+    ) -> Result<(), RecordRunError> {
+        let state = state.to_bytes(simulation.system());
+        let lists: [&[f64]; 4] = [&[row.t], &row.u, &row.v, largest];
+        let json = serde_json::to_string(progress).map_err(|error| unusable(folder, &error))?;
+        let mut bytes = format!("{HEAD}\n{json}\n{}", state.len());
+        for list in lists {
+            bytes.push_str(&format!(" {}", list.len()));
+        }
+        bytes.push('\n');
+        let mut bytes = bytes.into_bytes();
+        bytes.extend(state);
+        let numbers = lists.into_iter().flatten();
+        bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
+        Ok(folder.write(NAME, &bytes)?)
+    }
+
+    /// The last checkpoint in a folder; `None` where there is none yet.
+    pub(crate) fn read(
+        folder: &OwnedFolder,
+        simulation: &Simulation,
+    ) -> Result<Option<Self>, RecordRunError> {
+        let Some(bytes) = folder.read(NAME)? else {
+            return Ok(None);
+        };
+        let mut lines = bytes.splitn(4, |byte| *byte == b'\n');
+        let damaged = || unusable(folder, &"it is damaged");
+        let head = lines.next().unwrap_or_default();
+        if head != HEAD.as_bytes() {
+            return Err(unusable(folder, &"another version of sinew wrote it"));
+        }
+        let progress = serde_json::from_slice(lines.next().unwrap_or_default())
+            .map_err(|error| unusable(folder, &error))?;
+        let sizes = str::from_utf8(lines.next().unwrap_or_default()).map_err(|_| damaged())?;
+        let sizes: Result<Vec<usize>, _> = sizes.split(' ').map(str::parse).collect();
+        let [size, counts @ ..] = &sizes.map_err(|_| damaged())?[..] else {
+            return Err(damaged());
+        };
+        let rest = lines.next().unwrap_or_default();
+        let (state, rest) = rest.split_at_checked(*size).ok_or_else(damaged)?;
+        let state = State::from_bytes(state, simulation.system()).map_err(|source| {
+            let folder = folder.path().to_owned();
+            RecordRunError::Checkpoint { folder, source }
+        })?;
+        let (numbers, []) = rest.as_chunks::<8>() else {
+            return Err(damaged());
+        };
+        let mut numbers = numbers.iter().map(|bytes| f64::from_le_bytes(*bytes));
+        let lists: Vec<Vec<f64>> = counts
+            .iter()
+            .map(|count| numbers.by_ref().take(*count).collect())
+            .collect();
+        let whole = lists
+            .iter()
+            .zip(counts)
+            .all(|(list, count)| list.len() == *count);
+        let Ok([t, u, v, largest]) = <[Vec<f64>; 4]>::try_from(lists) else {
+            return Err(damaged());
+        };
+        if !whole || numbers.next().is_some() || t.len() != 1 {
+            return Err(damaged());
+        }
+        Ok(Some(Self {
+            progress,
+            state,
+            row: LastRow { t: t[0], u, v },
+            largest,
+        }))
+    }
+}
+
+fn unusable(folder: &OwnedFolder, reason: &dyn std::fmt::Display) -> RecordRunError {
+    RecordRunError::Unusable {
+        folder: folder.path().to_owned(),
+        name: NAME,
+        reason: reason.to_string(),
+    }
+}

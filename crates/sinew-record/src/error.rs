@@ -1,0 +1,71 @@
+//! Reasons for which a run leaves no result.
+
+use std::path::PathBuf;
+
+use sinew_core::{EvaluationError, OptionError, SetupError, SimulateError, StateBytesError};
+use sinew_fem::FieldError;
+use sinew_mesh::vtu::WriteVtuError;
+use sinew_scene::SceneError;
+use sinew_scene::output::OutputError;
+
+/// A reason for which a run leaves no result, or cannot go on.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordRunError {
+    /// A folder or file that cannot be written or read.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// The scene that an earlier run left cannot be used.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// An option that the integrator refuses.
+    #[error(transparent)]
+    Option(#[from] OptionError),
+    /// A scene that the integrator cannot be set up for.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A step or a recorder that failed.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// A system that refuses a state.
+    #[error(transparent)]
+    State(#[from] EvaluationError),
+    /// A field that cannot be written.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+    /// A field that a .vtu file cannot hold.
+    #[error(transparent)]
+    Vtu(#[from] WriteVtuError),
+    /// The state of a checkpoint that does not fit.
+    #[error("the checkpoint in {}: {source}; run the scene again into a new folder", folder.display())]
+    Checkpoint {
+        /// The folder.
+        folder: PathBuf,
+        /// The reason.
+        source: StateBytesError,
+    },
+    /// A file of an earlier run that is damaged or of another version.
+    #[error("{} in {} cannot be used: {reason}; run the scene again into a new folder", name, folder.display())]
+    Unusable {
+        /// The folder.
+        folder: PathBuf,
+        /// The file in it.
+        name: &'static str,
+        /// The reason.
+        reason: String,
+    },
+    /// An input that changed since the run began.
+    #[error("{} is not the file with which the run began: its content changed; run the scene again into a new folder", path.display())]
+    OtherInput {
+        /// The input.
+        path: PathBuf,
+    },
+    /// An input that cannot be read.
+    #[error("{}: {source}; the run that is to go on reads it", path.display())]
+    NoInput {
+        /// The input.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+}

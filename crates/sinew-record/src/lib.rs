@@ -1,0 +1,51 @@
+//! What a run of a scene leaves behind: fields, tables, summary, report, and a checkpoint from which it goes on.
+//!
+//! A run writes into a folder of its own ([`RunFolder`]). Everything in it is a function of the scene and the number of
+//! steps taken, except for one object in `summary.json` about the computer; so a run that was killed and went on leaves
+//! the same bytes as one that was not.
+//!
+//! | file | content |
+//! | --- | --- |
+//! | `fields.pvd`, `fields/` | displacement, velocity, strain, stress at the instants that `[output]` asks for |
+//! | `surface.vtu` | the boundary at rest, with the groups of triangles on it |
+//! | `probes.csv` | displacements (m) of the probes |
+//! | `energy.csv` | the balance of energy (J) |
+//! | `reactions.csv` | forces (N) and moments (N m) of supports and moved parts |
+//! | `summary.json` | how it ended, extremes, work, warnings, and all that is needed to repeat it |
+//! | `run.json`, `scene.toml` | what was run |
+//! | `checkpoint.bin` | where an unfinished run stands |
+//!
+//! ```
+//! use sinew_record::{Ended, Request, RunFolder};
+//! use sinew_scene::{Scene, SceneSource};
+//!
+//! let text = "[oscillator]\nmass = 0.1\nstiffness = 100.0\nvelocity = 1.0\n[run]\nduration = 1.0\n\
+//!             integrator = \"newmark\"\ndt = 0.01\n";
+//! let simulation = Scene::parse(SceneSource::new("spring.toml", text))?.build()?;
+//! let place = tempfile::tempdir()?;
+//! let folder = RunFolder::create(&place.path().join("spring"), &simulation, &Request::default())?;
+//! let end = folder.run(&simulation, &mut *simulation.integrator()?, &mut ())?;
+//! assert_eq!(end.ended, Ended::Finished);
+//! assert!(place.path().join("spring/energy.csv").exists());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod balance;
+mod checkpoint;
+mod companion;
+mod error;
+mod fields;
+mod progress;
+mod recorder;
+mod request;
+mod run_end;
+mod run_folder;
+mod schedule;
+mod summary;
+mod tables;
+
+pub use companion::Companion;
+pub use error::RecordRunError;
+pub use request::Request;
+pub use run_end::{Ended, RunEnd};
+pub use run_folder::RunFolder;

@@ -1,0 +1,79 @@
+//! How far a run is, and what it has seen.
+
+use serde::{Deserialize, Serialize};
+use sinew_core::StepReport;
+
+use crate::balance::Sums;
+
+/// How far a run is, and what it has seen: all that later steps do not tell.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Progress {
+    /// Steps taken.
+    pub(crate) steps: usize,
+    /// Frames of fields written.
+    pub(crate) frames: usize,
+    pub(crate) work: Work,
+    pub(crate) lengths: Lengths,
+    pub(crate) energy: Sums,
+    pub(crate) seen: Seen,
+}
+
+/// Bytes of the files that grow.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Lengths {
+    pub(crate) probes: u64,
+    pub(crate) energy: u64,
+    pub(crate) reactions: u64,
+}
+
+/// Extremes of the motion, seen at the instants of the fields.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Seen {
+    pub(crate) displacement: Largest,
+    pub(crate) strain: Largest,
+    /// In rad.
+    pub(crate) rotation: Largest,
+    /// Tetrahedra with a volume of 0 or below, the most at an instant.
+    pub(crate) inverted: usize,
+    /// Kinetic energy (J), the largest and the last.
+    pub(crate) kinetic: [f64; 2],
+}
+
+/// A largest value with its time (s) and the tag of the node or the tetrahedron that it is at.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Largest {
+    pub(crate) value: f64,
+    pub(crate) t: f64,
+    pub(crate) at: u64,
+}
+
+impl Largest {
+    /// Takes a value if it is larger than that so far; whether it was.
+    pub(crate) fn see(&mut self, value: f64, t: f64, at: impl FnOnce() -> u64) -> bool {
+        let larger = value > self.value;
+        if larger {
+            *self = Self { value, t, at: at() };
+        }
+        larger
+    }
+}
+
+/// Work of all steps.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Work {
+    pub(crate) sweeps: u64,
+    pub(crate) force_evaluations: u64,
+    pub(crate) solves: u64,
+    pub(crate) factorizations: u64,
+    pub(crate) saturated: u64,
+}
+
+impl Work {
+    pub(crate) fn add(&mut self, of: StepReport) {
+        self.sweeps += of.sweeps;
+        self.force_evaluations += of.force_evaluations;
+        self.solves += of.solves;
+        self.factorizations += of.factorizations;
+        self.saturated += of.saturated;
+    }
+}

@@ -1,0 +1,298 @@
+//! The recorder of a run: writes what is due after each step.
+
+use std::time::{Duration, Instant};
+
+use sinew_core::{Moment, RecordError, Recorder, Verdict};
+use sinew_scene::output::{GrowingFile, OwnedFolder};
+use sinew_scene::{Instants, Simulation};
+
+use crate::balance::Balance;
+use crate::checkpoint::Checkpoint;
+use crate::companion::Companion;
+use crate::error::RecordRunError;
+use crate::fields::{Fields, Surface};
+use crate::progress::{Lengths, Progress};
+use crate::schedule::Schedule;
+use crate::tables::{self, Reactions};
+
+/// Most rows of a table, where the scene does not ask for more.
+const MOST_ROWS: usize = 10_000;
+
+/// Degrees of freedom up to which energies and reactions of every step cost next to nothing.
+const SMALL: usize = 30_000;
+
+/// Rows of energies and reactions of larger bodies: each costs about as much as several steps.
+const ROWS_OF_LARGE_BODIES: usize = 200;
+
+/// Wall time between two looks at whether the run is to stop.
+const LOOK: Duration = Duration::from_millis(40);
+
+/// What is written when.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Schedules {
+    pub(crate) probes: Schedule,
+    pub(crate) energy: Schedule,
+    /// None for an oscillator.
+    pub(crate) fields: Option<Schedule>,
+}
+
+impl Schedules {
+    pub(crate) fn of(simulation: &Simulation) -> Self {
+        let (output, dt) = (simulation.scene().output(), simulation.dt());
+        let steps = simulation.run().steps;
+        let asked = |instants: Option<Instants>, most: usize| match instants {
+            Some(instants) => Schedule::at(instants, steps, dt),
+            None => Schedule::at_most(most, steps),
+        };
+        let rows = match simulation.system().dofs() > SMALL {
+            true => ROWS_OF_LARGE_BODIES,
+            false => MOST_ROWS,
+        };
+        let body = simulation.model().body();
+        Self {
+            probes: asked(output.probes, MOST_ROWS),
+            energy: asked(output.energy, rows),
+            fields: body.map(|_| Schedule::at(output.fields, steps, dt)),
+        }
+    }
+}
+
+/// The files that grow.
+pub(crate) struct Tables {
+    probes: GrowingFile,
+    energy: GrowingFile,
+    reactions: Option<GrowingFile>,
+}
+
+impl Tables {
+    /// Opens them, cut off after what an earlier run had written at its checkpoint.
+    pub(crate) fn open(
+        folder: &OwnedFolder,
+        lengths: Lengths,
+        reactions: Option<&Reactions<'_>>,
+        simulation: &Simulation,
+    ) -> Result<Self, RecordRunError> {
+        let open = |name: &str, length: u64, head: &dyn Fn() -> String| {
+            let mut file = folder.append(name, length)?;
+            if length == 0 {
+                file.push(&head())?;
+            }
+            Ok::<GrowingFile, RecordRunError>(file)
+        };
+        Ok(Self {
+            probes: open(tables::PROBES, lengths.probes, &|| {
+                tables::probes_head(simulation)
+            })?,
+            energy: open(tables::ENERGY, lengths.energy, &|| {
+                tables::ENERGY_HEAD.to_owned()
+            })?,
+            reactions: reactions
+                .map(|reactions| open(tables::REACTIONS, lengths.reactions, &|| reactions.head()))
+                .transpose()?,
+        })
+    }
+
+    pub(crate) fn secure(&mut self) -> Result<Lengths, RecordRunError> {
+        let reactions = self.reactions.as_mut().map(GrowingFile::secure);
+        Ok(Lengths {
+            probes: self.probes.secure()?,
+            energy: self.energy.secure()?,
+            reactions: reactions.transpose()?.unwrap_or(0),
+        })
+    }
+}
+
+/// Writes what is due after each step of a run.
+pub(crate) struct RunRecorder<'a> {
+    pub(crate) simulation: &'a Simulation,
+    pub(crate) folder: &'a OwnedFolder,
+    pub(crate) companion: &'a mut dyn Companion,
+    pub(crate) schedules: Schedules,
+    pub(crate) tables: Tables,
+    pub(crate) balance: Balance<'a>,
+    pub(crate) reactions: Option<Reactions<'a>>,
+    pub(crate) fields: Option<(Fields<'a>, Surface)>,
+    /// Displacements (m) of the surface where it was largest so far.
+    pub(crate) largest: Vec<f64>,
+    pub(crate) progress: Progress,
+    /// Steps that an earlier run had taken.
+    pub(crate) before: usize,
+    /// Whether the state after that many steps was recorded then.
+    pub(crate) resumed: bool,
+    /// Steps whose rows of probes have come.
+    pub(crate) watched: usize,
+    pub(crate) pace: Pace,
+    pub(crate) line: String,
+}
+
+/// How often a run looks up from its steps.
+pub(crate) struct Pace {
+    /// Steps between two looks.
+    steps: usize,
+    looked: Instant,
+    /// The step at the last look.
+    at: usize,
+    saved: Instant,
+}
+
+impl Pace {
+    pub(crate) fn new(at: usize) -> Self {
+        let now = Instant::now();
+        Self {
+            steps: 1,
+            looked: now,
+            at,
+            saved: now,
+        }
+    }
+
+    /// Makes as many steps go by until the next look as take [`LOOK`].
+    fn look(&mut self, step: usize) {
+        let taken = step.saturating_sub(self.at);
+        if taken > 0 {
+            let each = self.looked.elapsed().as_secs_f64() / taken as f64;
+            let fitting = LOOK.as_secs_f64() / each.max(1e-9);
+            self.steps = (fitting as usize).clamp(1, 2 * self.steps);
+        }
+        (self.at, self.looked) = (step, Instant::now());
+    }
+}
+
+impl RunRecorder<'_> {
+    /// Writes what is due after this step.
+    fn write(&mut self, step: usize, moment: &Moment<'_>) -> Result<Verdict, RecordRunError> {
+        if self.schedules.energy.is_due(step) {
+            let row = self.balance.row(moment)?;
+            let kinetic = &mut self.progress.seen.kinetic;
+            *kinetic = [kinetic[0].max(row.kinetic), row.kinetic];
+            tables::energy_row(&mut self.line, &row);
+            self.tables.energy.push(&self.line)?;
+            if let (Some(reactions), Some(file)) = (&mut self.reactions, &mut self.tables.reactions)
+            {
+                reactions.row(&mut self.line, moment)?;
+                file.push(&self.line)?;
+            }
+        }
+        if self
+            .schedules
+            .fields
+            .is_some_and(|fields| fields.is_due(step))
+        {
+            self.frame(moment)?;
+        }
+        self.progress.steps = step;
+        self.pace.look(step);
+        let last = step == self.simulation.run().steps;
+        self.companion.progress(step, moment.state.t());
+        let stop = self.companion.is_interrupted() && !last;
+        let due =
+            self.pace.saved.elapsed().as_secs_f64() >= self.simulation.scene().output().checkpoint;
+        if stop || (due && !last) {
+            self.save(moment)?;
+        }
+        Ok(if stop {
+            Verdict::Stop
+        } else {
+            Verdict::Continue
+        })
+    }
+
+    fn frame(&mut self, moment: &Moment<'_>) -> Result<(), RecordRunError> {
+        let (Some((fields, surface)), Some(body)) =
+            (&mut self.fields, self.simulation.model().body())
+        else {
+            return Ok(());
+        };
+        fields.write(self.folder, self.progress.frames, surface, moment)?;
+        self.progress.frames += 1;
+        let (t, seen) = (moment.state.t(), &mut self.progress.seen);
+        let sizes = fields.displacements().iter().map(|u| size(*u));
+        let (mut node, mut most) = (0, 0.0);
+        for (index, size) in sizes.enumerate() {
+            if size > most {
+                (node, most) = (index, size);
+            }
+        }
+        if seen.displacement.see(most, t, || body.mesh.node_tags[node]) {
+            let moved = surface.nodes.iter();
+            let moved = moved.flat_map(|node| fields.displacements()[*node as usize]);
+            self.largest.clear();
+            self.largest.extend(moved);
+        }
+        let found = body.model.deformation(t, &moment.state.u)?;
+        let tag = |tet: usize| body.mesh.tet_tags[tet];
+        seen.strain.see(found.strain, t, || tag(found.strained));
+        seen.rotation.see(found.rotation, t, || tag(found.rotated));
+        let inverted = moment.system.inverted_elements(t.into(), &moment.state.u);
+        seen.inverted = seen.inverted.max(inverted.unwrap_or(0));
+        Ok(())
+    }
+
+    /// Leaves a checkpoint.
+    fn save(&mut self, moment: &Moment<'_>) -> Result<(), RecordRunError> {
+        self.progress.lengths = self.tables.secure()?;
+        self.progress.energy = self.balance.sums;
+        let row = self.balance.last.clone().unwrap_or_default();
+        let mut progress = self.progress.clone();
+        progress.work.add(moment.work);
+        Checkpoint::write(
+            self.folder,
+            self.simulation,
+            &progress,
+            moment.state,
+            &row,
+            &self.largest,
+        )?;
+        self.pace.saved = Instant::now();
+        Ok(())
+    }
+}
+
+fn size(u: [f64; 3]) -> f64 {
+    u.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+fn failed(t: f64, error: RecordRunError) -> RecordError {
+    RecordError {
+        t,
+        source: Box::new(error),
+    }
+}
+
+impl Recorder for RunRecorder<'_> {
+    fn next(&mut self, step: usize) -> Option<usize> {
+        let mut step = self.before + step;
+        if self.resumed && step == self.before {
+            step += 1;
+        }
+        let fields = self.schedules.fields.and_then(|fields| fields.next(step));
+        let energy = self.schedules.energy.next(step);
+        let end = self.simulation.run().steps;
+        let look = (self.pace.at + self.pace.steps).clamp(step, end.max(step));
+        let next = [fields, energy, Some(look)].into_iter().flatten().min()?;
+        next.checked_sub(self.before)
+    }
+
+    fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        self.write(self.before + moment.step, moment)
+            .map_err(|error| failed(moment.state.t(), error))
+    }
+
+    fn watches(&self) -> Vec<u32> {
+        tables::watched_dofs(self.simulation.probes())
+    }
+
+    fn watched(&mut self, t: f64, u: &[f64]) -> Result<Verdict, RecordError> {
+        let step = self.watched;
+        self.watched += 1;
+        let known = self.resumed && step == self.before;
+        if !known && self.schedules.probes.is_due(step) {
+            tables::probes_row(&mut self.line, self.simulation.probes(), t, u);
+            self.tables
+                .probes
+                .push(&self.line)
+                .map_err(|error| failed(t, error.into()))?;
+        }
+        Ok(Verdict::Continue)
+    }
+}

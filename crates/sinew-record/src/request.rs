@@ -1,0 +1,121 @@
+//! What was run: all that is needed to run it again.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use sinew_scene::output::OwnedFolder;
+use sinew_scene::{Scene, SceneSource};
+
+use crate::error::RecordRunError;
+
+/// Its file.
+pub(crate) const NAME: &str = "run.json";
+
+/// The text of the scene.
+pub(crate) const SCENE: &str = "scene.toml";
+
+/// Version of the files in a folder.
+const VERSION: u32 = 1;
+
+/// What a run was asked for beside its scene.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Request {
+    /// Largest number of threads, or "auto", in the place of the scene's.
+    pub threads: Option<String>,
+    /// What is said before the run: it is kept in the summary.
+    pub warnings: Vec<String>,
+}
+
+/// A request with the scene and its inputs, as a folder keeps it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Record {
+    /// Version of the files.
+    version: u32,
+    /// Version of the program.
+    sinew: String,
+    /// The scene's path: paths in it are relative to its folder.
+    pub(crate) scene: PathBuf,
+    pub(crate) inputs: Vec<InputFile>,
+    pub(crate) threads: Option<String>,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// A file that a run reads.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct InputFile {
+    pub(crate) path: PathBuf,
+    pub(crate) sha256: String,
+}
+
+impl Record {
+    pub(crate) fn of(scene: &Scene, request: &Request) -> Result<Self, RecordRunError> {
+        let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let scene_path = absolute(scene.source().path());
+        // The scene itself is kept as a text.
+        let others = scene.input_files().into_iter().skip(1);
+        let inputs = others.map(|path| InputFile::of(absolute(&path)));
+        Ok(Self {
+            version: VERSION,
+            sinew: env!("CARGO_PKG_VERSION").to_owned(),
+            scene: scene_path,
+            inputs: inputs.collect::<Result<_, _>>()?,
+            threads: request.threads.clone(),
+            warnings: request.warnings.clone(),
+        })
+    }
+
+    pub(crate) fn write(&self, folder: &OwnedFolder, scene: &Scene) -> Result<(), RecordRunError> {
+        let json =
+            serde_json::to_string_pretty(self).map_err(|error| unusable(folder, NAME, &error))?;
+        folder.write(SCENE, scene.source().text().as_bytes())?;
+        Ok(folder.write(NAME, format!("{json}\n").as_bytes())?)
+    }
+
+    /// What an earlier run in this folder was asked for, and its scene; its inputs are still the same.
+    pub(crate) fn read(folder: &OwnedFolder) -> Result<(Self, Scene), RecordRunError> {
+        let missing = |name| unusable(folder, name, &"it is not there");
+        let json = folder.read(NAME)?.ok_or_else(|| missing(NAME))?;
+        let record: Self =
+            serde_json::from_slice(&json).map_err(|error| unusable(folder, NAME, &error))?;
+        if record.version != VERSION {
+            let reason = format!("it is of version {}, expected {VERSION}", record.version);
+            return Err(unusable(folder, NAME, &reason));
+        }
+        for input in &record.inputs {
+            if InputFile::of(input.path.clone())? != *input {
+                let path = input.path.clone();
+                return Err(RecordRunError::OtherInput { path });
+            }
+        }
+        let text = folder.read(SCENE)?.ok_or_else(|| missing(SCENE))?;
+        let text = String::from_utf8(text).map_err(|error| unusable(folder, SCENE, &error))?;
+        let scene = Scene::parse(SceneSource::new(&record.scene, text))?;
+        Ok((record, scene))
+    }
+}
+
+impl InputFile {
+    fn of(path: PathBuf) -> Result<Self, RecordRunError> {
+        let content = fs::read(&path).map_err(|source| RecordRunError::NoInput {
+            path: path.clone(),
+            source,
+        })?;
+        let digest = Sha256::digest(&content);
+        let sha256 = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(Self { path, sha256 })
+    }
+}
+
+fn unusable(
+    folder: &OwnedFolder,
+    name: &'static str,
+    reason: &dyn std::fmt::Display,
+) -> RecordRunError {
+    RecordRunError::Unusable {
+        folder: folder.path().to_owned(),
+        name,
+        reason: reason.to_string(),
+    }
+}

@@ -1,0 +1,41 @@
+//! How a run ended.
+
+/// The end of a run, in short.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunEnd {
+    /// How it ended.
+    pub ended: Ended,
+    /// Steps taken, those of an earlier process included.
+    pub steps: usize,
+    /// Steps that this process took, and the wall time (s) of all that it did.
+    pub own: (usize, f64),
+    /// Frames of fields written.
+    pub frames: usize,
+    /// Evaluations over all cells, and solutions with a factor.
+    pub work: (u64, u64),
+    /// Share of velocities that were saturated.
+    pub saturated: f64,
+    /// The largest displacement (m), its time (s) and the tag of its node, among the fields; 0 for an oscillator.
+    pub largest: (f64, f64, u64),
+    /// What the motion warns of, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ended {
+    /// All steps taken.
+    Finished,
+    /// A displacement was not finite or passed 100 times the body's size.
+    Diverged {
+        /// Time (s).
+        t: f64,
+        /// The degree of freedom that went farthest, in the system's words.
+        place: String,
+    },
+    /// Stopped before its end, with a checkpoint.
+    Interrupted {
+        /// Time (s).
+        t: f64,
+    },
+}

@@ -1,0 +1,242 @@
+//! The folder of a run.
+
+use std::path::Path;
+use std::time::Instant;
+
+use sinew_core::{Outcome, simulate};
+use sinew_integrators::Stepper;
+use sinew_scene::output::{OutputError, OwnedFolder, Tenant};
+use sinew_scene::{Scene, Simulation};
+
+use crate::balance::Balance;
+use crate::checkpoint::{self, Checkpoint};
+use crate::companion::Companion;
+use crate::error::RecordRunError;
+use crate::fields::{self, Fields, Surface};
+use crate::progress::Progress;
+use crate::recorder::{Pace, RunRecorder, Schedules, Tables};
+use crate::request::{self, Record, Request};
+use crate::run_end::{Ended, RunEnd};
+use crate::summary::{self, Summary};
+use crate::tables::{self, Reactions};
+
+/// The kind of result, in manifests and messages.
+const KIND: &str = "run";
+
+/// The folder of a run, open: nobody else writes into it.
+#[derive(Debug)]
+pub struct RunFolder {
+    folder: OwnedFolder,
+    record: Record,
+}
+
+impl RunFolder {
+    /// Checks, before long work, that a run of this scene may write into a folder at `path`. Changes nothing.
+    ///
+    /// # Errors
+    /// [`OutputError`] for a folder that holds other things or cannot be written.
+    pub fn check(path: &Path, scene: &Scene) -> Result<Tenant, OutputError> {
+        OwnedFolder::check(path, KIND, &scene.input_files())
+    }
+
+    /// Makes the folder of a new run; an earlier run's files in it are removed.
+    ///
+    /// # Errors
+    /// [`RecordRunError`] for a folder that may not be used, and for inputs that cannot be read any more.
+    pub fn create(
+        path: &Path,
+        simulation: &Simulation,
+        request: &Request,
+    ) -> Result<Self, RecordRunError> {
+        let scene = simulation.scene();
+        let record = Record::of(scene, request)?;
+        let schedules = Schedules::of(simulation);
+        let mut names: Vec<String> = [
+            request::NAME,
+            request::SCENE,
+            checkpoint::NAME,
+            tables::PROBES,
+            tables::ENERGY,
+            summary::NAME,
+        ]
+        .map(str::to_owned)
+        .to_vec();
+        if !simulation.held_parts().is_empty() {
+            names.push(tables::REACTIONS.to_owned());
+        }
+        if let Some(frames) = schedules.fields {
+            names.extend([fields::SERIES, fields::SURFACE].map(str::to_owned));
+            names.extend((0..frames.count()).map(fields::frame_name));
+        }
+        let folder = OwnedFolder::claim(path, KIND, &scene.input_files(), &names)?;
+        record.write(&folder, scene)?;
+        Ok(Self { folder, record })
+    }
+
+    /// Opens the folder of an unfinished run to go on with it, and its scene.
+    ///
+    /// # Errors
+    /// [`RecordRunError`] for a folder without a run, for one of another version, and for inputs that changed since.
+    pub fn reopen(path: &Path) -> Result<(Self, Scene), RecordRunError> {
+        let folder = OwnedFolder::reopen(path, KIND)?;
+        let (record, scene) = Record::read(&folder)?;
+        Ok((Self { folder, record }, scene))
+    }
+
+    /// Whether the run in it has come to its end.
+    ///
+    /// # Errors
+    /// [`RecordRunError`] for a summary that cannot be read.
+    pub fn is_finished(&self) -> Result<bool, RecordRunError> {
+        let summary = self.folder.read(summary::NAME)?;
+        Ok(summary.is_some() && self.folder.read(checkpoint::NAME)?.is_none())
+    }
+
+    /// The largest number of threads that the run was asked for.
+    #[must_use]
+    pub fn threads(&self) -> Option<&str> {
+        self.record.threads.as_deref()
+    }
+
+    /// Runs the scene, or goes on from the last checkpoint, and completes the folder.
+    ///
+    /// # Errors
+    /// [`RecordRunError`]. What was written until then stays, with the last checkpoint.
+    pub fn run(
+        &self,
+        simulation: &Simulation,
+        integrator: &mut dyn Stepper,
+        companion: &mut dyn Companion,
+    ) -> Result<RunEnd, RecordRunError> {
+        let begun = Instant::now();
+        let system = simulation.system();
+        integrator.prepare(system, simulation.dt())?;
+        let checkpoint = Checkpoint::read(&self.folder, simulation)?;
+        self.folder.remove(summary::NAME)?;
+        let resumed = checkpoint.is_some();
+        let (mut state, progress, largest, balance) = match checkpoint {
+            Some(Checkpoint {
+                progress,
+                state,
+                row,
+                largest,
+            }) => {
+                let balance = Balance::resumed(simulation, progress.energy, row)?;
+                (state, progress, largest, balance)
+            }
+            None => {
+                let state = simulation.initial_state().clone();
+                let balance = Balance::new(simulation);
+                (state, Progress::default(), Vec::new(), balance)
+            }
+        };
+        let reactions = Reactions::of(simulation)?;
+        let tables = Tables::open(
+            &self.folder,
+            progress.lengths,
+            reactions.as_ref(),
+            simulation,
+        )?;
+        let fields = simulation.model().body().map(|body| {
+            let fields = Fields::new(&body.model, simulation.scene().output());
+            (fields, Surface::of(&body.mesh))
+        });
+        let before = progress.steps;
+        let mut run = simulation.run();
+        run.steps -= before.min(run.steps);
+        let mut recorder = RunRecorder {
+            simulation,
+            folder: &self.folder,
+            companion,
+            schedules: Schedules::of(simulation),
+            tables,
+            balance,
+            reactions,
+            fields,
+            largest,
+            progress,
+            before,
+            resumed,
+            watched: before,
+            pace: Pace::new(before),
+            line: String::new(),
+        };
+        let report = simulate(system, integrator, &mut state, &run, &mut recorder)?;
+        recorder.tables.secure()?;
+        recorder.progress.work.add(report.work);
+        let RunRecorder {
+            progress,
+            reactions,
+            fields,
+            schedules,
+            ..
+        } = recorder;
+        let ended = match report.outcome {
+            Outcome::Finished => Ended::Finished,
+            Outcome::Diverged { t, dof } => Ended::Diverged {
+                t,
+                place: system.cell_name(dof),
+            },
+            Outcome::Stopped => Ended::Interrupted { t: state.t() },
+        };
+        if let (Some((_, surface)), Some(body)) = (&fields, simulation.model().body()) {
+            surface.write(&self.folder, &body.mesh)?;
+            let times = frame_times(&schedules, progress.frames, simulation.dt());
+            fields::write_series(&self.folder, &times)?;
+        }
+        let warnings = summary::warnings(&progress.seen);
+        let wall = begun.elapsed().as_secs_f64();
+        let summary = Summary {
+            simulation,
+            record: &self.record,
+            ended: &ended,
+            steps: before + report.steps,
+            t: state.t(),
+            progress: &progress,
+            schedules: &schedules,
+            parts: reactions
+                .as_ref()
+                .map_or(&[][..], |reactions| &reactions.parts),
+            integrator,
+            wall,
+            resumed,
+            warnings: &warnings,
+        };
+        self.folder
+            .write(summary::NAME, summary.to_json().as_bytes())?;
+        // Whoever finds no checkpoint beside a summary knows that the run has come to its end.
+        if !matches!(ended, Ended::Interrupted { .. }) {
+            self.folder.remove(checkpoint::NAME)?;
+        }
+        let (steps, seen, work) = (
+            before + report.steps,
+            progress.seen.displacement,
+            progress.work,
+        );
+        let velocities = (steps * system.dofs()).max(1) as f64;
+        Ok(RunEnd {
+            ended,
+            steps,
+            own: (report.steps, wall),
+            frames: progress.frames,
+            work: (work.sweeps, work.solves),
+            saturated: work.saturated as f64 / velocities,
+            largest: (seen.value, seen.t, seen.at),
+            warnings,
+        })
+    }
+}
+
+/// Times (s) of the frames that were written.
+fn frame_times(schedules: &Schedules, count: usize, dt: f64) -> Vec<f64> {
+    let mut times = Vec::with_capacity(count);
+    let mut from = 0;
+    while let Some(step) = schedules.fields.and_then(|fields| fields.next(from)) {
+        if times.len() == count {
+            break;
+        }
+        times.push(step as f64 * dt);
+        from = step + 1;
+    }
+    times
+}

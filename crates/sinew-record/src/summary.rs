@@ -1,0 +1,153 @@
+//! `summary.json`: what can be said of a run without a reference.
+
+use serde_json::{Value, json};
+use sinew_integrators::Stepper;
+use sinew_scene::Simulation;
+
+use crate::progress::{Largest, Progress, Seen};
+use crate::recorder::Schedules;
+use crate::request::Record;
+use crate::run_end::Ended;
+use crate::tables::HeldPart;
+
+pub(crate) const NAME: &str = "summary.json";
+
+/// Strain up to which small-strain theory holds.
+const LARGEST_STRAIN: f64 = 0.1;
+
+/// Rotation (degrees) up to which small-strain theory holds.
+const LARGEST_ROTATION: f64 = 15.0;
+
+/// Share of its largest kinetic energy below which a body counts as at rest.
+const AT_REST: f64 = 1e-6;
+
+/// All that a summary is made of.
+pub(crate) struct Summary<'a> {
+    pub(crate) simulation: &'a Simulation,
+    pub(crate) record: &'a Record,
+    pub(crate) ended: &'a Ended,
+    pub(crate) steps: usize,
+    /// Time of the last state (s).
+    pub(crate) t: f64,
+    pub(crate) progress: &'a Progress,
+    pub(crate) schedules: &'a Schedules,
+    pub(crate) parts: &'a [HeldPart],
+    pub(crate) integrator: &'a dyn Stepper,
+    /// Wall time (s) of this process.
+    pub(crate) wall: f64,
+    pub(crate) resumed: bool,
+    /// What the motion itself warns of.
+    pub(crate) warnings: &'a [String],
+}
+
+/// What a motion warns of: deformations beyond small-strain theory.
+///
+/// A rotation by an angle theta is a strain of `1 - cos theta` to the linear theory, .034 at 15 degrees; at a strain of
+/// 10 % the quadratic terms that it leaves out are about as large as 10 % of those that it keeps.
+pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let (strain, rotation) = (seen.strain, seen.rotation.value.to_degrees());
+    if strain.value > LARGEST_STRAIN {
+        warnings.push(format!(
+            "a principal strain of {:.0} % in tetrahedron {} at t = {} s: the linear theory is off by about as much of the \
+             stress; it is made for less than {:.0} %",
+            100.0 * strain.value,
+            strain.at,
+            strain.t,
+            100.0 * LARGEST_STRAIN
+        ));
+    }
+    if rotation > LARGEST_ROTATION {
+        let angle = seen.rotation.value.min(std::f64::consts::PI);
+        warnings.push(format!(
+            "a rotation of about {rotation:.0} degrees of tetrahedron {} at t = {} s: the linear theory takes it for a strain \
+             of {:.0} %; it is made for less than {LARGEST_ROTATION} degrees",
+            seen.rotation.at,
+            seen.rotation.t,
+            100.0 * (1.0 - angle.cos())
+        ));
+    }
+    if seen.inverted > 0 {
+        warnings.push(format!(
+            "{} tetrahedra are inside out at some instant: the motion is wrong there",
+            seen.inverted
+        ));
+    }
+    warnings
+}
+
+impl Summary<'_> {
+    pub(crate) fn to_json(&self) -> String {
+        let Self {
+            simulation,
+            record,
+            progress,
+            ..
+        } = self;
+        let (settings, seen, work) = (simulation.settings(), &progress.seen, progress.work);
+        let (outcome, diverged) = match self.ended {
+            Ended::Finished => ("finished", Value::Null),
+            Ended::Diverged { t, place } => ("diverged", json!({ "t_s": t, "at": place })),
+            Ended::Interrupted { .. } => ("interrupted", Value::Null),
+        };
+        let [most, last] = seen.kinetic;
+        let of_velocities = (self.steps * simulation.system().dofs()).max(1) as f64;
+        let largest = |largest: &Largest, unit: &str, at: &str, factor: f64| json!({ unit: largest.value * factor, "t_s": largest.t, at: largest.at });
+        let extremes = simulation.model().body().map(|_| {
+            json!({
+                "seen": "at the instants of the fields",
+                "displacement": largest(&seen.displacement, "m", "node", 1.0),
+                "principal_strain": largest(&seen.strain, "1", "tetrahedron", 1.0),
+                "rotation": largest(&seen.rotation, "degrees", "tetrahedron", 1f64.to_degrees()),
+                "inverted_tetrahedra": seen.inverted,
+            })
+        });
+        let regions = simulation.model().body().map(|body| {
+            let groups = body.problem.regions.iter();
+            let names =
+                groups.map(|region| region.group.clone().unwrap_or_else(|| "whole body".into()));
+            (1..)
+                .zip(names)
+                .map(|(number, name)| json!({ "region": number, "group": name }))
+                .collect::<Vec<_>>()
+        });
+        let parts = self.parts.iter().map(
+            |part| json!({ "columns": part.name, "by": part.by, "moment_about_m": part.centre }),
+        );
+        let json = json!({
+            "title": simulation.scene().title(),
+            "outcome": outcome,
+            "diverged": diverged,
+            "bounded": !matches!(self.ended, Ended::Diverged { .. }),
+            "guarded": work.saturated > 0,
+            "saturated_share_of_velocities": work.saturated as f64 / of_velocities,
+            "at_rest_at_the_end": last <= AT_REST * most,
+            "t_s": self.t,
+            "duration_s": settings.duration,
+            "dt_s": simulation.dt(),
+            "steps": self.steps,
+            "integrator": settings.integrator,
+            "options": format!("{:?}", settings.options),
+            "error": "not known: `sinew plan --tolerance` measures it",
+            "extremes": extremes,
+            "work": work,
+            "warnings": record.warnings.iter().chain(self.warnings).collect::<Vec<_>>(),
+            "regions": regions,
+            "reactions": parts.collect::<Vec<_>>(),
+            "rows_apart_in_steps": {
+                "probes": self.schedules.probes.spacing(),
+                "energy_and_reactions": self.schedules.energy.spacing(),
+                "fields": self.schedules.fields.map(|fields| fields.spacing()),
+            },
+            "repeat": record,
+            "computer": {
+                "wall_s": self.wall,
+                "went_on_from_a_checkpoint": self.resumed,
+                "computed_by": self.integrator.computed_by(),
+                "remarks": self.integrator.remarks(),
+                "system": format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            },
+        });
+        format!("{json:#}\n")
+    }
+}

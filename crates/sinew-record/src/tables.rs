@@ -1,0 +1,224 @@
+//! Rows of probes, energies and reactions.
+
+use std::fmt::Write;
+
+use sinew_core::Moment;
+use sinew_fem::On;
+use sinew_scene::{Probe, ReactionOf, Simulation};
+
+use crate::balance::Energies;
+use crate::error::RecordRunError;
+
+pub(crate) const PROBES: &str = "probes.csv";
+pub(crate) const ENERGY: &str = "energy.csv";
+pub(crate) const REACTIONS: &str = "reactions.csv";
+
+/// A line that says where each probe is, and the line of column names.
+pub(crate) fn probes_head(simulation: &Simulation) -> String {
+    let mut text = String::new();
+    let mut columns = vec!["t_s".to_owned()];
+    for probe in simulation.probes() {
+        if let (Some(node), Some(body)) = (&probe.node, simulation.model().body()) {
+            let [x, y, z] = body.mesh.points[node.index as usize];
+            let (name, tag, distance) = (&probe.name, node.tag, node.distance);
+            text.push_str(&format!(
+                "# {name}: node {tag} at {x:?} {y:?} {z:?} m, {distance:?} m from the point asked for\n"
+            ));
+        }
+        columns.extend(probe_columns(probe));
+    }
+    text.push_str(&columns.join(","));
+    text.push('\n');
+    text
+}
+
+fn probe_columns(probe: &Probe) -> Vec<String> {
+    let name = &probe.name;
+    match probe.dofs.len() {
+        1 => vec![format!("{name}_u_m")],
+        _ => ["x", "y", "z"]
+            .map(|axis| format!("{name}_u_{axis}_m"))
+            .to_vec(),
+    }
+}
+
+/// A row of displacements; `moving` holds those of the degrees of freedom of [`watched_dofs`].
+pub(crate) fn probes_row(out: &mut String, probes: &[Probe], t: f64, moving: &[f64]) {
+    out.clear();
+    let mut moving = moving.iter().copied();
+    push(out, t);
+    for probe in probes {
+        for (axis, dof) in probe.dofs.iter().enumerate() {
+            out.push(',');
+            push(
+                out,
+                match dof {
+                    Some(_) => moving.next().unwrap_or(f64::NAN),
+                    None => probe.prescribed(axis, t),
+                },
+            );
+        }
+    }
+    out.push('\n');
+}
+
+/// Degrees of freedom that the probes' rows need.
+pub(crate) fn watched_dofs(probes: &[Probe]) -> Vec<u32> {
+    let dofs = probes.iter().flat_map(|probe| &probe.dofs);
+    let dofs: Vec<u32> = dofs.flatten().map(|dof| *dof as u32).collect();
+    // Steps are shown to those who watch something; where all is held or moved, anything will do.
+    if dofs.is_empty() { vec![0] } else { dofs }
+}
+
+pub(crate) const ENERGY_HEAD: &str =
+    "t_s,kinetic_J,elastic_J,work_of_loads_J,work_of_supports_J,damped_J,remainder_J\n";
+
+pub(crate) fn energy_row(out: &mut String, row: &Energies) {
+    out.clear();
+    push(out, row.t);
+    let columns = [
+        row.kinetic,
+        row.elastic,
+        row.loads,
+        row.supports,
+        row.damped,
+        row.remainder,
+    ];
+    for value in columns {
+        out.push(',');
+        push(out, value);
+    }
+    out.push('\n');
+}
+
+/// A number that reads back with the same bits.
+fn push(out: &mut String, value: f64) {
+    // Writing to a string does not fail.
+    let _ = write!(out, "{value:?}");
+}
+
+/// A part of the body that is held or moved.
+pub(crate) struct HeldPart {
+    /// The beginning of its columns' names.
+    pub(crate) name: String,
+    /// The table that holds or moves it, in words.
+    pub(crate) by: String,
+    nodes: Vec<u32>,
+    /// Mean of its nodes at rest (m), about which moments are taken.
+    pub(crate) centre: [f64; 3],
+}
+
+/// Forces and moments of supports.
+pub(crate) struct Reactions<'a> {
+    simulation: &'a Simulation,
+    pub(crate) parts: Vec<HeldPart>,
+    forces: Vec<[f64; 3]>,
+    u: Vec<[f64; 3]>,
+}
+
+impl<'a> Reactions<'a> {
+    /// `None` where nothing is held or moved.
+    pub(crate) fn of(simulation: &'a Simulation) -> Result<Option<Self>, RecordRunError> {
+        let Some(body) = simulation.model().body() else {
+            return Ok(None);
+        };
+        let mut parts = Vec::new();
+        for (by, on) in simulation.held_parts() {
+            let nodes = on.nodes(&body.mesh).map_err(sinew_fem::FieldError::from)?;
+            let count = nodes.len().max(1) as f64;
+            let sum = |axis: usize| -> f64 {
+                let points = nodes.iter().map(|node| body.mesh.points[*node as usize]);
+                points.map(|point| point[axis]).sum()
+            };
+            parts.push(HeldPart {
+                name: column_name(by, &on),
+                by: format!("{by} on {on}"),
+                centre: [0, 1, 2].map(|axis| sum(axis) / count),
+                nodes,
+            });
+        }
+        let nodes = body.mesh.points.len();
+        Ok((!parts.is_empty()).then(|| Self {
+            simulation,
+            parts,
+            forces: vec![[0.0; 3]; nodes],
+            u: vec![[0.0; 3]; nodes],
+        }))
+    }
+
+    pub(crate) fn head(&self) -> String {
+        let mut text = String::new();
+        let mut columns = vec!["t_s".to_owned()];
+        for HeldPart {
+            name, by, centre, ..
+        } in &self.parts
+        {
+            let [x, y, z] = centre;
+            text.push_str(&format!(
+                "# {name}: {by}; the moment is about {x:?} {y:?} {z:?} m, the mean of its nodes at rest\n"
+            ));
+            columns.extend(["x", "y", "z"].map(|axis| format!("{name}_f_{axis}_N")));
+            columns.extend(["x", "y", "z"].map(|axis| format!("{name}_m_{axis}_Nm")));
+        }
+        text.push_str(&columns.join(","));
+        text.push('\n');
+        text
+    }
+
+    pub(crate) fn row(
+        &mut self,
+        out: &mut String,
+        moment: &Moment<'_>,
+    ) -> Result<(), RecordRunError> {
+        let Some(body) = self.simulation.model().body() else {
+            return Ok(());
+        };
+        let (t, u) = (moment.state.t(), &moment.state.u);
+        let mut v = vec![0.0; u.len()];
+        moment.velocity(&mut v)?;
+        body.model.reactions(t, u, &v, &mut self.forces)?;
+        body.model.displacements_at(t, u, &mut self.u)?;
+        out.clear();
+        push(out, t);
+        for part in &self.parts {
+            let (mut force, mut torque) = ([0.0; 3], [0.0; 3]);
+            for node in &part.nodes {
+                let node = *node as usize;
+                let f = self.forces[node];
+                let (point, moved) = (body.mesh.points[node], self.u[node]);
+                let arm: [f64; 3] =
+                    std::array::from_fn(|axis| point[axis] + moved[axis] - part.centre[axis]);
+                let cross = [
+                    arm[1] * f[2] - arm[2] * f[1],
+                    arm[2] * f[0] - arm[0] * f[2],
+                    arm[0] * f[1] - arm[1] * f[0],
+                ];
+                for axis in 0..3 {
+                    force[axis] += f[axis];
+                    torque[axis] += cross[axis];
+                }
+            }
+            for value in force.into_iter().chain(torque) {
+                out.push(',');
+                push(out, value);
+            }
+        }
+        out.push('\n');
+        Ok(())
+    }
+}
+
+/// A name without commas and quotes, such as `fixed_1_bottom`.
+fn column_name(by: ReactionOf, on: &On) -> String {
+    let (table, index) = match by {
+        ReactionOf::Fixed(index) => ("fixed", index),
+        ReactionOf::Move(index) => ("move", index),
+    };
+    let plain = |c: char| if c.is_alphanumeric() { c } else { '_' };
+    let name: String = match on {
+        On::Group(name) => name.chars().map(plain).collect(),
+        _ => String::new(),
+    };
+    let name = format!("{table}_{}_{name}", index + 1);
+    name.trim_end_matches('_').to_owned()
+}

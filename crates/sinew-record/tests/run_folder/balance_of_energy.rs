@@ -1,0 +1,91 @@
+//! The balance of energy is closed as each method promises.
+
+use crate::common::{cube, run, table};
+
+/// The largest remainder over the largest energy that went in, and the last remainder over it.
+fn remainder(more: &str) -> [f64; 2] {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("out");
+    run(&path, &cube(more), &mut ());
+    let energy = table(&path.join("energy.csv"));
+    let size = [
+        "kinetic_J",
+        "elastic_J",
+        "work_of_loads_J",
+        "work_of_supports_J",
+        "damped_J",
+    ]
+    .iter()
+    .flat_map(|name| &energy[*name])
+    .fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    assert!(size > 0.0);
+    let remainder = &energy["remainder_J"];
+    let largest = remainder
+        .iter()
+        .fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    [largest, *remainder.last().unwrap()].map(|value| value / size)
+}
+
+const PRESSED: &str = "[[fixed]]\ngroup = \"sides\"\n[[load]]\ngroup = \"top\"\npressure = 100.0\n";
+
+fn with(supports: &str, method: &str, dt: &str) -> String {
+    format!("{supports}[run]\nduration = 0.5\nintegrator = \"{method}\"\ndt = {dt}\n")
+}
+
+/// The mean acceleration method keeps energy exactly in linear systems (Hughes, The Finite Element Method, 9.2).
+#[test]
+fn the_mean_acceleration_method_leaves_rounding() {
+    let damped = format!("{PRESSED}[damping]\nmass = 5.0\nstiffness = 0.002\n");
+    for supports in [PRESSED, &damped] {
+        let [largest, _] = remainder(&with(supports, "newmark", "0.005"));
+        assert!(largest < 1e-10, "{largest:e}");
+    }
+}
+
+#[test]
+fn gravity_and_springs_with_dashpots_are_in_it() {
+    let text = "gravity = [0.0, 0.0, -9.81]\n[mesh]\ncube = { cells = 3, edge = 0.1 }\n[[region]]\ndensity = 1000.0\n\
+                model = \"springs\"\nyoungs_modulus = 3000.0\nsprings = { rule = \"lloyd\", damping_ratio = 0.1 }\n[[fixed]]\n\
+                group = \"bottom\"\n[run]\nduration = 0.5\nintegrator = \"newmark\"\ndt = 0.005\n";
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("out");
+    run(&path, &crate::common::build(text), &mut ());
+    let energy = table(&path.join("energy.csv"));
+    let damped = energy["damped_J"].last().unwrap();
+    assert!(*damped > 1e-3 * energy["work_of_loads_J"].last().unwrap().abs());
+    let worst = energy["remainder_J"]
+        .iter()
+        .fold(0.0_f64, |worst, value| worst.max(value.abs()));
+    assert!(worst < 1e-10 * damped, "{worst:e} {damped:e}");
+}
+
+/// It dissipates: `half of dv' M dv + du' K du` a step (Hairer and Wanner, Solving Ordinary Differential Equations II).
+#[test]
+fn the_implicit_euler_method_takes_energy() {
+    let [largest, last] = remainder(&with(PRESSED, "implicit-euler", "0.005"));
+    assert!(
+        last < 0.0 && (last + largest).abs() < 1e-3,
+        "{last} {largest}"
+    );
+}
+
+/// A symplectic method keeps an energy close to the true one: what remains shrinks as the square of the step and does
+/// not grow with time.
+#[test]
+fn central_differences_swing_about_it() {
+    let [coarse, _] = remainder(&with(PRESSED, "central-difference", "0.002"));
+    let [fine, _] = remainder(&with(PRESSED, "central-difference", "0.001"));
+    assert!((3.0..5.0).contains(&(coarse / fine)), "{coarse} {fine}");
+    assert!(fine < 0.02, "{fine}");
+}
+
+/// What a support in motion does is the work of its reaction; slow motions store all of it.
+#[test]
+fn supports_in_motion_do_work() {
+    let moved = "[[fixed]]\ngroup = \"bottom\"\n[[move]]\ngroup = \"top\"\ndisplacement = [0.0, 0.0, 0.01]\n\
+                 ramp = { kind = \"sin2\", rise = 0.3 }\n[damping]\nmass = 5.0\n";
+    let [coarse, _] = remainder(&with(moved, "newmark", "0.004"));
+    let [fine, _] = remainder(&with(moved, "newmark", "0.002"));
+    assert!((3.0..5.0).contains(&(coarse / fine)), "{coarse} {fine}");
+    assert!(fine < 1e-3, "{fine}");
+}

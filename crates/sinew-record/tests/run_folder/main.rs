@@ -1,0 +1,9 @@
+//! What the folder of a run holds.
+
+#![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod balance_of_energy;
+mod common;
+mod resumed_runs;
+mod tables_and_fields;

@@ -1,0 +1,143 @@
+//! A run that was interrupted and went on leaves the bytes of one that was not.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use crate::common::{cube, run};
+use sinew_record::{Companion, Ended, RecordRunError, RunFolder};
+
+/// Interrupts a run at its first look from a step on.
+struct InterruptAt {
+    step: usize,
+    reached: usize,
+}
+
+impl Companion for InterruptAt {
+    fn is_interrupted(&self) -> bool {
+        self.reached >= self.step
+    }
+
+    fn progress(&mut self, steps: usize, _t: f64) {
+        self.reached = steps;
+    }
+}
+
+/// Contents by names, without what is said of the computer.
+fn contents(path: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for folder in [path.to_owned(), path.join("fields")] {
+        for entry in fs::read_dir(&folder).unwrap() {
+            let entry = entry.unwrap();
+            if entry.file_type().unwrap().is_dir() {
+                continue;
+            }
+            let content = fs::read(entry.path()).unwrap();
+            let name = entry.file_name().into_string().unwrap();
+            let content = match name.as_str() {
+                "summary.json" => {
+                    let mut json: serde_json::Value = serde_json::from_slice(&content).unwrap();
+                    json.as_object_mut().unwrap().remove("computer").unwrap();
+                    json.to_string().into_bytes()
+                }
+                _ => content,
+            };
+            found.insert(name, content);
+        }
+    }
+    found
+}
+
+const SCENES: [&str; 4] = [
+    "[[fixed]]\ngroup = \"sides\"\n[[load]]\ngroup = \"top\"\npressure = 100.0\n[damping]\nmass = 2.0\n[run]\n\
+     duration = 0.3\nintegrator = \"central-difference\"\ndt = 0.001\n[output]\nfields = { frames = 7 }\n",
+    "gravity = [0.0, 0.0, -9.81]\n[[fixed]]\ngroup = \"bottom\"\n[[move]]\ngroup = \"top\"\ndisplacement = [0.0, 0.0, 0.01]\n\
+     ramp = { kind = \"sin2\", rise = 0.2 }\n[run]\nduration = 0.3\nintegrator = \"newmark\"\ndt = 0.002\n[[probe]]\n\
+     name = \"middle\"\npoint = [0.05, 0.05, 0.05]\n[output]\nenergy = { every = 0.013 }\nacceleration = true\n",
+    "[[fixed]]\ngroup = \"sides\"\n[[load]]\ngroup = \"top\"\npressure = 100.0\n[run]\nduration = 0.3\n\
+     integrator = \"propagator\"\nkind = \"two-step\"\ndt = 0.003\n[output]\nprobes = { frames = 11 }\nsurface_only = true\n",
+    "[[fixed]]\ngroup = \"sides\"\n[[load]]\ngroup = \"top\"\npressure = 300.0\n[run]\nduration = 0.3\n\
+     integrator = \"cnn\"\nsaturation = 0.4\ndt = 0.002\nprecision = \"f32\"\n",
+];
+
+#[test]
+fn the_bytes_do_not_depend_on_interruptions() {
+    for scene in SCENES {
+        let place = tempfile::tempdir().unwrap();
+        let simulation = cube(scene);
+        let whole = place.path().join("whole");
+        assert_eq!(run(&whole, &simulation, &mut ()).ended, Ended::Finished);
+        let expected = contents(&whole);
+        for steps in [&[1][..], &[2, 3, 4], &[40], &[17, 60, 61]] {
+            let cut = place.path().join(format!("cut-{}", steps.len()));
+            let _ = fs::remove_dir_all(&cut);
+            for step in steps {
+                let mut companion = InterruptAt {
+                    step: *step,
+                    reached: 0,
+                };
+                let end = run(&cut, &simulation, &mut companion);
+                assert!(matches!(end.ended, Ended::Interrupted { .. }), "{step}");
+            }
+            let end = run(&cut, &simulation, &mut ());
+            assert_eq!(end.ended, Ended::Finished);
+            let found = contents(&cut);
+            assert_eq!(
+                found.keys().collect::<Vec<_>>(),
+                expected.keys().collect::<Vec<_>>()
+            );
+            for (name, content) in &expected {
+                assert!(&found[name] == content, "{name} after {steps:?} of {scene}");
+            }
+        }
+    }
+}
+
+#[test]
+fn another_mesh_and_a_damaged_checkpoint_are_refused() {
+    let place = tempfile::tempdir().unwrap();
+    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../meshes");
+    let mesh = place.path().join("body.msh");
+    fs::copy(meshes.join("sliver-20.msh"), &mesh).unwrap();
+    let text = "[mesh]\nfile = \"body.msh\"\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\nyoungs_modulus = 3000.0\n\
+                poissons_ratio = 0.3\n[[initial]]\nvelocity = [0.0, 0.0, 1.0]\n[run]\nduration = 0.2\n\
+                integrator = \"newmark\"\ndt = 0.001\n";
+    fs::write(place.path().join("scene.toml"), text).unwrap();
+    let scene = sinew_scene::Scene::load(place.path().join("scene.toml")).unwrap();
+    let simulation = scene.build().unwrap();
+    let out = place.path().join("out");
+    run(
+        &out,
+        &simulation,
+        &mut InterruptAt {
+            step: 50,
+            reached: 0,
+        },
+    );
+
+    let checkpoint = out.join("checkpoint.bin");
+    let whole = fs::read(&checkpoint).unwrap();
+    for damaged in [
+        &whole[..whole.len() - 1],
+        &whole[..100],
+        b"",
+        &[&whole[..], b"x"].concat(),
+    ] {
+        fs::write(&checkpoint, damaged).unwrap();
+        let (folder, _) = RunFolder::reopen(&out).unwrap();
+        let refused = folder.run(&simulation, &mut *simulation.integrator().unwrap(), &mut ());
+        assert!(matches!(
+            refused.unwrap_err(),
+            RecordRunError::Unusable { .. } | RecordRunError::Checkpoint { .. }
+        ));
+    }
+    fs::write(&checkpoint, whole).unwrap();
+
+    let longer = fs::read_to_string(&mesh).unwrap() + "\n";
+    fs::write(&mesh, longer).unwrap();
+    let refused = RunFolder::reopen(&out).unwrap_err().to_string();
+    assert!(
+        refused.contains("body.msh is not the file with which the run began"),
+        "{refused}"
+    );
+}

@@ -1,0 +1,101 @@
+//! The progress of a run on a terminal, and its interruption.
+
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use sinew_core::{Moment, RecordError, Recorder, Verdict};
+use sinew_record::Companion;
+
+use super::interruption::Interruption;
+
+/// Time between two changes of what is shown.
+const REFRESH: Duration = Duration::from_millis(100);
+
+/// Wall time between two looks at whether a run is to stop.
+const LOOK: Duration = Duration::from_millis(40);
+
+/// Shows how far a run is and ends it when asked to. The bar is hidden where standard error is no terminal.
+pub(crate) struct Onlooker {
+    interruption: Interruption,
+    bar: ProgressBar,
+    duration: f64,
+    begun: Instant,
+    /// Where this process began: steps and time (s).
+    from: Option<f64>,
+    shown: Instant,
+    looked: Instant,
+    /// Steps between two looks, for runs that nobody else cuts into batches.
+    stride: usize,
+    next: usize,
+}
+
+impl Onlooker {
+    /// Of a run of so many steps over `duration` (s).
+    pub(crate) fn new(interruption: Interruption, steps: usize, duration: f64) -> Self {
+        let bar = ProgressBar::new(steps as u64);
+        let style = ProgressStyle::with_template("{bar:30} {percent:>3} % {msg} {eta} left");
+        if let Ok(style) = style {
+            bar.set_style(style);
+        }
+        let now = Instant::now();
+        Self {
+            interruption,
+            bar,
+            duration,
+            begun: now,
+            from: None,
+            shown: now,
+            looked: now,
+            stride: 1,
+            next: 0,
+        }
+    }
+
+    pub(crate) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    fn show(&mut self, steps: usize, t: f64) {
+        let from = *self.from.get_or_insert(t);
+        if self.shown.elapsed() < REFRESH {
+            return;
+        }
+        self.shown = Instant::now();
+        let pace = (t - from) / self.begun.elapsed().as_secs_f64().max(1e-9);
+        self.bar.set_position(steps as u64);
+        self.bar.set_message(format!(
+            "t = {t:.4} of {} s, {pace:.3} times real time,",
+            self.duration
+        ));
+    }
+}
+
+impl Companion for Onlooker {
+    fn is_interrupted(&self) -> bool {
+        self.interruption.is_asked_for()
+    }
+
+    fn progress(&mut self, steps: usize, t: f64) {
+        self.show(steps, t);
+    }
+}
+
+/// Beside a recorder that needs no look at states.
+impl Recorder for Onlooker {
+    fn next(&mut self, step: usize) -> Option<usize> {
+        Some(self.next.max(step))
+    }
+
+    fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        let elapsed = self.looked.elapsed();
+        let fits = LOOK.as_secs_f64() / elapsed.as_secs_f64().max(1e-9) * self.stride as f64;
+        self.stride = (fits as usize).clamp(1, 2 * self.stride);
+        self.looked = Instant::now();
+        self.next = moment.step + self.stride;
+        self.show(moment.step, moment.state.t());
+        Ok(match self.is_interrupted() {
+            true => Verdict::Stop,
+            false => Verdict::Continue,
+        })
+    }
+}

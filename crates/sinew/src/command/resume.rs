@@ -1,0 +1,38 @@
+//! `sinew resume`.
+
+use std::path::PathBuf;
+
+use sinew_core::OptionValue;
+use sinew_record::RunFolder;
+use sinew_scene::output::complain;
+
+use super::Failure;
+use super::interruption::Interruption;
+use super::run::{in_folder, integrator, shorten, threads};
+
+/// The folder of a run.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The folder that `sinew run --out` named.
+    folder: PathBuf,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let interruption = Interruption::listen().map_err(Failure::Signals)?;
+    let (folder, scene) = RunFolder::reopen(&arguments.folder)?;
+    if folder.is_finished()? {
+        complain("the run in it has come to its end: there is nothing to go on with");
+        return Ok(());
+    }
+    let mut simulation = scene.build()?;
+    shorten(&mut simulation);
+    let asked: Option<OptionValue> = folder.threads().and_then(|text| threads(text).ok());
+    let mut integrator = integrator(&simulation, asked.as_ref())?;
+    in_folder(
+        &arguments.folder,
+        &folder,
+        &simulation,
+        &mut *integrator,
+        interruption,
+    )
+}
