@@ -51,6 +51,8 @@ def is_seed(pack, name, content):
         return kind in ("tetra", "tetra10")
     if pack == "gmsh":
         return len(content) < 9000 and kind in ("boxes", "parametric", "partitioned", "pyramid", "reversed")
+    if pack == "version-1":
+        return kind == "boxes"
     return True
 
 
@@ -391,10 +393,43 @@ def gmsh_files():
     pack.save()
 
 
+def without_names(content):
+    return re.sub(rb"\$PhysicalNames\n.*?\$EndPhysicalNames\n", b"", content, flags=re.S)
+
+
+def version_1():
+    """Version 1 of gmsh, which meshio does not read: the same mesh as in version 2.2, without names."""
+    pack = Pack("version-1")
+
+    def add(name, **options):
+        content = gmsh_bytes(1.0, 0, **options)
+        pack.add(f"{name}-1-ascii", content, without_names(gmsh_bytes(2.2, 0, **options)))
+
+    with model("boxes"):
+        two_boxes(1.0)
+        gmsh.model.mesh.generate(3)
+        add("boxes")
+        add("boxes-all", SaveAll=1)
+    with model("second order"):
+        gmsh.option.setNumber("Mesh.ElementOrder", 2)
+        two_boxes(2.0)
+        gmsh.model.mesh.generate(3)
+        add("tetra10")
+    with model("reversed"):
+        square = gmsh.model.occ.addRectangle(0, 0, 0, 1, 1)
+        gmsh.model.occ.synchronize()
+        gmsh.model.addPhysicalGroup(2, [-square], 3, "down")
+        gmsh.option.setNumber("Mesh.MeshSizeMin", 1)
+        gmsh.model.mesh.generate(2)
+        add("reversed")
+    pack.save()
+
+
 if __name__ == "__main__":
     os.chdir(tempfile.gettempdir())
     SEEDS.mkdir(parents=True, exist_ok=True)
     cell_types()
     meshio_data()
     gmsh_files()
+    version_1()
     sys.stdout.flush()

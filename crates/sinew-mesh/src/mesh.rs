@@ -21,9 +21,9 @@ pub struct Mesh {
     pub points: Vec<[f64; 3]>,
     /// The tag of each point in the file: at least 1, in any order, with gaps. Empty stands for `1..=points.len()`.
     pub node_tags: Vec<u64>,
-    /// The geometrical entity on which each point lies (meshio's `gmsh:dim_tags`). Empty if the file has none (2.2).
+    /// The geometrical entity on which each point lies (meshio's `gmsh:dim_tags`). Empty if the file has none (1, 2.2).
     pub node_entities: Vec<Entity>,
-    /// The cells. Version 4: one block per element block of the file. Version 2: one per run of equal types.
+    /// The cells. Version 4: one block per element block of the file. Versions 1 and 2: one per run of equal types.
     pub cells: Vec<CellBlock>,
     /// The names of physical groups, keyed by dimension (0..=3) and tag (positive). A named group may have no cells.
     pub physical_names: BTreeMap<(u8, i32), String>,

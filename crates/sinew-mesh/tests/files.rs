@@ -64,7 +64,7 @@ fn paths_that_are_no_files_are_refused() {
     assert_eq!(
         error,
         format!(
-            "{}:1 (byte 0): the file is empty; expected a gmsh .msh file, starting with $MeshFormat",
+            "{}:1 (byte 0): the file is empty; expected a gmsh .msh file, starting with $MeshFormat or, in version 1, $NOD",
             empty.display()
         )
     );

@@ -42,7 +42,8 @@ fn refused_at(bytes: &[u8], offset: usize, expected: &str) {
 mod other_formats {
     use super::*;
 
-    const EXPECTED: &str = "expected a gmsh .msh file, starting with $MeshFormat";
+    const EXPECTED: &str =
+        "expected a gmsh .msh file, starting with $MeshFormat or, in version 1, $NOD";
 
     #[test]
     fn are_named() {
@@ -66,12 +67,6 @@ mod other_formats {
             refused_at(bytes, 0, &format!("{problem}; {EXPECTED}"));
         }
     }
-
-    #[test]
-    fn msh_1_is_named() {
-        let bytes = b"$NOD\n1\n1 0 0 0\n$ENDNOD\n";
-        refused_at(bytes, 0, "$NOD: MSH 1 is not supported; re-save with gmsh");
-    }
 }
 
 mod mesh_format {
@@ -91,7 +86,8 @@ mod mesh_format {
                 &message,
             );
         }
-        let message = "$MeshFormat: MSH 1 is not supported; re-save with gmsh";
+        let message =
+            "$MeshFormat: version 1 has no $MeshFormat section; expected a file starting with $NOD";
         refused(TWICE_22, ("2.2 0 8", "1 0 8"), "1 0", message);
     }
 
@@ -132,7 +128,8 @@ mod mesh_format {
         refused_at(twice.as_bytes(), TWICE_22.len(), message);
         let message = "$Nodes: the section comes before $MeshFormat; expected $MeshFormat first";
         refused_at(b"$Nodes\n0\n$EndNodes\n", 0, message);
-        let message = "the file has no $MeshFormat section; expected $MeshFormat";
+        let message =
+            "the file has no $MeshFormat section; expected $MeshFormat or, in version 1, $NOD";
         refused_at(b"$Comments\n$EndComments\n", 23, message);
     }
 }

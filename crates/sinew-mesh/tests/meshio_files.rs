@@ -338,6 +338,15 @@ fn files_of_gmsh() {
     );
 }
 
+/// meshio does not read version 1, but version 2.2 of the same mesh, without names.
+#[test]
+fn files_of_gmsh_in_version_1() {
+    let pack = pack("version-1");
+    assert_pack_is_read(&pack);
+    assert_eq!(pack.files.len(), 4);
+    assert_eq!(pack.files.len(), pack.expected.len());
+}
+
 /// Each mid-edge node lies in the middle of the edge that VTK's file formats give it.
 #[test]
 fn mid_edge_nodes_lie_at_edge_midpoints() {

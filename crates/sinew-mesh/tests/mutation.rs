@@ -290,8 +290,13 @@ fn no_cut_file_passes_unnoticed() {
                 continue;
             }
             let is_reported = mesh.warnings.iter().any(|w| {
-                w.message.contains("the file ends without")
-                    || w.message.contains("no $Elements section")
+                [
+                    "the file ends without",
+                    "no $Elements section",
+                    "no $ELM section",
+                ]
+                .iter()
+                .any(|part| w.message.contains(part))
             });
             assert!(
                 is_reported || length + 1 == file.len(),

@@ -3,13 +3,13 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::assemble_data;
+use super::contents::{Contents, Tables};
 use super::elements::{BlockPlace, ElementSection, RawGroups};
 use super::entities::Entities;
 use super::fault::Fault;
 use super::nodes::RawNodes;
 use super::physical_names::{NamesWithoutDim, PhysicalNames};
 use super::remarks::Remarks;
-use super::section::Contents;
 use super::tag_index::TagIndex;
 use super::tag_list::{TagList, Tags};
 use crate::cell_type::CellType;
@@ -21,22 +21,28 @@ pub(super) fn mesh(contents: Contents, bytes: &[u8], remarks: &mut Remarks) -> R
     if contents.nodes.tags.is_empty() {
         return Err(no_nodes(&contents));
     }
+    let tables = contents.tables;
     let Nodes {
         tags,
         points,
         entities,
         index,
-    } = unique_nodes(contents.nodes, bytes, remarks)?;
+    } = unique_nodes(contents.nodes, tables, bytes, remarks)?;
     if contents.elements.is_empty() {
-        remarks.general("the file has no $Elements section");
+        remarks.general(format!("the file has no {} section", tables.elements));
     }
     let groups = Groups {
         entities: contents.entities,
         parts: contents.parts,
         unlisted: HashSet::new(),
     };
-    let cells = cells(contents.elements, &index, groups, bytes, remarks)?;
-    remark_repeated_element_tags(&cells, remarks);
+    let resolver = Resolver {
+        index: &index,
+        tables,
+        bytes,
+    };
+    let cells = cells(contents.elements, resolver, groups, remarks)?;
+    remark_repeated_element_tags(&cells, tables, remarks);
     let mut physical_names = contents.physical_names;
     add_dimensions(contents.names_without_dim, &cells, &mut physical_names);
     let mut mesh = Mesh {
@@ -52,15 +58,16 @@ pub(super) fn mesh(contents: Contents, bytes: &[u8], remarks: &mut Remarks) -> R
     assemble_data::add(contents.data, &mut mesh, &index, bytes.len(), remarks)?;
     take_groups_from_data(&mut mesh, remarks);
     remark_unknown_periodic_nodes(&mesh, &index, remarks);
-    remark_repeated_volume_cells(&mesh, remarks);
+    remark_repeated_volume_cells(&mesh, tables, remarks);
     remark_empty_groups(&mesh, remarks);
     Ok(mesh)
 }
 
 fn no_nodes(contents: &Contents) -> Fault {
+    let section = contents.tables.nodes;
     let problem = match (contents.has_nodes, contents.skipped.as_slice()) {
-        (true, _) => "the file has no nodes: $Nodes is empty".to_owned(),
-        (false, []) => "the file has no nodes: it has no $Nodes section".to_owned(),
+        (true, _) => format!("the file has no nodes: {section} is empty"),
+        (false, []) => format!("the file has no nodes: it has no {section} section"),
         (false, skipped) => {
             let skipped: Vec<String> = skipped
                 .iter()
@@ -68,12 +75,13 @@ fn no_nodes(contents: &Contents) -> Fault {
                 .map(|name| format!("${}", name.escape_debug()))
                 .collect();
             format!(
-                "the file has no nodes: it has no $Nodes section (skipped: {})",
+                "the file has no nodes: it has no {section} section (skipped: {})",
                 skipped.join(", ")
             )
         }
     };
-    Fault::new(contents.length, problem, "a $Nodes section with nodes")
+    let expected = format!("a {section} section with nodes");
+    Fault::new(contents.length, problem, expected)
 }
 
 /// The nodes, each once.
@@ -85,7 +93,12 @@ struct Nodes {
 }
 
 /// Drops repeated rows, and indexes the rest by tag.
-fn unique_nodes(raw: RawNodes, bytes: &[u8], remarks: &mut Remarks) -> Result<Nodes, Fault> {
+fn unique_nodes(
+    raw: RawNodes,
+    tables: Tables,
+    bytes: &[u8],
+    remarks: &mut Remarks,
+) -> Result<Nodes, Fault> {
     let mut index = TagIndex::of_range(&raw.tags);
     let mut nodes = Nodes {
         entities: if raw.entities.len() == raw.tags.len() {
@@ -97,13 +110,13 @@ fn unique_nodes(raw: RawNodes, bytes: &[u8], remarks: &mut Remarks) -> Result<No
         points: raw.points,
         index: TagIndex::of_range(&[]),
     };
-    next_index(nodes.tags.len().saturating_sub(1))?;
+    next_index(nodes.tags.len().saturating_sub(1), tables)?;
     if !index.is_complete() {
         let mut is_repeated = Vec::new();
         let mut unique = 0;
         for (row, &tag) in nodes.tags.iter().enumerate() {
             if index.get(tag).is_none() {
-                index.insert(tag, next_index(unique)?);
+                index.insert(tag, next_index(unique, tables)?);
                 unique += 1;
             } else {
                 is_repeated.resize(row, false);
@@ -117,6 +130,7 @@ fn unique_nodes(raw: RawNodes, bytes: &[u8], remarks: &mut Remarks) -> Result<No
                 &is_repeated,
                 &index,
                 |row| raw.places.offset(row, bytes),
+                tables,
                 remarks,
             )?;
         }
@@ -130,6 +144,7 @@ fn drop_repeated(
     is_repeated: &[bool],
     index: &TagIndex,
     offset: impl Fn(usize) -> usize,
+    tables: Tables,
     remarks: &mut Remarks,
 ) -> Result<(), Fault> {
     let repeated: Vec<(usize, u64, [f64; 3])> = nodes
@@ -147,13 +162,14 @@ fn drop_repeated(
         let first = index.get(tag).and_then(|i| nodes.points.get(i as usize));
         if first != Some(&point) {
             let problem = format!("node tag {tag} occurs again, with other coordinates");
-            return Err(Fault::new(offset(row), problem, "each tag once").inside("$Nodes"));
+            return Err(Fault::new(offset(row), problem, "each tag once").inside(tables.nodes));
         }
     }
     if let Some(&(row, tag, _)) = repeated.first() {
         let count = repeated.len();
         let message = format!(
-            "$Nodes: rows that repeat an earlier node and were merged with it: {count} (first: tag {tag})"
+            "{}: rows that repeat an earlier node and were merged with it: {count} (first: tag {tag})",
+            tables.nodes
         );
         remarks.at(offset(row), message);
     }
@@ -165,7 +181,7 @@ fn keep_first<T>(rows: &mut Vec<T>, is_repeated: &[bool]) {
     rows.retain(|_| !again.next().copied().unwrap_or(false));
 }
 
-fn next_index(count: usize) -> Result<u32, Fault> {
+fn next_index(count: usize, tables: Tables) -> Result<u32, Fault> {
     match u32::try_from(count) {
         // The last value stands for "no node" elsewhere.
         Ok(index) if index < u32::MAX => Ok(index),
@@ -174,16 +190,23 @@ fn next_index(count: usize) -> Result<u32, Fault> {
             format!("the file has more than {} nodes", u32::MAX - 1),
             "split the mesh",
         )
-        .inside("$Nodes")),
+        .inside(tables.nodes)),
     }
 }
 
-/// The blocks of all `$Elements` sections; rows of later sections that repeat an earlier one are dropped.
+/// The nodes, the file and the names of its sections: turns node tags into indices, or says where one is wrong.
+#[derive(Clone, Copy)]
+struct Resolver<'a> {
+    index: &'a TagIndex,
+    tables: Tables,
+    bytes: &'a [u8],
+}
+
+/// The blocks of all sections of elements; rows of later sections that repeat an earlier one are dropped.
 fn cells(
     sections: Vec<ElementSection>,
-    index: &TagIndex,
+    resolver: Resolver<'_>,
     mut groups: Groups,
-    bytes: &[u8],
     remarks: &mut Remarks,
 ) -> Result<Vec<CellBlock>, Fault> {
     let mut cells: Vec<CellBlock> = Vec::new();
@@ -193,14 +216,14 @@ fn cells(
         let mut new_blocks = Vec::with_capacity(section.blocks.len());
         for block in section.blocks {
             let place = block.place;
-            let connectivity = resolved(block.kind, block.node_tags, index, &place, bytes)?;
+            let connectivity = resolver.resolved(block.kind, block.node_tags, &place)?;
             let mut cells = CellBlock::new(block.kind, connectivity);
             cells.element_tags = block.element_tags;
             (cells.physical, cells.geometrical) =
                 groups.of_block(block.groups, cells.element_tags.len(), remarks);
             let dropped = match earlier.is_empty() {
                 true => 0,
-                false => drop_known_rows(&mut cells, &earlier, &place, bytes)?,
+                false => resolver.drop_known_rows(&mut cells, &earlier, &place)?,
             };
             repeated += dropped;
             if dropped == 0 || !cells.is_empty() {
@@ -209,7 +232,8 @@ fn cells(
         }
         if repeated > 0 {
             remarks.general(format!(
-                "$Elements occurs again: rows that repeat earlier ones and were merged with them: {repeated}"
+                "{} occurs again: rows that repeat earlier ones and were merged with them: {repeated}",
+                resolver.tables.elements
             ));
         }
         cells.extend(new_blocks);
@@ -225,90 +249,107 @@ fn rows_by_tag(cells: &[CellBlock]) -> HashMap<u64, (CellType, Vec<u32>)> {
     rows.collect()
 }
 
-fn drop_known_rows(
-    block: &mut CellBlock,
-    known: &HashMap<u64, (CellType, Vec<u32>)>,
-    place: &BlockPlace,
-    bytes: &[u8],
-) -> Result<usize, Fault> {
-    let mut is_new = Vec::with_capacity(block.len());
-    for (cell, (&tag, row)) in block.element_tags.iter().zip(block.cells()).enumerate() {
-        match known.get(&tag) {
-            None => is_new.push(true),
-            Some((kind, nodes)) if *kind == block.kind && nodes == row => is_new.push(false),
-            Some(_) => {
-                let problem = format!(
-                    "element tag {tag} occurs in an earlier $Elements section, with other nodes"
-                );
-                return Err(place.fault(cell, bytes, problem, "each element once"));
-            }
-        }
-    }
-    let dropped = is_new.iter().filter(|&&new| !new).count();
-    if dropped > 0 {
-        block.keep(&is_new);
-    }
-    Ok(dropped)
-}
-
-/// Indices in VTK order for the node tags of a block.
-fn resolved(
-    kind: CellType,
-    node_tags: TagList,
-    index: &TagIndex,
-    place: &BlockPlace,
-    bytes: &[u8],
-) -> Result<Vec<u32>, Fault> {
-    let unknown = |entry: usize, tag: u64| {
-        let (least, greatest) = index.range();
-        let problem = format!("node tag {tag} is not in $Nodes (tags {least}..{greatest})");
-        place.fault(
-            entry / kind.node_count(),
-            bytes,
-            problem,
-            "an existing node tag",
-        )
-    };
-    let mut connectivity = match node_tags.into_tags() {
-        Tags::Narrow(mut tags) if index.is_complete() => {
-            // The tags are consecutive, so an index is a difference of tags.
-            let (least, greatest) = index.range();
-            let is_known = |tag: u32| (least..=greatest).contains(&u64::from(tag));
-            if !tags.iter().fold(true, |all, &tag| all & is_known(tag)) {
-                let entry = tags.iter().position(|&tag| !is_known(tag)).unwrap_or(0);
-                let tag = tags.get(entry).copied().map_or(0, u64::from);
-                return Err(unknown(entry, tag));
-            }
-            tags.iter_mut().for_each(|tag| *tag -= least as u32);
-            tags
-        }
-        Tags::Narrow(mut tags) => {
-            for (entry, tag) in tags.iter_mut().enumerate() {
-                match index.get(u64::from(*tag)) {
-                    Some(node) => *tag = node,
-                    None => return Err(unknown(entry, u64::from(*tag))),
+impl Resolver<'_> {
+    fn drop_known_rows(
+        self,
+        block: &mut CellBlock,
+        known: &HashMap<u64, (CellType, Vec<u32>)>,
+        place: &BlockPlace,
+    ) -> Result<usize, Fault> {
+        let elements = self.tables.elements;
+        let mut is_new = Vec::with_capacity(block.len());
+        for (cell, (&tag, row)) in block.element_tags.iter().zip(block.cells()).enumerate() {
+            match known.get(&tag) {
+                None => is_new.push(true),
+                Some((kind, nodes)) if *kind == block.kind && nodes == row => is_new.push(false),
+                Some(_) => {
+                    let problem = format!(
+                        "element tag {tag} occurs in an earlier {elements} section, with other nodes"
+                    );
+                    return Err(place.fault(
+                        elements,
+                        cell,
+                        self.bytes,
+                        problem,
+                        "each element once",
+                    ));
                 }
             }
-            tags
         }
-        Tags::Wide(tags) => {
-            let nodes = tags.into_iter().enumerate();
-            nodes
-                .map(|(entry, tag)| index.get(tag).ok_or_else(|| unknown(entry, tag)))
-                .collect::<Result<_, _>>()?
+        let dropped = is_new.iter().filter(|&&new| !new).count();
+        if dropped > 0 {
+            block.keep(&is_new);
         }
-    };
-    if let Some(order) = kind.vtk_order_in_gmsh_row() {
-        let mut gmsh_row = Vec::with_capacity(kind.node_count());
-        for row in connectivity.chunks_exact_mut(kind.node_count()) {
-            gmsh_row.clear();
-            gmsh_row.extend_from_slice(row);
-            for (node, &i) in row.iter_mut().zip(order) {
-                *node = gmsh_row.get(usize::from(i)).copied().unwrap_or(*node);
+        Ok(dropped)
+    }
+
+    /// Indices in VTK order for the node tags of a block.
+    fn resolved(
+        self,
+        kind: CellType,
+        node_tags: TagList,
+        place: &BlockPlace,
+    ) -> Result<Vec<u32>, Fault> {
+        let Resolver {
+            index,
+            tables,
+            bytes,
+        } = self;
+        let unknown = |entry: usize, tag: u64| {
+            let (least, greatest) = index.range();
+            let problem = format!(
+                "node tag {tag} is not in {} (tags {least}..{greatest})",
+                tables.nodes
+            );
+            place.fault(
+                tables.elements,
+                entry / kind.node_count(),
+                bytes,
+                problem,
+                "an existing node tag",
+            )
+        };
+        let mut connectivity = match node_tags.into_tags() {
+            Tags::Narrow(mut tags) if index.is_complete() => {
+                // The tags are consecutive, so an index is a difference of tags.
+                let (least, greatest) = index.range();
+                let is_known = |tag: u32| (least..=greatest).contains(&u64::from(tag));
+                if !tags.iter().fold(true, |all, &tag| all & is_known(tag)) {
+                    let entry = tags.iter().position(|&tag| !is_known(tag)).unwrap_or(0);
+                    let tag = tags.get(entry).copied().map_or(0, u64::from);
+                    return Err(unknown(entry, tag));
+                }
+                tags.iter_mut().for_each(|tag| *tag -= least as u32);
+                tags
+            }
+            Tags::Narrow(mut tags) => {
+                for (entry, tag) in tags.iter_mut().enumerate() {
+                    match index.get(u64::from(*tag)) {
+                        Some(node) => *tag = node,
+                        None => return Err(unknown(entry, u64::from(*tag))),
+                    }
+                }
+                tags
+            }
+            Tags::Wide(tags) => {
+                let nodes = tags.into_iter().enumerate();
+                nodes
+                    .map(|(entry, tag)| index.get(tag).ok_or_else(|| unknown(entry, tag)))
+                    .collect::<Result<_, _>>()?
+            }
+        };
+        if let Some(order) = kind.vtk_order_in_gmsh_row() {
+            let mut gmsh_row = Vec::with_capacity(kind.node_count());
+            for row in connectivity.chunks_exact_mut(kind.node_count()) {
+                gmsh_row.clear();
+                gmsh_row.extend_from_slice(row);
+                for (node, &i) in row.iter_mut().zip(order) {
+                    *node = gmsh_row.get(usize::from(i)).copied().unwrap_or(*node);
+                }
             }
         }
+        Ok(connectivity)
     }
-    Ok(connectivity)
 }
 
 /// Lookup of the groups that a block's elements belong to.
@@ -410,7 +451,7 @@ fn remark_unknown_periodic_nodes(mesh: &Mesh, index: &TagIndex, remarks: &mut Re
     }
 }
 
-fn remark_repeated_element_tags(blocks: &[CellBlock], remarks: &mut Remarks) {
+fn remark_repeated_element_tags(blocks: &[CellBlock], tables: Tables, remarks: &mut Remarks) {
     if have_ascending_tags_apart(blocks) {
         return;
     }
@@ -425,7 +466,8 @@ fn remark_repeated_element_tags(blocks: &[CellBlock], remarks: &mut Remarks) {
     };
     if let Some((tag, _)) = repeats().next() {
         remarks.general(format!(
-            "$Elements: elements with the tag of another: {} (first: tag {tag}); all are kept",
+            "{}: elements with the tag of another: {} (first: tag {tag}); all are kept",
+            tables.elements,
             repeats().count()
         ));
     }
@@ -448,14 +490,15 @@ fn have_ascending_tags_apart(blocks: &[CellBlock]) -> bool {
     neighbours.all(|(before, after)| before.1 < after.0)
 }
 
-fn remark_repeated_volume_cells(mesh: &Mesh, remarks: &mut Remarks) {
+fn remark_repeated_volume_cells(mesh: &Mesh, tables: Tables, remarks: &mut Remarks) {
     for copies in mesh.duplicate_cells(3) {
         let Some(&(first, copy)) = copies.pairs.first() else {
             continue;
         };
         remarks.general(format!(
-            "$Elements: {} cells with the same nodes as another: {} (first: tag {} repeats tag {}); all are \
+            "{}: {} cells with the same nodes as another: {} (first: tag {} repeats tag {}); all are \
              kept, so volumes count twice until they are merged",
+            tables.elements,
             copies.kind,
             copies.pairs.len(),
             mesh.element_tag(copy),

@@ -35,7 +35,7 @@ pub(super) struct RawBlock {
 pub(super) enum RawGroups {
     /// Version 4: by the entity of the block, which stands at `offset`.
     OfEntity { entity: Entity, offset: usize },
-    /// Version 2: each by its own row.
+    /// Versions 1 and 2: each by its own row.
     OfEach {
         physical: PhysicalTags,
         geometrical: Vec<i32>,
@@ -54,14 +54,15 @@ pub(super) struct BlockPlace {
 enum BlockNumber {
     /// Version 4: within the block with this number, from 1.
     InFile(u64),
-    /// Version 2 has no blocks: from the number, from 1, of this block's first element.
+    /// Versions 1 and 2 have no blocks: from the number, from 1, of this block's first element.
     FirstElement(u64),
 }
 
 impl BlockPlace {
-    /// A fault in one of the block's elements; `cell` counts from 0.
+    /// A fault in one of the block's elements; `cell` counts from 0, `section` holds the elements.
     pub(super) fn fault(
         &self,
+        section: &str,
         cell: usize,
         bytes: &[u8],
         problem: String,
@@ -75,7 +76,7 @@ impl BlockPlace {
                 .inside(format!("block {block}")),
             BlockNumber::FirstElement(first) => fault.inside(format!("element {}", first + cell)),
         };
-        fault.inside("$Elements")
+        fault.inside(section)
     }
 }
 
@@ -111,14 +112,14 @@ fn cell_type(id: i32, offset: usize) -> Result<CellType, Fault> {
     })
 }
 
-/// The blocks of version 2: consecutive rows of one type share a block, as in meshio.
+/// The blocks of versions 1 and 2: consecutive rows of one type share a block, as in meshio.
 #[derive(Default)]
-struct V2Blocks {
+struct BlocksOfRows {
     complete: Vec<RawBlock>,
     open: Option<RawBlock>,
 }
 
-impl V2Blocks {
+impl BlocksOfRows {
     /// The block for a row of this type; `number` is the row's, from 1.
     fn block(&mut self, kind: CellType, number: u64) -> &mut RawBlock {
         if self.open.as_ref().is_some_and(|open| open.kind != kind) {
@@ -141,9 +142,9 @@ impl V2Blocks {
     }
 }
 
-/// The tags of a row of version 2. The first is the physical group, the second the geometrical entity; partitions,
+/// The tags of a row of version 1 or 2. The first is the physical group, the second the geometrical entity; partitions,
 /// parents and domains follow, and belong to no group.
-fn read_v2_tags(source: &mut impl Source, count: u64, block: &mut RawBlock) -> Result<(), Fault> {
+fn read_tags(source: &mut impl Source, count: u64, block: &mut RawBlock) -> Result<(), Fault> {
     let (mut physical_tag, mut geometrical_tag) = (0, 0);
     for index in 0..count {
         match index {
@@ -172,12 +173,56 @@ fn read_nodes(source: &mut impl Source, kind: TagKind, block: &mut RawBlock) -> 
     Ok(())
 }
 
+/// The section of version 1, without its last line, and the number of elements it declares.
+pub(super) fn read_v1(cursor: &mut Cursor<'_>) -> Result<(ElementSection, u64), Fault> {
+    let mut source = Text::new(cursor);
+    let total = source.size("the number of elements")?;
+    // The row of a point: five numbers and a node.
+    source.room_for(total, "the number of elements", Record::ints(6))?;
+    let mut blocks = BlocksOfRows::default();
+    for number in 1..=total {
+        read_row(cursor, ("element", number, total), |cursor| {
+            read_v1_row(&mut Text::new(cursor), number, &mut blocks)
+        })?;
+    }
+    Ok((blocks.into_section(), total))
+}
+
+/// Reads `tag type physical geometrical nodes`, then the nodes.
+fn read_v1_row(
+    source: &mut Text<'_, '_>,
+    number: u64,
+    blocks: &mut BlocksOfRows,
+) -> Result<(), Fault> {
+    let offset = source.next_offset();
+    let element_tag = source.size("the element tag")?;
+    let type_offset = source.next_offset();
+    let kind = cell_type(source.int("the element type")?, type_offset)?;
+    let nodes = kind.node_count();
+    let block = blocks.block(kind, number);
+    if block.element_tags.is_empty() {
+        block.add_run(offset, Layout::Words(5 + nodes));
+    }
+    block.element_tags.push(element_tag);
+    read_tags(source, 2, block)?;
+    let count_offset = source.next_offset();
+    let count = source.size("the number of nodes")?;
+    if count != nodes as u64 {
+        let problem = format!(
+            "the number of nodes is {count} for element type {} ({kind})",
+            kind.gmsh_id()
+        );
+        return Err(Fault::new(count_offset, problem, nodes.to_string()));
+    }
+    read_nodes(source, TagKind::Int, block)
+}
+
 /// The section of version 2 as text, without its last line, and the number of elements it declares.
 pub(super) fn read_v2_text(cursor: &mut Cursor<'_>) -> Result<(ElementSection, u64), Fault> {
     let mut source = Text::new(cursor);
     let total = source.size("the number of elements")?;
     source.room_for(total, "the number of elements", Record::ints(4))?;
-    let mut blocks = V2Blocks::default();
+    let mut blocks = BlocksOfRows::default();
     for number in 1..=total {
         read_row(cursor, ("element", number, total), |cursor| {
             read_v2_text_row(&mut Text::new(cursor), number, &mut blocks)
@@ -189,7 +234,7 @@ pub(super) fn read_v2_text(cursor: &mut Cursor<'_>) -> Result<(ElementSection, u
 fn read_v2_text_row(
     source: &mut Text<'_, '_>,
     number: u64,
-    blocks: &mut V2Blocks,
+    blocks: &mut BlocksOfRows,
 ) -> Result<(), Fault> {
     let offset = source.next_offset();
     let element_tag = source.size("the element tag")?;
@@ -203,7 +248,7 @@ fn read_v2_text_row(
         block.add_run(offset, Layout::ElementWords { nodes });
     }
     block.element_tags.push(element_tag);
-    read_v2_tags(source, tag_count, block)?;
+    read_tags(source, tag_count, block)?;
     read_nodes(source, TagKind::Int, block)
 }
 
@@ -221,7 +266,7 @@ pub(super) fn read_v2_bytes(
 fn read_v2_runs(source: &mut impl Source, total: u64) -> Result<ElementSection, Fault> {
     // A row has at least its number and a node.
     source.room_for(total, "the number of elements", Record::ints(2))?;
-    let mut blocks = V2Blocks::default();
+    let mut blocks = BlocksOfRows::default();
     let mut done = 0;
     while done < total {
         let run = read_v2_run_header(source, done, total)
@@ -283,7 +328,7 @@ fn read_v2_binary_row(
 ) -> Result<(), Fault> {
     let element_tag = source.tag(TagKind::Int, "the element tag")?;
     block.element_tags.push(element_tag);
-    read_v2_tags(source, tags, block)?;
+    read_tags(source, tags, block)?;
     read_nodes(source, TagKind::Int, block)
 }
 

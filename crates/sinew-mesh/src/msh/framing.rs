@@ -22,7 +22,16 @@ pub(super) fn end_section(
     after: &str,
     remarks: &mut Remarks,
 ) -> Result<(), Fault> {
-    let end = format!("$End{name}");
+    end_line(cursor, &format!("$End{name}"), after, remarks)
+}
+
+/// As [`end_section`], with the line spelled out.
+pub(super) fn end_line(
+    cursor: &mut Cursor<'_>,
+    end: &str,
+    after: &str,
+    remarks: &mut Remarks,
+) -> Result<(), Fault> {
     let row_was_closed = cursor.skip_blanks();
     let offset = cursor.offset();
     if cursor.is_at_end() {

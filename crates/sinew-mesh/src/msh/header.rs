@@ -62,7 +62,7 @@ pub(super) fn refuse_other_formats(bytes: &[u8]) -> Result<(), Fault> {
         Err(Fault::new(
             0,
             what,
-            "a gmsh .msh file, starting with $MeshFormat",
+            "a gmsh .msh file, starting with $MeshFormat or, in version 1, $NOD",
         ))
     };
     let mut cursor = Cursor::new(bytes);
@@ -109,10 +109,11 @@ pub(super) fn read(
         b"4.0" => Version::V40,
         b"4.1" => Version::V41,
         b"1" | b"1.0" => {
-            return Err(Fault::unsupported(
+            let problem = "version 1 has no $MeshFormat section";
+            return Err(Fault::new(
                 version.offset,
-                "MSH 1 is not supported",
-                "re-save with gmsh",
+                problem,
+                "a file starting with $NOD",
             ));
         }
         other => {

@@ -1,4 +1,4 @@
-//! gmsh's .msh format: reading versions 2.0 to 4.1, writing 2.2 and 4.1, as text and as bytes.
+//! gmsh's .msh format: reading versions 1 and 2.0 to 4.1, writing 2.2 and 4.1, as text and as bytes.
 //!
 //! The reader walks over the bytes once. [`cursor`] knows offsets, [`source`] turns bytes into numbers, `section` finds
 //! sections, and one module for each section decodes its rows per format version into raw tables that still hold the
@@ -8,6 +8,8 @@
 //!
 //! | case | what the reader does |
 //! |---|---|
+//! | no `$MeshFormat`, but `$NOD` (or `$NOE`) and `$ELM` | version 1; groups have no names |
+//! | a section of later versions after `$NOD` or `$ELM` | refuses |
 //! | version `2` or `2.0` | as 2.2; names of groups may lack the dimension, and get those of the cells with their tag |
 //! | version `4` | 4.0 if the first line of `$Nodes` has two numbers, 4.1 if four; in binary files, what can be read |
 //! | totals or tag ranges in a version 4 header disagree with the blocks | believes the blocks, warns |
@@ -19,7 +21,7 @@
 //! | a block on an entity that `$Entities` does not list | no physical group, warns |
 //! | `$Elements` before `$Nodes` | accepts |
 //! | the last `$End...` is missing | accepts with a warning if the last row ends with a line break, else refuses |
-//! | a row of version 2 that ends, or begins, in the middle of a line and crosses a line break | refuses |
+//! | a row of version 1 or 2 that ends, or begins, in the middle of a line and crosses a line break | refuses |
 //! | `$MeshFormat` occurs again (gmsh appends data so) | accepts it if it is the same, else refuses |
 //! | a data row for a tag that the mesh does not have | skips the row, warns |
 //! | points or cells without a data row | NaN, warns |
@@ -46,6 +48,7 @@
 
 mod assemble;
 mod assemble_data;
+mod contents;
 mod cursor;
 mod data;
 mod elements;
@@ -55,6 +58,7 @@ mod fault;
 mod file;
 mod framing;
 mod header;
+mod msh1;
 mod nodes;
 mod number;
 mod periodic;
@@ -78,7 +82,7 @@ use fault::Fault;
 use header::Version;
 use remarks::Remarks;
 
-/// Reads the bytes of a .msh file: version 2.0, 2.1, 2.2, 4.0 or 4.1, as text or as bytes of either order.
+/// Reads the bytes of a .msh file: version 1 as text, 2.0, 2.1, 2.2, 4.0 or 4.1 as text or as bytes of either order.
 ///
 /// Points, cells, names and their order are those that meshio 5.3.5 gives, wherever meshio reads a file as it is meant. Beyond
 /// that, every cell has its groups in every version, data rows go by their tags, and what meshio refuses is read.

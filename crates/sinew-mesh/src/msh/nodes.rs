@@ -18,7 +18,7 @@ pub(super) struct RawNodes {
     pub(super) points: Vec<[f64; 3]>,
     /// The place of each node's tag in the file.
     pub(super) places: RowPlaces,
-    /// Empty in version 2, except for nodes with parametric coordinates.
+    /// Empty in versions 1 and 2, except for nodes with parametric coordinates.
     pub(super) entities: Vec<Entity>,
 }
 
@@ -29,8 +29,8 @@ impl RawNodes {
     }
 }
 
-/// The section of version 2 as text, without its last line.
-pub(super) fn read_v2_text(cursor: &mut Cursor<'_>, nodes: &mut RawNodes) -> Result<u64, Fault> {
+/// The section of version 1, or of version 2 as text, without its last line.
+pub(super) fn read_rows(cursor: &mut Cursor<'_>, nodes: &mut RawNodes) -> Result<u64, Fault> {
     let mut source = Text::new(cursor);
     let total = source.size("the number of nodes")?;
     let row = Record::ints(1).and_doubles(3);

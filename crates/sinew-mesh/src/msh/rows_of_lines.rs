@@ -1,4 +1,4 @@
-//! Text of version 2, which by custom has one row per line and which gmsh reads as a stream of numbers.
+//! Text of versions 1 and 2, which by custom has one row per line and which gmsh reads as a stream of numbers.
 
 use super::cursor::Cursor;
 use super::fault::Fault;

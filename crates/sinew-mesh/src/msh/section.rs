@@ -1,35 +1,27 @@
 //! Finds the sections of a file and hands each to its decoder.
 
+use super::contents::Contents;
 use super::cursor::{Cursor, LONGEST, quoted};
-use super::data::{self, Holder, RawData};
+use super::data::{self, Holder};
 use super::elements::{self, ElementSection};
-use super::entities::{self, Entities};
+use super::entities;
 use super::fault::Fault;
 use super::framing::{count_line, end_section};
 use super::header::{self, Encoding, Format, Version, with_source};
+use super::msh1;
 use super::nodes::{self, RawNodes};
 use super::periodic;
-use super::physical_names::{self, Names, NamesWithoutDim, PhysicalNames};
+use super::physical_names::{self, Names};
 use super::remarks::Remarks;
-use crate::mesh::PeriodicLink;
 
-/// The decoded contents of a file, still under the tags of the file.
-#[derive(Default)]
-pub(super) struct Contents {
-    pub(super) physical_names: PhysicalNames,
-    pub(super) names_without_dim: NamesWithoutDim,
-    /// `None` if the file has no such section.
-    pub(super) entities: Option<Entities>,
-    /// The entities of a partitioned mesh, if it is one.
-    pub(super) parts: Option<Entities>,
-    pub(super) nodes: RawNodes,
-    pub(super) has_nodes: bool,
-    pub(super) elements: Vec<ElementSection>,
-    pub(super) periodic: Vec<PeriodicLink>,
-    pub(super) data: Vec<RawData>,
-    pub(super) skipped: Vec<String>,
-    /// Offset of the file's end.
-    pub(super) length: usize,
+/// The kind of file, as far as its sections have shown it.
+#[derive(Clone, Copy)]
+enum Kind {
+    Unknown,
+    /// By a section of version 1.
+    Version1,
+    /// By `$MeshFormat`.
+    Stated(Format),
 }
 
 /// Decodes every section. `bare_four` is the meaning of version `4` in a binary file.
@@ -39,7 +31,7 @@ pub(super) fn read_all(
     remarks: &mut Remarks,
 ) -> Result<Contents, Fault> {
     let mut contents = Contents::default();
-    let mut format = None;
+    let mut kind = Kind::Unknown;
     loop {
         cursor.skip_blanks();
         let offset = cursor.offset();
@@ -48,22 +40,31 @@ pub(super) fn read_all(
             break;
         }
         let name = section_name(cursor)?;
-        let read = match (name.as_str(), format) {
-            ("MeshFormat", None) => {
-                header::read(cursor, bare_four, remarks).map(|found| format = Some(found))
+        let read = match (name.as_str(), kind) {
+            (name, Kind::Unknown | Kind::Version1) if msh1::is_section(name) => {
+                kind = Kind::Version1;
+                msh1::read(cursor, name, &mut contents, remarks)
             }
-            (name, None) => skip_before_format(cursor, offset, name, &mut contents, remarks),
-            (name, Some(format)) => {
+            ("MeshFormat", Kind::Unknown) => {
+                header::read(cursor, bare_four, remarks).map(|format| kind = Kind::Stated(format))
+            }
+            (name, Kind::Unknown) => {
+                skip_unless_known(cursor, offset, name, &mut contents, remarks, BEFORE_FORMAT)
+            }
+            (name, Kind::Version1) => {
+                skip_unless_known(cursor, offset, name, &mut contents, remarks, IN_VERSION_1)
+            }
+            (name, Kind::Stated(format)) => {
                 read_section(cursor, offset, name, format, &mut contents, remarks)
             }
         };
         read.map_err(|fault| fault.inside(format!("${name}")))?;
     }
-    if format.is_none() {
+    if let Kind::Unknown = kind {
         return Err(Fault::new(
             contents.length,
             "the file has no $MeshFormat section",
-            "$MeshFormat",
+            "$MeshFormat or, in version 1, $NOD",
         ));
     }
     Ok(contents)
@@ -74,7 +75,8 @@ fn section_name(cursor: &mut Cursor<'_>) -> Result<String, Fault> {
     let line = cursor.line();
     match line {
         [b'$', name @ ..] if !name.is_empty() && line.len() <= LONGEST => {
-            if let Some(section) = name.strip_prefix(b"End") {
+            let of_version_1 = name.strip_prefix(b"END");
+            if let Some(section) = name.strip_prefix(b"End").or(of_version_1) {
                 let problem = format!("{} ends a section that is not open", quoted(line));
                 let expected = format!("a section, e.g. ${}", String::from_utf8_lossy(section));
                 return Err(Fault::new(offset, problem, expected));
@@ -91,8 +93,6 @@ fn section_name(cursor: &mut Cursor<'_>) -> Result<String, Fault> {
         }
     }
 }
-
-const MSH_1: [&str; 3] = ["NOD", "ELM", "NOE"];
 
 fn is_known(name: &str) -> bool {
     const KNOWN: [&str; 12] = [
@@ -112,27 +112,27 @@ fn is_known(name: &str) -> bool {
     KNOWN.contains(&name)
 }
 
-fn msh_1(offset: usize) -> Fault {
-    Fault::unsupported(offset, "MSH 1 is not supported", "re-save with gmsh")
-}
+/// The reason for which a known section is refused, and what is expected in its place.
+type Reason = (&'static str, &'static str);
 
-/// Comments and the like may stand before `$MeshFormat`, but nothing that depends on the version.
-fn skip_before_format(
+const BEFORE_FORMAT: Reason = ("the section comes before $MeshFormat", "$MeshFormat first");
+
+const IN_VERSION_1: Reason = (
+    "the section belongs to later versions, but $NOD or $ELM before it to version 1",
+    "one version in a file",
+);
+
+/// Skips a section that means nothing here, such as comments; refuses one whose contents depend on the version.
+fn skip_unless_known(
     cursor: &mut Cursor<'_>,
     offset: usize,
     name: &str,
     contents: &mut Contents,
     remarks: &mut Remarks,
+    (problem, expected): Reason,
 ) -> Result<(), Fault> {
-    if MSH_1.contains(&name) {
-        return Err(msh_1(offset));
-    }
-    if is_known(name) {
-        return Err(Fault::new(
-            offset,
-            "the section comes before $MeshFormat",
-            "$MeshFormat first",
-        ));
+    if is_known(name) || name == "MeshFormat" {
+        return Err(Fault::new(offset, problem, expected));
     }
     skip(cursor, offset, name, contents, remarks)
 }
@@ -231,7 +231,7 @@ fn read_nodes(
     remarks: &mut Remarks,
 ) -> Result<String, Fault> {
     let total = match (format.version, format.encoding) {
-        (Version::V20 | Version::V22, Encoding::Text) => nodes::read_v2_text(cursor, nodes)?,
+        (Version::V20 | Version::V22, Encoding::Text) => nodes::read_rows(cursor, nodes)?,
         (Version::V20 | Version::V22, Encoding::Binary(_)) => {
             nodes::read_v2_bytes(cursor, format, nodes)?
         }
@@ -273,8 +273,10 @@ fn skip(
     remarks: &mut Remarks,
 ) -> Result<(), Fault> {
     let end = format!("$End{name}");
+    let end_of_version_1 = format!("$END{name}");
     while !cursor.is_at_end() {
-        if cursor.line() == end.as_bytes() {
+        let line = cursor.line();
+        if line == end.as_bytes() || line == end_of_version_1.as_bytes() {
             if name != "Comments" {
                 remarks.at(
                     offset,

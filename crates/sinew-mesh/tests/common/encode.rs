@@ -20,11 +20,19 @@ pub(crate) struct Layout {
     pub(crate) encoding: Encoding,
 }
 
+impl Layout {
+    /// Whether each element has its groups in its own row, and consecutive elements of one type are one block.
+    pub(crate) fn has_groups_in_rows(self) -> bool {
+        matches!(self.version, "1" | "2.2")
+    }
+}
+
 const fn layout(version: &'static str, encoding: Encoding) -> Layout {
     Layout { version, encoding }
 }
 
-pub(crate) const ALL: [Layout; 11] = [
+pub(crate) const ALL: [Layout; 12] = [
+    layout("1", Encoding::Text),
     layout("2.2", Encoding::Text),
     layout("2.2", Encoding::Little),
     layout("2.2", Encoding::Big),
@@ -103,6 +111,10 @@ pub(crate) fn encoded(mesh: &Mesh, layout: Layout) -> Vec<u8> {
         bytes: Vec::new(),
         encoding: layout.encoding,
     };
+    if layout.version == "1" {
+        version_1(mesh, &mut out);
+        return out.bytes;
+    }
     let width = match layout.encoding {
         Encoding::LittleNarrow | Encoding::BigNarrow => 4,
         _ => 8,
@@ -143,6 +155,27 @@ fn gmsh_row(mesh: &Mesh, block: usize, cell: usize) -> Vec<u64> {
         gmsh[at] = mesh.node_tag(node);
     }
     gmsh
+}
+
+fn version_1(mesh: &Mesh, out: &mut Out) {
+    let mut text = format!("$NOD\n{}\n", mesh.points.len());
+    for ([x, y, z], tag) in mesh.points.iter().zip(&mesh.node_tags) {
+        writeln!(text, "{tag} {x:e} {y:e} {z:e}").expect("a string takes all");
+    }
+    let cells: usize = mesh.cells.iter().map(CellBlock::len).sum();
+    writeln!(text, "$ENDNOD\n$ELM\n{cells}").expect("a string takes all");
+    for (number, block) in mesh.cells.iter().enumerate() {
+        for cell in 0..block.len() {
+            let row = gmsh_row(mesh, number, cell);
+            let (tag, kind) = (block.element_tags[cell], block.kind.gmsh_id());
+            let (group, entity) = (block.physical.first_of(cell), block.geometrical[cell]);
+            let nodes: Vec<String> = row.iter().map(u64::to_string).collect();
+            let (count, nodes) = (nodes.len(), nodes.join(" "));
+            writeln!(text, "{tag} {kind} {group} {entity} {count} {nodes}")
+                .expect("a string takes all");
+        }
+    }
+    out.line(&format!("{text}$ENDELM"));
 }
 
 fn version_2(mesh: &Mesh, out: &mut Out) {

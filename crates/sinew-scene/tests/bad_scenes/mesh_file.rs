@@ -42,7 +42,7 @@ fn no_such_file() {
 fn not_a_mesh() {
     insta::assert_snapshot!(
         refusal(Some("solid cube\n")),
-        @r#"<folder>/scene.toml:3: [mesh]: <folder>/body.msh:1 (byte 0): the file starts with "solid cube\n"; expected a gmsh .msh file, starting with $MeshFormat"#
+        @r#"<folder>/scene.toml:3: [mesh]: <folder>/body.msh:1 (byte 0): the file starts with "solid cube\n"; expected a gmsh .msh file, starting with $MeshFormat or, in version 1, $NOD"#
     );
 }
 
