@@ -40,6 +40,7 @@ pub mod info;
 mod mesh;
 mod msh;
 mod physical_tags;
+mod selection;
 pub mod structured;
 mod tet_mesh;
 pub mod vtu;
@@ -55,6 +56,7 @@ pub use msh::{
     write_msh, write_msh41_ascii,
 };
 pub use physical_tags::PhysicalTags;
+pub use selection::{Condition, Selection, SelectionError};
 pub use tet_mesh::{
     AddGroupError, Group, GroupMembers, SurfaceError, TetMesh, TetMeshError, UnknownGroup,
 };

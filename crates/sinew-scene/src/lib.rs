@@ -47,11 +47,11 @@ pub use error::{Fault, NoStableStep, SceneError, StableStepError};
 pub use plan::{Plan, PlanSection};
 pub use probe_csv::ProbeCsv;
 pub use scene::{
-    Body, Initial, Instants, MeshSource, Motion, Oscillator, OutputSettings, ProbePoint,
-    RunSettings, Scene, Subject, TimeStep, Way,
+    Body, Choice, Initial, Instants, Members, MeshSource, Motion, Oscillator, OutputSettings,
+    ProbeAt, ProbePoint, RunSettings, Scene, Selected, Subject, TimeStep, Way,
 };
 pub use simulation::{
     BodyModel, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe, Reaction,
-    ReactionError, ReactionOf, RefusedLoad, SceneModel, Simulation, UnresolvedLoad,
+    ReactionError, ReactionOf, RefusedLoad, SceneModel, SelectedPart, Simulation, UnresolvedLoad,
 };
 pub use source::SceneSource;

@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 use sinew_core::{OptionValue, Options, Ramp};
 use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule};
 use sinew_scene::{
-    Body, Initial, MeshSource, Oscillator, ProbePoint, RunSettings, Scene, SceneSource, Subject,
-    TimeStep,
+    Body, Initial, MeshSource, Oscillator, ProbeAt, ProbePoint, RunSettings, Scene, SceneSource,
+    Subject, TimeStep,
 };
 
 fn scenes() -> Vec<PathBuf> {
@@ -154,8 +154,9 @@ fn the_papers_cube() {
         initial: Vec::new(),
         probes: vec![ProbePoint {
             name: "top-centre".into(),
-            point: [0.1, 0.1, 0.2],
+            at: ProbeAt::Point([0.1, 0.1, 0.2]),
         }],
+        selected: Vec::new(),
     };
     let scene = scene("paper-cube.toml");
     assert_eq!(scene.title(), "The paper's cube, reproduction scene");

@@ -89,6 +89,14 @@ impl TetMesh {
         dot(cross(sub(b, a), sub(c, a)), sub(d, a)) / 6.0
     }
 
+    /// Area of a triangle of these nodes.
+    #[must_use]
+    pub fn area(&self, triangle: [u32; 3]) -> f64 {
+        let [a, b, c] = triangle.map(|node| self.points[node as usize]);
+        let normal = cross(sub(b, a), sub(c, a));
+        dot(normal, normal).sqrt() / 2.0
+    }
+
     /// Signed volume of every tetrahedron.
     #[must_use]
     pub fn signed_volumes(&self) -> Vec<f64> {
@@ -163,6 +171,12 @@ mod tests {
     #[test]
     fn volumes_carry_the_orientation() {
         assert_eq!(two_tets().signed_volumes(), [4.0, -1.0]);
+    }
+
+    #[test]
+    fn an_area_is_that_of_a_right_triangle_whatever_the_order_of_its_nodes() {
+        assert_eq!(two_tets().area([0, 1, 2]), 3.0);
+        assert_eq!(two_tets().area([3, 1, 0]), 4.0);
     }
 
     #[test]

@@ -61,6 +61,14 @@ impl Place {
         self.error(self.keys.get(key).map(|place| place.value.clone()), fault)
     }
 
+    /// The key that says which part of the body the table is about.
+    pub(crate) fn part_key(&self) -> &'static str {
+        match self.keys.contains_key("where") {
+            true => "where",
+            false => "group",
+        }
+    }
+
     /// Line of a key, or of the table where the key is not given; counted from 1.
     pub(crate) fn line(&self, key: &str) -> Option<usize> {
         let span = self

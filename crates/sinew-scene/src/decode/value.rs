@@ -85,6 +85,12 @@ pub(crate) fn list<T>(
     items.collect::<Result<_, _>>().map_err(|_| Misfit::Value)
 }
 
+/// One or more tags of nodes or cells: whole numbers, 0 or above.
+pub(crate) fn tags(value: &DeValue<'_>) -> Result<Vec<u64>, Misfit> {
+    let tag = |value: &DeValue<'_>| u64::try_from(integer(value)?).map_err(|_| Misfit::Value);
+    satisfying(list(value, tag)?, |tags| !tags.is_empty())
+}
+
 /// Any number of finite numbers.
 pub(crate) fn numbers(value: &DeValue<'_>) -> Result<Vec<f64>, Misfit> {
     list(value, finite)

@@ -114,6 +114,24 @@ pub enum Fault {
     /// A group of `[[initial]]` that the mesh does not have.
     #[error(transparent)]
     UnknownGroup(#[from] sinew_mesh::UnknownGroup),
+    /// A part chosen by where it lies that has no members.
+    #[error(transparent)]
+    Selection(#[from] sinew_mesh::SelectionError),
+    /// A part chosen by where it lies whose name a group of the mesh file has.
+    #[error(transparent)]
+    SelectedGroup(#[from] sinew_mesh::AddGroupError),
+    /// A region for the rest of the body where the others leave nothing.
+    #[error("the other regions have all {tets} tetrahedra and leave none")]
+    NothingLeft {
+        /// Tetrahedra of the mesh.
+        tets: usize,
+    },
+    /// A probe for which several nodes are selected.
+    #[error("{nodes} nodes are selected, and a probe follows one")]
+    SeveralNodes {
+        /// How many are selected.
+        nodes: usize,
+    },
     /// A body that cannot be modelled.
     #[error("{}", .0.cause())]
     Model(sinew_fem::FemError),

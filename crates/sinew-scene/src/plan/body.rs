@@ -2,13 +2,13 @@
 
 use sinew_core::Ramp;
 use sinew_fem::{Course, LoadFacts, LoadKind, LoadSpec, ModelReport, Region, RegionFacts};
+use sinew_mesh::GroupMembers;
 use sinew_mesh::structured::Split;
-use sinew_mesh::{GroupMembers, TetMesh};
 
 use super::section::PlanSection;
 use crate::number::{count, length, short, vector};
 use crate::scene::{Body, Initial, MeshSource, Way};
-use crate::simulation::{BodyModel, Probe};
+use crate::simulation::{BodyModel, Probe, SelectedPart};
 
 /// The sections about a body and its probes.
 pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<PlanSection> {
@@ -18,6 +18,7 @@ pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<
     let initial = body.initial.iter().map(|initial| start(initial, built));
     vec![
         PlanSection::new("mesh", mesh(body, built, report)),
+        PlanSection::new("where", built.selected.iter().map(selected).collect()),
         PlanSection::new("regions", regions.collect()),
         PlanSection::new("damping", vec![damping(body, report)]),
         PlanSection::new("fixed", supports(body, built, report)),
@@ -49,12 +50,15 @@ fn mesh(body: &Body, built: &BodyModel, report: &ModelReport) -> Vec<String> {
             short(report.volume),
             short(report.mass)
         ),
-        groups(&built.mesh),
+        groups(built),
     ]
 }
 
-fn groups(mesh: &TetMesh) -> String {
-    let described = mesh.groups.iter().map(|group| {
+fn groups(built: &BodyModel) -> String {
+    let selected = |name: &str| built.selected.iter().any(|part| part.name == name);
+    let of_file = built.mesh.groups.iter();
+    let of_file = of_file.filter(|group| !selected(&group.name));
+    let described = of_file.map(|group| {
         let members = match group.members {
             GroupMembers::Tets(_) => "tetrahedra",
             GroupMembers::Triangles(_) => "triangles",
@@ -67,6 +71,25 @@ fn groups(mesh: &TetMesh) -> String {
     match described.len() {
         0 => "no groups".to_owned(),
         _ => format!("groups {}", described.join(", ")),
+    }
+}
+
+/// What a place that was chosen by where it lies hits.
+fn selected(part: &SelectedPart) -> String {
+    let size = match part.tets {
+        Some((tets, volume)) => {
+            format!("{}, {} m3", count_tets(tets), short(volume))
+        }
+        None => format!("{} m2 of the surface", short(part.area)),
+    };
+    let nodes = count(part.nodes, "node");
+    format!("{}: `{}`: {nodes}, {size}", part.by, part.name)
+}
+
+fn count_tets(tets: usize) -> String {
+    match tets {
+        1 => "1 tetrahedron".to_owned(),
+        _ => format!("{tets} tetrahedra"),
     }
 }
 

@@ -3,19 +3,24 @@
 use sinew_fem::{Fixed, On};
 use toml::de::DeValue;
 
+use super::selected::{Members, Selections};
 use crate::decode::value::{Misfit, text};
 use crate::decode::{Place, Table};
 use crate::error::SceneError;
 
-pub(super) fn read_all(document: &Table<'_>) -> Result<(Vec<Fixed>, Vec<Place>), SceneError> {
-    let tables = document.tables("fixed", &["group", "axes"])?;
-    let fixed = tables.iter().map(read).collect::<Result<_, _>>()?;
+pub(super) fn read_all(
+    document: &Table<'_>,
+    selections: &mut Selections,
+) -> Result<(Vec<Fixed>, Vec<Place>), SceneError> {
+    let tables = document.tables("fixed", &["group", "where", "axes"])?;
+    let fixed = tables.iter().map(|table| read(table, selections));
+    let fixed = fixed.collect::<Result<_, _>>()?;
     Ok((fixed, tables.into_iter().map(Table::into_place).collect()))
 }
 
-fn read(table: &Table<'_>) -> Result<Fixed, SceneError> {
+fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Fixed, SceneError> {
     Ok(Fixed {
-        on: On::Group(table.required("group", "the name of a group", text)?),
+        on: On::Group(selections.required(table, Members::Nodes)?),
         axes: axes_of(table)?,
     })
 }

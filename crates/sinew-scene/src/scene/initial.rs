@@ -1,6 +1,7 @@
 //! `[[initial]]`: displacement and velocity at t = 0.
 
 use super::keys::GRAVITY;
+use super::selected::{Members, Selections};
 use crate::decode::value::{Misfit, list, text, vector};
 use crate::decode::{Place, Table};
 use crate::error::{Fault, SceneError};
@@ -40,6 +41,7 @@ pub enum Initial {
 
 const KEYS: &[&str] = &[
     "group",
+    "where",
     "displacement",
     "velocity",
     "stretch",
@@ -51,29 +53,34 @@ const KEYS: &[&str] = &[
 pub(super) fn read_all(
     document: &Table<'_>,
     load_names: &[Option<String>],
+    selections: &mut Selections,
 ) -> Result<(Vec<Initial>, Vec<Place>), SceneError> {
     let tables = document.tables("initial", KEYS)?;
     let mut known: Vec<String> = load_names.iter().flatten().cloned().collect();
     if document.has(GRAVITY) {
         known.push(GRAVITY.into());
     }
-    let initial = tables.iter().map(|table| read(table, &known));
+    let initial = tables.iter().map(|table| read(table, &known, selections));
     let initial = initial.collect::<Result<_, _>>()?;
     Ok((initial, tables.into_iter().map(Table::into_place).collect()))
 }
 
-fn read(table: &Table<'_>, known: &[String]) -> Result<Initial, SceneError> {
+fn read(
+    table: &Table<'_>,
+    known: &[String],
+    selections: &mut Selections,
+) -> Result<Initial, SceneError> {
     let kind = table.exactly_one(&["displacement", "velocity", "stretch", "static"])?;
     if kind != "stretch" {
         table.refuse(&["origin"], "goes with `stretch` only")?;
     }
     if kind == "static" {
         table.refuse(
-            &["group"],
+            &["group", "where"],
             "does not go with `static`, which moves the whole body",
         )?;
     }
-    let group = table.optional("group", "the name of a group", text)?;
+    let group = selections.optional(table, Members::Nodes)?;
     Ok(match kind {
         "displacement" => Initial::Displacement {
             group,

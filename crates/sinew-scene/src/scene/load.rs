@@ -5,11 +5,14 @@ use sinew_fem::{LoadKind, LoadSpec, On};
 use super::keys::GRAVITY;
 use super::ramp;
 use super::region::taken;
+use super::selected::{Members, Selections};
 use crate::decode::value::{Misfit, finite, text, vector};
 use crate::decode::{Place, Table};
 use crate::error::SceneError;
 
-const KEYS: &[&str] = &["name", "group", "traction", "pressure", "force", "ramp"];
+const KEYS: &[&str] = &[
+    "name", "group", "where", "traction", "pressure", "force", "ramp",
+];
 
 /// The tables `[[load]]`, in the order of the file.
 pub(super) struct LoadTables {
@@ -21,9 +24,13 @@ pub(super) struct LoadTables {
     pub(super) places: Vec<Place>,
 }
 
-pub(super) fn read_all(document: &Table<'_>) -> Result<LoadTables, SceneError> {
+pub(super) fn read_all(
+    document: &Table<'_>,
+    selections: &mut Selections,
+) -> Result<LoadTables, SceneError> {
     let tables = document.tables("load", KEYS)?;
-    let specs = tables.iter().map(read).collect::<Result<_, _>>()?;
+    let specs = tables.iter().map(|table| read(table, selections));
+    let specs = specs.collect::<Result<_, _>>()?;
     let mut names: Vec<Option<String>> = Vec::new();
     for table in &tables {
         let name = table.optional("name", "a name other than \"gravity\"", name)?;
@@ -50,7 +57,7 @@ fn name(value: &toml::de::DeValue<'_>) -> Result<String, Misfit> {
     }
 }
 
-fn read(table: &Table<'_>) -> Result<LoadSpec, SceneError> {
+fn read(table: &Table<'_>, selections: &mut Selections) -> Result<LoadSpec, SceneError> {
     let kind = match table.exactly_one(&["traction", "pressure", "force"])? {
         "traction" => {
             LoadKind::Traction(table.required("traction", "[x, y, z] in Pa, all finite", vector)?)
@@ -60,8 +67,12 @@ fn read(table: &Table<'_>) -> Result<LoadSpec, SceneError> {
         }
         _ => LoadKind::Pressure(table.required("pressure", "a finite number of Pa", finite)?),
     };
+    let members = match kind {
+        LoadKind::Force(_) => Members::Nodes,
+        LoadKind::Traction(_) | LoadKind::Pressure(_) => Members::Triangles,
+    };
     Ok(LoadSpec {
-        on: On::Group(table.required("group", "the name of a group", text)?),
+        on: On::Group(selections.required(table, members)?),
         kind,
         ramp: ramp::read(table)?,
     })

@@ -13,6 +13,7 @@ mod probe;
 mod ramp;
 mod region;
 mod run;
+mod selected;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,8 +27,10 @@ pub use mesh::MeshSource;
 pub use motion::{Motion, Way};
 pub use oscillator::Oscillator;
 pub use output::{Instants, OutputSettings};
-pub use probe::ProbePoint;
+pub use probe::{ProbeAt, ProbePoint};
 pub use run::{RunSettings, TimeStep};
+use selected::Selections;
+pub use selected::{Choice, Members, Selected};
 
 use crate::decode::value::{text, vector};
 use crate::decode::{Place, Table};
@@ -69,6 +72,8 @@ pub struct Body {
     pub initial: Vec<Initial>,
     /// Points whose motion is written down.
     pub probes: Vec<ProbePoint>,
+    /// Parts chosen by where they lie. They become groups of the mesh, by whose names the lists above call them.
+    pub selected: Vec<Selected>,
 }
 
 /// The places of the tables of a scene, in the order of the lists they were read into.
@@ -83,6 +88,8 @@ pub(crate) struct Places {
     pub(crate) motions: Vec<Place>,
     pub(crate) loads: Vec<Place>,
     pub(crate) initial: Vec<Place>,
+    pub(crate) probes: Vec<Place>,
+    pub(crate) selected: Vec<Place>,
     pub(crate) run: Place,
 }
 
@@ -239,6 +246,8 @@ impl Scene {
             motions: Vec::new(),
             loads: Vec::new(),
             initial: Vec::new(),
+            probes: Vec::new(),
+            selected: Vec::new(),
             run: document.place().clone(),
         };
         document.exactly_one(&["mesh", "oscillator"])?;
@@ -291,18 +300,19 @@ impl Body {
             .table("mesh", mesh::KEYS)?
             .ok_or_else(|| document.missing("mesh", "a table [mesh]"))?;
         let mesh = MeshSource::read(&mesh_table)?;
-        let (regions, region_places) = region::read_all(document)?;
+        let mut selections = Selections::default();
+        let (regions, region_places) = region::read_all(document, &mut selections)?;
         if regions.is_empty() {
             return Err(document.missing("region", "a table [[region]] for each material"));
         }
         let damping_table = document.table("damping", damping::KEYS)?;
         let damping = damping_table.as_ref().map(damping::read).transpose()?;
-        let (fixed, fixed_places) = fixed::read_all(document)?;
-        let (motions, motion_places) = motion::read_all(document)?;
-        let loads = load::read_all(document)?;
+        let (fixed, fixed_places) = fixed::read_all(document, &mut selections)?;
+        let (motions, motion_places) = motion::read_all(document, &mut selections)?;
+        let loads = load::read_all(document, &mut selections)?;
         let gravity = document.optional(GRAVITY, "[x, y, z] in m/s2, all finite", vector)?;
-        let (initial, initial_places) = initial::read_all(document, &loads.names)?;
-        let (probes, _) = probe::read_all(document)?;
+        let (initial, initial_places) = initial::read_all(document, &loads.names, &mut selections)?;
+        let (probes, probe_places) = probe::read_all(document, &mut selections)?;
         places.mesh = Some(mesh_table.into_place());
         places.regions = region_places;
         places.damping = damping_table.map(Table::into_place);
@@ -310,6 +320,8 @@ impl Body {
         places.motions = motion_places;
         places.loads = loads.places;
         places.initial = initial_places;
+        places.probes = probe_places;
+        places.selected = selections.places;
         Ok(Self {
             mesh,
             problem: Problem {
@@ -324,6 +336,7 @@ impl Body {
             load_names: loads.names,
             initial,
             probes,
+            selected: selections.parts,
         })
     }
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use sinew_core::Ramp;
 
+use super::selected::{Members, Selections};
 use super::{fixed, ramp};
 use crate::decode::value::{text, vector};
 use crate::decode::{Place, Table};
@@ -42,21 +43,33 @@ impl Way {
     }
 }
 
-const KEYS: &[&str] = &["group", "axes", "displacement", "velocity", "table", "ramp"];
+const KEYS: &[&str] = &[
+    "group",
+    "where",
+    "axes",
+    "displacement",
+    "velocity",
+    "table",
+    "ramp",
+];
 
-pub(super) fn read_all(document: &Table<'_>) -> Result<(Vec<Motion>, Vec<Place>), SceneError> {
+pub(super) fn read_all(
+    document: &Table<'_>,
+    selections: &mut Selections,
+) -> Result<(Vec<Motion>, Vec<Place>), SceneError> {
     let tables = document.tables("move", KEYS)?;
-    let motions = tables.iter().map(read).collect::<Result<_, _>>()?;
+    let motions = tables.iter().map(|table| read(table, selections));
+    let motions = motions.collect::<Result<_, _>>()?;
     Ok((motions, tables.into_iter().map(Table::into_place).collect()))
 }
 
-fn read(table: &Table<'_>) -> Result<Motion, SceneError> {
+fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Motion, SceneError> {
     let kind = table.exactly_one(&["displacement", "velocity", "table"])?;
     if kind != "displacement" {
         table.refuse(&["ramp"], "goes with `displacement` only")?;
     }
     Ok(Motion {
-        group: table.required("group", "the name of a group", text)?,
+        group: selections.required(table, Members::Nodes)?,
         axes: fixed::axes_of(table)?,
         way: match kind {
             "displacement" => Way::Displacement(

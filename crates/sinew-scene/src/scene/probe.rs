@@ -3,24 +3,37 @@
 use toml::de::DeValue;
 
 use super::region::taken;
+use super::selected::{Members, Selections};
 use crate::decode::value::{Misfit, text, vector};
 use crate::decode::{Place, Table};
 use crate::error::SceneError;
 
-/// A point whose motion is recorded, as that of the nearest node.
+/// A node whose motion is recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProbePoint {
     /// Its name, which also begins the names of its columns.
     pub name: String,
-    /// Its position in the undeformed body (m).
-    pub point: [f64; 3],
+    /// The node.
+    pub at: ProbeAt,
 }
 
-pub(super) fn read_all(document: &Table<'_>) -> Result<(Vec<ProbePoint>, Vec<Place>), SceneError> {
-    let tables = document.tables("probe", &["name", "point"])?;
+/// The node of a probe.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ProbeAt {
+    /// The node nearest to a position in the undeformed body (m).
+    Point([f64; 3]),
+    /// The only node of a group.
+    Group(String),
+}
+
+pub(super) fn read_all(
+    document: &Table<'_>,
+    selections: &mut Selections,
+) -> Result<(Vec<ProbePoint>, Vec<Place>), SceneError> {
+    let tables = document.tables("probe", &["name", "point", "where"])?;
     let mut probes: Vec<ProbePoint> = Vec::new();
     for table in &tables {
-        let probe = read(table)?;
+        let probe = read(table, selections)?;
         let same = probes.iter().position(|other| other.name == probe.name);
         if let Some(first) = same {
             return Err(taken(
@@ -35,12 +48,20 @@ pub(super) fn read_all(document: &Table<'_>) -> Result<(Vec<ProbePoint>, Vec<Pla
     Ok((probes, tables.into_iter().map(Table::into_place).collect()))
 }
 
-fn read(table: &Table<'_>) -> Result<ProbePoint, SceneError> {
+fn read(table: &Table<'_>, selections: &mut Selections) -> Result<ProbePoint, SceneError> {
     let expected = "a name made of letters, digits, `-`, `_` and `.`";
-    Ok(ProbePoint {
-        name: table.required("name", expected, column_name)?,
-        point: table.required("point", "[x, y, z] in m, all finite", vector)?,
-    })
+    let name = table.required("name", expected, column_name)?;
+    let at = match table.has("where") {
+        true => {
+            table.refuse(
+                &["point"],
+                "does not go with `where`, which stands in its place",
+            )?;
+            ProbeAt::Group(selections.required(table, Members::Nodes)?)
+        }
+        false => ProbeAt::Point(table.required("point", "[x, y, z] in m, all finite", vector)?),
+    };
+    Ok(ProbePoint { name, at })
 }
 
 /// A name that needs no quotes in a CSV file.

@@ -2,12 +2,14 @@
 
 use sinew_fem::{Law, Region, SpringRule};
 
-use crate::decode::value::{Misfit, above_zero, boolean, finite, text, zero_or_above};
+use super::selected::{Members, Selections};
+use crate::decode::value::{Misfit, above_zero, boolean, finite, zero_or_above};
 use crate::decode::{Place, Table};
 use crate::error::{Fault, SceneError};
 
 const KEYS: &[&str] = &[
     "group",
+    "where",
     "density",
     "model",
     "youngs_modulus",
@@ -35,13 +37,18 @@ const NEARLY_INCOMPRESSIBLE: &str = "0.5 is incompressible, which a displacement
     describe; soft tissue is usually given 0.45 to 0.49, where 4-node tetrahedra are already \
     stiffer than the material";
 
-pub(super) fn read_all(document: &Table<'_>) -> Result<(Vec<Region>, Vec<Place>), SceneError> {
+pub(super) fn read_all(
+    document: &Table<'_>,
+    selections: &mut Selections,
+) -> Result<(Vec<Region>, Vec<Place>), SceneError> {
     let tables = document.tables("region", KEYS)?;
-    let regions = tables.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    let regions = tables.iter().map(|table| read(table, selections));
+    let regions = regions.collect::<Result<Vec<_>, _>>()?;
     for (index, (region, table)) in regions.iter().zip(&tables).enumerate() {
         let Some(group) = &region.group else {
             if regions.len() > 1 {
-                return Err(table.missing("group", "a group, as there are several regions"));
+                let expected = "a group, or where = \"rest\", as there are several regions";
+                return Err(table.missing("group", expected));
             }
             continue;
         };
@@ -49,7 +56,8 @@ pub(super) fn read_all(document: &Table<'_>) -> Result<(Vec<Region>, Vec<Place>)
             .iter()
             .position(|other| other.group == region.group);
         if let Some(first) = same {
-            return Err(taken(table.place(), "group", group, tables[first].place()));
+            let key = table.place().part_key();
+            return Err(taken(table.place(), key, group, tables[first].place()));
         }
     }
     Ok((regions, tables.into_iter().map(Table::into_place).collect()))
@@ -68,9 +76,9 @@ pub(super) fn taken(place: &Place, key: &'static str, name: &str, owner: &Place)
     place.value_fault(key, fault)
 }
 
-fn read(table: &Table<'_>) -> Result<Region, SceneError> {
+fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneError> {
     let model = table.choice("model", &MODELS)?;
-    let group = table.optional("group", "the name of a group", text)?;
+    let group = selections.optional(table, Members::Tetrahedra)?;
     let density = table.required("density", "a finite density above 0 kg/m3", above_zero)?;
     let modulus = "a finite Young's modulus above 0 Pa";
     let youngs_modulus = table.required("youngs_modulus", modulus, above_zero)?;

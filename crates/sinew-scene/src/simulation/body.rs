@@ -7,6 +7,7 @@ use sinew_mesh::{TetMesh, structured};
 
 use super::model::BodyModel;
 use super::motion_table::MotionTable;
+use super::selected;
 use crate::error::{Fault, SceneError};
 use crate::scene::keys::GRAVITY;
 use crate::scene::{Body, MeshSource, Motion, Places, Way};
@@ -17,19 +18,21 @@ pub(super) type MeshAndWarnings = (TetMesh, Vec<String>);
 /// Assembles the matrices.
 pub(super) fn build(
     body: &Body,
-    (mesh, mesh_warnings): MeshAndWarnings,
+    (mut mesh, mesh_warnings): MeshAndWarnings,
     places: &Places,
 ) -> Result<BodyModel, SceneError> {
     let mut problem = body.problem.clone();
     for (index, motion) in body.motions.iter().enumerate() {
         problem.moves.push(moving(motion, places, index)?);
     }
+    let selected = selected::add_to(&mut mesh, body, places)?;
     let mesh = Arc::new(mesh);
     let model = Model::build_on(Arc::clone(&mesh), &problem)
         .map_err(|error| refused(error, body, places))?;
     Ok(BodyModel {
         mesh,
         mesh_warnings,
+        selected,
         problem,
         model,
     })
@@ -107,7 +110,7 @@ fn refused(error: FemError, body: &Body, places: &Places) -> SceneError {
             "displacement" => "ramp",
             key => key,
         },
-        _ => "group",
+        _ => place.part_key(),
     };
     place.value_fault(key, Fault::Model(error))
 }

@@ -39,7 +39,7 @@ impl Scene {
                 let mesh = mesh(body, self.places())?;
                 let model = body::build(body, mesh, self.places())?;
                 let initial = start::state(body, self.places(), &model)?;
-                let probes = probe::of_body(&body.probes, &model);
+                let probes = probe::of_body(&body.probes, self.places(), &model)?;
                 (SceneModel::Body(Box::new(model)), initial, probes)
             }
             Subject::Oscillator(oscillator) => {

@@ -8,6 +8,7 @@ mod model;
 mod motion_table;
 mod probe;
 mod reaction;
+mod selected;
 mod start;
 mod step;
 mod warnings;
@@ -22,6 +23,7 @@ pub use model::{BodyModel, SceneModel};
 pub use motion_table::{MotionTableError, MotionTableFault};
 pub use probe::{NearestNode, Probe};
 pub use reaction::{Reaction, ReactionError, ReactionOf};
+pub use selected::SelectedPart;
 
 use crate::error::StableStepError;
 use crate::scene::{RunSettings, Scene};

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use sinew_core::{LinearModel, System};
 use sinew_mesh::{TetMesh, UnknownGroup};
 
+use super::selected::SelectedPart;
+
 /// The thing that moves, with its matrices.
 #[derive(Debug)]
 pub enum SceneModel {
@@ -21,6 +23,8 @@ pub struct BodyModel {
     pub mesh: Arc<TetMesh>,
     /// Warnings of the reader of the mesh file.
     pub mesh_warnings: Vec<String>,
+    /// Parts chosen by where they lie, in the order of the scene.
+    pub selected: Vec<SelectedPart>,
     /// The problem as a whole, prescribed motions included.
     pub problem: sinew_fem::Problem,
     /// The system to integrate.

@@ -3,7 +3,8 @@
 use sinew_fem::Course;
 
 use super::model::BodyModel;
-use crate::scene::ProbePoint;
+use crate::error::{Fault, SceneError};
+use crate::scene::{Places, ProbeAt, ProbePoint};
 
 /// A node, or the mass of an oscillator, whose motion is recorded.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,15 +50,32 @@ impl Probe {
     }
 }
 
-pub(super) fn of_body(points: &[ProbePoint], body: &BodyModel) -> Vec<Probe> {
-    let probe = |ProbePoint { name, point }: &ProbePoint| {
-        let (index, distance) = body.mesh.nearest_node(*point);
+/// The probes of a body.
+pub(super) fn of_body(
+    points: &[ProbePoint],
+    places: &Places,
+    body: &BodyModel,
+) -> Result<Vec<Probe>, SceneError> {
+    let nearest = |at: &ProbeAt| match at {
+        ProbeAt::Point(point) => Ok(body.mesh.nearest_node(*point)),
+        ProbeAt::Group(name) => match body.mesh.group_nodes(body.mesh.group(name)?)[..] {
+            [node] => Ok((node, 0.0)),
+            ref nodes => {
+                let nodes = nodes.len();
+                Err(Fault::SeveralNodes { nodes })
+            }
+        },
+    };
+    let probe = |(place, ProbePoint { name, at }): (usize, &ProbePoint)| {
+        let place = places.of(&places.probes, place);
+        let (index, distance) =
+            nearest(at).map_err(|fault| place.value_fault(place.part_key(), fault))?;
         let cell = body.model.cell_of_node(index);
         let dof = |axis: usize| -> Option<usize> {
             let dof = 3 * cell? as usize + axis;
             (!body.model.pinned()[dof]).then_some(dof)
         };
-        Probe {
+        Ok(Probe {
             name: name.clone(),
             node: Some(NearestNode {
                 index,
@@ -68,9 +86,9 @@ pub(super) fn of_body(points: &[ProbePoint], body: &BodyModel) -> Vec<Probe> {
             courses: (0..3)
                 .map(|axis| body.model.courses(index, axis).to_vec())
                 .collect(),
-        }
+        })
     };
-    points.iter().map(probe).collect()
+    points.iter().enumerate().map(probe).collect()
 }
 
 pub(super) fn of_oscillator() -> Probe {

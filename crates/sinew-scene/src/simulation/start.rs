@@ -14,7 +14,7 @@ pub(super) fn state(body: &Body, places: &Places, built: &BodyModel) -> Result<S
         let place = places.of(&places.initial, index);
         apply(initial, body, built, &mut state).map_err(|fault| {
             let key = match fault {
-                Fault::UnknownGroup(_) => "group",
+                Fault::UnknownGroup(_) => place.part_key(),
                 _ => "static",
             };
             place.value_fault(key, fault)

@@ -16,6 +16,7 @@ mod mesh;
 mod mesh_file;
 mod motion;
 mod oscillator;
+mod places;
 mod probe;
 mod region;
 mod run;
@@ -53,6 +54,7 @@ fn the_scenes_are_good_before_they_are_changed() {
         scenes::BODY,
         scenes::DOTTED,
         scenes::MOVED,
+        scenes::PLACED,
         scenes::OSCILLATOR,
     ] {
         build(text);
@@ -135,6 +137,7 @@ fn a_scene_spoilt_anywhere_gives_a_plan_or_one_line_with_file_and_line() {
         scenes::BODY,
         scenes::DOTTED,
         scenes::MOVED,
+        scenes::PLACED,
         scenes::OSCILLATOR,
     ]
     .into_iter()

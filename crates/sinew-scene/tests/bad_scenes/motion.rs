@@ -38,9 +38,9 @@ fn unknown_group() {
 fn unknown_key() {
     insta::assert_snapshot!(
         refusal(MOVED, TOP, "axis = \"z\"\ndisplacement = [0.0, 0.0, -0.01]"),
-        @r"
+        @"
     scene.toml:15: [[move]] 1: unknown key `axis`; did you mean `axes`?
-    help: the keys here are `group`, `axes`, `displacement`, `velocity`, `table`, `ramp`
+    help: the keys here are `group`, `where`, `axes`, `displacement`, `velocity`, `table`, `ramp`
     "
     );
 }

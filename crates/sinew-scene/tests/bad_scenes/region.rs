@@ -84,7 +84,7 @@ fn misspelt_density() {
         refusal(BODY, "density = 1060.0", "densty = 1060.0"),
         @"
     scene.toml:5: [[region]] 1: unknown key `densty`; did you mean `density`?
-    help: the keys here are `group`, `density`, `model`, `youngs_modulus`, `poissons_ratio`, `springs`
+    help: the keys here are `group`, `where`, `density`, `model`, `youngs_modulus`, `poissons_ratio`, `springs`
     "
     );
 }
@@ -219,7 +219,7 @@ fn the_same_group_twice() {
 fn two_regions_without_groups() {
     insta::assert_snapshot!(
         refusal(BODY, REGION, &format!("{REGION}{REGION}")),
-        @"scene.toml:4: [[region]] 1: `group` is missing: expected a group, as there are several regions"
+        @r#"scene.toml:4: [[region]] 1: `group` is missing: expected a group, or where = "rest", as there are several regions"#
     );
 }
 

@@ -66,6 +66,42 @@ integrator = "newmark"
 dt = 0.02
 "#;
 
+/// A cube without the use of a group.
+pub(crate) const PLACED: &str = r#"[mesh]
+cube = { cells = 2, edge = 0.2 }
+[[region]]
+where = { box = [[0.0, 0.0, 0.0], [0.1, 0.2, 0.2]] }
+density = 1060.0
+model = "linear"
+youngs_modulus = 3500.0
+poissons_ratio = 0.3
+[[region]]
+where = "rest"
+density = 1000.0
+model = "linear"
+youngs_modulus = 35e3
+poissons_ratio = 0.3
+[[fixed]]
+where = { below = { z = 0.0 } }
+[[load]]
+where = { face = { normal = [0.0, 0.0, 1.0], angle = 20.0 }, above = { x = 0.1 } }
+traction = [0.0, 0.0, -500.0]
+[[move]]
+where = { plane = { point = [0.0, 0.0, 0.1], normal = [0.0, 0.0, 1.0], within = 0.01 }, below = { y = 0.0 } }
+axes = "y"
+velocity = [0.0, 0.05, 0.0]
+[[initial]]
+where = { sphere = { center = [0.2, 0.2, 0.2], radius = 0.12 } }
+velocity = [0.0, 0.0, 1.0]
+[[probe]]
+name = "corner"
+where = { nodes = [27] }
+[run]
+duration = 1.0
+integrator = "newmark"
+dt = 0.02
+"#;
+
 pub(crate) const OSCILLATOR: &str = r#"[oscillator]
 mass = 0.1
 stiffness = 100.0

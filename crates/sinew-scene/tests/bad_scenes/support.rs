@@ -7,7 +7,7 @@ use crate::scenes::BODY;
 fn no_group() {
     insta::assert_snapshot!(
         refusal(BODY, "[[fixed]]\ngroup = \"sides\"", "[[fixed]]"),
-        @"scene.toml:11: [[fixed]] 1: `group` is missing: expected the name of a group"
+        @"scene.toml:11: [[fixed]] 1: `group` is missing: expected the name of a group, or where = { .. } in its place"
     );
 }
 

@@ -1,0 +1,181 @@
+//! The nodes, triangles and tetrahedra that a selection hits.
+
+use std::collections::HashMap;
+
+use super::{Condition, Selection, SelectionError};
+use crate::TetMesh;
+use crate::tet_mesh::{cross, dot, sub};
+
+/// Share of the longest edge of the bounding box by which bounds are moved outward.
+const ROUNDING: f64 = 1e-9;
+
+impl Selection {
+    /// The nodes that meet all conditions, ascending.
+    ///
+    /// # Errors
+    ///
+    /// [`SelectionError`] when there are none, or a tag is unknown.
+    pub fn nodes(&self, mesh: &TetMesh) -> Result<Vec<u32>, SelectionError> {
+        let met = self.met_by(mesh, &self.boundary_if_it_matters(mesh))?;
+        let nodes = (0u32..).zip(met).filter(|(_, met)| *met);
+        let nodes: Vec<u32> = nodes.map(|(node, _)| node).collect();
+        if nodes.is_empty() {
+            return Err(self.nothing(mesh, "node"));
+        }
+        Ok(nodes)
+    }
+
+    /// The triangles of the mesh's boundary, turned outward, of which all nodes meet all conditions.
+    ///
+    /// # Errors
+    ///
+    /// [`SelectionError`] when there are none, or a tag is unknown.
+    pub fn triangles(&self, mesh: &TetMesh) -> Result<Vec<[u32; 3]>, SelectionError> {
+        let boundary = mesh.boundary(None);
+        let met = self.met_by(mesh, &boundary)?;
+        let faces = self.facings().collect::<Vec<_>>();
+        let selected = boundary.into_iter().filter(|triangle| {
+            let looks = faces
+                .iter()
+                .all(|(normal, angle)| looks_along(mesh, triangle, *normal, *angle));
+            looks && triangle.iter().all(|node| met[*node as usize])
+        });
+        let triangles: Vec<[u32; 3]> = selected.collect();
+        if triangles.is_empty() {
+            return Err(self.no_cell(mesh, &met, "boundary triangle"));
+        }
+        Ok(triangles)
+    }
+
+    /// The tetrahedra (0-based) of which all nodes meet all conditions, ascending.
+    ///
+    /// # Errors
+    ///
+    /// [`SelectionError`] when there are none, or a tag is unknown.
+    pub fn tets(&self, mesh: &TetMesh) -> Result<Vec<u32>, SelectionError> {
+        let met = self.met_by(mesh, &self.boundary_if_it_matters(mesh))?;
+        let tets = (0u32..).zip(&mesh.tets);
+        let inside = tets.filter(|(_, tet)| tet.iter().all(|node| met[*node as usize]));
+        let tets: Vec<u32> = inside.map(|(tet, _)| tet).collect();
+        if tets.is_empty() {
+            return Err(self.no_cell(mesh, &met, "tetrahedron"));
+        }
+        Ok(tets)
+    }
+
+    fn facings(&self) -> impl Iterator<Item = ([f64; 3], f64)> {
+        self.conditions()
+            .iter()
+            .filter_map(|condition| match condition {
+                Condition::Facing { normal, angle } => Some((*normal, *angle)),
+                _ => None,
+            })
+    }
+
+    fn boundary_if_it_matters(&self, mesh: &TetMesh) -> Vec<[u32; 3]> {
+        match self.facings().next() {
+            Some(_) => mesh.boundary(None),
+            None => Vec::new(),
+        }
+    }
+
+    /// Whether each node meets all conditions.
+    fn met_by(&self, mesh: &TetMesh, boundary: &[[u32; 3]]) -> Result<Vec<bool>, SelectionError> {
+        let (low, high) = mesh.bounding_box();
+        let extent = (0..3)
+            .map(|axis| high[axis] - low[axis])
+            .fold(0.0, f64::max);
+        let slack = ROUNDING * extent;
+        let mut met = vec![true; mesh.points.len()];
+        for condition in self.conditions() {
+            let holds = holds_at(condition, mesh, boundary, slack)?;
+            for (met, holds) in met.iter_mut().zip(holds) {
+                *met &= holds;
+            }
+        }
+        Ok(met)
+    }
+
+    fn nothing(&self, mesh: &TetMesh, wanted: &'static str) -> SelectionError {
+        let (low, high) = mesh.bounding_box();
+        SelectionError::Nothing {
+            wanted,
+            selection: self.to_string(),
+            low,
+            high,
+        }
+    }
+
+    fn no_cell(&self, mesh: &TetMesh, met: &[bool], wanted: &'static str) -> SelectionError {
+        match met.iter().filter(|met| **met).count() {
+            0 => self.nothing(mesh, wanted),
+            nodes => SelectionError::NoCell {
+                wanted,
+                selection: self.to_string(),
+                nodes,
+            },
+        }
+    }
+}
+
+/// Whether a condition holds at each node.
+fn holds_at(
+    condition: &Condition,
+    mesh: &TetMesh,
+    boundary: &[[u32; 3]],
+    slack: f64,
+) -> Result<Vec<bool>, SelectionError> {
+    let of_points = |holds: &dyn Fn(&[f64; 3]) -> bool| mesh.points.iter().map(holds).collect();
+    let mut holds = vec![false; mesh.points.len()];
+    match condition {
+        Condition::Box { low, high } => {
+            let bounded = |x: f64, axis: usize| low[axis] - slack <= x && x <= high[axis] + slack;
+            return Ok(of_points(&|point| {
+                point.iter().enumerate().all(|(axis, x)| bounded(*x, axis))
+            }));
+        }
+        Condition::Sphere { center, radius } => {
+            let distance = |point: &[f64; 3]| length(sub(*point, *center));
+            return Ok(of_points(&|point| distance(point) <= radius + slack));
+        }
+        Condition::Plane {
+            point,
+            normal,
+            within,
+        } => {
+            let distance = |at: &[f64; 3]| (dot(sub(*at, *point), *normal) / length(*normal)).abs();
+            return Ok(of_points(&|at| distance(at) <= within + slack));
+        }
+        Condition::Facing { normal, angle } => {
+            let facing = boundary
+                .iter()
+                .filter(|triangle| looks_along(mesh, triangle, *normal, *angle));
+            for node in facing.flatten() {
+                holds[*node as usize] = true;
+            }
+        }
+        Condition::Tags(tags) => {
+            let node_of: HashMap<u64, usize> = mesh.node_tags.iter().copied().zip(0..).collect();
+            for &tag in tags {
+                let node = node_of.get(&tag);
+                let node = node.ok_or(SelectionError::UnknownTag { tag })?;
+                holds[*node] = true;
+            }
+        }
+    }
+    Ok(holds)
+}
+
+/// Whether the normal of a triangle, which is turned outward, is within an angle (degrees) of a direction.
+fn looks_along(mesh: &TetMesh, triangle: &[u32; 3], direction: [f64; 3], angle: f64) -> bool {
+    let [a, b, c] = triangle.map(|node| mesh.points[node as usize]);
+    let normal = cross(sub(b, a), sub(c, a));
+    let lengths = length(normal) * length(direction);
+    // The angle by its tangent, since a cosine cannot tell small angles apart.
+    let (along, across) = (dot(normal, direction), length(cross(normal, direction)));
+    lengths > 0.0 && across.atan2(along).to_degrees() <= angle + 1e-9
+}
+
+fn length(vector: [f64; 3]) -> f64 {
+    dot(vector, vector).sqrt()
+}
