@@ -8,9 +8,10 @@ use std::{collections::BTreeMap, fs, path::Path};
 use serde_json::{Value, json};
 use sinew_bench::{
     output::OutputFolder,
-    report::{Axis, Plot, Series, Style, Surface, markdown, terminal, write_all},
+    report::{markdown, terminal, write_all},
     results::{BenchResults, Machine, Skipped},
 };
+use sinew_draw::{Axis, Plot, Series, Style, Surface};
 use sinew_measure::{CaseInfo, Row, RowOutcome, RowVerdict, Work, mark_pareto};
 
 const DOFS: usize = 2673;

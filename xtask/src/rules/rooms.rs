@@ -16,6 +16,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
         "sinew-machines",
         &["sinew-core", "sinew-cnn", "sinew-sparse"],
     ),
+    ("sinew-draw", &[]),
     ("sinew-testkit", &["sinew-core", "sinew-fem", "sinew-mesh"]),
     (
         "sinew-integrators",
@@ -41,6 +42,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-integrators",
             "sinew-scene",
             "sinew-measure",
+            "sinew-draw",
         ],
     ),
     (
@@ -55,6 +57,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-integrators",
             "sinew-scene",
             "sinew-measure",
+            "sinew-draw",
         ],
     ),
     ("xtask", &["sinew-bench", "sinew-measure", "sinew-mesh"]),

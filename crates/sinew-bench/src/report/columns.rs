@@ -1,7 +1,9 @@
 //! The columns of every table of runs.
 
-use super::{missing::shown, number, verdict};
+use sinew_draw::page;
 use sinew_measure::Row;
+
+use super::{missing::shown, number, verdict};
 
 /// A column: its head, what stands in it, what it is sorted by.
 pub(super) struct Column {
@@ -21,6 +23,15 @@ impl Column {
         } else {
             format!("{}{separator}[{}]", self.head, self.unit)
         }
+    }
+
+    /// The column of a page's table.
+    pub(super) fn on_page(&self) -> page::Column {
+        let column = match self.key {
+            Some(_) => page::Column::number(self.head, self.unit),
+            None => page::Column::text(self.head),
+        };
+        column.explained(self.explained)
     }
 }
 

@@ -1,15 +1,11 @@
 //! Heat maps: error and boundedness over step and a parameter, a panel for each method.
 
+use sinew_draw::colour_map::viridis;
+use sinew_draw::svg::{Anchor, Frame, Paint, Stroke, Svg, Text, text_width};
+use sinew_draw::{Axis, Colour, Dash};
 use sinew_measure::RowVerdict;
 
-use super::{
-    axis::Axis,
-    colour_map::viridis,
-    number,
-    style::{Colour, Dash},
-    svg::{Anchor, Frame, Paint, Stroke, Svg, Text, text_width},
-    verdict,
-};
+use super::{number, verdict};
 use crate::results::{MapPanel, MapRun, StabilityMap};
 
 const MARGIN: f64 = 14.0;

@@ -1,13 +1,12 @@
 //! Pass marks as tables.
 
-use std::fmt::Write;
+use comfy_table::{ContentArrangement, TableStyle, presets};
+use sinew_draw::page::{Cell, Column, Table, TableRow};
+use sinew_draw::{Colour, Page};
+use sinew_measure::RowVerdict;
 
-use comfy_table::{ContentArrangement, Table, TableStyle, presets};
-
-use super::{
-    markup::escape,
-    ruled::{self, RULED_HEAD},
-};
+use super::ruled::{self, RULED_HEAD};
+use super::verdict::tint;
 use crate::results::{Mark, MarkVerdict};
 
 const HEADS: [&str; 5] = ["case", "asked", "measured", "by", "verdict"];
@@ -30,8 +29,8 @@ pub fn markdown_marks(marks: &[Mark]) -> String {
     table(marks, presets::ASCII_MARKDOWN, escape).to_string()
 }
 
-fn table(marks: &[Mark], style: TableStyle, escape: impl Fn(&str) -> String) -> Table {
-    let mut table = Table::new();
+fn table(marks: &[Mark], style: TableStyle, escape: impl Fn(&str) -> String) -> comfy_table::Table {
+    let mut table = comfy_table::Table::new();
     table
         .load_style(style)
         .set_content_arrangement(ContentArrangement::Disabled)
@@ -43,59 +42,35 @@ fn table(marks: &[Mark], style: TableStyle, escape: impl Fn(&str) -> String) -> 
 }
 
 /// The marks as a section of the page; nothing where there are none.
-pub(super) fn section(marks: &[Mark]) -> String {
+pub(super) fn section(page: &mut Page, marks: &[Mark]) {
     if marks.is_empty() {
-        return String::new();
+        return;
     }
+    page.section("marks", "Pass marks of the hard cases");
     let count = |verdict| marks.iter().filter(|mark| mark.verdict == verdict).count();
-    let mut out = format!(
-        "<section>\n<h2 id=\"marks\">Pass marks of the hard cases</h2>\n\
-         <p>{} passed, {} failed. Figures are measured in this run; limits were \
-         set before it.</p>\n<div class=\"wide\"><table class=\"marks\">\n<thead><tr>",
+    page.paragraph(&format!(
+        "{} passed, {} failed. Figures are measured in this run; limits were set before it.",
         count(MarkVerdict::Pass),
         count(MarkVerdict::Fail),
-    );
-    for head in HEADS {
-        // Writing into a String cannot fail.
-        let _ = write!(out, "<th>{head}</th>");
-    }
-    out.push_str("</tr></thead>\n<tbody>\n");
-    for mark in marks {
-        let _ = write!(out, "<tr class=\"{}\">", class(mark.verdict));
-        for (head, cell) in HEADS.iter().zip(cells(mark)) {
-            let _ = match *head {
-                "by" if !mark.note.is_empty() => write!(
-                    out,
-                    "<td>{}<small>{}</small></td>",
-                    escape(cell),
-                    escape(&mark.note)
-                ),
-                "verdict" => write!(
-                    out,
-                    "<td class=\"verdict\">{} {}</td>",
-                    symbol(mark.verdict),
-                    escape(cell)
-                ),
-                _ => write!(out, "<td>{}</td>", escape(cell)),
-            };
-        }
-        out.push_str("</tr>\n");
-    }
-    out.push_str("</tbody>\n</table></div>\n</section>\n");
-    out
+    ));
+    page.table(&Table {
+        columns: HEADS.map(Column::sentences).into(),
+        rows: marks.iter().map(row).collect(),
+        ..Table::default()
+    });
 }
 
-fn class(verdict: MarkVerdict) -> &'static str {
-    match verdict {
-        MarkVerdict::Pass => "pass",
-        MarkVerdict::Fail => "fail",
-    }
+fn row(mark: &Mark) -> TableRow {
+    let [case, asked, measured, by, _] = cells(mark).map(Cell::text);
+    let (symbol, tint) = look(mark.verdict);
+    let verdict = Cell::text(format!("{symbol} {}", mark.verdict.word())).tinted(tint);
+    TableRow::new([case, asked, measured, by.noted(mark.note.as_str()), verdict])
 }
 
-fn symbol(verdict: MarkVerdict) -> &'static str {
+fn look(verdict: MarkVerdict) -> (&'static str, Colour) {
     match verdict {
-        MarkVerdict::Pass => "✓",
-        MarkVerdict::Fail => "✗",
+        MarkVerdict::Pass => ("✓", tint(RowVerdict::Accurate)),
+        MarkVerdict::Fail => ("✗", tint(RowVerdict::Unbounded)),
     }
 }
 
@@ -126,15 +101,19 @@ mod tests {
             assert!(line.contains("FAIL") && !line.contains("pass"), "{line}");
             assert_eq!(text.matches("FAIL").count(), 1);
         }
-        let page = section(&marks());
-        let row = page.lines().find(|line| line.contains("12.5 %")).unwrap();
-        assert!(row.contains("class=\"fail\"") && row.contains("✗ FAIL"));
+        let mut page = Page::new("");
+        section(&mut page, &marks());
+        let page = page.finish();
+        let mut rows = page.split("<tr>").filter(|row| row.contains("12.5 %"));
+        assert!(rows.next().unwrap().contains(">✗ FAIL<"));
         assert!(page.contains("1 passed, 1 failed"));
         assert!(!page.contains("<case>"));
     }
 
     #[test]
     fn no_marks_are_no_section() {
-        assert_eq!(section(&[]), "");
+        let mut page = Page::new("");
+        section(&mut page, &[]);
+        assert_eq!(page.finish(), Page::new("").finish());
     }
 }

@@ -1,8 +1,8 @@
 //! The list of missing things, as people read it.
 
-use std::fmt::Write;
+use sinew_draw::Page;
+use sinew_draw::page::{Cell, Column, Table, TableRow};
 
-use super::markup::escape;
 use crate::results::Missing;
 
 /// A number by its format, or what stands in its place.
@@ -21,24 +21,17 @@ pub(super) fn lines(missing: &[Missing]) -> String {
 }
 
 /// The section of the page; nothing where nothing is missing.
-pub(super) fn section(missing: &[Missing]) -> String {
+pub(super) fn section(page: &mut Page, missing: &[Missing]) {
     if missing.is_empty() {
-        return String::new();
+        return;
     }
-    let mut out = String::from(
-        "<section>\n<h2 id=\"missing\">Missing</h2>\n<div class=\"wide\"><table>\n\
-         <thead><tr><th>where</th><th>what</th><th>why</th></tr></thead>\n<tbody>\n",
-    );
-    for missing in missing {
-        // Writing into a String cannot fail.
-        let _ = writeln!(
-            out,
-            "<tr><td>{}</td><td>{}</td><td>{}</td></tr>",
-            escape(&missing.place()),
-            escape(&missing.what()),
-            escape(&missing.reason)
-        );
-    }
-    out.push_str("</tbody>\n</table></div>\n</section>\n");
-    out
+    page.section("missing", "Missing");
+    let row = |missing: &Missing| {
+        TableRow::new([missing.place(), missing.what(), missing.reason.clone()].map(Cell::text))
+    };
+    page.table(&Table {
+        columns: ["where", "what", "why"].map(Column::sentences).into(),
+        rows: missing.iter().map(row).collect(),
+        ..Table::default()
+    });
 }

@@ -1,14 +1,10 @@
 //! Stability strip: the verdict on every method at every step.
 
+use sinew_draw::Dash;
+use sinew_draw::svg::{Anchor, Frame, Paint, Stroke, Svg, Text, text_width};
 use sinew_measure::{Row, RowOutcome, RowVerdict};
 
-use super::{
-    missing::shown,
-    number,
-    style::Dash,
-    svg::{Anchor, Frame, Paint, Stroke, Svg, Text, text_width},
-    verdict,
-};
+use super::{missing::shown, number, verdict};
 use crate::results::BenchResults;
 
 const MARGIN: f64 = 12.0;

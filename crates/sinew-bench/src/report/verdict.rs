@@ -1,8 +1,9 @@
 //! The look of verdicts: a symbol and a word with every colour.
 
+use sinew_draw::Colour;
 use sinew_measure::{Row, RowOutcome, RowVerdict};
 
-use super::{missing::shown, number, style::Colour};
+use super::{missing::shown, number};
 
 /// The meaning of a verdict, in words.
 pub(super) fn meaning(verdict: RowVerdict) -> &'static str {

@@ -1,15 +1,10 @@
 //! Work-precision plot: what a method's accuracy costs.
 
-use super::{
-    axis::Axis,
-    missing::shown,
-    number,
-    plot::{Plot, Point, Series},
-    style::{Colour, Dash, Style},
-    verdict,
-};
-use crate::results::BenchResults;
+use sinew_draw::{Axis, Colour, Dash, Plot, Point, Series, Style};
 use sinew_measure::{Row, RowOutcome};
+
+use super::{missing::shown, number, verdict};
+use crate::results::BenchResults;
 
 /// Errors above this (fraction) are drawn in the lane of the unbounded runs.
 const LARGEST_SHOWN_ERROR: f64 = 100.0;

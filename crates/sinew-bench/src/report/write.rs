@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use sinew_draw::markup::slugs;
 use sinew_scene::output::{OutputError, OutputFolder};
 
-use super::{heat_map, html, markup::slugs, strip, work_precision};
+use super::{heat_map, html, strip, work_precision};
 use crate::results::{BenchResults, ResultsError};
 
 const RESULTS: &str = "results.json";

@@ -4,7 +4,8 @@ use sinew_mesh::GroupMembers;
 
 use super::error::ReproduceError;
 use super::runs::{History, LARGE, Runs, SMALL, Snapshot, VOLTAGES};
-use crate::report::{Axis, Plot, Series, Style, Surface, three};
+use crate::report::three;
+use sinew_draw::{Axis, Plot, Series, Style, Surface};
 use sinew_measure::Row;
 
 /// A figure of the paper.

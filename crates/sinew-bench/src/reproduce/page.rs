@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use sinew_draw::page::{Cell, Column, Table, TableRow};
+use sinew_draw::{Colour, Page};
 use sinew_scene::output::{OutputError, OutputFolder};
 
-use super::claims::Claim;
+use super::claims::{Claim, Holds};
 use super::figures::NUMBERS;
 use super::reproduction::Reproduction;
-use crate::report::escape;
 
 const CLAIMS: &str = "claims.md";
 const PAGE: &str = "reproduction.html";
@@ -61,44 +62,38 @@ fn markdown(claims: &[Claim]) -> String {
 }
 
 fn html(reproduction: &Reproduction) -> String {
-    let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>The paper, reproduced</title>\n<style>\n{}{}</style>\n</head>\n<body>\n\
-         <h1>The paper, reproduced</h1>\n\
-         <p>Zhang, Zhong, Smith and Gu, <cite>Cellular neural network modelling of soft tissue \
+    let mut page = Page::new("The paper, reproduced");
+    page.markup(
+        "<p>Zhang, Zhong, Smith and Gu, <cite>Cellular neural network modelling of soft tissue \
          dynamics for surgical simulation</cite>, Technology and Health Care 25 (2017) S337-S344. \
          An error is relative to the exact motion; returning zero scores 100 %.</p>\n",
-        include_str!("../report/report.css"),
-        include_str!("page.css"),
     );
-    page.push_str(
-        "<h2>Claim by claim</h2>\n<div class=\"scroll\"><table class=\"claims\">\n<thead><tr>",
-    );
-    for heading in ["where", "the paper says", "measured", "verdict"] {
-        page.push_str(&format!("<th>{heading}</th>"));
-    }
-    page.push_str("</tr></thead>\n<tbody>\n");
-    for claim in &reproduction.claims {
-        let class = claim.holds.word().replace(' ', "-");
-        page.push_str(&format!(
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"{class}\">{}</td></tr>\n",
-            escape(claim.place),
-            escape(claim.says),
-            escape(&claim.measured),
-            claim.holds.word()
-        ));
-    }
-    page.push_str("</tbody>\n</table></div>\n<h2>Figures</h2>\n");
+    page.section("claims", "Claim by claim");
+    let row = |claim: &Claim| {
+        let verdict = Cell::text(claim.holds.word()).tinted(tint(claim.holds));
+        let cells = [claim.place, claim.says, &claim.measured].map(Cell::text);
+        TableRow::new(cells.into_iter().chain([verdict]))
+    };
+    page.table(&Table {
+        columns: ["where", "the paper says", "measured", "verdict"]
+            .map(Column::sentences)
+            .into(),
+        rows: reproduction.claims.iter().map(row).collect(),
+        ..Table::default()
+    });
+    page.section("figures", "Figures");
     for figure in &reproduction.figures {
-        page.push_str(&format!(
-            "<figure>\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
-            figure.svg,
-            escape(&figure.caption)
-        ));
+        page.figure(&figure.svg, &figure.caption);
     }
-    page.push_str("</body>\n</html>\n");
-    page
+    page.finish()
+}
+
+fn tint(holds: Holds) -> Colour {
+    match holds {
+        Holds::Yes => Colour(0xb8, 0xe6, 0xd4),
+        Holds::InPart => Colour(0xf9, 0xe4, 0xae),
+        Holds::No => Colour(0xf5, 0xb8, 0x95),
+    }
 }
 
 impl Reproduction {

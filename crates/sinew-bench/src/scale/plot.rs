@@ -3,7 +3,7 @@
 use super::ScaleResults;
 use super::row::ScaleRow;
 use super::table::{error, real_time};
-use crate::report::{Axis, Dash, Plot, Point, Series, Style};
+use sinew_draw::{Axis, Dash, Plot, Point, Series, Style};
 
 impl ScaleResults {
     /// Wall time per simulated second over tetrahedra: a line for each method, precision and number of

@@ -1,9 +1,9 @@
 //! Roofline plots (Williams, Waterman and Patterson, Commun. ACM 52, 2009): operations a second over
 //! operations for each byte, beneath what memory and arithmetic allow.
 
-use super::axis::{Axis, Fitted, Tick};
-use super::style::{Dash, Marker, Style};
-use super::svg::{Anchor, Frame, Paint, Stroke, Svg, Text, text_width};
+use crate::axis::{Axis, Fitted, Tick};
+use crate::style::{Dash, Marker, Style};
+use crate::svg::{Anchor, Frame, Paint, Stroke, Svg, Text, text_width};
 
 const WIDTH: f64 = 920.0;
 const HEIGHT: f64 = 460.0;

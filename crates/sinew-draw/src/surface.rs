@@ -2,7 +2,7 @@
 
 mod projection;
 
-use super::{
+use crate::{
     axis::{Axis, nice_step},
     colour_map::{shade, viridis},
     number,
@@ -264,7 +264,7 @@ impl View {
         let label = if length >= 1.0 {
             format!("{} m", number::short(length))
         } else {
-            format!("{} mm", number::milliseconds(length))
+            format!("{} mm", number::short(1e3 * length))
         };
         svg.text(&Text::new(
             x + pixels + 8.0,

@@ -8,44 +8,54 @@ use std::fmt::{self, Display, Write};
 mod paint;
 mod text;
 
-use super::{
+use crate::{
     markup::escape,
     style::{Colour, Marker},
 };
-pub(super) use paint::{Paint, Stroke};
+pub use paint::{Paint, Stroke};
 use text::Raised;
-pub(super) use text::{Anchor, Text, text_width};
+pub use text::{Anchor, Text, text_width};
 
 const FONTS: &str = "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, 'DejaVu Sans', \
                      'Liberation Sans', sans-serif";
 
 /// A picture being written.
-pub(super) struct Svg {
+#[derive(Debug)]
+pub struct Svg {
     out: String,
 }
 
 /// A rectangle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    pub(super) left: f64,
-    pub(super) top: f64,
-    pub(super) width: f64,
-    pub(super) height: f64,
+pub struct Frame {
+    /// Its left side (px).
+    pub left: f64,
+    /// Its upper side (px from the top of the picture).
+    pub top: f64,
+    /// Its width (px).
+    pub width: f64,
+    /// Its height (px).
+    pub height: f64,
 }
 
 impl Frame {
-    pub(super) fn right(&self) -> f64 {
+    /// Its right side (px).
+    #[must_use]
+    pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    pub(super) fn bottom(&self) -> f64 {
+    /// Its lower side (px).
+    #[must_use]
+    pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
 }
 
 impl Svg {
     /// A picture of the given size, described for those who cannot see it.
-    pub(super) fn new(width: f64, height: f64, described: &str) -> Self {
+    #[must_use]
+    pub fn new(width: f64, height: f64, described: &str) -> Self {
         let mut svg = Self { out: String::new() };
         let (w, h) = (N(width), N(height));
         svg.put(format_args!(
@@ -63,12 +73,15 @@ impl Svg {
         svg
     }
 
-    pub(super) fn finish(mut self) -> String {
+    /// The picture, whole.
+    #[must_use]
+    pub fn finish(mut self) -> String {
         self.out.push_str("</svg>\n");
         self.out
     }
 
-    pub(super) fn rect(&mut self, frame: Frame, fill: Paint) {
+    /// A filled rectangle.
+    pub fn rect(&mut self, frame: Frame, fill: Paint) {
         let Frame {
             left,
             top,
@@ -85,12 +98,13 @@ impl Svg {
         ));
     }
 
-    pub(super) fn line(&mut self, from: (f64, f64), to: (f64, f64), stroke: Stroke) {
+    /// A straight line.
+    pub fn line(&mut self, from: (f64, f64), to: (f64, f64), stroke: Stroke) {
         self.polyline(&[from, to], stroke);
     }
 
     /// A broken line; fewer than two points are none.
-    pub(super) fn polyline(&mut self, points: &[(f64, f64)], stroke: Stroke) {
+    pub fn polyline(&mut self, points: &[(f64, f64)], stroke: Stroke) {
         if points.len() < 2 {
             return;
         }
@@ -106,7 +120,7 @@ impl Svg {
     }
 
     /// A filled polygon with an edge of its own colour, which hides the seams between neighbours.
-    pub(super) fn facet(&mut self, points: &[(f64, f64)], colour: Colour, edge: Colour) {
+    pub fn facet(&mut self, points: &[(f64, f64)], colour: Colour, edge: Colour) {
         self.put(format_args!(
             "<path d=\"{}\" fill=\"{colour}\" stroke=\"{edge}\" stroke-width=\"0.5\" \
              stroke-linejoin=\"round\"/>\n",
@@ -118,7 +132,7 @@ impl Svg {
     }
 
     /// A marker; an open one is filled with paper.
-    pub(super) fn marker(
+    pub fn marker(
         &mut self,
         marker: Marker,
         (x, y): (f64, f64),
@@ -160,7 +174,8 @@ impl Svg {
         }
     }
 
-    pub(super) fn ring(&mut self, (x, y): (f64, f64), radius: f64) {
+    /// A circle round a marker.
+    pub fn ring(&mut self, (x, y): (f64, f64), radius: f64) {
         self.put(format_args!(
             "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" {} stroke-width=\"1.25\"/>\n",
             N(x),
@@ -170,7 +185,8 @@ impl Svg {
         ));
     }
 
-    pub(super) fn text(&mut self, text: &Text<'_>) {
+    /// A text; `^{..}` in it is raised.
+    pub fn text(&mut self, text: &Text<'_>) {
         // Not `dominant-baseline`, which renderers treat differently.
         let drop = 0.35 * text.size;
         let place = if text.upward {
@@ -198,7 +214,7 @@ impl Svg {
     }
 
     /// Draws by `draw`, with a text that shows on hovering.
-    pub(super) fn noted(&mut self, note: &str, draw: impl FnOnce(&mut Self)) {
+    pub fn noted(&mut self, note: &str, draw: impl FnOnce(&mut Self)) {
         if note.is_empty() {
             draw(self);
             return;
@@ -209,7 +225,7 @@ impl Svg {
     }
 
     /// Draws by `draw`, cut off outside the frame.
-    pub(super) fn clipped(&mut self, frame: Frame, draw: impl FnOnce(&mut Self)) {
+    pub fn clipped(&mut self, frame: Frame, draw: impl FnOnce(&mut Self)) {
         let (x, y, w, h) = (N(frame.left), N(frame.top), N(frame.width), N(frame.height));
         self.put(format_args!(
             "<svg x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" viewBox=\"{x} {y} {w} {h}\" \

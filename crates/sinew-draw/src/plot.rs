@@ -3,7 +3,7 @@
 mod draw;
 mod follow;
 
-use super::{axis::Axis, style::Style};
+use crate::{axis::Axis, style::Style};
 
 /// A plot: series on two axes.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,30 +3,40 @@
 //! Neutral colours have a name besides their value, so that a page can restyle them: attributes
 //! give way to its CSS, and a file alone still looks right.
 
-use crate::report::style::{Colour, Dash};
+use crate::style::{Colour, Dash};
 
 /// A colour: of the data, or one that follows the page.
-#[derive(Clone, Copy)]
-pub(in crate::report) enum Paint {
+#[derive(Clone, Copy, Debug)]
+pub enum Paint {
+    /// A colour that means something, the same on light and dark pages.
     Data(Colour),
+    /// The page.
     Paper,
+    /// Text and strong lines.
     Ink,
+    /// Lesser text and lines.
     Muted,
+    /// Lines behind the data.
     Grid,
     /// Text on a tint, which stays light on a dark page.
     OnTint,
 }
 
 /// Colour, width and dashes of a line.
-#[derive(Clone, Copy)]
-pub(in crate::report) struct Stroke {
-    pub(in crate::report) paint: Paint,
-    pub(in crate::report) width: f64,
-    pub(in crate::report) dash: Dash,
+#[derive(Clone, Copy, Debug)]
+pub struct Stroke {
+    /// Its colour.
+    pub paint: Paint,
+    /// Its width (px).
+    pub width: f64,
+    /// Its dashes.
+    pub dash: Dash,
 }
 
 impl Stroke {
-    pub(in crate::report) fn new(paint: Paint, width: f64) -> Self {
+    /// A line without gaps.
+    #[must_use]
+    pub fn new(paint: Paint, width: f64) -> Self {
         Self {
             paint,
             width,

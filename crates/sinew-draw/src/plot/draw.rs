@@ -1,7 +1,7 @@
 //! Laying out and drawing a plot.
 
 use super::{Plot, Point, Rule, Series, follow::followed};
-use crate::report::{
+use crate::{
     axis::{Fitted, Tick},
     style::{Dash, Marker, Style},
     svg::{Anchor, Frame, Paint, Stroke, Svg, Text, text_width},

@@ -1,4 +1,4 @@
-for (const table of document.querySelectorAll("table.runs")) {
+for (const table of document.querySelectorAll("table.sortable")) {
   table.querySelectorAll("th").forEach((head, column) => {
     const button = document.createElement("button");
     button.append(...head.childNodes);

@@ -64,7 +64,7 @@ const MARKERS: [Marker; 8] = [
 impl Marker {
     /// Corners on a circle about the origin that gives all markers about the same area; none is a
     /// circle. Downwards is positive.
-    pub(super) fn corners(self, radius: f64) -> Vec<(f64, f64)> {
+    pub(crate) fn corners(self, radius: f64) -> Vec<(f64, f64)> {
         let ring = |n: usize, start: f64, radii: &[f64]| {
             (0..n)
                 .map(|i| {
@@ -117,7 +117,7 @@ pub enum Dash {
 const DASHES: [Dash; 3] = [Dash::Solid, Dash::Dashed, Dash::Dotted];
 
 impl Dash {
-    pub(super) fn array(self) -> Option<&'static str> {
+    pub(crate) fn array(self) -> Option<&'static str> {
         match self {
             Self::Solid => None,
             Self::Dashed => Some("7 4"),

@@ -3,31 +3,44 @@
 use std::fmt::{self, Display};
 
 use super::Paint;
-use crate::report::markup::escape;
+use crate::markup::escape;
 
 /// The part of a text that its position refers to.
-#[derive(Clone, Copy)]
-pub(in crate::report) enum Anchor {
+#[derive(Clone, Copy, Debug)]
+pub enum Anchor {
+    /// Its left end.
     Start,
+    /// Its middle.
     Middle,
+    /// Its right end.
     End,
 }
 
 /// A text and how it is set; `y` is the middle of the line.
-pub(in crate::report) struct Text<'a> {
-    pub(in crate::report) x: f64,
-    pub(in crate::report) y: f64,
-    pub(in crate::report) content: &'a str,
-    pub(in crate::report) size: f64,
-    pub(in crate::report) anchor: Anchor,
-    pub(in crate::report) paint: Paint,
-    pub(in crate::report) bold: bool,
+#[derive(Clone, Copy, Debug)]
+pub struct Text<'a> {
+    /// Place of its anchor (px from the left).
+    pub x: f64,
+    /// Middle of its line (px from the top).
+    pub y: f64,
+    /// What it says.
+    pub content: &'a str,
+    /// Size of its letters (px).
+    pub size: f64,
+    /// The part of it that stands at `x`.
+    pub anchor: Anchor,
+    /// Its colour.
+    pub paint: Paint,
+    /// Whether it is set bold.
+    pub bold: bool,
     /// Turned a quarter to the left.
-    pub(in crate::report) upward: bool,
+    pub upward: bool,
 }
 
 impl<'a> Text<'a> {
-    pub(in crate::report) fn new(x: f64, y: f64, content: &'a str) -> Self {
+    /// A text in ordinary letters that begins at a place.
+    #[must_use]
+    pub fn new(x: f64, y: f64, content: &'a str) -> Self {
         Self {
             x,
             y,
@@ -40,23 +53,33 @@ impl<'a> Text<'a> {
         }
     }
 
-    pub(in crate::report) fn anchored(self, anchor: Anchor) -> Self {
+    /// The text with another anchor.
+    #[must_use]
+    pub fn anchored(self, anchor: Anchor) -> Self {
         Self { anchor, ..self }
     }
 
-    pub(in crate::report) fn painted(self, paint: Paint) -> Self {
+    /// The text in another colour.
+    #[must_use]
+    pub fn painted(self, paint: Paint) -> Self {
         Self { paint, ..self }
     }
 
-    pub(in crate::report) fn sized(self, size: f64) -> Self {
+    /// The text in another size (px).
+    #[must_use]
+    pub fn sized(self, size: f64) -> Self {
         Self { size, ..self }
     }
 
-    pub(in crate::report) fn bold(self) -> Self {
+    /// The text set bold.
+    #[must_use]
+    pub fn bold(self) -> Self {
         Self { bold: true, ..self }
     }
 
-    pub(in crate::report) fn upward(self) -> Self {
+    /// The text turned a quarter to the left.
+    #[must_use]
+    pub fn upward(self) -> Self {
         Self {
             upward: true,
             ..self
@@ -65,7 +88,8 @@ impl<'a> Text<'a> {
 }
 
 /// Estimated width of a text, on the wide side: fonts differ from machine to machine.
-pub(in crate::report) fn text_width(text: &str, size: f64) -> f64 {
+#[must_use]
+pub fn text_width(text: &str, size: f64) -> f64 {
     let ems: f64 = text
         .chars()
         .map(|c| match c {

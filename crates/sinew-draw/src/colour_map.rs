@@ -1,6 +1,6 @@
 //! A colour for a number.
 
-use super::style::Colour;
+use crate::style::Colour;
 
 /// Nine stops of `viridis` (N. Smith and S. van der Walt, 2015): even to the eye, and readable
 /// without colour vision or in grey.
@@ -17,14 +17,16 @@ const VIRIDIS: [Colour; 9] = [
 ];
 
 /// The colour at a share of the map, clamped to its ends.
-pub(super) fn viridis(share: f64) -> Colour {
+#[must_use]
+pub fn viridis(share: f64) -> Colour {
     let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     let stop = (place as usize).min(VIRIDIS.len() - 2);
     mix(VIRIDIS[stop], VIRIDIS[stop + 1], place - stop as f64)
 }
 
 /// A colour made darker: 1 leaves it, 0 is black.
-pub(super) fn shade(colour: Colour, light: f64) -> Colour {
+#[must_use]
+pub fn shade(colour: Colour, light: f64) -> Colour {
     mix(Colour(0, 0, 0), colour, light.clamp(0.0, 1.0))
 }
 
@@ -44,6 +46,6 @@ mod tests {
         assert_eq!(viridis(0.5), VIRIDIS[4]);
         assert_eq!(viridis(2.0), VIRIDIS[8]);
         // NaN is nothing to crash on.
-        viridis(f64::NAN);
+        let _ = viridis(f64::NAN);
     }
 }

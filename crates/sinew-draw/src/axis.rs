@@ -1,6 +1,6 @@
 //! Axes: ranges, ticks, and where a value lies.
 
-use super::number;
+use crate::number;
 
 /// The spread of values along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +51,9 @@ impl Axis {
         }
     }
 
-    pub(super) fn fitted(&self, data: impl Iterator<Item = f64>) -> Fitted {
+    /// The axis with the range that it shows: its own, or that of the data with some room.
+    #[must_use]
+    pub fn fitted(&self, data: impl Iterator<Item = f64>) -> Fitted {
         let scale = self.scale;
         let (low, high) = match self.range {
             Some((low, high)) => (scale.forward(low), scale.forward(high)),
@@ -93,7 +95,7 @@ impl Scale {
 
 /// An axis with its range, in forward (possibly logarithmic) coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Fitted {
+pub struct Fitted {
     scale: Scale,
     low: f64,
     high: f64,
@@ -101,21 +103,24 @@ pub(super) struct Fitted {
 
 /// A tick; without a label it is a minor one.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tick {
+pub struct Tick {
     /// Position as a share of the axis.
-    pub(super) at: f64,
-    pub(super) label: Option<String>,
+    pub at: f64,
+    /// The value, as it is written.
+    pub label: Option<String>,
 }
 
 impl Fitted {
     /// Position of a value as a share of the axis: 0 at the low end, 1 at the high end. NaN where
     /// the axis cannot show it.
-    pub(super) fn share(&self, x: f64) -> f64 {
+    #[must_use]
+    pub fn share(&self, x: f64) -> f64 {
         (self.scale.forward(x) - self.low) / (self.high - self.low)
     }
 
     /// Ticks inside the range, about `wanted` of them labelled.
-    pub(super) fn ticks(&self, wanted: usize) -> Vec<Tick> {
+    #[must_use]
+    pub fn ticks(&self, wanted: usize) -> Vec<Tick> {
         match self.scale {
             Scale::Linear => self.linear_ticks(wanted),
             Scale::Log => self.log_ticks(wanted),
@@ -177,7 +182,7 @@ impl Fitted {
 }
 
 /// The least of 1, 2, 5 times a power of ten that is not below `least`.
-pub(super) fn nice_step(least: f64) -> f64 {
+pub(crate) fn nice_step(least: f64) -> f64 {
     if !least.is_finite() || least <= 0.0 {
         return 1.0;
     }

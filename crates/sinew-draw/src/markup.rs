@@ -2,7 +2,8 @@
 
 /// Escapes text for the content and the quoted attributes of HTML and SVG. Control characters,
 /// which XML cannot hold, become the replacement character.
-pub(crate) fn escape(text: &str) -> String {
+#[must_use]
+pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -19,8 +20,34 @@ pub(crate) fn escape(text: &str) -> String {
     out
 }
 
+/// Escaped text in which what stands between two backticks is set as code.
+#[must_use]
+pub fn prose(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, (code, after))) = rest
+        .split_once('`')
+        .and_then(|(before, after)| Some((before, after.split_once('`')?)))
+    {
+        out.push_str(&format!("{}<code>{}</code>", escape(before), escape(code)));
+        rest = after;
+    }
+    out.push_str(&escape(rest));
+    out
+}
+
+/// An attribute of an HTML element, with a blank before it; nothing where its value is empty.
+pub(crate) fn attribute(name: &str, value: &str) -> String {
+    if value.is_empty() {
+        String::new()
+    } else {
+        format!(" {name}=\"{}\"", escape(value))
+    }
+}
+
 /// Names for files and anchors, one per id, all different even on file systems that fold case.
-pub(super) fn slugs(ids: &[&str]) -> Vec<String> {
+#[must_use]
+pub fn slugs(ids: &[&str]) -> Vec<String> {
     let mut slugs: Vec<String> = Vec::with_capacity(ids.len());
     for id in ids {
         let base = slug(id);
@@ -58,6 +85,15 @@ mod tests {
             "&lt;b a=&quot;1&quot; c=&#39;2&#39;&gt;&amp;amp;\u{fffd}"
         );
         assert_eq!(escape("µs ≤ 5 %"), "µs ≤ 5 %");
+    }
+
+    #[test]
+    fn code_stands_between_backticks() {
+        assert_eq!(
+            prose("`a<b` and `c`: 1 < 2"),
+            "<code>a&lt;b</code> and <code>c</code>: 1 &lt; 2"
+        );
+        assert_eq!(prose("one ` alone"), "one ` alone");
     }
 
     #[test]

@@ -1,0 +1,24 @@
+//! Plots and pictures as SVG, pages as HTML: data in, text out.
+//!
+//! [`Plot`] draws series on two axes, [`Surface`] a mesh, [`Roofline`] rates beneath their limits;
+//! [`svg`] and [`axis`] are what they are made of. [`Page`] is an HTML page in one file with
+//! headings, facts, tables and figures. Everything follows a reader's light or dark colours and needs
+//! no network.
+
+pub mod axis;
+pub mod colour_map;
+pub mod markup;
+mod number;
+pub mod page;
+mod plot;
+mod roofline;
+pub mod style;
+mod surface;
+pub mod svg;
+
+pub use axis::{Axis, Scale};
+pub use page::Page;
+pub use plot::{Plot, Point, Rule, Series};
+pub use roofline::{Family, Roofline};
+pub use style::{Colour, Dash, Marker, Style};
+pub use surface::Surface;
