@@ -31,6 +31,17 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
         &["sinew-core", "sinew-integrators", "sinew-scene"],
     ),
     (
+        "sinew-record",
+        &[
+            "sinew-core",
+            "sinew-draw",
+            "sinew-mesh",
+            "sinew-fem",
+            "sinew-integrators",
+            "sinew-scene",
+        ],
+    ),
+    (
         "sinew-bench",
         &[
             "sinew-core",
@@ -57,6 +68,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-integrators",
             "sinew-scene",
             "sinew-measure",
+            "sinew-record",
             "sinew-draw",
         ],
     ),
