@@ -12,6 +12,7 @@
 //! | `energy.csv` | the balance of energy (J) |
 //! | `reactions.csv` | forces (N) and moments (N m) of supports and moved parts |
 //! | `summary.json` | how it ended, extremes, work, warnings, and all that is needed to repeat it |
+//! | `report.html` | warnings, pictures of the body, curves |
 //! | `run.json`, `scene.toml` | what was run |
 //! | `checkpoint.bin` | where an unfinished run stands |
 //!
@@ -37,6 +38,7 @@ mod error;
 mod fields;
 mod progress;
 mod recorder;
+mod report;
 mod request;
 mod run_end;
 mod run_folder;

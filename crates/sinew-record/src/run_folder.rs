@@ -15,6 +15,7 @@ use crate::error::RecordRunError;
 use crate::fields::{self, Fields, Surface};
 use crate::progress::Progress;
 use crate::recorder::{Pace, RunRecorder, Schedules, Tables};
+use crate::report;
 use crate::request::{self, Record, Request};
 use crate::run_end::{Ended, RunEnd};
 use crate::summary::{self, Summary};
@@ -57,6 +58,7 @@ impl RunFolder {
             checkpoint::NAME,
             tables::PROBES,
             tables::ENERGY,
+            report::NAME,
             summary::NAME,
         ]
         .map(str::to_owned)
@@ -169,6 +171,7 @@ impl RunFolder {
             reactions,
             fields,
             schedules,
+            largest,
             ..
         } = recorder;
         let ended = match report.outcome {
@@ -202,6 +205,9 @@ impl RunFolder {
             resumed,
             warnings: &warnings,
         };
+        let surface = fields.as_ref().map(|(_, surface)| surface);
+        let page = report::page(&summary, surface, &largest, &self.folder)?;
+        self.folder.write(report::NAME, page.as_bytes())?;
         self.folder
             .write(summary::NAME, summary.to_json().as_bytes())?;
         // Whoever finds no checkpoint beside a summary knows that the run has come to its end.

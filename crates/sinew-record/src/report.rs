@@ -1,0 +1,147 @@
+//! `report.html`: a run at a glance, in one page without network.
+
+mod body;
+mod curves;
+
+use sinew_draw::Page;
+use sinew_scene::output::OwnedFolder;
+
+use crate::error::RecordRunError;
+use crate::fields::Surface;
+use crate::run_end::Ended;
+use crate::summary::Summary;
+use crate::tables;
+use curves::Curves;
+
+pub(crate) const NAME: &str = "report.html";
+
+/// The page. It says nothing of the computer, so that it is the same wherever the run was taken.
+pub(crate) fn page(
+    summary: &Summary<'_>,
+    surface: Option<&Surface>,
+    largest: &[f64],
+    folder: &OwnedFolder,
+) -> Result<String, RecordRunError> {
+    let simulation = summary.simulation;
+    let title = match simulation.scene().title() {
+        "" => "A run",
+        title => title,
+    };
+    let mut page = Page::new(title);
+    for warning in summary.record.warnings.iter().chain(summary.warnings) {
+        page.warning(warning);
+    }
+    page.facts(facts(summary));
+    page.paragraph(
+        "The error of this run is not known: `sinew plan --tolerance` measures it for the scene.",
+    );
+    if let Some(surface) = surface {
+        body::section(&mut page, summary, surface, largest);
+    }
+    let read = |name: &str| Curves::read(folder, name);
+    if let Some(probes) = read(tables::PROBES)? {
+        page.section("probes", "Probes");
+        for probe in simulation.probes() {
+            let begin = format!("{}_u_", probe.name);
+            let plot = probes.plot(&probe.name, "displacement [m]", |column| {
+                let axis = column.strip_prefix(&begin)?.strip_suffix("_m")?;
+                Some(axis.to_owned())
+            });
+            page.figure(&plot.svg(), "");
+        }
+        if simulation.probes().is_empty() {
+            page.paragraph(
+                "The scene has none: a table `[[probe]]` with `name` and `point` makes one.",
+            );
+        }
+    }
+    if let Some(energy) = read(tables::ENERGY)? {
+        page.section("energy", "Energy");
+        let plot = energy.plot("Balance of energy", "energy [J]", |column| {
+            Some(column.strip_suffix("_J")?.replace('_', " "))
+        });
+        page.figure(
+            &plot.svg(),
+            "What remains is what the method, or rows that are steps apart, bring in or take away.",
+        );
+    }
+    if let Some(reactions) = read(tables::REACTIONS)? {
+        page.section("reactions", "Forces of supports");
+        for part in summary.parts {
+            let begin = format!("{}_f_", part.name);
+            let plot = reactions.plot(&part.by, "force [N]", |column| {
+                let axis = column.strip_prefix(&begin)?.strip_suffix("_N")?;
+                Some(axis.to_owned())
+            });
+            page.figure(&plot.svg(), "");
+        }
+    }
+    page.section("scene", "The scene as it was run");
+    let text = sinew_draw::markup::escape(simulation.scene().source().text());
+    page.folded("Its text", |page| {
+        page.markup(&format!("<pre>{text}</pre>\n"))
+    });
+    Ok(page.finish())
+}
+
+fn facts(summary: &Summary<'_>) -> Vec<(&'static str, String)> {
+    let (simulation, progress) = (summary.simulation, summary.progress);
+    let settings = simulation.settings();
+    let outcome = match summary.ended {
+        Ended::Finished => "finished".to_owned(),
+        Ended::Diverged { t, place } => format!("diverged at t = {t:.6} s, first at {place}"),
+        Ended::Interrupted { t } => format!("interrupted at t = {t:.6} s"),
+    };
+    let work = progress.work;
+    let mut facts = vec![
+        ("outcome", outcome),
+        (
+            "time",
+            format!(
+                "{:.6} s in {} steps of {:e} s",
+                summary.t,
+                summary.steps,
+                simulation.dt()
+            ),
+        ),
+        ("integrator", settings.integrator.clone()),
+        (
+            "work",
+            format!("{} sweeps, {} solves", work.sweeps, work.solves),
+        ),
+    ];
+    if let Some(body) = simulation.model().body() {
+        let report = body.model.report();
+        facts.push((
+            "body",
+            format!(
+                "{} nodes, {} tetrahedra, {:.4e} m3, {:.4e} kg",
+                report.nodes, report.tets, report.volume, report.mass
+            ),
+        ));
+        let seen = &progress.seen;
+        let most = seen.displacement;
+        facts.push((
+            "largest displacement",
+            format!(
+                "{:.4e} m at t = {:.6} s, node {}",
+                most.value, most.t, most.at
+            ),
+        ));
+        facts.push((
+            "largest strain and rotation",
+            format!(
+                "{:.2} %, {:.1} degrees",
+                100.0 * seen.strain.value,
+                seen.rotation.value.to_degrees()
+            ),
+        ));
+    }
+    if work.saturated > 0 {
+        facts.push((
+            "guarded",
+            "velocities were saturated: the motion is bounded, not accurate".to_owned(),
+        ));
+    }
+    facts
+}
