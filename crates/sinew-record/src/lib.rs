@@ -20,7 +20,7 @@
 //! use sinew_record::{Ended, Request, RunFolder};
 //! use sinew_scene::{Scene, SceneSource};
 //!
-//! let text = "[oscillator]\nmass = 0.1\nstiffness = 100.0\nvelocity = 1.0\n[run]\nduration = 1.0\n\
+//! let text = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 0.1\nvelocity = 1.0\n[run]\nduration = 1.0\n\
 //!             integrator = \"newmark\"\ndt = 0.01\n";
 //! let simulation = Scene::parse(SceneSource::new("spring.toml", text))?.build()?;
 //! let place = tempfile::tempdir()?;

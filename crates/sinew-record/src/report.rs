@@ -69,7 +69,7 @@ pub(crate) fn page(
         page.section("reactions", "Forces of supports");
         for part in summary.parts {
             let begin = format!("{}_f_", part.name);
-            let plot = reactions.plot(&part.by, "force [N]", |column| {
+            let plot = reactions.plot(&part.by.replace('`', ""), "force [N]", |column| {
                 let axis = column.strip_prefix(&begin)?.strip_suffix("_N")?;
                 Some(axis.to_owned())
             });
@@ -98,7 +98,7 @@ fn facts(summary: &Summary<'_>) -> Vec<(&'static str, String)> {
         (
             "time",
             format!(
-                "{:.6} s in {} steps of {:e} s",
+                "{:.6} s in {} steps of {} s",
                 summary.t,
                 summary.steps,
                 simulation.dt()

@@ -55,6 +55,7 @@ pub(super) fn section(page: &mut Page, summary: &Summary<'_>, surface: &Surface,
         ("At rest".to_owned(), rest, vec![0.0; sizes.len()]),
         (words, then, sizes),
     ];
+    let mut drawn = String::new();
     for (title, points, values) in pictures {
         let facing: Vec<[u32; 3]> = surface
             .triangles
@@ -74,8 +75,9 @@ pub(super) fn section(page: &mut Page, summary: &Summary<'_>, surface: &Surface,
             view: Some(view),
             ..Picture::new(title, &points, &facing, &values, "displacement [mm]")
         };
-        page.figure(&picture.svg(), "");
+        drawn.push_str(&picture.svg());
     }
+    page.figure(&drawn, "");
 }
 
 /// Whether a triangle shows its outside.

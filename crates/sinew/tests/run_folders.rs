@@ -1,0 +1,257 @@
+//! `sinew run --out` and `sinew resume`: what a killed run loses, and what a folder is protected from.
+
+#![cfg(test)]
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use assert_cmd::cargo::CommandCargoExt;
+
+/// A run of several seconds, with a checkpoint at every chance.
+const LONG: &str = "title = \"a long run\"\n[mesh]\ncube = { cells = 4, edge = 0.1 }\n[[region]]\ndensity = 1060.0\n\
+                    model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.3\n[damping]\nmass = 1.0\n[[fixed]]\n\
+                    group = \"bottom\"\n[[load]]\ngroup = \"top\"\npressure = 60.0\n[run]\nduration = 80.0\n\
+                    integrator = \"central-difference\"\ndt = 0.001\n[[probe]]\nname = \"top\"\npoint = [0.05, 0.05, 0.1]\n\
+                    [output]\ncheckpoint = { every = 0.01 }\nfields = { frames = 40 }\n";
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        fs::write(folder.path("long.toml"), LONG).unwrap();
+        fs::write(folder.path("short.toml"), LONG.replace("80.0", "0.5")).unwrap();
+        folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn sinew(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::cargo_bin("sinew").unwrap();
+        command.current_dir(self.0.path()).args(arguments);
+        command
+    }
+
+    fn says(&self, arguments: &[&str]) -> (Option<i32>, String) {
+        let Output { status, stderr, .. } = self.sinew(arguments).output().unwrap();
+        (status.code(), String::from_utf8_lossy(&stderr).into_owned())
+    }
+
+    fn start(&self, arguments: &[&str]) -> Child {
+        let mut command = self.sinew(arguments);
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        command.spawn().unwrap()
+    }
+
+    fn wait_for(&self, name: &str) {
+        let begin = Instant::now();
+        while !self.path(name).exists() {
+            assert!(begin.elapsed() < Duration::from_secs(60), "no {name}");
+            sleep(Duration::from_millis(2));
+        }
+    }
+}
+
+/// Contents by names, without what is said of the computer and of the name of the folder.
+fn contents(path: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for folder in [path.to_owned(), path.join("fields")] {
+        for entry in fs::read_dir(&folder).unwrap() {
+            let entry = entry.unwrap();
+            if entry.file_type().unwrap().is_dir() {
+                continue;
+            }
+            let mut content = fs::read(entry.path()).unwrap();
+            let name = entry.file_name().into_string().unwrap();
+            if name == "summary.json" {
+                let mut json: serde_json::Value = serde_json::from_slice(&content).unwrap();
+                json.as_object_mut().unwrap().remove("computer").unwrap();
+                content = json.to_string().into_bytes();
+            }
+            found.insert(name, content);
+        }
+    }
+    found
+}
+
+fn assert_same(one: &Path, other: &Path) {
+    let (one, other) = (contents(one), contents(other));
+    assert_eq!(
+        one.keys().collect::<Vec<_>>(),
+        other.keys().collect::<Vec<_>>()
+    );
+    for (name, content) in &one {
+        assert!(content == &other[name], "{name} differs");
+    }
+}
+
+#[test]
+fn fifty_kills_cost_no_byte() {
+    let folder = Folder::new();
+    let (code, said) = folder.says(&["run", "long.toml", "--out", "whole"]);
+    assert_eq!(code, Some(0), "{said}");
+    // Instants without a pattern, the same in each run (Park and Miller, Comm. ACM 31, 1988).
+    let mut seed = 20_u64;
+    let mut random = |most: u64| {
+        seed = seed * 48_271 % 0x7fff_ffff;
+        Duration::from_micros(1000 * (seed % most))
+    };
+    let mut run = folder.start(&["run", "long.toml", "--out", "killed"]);
+    let mut kills = 0;
+    while kills < 50 && run.try_wait().unwrap().is_none() {
+        sleep(Duration::from_millis(8) + random(60));
+        run.kill().unwrap();
+        run.wait().unwrap();
+        kills += 1;
+        // Before its folder is claimed a killed run leaves nothing, and has to be begun once more.
+        let again = match folder.path("killed/run.json").exists() {
+            true => ["resume", "killed"].to_vec(),
+            false => ["run", "long.toml", "--out", "killed"].to_vec(),
+        };
+        run = folder.start(&again);
+    }
+    assert!(kills >= 20, "the run is too short to be killed: {kills}");
+    assert!(run.wait().unwrap().success());
+    assert_same(&folder.path("whole"), &folder.path("killed"));
+    let left = fs::read_dir(folder.path("killed")).unwrap();
+    let hidden = left.filter(|entry| {
+        entry
+            .as_ref()
+            .unwrap()
+            .file_name()
+            .to_string_lossy()
+            .starts_with('.')
+    });
+    assert_eq!(hidden.count(), 0);
+    let (code, said) = folder.says(&["resume", "killed"]);
+    assert_eq!(code, Some(0));
+    assert!(said.contains("has come to its end"), "{said}");
+}
+
+#[test]
+fn a_run_ends_in_order_when_it_is_asked_to() {
+    let folder = Folder::new();
+    folder.says(&["run", "long.toml", "--out", "whole"]);
+    for signal in ["INT", "TERM", "HUP"] {
+        let mut command = folder.sinew(&["run", "long.toml", "--out", signal]);
+        let run = command.stderr(Stdio::piped()).spawn().unwrap();
+        folder.wait_for(&format!("{signal}/checkpoint.bin"));
+        let kill = Command::new("kill")
+            .args([&format!("-{signal}"), &run.id().to_string()])
+            .status();
+        assert!(kill.unwrap().success());
+        let ended = run.wait_with_output().unwrap();
+        let said = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert_eq!(ended.status.code(), Some(130), "{said}");
+        assert!(
+            said.contains(&format!("`sinew resume {signal}` goes on")),
+            "{said}"
+        );
+        let summary = fs::read_to_string(folder.path(signal).join("summary.json")).unwrap();
+        assert!(summary.contains("\"outcome\": \"interrupted\""));
+        let (code, said) = folder.says(&["resume", signal]);
+        assert_eq!(code, Some(0), "{said}");
+        assert_same(&folder.path("whole"), &folder.path(signal));
+    }
+    // Alone, the table of probes is completed up to there.
+    let mut command = folder.sinew(&["run", "long.toml", "--probes", "p.csv"]);
+    let run = command.stderr(Stdio::piped()).spawn().unwrap();
+    sleep(Duration::from_millis(200));
+    let kill = Command::new("kill")
+        .args(["-INT", &run.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+    let ended = run.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(130));
+    let table = fs::read_to_string(folder.path("p.csv")).unwrap();
+    assert!(table.lines().count() > 1 && table.ends_with('\n'));
+}
+
+#[test]
+fn a_folder_that_holds_other_things_is_left_alone() {
+    let folder = Folder::new();
+    let refused = |arguments: &[&str], part: &str| {
+        let (code, said) = folder.says(arguments);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(said.contains(part), "{said}");
+        assert_eq!(said.matches("error:").count(), 1, "{said}");
+    };
+    fs::create_dir(folder.path("notes")).unwrap();
+    fs::write(folder.path("notes/mine.txt"), "mine").unwrap();
+    let run = |out: &'static str| ["run", "short.toml", "--out", out];
+    refused(
+        &run("notes"),
+        "cannot write into notes: it holds mine.txt, which no run",
+    );
+    refused(
+        &run("."),
+        "it holds long.toml, notes, short.toml, which no run",
+    );
+    refused(&run("short.toml"), "it is no folder");
+    refused(
+        &["resume", "notes"],
+        "there is no run in notes to go on with",
+    );
+    refused(
+        &["resume", "nothing"],
+        "there is no run in nothing to go on with",
+    );
+
+    assert_eq!(folder.says(&run("out")).0, Some(0));
+    let (code, said) = folder.says(&run("out"));
+    assert_eq!(code, Some(0), "{said}");
+    assert!(
+        said.contains("out: the results of an earlier run in it will be replaced"),
+        "{said}"
+    );
+    // An oscillator has no fields: those of the run before are gone.
+    let spring = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = -5.0\n[run]\nduration = 1.0\n\
+                  integrator = \"newmark\"\ndt = 0.02\n";
+    fs::write(folder.path("spring.toml"), spring).unwrap();
+    for _ in 0..2 {
+        let (code, said) = folder.says(&["run", "spring.toml", "--out", "out"]);
+        assert_eq!(code, Some(0), "{said}");
+        assert!(!folder.path("out/fields").exists() && !folder.path("out/fields.pvd").exists());
+    }
+    for name in ["mine.txt", "fields/mine.txt"] {
+        assert_eq!(folder.says(&run("out")).0, Some(0));
+        fs::write(folder.path("out").join(name), "mine").unwrap();
+        refused(&run("out"), &format!("it holds {name}, which no run"));
+        assert_eq!(
+            fs::read_to_string(folder.path("out").join(name)).unwrap(),
+            "mine"
+        );
+        fs::remove_file(folder.path("out").join(name)).unwrap();
+    }
+    // A manifest that names files outside is not ours.
+    let manifest = "{\"sinew\": \"run\", \"files\": [\"../notes/mine.txt\"]}";
+    fs::create_dir(folder.path("evil")).unwrap();
+    fs::write(folder.path("evil/manifest.json"), manifest).unwrap();
+    refused(&run("evil"), "it holds manifest.json");
+    assert!(folder.path("notes/mine.txt").exists());
+}
+
+#[test]
+fn two_runs_do_not_share_a_folder() {
+    let folder = Folder::new();
+    let mut run = folder.start(&["run", "long.toml", "--out", "out"]);
+    folder.wait_for("out/checkpoint.bin");
+    for arguments in [
+        &["run", "short.toml", "--out", "out"][..],
+        &["resume", "out"],
+    ] {
+        let (code, said) = folder.says(arguments);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(said.contains("another run writes into it"), "{said}");
+    }
+    run.kill().unwrap();
+    run.wait().unwrap();
+}
