@@ -53,5 +53,6 @@ pub use scene::{
 pub use simulation::{
     BodyModel, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe, Reaction,
     ReactionError, ReactionOf, RefusedLoad, SceneModel, SelectedPart, Simulation, UnresolvedLoad,
+    Warning, WarningKind,
 };
 pub use source::SceneSource;

@@ -171,12 +171,18 @@ fn a_plan_says_what_is_moved() {
     assert!(plan.contains("point, moved"), "{plan}");
 }
 
+/// The warnings of a simulation, one line each.
+fn said(simulation: &Simulation) -> Vec<String> {
+    let warnings = simulation.warnings();
+    warnings.iter().map(ToString::to_string).collect()
+}
+
 #[test]
 fn a_jump_without_damping_and_a_load_on_a_moved_part_are_warned_about() {
     let jump = PRESS.replace("kind = \"sin2\", rise = 0.2", "kind = \"step\"");
     let load = "[[load]]\nname = \"push\"\ngroup = \"top\"\ntraction = [0.0, 0.0, -9.0]\n[[load]]\ngroup = \"sides\"\npressure = 5.0\n";
     let simulation = build(&scene(&format!("{jump}{load}"), "mass = 2.0", NEWMARK));
-    insta::assert_snapshot!(simulation.warnings().join("\n"), @r#"
+    insta::assert_snapshot!(said(&simulation).join("\n"), @r#"
     [[move]] 1 of `top` jumps at t = 0 s, at infinite speed: waves start from it that no mesh resolves; a rise takes time
     [[load]] "push" falls on nodes of [[move]] 1 of `top`: there it changes the reaction and no motion
     [[load]] 2 on `sides` falls on nodes of [[move]] 1 of `top`: there it changes the reaction and no motion
@@ -199,7 +205,7 @@ fn a_motion_that_a_method_cannot_follow_is_refused_before_the_run() {
         (refused.load.as_str(), refused.instant),
         ("[[move]] 1 of `top`", 0.05)
     );
-    assert!(simulation.warnings().contains(&refused.to_string()));
+    assert!(said(&simulation).contains(&refused.to_string()));
     let rising = build(&scene(PRESS, "stiffness = 0.01", &propagator("two-step")));
     assert_eq!(rising.refused_load().unwrap().load, "[[move]] 1 of `top`");
     // Gravity keeps its name next to motions.

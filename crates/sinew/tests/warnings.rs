@@ -74,6 +74,9 @@ group = "bottom"
 group = "top"
 traction = [0.0, 0.0, -0.1]
 ramp = { kind = "pulse", from = 0.0131, to = 0.0137 }
+[[probe]]
+name = "top"
+point = [0.05, 0.05, 0.1]
 [run]
 duration = 0.5
 integrator = "newmark"
@@ -108,7 +111,7 @@ fn each_kind_of_warning_is_given_by_plan_and_by_run() {
         (
             "duration = 0.5",
             "duration = 0.004",
-            &["is longer than the duration"],
+            &["after the run of 0.004 s", "is longer than the duration"],
         ),
     ];
     for (from, to, expected) in cases {
@@ -126,4 +129,43 @@ fn each_kind_of_warning_is_given_by_plan_and_by_run() {
             assert!(warning.contains(expected), "{warning}");
         }
     }
+}
+
+#[test]
+fn strict_makes_warnings_errors_before_a_run_begins() {
+    let folder = tempfile::tempdir().unwrap();
+    let cube = "cube = { cells = 2, edge = 0.1 }";
+    let tap = TAP.replace("file = \"cube.msh\"", cube);
+    let quiet = tap.replace("from = 0.0131, to = 0.0137", "from = 0.1, to = 0.2");
+    fs::write(folder.path().join("tap.toml"), tap).unwrap();
+    fs::write(folder.path().join("quiet.toml"), quiet).unwrap();
+    for command in ["plan", "run"] {
+        let said = sinew(folder.path(), &[command, "tap.toml", "--strict"]);
+        assert_eq!(said.code, Some(2), "{}", said.err);
+        let last = said.err.lines().last().unwrap();
+        assert_eq!(last, "error: 1 warning, which --strict makes an error");
+        assert!(!folder.path().join("tap.csv").exists());
+        let said = sinew(folder.path(), &[command, "quiet.toml", "--strict"]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+    }
+    assert!(folder.path().join("quiet.csv").exists());
+}
+
+#[test]
+fn a_plan_in_json_lists_its_warnings_with_their_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let cube = "cube = { cells = 2, edge = 0.1 }";
+    let tap = TAP.replace("file = \"cube.msh\"", cube);
+    fs::write(folder.path().join("tap.toml"), tap).unwrap();
+    let said = sinew(folder.path(), &["plan", "tap.toml", "--json"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let plan: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let warnings = plan["warnings"].as_array().unwrap();
+    assert_eq!(warnings.len(), 1);
+    assert_eq!(warnings[0]["kind"], "unresolved-load");
+    assert_eq!(warnings[0]["numbers"]["dt_s"], 0.005);
+    assert_eq!(plan["steps"], 100);
+    let headings = plan["sections"].as_array().unwrap().iter();
+    let headings: Vec<&str> = headings.map(|s| s["heading"].as_str().unwrap()).collect();
+    assert_eq!(headings[..2], ["mesh", "regions"]);
 }

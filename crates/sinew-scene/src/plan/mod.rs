@@ -13,7 +13,7 @@ use sinew_core::StableStep;
 pub use section::PlanSection;
 
 use crate::scene::Subject;
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, Warning};
 use matrices::Matrices;
 
 /// A description of a simulation: what was built, what was left out and why, and warnings. It prints
@@ -25,7 +25,7 @@ pub struct Plan {
     /// Its sections in order.
     pub sections: Vec<PlanSection>,
     /// Warnings, as [`Simulation::warnings`].
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// 2/omega_max (s), the limit of undamped leapfrog.
     pub critical_step: f64,
     /// The largest stable step of the scene's integrator; unknown where the integrator cannot tell.
@@ -74,7 +74,10 @@ impl fmt::Display for Plan {
         if !self.title.is_empty() {
             writeln!(f, "{}", self.title)?;
         }
-        let warnings = PlanSection::new("warning", self.warnings.clone());
+        let warnings = PlanSection::new(
+            "warning",
+            self.warnings.iter().map(ToString::to_string).collect(),
+        );
         for PlanSection { heading, lines } in self.sections.iter().chain([&warnings]) {
             for (index, line) in lines.iter().enumerate() {
                 let heading = if index == 0 { heading } else { "" };

@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::keys::AT_THE_TOP;
-use crate::decode::value::{Misfit, above_zero, count_up_to, finite, text};
+use crate::decode::value::{Misfit, above_zero, boolean, count_up_to, finite, text};
 use crate::decode::{Place, Table};
 use crate::error::{Fault, SceneError};
 
@@ -23,6 +23,8 @@ pub struct RunSettings {
     pub integrator: String,
     /// The step as the scene asks for it.
     pub dt: TimeStep,
+    /// Whether it is meant that nothing holds the body or a part of it.
+    pub free_flight: bool,
     /// The integrator's own options.
     pub options: Options,
 }
@@ -37,7 +39,7 @@ pub enum TimeStep {
     Auto,
 }
 
-pub(super) const KEYS: &[&str] = &["duration", "samples", "integrator", "dt"];
+pub(super) const KEYS: &[&str] = &["duration", "samples", "integrator", "dt", "free_flight"];
 
 const MOST_SAMPLES: usize = 1_000_000;
 
@@ -55,6 +57,9 @@ impl RunSettings {
             samples: samples.unwrap_or(50),
             integrator,
             dt: table.required("dt", "a finite step above 0 s, or \"auto\"", step)?,
+            free_flight: table
+                .optional("free_flight", "true or false", boolean)?
+                .unwrap_or(false),
             options,
         })
     }

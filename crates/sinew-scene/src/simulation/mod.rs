@@ -25,6 +25,8 @@ pub use probe::{NearestNode, Probe};
 pub use reaction::{Reaction, ReactionError, ReactionOf};
 pub use selected::SelectedPart;
 
+pub use warnings::{Warning, WarningKind};
+
 use crate::error::StableStepError;
 use crate::scene::{RunSettings, Scene};
 

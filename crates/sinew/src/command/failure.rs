@@ -11,7 +11,7 @@ use sinew_mesh::vtu::WriteVtuError;
 use sinew_mesh::{MshFileError, WriteMshError};
 use sinew_record::RecordRunError;
 use sinew_scene::output::{OutputError, complain};
-use sinew_scene::{ReactionError, RefusedLoad, SceneError};
+use sinew_scene::{ReactionError, RefusedLoad, SceneError, Warning};
 
 /// Exit code for input that cannot be used.
 const REFUSED: u8 = 2;
@@ -34,6 +34,12 @@ pub(crate) enum Failure {
     /// An option that the scene's integrator refuses.
     #[error(transparent)]
     Option(#[from] OptionError),
+    /// Warnings where none are wanted.
+    #[error("{count} {}, which --strict makes {}", plural(*count, "warning"), if *count == 1 { "an error" } else { "errors" })]
+    Warnings {
+        /// How many there are.
+        count: usize,
+    },
     /// A scene that the integrator cannot be set up for.
     #[error(transparent)]
     Setup(#[from] SetupError),
@@ -124,12 +130,21 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
+    /// An error where there are warnings.
+    pub(crate) fn of_warnings(warnings: &[Warning]) -> Result<(), Self> {
+        match warnings.len() {
+            0 => Ok(()),
+            count => Err(Self::Warnings { count }),
+        }
+    }
+
     fn exit_code(&self) -> u8 {
         match self {
             Self::Scene(_)
             | Self::Load(_)
             | Self::Option(_)
             | Self::Setup(_)
+            | Self::Warnings { .. }
             | Self::Advice { .. }
             | Self::Mesh(_)
             | Self::MeshFormat { .. }
@@ -175,6 +190,13 @@ impl Failure {
             complain(&format!("{report:?}"));
         }
         ExitCode::from(self.exit_code())
+    }
+}
+
+fn plural(count: usize, what: &str) -> String {
+    match count {
+        1 => what.to_owned(),
+        _ => format!("{what}s"),
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod advice;
 mod advice_json;
+mod plan_json;
 mod program;
 mod program_json;
 
@@ -19,7 +20,6 @@ use super::Failure;
 
 /// A scene and the error that its run may have.
 #[derive(clap::Args)]
-#[command(group = clap::ArgGroup::new("printed").args(["tolerance", "program"]))]
 pub(crate) struct Arguments {
     /// The scene file.
     scene: PathBuf,
@@ -51,16 +51,24 @@ pub(crate) struct Arguments {
     /// their coefficients
     #[arg(long, conflicts_with = "tolerance")]
     program: bool,
-    /// Print the advice or the program as one JSON object, without the plan; in an advice the list
-    /// `missing` explains each null
-    #[arg(long, requires = "printed")]
+    /// Print the advice or the program as one JSON object, without the plan, or without these the plan;
+    /// in an advice the list `missing` explains each null
+    #[arg(long)]
     json: bool,
+    /// Make warnings errors
+    #[arg(long)]
+    strict: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let simulation = Scene::load(&arguments.scene)?.build()?;
     if !arguments.json {
         say(simulation.plan().to_string().trim_end())?;
+    } else if arguments.tolerance.is_none() && !arguments.program {
+        say(&plan_json::as_json(&simulation).to_string())?;
+    }
+    if arguments.strict {
+        Failure::of_warnings(&simulation.warnings())?;
     }
     if arguments.program {
         return program::print(&simulation, arguments.json);

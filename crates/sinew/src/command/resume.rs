@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     let mut simulation = scene.build()?;
-    shorten(&mut simulation);
+    simulation.end_at_duration();
     let asked: Option<OptionValue> = folder.threads().and_then(|text| threads(text).ok());
     let mut integrator = integrator(&simulation, asked.as_ref())?;
     in_folder(

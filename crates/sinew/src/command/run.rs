@@ -33,6 +33,9 @@ pub(crate) struct Arguments {
     /// where they do not pay, and the same bits for every number [default: that of the scene, or auto]
     #[arg(long, value_name = "N|auto", value_parser = threads)]
     threads: Option<OptionValue>,
+    /// Make warnings errors, before the run begins
+    #[arg(long)]
+    strict: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -55,10 +58,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(refused.into());
     }
     let mut warnings = simulation.warnings();
-    warnings.extend(shorten(&mut simulation));
+    if arguments.out.is_some() {
+        // A folder shows the motion of all nodes.
+        warnings.retain(|warning| warning.kind != WarningKind::NoProbe);
+    }
     for warning in &warnings {
         complain(&format!("warning: {warning}"));
     }
+    if arguments.strict {
+        Failure::of_warnings(&warnings)?;
+    }
+    simulation.end_at_duration();
     let mut integrator = integrator(&simulation, arguments.threads.as_ref())?;
     match (destination, &arguments.out) {
         (None, Some(path)) => {
@@ -66,7 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             integrator.prepare(simulation.system(), simulation.dt())?;
             let request = Request {
                 threads: arguments.threads.as_ref().map(in_words),
-                warnings,
+                warnings: warnings.iter().map(ToString::to_string).collect(),
             };
             let folder = RunFolder::create(path, &simulation, &request)?;
             in_folder(path, &folder, &simulation, &mut *integrator, interruption)
@@ -83,15 +93,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         (None, None) => Ok(()),
     }
-}
-
-/// Shortens the steps of a simulation so that they end at its duration, and says so.
-pub(crate) fn shorten(simulation: &mut Simulation) -> Option<String> {
-    let before = simulation.end_at_duration()?;
-    let (duration, dt) = (simulation.settings().duration, simulation.dt());
-    Some(format!(
-        "steps of {before} s do not end at the duration, {duration} s: all are shortened to {dt} s"
-    ))
 }
 
 /// Runs a simulation into its folder and says what came out.

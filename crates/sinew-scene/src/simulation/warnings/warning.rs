@@ -1,0 +1,114 @@
+//! A warning as a value.
+
+use std::fmt;
+
+/// Something about a scene that runs, and may not be what its author meant. It prints as one line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Warning {
+    /// Its kind.
+    pub kind: WarningKind,
+    /// The fact, with its numbers.
+    pub what: String,
+    /// A way to mend it; empty where there is none to name.
+    pub mend: String,
+    /// The numbers of the fact by names that end in their units, for programs.
+    pub numbers: Vec<(&'static str, f64)>,
+}
+
+impl Warning {
+    pub(super) fn new(kind: WarningKind, what: impl Into<String>, mend: impl Into<String>) -> Self {
+        Self {
+            kind,
+            what: what.into(),
+            mend: mend.into(),
+            numbers: Vec::new(),
+        }
+    }
+
+    pub(super) fn with(mut self, numbers: &[(&'static str, f64)]) -> Self {
+        self.numbers.extend_from_slice(numbers);
+        self
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.what)?;
+        match self.mend.is_empty() {
+            true => Ok(()),
+            false => write!(f, "; {}", self.mend),
+        }
+    }
+}
+
+/// Kinds of warnings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum WarningKind {
+    /// A remark of the reader of the mesh file.
+    MeshFile,
+    /// A body larger than any organ.
+    LargeBody,
+    /// A body lighter or heavier than any tissue of its size.
+    OddDensity,
+    /// Groups of the mesh file that the scene does not use.
+    UnusedGroups,
+    /// A region without elements.
+    EmptyRegion,
+    /// A part of the body that nothing holds.
+    FreePart,
+    /// A material in which plain linear tetrahedra are too stiff.
+    Locking,
+    /// An initial displacement of held components, which stay where they are.
+    HeldInitial,
+    /// A prescribed position that jumps.
+    MotionJumps,
+    /// A load on components that are moved.
+    LoadOnMoved,
+    /// A load or motion that changes before or after the run only.
+    OutsideRun,
+    /// A step beyond the stable one, or one about which nothing is known.
+    UnstableStep,
+    /// A network that only its clamp keeps bounded.
+    ClampedNetwork,
+    /// A load that the integrator will refuse.
+    RefusedLoad,
+    /// A load that comes and goes within a step.
+    UnresolvedLoad,
+    /// A step longer than the duration.
+    LongStep,
+    /// Steps that do not end at the duration.
+    UnevenSteps,
+    /// A probe farther from the body than an element.
+    FarProbe,
+    /// No probe.
+    NoProbe,
+}
+
+impl WarningKind {
+    /// Its name for programs.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::MeshFile => "mesh-file",
+            Self::LargeBody => "large-body",
+            Self::OddDensity => "odd-density",
+            Self::UnusedGroups => "unused-groups",
+            Self::EmptyRegion => "empty-region",
+            Self::FreePart => "free-part",
+            Self::Locking => "locking",
+            Self::HeldInitial => "held-initial",
+            Self::MotionJumps => "motion-jumps",
+            Self::LoadOnMoved => "load-on-moved",
+            Self::OutsideRun => "outside-run",
+            Self::UnstableStep => "unstable-step",
+            Self::ClampedNetwork => "clamped-network",
+            Self::RefusedLoad => "refused-load",
+            Self::UnresolvedLoad => "unresolved-load",
+            Self::LongStep => "long-step",
+            Self::UnevenSteps => "uneven-steps",
+            Self::FarProbe => "far-probe",
+            Self::NoProbe => "no-probe",
+        }
+    }
+}
