@@ -8,7 +8,7 @@ use sinew_scene::output::complain;
 
 use super::Failure;
 use super::interruption::Interruption;
-use super::run::{in_folder, integrator, shorten, threads};
+use super::run::{in_folder, integrator, threads};
 
 /// The folder of a run.
 #[derive(clap::Args)]

@@ -6,7 +6,7 @@ use sinew_core::{OptionError, OptionValue, Outcome, Recorders, RunReport, simula
 use sinew_integrators::Stepper;
 use sinew_record::{Companion, Ended, Request, RunEnd, RunFolder};
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
-use sinew_scene::{ProbeCsv, Reaction, Scene, Simulation};
+use sinew_scene::{ProbeCsv, Reaction, Scene, Simulation, WarningKind};
 
 use super::Failure;
 use super::interruption::Interruption;

@@ -1,0 +1,243 @@
+//! The ready scenes under scenes/ready: each runs without a warning to a number that a textbook has.
+
+#![cfg(all(test, feature = "implicit"))]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a test fails by panicking"
+)]
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use sinew_core::State;
+use sinew_fem::Law;
+use sinew_mesh::GroupMembers;
+use sinew_scene::{BodyModel, Scene, Simulation, WarningKind};
+
+fn repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../..")
+        .join(path)
+}
+
+fn scenes_in(folder: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(repository(folder)).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let mut scenes: Vec<PathBuf> = paths
+        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
+        .collect();
+    scenes.sort();
+    scenes
+}
+
+fn ready(name: &str) -> Simulation {
+    let scene = Scene::load(repository(&format!("scenes/ready/{name}.toml"))).unwrap();
+    scene.build().unwrap()
+}
+
+fn body(simulation: &Simulation) -> &BodyModel {
+    simulation.model().body().unwrap()
+}
+
+/// The state at the end of the run.
+fn end(simulation: &Simulation) -> State {
+    common::run(simulation, tempfile::tempdir().unwrap().path()).0
+}
+
+/// The displacement (m) of a probe, by its place in the list.
+fn probe(simulation: &Simulation, state: &State, index: usize) -> [f64; 3] {
+    let u = simulation.probes()[index].displacement(state.t(), &state.u);
+    <[f64; 3]>::try_from(u.collect::<Vec<f64>>()).unwrap()
+}
+
+/// The reaction (N) of the support or motion at a place in the list of all.
+fn reaction(simulation: &Simulation, state: &State, index: usize) -> [f64; 3] {
+    simulation.reactions(state).unwrap()[index].force
+}
+
+fn weight(simulation: &Simulation) -> f64 {
+    9.81 * body(simulation).model.report().mass
+}
+
+/// The modulus (Pa) of a material that cannot get wider, M = E (1 - nu)/((1 + nu)(1 - 2 nu)).
+fn confined(law: &Law) -> f64 {
+    let Law::Linear {
+        youngs_modulus: e,
+        poissons_ratio: nu,
+    } = *law
+    else {
+        unreachable!("the scene's materials are linear")
+    };
+    e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+}
+
+fn is_near(found: f64, expected: f64, tolerance: f64) {
+    assert!(
+        (found / expected - 1.0).abs() < tolerance,
+        "{found}, {expected} expected"
+    );
+}
+
+/// Groups that a mesh has beyond what a scene needs are no mistake of the scene.
+#[test]
+fn no_ready_scene_has_a_warning_but_of_spare_groups() {
+    let scenes = scenes_in("scenes/ready");
+    assert!(scenes.len() >= 9, "{scenes:?}");
+    for path in scenes {
+        let warnings = Scene::load(&path).unwrap().build().unwrap().warnings();
+        for warning in warnings {
+            let kind = warning.kind;
+            assert_eq!(
+                kind,
+                WarningKind::UnusedGroups,
+                "{}: {warning}",
+                path.display()
+            );
+        }
+    }
+}
+
+#[test]
+fn every_mesh_is_used_by_a_scene() {
+    let mut unused: BTreeSet<PathBuf> = fs::read_dir(repository("meshes"))
+        .unwrap()
+        .map(|entry| fs::canonicalize(entry.unwrap().path()).unwrap())
+        .filter(|path| path.extension().is_some_and(|end| end == "msh"))
+        .collect();
+    assert!(unused.len() >= 13);
+    let folders = ["scenes", "scenes/hard", "scenes/ready"];
+    for scene in folders.into_iter().flat_map(scenes_in) {
+        for input in Scene::load(&scene).unwrap().input_files() {
+            unused.remove(&fs::canonicalize(input).unwrap());
+        }
+    }
+    assert!(unused.is_empty(), "{unused:?}");
+}
+
+/// The base carries the weight, and nothing moves before the tap.
+#[test]
+fn the_organ_lies_at_rest_with_its_weight_on_its_base() {
+    let simulation = ready("organ");
+    let start = simulation.initial_state();
+    let [x, y, z] = reaction(&simulation, start, 0);
+    is_near(z, weight(&simulation), 1e-9);
+    assert!(x.abs() + y.abs() < 1e-9 * z, "{x} {y}");
+    let mut state = start.clone();
+    let mut integrator = simulation.integrator().unwrap();
+    for _ in 0..9 {
+        integrator
+            .step(simulation.system(), &mut state, simulation.dt())
+            .unwrap();
+    }
+    let top = |state: &State| probe(&simulation, state, 0)[2];
+    is_near(top(&state), top(start), 1e-9);
+    assert!(top(start) < -1e-4);
+}
+
+/// F L^3/(3 E I) + F L/(k G A) with k = 10 (1 + nu)/(12 + 11 nu) (Cowper 1966), times the 83 % that the scene speaks of.
+#[test]
+fn the_beam_starts_bent_as_far_as_it_says() {
+    let simulation = ready("beam");
+    let (force, length, side, e, nu) = (0.001, 0.1_f64, 0.01_f64, 1e5, 0.3);
+    let inertia = side.powi(4) / 12.0;
+    let shear = e / (2.0 * (1.0 + nu)) * 10.0 * (1.0 + nu) / (12.0 + 11.0 * nu) * side * side;
+    let timoshenko = force * length.powi(3) / (3.0 * e * inertia) + force * length / shear;
+    let start = simulation.initial_state();
+    is_near(probe(&simulation, start, 0)[2], 0.83 * timoshenko, 0.01);
+}
+
+/// Lame's thick tube between ends that keep their distance: at the inner radius a, with the outer b,
+/// u = (1 + nu)/E p a^2/(b^2 - a^2) ((1 - 2 nu) a + b^2/a) (Timoshenko and Goodier, section 28).
+#[test]
+fn the_vessel_widens_as_lames_tube() {
+    let simulation = ready("vessel");
+    let (p, a, b, e, nu) = (2e3, 0.01_f64, 0.0115_f64, 5e5, 0.4);
+    let outer = b * b;
+    let expected =
+        (1.0 + nu) / e * p * a * a / (outer - a * a) * ((1.0 - 2.0 * nu) * a + outer / a);
+    let [x, ..] = probe(&simulation, &end(&simulation), 0);
+    is_near(x, expected, 0.03);
+}
+
+/// Layers that cannot get wider are springs in series: u = -p (h1/M1 + h2/M2 + h3/M3), linear in each layer, which linear
+/// tetrahedra hold exactly.
+#[test]
+fn the_layers_are_pressed_as_springs_in_series() {
+    let simulation = ready("layers");
+    let regions = &body(&simulation).problem.regions;
+    let heights = [0.002, 0.008, 0.02];
+    let parts = heights.iter().zip(regions);
+    let compliance: f64 = parts.map(|(h, region)| h / confined(&region.law)).sum();
+    let state = end(&simulation);
+    is_near(probe(&simulation, &state, 0)[2], -100.0 * compliance, 1e-5);
+    let muscle = 100.0 * 0.02 / confined(&regions[2].law);
+    is_near(probe(&simulation, &state, 1)[2], -muscle, 1e-5);
+}
+
+/// What pushes the needle is what holds the tissue below.
+#[test]
+fn the_needle_takes_the_force_that_the_bottom_gives() {
+    let simulation = ready("needle");
+    let state = end(&simulation);
+    let (below, needle) = (
+        reaction(&simulation, &state, 0),
+        reaction(&simulation, &state, 1),
+    );
+    assert!(needle[2] < 0.0);
+    is_near(below[2], -needle[2], 1e-4);
+}
+
+/// The mean modulus lies between those of a uniform stress (Reuss) and of a uniform strain (Voigt).
+#[test]
+fn the_inclusion_stiffens_the_cube_within_the_bounds_of_reuss_and_voigt() {
+    let simulation = ready("inclusion");
+    let body = body(&simulation);
+    let report = body.model.report();
+    let regions = report.regions.iter().zip(&body.problem.regions);
+    let shares: Vec<(f64, f64)> = regions
+        .map(|(facts, region)| (facts.volume / report.volume, confined(&region.law)))
+        .collect();
+    let voigt: f64 = shares.iter().map(|(share, modulus)| share * modulus).sum();
+    let reuss: f64 = 1.0 / shares.iter().map(|(share, m)| share / m).sum::<f64>();
+    let state = end(&simulation);
+    let GroupMembers::Triangles(top) = &body.mesh.group("top").unwrap().members else {
+        unreachable!("the top is a surface")
+    };
+    let sinks = |node: u32| body.model.node_displacement(1.0, &state.u, node).unwrap()[2];
+    let mean: f64 = top
+        .iter()
+        .map(|triangle| {
+            body.mesh.area(*triangle) * triangle.iter().map(|node| sinks(*node)).sum::<f64>() / 3.0
+        })
+        .sum::<f64>()
+        / 0.0036;
+    let modulus = -100.0 * 0.06 / mean;
+    assert!(
+        1.01 * reuss < modulus && modulus < 0.99 * voigt,
+        "{reuss} {modulus} {voigt}"
+    );
+}
+
+/// A slab that cannot get wider is a spring: u = -p h/M, linear in z, whatever the shape of its elements.
+#[test]
+fn the_slivers_do_not_spoil_the_slab() {
+    let simulation = ready("slivers");
+    let modulus = confined(&body(&simulation).problem.regions[0].law);
+    let [.., z] = probe(&simulation, &end(&simulation), 0);
+    is_near(z, -100.0 * 0.02 / modulus, 1e-5);
+}
+
+/// The bottom carries the weight and none of the two pulls, which cancel.
+#[test]
+fn the_incision_hangs_on_its_bottom_by_its_weight_alone() {
+    let simulation = ready("incision");
+    let state = end(&simulation);
+    let [x, y, z] = reaction(&simulation, &state, 0);
+    is_near(z, weight(&simulation), 2e-5);
+    assert!(x.abs() + y.abs() < 2e-5 * z, "{x} {y} {z}");
+    assert!(probe(&simulation, &state, 0)[0] > 1e-5, "the cut opens");
+}
