@@ -343,7 +343,8 @@ fn everything_is_written() {
         let svg = fs::read_to_string(path).unwrap();
         assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{path:?}");
-        assert_eq!(svg.matches("<g>").count(), svg.matches("</g>").count());
+        let open = svg.matches("<g>").count() + svg.matches("<g ").count();
+        assert_eq!(open, svg.matches("</g>").count());
     }
     let page = fs::read_to_string(&written.report).unwrap();
     assert_eq!(page.matches("<svg xmlns").count(), written.plots.len());
@@ -387,7 +388,7 @@ fn the_front_holds_only_good_runs() {
     let front: Vec<&Row> = results.rows.iter().filter(|row| row.pareto).collect();
     assert!(front.len() > 6);
     for row in front {
-        assert!(row.error.unwrap() < 1.0);
+        assert!(row.error.unwrap() <= 0.5);
         assert!(!matches!(
             row.verdict(),
             RowVerdict::Diverged | RowVerdict::Unbounded

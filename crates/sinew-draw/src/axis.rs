@@ -7,7 +7,7 @@ use crate::number;
 pub enum Scale {
     /// Evenly.
     Linear,
-    /// By their logarithm; what is not positive is left out.
+    /// By their logarithm; what is not positive is left out, but minus infinity lies below all.
     Log,
 }
 
@@ -88,6 +88,7 @@ impl Scale {
         match self {
             Self::Linear => x,
             Self::Log if x > 0.0 => x.log10(),
+            Self::Log if x == f64::NEG_INFINITY => x,
             Self::Log => f64::NAN,
         }
     }
@@ -116,6 +117,22 @@ impl Fitted {
     #[must_use]
     pub fn share(&self, x: f64) -> f64 {
         (self.scale.forward(x) - self.low) / (self.high - self.low)
+    }
+
+    /// The lowest and the highest value shown.
+    #[must_use]
+    pub fn ends(&self) -> (f64, f64) {
+        let backward = |x: f64| match self.scale {
+            Scale::Linear => x,
+            Scale::Log => 10f64.powf(x),
+        };
+        (backward(self.low), backward(self.high))
+    }
+
+    /// The spread of its values.
+    #[must_use]
+    pub fn scale(&self) -> Scale {
+        self.scale
     }
 
     /// Ticks inside the range, about `wanted` of them labelled.
@@ -166,7 +183,7 @@ impl Fitted {
                 }
                 let labelled = match digit {
                     1 => exponent.rem_euclid(stride) == 0,
-                    2 | 5 => decades < 1.6,
+                    2 | 5 => decades < 1.6 || 3.0 * decades <= wanted as f64,
                     _ => false,
                 };
                 if labelled {
@@ -248,6 +265,9 @@ mod tests {
         );
         let axis = Axis::log("e").range(1.0, 10.0);
         assert_eq!(labels(&axis, &[], 6), ["1", "2", "5", "10"]);
+        let axis = Axis::log("e").range(0.3, 40.0);
+        assert_eq!(labels(&axis, &[], 6), ["1", "10"]);
+        assert_eq!(labels(&axis, &[], 8), ["0.5", "1", "2", "5", "10", "20"]);
     }
 
     #[test]

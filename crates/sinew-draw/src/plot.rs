@@ -1,7 +1,11 @@
 //! Plots of series on two axes.
 
+mod axes;
+mod cover;
 mod draw;
 mod follow;
+mod layout;
+mod thin;
 
 use crate::{axis::Axis, style::Style};
 
@@ -20,9 +24,11 @@ pub struct Plot {
     pub vertical_rules: Vec<Rule>,
     /// Lines at fixed `y`, labelled to the right of the frame.
     pub horizontal_rules: Vec<Rule>,
-    /// Name of a lane above the frame for points beyond the range of `y`. Without one, series are
+    /// Name of a lane above the frame for points above the range of `y`. Without one, series are
     /// cut off at the frame and an arrow shows where each leaves first.
-    pub lane: Option<String>,
+    pub lane_above: Option<String>,
+    /// Name of a lane below the frame for points below the range of `y`.
+    pub lane_below: Option<String>,
     /// Width of the whole picture (px).
     pub width: f64,
     /// Height of the frame (px).
@@ -73,7 +79,8 @@ impl Plot {
             series: Vec::new(),
             vertical_rules: Vec::new(),
             horizontal_rules: Vec::new(),
-            lane: None,
+            lane_above: None,
+            lane_below: None,
             width: 760.0,
             height: 360.0,
         }
@@ -158,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_diverging_series_leaves_the_frame_and_nothing_is_nan() {
-        let arrows = |svg: &str| svg.matches("leaves the frame").count();
+        let arrows = |svg: &str| svg.matches("b leaves the frame").count();
         let quiet = plot(&[(0.0, 0.0), (1.0, 0.5)]).svg();
         assert_eq!(arrows(&quiet), 0);
         let wild = plot(&[
@@ -176,11 +183,83 @@ mod tests {
     #[test]
     fn points_beyond_the_range_have_their_lane() {
         let mut lane = plot(&[(0.0, 0.0), (0.5, f64::INFINITY)]);
-        lane.lane = Some("diverged".into());
+        lane.lane_above = Some("diverged".into());
         lane.series[0].style = Style::nth(0);
         let svg = lane.svg();
         assert!(svg.contains("diverged"));
         assert!(!svg.contains("leaves the frame") && !svg.contains("NaN"));
+    }
+
+    #[test]
+    fn points_below_the_range_have_their_lane_too() {
+        let mut lane = plot(&[(0.0, 0.5), (0.5, f64::NEG_INFINITY), (0.7, -1.5)]);
+        lane.lane_below = Some("nothing left".into());
+        lane.series[0].style = Style::nth(0);
+        let svg = lane.svg();
+        assert!(svg.contains("nothing left"));
+        assert!(!svg.contains("leaves the frame") && !svg.contains("NaN"));
+        let circles = svg.split("<circle").skip(1);
+        let heights: Vec<&str> = circles
+            .map(|circle| {
+                circle
+                    .split("cy=\"")
+                    .nth(1)
+                    .unwrap()
+                    .split('"')
+                    .next()
+                    .unwrap()
+            })
+            .collect();
+        // Three points and the legend's.
+        assert_eq!(heights.len(), 4);
+        assert_eq!(heights[1], heights[2]);
+        assert_ne!(heights[0], heights[1]);
+    }
+
+    #[test]
+    fn the_legend_says_what_an_arrow_means() {
+        let leaving = plot(&[(0.0, 0.0), (1.0, 4.0)]).svg();
+        assert!(leaving.contains(">leaves the frame</text>"));
+        let staying = plot(&[(0.0, 0.0), (1.0, 0.5)]).svg();
+        assert!(!staying.contains("leaves the frame"));
+    }
+
+    #[test]
+    fn a_line_under_another_shows_as_a_rim() {
+        let points = [(0.0, 0.0), (1.0, 0.5)];
+        let one = |style| {
+            let points = points.map(Point::from).to_vec();
+            Series::new("a", style, points)
+        };
+        let alone = plot(&[]).with(one(Style::nth(0))).svg();
+        let both = plot(&[])
+            .with(one(Style::nth(0)))
+            .with(one(Style::nth(1)))
+            .svg();
+        let wide = |svg: &str| svg.matches("stroke-width=\"4.95\"").count();
+        assert_eq!((wide(&alone), wide(&both)), (0, 1));
+    }
+
+    #[test]
+    fn a_line_of_many_points_is_thinned() {
+        let many = (0..200_000).map(|i| f64::from(i) * 1e-4);
+        let points: Vec<(f64, f64)> = many.map(|t| (t, 0.5 * (31.0 * t).sin())).collect();
+        let svg = plot(&points).svg();
+        assert!(svg.len() < 80_000, "{}", svg.len());
+    }
+
+    #[test]
+    fn a_script_finds_frame_axes_and_series() {
+        let mut log = plot(&[(0.1, 0.5), (10.0, 0.7)]);
+        log.x = Axis::log("t [s]").range(0.1, 10.0);
+        let svg = log.svg();
+        let places = |name: &str| svg.split(&format!("{name}=\"")).nth(1).unwrap();
+        let values = |name: &str| places(name).split('"').next().unwrap().to_owned();
+        assert_eq!(values("data-plot").split(' ').count(), 4);
+        assert_eq!(values("data-x"), "0.1 10 1");
+        assert_eq!(values("data-y"), "-1 1 0");
+        assert_eq!(values("data-over"), "t [s]");
+        assert!(svg.contains("<g data-series=\"0\">") && svg.contains("<g data-key=\"0\">"));
     }
 
     #[test]

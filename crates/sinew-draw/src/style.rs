@@ -17,16 +17,21 @@ impl std::fmt::Display for Colour {
     }
 }
 
-/// Palette of M. Okabe and K. Ito, Color Universal Design (2008), without yellow, which is too
-/// light for lines on white, and with a grey that shows on dark pages in place of black.
-const PALETTE: [Colour; 7] = [
+/// Twelve colours: six of M. Okabe and K. Ito, Color Universal Design (2008), their orange darker, and
+/// five between them. Each has a contrast of at least 2.4 to both the light and the dark page.
+const PALETTE: [Colour; 12] = [
     Colour(0x00, 0x72, 0xb2),
     Colour(0xd5, 0x5e, 0x00),
     Colour(0x00, 0x9e, 0x73),
-    Colour(0xe6, 0x9f, 0x00),
     Colour(0xcc, 0x79, 0xa7),
-    Colour(0x56, 0xb4, 0xe9),
-    Colour(0x70, 0x70, 0x70),
+    Colour(0xc4, 0x8a, 0x00),
+    Colour(0x45, 0xa5, 0xdc),
+    Colour(0x8a, 0x5f, 0xd0),
+    Colour(0x77, 0x77, 0x77),
+    Colour(0xd0, 0x2f, 0x5b),
+    Colour(0x7f, 0x8f, 0x1c),
+    Colour(0x9a, 0x5b, 0x3f),
+    Colour(0x14, 0xa0, 0xa8),
 ];
 
 /// The sign at every point of a series.
@@ -142,21 +147,24 @@ pub struct Style {
 }
 
 impl Style {
-    /// The n-th of many styles that differ from each other.
+    /// The n-th of many styles: no two of the first 96 share colour and marker.
     #[must_use]
     pub fn nth(n: usize) -> Self {
-        Self::of_family(n, 0)
+        Self {
+            colour: PALETTE[n % PALETTE.len()],
+            marker: Some(MARKERS[(n + n / PALETTE.len()) % MARKERS.len()]),
+            dash: DASHES[(n / PALETTE.len()) % DASHES.len()],
+            width: 1.75,
+            steps: false,
+        }
     }
 
     /// The style of a member of the n-th family: one colour and dash per family, other markers.
     #[must_use]
     pub fn of_family(family: usize, member: usize) -> Self {
         Self {
-            colour: PALETTE[family % PALETTE.len()],
             marker: Some(MARKERS[(family + member) % MARKERS.len()]),
-            dash: DASHES[(family / PALETTE.len()) % DASHES.len()],
-            width: 1.75,
-            steps: false,
+            ..Self::nth(family)
         }
     }
 
@@ -175,10 +183,64 @@ mod tests {
     use super::*;
 
     #[test]
-    fn many_families_differ() {
-        let styles: Vec<Style> = (0..21).map(Style::nth).collect();
+    fn no_two_of_96_share_colour_and_marker() {
+        let styles: Vec<Style> = (0..96).map(Style::nth).collect();
         for (i, a) in styles.iter().enumerate() {
-            assert!(styles[i + 1..].iter().all(|b| a != b), "{i}");
+            let same = |b: &&Style| (a.colour, a.marker) == (b.colour, b.marker);
+            assert_eq!(styles[i + 1..].iter().find(same), None, "{i}");
+        }
+    }
+
+    /// Red, green and blue, linear (IEC 61966-2-1).
+    fn linear(colour: Colour) -> [f64; 3] {
+        [colour.0, colour.1, colour.2].map(|channel| match f64::from(channel) / 255.0 {
+            c if c <= 0.040_45 => c / 12.92,
+            c => ((c + 0.055) / 1.055).powf(2.4),
+        })
+    }
+
+    /// Relative luminance and contrast, WCAG 2.1.
+    fn contrast(a: Colour, b: Colour) -> f64 {
+        let luminance = |colour| {
+            let [r, g, b] = linear(colour);
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        };
+        let (a, b) = (luminance(a) + 0.05, luminance(b) + 0.05);
+        a.max(b) / a.min(b)
+    }
+
+    /// Coordinates in CIE L*a*b* (D65), where a distance of 2.3 is just seen.
+    fn lab(colour: Colour) -> [f64; 3] {
+        let [r, g, b] = linear(colour);
+        let f = |t: f64| {
+            if t > 216.0 / 24389.0 {
+                t.cbrt()
+            } else {
+                (24389.0 / 27.0 * t + 16.0) / 116.0
+            }
+        };
+        let x = f((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505);
+        let y = f(0.2126 * r + 0.7152 * g + 0.0722 * b);
+        let z = f((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089);
+        [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+    }
+
+    #[test]
+    fn colours_stand_out_from_both_pages_and_from_each_other() {
+        let [light, dark] = [Colour(0xff, 0xff, 0xff), Colour(0x17, 0x19, 0x1c)];
+        for (i, a) in PALETTE.iter().enumerate() {
+            for page in [light, dark] {
+                assert!(
+                    contrast(*a, page) > 2.4,
+                    "{a} on {page}: {}",
+                    contrast(*a, page)
+                );
+            }
+            for b in &PALETTE[i + 1..] {
+                let apart = lab(*a).into_iter().zip(lab(*b));
+                let apart = apart.map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+                assert!(apart > 20.0, "{a} and {b}: {apart}");
+            }
         }
     }
 

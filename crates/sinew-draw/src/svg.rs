@@ -9,7 +9,7 @@ mod paint;
 mod text;
 
 use crate::{
-    markup::escape,
+    markup::{attribute, escape},
     style::{Colour, Marker},
 };
 pub use paint::{Paint, Stroke};
@@ -220,6 +220,17 @@ impl Svg {
             return;
         }
         self.put(format_args!("<g><title>{}</title>", escape(note)));
+        draw(self);
+        self.out.push_str("</g>\n");
+    }
+
+    /// Draws by `draw` what belongs together, with attributes for scripts.
+    pub fn group(&mut self, attributes: &[(&str, String)], draw: impl FnOnce(&mut Self)) {
+        let attributes: String = attributes
+            .iter()
+            .map(|(name, value)| attribute(name, value))
+            .collect();
+        self.put(format_args!("<g{attributes}>"));
         draw(self);
         self.out.push_str("</g>\n");
     }

@@ -40,7 +40,7 @@ const VARIED: [Varied; 5] = [
     Varied {
         id: "poisson",
         title: "Poisson's ratio",
-        parameter: "Poisson's ratio [1]",
+        parameter: "Poisson's ratio",
         values: &[0.0, 0.2, 0.3, 0.4, 0.45, 0.48, 0.49, 0.495, 0.499],
         divisors: COARSE,
         samples: 20,
@@ -51,7 +51,7 @@ const VARIED: [Varied; 5] = [
     Varied {
         id: "stiffness-ratio",
         title: "Stiffness of a core over that of the rest",
-        parameter: "E of the core / E of the rest [1]",
+        parameter: "E of the core / E of the rest",
         values: &[1.0, 4.0, 16.0, 64.0, 256.0, 1e3, 4e3, 1e4],
         divisors: WIDE,
         samples: 10,
@@ -66,7 +66,7 @@ const VARIED: [Varied; 5] = [
     Varied {
         id: "thinness",
         title: "Thinness of one element (1: none is thin)",
-        parameter: "thickness, rest over one [1]",
+        parameter: "thickness, rest over one",
         values: &[1.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0],
         divisors: COARSE,
         samples: 20,
@@ -94,7 +94,7 @@ const VARIED: [Varied; 5] = [
     Varied {
         id: "pair-damping",
         title: "Dashpots in parallel with the springs, by their share of each pair's critical damping",
-        parameter: "share of critical damping [1]",
+        parameter: "share of critical damping",
         values: &[0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0],
         divisors: COARSE,
         samples: 20,

@@ -73,7 +73,7 @@ fn front(page: &mut Page, results: &BenchResults, id: &str) {
     page.list(
         members
             .iter()
-            .map(|member| format!("{}: {}. {}", member.label, member.says, member.summary)),
+            .map(|member| format!("{}: {} ({}).", member.label, member.says, member.summary)),
     );
     for sentence in front::sentences(results, id) {
         page.paragraph(&sentence);

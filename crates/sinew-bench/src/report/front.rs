@@ -6,6 +6,7 @@ use sinew_integrators::implicit::Modal;
 use sinew_measure::{CaseInfo, Row};
 
 use super::number;
+use super::work_precision::LEAST_SHOWN_ERROR;
 use crate::results::BenchResults;
 
 /// The paper's network.
@@ -14,9 +15,6 @@ const PAPER: &str = Cnn::ID;
 const NON_LOCAL: &str = Modal::ID;
 /// Errors below which they are compared (fraction).
 const COMPARED_BELOW: f64 = 0.01;
-/// Errors (fraction) below which the front is not followed: what is better than that is better
-/// only against the rounding of the reference.
-const LEAST_ERROR: f64 = 1e-8;
 
 /// A method on the front.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +32,7 @@ pub struct FrontMember {
 pub fn front_members(results: &BenchResults, case: &str) -> Vec<FrontMember> {
     let mut front: Vec<&Row> = results.rows_of(case).filter(|row| row.pareto).collect();
     front.sort_by(|a, b| a.cpu_s_per_s.total_cmp(&b.cpu_s_per_s));
-    let good_enough = |row: &&Row| row.error.is_some_and(|error| error <= LEAST_ERROR);
+    let good_enough = |row: &&Row| row.error.is_some_and(|error| error <= LEAST_SHOWN_ERROR);
     if let Some(best) = front.iter().position(good_enough) {
         front.truncate(best + 1);
     }
@@ -60,10 +58,12 @@ pub fn front_members(results: &BenchResults, case: &str) -> Vec<FrontMember> {
 fn member(group: &[&Row], above: Option<f64>) -> FrontMember {
     let (first, last) = (group[0], group[group.len() - 1]);
     let error = |row: &Row| format!("{} %", row.error_in_percent().unwrap_or_default());
-    let from = above.map_or_else(
-        || "the largest".to_owned(),
-        |error| format!("{} %", number::percent(error)),
-    );
+    let least = error(last);
+    let errors = match above.map(|error| format!("{} %", number::percent(error))) {
+        None => format!("errors down to {least}"),
+        Some(from) if from == least => format!("an error of {least}"),
+        Some(from) => format!("errors from {from} down to {least}"),
+    };
     let steps = match group.len() {
         1 => format!("a step of {} ms", number::milliseconds(first.dt)),
         _ => format!(
@@ -73,17 +73,12 @@ fn member(group: &[&Row], above: Option<f64>) -> FrontMember {
         ),
     };
     let sweeps = |row: &Row| number::short(row.sweeps_per_s);
-    let work = match group.len() {
-        1 => sweeps(first),
-        _ => format!("{} to {}", sweeps(first), sweeps(last)),
-    };
+    let work = range(sweeps(first), sweeps(last), "");
     let entry = sinew_integrators::entry(&first.integrator);
     FrontMember {
         label: first.label(),
         says: format!(
-            "the cheapest for errors from {from} down to {}, in {steps}, with {work} sweeps per \
-             simulated second",
-            error(last)
+            "the cheapest for {errors}, in {steps}, with {work} sweeps per simulated second"
         ),
         summary: entry.map_or_else(String::new, |entry| entry.summary.to_owned()),
     }
@@ -103,15 +98,17 @@ pub fn paper_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String>
     if beyond.is_empty() {
         return None;
     }
-    let limit = match limit {
-        0.0 => "of 0 (it is stable at no step here)".to_owned(),
-        limit => format!("of {} ms", number::milliseconds(limit)),
+    let beyond_it = match limit {
+        0.0 => "here, where no step of forward Euler is stable".to_owned(),
+        limit => format!(
+            "beyond forward Euler's limit of {} ms",
+            number::milliseconds(limit)
+        ),
     };
     let on_it: Vec<&&Row> = beyond.iter().filter(|row| row.pareto).collect();
     if let Some(row) = on_it.first() {
         return Some(format!(
-            "The paper's network ({PAPER}) is on the front beyond forward Euler's limit {limit}: \
-             at {} ms with an error of {} %.",
+            "The paper's network ({PAPER}) is on the front {beyond_it}: at {} ms with an error of {} %.",
             number::milliseconds(row.dt),
             row.error_in_percent().unwrap_or_default()
         ));
@@ -120,19 +117,37 @@ pub fn paper_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String>
     let (least, largest) = errors.fold((f64::INFINITY, 0.0_f64), |(low, high), error| {
         (low.min(error), high.max(error))
     });
-    let found = match beyond.iter().filter(|row| row.error.is_some()).count() {
-        0 => "all of them diverge".to_owned(),
-        _ => format!(
-            "their errors are {} % to {} %",
-            number::percent(least),
-            number::percent(largest)
+    let finished = beyond.iter().filter(|row| row.error.is_some()).count();
+    let runs = match beyond.len() {
+        1 => "its one run there".to_owned(),
+        count => format!("its {count} runs there"),
+    };
+    let found = match (finished, beyond.len()) {
+        (0, 1) => format!("{runs} diverges"),
+        (0, _) => format!("all {runs} diverge").replace("all its", "all of its"),
+        (1, 1) => format!("{runs} has an error of {} %", number::percent(least)),
+        (1, _) => format!(
+            "of {runs} one ends, with an error of {} %",
+            number::percent(least)
+        ),
+        (all, count) => format!(
+            "{runs} have errors of {}{}",
+            range(number::percent(least), number::percent(largest), " %"),
+            if all < count { ", or diverge" } else { "" }
         ),
     };
     Some(format!(
-        "The paper's network ({PAPER}) is on no front beyond forward Euler's limit {limit}: of its \
-         {} runs there {found}.",
-        beyond.len()
+        "The paper's network ({PAPER}) is on no front {beyond_it}: {found}."
     ))
+}
+
+/// Two ends of a range, or the one that both are.
+fn range(low: String, high: String, unit: &str) -> String {
+    if low == high {
+        format!("{low}{unit}")
+    } else {
+        format!("{low}{unit} to {high}{unit}")
+    }
 }
 
 /// A sentence that compares local methods with `modal` below 1 %, set-up included.
@@ -180,9 +195,8 @@ pub fn modal_sentence(results: &BenchResults, case: &CaseInfo) -> Option<String>
     if wins.is_empty() {
         return Some(format!(
             "Below 1 % local methods hold every point against {NON_LOCAL}: set-up included, for \
-             {duration} s, one of at most the same error costs {} to {} times less.",
-            number::two(least),
-            number::two(most)
+             {duration} s, one of at most the same error costs {} times less.",
+            range(number::two(least), number::two(most), "")
         ));
     }
     Some(format!(
@@ -266,7 +280,7 @@ mod tests {
             [
                 (
                     "newmark",
-                    "the cheapest for errors from the largest down to 1.00 %, in steps of 20 to 10 \
+                    "the cheapest for errors down to 1.00 %, in steps of 20 to 10 \
                      ms, with 50 to 100 sweeps per simulated second"
                 ),
                 (
@@ -292,11 +306,46 @@ mod tests {
                 row("cnn", 0.01, 2.0, 9.99)
             ])
             .unwrap(),
-            "The paper's network (cnn) is on no front beyond forward Euler's limit of 1 ms: of its 2 \
-             runs there their errors are 999 % to 2520 %."
+            "The paper's network (cnn) is on no front beyond forward Euler's limit of 1 ms: its 2 \
+             runs there have errors of 999 % to 2520 %."
         );
+        assert_eq!(
+            said(vec![row("cnn", 0.02, 1.0, 280.0)]).unwrap(),
+            "The paper's network (cnn) is on no front beyond forward Euler's limit of 1 ms: its one \
+             run there has an error of 28000 %."
+        );
+        let diverged = || Row {
+            error: None,
+            ..row("cnn", 0.02, 1.0, 0.0)
+        };
+        let all = said(vec![diverged(), diverged()]).unwrap();
+        assert!(
+            all.ends_with("ms: all of its 2 runs there diverge."),
+            "{all}"
+        );
+        let some = said(vec![diverged(), row("cnn", 0.02, 1.0, 280.0)]).unwrap();
+        assert!(
+            some.ends_with("of its 2 runs there one ends, with an error of 28000 %."),
+            "{some}"
+        );
+        let same = said(vec![
+            row("cnn", 0.02, 1.0, 280.0),
+            row("cnn", 0.01, 1.0, 280.01),
+        ]);
+        assert!(same.unwrap().ends_with("have errors of 28000 %."));
         let on_it = said(vec![row("cnn", 0.02, 1.0, 0.5)]).unwrap();
         assert!(on_it.contains("is on the front beyond"), "{on_it}");
+    }
+
+    #[test]
+    fn a_limit_of_zero_is_said_in_words() {
+        let mut results = results(vec![row("cnn", 0.02, 1.0, 25.2)]);
+        results.cases[0].stable_steps_s.insert("cnn".into(), 0.0);
+        assert_eq!(
+            paper_sentence(&results, &results.cases[0]).unwrap(),
+            "The paper's network (cnn) is on no front here, where no step of forward Euler is stable: \
+             its one run there has an error of 2520 %."
+        );
     }
 
     #[test]
@@ -311,7 +360,7 @@ mod tests {
         assert_eq!(
             said(10.0),
             "Below 1 % local methods hold every point against modal: set-up included, for 2 s, one of \
-             at most the same error costs 3.0 to 3.0 times less."
+             at most the same error costs 3.0 times less."
         );
         assert_eq!(
             said(1.0),

@@ -1,25 +1,33 @@
 //! Heat maps: error and boundedness over step and a parameter, a panel for each method.
 
+mod legend;
+mod look;
+mod steps;
+
+use sinew_draw::Colour;
+use sinew_draw::axis::Tick;
 use sinew_draw::colour_map::viridis;
 use sinew_draw::svg::{Anchor, Frame, Paint, Stroke, Svg, Text, text_width};
-use sinew_draw::{Axis, Colour, Dash};
 use sinew_measure::RowVerdict;
 
 use super::{number, verdict};
 use crate::results::{MapPanel, MapRun, StabilityMap};
+use legend::draw_legend;
+use look::{SMALL, TEXT, share};
+use steps::Steps;
 
 const MARGIN: f64 = 14.0;
 const TITLE: f64 = 15.0;
-const TEXT: f64 = 12.0;
-const SMALL: f64 = 11.0;
-const CELL: (f64, f64) = (23.0, 22.0);
+const HEAD_TEXT: f64 = 13.0;
+/// Height of a row.
+const ROW: f64 = 22.0;
+/// Room that a sign needs on each side of its middle.
+const SIGN: f64 = 6.0;
 const COLUMNS: usize = 3;
 /// Room above a panel for its name, and below it for its axis.
 const HEAD: f64 = 40.0;
 const FOOT: f64 = 44.0;
 const BETWEEN: f64 = 22.0;
-/// Errors (fraction) at the ends of the colours.
-const RANGE: (f64, f64) = (1e-4, 1.0);
 
 /// The map as SVG: colours for errors, signs for runs that failed, a line for the stable step that
 /// each method gives.
@@ -36,8 +44,8 @@ pub fn heat_map(map: &StabilityMap) -> String {
     for (index, panel) in map.panels.iter().enumerate() {
         draw_panel(
             &mut svg,
-            map,
-            panel,
+            &layout.steps,
+            (map, panel),
             layout.frame(index),
             index % COLUMNS == 0,
         );
@@ -48,6 +56,7 @@ pub fn heat_map(map: &StabilityMap) -> String {
 
 struct Layout {
     gutter: f64,
+    steps: Steps,
     panel: (f64, f64),
     top: f64,
     legend_top: f64,
@@ -63,9 +72,17 @@ impl Layout {
             .map(|value| text_width(&number::short(*value), SMALL));
         // Values, and the parameter's name along them.
         let gutter = labels.fold(20.0, f64::max) + 10.0 + TEXT + 8.0;
+        let steps = Steps::of(map);
+        // What stands above a panel has room there.
+        let heads = map.panels.iter().flat_map(|panel| {
+            [
+                text_width(&panel.method, HEAD_TEXT),
+                text_width(theory(panel), SMALL),
+            ]
+        });
         let panel = (
-            map.steps.len() as f64 * CELL.0,
-            map.values.len() as f64 * CELL.1,
+            heads.fold(steps.width, f64::max),
+            map.values.len() as f64 * ROW,
         );
         let top = MARGIN + TITLE + 10.0;
         let rows = map.panels.len().div_ceil(COLUMNS) as f64;
@@ -75,10 +92,11 @@ impl Layout {
             MARGIN + columns * (gutter + panel.0) + (columns - 1.0).max(0.0) * BETWEEN + MARGIN;
         Self {
             gutter,
+            steps,
             panel,
             top,
             legend_top,
-            width: width.max(1040.0),
+            width: width.max(1180.0),
             height: legend_top + 66.0 + MARGIN,
         }
     }
@@ -88,51 +106,62 @@ impl Layout {
         Frame {
             left: MARGIN + self.gutter + column * (self.gutter + self.panel.0 + BETWEEN),
             top: self.top + HEAD + row * (HEAD + self.panel.1 + FOOT),
-            width: self.panel.0,
+            width: self.steps.width,
             height: self.panel.1,
         }
     }
 }
 
-fn draw_panel(svg: &mut Svg, map: &StabilityMap, panel: &MapPanel, frame: Frame, named: bool) {
-    svg.text(
-        &Text::new(frame.left, frame.top - 27.0, &panel.method)
-            .sized(13.0)
-            .bold(),
-    );
+fn theory(panel: &MapPanel) -> &'static str {
     let computed = panel.stable_steps.iter().any(Option::is_some);
-    let theory = match (computed, panel.cannot_tell) {
+    match (computed, panel.cannot_tell) {
         (true, false) => "line: largest stable step, computed",
         (true, true) => "line: largest stable step, where it is known",
         (false, false) => "stable at any step",
         (false, true) => "cannot tell its stable step",
-    };
+    }
+}
+
+fn draw_panel(
+    svg: &mut Svg,
+    steps: &Steps,
+    (map, panel): (&StabilityMap, &MapPanel),
+    frame: Frame,
+    named: bool,
+) {
     svg.text(
-        &Text::new(frame.left, frame.top - 11.0, theory)
+        &Text::new(frame.left, frame.top - 27.0, &panel.method)
+            .sized(HEAD_TEXT)
+            .bold(),
+    );
+    svg.text(
+        &Text::new(frame.left, frame.top - 11.0, theory(panel))
             .sized(SMALL)
             .painted(Paint::Muted),
     );
     for (row, (value, runs)) in map.values.iter().zip(&panel.runs).enumerate() {
         // The first value at the bottom, as on an axis.
-        let top = frame.bottom() - (row + 1) as f64 * CELL.1;
+        let top = frame.bottom() - (row + 1) as f64 * ROW;
         svg.text(
-            &Text::new(frame.left - 6.0, top + 0.5 * CELL.1, &number::short(*value))
+            &Text::new(frame.left - 6.0, top + 0.5 * ROW, &number::short(*value))
                 .sized(SMALL)
                 .anchored(Anchor::End),
         );
-        for (column, (dt, run)) in map.steps.iter().zip(runs).enumerate() {
+        let limit = panel.stable_steps.get(row).copied().flatten();
+        let limit = limit.map(|dt| frame.left + steps.place(dt));
+        for ((dt, run), (left, right)) in map.steps.iter().zip(runs).zip(&steps.columns) {
             let cell = Frame {
-                left: frame.left + column as f64 * CELL.0,
+                left: frame.left + left,
                 top,
-                width: CELL.0,
-                height: CELL.1,
+                width: right - left,
+                height: ROW,
             };
             let note = note(map, panel, *value, *dt, run);
-            svg.noted(&note, |svg| draw_run(svg, cell, run));
+            svg.noted(&note, |svg| draw_run(svg, cell, run, limit));
         }
     }
-    draw_limit(svg, map, panel, frame);
-    draw_steps(svg, map, frame);
+    draw_limit(svg, steps, panel, frame);
+    draw_steps(svg, steps, frame);
     if named {
         let middle = frame.top + 0.5 * frame.height;
         let parameter = Text::new(MARGIN + 0.5 * TEXT, middle, &map.parameter);
@@ -140,13 +169,14 @@ fn draw_panel(svg: &mut Svg, map: &StabilityMap, panel: &MapPanel, frame: Frame,
     }
 }
 
-fn draw_steps(svg: &mut Svg, map: &StabilityMap, frame: Frame) {
+fn draw_steps(svg: &mut Svg, steps: &Steps, frame: Frame) {
+    let tick = frame.bottom();
     let mut free = f64::NEG_INFINITY;
-    for (column, dt) in map.steps.iter().enumerate() {
-        let x = frame.left + (column as f64 + 0.5) * CELL.0;
-        let tick = frame.bottom();
-        svg.line((x, tick), (x, tick + 4.0), Stroke::new(Paint::Muted, 1.0));
-        let label = number::milliseconds((*dt * 1e6).round() / 1e6);
+    for Tick { at, label } in steps.axis.ticks(8) {
+        let x = frame.left + at * frame.width;
+        let long = if label.is_some() { 5.0 } else { 3.0 };
+        svg.line((x, tick), (x, tick + long), Stroke::new(Paint::Muted, 1.0));
+        let Some(label) = label else { continue };
         let half = 0.5 * text_width(&label, SMALL);
         if x - half > free {
             svg.text(
@@ -161,7 +191,8 @@ fn draw_steps(svg: &mut Svg, map: &StabilityMap, frame: Frame) {
     svg.text(&Text::new(middle, frame.bottom() + 29.0, "step dt [ms]").anchored(Anchor::Middle));
 }
 
-fn draw_run(svg: &mut Svg, cell: Frame, run: &MapRun) {
+/// A run in its cell; its sign keeps clear of the line of the stable step at `limit`.
+fn draw_run(svg: &mut Svg, cell: Frame, run: &MapRun, limit: Option<f64>) {
     let (fill, ink) = match (run.verdict(), run.error) {
         (RowVerdict::Unbounded | RowVerdict::Diverged, _) | (_, None) => {
             (verdict::tint(run.verdict()), Paint::OnTint)
@@ -189,11 +220,23 @@ fn draw_run(svg: &mut Svg, cell: Frame, run: &MapRun) {
     );
     let sign = sign(run);
     if !sign.is_empty() {
-        let middle = (cell.left + 0.5 * cell.width, cell.top + 0.5 * cell.height);
-        let text = Text::new(middle.0, middle.1, sign)
+        let place = (sign_place(cell, limit), cell.top + 0.5 * cell.height);
+        let text = Text::new(place.0, place.1, sign)
             .anchored(Anchor::Middle)
             .painted(ink);
         svg.text(&text.sized(SMALL).bold());
+    }
+}
+
+/// The middle of a cell, or of its larger part where a line would go through the sign.
+fn sign_place(cell: Frame, limit: Option<f64>) -> f64 {
+    let middle = cell.left + 0.5 * cell.width;
+    match limit {
+        Some(limit) if (limit - middle).abs() < SIGN && limit > middle => {
+            0.5 * (cell.left + limit) - 1.0
+        }
+        Some(limit) if (limit - middle).abs() < SIGN => 0.5 * (cell.right() + limit) + 1.0,
+        _ => middle,
     }
 }
 
@@ -206,14 +249,8 @@ fn sign(run: &MapRun) -> &'static str {
     }
 }
 
-/// Place of an error among the colours.
-fn share(error: f64) -> f64 {
-    let (low, high) = (RANGE.0.log10(), RANGE.1.log10());
-    ((error.log10() - low) / (high - low)).clamp(0.0, 1.0)
-}
-
 /// The stable step of each row, joined from row to row; along the edge where it lies outside.
-fn draw_limit(svg: &mut Svg, map: &StabilityMap, panel: &MapPanel, frame: Frame) {
+fn draw_limit(svg: &mut Svg, steps: &Steps, panel: &MapPanel, frame: Frame) {
     let mut line = Vec::new();
     let mut lines = Vec::new();
     for (row, limit) in panel.stable_steps.iter().enumerate() {
@@ -221,9 +258,9 @@ fn draw_limit(svg: &mut Svg, map: &StabilityMap, panel: &MapPanel, frame: Frame)
             lines.push(std::mem::take(&mut line));
             continue;
         };
-        let x = frame.left + CELL.0 * place(&map.steps, *limit);
-        let bottom = frame.bottom() - row as f64 * CELL.1;
-        line.extend([(x, bottom), (x, bottom - CELL.1)]);
+        let x = frame.left + steps.place(*limit);
+        let bottom = frame.bottom() - row as f64 * ROW;
+        line.extend([(x, bottom), (x, bottom - ROW)]);
     }
     lines.push(line);
     // A rim of paper keeps it apart from every colour.
@@ -232,26 +269,6 @@ fn draw_limit(svg: &mut Svg, map: &StabilityMap, panel: &MapPanel, frame: Frame)
             svg.polyline(line, stroke);
         }
     }
-}
-
-/// The place of a step among columns that stand for `steps`, in columns from the left edge: a column's
-/// middle is its step, between middles the logarithm counts.
-fn place(steps: &[f64], dt: f64) -> f64 {
-    let columns = steps.len() as f64;
-    if dt <= 0.0 {
-        return 0.0;
-    }
-    let after = steps.partition_point(|step| *step <= dt);
-    let (low, high) = match after {
-        0 => (0, 1),
-        after if after == steps.len() => (after.saturating_sub(2), after.saturating_sub(1)),
-        after => (after - 1, after),
-    };
-    let (Some(a), Some(b)) = (steps.get(low), steps.get(high)) else {
-        return 0.5 * columns;
-    };
-    let between = (dt / a).ln() / (b / a).ln();
-    (low as f64 + 0.5 + between).clamp(0.0, columns)
 }
 
 fn note(map: &StabilityMap, panel: &MapPanel, value: f64, dt: f64, run: &MapRun) -> String {
@@ -267,87 +284,6 @@ fn note(map: &StabilityMap, panel: &MapPanel, value: f64, dt: f64, run: &MapRun)
         number::milliseconds(dt),
         run.verdict().word(),
     )
-}
-
-/// Colours, signs and the line, in one row beneath the panels.
-fn draw_legend(svg: &mut Svg, left: f64, top: f64) {
-    let bar = Frame {
-        left: left + 24.0,
-        top: top + 20.0,
-        width: 250.0,
-        height: 14.0,
-    };
-    svg.text(&Text::new(
-        bar.left,
-        top + 8.0,
-        "error (relative L2 of the displacement) [%]",
-    ));
-    let slices = 64;
-    for i in 0..slices {
-        let colour = viridis((f64::from(slices - 1 - i) + 0.5) / f64::from(slices));
-        // Each begins at the left and the next covers it: no seams.
-        let width = bar.width * (1.0 - f64::from(i) / f64::from(slices));
-        svg.rect(Frame { width, ..bar }, Paint::Data(colour));
-    }
-    let axis = Axis::log("").range(100.0 * RANGE.0, 100.0 * RANGE.1);
-    for tick in axis.fitted(std::iter::empty()).ticks(5) {
-        let Some(label) = tick.label else { continue };
-        let x = bar.left + tick.at * bar.width;
-        svg.line(
-            (x, bar.bottom()),
-            (x, bar.bottom() + 4.0),
-            Stroke::new(Paint::Muted, 1.0),
-        );
-        let label = match tick.at {
-            at if at < 1e-6 => format!("≤ {label}"),
-            at if at > 1.0 - 1e-6 => format!("≥ {label}"),
-            _ => label,
-        };
-        svg.text(
-            &Text::new(x, bar.bottom() + 13.0, &label)
-                .sized(SMALL)
-                .anchored(Anchor::Middle),
-        );
-    }
-    let signs = [
-        (RowVerdict::Wrong, "worse than returning zero"),
-        (RowVerdict::Guarded, "cells saturated"),
-        (RowVerdict::Unbounded, "|u| > 10× the reference's"),
-        (RowVerdict::Diverged, "diverged, given up"),
-    ];
-    let mut x = bar.right() + 40.0;
-    let y = bar.top + 7.0;
-    for (verdict, text) in signs {
-        let failed = matches!(verdict, RowVerdict::Unbounded | RowVerdict::Diverged);
-        let tint = if failed {
-            verdict::tint(verdict)
-        } else {
-            viridis(1.0)
-        };
-        let sample = Frame {
-            left: x,
-            top: y - 9.0,
-            width: 20.0,
-            height: 18.0,
-        };
-        svg.rect(sample, Paint::Data(tint));
-        let sign = Text::new(x + 10.0, y, verdict.symbol()).anchored(Anchor::Middle);
-        svg.text(&sign.painted(Paint::OnTint).bold());
-        svg.text(&Text::new(x + 26.0, y, text));
-        x += 26.0 + text_width(text, TEXT) + 10.0;
-    }
-    let y = bar.bottom() + 13.0;
-    let x = bar.right() + 40.0;
-    let line = Stroke {
-        dash: Dash::Solid,
-        ..Stroke::new(Paint::Ink, 2.0)
-    };
-    svg.line((x, y), (x + 20.0, y), line);
-    svg.text(&Text::new(
-        x + 26.0,
-        y,
-        "largest stable step by theory, along the edge where it lies outside",
-    ));
 }
 
 #[cfg(test)]
@@ -438,27 +374,20 @@ mod tests {
     }
 
     #[test]
-    fn a_step_lies_in_its_column() {
-        let steps = [0.001, 0.01, 0.1];
-        for (dt, expected) in [
-            (0.001, 0.5),
-            (0.01, 1.5),
-            (0.1, 2.5),
-            (1.0, 3.0),
-            (1e-9, 0.0),
-            (0.0, 0.0),
-        ] {
-            assert!((place(&steps, dt) - expected).abs() < 1e-9, "{dt}");
+    fn a_sign_keeps_clear_of_the_line() {
+        let cell = Frame {
+            left: 100.0,
+            top: 0.0,
+            width: 24.0,
+            height: ROW,
+        };
+        assert_eq!(sign_place(cell, None), 112.0);
+        assert_eq!(sign_place(cell, Some(101.0)), 112.0);
+        for limit in [107.0, 111.0, 112.0, 114.0, 117.0] {
+            let place = sign_place(cell, Some(limit));
+            assert!((place - limit).abs() >= 5.0, "{limit}: {place}");
+            assert!((104.0..=120.0).contains(&place), "{limit}: {place}");
         }
-        let half_way = 0.01 * 10.0_f64.sqrt();
-        assert!((place(&steps, half_way) - 2.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn colours_tell_errors_apart() {
-        assert_eq!(share(1e-6), 0.0);
-        assert!((share(0.01) - 0.5).abs() < 1e-12);
-        assert_eq!(share(50.0), 1.0);
     }
 
     #[test]

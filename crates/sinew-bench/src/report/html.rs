@@ -3,14 +3,11 @@
 use sinew_draw::Page;
 use sinew_draw::markup::{escape, slugs};
 use sinew_draw::page::{Cell, Column, Table, TableRow};
-use sinew_measure::{ACCURATE, RowVerdict};
+use sinew_measure::RowVerdict;
 
-use super::summary::cheapest;
+use super::summary::{GOOD_ENOUGH, cheapest};
 use super::{case_section, heat_map, marks, missing, number, verdict};
 use crate::results::{BenchResults, Skipped, StabilityMap};
-
-/// Errors (fraction) for which the cheapest run is named.
-const GOOD_ENOUGH: [f64; 3] = [ACCURATE, 0.01, 0.001];
 
 /// The whole page.
 #[must_use]
@@ -94,7 +91,10 @@ fn how_to_read(page: &mut Page) {
          same everywhere.</li>\n\
          <li><b>Pareto</b> (●, ringed in the plots): no other run of the case is at least as \
          cheap and at least as accurate. Small differences in time are noise, so a run just \
-         off the front is as good. Runs worse than returning zero are never on it.</li>\n\
+         off the front is as good. Runs with an error above 50&nbsp;% are never on it, and the plots ring \
+         none beyond the first with an error below 10<sup>−6</sup>&nbsp;%. Curves that lie under \
+         others show as rims; a pointer over a mark names all runs there, a click on a name keeps \
+         its curve in view.</li>\n\
          </ul>\n",
     );
 }

@@ -1,15 +1,20 @@
 //! The cheapest run of a case that is good enough.
 
-use sinew_measure::{Row, RowVerdict};
+use sinew_measure::Row;
 
-/// The accurate run that costs least among those with at most the given error (fraction).
+/// Errors (fraction) for which the cheapest run is named.
+pub(super) const GOOD_ENOUGH: [f64; 3] = [0.1, 0.01, 0.001];
+
+/// The run that costs least among those, bounded and not saturated, with at most the given error (fraction).
 pub(super) fn cheapest<'a>(
     rows: impl IntoIterator<Item = &'a Row>,
     largest_error: f64,
 ) -> Option<&'a Row> {
     rows.into_iter()
-        .filter(|row| row.verdict() == RowVerdict::Accurate)
-        .filter(|row| row.error.is_some_and(|error| error <= largest_error))
+        .filter(|row| {
+            row.sound_error()
+                .is_some_and(|error| error <= largest_error)
+        })
         .filter(|row| row.cpu_s_per_s.is_finite())
         .min_by(|a, b| a.cpu_s_per_s.total_cmp(&b.cpu_s_per_s))
 }

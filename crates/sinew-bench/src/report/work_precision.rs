@@ -9,11 +9,12 @@ use crate::results::BenchResults;
 /// Errors above this (fraction) are drawn in the lane of the unbounded runs.
 const LARGEST_SHOWN_ERROR: f64 = 100.0;
 
-/// Errors below this (fraction) are drawn at this: what matters lies above.
-const LEAST_SHOWN_ERROR: f64 = 1e-8;
+/// Errors below this (fraction) are drawn in a lane of their own: what matters lies above.
+pub(super) const LEAST_SHOWN_ERROR: f64 = 1e-8;
 
 /// Error over CPU time of the runs of a case: a line per method over its steps, and the Pareto
-/// front. A method looks the same in the plots of all cases.
+/// front down to the first run below all errors shown. A method looks the same in the plots of all
+/// cases, and no two look alike.
 #[must_use]
 pub fn work_precision(results: &BenchResults, case: &str) -> Plot {
     let rows: Vec<&Row> = results.rows_of(case).collect();
@@ -24,70 +25,51 @@ pub fn work_precision(results: &BenchResults, case: &str) -> Plot {
         Axis::log("error [%]"),
     )
     .with_horizontal_rule(100.0, "returning\nzero");
-    if rows.iter().any(|row| shown_error(row).is_infinite()) {
-        plot.lane = Some("unbounded".to_owned());
+    let has = |lane: f64| rows.iter().any(|row| shown_error(row) == lane);
+    if has(f64::INFINITY) {
+        plot.lane_above = Some("unbounded".to_owned());
     }
-    if rows
-        .iter()
-        .any(|row| row.error.is_some_and(|error| error < LEAST_SHOWN_ERROR))
-    {
-        plot = plot.with_horizontal_rule(100.0 * LEAST_SHOWN_ERROR, "this\nor less");
+    if has(f64::NEG_INFINITY) {
+        let least = (100.0 * LEAST_SHOWN_ERROR).log10();
+        plot.lane_below = Some(format!("below 10^{{−{:.0}}}", -least));
     }
-    plot.height = 400.0;
-    if let Some(front) = front(&rows) {
-        plot.series.push(front);
+    plot.width = 900.0;
+    plot.height = 460.0;
+    let front = front(&rows);
+    if !front.is_empty() {
+        plot.series.push(staircase(&front));
     }
-    for method in methods(results) {
+    for (index, label) in labels(results).into_iter().enumerate() {
         let mut runs: Vec<&Row> = rows
             .iter()
             .copied()
-            .filter(|row| row.label() == method.label)
+            .filter(|row| row.label() == label)
             .collect();
         runs.sort_by(|a, b| a.dt.total_cmp(&b.dt));
         if !runs.is_empty() {
-            let points = runs.into_iter().map(point).collect();
+            let is_ringed = |run: &Row| front.iter().any(|row| std::ptr::eq(*row, run));
+            let points = runs.into_iter().map(|run| point(run, is_ringed(run)));
+            let points = points.collect();
             plot.series
-                .push(Series::new(method.label, method.style, points));
+                .push(Series::new(label, Style::nth(index), points));
         }
     }
     plot
 }
 
-struct MethodChoice {
-    label: String,
-    style: Style,
-}
-
-/// The methods of all cases, one family per integrator.
-fn methods(results: &BenchResults) -> Vec<MethodChoice> {
-    let mut families: Vec<(&str, Vec<String>)> = Vec::new();
+/// The methods of all cases.
+fn labels(results: &BenchResults) -> Vec<String> {
+    let mut labels: Vec<String> = Vec::new();
     for row in &results.rows {
-        let family = match families.iter().position(|(id, _)| *id == row.integrator) {
-            Some(family) => family,
-            None => {
-                families.push((&row.integrator, Vec::new()));
-                families.len() - 1
-            }
-        };
-        let members = &mut families[family].1;
         let label = row.label();
-        if !members.contains(&label) {
-            members.push(label);
+        if !labels.contains(&label) {
+            labels.push(label);
         }
     }
-    families
-        .into_iter()
-        .enumerate()
-        .flat_map(|(family, (_, members))| {
-            members.into_iter().enumerate().map(move |(member, label)| {
-                let style = Style::of_family(family, member);
-                MethodChoice { label, style }
-            })
-        })
-        .collect()
+    labels
 }
 
-fn point(row: &Row) -> Point {
+fn point(row: &Row, ringed: bool) -> Point {
     Point {
         x: row.cpu_s_per_s,
         y: 100.0 * shown_error(row),
@@ -99,28 +81,40 @@ fn point(row: &Row) -> Point {
             shown(row.cpu_s_per_s, number::three),
             row.verdict().word(),
         ),
-        ringed: row.pareto,
+        ringed,
     }
 }
 
-/// The error as drawn: infinite where it has no place in the frame.
+/// The error as drawn: infinite where it has no place in the frame, minus infinity below it.
 fn shown_error(row: &Row) -> f64 {
     match (row.outcome, row.error_at_most()) {
         (RowOutcome::Finished, Some(error)) if row.bounded && error <= LARGEST_SHOWN_ERROR => {
-            error.max(LEAST_SHOWN_ERROR)
+            if error < LEAST_SHOWN_ERROR {
+                f64::NEG_INFINITY
+            } else {
+                error
+            }
         }
         _ => f64::INFINITY,
     }
 }
 
-/// The staircase of what can be had for a given cost.
-fn front(rows: &[&Row]) -> Option<Series> {
-    let mut points: Vec<(f64, f64)> = rows
+/// The runs on the front, the cheapest first, down to the first below all errors shown.
+fn front<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
+    let mut front: Vec<&Row> = rows.iter().copied().filter(|row| row.pareto).collect();
+    front.sort_by(|a, b| a.cpu_s_per_s.total_cmp(&b.cpu_s_per_s));
+    let is_below = |row: &&Row| shown_error(row) == f64::NEG_INFINITY;
+    if let Some(last) = front.iter().position(is_below) {
+        front.truncate(last + 1);
+    }
+    front
+}
+
+/// What can be had for a given cost.
+fn staircase(front: &[&Row]) -> Series {
+    let points = front
         .iter()
-        .filter(|row| row.pareto)
-        .map(|row| (row.cpu_s_per_s, 100.0 * shown_error(row)))
-        .collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        .map(|row| (row.cpu_s_per_s, 100.0 * shown_error(row)));
     let style = Style {
         colour: Colour(0xb8, 0xb8, 0xb8),
         marker: None,
@@ -128,7 +122,7 @@ fn front(rows: &[&Row]) -> Option<Series> {
         width: 6.0,
         steps: true,
     };
-    (!points.is_empty()).then(|| Series::line("Pareto front (ringed)", style, points))
+    Series::line("Pareto front (ringed)", style, points)
 }
 
 #[cfg(test)]
@@ -173,8 +167,43 @@ mod tests {
             },
         ];
         let plot = work_precision(&results, "a");
-        assert!(plot.lane.is_some());
+        assert!(plot.lane_above.is_some() && plot.lane_below.is_none());
         let errors: Vec<f64> = plot.series[0].points.iter().map(|p| p.y).collect();
         assert_eq!(errors, [5.0, 10.0, f64::INFINITY]);
+    }
+
+    #[test]
+    fn many_methods_look_different() {
+        let mut results = BenchResults::new("r", Machine::default());
+        results.rows = (0..24)
+            .map(|n| row("a", &format!("method-{n}"), 0.02, 0.1))
+            .collect();
+        let plot = work_precision(&results, "a");
+        let looks: Vec<_> = plot
+            .series
+            .iter()
+            .map(|series| (series.style.colour, series.style.marker))
+            .collect();
+        assert_eq!(looks.len(), 24);
+        for (i, look) in looks.iter().enumerate() {
+            assert!(!looks[i + 1..].contains(look), "{i}");
+        }
+    }
+
+    #[test]
+    fn only_the_cheapest_of_the_smallest_errors_is_ringed() {
+        let mut results = BenchResults::new("r", Machine::default());
+        results.rows = vec![
+            row("a", "rk4", 0.02, 0.1),
+            row("a", "rk4", 0.01, 1e-10),
+            row("a", "rk4", 0.005, 1e-11),
+        ];
+        sinew_measure::mark_pareto(&mut results.rows);
+        assert!(results.rows.iter().all(|row| row.pareto));
+        let plot = work_precision(&results, "a");
+        assert_eq!(plot.lane_below.as_deref(), Some("below 10^{−6}"));
+        let rings: Vec<bool> = plot.series[1].points.iter().map(|p| p.ringed).collect();
+        assert_eq!(rings, [false, true, true]);
+        assert_eq!(plot.series[0].points.len(), 2);
     }
 }

@@ -132,14 +132,15 @@ impl Page {
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <title>{title}</title>\n<style>\n{common}{own}</style>\n</head>\n<body>\n\
              <header>\n<h1>{title}</h1>\n{lead}</header>\n{contents}{sections}\
-             <script>\n{script}</script>\n</body>\n</html>\n",
+             <script>\n{sort}{plots}</script>\n</body>\n</html>\n",
             title = escape(&self.title),
             common = include_str!("page.css"),
             own = self.style,
             lead = self.lead,
             contents = self.contents,
             sections = self.sections,
-            script = include_str!("sort.js"),
+            sort = include_str!("sort.js"),
+            plots = include_str!("plots.js"),
         )
     }
 
