@@ -133,6 +133,15 @@ impl CellType {
         self.name().starts_with("tetra")
     }
 
+    /// The kind with the same shape and no nodes but its corners, which are the first nodes of every kind.
+    #[must_use]
+    pub fn linear(self) -> CellType {
+        use CellType::{Hexahedron, Line, Pyramid, Quad, Tetra, Triangle, Vertex, Wedge};
+        let shapes = [Line, Triangle, Quad, Tetra, Hexahedron, Wedge, Pyramid];
+        let same_shape = |kind: &CellType| self.name().starts_with(kind.name());
+        shapes.into_iter().find(same_shape).unwrap_or(Vertex)
+    }
+
     /// The order of VTK's nodes in gmsh's row of a cell: `vtk_row[i] = gmsh_row[order[i]]`.
     ///
     /// `None` where the two programs agree. As in meshio 5.3.5, `wedge18` and `pyramid14` stay in gmsh's order.
@@ -188,6 +197,19 @@ mod tests {
         }
         assert_eq!(CellType::from_gmsh_id(34), None);
         assert_eq!(CellType::from_name("tetra11"), None);
+    }
+
+    #[test]
+    fn the_corners_of_a_kind_make_a_kind_of_its_dimension() {
+        for &kind in CellType::ALL {
+            let linear = kind.linear();
+            assert_eq!(linear.dim(), kind.dim(), "{kind}");
+            assert_eq!(linear.linear(), linear, "{kind}");
+            assert!(linear.node_count() <= kind.node_count(), "{kind}");
+        }
+        assert_eq!(CellType::Tetra56.linear(), CellType::Tetra);
+        assert_eq!(CellType::Hexahedron27.linear(), CellType::Hexahedron);
+        assert_eq!(CellType::Vertex.linear(), CellType::Vertex);
     }
 
     #[test]

@@ -47,8 +47,9 @@ pub use error::{Fault, NoStableStep, SceneError, StableStepError};
 pub use plan::{Plan, PlanSection};
 pub use probe_csv::ProbeCsv;
 pub use scene::{
-    Body, Choice, Initial, Instants, Members, MeshSource, Motion, Oscillator, OutputSettings,
-    ProbeAt, ProbePoint, RunSettings, Scene, Selected, Subject, TimeStep, Way,
+    Body, Choice, Initial, Instants, Members, MeshChanges, MeshSource, Motion, Oscillator,
+    OutputSettings, ProbeAt, ProbePoint, Rotation, RunSettings, Scene, Selected, Subject, TimeStep,
+    Way,
 };
 pub use simulation::{
     BodyModel, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe, Reaction,

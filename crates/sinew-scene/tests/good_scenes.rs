@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 use sinew_core::{OptionValue, Options, Ramp};
 use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule};
 use sinew_scene::{
-    Body, Initial, MeshSource, Oscillator, ProbeAt, ProbePoint, RunSettings, Scene, SceneSource,
-    Subject, TimeStep,
+    Body, Initial, MeshChanges, MeshSource, Oscillator, ProbeAt, ProbePoint, RunSettings, Scene,
+    SceneSource, Subject, TimeStep,
 };
 
 fn scenes() -> Vec<PathBuf> {
@@ -123,6 +123,7 @@ fn the_papers_oscillator() {
 fn the_papers_cube() {
     let expected = Body {
         mesh: MeshSource::File("../meshes/paper-cube.msh".into()),
+        mesh_changes: MeshChanges::default(),
         motions: Vec::new(),
         problem: Problem {
             regions: vec![Region {

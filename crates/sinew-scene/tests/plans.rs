@@ -111,6 +111,50 @@ fn the_numbers_of_the_papers_cube() {
     assert_eq!(clamped.kind, WarningKind::ClampedNetwork);
 }
 
+/// The mesh's part of the plan of a body that nothing but its mesh sets apart.
+fn mesh_lines(mesh: &str) -> Vec<String> {
+    let scene = format!(
+        "mesh = {{ {mesh} }}
+region = [{{ density = 1000.0, model = \"linear\", youngs_modulus = 1e4, poissons_ratio = 0.3 }}]
+fixed = [{{ group = \"bottom\" }}]
+run = {{ duration = 1.0, integrator = \"newmark\", dt = 0.1 }}
+"
+    );
+    plan(&scene).sections[0].lines.clone()
+}
+
+#[test]
+fn a_block_with_the_cells_of_a_cube_is_the_cube() {
+    let cube = mesh_lines("cube = { cells = 3, edge = 0.3, split = \"mirrored\" }");
+    let block =
+        mesh_lines("block = { cells = [3, 3, 3], size = [0.3, 0.3, 0.3], split = \"mirrored\" }");
+    assert_eq!(
+        block[0],
+        "block of 3 x 3 x 3 cells, 0.3 x 0.3 x 0.3 m, split \"mirrored\""
+    );
+    assert_eq!(cube[1..], block[1..]);
+}
+
+#[test]
+fn a_block_scaled_and_turned() {
+    let block = "block = { cells = [24, 4, 4], size = [300, 50, 50], split = \"kuhn\" }";
+    let changed = format!("{block}, scale = 0.001, rotate = {{ axis = [0, 0, 2], degrees = 90 }}");
+    insta::assert_snapshot!(mesh_lines(&changed).join("\n"), @r#"
+    block of 24 x 4 x 4 cells, 300 x 50 x 50, split "kuhn"
+    scaled by 0.001, then turned by 90 degrees about [0, 0, 2] through the origin
+    625 nodes, 2304 tetrahedra, 3344 edges; 0.00075 m3, 0.75 kg
+    groups `tissue` (2304 tetrahedra), `sides` (448 triangles), `top` (192 triangles), `bottom` (192 triangles)
+    "#);
+    let simulation = build(&format!(
+        "mesh = {{ {changed} }}
+region = [{{ density = 1000.0, model = \"linear\", youngs_modulus = 1e4, poissons_ratio = 0.3 }}]
+run = {{ duration = 1.0, integrator = \"newmark\", dt = 0.1 }}
+"
+    ));
+    let mesh = &simulation.model().body().unwrap().mesh;
+    assert_eq!(mesh.bounding_box(), ([-0.05, 0.0, 0.0], [0.0, 0.3, 0.05]));
+}
+
 #[test]
 fn the_papers_oscillator() {
     insta::assert_snapshot!(plan(include_str!("../../../scenes/paper-oscillator.toml")), @r#"

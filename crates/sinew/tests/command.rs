@@ -169,7 +169,10 @@ fn run_ends_with_the_force_of_each_support_and_motion() {
     let pressed = scene("moved-top.toml");
     let said = sinew(directory.path(), &["run", pressed.to_str().unwrap()]);
     assert_eq!(said.code, Some(0), "{}", said.err);
-    let mut warnings = said.err.lines().filter(|line| line.starts_with("warning: "));
+    let mut warnings = said
+        .err
+        .lines()
+        .filter(|line| line.starts_with("warning: "));
     let warning = warnings.next().unwrap();
     assert!(warning.starts_with("warning: [[region]] 1 has poissons_ratio = 0.45"));
     assert_eq!(warnings.next(), None);

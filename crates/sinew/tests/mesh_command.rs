@@ -204,3 +204,22 @@ fn what_is_no_mesh_is_refused_with_one_message() {
         }
     }
 }
+
+#[test]
+fn a_file_of_another_format_is_refused_with_the_command_that_converts_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("liver.vtu");
+    std::fs::write(&path, "<?xml version=\"1.0\"?>\n").unwrap();
+    for command in ["info", "check"] {
+        let output = mesh(&[command, path.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(2));
+        let said = String::from_utf8(output.stderr).unwrap();
+        let converted = directory.path().join("liver.msh");
+        let help = format!(
+            "help: `meshio convert {} {} --output-format gmsh22` (pip install meshio) writes a .msh file",
+            path.display(),
+            converted.display()
+        );
+        assert_eq!(said.lines().nth(1), Some(help.as_str()), "{said}");
+    }
+}

@@ -57,18 +57,23 @@ impl Mesh {
                 *used = true;
             }
         }
+        self.drop_nodes(&is_used)
+    }
+
+    /// Drops the nodes for which `is_used` is false, with their values and links, and returns their number. No cell may use one.
+    pub(crate) fn drop_nodes(&mut self, is_used: &[bool]) -> usize {
         let dropped = is_used.iter().filter(|&&used| !used).count();
         if dropped == 0 {
             return 0;
         }
         let orphan_tags: HashSet<u64> = (0u32..)
-            .zip(&is_used)
+            .zip(is_used)
             .filter(|&(_, &used)| !used)
             .map(|(node, _)| self.node_tag(node))
             .collect();
         // Without tags, nodes count from 1; the remaining ones must keep the numbers they had.
         self.node_tags = (0u32..)
-            .zip(&is_used)
+            .zip(is_used)
             .filter(|&(_, &used)| used)
             .map(|(node, _)| self.node_tag(node))
             .collect();
@@ -76,10 +81,10 @@ impl Mesh {
             let is_kept = |pair: &[u64; 2]| !pair.iter().any(|tag| orphan_tags.contains(tag));
             link.node_tags.retain(is_kept);
         }
-        keep_rows(&mut self.points, &is_used, 1);
-        keep_rows(&mut self.node_entities, &is_used, 1);
+        keep_rows(&mut self.points, is_used, 1);
+        keep_rows(&mut self.node_entities, is_used, 1);
         for data in &mut self.point_data {
-            keep_rows(&mut data.values, &is_used, data.components);
+            keep_rows(&mut data.values, is_used, data.components);
         }
         let mut next = 0;
         let new_index: Vec<u32> = is_used

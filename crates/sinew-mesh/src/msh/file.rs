@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::error::MshError;
+use super::other_formats;
 use super::read_msh;
 use crate::mesh::Mesh;
 
@@ -36,6 +37,20 @@ pub enum MshFileError {
         /// The problem and its place.
         error: Box<MshError>,
     },
+}
+
+impl MshFileError {
+    /// Advice on what to do, if there is any: the command that converts a file whose name tells another format.
+    #[must_use]
+    pub fn advice(&self) -> Option<String> {
+        match self {
+            // What is no .msh file is refused at its first byte.
+            MshFileError::Contents { path, error } if error.position().byte == 0 => {
+                other_formats::advice(path)
+            }
+            _ => None,
+        }
+    }
 }
 
 /// Reads a .msh file; see [`read_msh`].

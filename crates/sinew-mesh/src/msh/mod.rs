@@ -61,6 +61,7 @@ mod header;
 mod msh1;
 mod nodes;
 mod number;
+mod other_formats;
 mod periodic;
 mod physical_names;
 mod places;

@@ -7,6 +7,7 @@ mod error;
 mod find_group;
 mod from_mesh;
 mod group;
+mod placement;
 mod surface;
 mod to_mesh;
 mod vector;

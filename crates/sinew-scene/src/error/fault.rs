@@ -108,9 +108,15 @@ pub enum Fault {
     /// A mesh that is not a body of tetrahedra.
     #[error(transparent)]
     Tetrahedra(#[from] sinew_mesh::TetMeshError),
-    /// A cube that cannot be generated.
+    /// A cube or a block that cannot be generated.
     #[error(transparent)]
     Cube(#[from] sinew_mesh::structured::StructuredError),
+    /// A scale by which coordinates overflow.
+    #[error("scale = {scale:?}: expected a factor that leaves all coordinates finite")]
+    Scale {
+        /// The factor.
+        scale: f64,
+    },
     /// A group of `[[initial]]` that the mesh does not have.
     #[error(transparent)]
     UnknownGroup(#[from] sinew_mesh::UnknownGroup),

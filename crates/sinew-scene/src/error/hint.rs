@@ -1,6 +1,7 @@
 //! Hints at what to do about a fault.
 
 use sinew_core::OptionError;
+use sinew_mesh::{CellType, TetMeshError};
 
 use super::fault::Fault;
 use super::words::quoted;
@@ -20,6 +21,15 @@ pub(super) fn following_from(fault: &Fault) -> Option<String> {
         Fault::Integrator(OptionError::Unknown { key, known, .. }) => {
             takers(key).or_else(|| suggestion(nearest(key, known.iter().copied())))
         }
+        Fault::MeshFile(error) => error.advice(),
+        Fault::Tetrahedra(TetMeshError::UnsupportedCells { kind, .. })
+            if kind.linear() != *kind && is_supported(kind.linear()) =>
+        {
+            Some(
+                "`order = \"linear\"` in [mesh] takes cells of higher order by their corners"
+                    .to_owned(),
+            )
+        }
         Fault::NoStableStep(_) => Some(
             "give dt in s; `sinew plan --tolerance` finds one that is accurate enough".to_owned(),
         ),
@@ -28,6 +38,14 @@ pub(super) fn following_from(fault: &Fault) -> Option<String> {
         }
         _ => None,
     }
+}
+
+/// Whether cells of a linear kind can be simulated.
+fn is_supported(linear: CellType) -> bool {
+    matches!(
+        linear,
+        CellType::Line | CellType::Triangle | CellType::Tetra
+    )
 }
 
 /// Whether a key belongs at the top of the file and was found in a table.

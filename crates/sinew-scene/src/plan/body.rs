@@ -7,7 +7,7 @@ use sinew_mesh::structured::Split;
 
 use super::section::PlanSection;
 use crate::number::{count, length, short, vector};
-use crate::scene::{Body, Initial, MeshSource, Way};
+use crate::scene::{Body, Initial, MeshChanges, MeshSource, Rotation, Way};
 use crate::simulation::{BodyModel, Probe, SelectedPart};
 
 /// The sections about a body and its probes.
@@ -30,28 +30,53 @@ pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<
 }
 
 fn mesh(body: &Body, built: &BodyModel, report: &ModelReport) -> Vec<String> {
-    let source = match &body.mesh {
+    let mut lines = vec![source(&body.mesh, &body.mesh_changes)];
+    lines.extend(changes(&body.mesh_changes));
+    lines.push(format!(
+        "{} nodes, {} tetrahedra, {} edges; {} m3, {} kg",
+        report.nodes,
+        report.tets,
+        report.edges,
+        short(report.volume),
+        short(report.mass)
+    ));
+    lines.push(groups(built));
+    lines
+}
+
+fn source(mesh: &MeshSource, changes: &MeshChanges) -> String {
+    // A scale is there because these lengths are not in metres.
+    let unit = if changes.scale.is_some() { "" } else { " m" };
+    let name = |split: &Split| match split {
+        Split::Kuhn => "kuhn",
+        Split::Mirrored => "mirrored",
+    };
+    match mesh {
         MeshSource::File(path) => path.display().to_string(),
         MeshSource::Cube { cells, edge, split } => {
-            let split = match split {
-                Split::Kuhn => "kuhn",
-                Split::Mirrored => "mirrored",
-            };
-            format!("cube of {cells} x {cells} x {cells} cells, edge {edge} m, split \"{split}\"")
+            let split = name(split);
+            format!(
+                "cube of {cells} x {cells} x {cells} cells, edge {edge}{unit}, split \"{split}\""
+            )
         }
-    };
-    vec![
-        source,
+        MeshSource::Block { cells, size, split } => {
+            let ([i, j, k], [x, y, z], split) = (cells, size, name(split));
+            format!("block of {i} x {j} x {k} cells, {x} x {y} x {z}{unit}, split \"{split}\"")
+        }
+    }
+}
+
+/// The changes of size and orientation; what linearising did is a note of the mesh.
+fn changes(changes: &MeshChanges) -> Option<String> {
+    let mut parts = Vec::new();
+    parts.extend(changes.scale.map(|scale| format!("scaled by {scale}")));
+    parts.extend(changes.rotation.map(|Rotation { axis, degrees }| {
         format!(
-            "{} nodes, {} tetrahedra, {} edges; {} m3, {} kg",
-            report.nodes,
-            report.tets,
-            report.edges,
-            short(report.volume),
-            short(report.mass)
-        ),
-        groups(built),
-    ]
+            "turned by {degrees} degrees about {} through the origin",
+            vector(axis)
+        )
+    }));
+    (!parts.is_empty()).then(|| parts.join(", then "))
 }
 
 fn groups(built: &BodyModel) -> String {

@@ -23,7 +23,7 @@ use toml::de::DeTable;
 
 pub use initial::Initial;
 use keys::GRAVITY;
-pub use mesh::MeshSource;
+pub use mesh::{MeshChanges, MeshSource, Rotation};
 pub use motion::{Motion, Way};
 pub use oscillator::Oscillator;
 pub use output::{Instants, OutputSettings};
@@ -61,6 +61,8 @@ pub enum Subject {
 pub struct Body {
     /// The source of its shape.
     pub mesh: MeshSource,
+    /// Changes of size, orientation and order on the way from the source to the body.
+    pub mesh_changes: MeshChanges,
     /// Materials, damping, supports and loads. Prescribed motions, which may be in files, are added where the
     /// scene is built: see [`crate::BodyModel::problem`].
     pub problem: Problem,
@@ -300,6 +302,7 @@ impl Body {
             .table("mesh", mesh::KEYS)?
             .ok_or_else(|| document.missing("mesh", "a table [mesh]"))?;
         let mesh = MeshSource::read(&mesh_table)?;
+        let mesh_changes = MeshChanges::read(&mesh_table)?;
         let mut selections = Selections::default();
         let (regions, region_places) = region::read_all(document, &mut selections)?;
         if regions.is_empty() {
@@ -324,6 +327,7 @@ impl Body {
         places.selected = selections.places;
         Ok(Self {
             mesh,
+            mesh_changes,
             problem: Problem {
                 regions,
                 damping: damping.unwrap_or_default(),

@@ -1,19 +1,16 @@
-//! The mesh of a scene and the matrices on it.
+//! The matrices of a body on its mesh.
 
 use std::sync::Arc;
 
 use sinew_fem::{Cause, Course, FemError, Item, Model, Moving, On};
-use sinew_mesh::{TetMesh, structured};
 
+use super::mesh::MeshAndWarnings;
 use super::model::BodyModel;
 use super::motion_table::MotionTable;
 use super::selected;
 use crate::error::{Fault, SceneError};
 use crate::scene::keys::GRAVITY;
-use crate::scene::{Body, MeshSource, Motion, Places, Way};
-
-/// A mesh and the warnings of its reader.
-pub(super) type MeshAndWarnings = (TetMesh, Vec<String>);
+use crate::scene::{Body, Motion, Places, Way};
 
 /// Assembles the matrices.
 pub(super) fn build(
@@ -66,26 +63,6 @@ fn moving(motion: &Motion, places: &Places, index: usize) -> Result<Moving, Scen
 fn way_key(body: &Body, index: usize) -> &'static str {
     let motion = body.motions.get(index);
     motion.map_or("group", |motion| motion.way.key())
-}
-
-/// Makes or reads the mesh that `[mesh]` names.
-pub(super) fn mesh(body: &Body, places: &Places) -> Result<MeshAndWarnings, SceneError> {
-    let place = places.mesh.as_ref().unwrap_or(&places.document);
-    match &body.mesh {
-        MeshSource::Cube { cells, edge, split } => {
-            let cube = structured::cube(*cells, *edge, *split);
-            let mesh = cube.map_err(|error| place.value_fault("cube", error.into()))?;
-            Ok((mesh, Vec::new()))
-        }
-        MeshSource::File(written) => {
-            let fault = |fault| place.value_fault("file", fault);
-            let path = place.scene().resolve(written);
-            let mesh = sinew_mesh::read_msh_file(path).map_err(|error| fault(error.into()))?;
-            let warnings = mesh.warnings.iter().map(ToString::to_string).collect();
-            let tets = mesh.to_tet_mesh().map_err(|error| fault(error.into()))?;
-            Ok((tets, warnings))
-        }
-    }
 }
 
 /// The error at the place of what the model was refused for.

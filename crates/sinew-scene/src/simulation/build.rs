@@ -6,7 +6,8 @@ use sinew_core::{LinearModel, LinearOperators, Load, OperatorError, Ramp, State}
 use sinew_mesh::TetMesh;
 
 use super::Simulation;
-use super::body::{self, MeshAndWarnings};
+use super::body;
+use super::mesh::{self, MeshAndWarnings};
 use super::model::SceneModel;
 use super::{probe, start, step};
 use crate::error::{Fault, SceneError};
@@ -18,7 +19,7 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with the line of the scene that cannot be fulfilled.
     pub fn build(self) -> Result<Simulation, SceneError> {
-        self.assemble(body::mesh)
+        self.assemble(mesh::of_body)
     }
 
     /// As [`Scene::build`], on the given mesh (m) in place of the one that `[mesh]` names. An
@@ -32,11 +33,11 @@ impl Scene {
 
     fn assemble(
         self,
-        mesh: impl FnOnce(&Body, &Places) -> Result<MeshAndWarnings, SceneError>,
+        make_mesh: impl FnOnce(&Body, &Places) -> Result<MeshAndWarnings, SceneError>,
     ) -> Result<Simulation, SceneError> {
         let (model, initial, probes) = match self.subject() {
             Subject::Body(body) => {
-                let mesh = mesh(body, self.places())?;
+                let mesh = make_mesh(body, self.places())?;
                 let model = body::build(body, mesh, self.places())?;
                 let initial = start::state(body, self.places(), &model)?;
                 let probes = probe::of_body(&body.probes, self.places(), &model)?;

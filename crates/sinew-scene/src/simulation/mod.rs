@@ -4,6 +4,7 @@ mod body;
 mod build;
 mod load_problems;
 mod loads;
+mod mesh;
 mod model;
 mod motion_table;
 mod probe;

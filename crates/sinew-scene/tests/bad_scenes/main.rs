@@ -52,6 +52,7 @@ fn message(error: &SceneError) -> String {
 fn the_scenes_are_good_before_they_are_changed() {
     for text in [
         scenes::BODY,
+        scenes::BLOCK,
         scenes::DOTTED,
         scenes::MOVED,
         scenes::PLACED,
@@ -135,6 +136,7 @@ fn is_of_the_whole_document(error: &SceneError) -> bool {
 fn a_scene_spoilt_anywhere_gives_a_plan_or_one_line_with_file_and_line() {
     for text in [
         scenes::BODY,
+        scenes::BLOCK,
         scenes::DOTTED,
         scenes::MOVED,
         scenes::PLACED,

@@ -112,3 +112,21 @@ duration = 1.0
 integrator = "newmark"
 dt = 0.02
 "#;
+
+/// A block in millimetres that is scaled and turned.
+pub(crate) const BLOCK: &str = r#"[mesh]
+block = { cells = [3, 1, 2], size = [300, 50, 100], split = "mirrored" }
+scale = 0.001
+rotate = { axis = [0, 0, 1], degrees = 90 }
+[[region]]
+density = 1000.0
+model = "linear"
+youngs_modulus = 1e4
+poissons_ratio = 0.3
+[[fixed]]
+group = "bottom"
+[run]
+duration = 0.1
+integrator = "newmark"
+dt = 0.02
+"#;

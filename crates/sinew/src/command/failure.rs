@@ -184,6 +184,11 @@ impl Failure {
         if !matches!(self, Self::Findings) {
             complain(&format!("error: {self}"));
         }
+        if let Self::Mesh(error) = self
+            && let Some(advice) = error.advice()
+        {
+            complain(&format!("help: {advice}"));
+        }
         if let Self::Scene(error) = self
             && let Some(report) = excerpt(error)
         {
