@@ -118,7 +118,7 @@ mod volumes;
 
 pub use error::{Cause, FemError, Item};
 pub use law::{Law, SpringRule};
-pub use model::{Deformation, FieldError, Model, NodalForces, SupportMotion};
+pub use model::{DeformedTet, FieldError, Model, NodalForces, SupportMotion};
 pub use on::On;
 pub use problem::{Course, Fixed, LoadKind, LoadSpec, Moving, Problem, Rayleigh, Region};
 pub use report::{LoadFacts, ModelReport, MoveFacts, RegionFacts};

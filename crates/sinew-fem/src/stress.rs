@@ -45,9 +45,41 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
     (0.5 * normal + 3.0 * shear).sqrt()
 }
 
+/// The largest principal value, by its size, of a symmetric tensor (Smith, Comm. ACM 4, 1961).
+#[must_use]
+pub fn largest_principal(tensor: &[f64; 6]) -> f64 {
+    let [xx, yy, zz, xy, yz, zx] = *tensor;
+    let mean = (xx + yy + zz) / 3.0;
+    let (xx, yy, zz) = (xx - mean, yy - mean, zz - mean);
+    let off = xy * xy + yz * yz + zx * zx;
+    let p = ((xx * xx + yy * yy + zz * zz + 2.0 * off) / 6.0).sqrt();
+    if p == 0.0 {
+        return mean.abs();
+    }
+    let determinant =
+        xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * zx) + zx * (xy * yz - yy * zx);
+    let angle = (determinant / (2.0 * p * p * p)).clamp(-1.0, 1.0).acos() / 3.0;
+    let third = 2.0 * std::f64::consts::FRAC_PI_3;
+    let values = [angle, angle + third, angle - third].map(|a| mean + 2.0 * p * a.cos());
+    values
+        .iter()
+        .fold(0.0, |largest, value| value.abs().max(largest))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn principal_values_of_tension_shear_and_pressure() {
+        assert!((largest_principal(&[-0.1, -0.1, -0.1, 0.0, 0.0, 0.0]) - 0.1).abs() < 1e-15);
+        assert!((largest_principal(&[0.0, 0.3, -0.05, 0.0, 0.0, 0.0]) - 0.3).abs() < 1e-15);
+        for axis in 3..6 {
+            let mut shear = [0.0; 6];
+            shear[axis] = 0.1;
+            assert!((largest_principal(&shear) - 0.1).abs() < 1e-15);
+        }
+    }
 
     #[test]
     fn von_mises_of_tension_shear_and_pressure() {

@@ -50,6 +50,31 @@ fn gradients_of(edges: Matrix3<f64>) -> Option<Matrix4x3<f64>> {
     Some(gradients)
 }
 
+/// The gradient of a displacement (m), given at the vertices: row i, column j is `du_i/dx_j`. Not finite where the
+/// vertices lie in one plane.
+pub(crate) fn displacement_gradient(
+    [a, b, c, d]: &[[f64; 3]; 4],
+    [u_a, u_b, u_c, u_d]: &[[f64; 3]; 4],
+) -> [[f64; 3]; 3] {
+    let edge = |to: &[f64; 3], from: &[f64; 3]| [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+    let cross = |p: [f64; 3], q: [f64; 3]| {
+        [
+            p[1] * q[2] - p[2] * q[1],
+            p[2] * q[0] - p[0] * q[2],
+            p[0] * q[1] - p[1] * q[0],
+        ]
+    };
+    let (p, q, r) = (edge(b, a), edge(c, a), edge(d, a));
+    // Rows of the inverse of the matrix whose columns are the edges, up to its determinant.
+    let (of_p, of_q, of_r) = (cross(q, r), cross(r, p), cross(p, q));
+    let inverse = (p[0] * of_p[0] + p[1] * of_p[1] + p[2] * of_p[2]).recip();
+    let (u_p, u_q, u_r) = (edge(u_b, u_a), edge(u_c, u_a), edge(u_d, u_a));
+    let entry =
+        |i: usize, j: usize| inverse * (u_p[i] * of_p[j] + u_q[i] * of_q[j] + u_r[i] * of_r[j]);
+    let row = |i: usize| [entry(i, 0), entry(i, 1), entry(i, 2)];
+    [row(0), row(1), row(2)]
+}
+
 /// Stiffness matrix (N/m), 12 x 12, row-major and node-major, of an isotropic linear elastic
 /// tetrahedron (Bathe, Finite Element Procedures, section 5.3, with one constant strain):
 /// the 3x3 block of vertices a, b is `V (lambda g_a g_b' + mu g_b g_a' + mu g_a.g_b I)`, g being

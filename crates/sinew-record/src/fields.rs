@@ -11,6 +11,7 @@ use sinew_scene::OutputSettings;
 use sinew_scene::output::OwnedFolder;
 
 use crate::error::RecordRunError;
+use crate::progress::Seen;
 
 /// The file that lists the frames with their times.
 pub(crate) const SERIES: &str = "fields.pvd";
@@ -94,6 +95,24 @@ impl Surface {
     }
 }
 
+/// Fields on tetrahedra.
+#[derive(Debug, Default)]
+struct Tets {
+    strain: Vec<f32>,
+    stress: Vec<f32>,
+    von_mises: Vec<f32>,
+    inverted: Vec<u8>,
+}
+
+impl Tets {
+    fn clear(&mut self) {
+        self.strain.clear();
+        self.stress.clear();
+        self.von_mises.clear();
+        self.inverted.clear();
+    }
+}
+
 /// Writes frames, and keeps the room for them.
 #[derive(Debug)]
 pub(crate) struct Fields<'a> {
@@ -101,7 +120,7 @@ pub(crate) struct Fields<'a> {
     settings: &'a OutputSettings,
     u: Vec<[f64; 3]>,
     v: Vec<[f64; 3]>,
-    tensors: Vec<[f64; 6]>,
+    tets: Tets,
     /// Region of each tetrahedron, counted from 1.
     regions: Vec<u8>,
     /// Whether all regions have stress, which springs have not.
@@ -122,7 +141,7 @@ impl<'a> Fields<'a> {
             settings,
             u: vec![[0.0; 3]; nodes],
             v: vec![[0.0; 3]; nodes],
-            tensors: vec![[0.0; 6]; model.mesh().tets.len()],
+            tets: Tets::default(),
             regions: model.region_of().iter().map(number).collect(),
             stressed: !springs,
         }
@@ -133,19 +152,21 @@ impl<'a> Fields<'a> {
         &self.u
     }
 
-    /// Writes a frame.
+    /// Writes a frame, and sees what is largest in it.
     pub(crate) fn write(
         &mut self,
         folder: &OwnedFolder,
         frame: usize,
         surface: &Surface,
         moment: &Moment<'_>,
+        seen: &mut Seen,
     ) -> Result<(), RecordRunError> {
         let (model, t, u) = (self.model, moment.state.t(), &moment.state.u);
         let mut v = vec![0.0; u.len()];
         moment.velocity(&mut v)?;
         model.displacements_at(t, u, &mut self.u)?;
         model.velocities_at(t, &v, &mut self.v)?;
+        self.deform(t, seen)?;
         let accelerations = match self.settings.acceleration {
             true => Some(self.accelerations(moment, &v)?),
             false => None,
@@ -179,18 +200,20 @@ impl<'a> Fields<'a> {
         if let Some(accelerations) = &accelerations {
             point_data.push(Array::of_singles("acceleration", 3, of(accelerations)));
         }
-        model.strain(t, u, &mut self.tensors)?;
+        let Tets {
+            strain,
+            stress,
+            von_mises,
+            inverted,
+        } = &self.tets;
         let mut cell_data = vec![
             Array::of_flags("region", &self.regions[..]),
-            Array::of_flags("inverted", self.inverted()),
-            Array::of_singles("strain", 6, singles(self.tensors.iter().flatten().copied())),
+            Array::of_flags("inverted", &inverted[..]),
+            Array::of_singles("strain", 6, &strain[..]),
         ];
         if self.stressed {
-            model.stress(t, u, &mut self.tensors)?;
-            let equivalent = self.tensors.iter().map(stress::von_mises);
-            cell_data.push(Array::of_singles("von_mises", 1, singles(equivalent)));
-            let stress = singles(self.tensors.iter().flatten().copied());
-            cell_data.push(Array::of_singles("stress", 6, stress));
+            cell_data.push(Array::of_singles("von_mises", 1, &von_mises[..]));
+            cell_data.push(Array::of_singles("stress", 6, &stress[..]));
         }
         let grid = Grid {
             point_data,
@@ -200,18 +223,31 @@ impl<'a> Fields<'a> {
         write(folder, &name, &grid)
     }
 
-    /// Whether each tetrahedron has a volume of 0 or below.
-    fn inverted(&self) -> Vec<u8> {
-        let mesh = self.model.mesh();
-        let moved = |node: u32| -> [f64; 3] {
-            let (point, u) = (mesh.points[node as usize], self.u[node as usize]);
-            std::array::from_fn(|axis| point[axis] + u[axis])
-        };
-        let volume = |tet: &[u32; 4]| sinew_fem::tetra::signed_volume(&tet.map(moved));
-        let tets = mesh.tets.iter();
-        // A volume that is not a number is none.
-        tets.map(|tet| u8::from(!matches!(volume(tet), volume if volume > 0.0)))
-            .collect()
+    /// Makes the fields on tetrahedra of the displacement, and sees what is largest.
+    fn deform(&mut self, t: f64, seen: &mut Seen) -> Result<(), RecordRunError> {
+        let (mesh, tets) = (self.model.mesh(), &mut self.tets);
+        tets.clear();
+        let mut inverted = 0;
+        for (number, tet) in self.model.deformed_tets(&self.u)?.enumerate() {
+            let tag = || mesh.tet_tags[number];
+            let [xx, yy, zz, xy, yz, zx] = tet.strain;
+            // No principal strain is larger than this norm.
+            let norm = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx);
+            if norm > seen.strain.value.powi(2) {
+                seen.strain
+                    .see(stress::largest_principal(&tet.strain), t, tag);
+            }
+            seen.rotation.see(tet.rotation, t, tag);
+            inverted += usize::from(tet.is_inverted);
+            tets.inverted.push(u8::from(tet.is_inverted));
+            tets.strain.extend(tet.strain.map(|strain| strain as f32));
+            if let Some(tensor) = tet.stress {
+                tets.von_mises.push(stress::von_mises(&tensor) as f32);
+                tets.stress.extend(tensor.map(|stress| stress as f32));
+            }
+        }
+        seen.inverted = seen.inverted.max(inverted);
+        Ok(())
     }
 
     /// Accelerations of nodes that move by themselves; 0 for others.

@@ -22,7 +22,7 @@ const MOST_ROWS: usize = 10_000;
 const SMALL: usize = 30_000;
 
 /// Rows of energies and reactions of larger bodies: each costs about as much as several steps.
-const ROWS_OF_LARGE_BODIES: usize = 200;
+const ROWS_OF_LARGE_BODIES: usize = 100;
 
 /// Wall time between two looks at whether the run is to stop.
 const LOOK: Duration = Duration::from_millis(40);
@@ -203,9 +203,9 @@ impl RunRecorder<'_> {
         else {
             return Ok(());
         };
-        fields.write(self.folder, self.progress.frames, surface, moment)?;
-        self.progress.frames += 1;
         let (t, seen) = (moment.state.t(), &mut self.progress.seen);
+        fields.write(self.folder, self.progress.frames, surface, moment, seen)?;
+        self.progress.frames += 1;
         let sizes = fields.displacements().iter().map(|u| size(*u));
         let (mut node, mut most) = (0, 0.0);
         for (index, size) in sizes.enumerate() {
@@ -219,12 +219,6 @@ impl RunRecorder<'_> {
             self.largest.clear();
             self.largest.extend(moved);
         }
-        let found = body.model.deformation(t, &moment.state.u)?;
-        let tag = |tet: usize| body.mesh.tet_tags[tet];
-        seen.strain.see(found.strain, t, || tag(found.strained));
-        seen.rotation.see(found.rotation, t, || tag(found.rotated));
-        let inverted = moment.system.inverted_elements(t.into(), &moment.state.u);
-        seen.inverted = seen.inverted.max(inverted.unwrap_or(0));
         Ok(())
     }
 

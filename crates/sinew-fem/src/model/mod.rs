@@ -1,6 +1,6 @@
 //! The linear model of a body.
 
-mod deformation;
+mod deformed;
 mod energy;
 mod field_error;
 mod forces;
@@ -11,7 +11,7 @@ mod strain;
 mod support_motion;
 mod system;
 
-pub use deformation::Deformation;
+pub use deformed::DeformedTet;
 pub use field_error::FieldError;
 pub use forces::NodalForces;
 pub use support_motion::SupportMotion;

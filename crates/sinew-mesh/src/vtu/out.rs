@@ -68,22 +68,31 @@ impl Numbers<'_> {
     fn write(self, to: &mut impl Write) -> io::Result<()> {
         to.write_all(&self.byte_length().to_le_bytes())?;
         match self {
-            Numbers::F64(values) => values
-                .iter()
-                .try_for_each(|x| to.write_all(&x.to_le_bytes())),
-            Numbers::F32(values) => values
-                .iter()
-                .try_for_each(|x| to.write_all(&x.to_le_bytes())),
-            Numbers::I64(values) => values
-                .iter()
-                .try_for_each(|x| to.write_all(&x.to_le_bytes())),
+            Numbers::F64(values) => in_blocks(values, f64::to_le_bytes, to),
+            Numbers::F32(values) => in_blocks(values, f32::to_le_bytes, to),
+            Numbers::I64(values) => in_blocks(values, i64::to_le_bytes, to),
             Numbers::U8(values) => to.write_all(values),
-            Numbers::U32(lists) => {
-                let mut values = lists.iter().copied().flatten();
-                values.try_for_each(|x| to.write_all(&x.to_le_bytes()))
-            }
+            Numbers::U32(lists) => lists
+                .iter()
+                .try_for_each(|list| in_blocks(list, u32::to_le_bytes, to)),
         }
     }
+}
+
+/// Writes numbers as bytes, some hundred at a time: one by one they would take longer than the disk.
+fn in_blocks<T: Copy, const N: usize>(
+    values: &[T],
+    bytes: impl Fn(T) -> [u8; N],
+    to: &mut impl Write,
+) -> io::Result<()> {
+    let mut block = [[0; N]; 512];
+    for values in values.chunks(block.len()) {
+        for (place, value) in block.iter_mut().zip(values) {
+            *place = bytes(*value);
+        }
+        to.write_all(block[..values.len()].as_flattened())?;
+    }
+    Ok(())
 }
 
 pub(super) struct Out<W: Write> {

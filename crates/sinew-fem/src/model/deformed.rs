@@ -1,0 +1,57 @@
+//! Tetrahedra as a motion deforms them.
+
+use super::Model;
+use super::field_error::FieldError;
+use crate::tetra;
+
+/// A tetrahedron as a motion deforms it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeformedTet {
+    /// The small strain, in the order of [`Model::strain`].
+    pub strain: [f64; 6],
+    /// The stress (Pa) in the same order, see [`Model::stress`]; `None` where it is made of springs.
+    pub stress: Option<[f64; 6]>,
+    /// The rotation (rad), as far as it is small: half of the curl of the displacement.
+    pub rotation: f64,
+    /// Whether its volume is 0 or below, or not a number.
+    pub is_inverted: bool,
+}
+
+impl Model {
+    /// Each tetrahedron with this displacement (m) of the nodes of the mesh: all that a picture of the body takes, in
+    /// one pass.
+    ///
+    /// # Errors
+    /// [`FieldError::Length`] unless `displacement` has one entry for each node of the mesh.
+    pub fn deformed_tets<'a>(
+        &'a self,
+        displacement: &'a [[f64; 3]],
+    ) -> Result<impl Iterator<Item = DeformedTet> + 'a, FieldError> {
+        self.require_nodes("the displacement", displacement)?;
+        let tets = self.mesh.tets.iter().zip(&self.region_of);
+        Ok(tets.map(move |(nodes, region)| {
+            let vertices = tetra::vertices(&self.mesh.points, *nodes);
+            let d = tetra::displacement_gradient(&vertices, &tetra::vertices(displacement, *nodes));
+            let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = d;
+            let strain = [
+                xx,
+                yy,
+                zz,
+                (xy + yx) / 2.0,
+                (yz + zy) / 2.0,
+                (xz + zx) / 2.0,
+            ];
+            let curl = [zy - yz, xz - zx, yx - xy];
+            // The volume is that at rest, which is positive, times the determinant of 1 + d.
+            let (xx, yy, zz) = (1.0 + xx, 1.0 + yy, 1.0 + zz);
+            let ratio =
+                xx * (yy * zz - yz * zy) - xy * (yx * zz - yz * zx) + xz * (yx * zy - yy * zx);
+            DeformedTet {
+                strain,
+                stress: self.materials[*region as usize].stress(&strain),
+                rotation: 0.5 * curl.iter().map(|c| c * c).sum::<f64>().sqrt(),
+                is_inverted: ratio.is_nan() || ratio <= 0.0,
+            }
+        }))
+    }
+}
