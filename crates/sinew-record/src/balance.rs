@@ -94,14 +94,16 @@ impl<'a> Balance<'a> {
         (!body.problem.moves.is_empty()).then_some(&body.model)
     }
 
-    /// The next row.
-    pub(crate) fn row(&mut self, moment: &Moment<'_>) -> Result<Energies, RecordRunError> {
-        let mut v = vec![0.0; moment.state.u.len()];
-        moment.velocity(&mut v)?;
+    /// The next row, with the velocity `v` (m/s) at its time.
+    pub(crate) fn row(
+        &mut self,
+        moment: &Moment<'_>,
+        v: &[f64],
+    ) -> Result<Energies, RecordRunError> {
         let here = LastRow {
             t: moment.state.t(),
             u: moment.state.u.clone(),
-            v,
+            v: v.to_vec(),
         };
         let acting = self.acting(&here)?;
         let (kinetic, elastic) = self.stored(&here, &acting)?;

@@ -152,23 +152,21 @@ impl<'a> Fields<'a> {
         &self.u
     }
 
-    /// Writes a frame, and sees what is largest in it.
+    /// Writes a frame of a moment with the velocity (m/s) at its time, and sees what is largest in it.
     pub(crate) fn write(
         &mut self,
         folder: &OwnedFolder,
         frame: usize,
         surface: &Surface,
-        moment: &Moment<'_>,
+        (moment, v): (&Moment<'_>, &[f64]),
         seen: &mut Seen,
     ) -> Result<(), RecordRunError> {
         let (model, t, u) = (self.model, moment.state.t(), &moment.state.u);
-        let mut v = vec![0.0; u.len()];
-        moment.velocity(&mut v)?;
         model.displacements_at(t, u, &mut self.u)?;
-        model.velocities_at(t, &v, &mut self.v)?;
+        model.velocities_at(t, v, &mut self.v)?;
         self.deform(t, seen)?;
         let accelerations = match self.settings.acceleration {
-            true => Some(self.accelerations(moment, &v)?),
+            true => Some(self.accelerations(moment, v)?),
             false => None,
         };
         let name = frame_name(frame);

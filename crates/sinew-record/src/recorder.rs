@@ -123,6 +123,8 @@ pub(crate) struct RunRecorder<'a> {
     pub(crate) watched: usize,
     pub(crate) pace: Pace,
     pub(crate) line: String,
+    /// Velocity (m/s) of the moment that is being written.
+    pub(crate) v: Vec<f64>,
 }
 
 /// How often a run looks up from its steps.
@@ -161,23 +163,29 @@ impl Pace {
 impl RunRecorder<'_> {
     /// Writes what is due after this step.
     fn write(&mut self, step: usize, moment: &Moment<'_>) -> Result<Verdict, RecordRunError> {
-        if self.schedules.energy.is_due(step) {
-            let row = self.balance.row(moment)?;
+        let energy = self.schedules.energy.is_due(step);
+        let frame = self
+            .schedules
+            .fields
+            .is_some_and(|fields| fields.is_due(step));
+        if energy || frame {
+            // Of a staggered method it takes a force evaluation.
+            self.v.resize(moment.state.u.len(), 0.0);
+            moment.velocity(&mut self.v)?;
+        }
+        if energy {
+            let row = self.balance.row(moment, &self.v)?;
             let kinetic = &mut self.progress.seen.kinetic;
             *kinetic = [kinetic[0].max(row.kinetic), row.kinetic];
             tables::energy_row(&mut self.line, &row);
             self.tables.energy.push(&self.line)?;
             if let (Some(reactions), Some(file)) = (&mut self.reactions, &mut self.tables.reactions)
             {
-                reactions.row(&mut self.line, moment)?;
+                reactions.row(&mut self.line, moment, &self.v)?;
                 file.push(&self.line)?;
             }
         }
-        if self
-            .schedules
-            .fields
-            .is_some_and(|fields| fields.is_due(step))
-        {
+        if frame {
             self.frame(moment)?;
         }
         self.progress.steps = step;
@@ -204,7 +212,13 @@ impl RunRecorder<'_> {
             return Ok(());
         };
         let (t, seen) = (moment.state.t(), &mut self.progress.seen);
-        fields.write(self.folder, self.progress.frames, surface, moment, seen)?;
+        fields.write(
+            self.folder,
+            self.progress.frames,
+            surface,
+            (moment, &self.v),
+            seen,
+        )?;
         self.progress.frames += 1;
         let sizes = fields.displacements().iter().map(|u| size(*u));
         let (mut node, mut most) = (0, 0.0);

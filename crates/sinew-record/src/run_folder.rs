@@ -162,6 +162,7 @@ impl RunFolder {
             watched: before,
             pace: Pace::new(before),
             line: String::new(),
+            v: Vec::new(),
         };
         let report = simulate(system, integrator, &mut state, &run, &mut recorder)?;
         recorder.tables.secure()?;

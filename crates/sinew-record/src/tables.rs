@@ -169,14 +169,13 @@ impl<'a> Reactions<'a> {
         &mut self,
         out: &mut String,
         moment: &Moment<'_>,
+        v: &[f64],
     ) -> Result<(), RecordRunError> {
         let Some(body) = self.simulation.model().body() else {
             return Ok(());
         };
         let (t, u) = (moment.state.t(), &moment.state.u);
-        let mut v = vec![0.0; u.len()];
-        moment.velocity(&mut v)?;
-        body.model.reactions(t, u, &v, &mut self.forces)?;
+        body.model.reactions(t, u, v, &mut self.forces)?;
         body.model.displacements_at(t, u, &mut self.u)?;
         out.clear();
         push(out, t);
