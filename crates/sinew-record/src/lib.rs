@@ -34,6 +34,7 @@
 mod balance;
 mod checkpoint;
 mod companion;
+mod compare;
 mod error;
 mod fields;
 mod progress;
@@ -47,6 +48,7 @@ mod summary;
 mod tables;
 
 pub use companion::Companion;
+pub use compare::{CompareError, Comparison, Difference, compare};
 pub use error::RecordRunError;
 pub use request::Request;
 pub use run_end::{Ended, RunEnd};

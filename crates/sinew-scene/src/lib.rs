@@ -37,6 +37,7 @@ mod error;
 mod nearest;
 mod number;
 pub mod output;
+mod overrides;
 mod plan;
 mod probe_csv;
 mod scene;
@@ -44,6 +45,7 @@ mod simulation;
 mod source;
 
 pub use error::{Fault, NoStableStep, SceneError, StableStepError};
+pub use overrides::OverrideError;
 pub use plan::{Plan, PlanSection};
 pub use probe_csv::ProbeCsv;
 pub use scene::{

@@ -5,5 +5,6 @@
 
 mod balance_of_energy;
 mod common;
+mod comparisons;
 mod resumed_runs;
 mod tables_and_fields;

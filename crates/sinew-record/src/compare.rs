@@ -1,0 +1,122 @@
+//! Differences between the results of two runs.
+
+mod frames;
+mod tables;
+
+use std::path::{Path, PathBuf};
+
+use crate::tables::{ENERGY, PROBES, REACTIONS};
+
+/// The largest difference between two results in one quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Difference {
+    /// The file or series it is in.
+    pub of: &'static str,
+    /// The quantity: a probe, a column, a field.
+    pub what: String,
+    /// Its unit.
+    pub unit: String,
+    /// The largest difference; of vectors its length.
+    pub largest: f64,
+    /// That over the largest value of the quantity in the first result; 0 where both are 0.
+    pub relative: f64,
+    /// Its time (s).
+    pub t: f64,
+    /// Its node, by its number in the mesh from 0, for a field.
+    pub node: Option<usize>,
+}
+
+/// The differences between two results.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Comparison {
+    /// Of each quantity that both have.
+    pub differences: Vec<Difference>,
+    /// What could not be compared, one sentence each.
+    pub left_out: Vec<String>,
+}
+
+/// A reason for which two results cannot be compared.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// A folder without a finished or interrupted run.
+    #[error("{}: no run has come to an end there; name the folder that `--out` named", path.display())]
+    NoRun {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A file that cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// A file that no run has written.
+    #[error("{}: {reason}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+/// Compares the results in two folders: tables at the times of the first (those of the second between its rows on
+/// straight lines), displacements and velocities of frames at equal times.
+///
+/// # Errors
+/// [`CompareError`] for a folder without a result and for damaged files.
+pub fn compare(one: &Path, other: &Path) -> Result<Comparison, CompareError> {
+    for path in [one, other] {
+        if !path.join(crate::summary::NAME).is_file() {
+            let path = path.to_owned();
+            return Err(CompareError::NoRun { path });
+        }
+    }
+    let mut comparison = Comparison::default();
+    for name in [PROBES, ENERGY, REACTIONS] {
+        tables::compare(&mut comparison, name, one, other)?;
+    }
+    frames::compare(&mut comparison, one, other)?;
+    Ok(comparison)
+}
+
+impl Comparison {
+    /// The largest of all relative differences.
+    #[must_use]
+    pub fn largest_relative(&self) -> f64 {
+        let relative = self
+            .differences
+            .iter()
+            .map(|difference| difference.relative);
+        // What is not a number differs.
+        relative.fold(0.0, |largest, relative| match relative.is_nan() {
+            true => f64::INFINITY,
+            false => relative.max(largest),
+        })
+    }
+}
+
+/// A difference over the size of what differs.
+fn relative(difference: f64, size: f64) -> f64 {
+    match difference == 0.0 {
+        true => 0.0,
+        false => difference / size,
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, CompareError> {
+    std::fs::read(path).map_err(|source| CompareError::Unreadable {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn damaged(path: &Path, reason: impl Into<String>) -> CompareError {
+    CompareError::Damaged {
+        path: path.to_owned(),
+        reason: reason.into(),
+    }
+}

@@ -1,0 +1,133 @@
+//! Differences of fields.
+
+use std::path::Path;
+
+use super::{CompareError, Comparison, Difference, damaged, read, relative};
+use crate::fields::SERIES;
+
+/// Fields that are compared, with their units.
+const FIELDS: [(&str, &str); 2] = [("displacement", "m"), ("velocity", "m/s")];
+
+/// Share of a time by which two frames may be apart and still be at the same one: steps are multiplied, not added up.
+const SAME_TIME: f64 = 1e-9;
+
+/// Compares the frames at equal times.
+pub(super) fn compare(
+    comparison: &mut Comparison,
+    one: &Path,
+    other: &Path,
+) -> Result<(), CompareError> {
+    let (has_one, has_other) = (one.join(SERIES).exists(), other.join(SERIES).exists());
+    if !has_one || !has_other {
+        if has_one != has_other {
+            comparison.left_out.push("only one has fields".to_owned());
+        }
+        return Ok(());
+    }
+    let (frames, others) = (series(one)?, series(other)?);
+    let mut found = FIELDS.map(|_| (0.0_f64, 0.0, 0, 0.0_f64));
+    let mut alone = 0;
+    for (t, file) in &frames {
+        let same = |(time, _): &&(f64, String)| (time - t).abs() <= SAME_TIME * t.abs();
+        let Some((_, counterpart)) = others.iter().find(same) else {
+            alone += 1;
+            continue;
+        };
+        let (path, counterpart) = (one.join(file), other.join(counterpart));
+        let (bytes, others) = (read(&path)?, read(&counterpart)?);
+        for ((name, _), (largest, at, node, size)) in FIELDS.iter().zip(&mut found) {
+            let (field, others) = (
+                vectors(&path, &bytes, name)?,
+                vectors(&counterpart, &others, name)?,
+            );
+            if field.len() != others.len() {
+                let (a, b) = (field.len(), others.len());
+                let reason = format!("fields: {a} and {b} nodes are not those of the same mesh");
+                comparison.left_out.push(reason);
+                return Ok(());
+            }
+            for (number, (a, b)) in field.iter().zip(&others).enumerate() {
+                let difference = length([a[0] - b[0], a[1] - b[1], a[2] - b[2]]);
+                *size = size.max(length(*a));
+                if difference > *largest || difference.is_nan() {
+                    (*largest, *at, *node) = (difference, *t, number);
+                }
+            }
+        }
+    }
+    if alone > 0 {
+        comparison.left_out.push(format!(
+            "fields: {alone} frames of the first have none of the second at their time"
+        ));
+    }
+    if alone < frames.len() {
+        let differences = FIELDS.iter().zip(found);
+        comparison.differences.extend(differences.map(
+            |((name, unit), (largest, t, node, size))| Difference {
+                of: "fields",
+                what: (*name).to_owned(),
+                unit: (*unit).to_owned(),
+                largest,
+                relative: relative(largest, size),
+                t,
+                node: Some(node),
+            },
+        ));
+    }
+    Ok(())
+}
+
+fn length(v: [f64; 3]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Times (s) and files of the frames of a result.
+fn series(folder: &Path) -> Result<Vec<(f64, String)>, CompareError> {
+    let path = folder.join(SERIES);
+    let text = String::from_utf8_lossy(&read(&path)?).into_owned();
+    let mut frames = Vec::new();
+    for line in text.lines().filter(|line| line.starts_with("<DataSet")) {
+        let frame = attribute(line, "timestep").and_then(|t| t.parse().ok());
+        let frame = frame.zip(attribute(line, "file"));
+        let (t, file) = frame.ok_or_else(|| damaged(&path, "expected a time and a file"))?;
+        frames.push((t, file.to_owned()));
+    }
+    Ok(frames)
+}
+
+/// A field of vectors of a frame as a run writes it: single precision, appended to the text.
+fn vectors(path: &Path, bytes: &[u8], name: &str) -> Result<Vec<[f64; 3]>, CompareError> {
+    let wrong = || {
+        damaged(
+            path,
+            format!("expected a field `{name}` as a run writes it"),
+        )
+    };
+    let marker = bytes.windows(2).position(|pair| pair == b"\n_");
+    let (text, data) = bytes.split_at(marker.ok_or_else(wrong)? + 2);
+    let text = str::from_utf8(text).map_err(|_| wrong())?;
+    let array = text
+        .lines()
+        .find(|line| {
+            attribute(line, "Name") == Some(name) && attribute(line, "type") == Some("Float32")
+        })
+        .ok_or_else(wrong)?;
+    let offset: usize = attribute(array, "offset")
+        .and_then(|offset| offset.parse().ok())
+        .ok_or_else(wrong)?;
+    let data = data.get(offset..).ok_or_else(wrong)?;
+    let (length, data) = data.split_first_chunk::<8>().ok_or_else(wrong)?;
+    let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|_| wrong())?;
+    let data = data.get(..length).ok_or_else(wrong)?;
+    let numbers = data.as_chunks::<4>().0.iter();
+    let numbers: Vec<f64> = numbers
+        .map(|bytes| f64::from(f32::from_le_bytes(*bytes)))
+        .collect();
+    Ok(numbers.as_chunks::<3>().0.to_vec())
+}
+
+/// The value of an attribute of a tag.
+fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
+    let begin = format!(" {name}=\"");
+    tag.split(&begin).nth(1)?.split('"').next()
+}

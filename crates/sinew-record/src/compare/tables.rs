@@ -1,0 +1,152 @@
+//! Differences of tables.
+
+use std::path::Path;
+
+use super::{CompareError, Comparison, Difference, damaged, read, relative};
+
+/// A table over time.
+struct Table {
+    names: Vec<String>,
+    /// Rows of equal length, the time first.
+    rows: Vec<Vec<f64>>,
+}
+
+impl Table {
+    fn read(path: &Path) -> Result<Self, CompareError> {
+        let content = read(path)?;
+        let text = String::from_utf8_lossy(&content);
+        let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+        let names: Vec<String> = match lines.next() {
+            Some(head) => head.split(',').map(str::to_owned).collect(),
+            None => return Err(damaged(path, "expected a line of column names")),
+        };
+        let mut rows = Vec::new();
+        for line in lines {
+            let values = line.split(',').map(str::parse);
+            let row = values.collect::<Result<Vec<f64>, _>>();
+            match row {
+                Ok(row) if row.len() == names.len() => rows.push(row),
+                _ => {
+                    return Err(damaged(
+                        path,
+                        format!("expected {} numbers: {line}", names.len()),
+                    ));
+                }
+            }
+        }
+        Ok(Self { names, rows })
+    }
+
+    /// Values at a time (s), on a straight line between rows; `None` beyond them.
+    fn at(&self, t: f64) -> Option<Vec<f64>> {
+        let after = self.rows.partition_point(|row| row[0] < t);
+        let next = self.rows.get(after)?;
+        if next[0] == t {
+            return Some(next.clone());
+        }
+        let before = self.rows.get(after.checked_sub(1)?)?;
+        let share = (t - before[0]) / (next[0] - before[0]);
+        let values = before.iter().zip(next);
+        Some(values.map(|(a, b)| a + share * (b - a)).collect())
+    }
+}
+
+/// Columns that belong to one quantity: a vector's components, or one column.
+struct Quantity {
+    name: String,
+    unit: String,
+    columns: Vec<[usize; 2]>,
+}
+
+/// Compares a table that both results may have.
+pub(super) fn compare(
+    comparison: &mut Comparison,
+    name: &'static str,
+    one: &Path,
+    other: &Path,
+) -> Result<(), CompareError> {
+    let (one, other) = (one.join(name), other.join(name));
+    match (one.exists(), other.exists()) {
+        (true, true) => {}
+        (false, false) => return Ok(()),
+        _ => {
+            comparison.left_out.push(format!("only one has {name}"));
+            return Ok(());
+        }
+    }
+    let (one, other) = (Table::read(&one)?, Table::read(&other)?);
+    let quantities = quantities(&one, &other);
+    let alone = |a: &Table, b: &Table| {
+        a.names
+            .iter()
+            .filter(|name| !b.names.contains(name))
+            .count()
+    };
+    let alone = alone(&one, &other) + alone(&other, &one);
+    if alone > 0 {
+        comparison
+            .left_out
+            .push(format!("{name}: {alone} columns are in one of them only"));
+    }
+    let mut beyond = 0;
+    let mut found: Vec<(f64, f64, f64)> = vec![(0.0, 0.0, 0.0); quantities.len()];
+    for row in &one.rows {
+        let Some(others) = other.at(row[0]) else {
+            beyond += 1;
+            continue;
+        };
+        for (quantity, (largest, t, size)) in quantities.iter().zip(&mut found) {
+            let columns = quantity.columns.iter();
+            let length = |of: &dyn Fn(&[usize; 2]) -> f64| {
+                columns.clone().map(|c| of(c).powi(2)).sum::<f64>().sqrt()
+            };
+            let difference = length(&|[a, b]| row[*a] - others[*b]);
+            *size = size.max(length(&|[a, _]| row[*a]));
+            if difference > *largest || difference.is_nan() {
+                (*largest, *t) = (difference, row[0]);
+            }
+        }
+    }
+    if beyond > 0 {
+        comparison.left_out.push(format!(
+            "{name}: {beyond} rows of the first are beyond those of the second"
+        ));
+    }
+    let differences = quantities.into_iter().zip(found);
+    comparison.differences.extend(
+        differences.map(|(quantity, (largest, t, size))| Difference {
+            of: name,
+            what: quantity.name,
+            unit: quantity.unit,
+            largest,
+            relative: relative(largest, size),
+            t,
+            node: None,
+        }),
+    );
+    Ok(())
+}
+
+/// The quantities that both tables have.
+fn quantities(one: &Table, other: &Table) -> Vec<Quantity> {
+    let mut quantities: Vec<Quantity> = Vec::new();
+    for (place, column) in one.names.iter().enumerate().skip(1) {
+        let Some(counterpart) = other.names.iter().position(|name| name == column) else {
+            continue;
+        };
+        let (name, unit) = column.rsplit_once('_').unwrap_or((column, ""));
+        let component = ["_x", "_y", "_z"]
+            .iter()
+            .find_map(|axis| name.strip_suffix(axis));
+        let name = component.unwrap_or(name);
+        match quantities.iter_mut().find(|quantity| quantity.name == name) {
+            Some(quantity) => quantity.columns.push([place, counterpart]),
+            None => quantities.push(Quantity {
+                name: name.to_owned(),
+                unit: unit.to_owned(),
+                columns: vec![[place, counterpart]],
+            }),
+        }
+    }
+    quantities
+}

@@ -1,0 +1,120 @@
+//! Differences between results are found where they are.
+
+use std::fs;
+
+use sinew_record::compare;
+
+use crate::common::{cube, run, table};
+
+fn scene(dt: &str, pressure: &str) -> String {
+    format!(
+        "[[fixed]]\ngroup = \"bottom\"\n[[load]]\ngroup = \"top\"\npressure = {pressure}\n[run]\nduration = 0.2\n\
+         integrator = \"newmark\"\ndt = {dt}\n[[probe]]\nname = \"p\"\npoint = [0.05, 0.05, 0.1]\n[output]\n\
+         fields = {{ frames = 4 }}\n"
+    )
+}
+
+#[test]
+fn a_run_differs_from_itself_by_nothing_and_from_twice_the_load_by_all() {
+    let place = tempfile::tempdir().unwrap();
+    let path = |name: &str| place.path().join(name);
+    for (name, dt, pressure) in [
+        ("one", "0.005", "50.0"),
+        ("same", "0.005", "50.0"),
+        ("twice", "0.005", "100.0"),
+        ("fine", "0.0025", "50.0"),
+    ] {
+        run(&path(name), &cube(&scene(dt, pressure)), &mut ());
+    }
+    let same = compare(&path("one"), &path("same")).unwrap();
+    assert_eq!(same.largest_relative(), 0.0);
+    assert!(same.left_out.is_empty(), "{:?}", same.left_out);
+    let quantities: Vec<(&str, &str)> = same
+        .differences
+        .iter()
+        .map(|difference| (difference.of, difference.what.as_str()))
+        .collect();
+    for quantity in [
+        ("probes.csv", "p_u"),
+        ("energy.csv", "kinetic"),
+        ("reactions.csv", "fixed_1_bottom_f"),
+        ("fields", "displacement"),
+        ("fields", "velocity"),
+    ] {
+        assert!(
+            quantities.contains(&quantity),
+            "{quantity:?} in {quantities:?}"
+        );
+    }
+    // A linear body moves twice as far under twice the load, and stores four times the energy.
+    let twice = compare(&path("one"), &path("twice")).unwrap();
+    for difference in &twice.differences {
+        let expected = match difference.what.as_str() {
+            "p_u" | "displacement" | "velocity" => 1.0,
+            "kinetic" | "elastic" => 3.0,
+            _ => continue,
+        };
+        assert!(
+            (difference.relative - expected).abs() < 1e-5,
+            "{difference:?}"
+        );
+    }
+    // The largest is where the probe is farthest out.
+    let probes = table(&path("one").join("probes.csv"));
+    let size = |row: usize| -> f64 {
+        let axes = ["p_u_x_m", "p_u_y_m", "p_u_z_m"].iter();
+        axes.map(|axis| probes[*axis][row].powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    let farthest = (0..probes["t_s"].len())
+        .max_by(|a, b| size(*a).total_cmp(&size(*b)))
+        .unwrap();
+    let found = twice
+        .differences
+        .iter()
+        .find(|difference| difference.what == "p_u")
+        .unwrap();
+    assert_eq!(found.t, probes["t_s"][farthest]);
+    assert!((found.largest - size(farthest)).abs() < 1e-12);
+    // Half the step: a quarter of an error of second order is left, and every other row has a counterpart.
+    let fine = compare(&path("one"), &path("fine")).unwrap();
+    let relative = fine.largest_relative();
+    assert!(
+        relative > 1e-4 && fine.left_out.is_empty(),
+        "{relative} {:?}",
+        fine.left_out
+    );
+}
+
+#[test]
+fn what_cannot_be_compared_is_said() {
+    let place = tempfile::tempdir().unwrap();
+    let path = |name: &str| place.path().join(name);
+    run(&path("one"), &cube(&scene("0.005", "50.0")), &mut ());
+    let longer = scene("0.005", "50.0")
+        .replace("0.2", "0.4")
+        .replace("name = \"p\"", "name = \"q\"");
+    run(&path("other"), &cube(&longer), &mut ());
+    let comparison = compare(&path("other"), &path("one")).unwrap();
+    let said = comparison.left_out.join("; ");
+    assert!(said.contains("6 columns are in one of them only"), "{said}");
+    assert!(
+        said.contains("energy.csv: 40 rows of the first are beyond"),
+        "{said}"
+    );
+    assert!(said.contains("2 frames of the first have none"), "{said}");
+
+    let refused = compare(place.path(), &path("one")).unwrap_err().to_string();
+    assert!(
+        refused.contains("no run has come to an end there"),
+        "{refused}"
+    );
+    let frame = path("one").join("fields/frame-00001.vtu");
+    fs::write(&frame, "no frame").unwrap();
+    let refused = compare(&path("one"), &path("one")).unwrap_err().to_string();
+    assert!(
+        refused.contains("frame-00001.vtu: expected a field `displacement`"),
+        "{refused}"
+    );
+}

@@ -1,0 +1,245 @@
+//! Values that a command line sets in a scene.
+
+use toml_edit::{DocumentMut, Item, TableLike, Value};
+
+use crate::nearest::nearest;
+use crate::source::SceneSource;
+
+/// A reason for which a value cannot be set in a scene.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OverrideError {
+    /// A text without a key and a value.
+    #[error("`{text}`: expected KEY=VALUE, such as run.dt=0.01 or region.1.youngs_modulus=4000")]
+    Form {
+        /// The text.
+        text: String,
+    },
+    /// A scene that is not TOML.
+    #[error("the scene is not TOML: {message}")]
+    Syntax {
+        /// The message of the TOML parser.
+        message: String,
+    },
+    /// A table that the scene does not have.
+    #[error("`{path}`: the scene has no `{missing}`{}", did_you_mean(nearest))]
+    Missing {
+        /// The whole key.
+        path: String,
+        /// The part that is not there.
+        missing: String,
+        /// The most similar name that is there.
+        nearest: Option<String>,
+    },
+    /// A number that is not that of a table in a list.
+    #[error("`{path}`: the scene has {count} of `{list}`, counted from 1")]
+    Number {
+        /// The whole key.
+        path: String,
+        /// The list.
+        list: String,
+        /// The number of its tables.
+        count: usize,
+    },
+    /// A key that leads into a value, or ends at a table.
+    #[error("`{path}`: `{part}` is {found}, expected {expected}")]
+    Kind {
+        /// The whole key.
+        path: String,
+        /// The part at fault.
+        part: String,
+        /// What it is.
+        found: &'static str,
+        /// What it should be.
+        expected: &'static str,
+    },
+}
+
+fn did_you_mean(nearest: &Option<String>) -> String {
+    match nearest {
+        Some(name) => format!("; did you mean `{name}`?"),
+        None => String::new(),
+    }
+}
+
+impl SceneSource {
+    /// The scene with other values: `KEY=VALUE` each, the key's parts parted by dots, tables of a list by their numbers
+    /// from 1 on. A value is TOML, or else a string. A key that its table does not have is added to it; all else of the
+    /// text stays as it is.
+    ///
+    /// ```
+    /// use sinew_scene::SceneSource;
+    ///
+    /// let scene = SceneSource::new("a.toml", "[[region]] # liver\nyoungs_modulus = 3500.0\n[run]\ndt = 0.01\n");
+    /// let stiffer = scene.with_values(&["region.1.youngs_modulus=4e3", "run.integrator=newmark"])?;
+    /// assert_eq!(
+    ///     stiffer.text(),
+    ///     "[[region]] # liver\nyoungs_modulus = 4e3\n[run]\ndt = 0.01\nintegrator = \"newmark\"\n"
+    /// );
+    /// # Ok::<(), sinew_scene::OverrideError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`OverrideError`] for the first that cannot be set. Whether a value fits is found where the scene is read.
+    pub fn with_values<T: AsRef<str>>(&self, values: &[T]) -> Result<Self, OverrideError> {
+        if values.is_empty() {
+            return Ok(self.clone());
+        }
+        let mut document: DocumentMut =
+            self.text()
+                .parse()
+                .map_err(|error: toml_edit::TomlError| OverrideError::Syntax {
+                    message: error.message().to_owned(),
+                })?;
+        for text in values {
+            let text = text.as_ref();
+            let form = || OverrideError::Form {
+                text: text.to_owned(),
+            };
+            let (path, value) = text.split_once('=').ok_or_else(form)?;
+            let (path, value) = (path.trim(), value.trim());
+            if path.split('.').any(str::is_empty) || value.is_empty() {
+                return Err(form());
+            }
+            let value = value.parse().unwrap_or_else(|_| Value::from(value));
+            let parts: Vec<&str> = path.split('.').collect();
+            set(document.as_table_mut(), path, &parts, value)?;
+        }
+        Ok(Self::new(self.path(), document.to_string()))
+    }
+}
+
+/// Sets the value at the parts of a path that are left, within this table.
+fn set(
+    table: &mut dyn TableLike,
+    path: &str,
+    parts: &[&str],
+    mut value: Value,
+) -> Result<(), OverrideError> {
+    let kind = |part: &str, item: &Item, expected| OverrideError::Kind {
+        path: path.to_owned(),
+        part: part.to_owned(),
+        found: kind_of(item),
+        expected,
+    };
+    let (part, rest) = match parts {
+        [] => return Ok(()),
+        [key] => {
+            match table.get(key) {
+                None => {}
+                Some(Item::Value(old)) => *value.decor_mut() = old.decor().clone(),
+                Some(other) => return Err(kind(key, other, "a value")),
+            }
+            table.insert(key, Item::Value(value));
+            return Ok(());
+        }
+        [part, rest @ ..] => (*part, rest),
+    };
+    if !table.contains_key(part) {
+        let names: Vec<String> = table.iter().map(|(name, _)| name.to_owned()).collect();
+        let nearest = nearest(part, names.iter().map(String::as_str));
+        return Err(OverrideError::Missing {
+            path: path.to_owned(),
+            missing: part.to_owned(),
+            nearest: nearest.map(str::to_owned),
+        });
+    }
+    match table.get_mut(part) {
+        Some(Item::ArrayOfTables(tables)) => {
+            let count = tables.len();
+            let number = rest.first().and_then(|number| number.parse::<usize>().ok());
+            let found = number.and_then(|number| tables.get_mut(number.checked_sub(1)?));
+            let found = found.ok_or_else(|| OverrideError::Number {
+                path: path.to_owned(),
+                list: part.to_owned(),
+                count,
+            })?;
+            match &rest[1..] {
+                [] => Err(OverrideError::Kind {
+                    path: path.to_owned(),
+                    part: rest.join("."),
+                    found: "a table",
+                    expected: "a value",
+                }),
+                rest => set(found, path, rest, value),
+            }
+        }
+        Some(Item::Table(table)) => set(table, path, rest, value),
+        Some(Item::Value(Value::InlineTable(table))) => set(table, path, rest, value),
+        Some(other) => Err(kind(part, other, "a table")),
+        None => Ok(()),
+    }
+}
+
+fn kind_of(item: &Item) -> &'static str {
+    match item {
+        Item::None => "nothing",
+        Item::Value(_) => "a value",
+        Item::Table(_) => "a table",
+        Item::ArrayOfTables(_) => "a list of tables",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = "title = \"a\"  # the title\n[mesh]\ncube = { cells = 4, edge = 0.1 }\n[[region]]\ndensity = 1\n\
+                         [[region]]\ndensity = 2 # kg/m3\n[run]\nintegrator = \"newmark\"\ndt = 0.1\n";
+
+    fn with(values: &[&str]) -> Result<String, String> {
+        let scene = SceneSource::new("a.toml", SCENE).with_values(values);
+        scene
+            .map(|scene| scene.text().to_owned())
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn values_change_and_all_else_stays() {
+        assert_eq!(with(&[]).unwrap(), SCENE);
+        let cases = [
+            ("title=b", "title = \"a\"", "title = \"b\""),
+            ("region.2.density=3.5", "density = 2", "density = 3.5"),
+            ("mesh.cube.cells = 8", "cells = 4", "cells = 8"),
+            ("run.dt=auto", "dt = 0.1", "dt = \"auto\""),
+            ("run.dt=[1, 2]", "dt = 0.1", "dt = [1, 2]"),
+            (
+                "run.tolerance=0.01",
+                "dt = 0.1\n",
+                "dt = 0.1\ntolerance = 0.01\n",
+            ),
+            (
+                "gravity=[0, 0, -9.81]",
+                "[mesh]",
+                "gravity = [0, 0, -9.81]\n[mesh]",
+            ),
+        ];
+        for (value, from, to) in cases {
+            assert_eq!(with(&[value]).unwrap(), SCENE.replace(from, to), "{value}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_set_is_said() {
+        let cases = [
+            ("dt", "expected KEY=VALUE"),
+            ("run..dt=1", "expected KEY=VALUE"),
+            ("run.dt=", "expected KEY=VALUE"),
+            ("rum.dt=1", "the scene has no `rum`; did you mean `run`?"),
+            (
+                "region.density=1",
+                "the scene has 2 of `region`, counted from 1",
+            ),
+            ("region.3.density=1", "the scene has 2 of `region`"),
+            ("region.0.density=1", "the scene has 2 of `region`"),
+            ("title.a=1", "`title` is a value, expected a table"),
+            ("run=1", "`run` is a table, expected a value"),
+            ("region.1=1", "`1` is a table, expected a value"),
+            ("region=1", "`region` is a list of tables, expected a value"),
+        ];
+        for (value, expected) in cases {
+            let error = with(&[value]).unwrap_err();
+            assert!(error.contains(expected), "{value}: {error}");
+        }
+    }
+}
