@@ -288,7 +288,12 @@ fn singles(values: impl Iterator<Item = f64>) -> Vec<f32> {
     values.map(|value| value as f32).collect()
 }
 
-fn write(folder: &OwnedFolder, name: &str, grid: &Grid<'_>) -> Result<(), RecordRunError> {
+/// Writes a grid under a name of the folder.
+pub(crate) fn write(
+    folder: &OwnedFolder,
+    name: &str,
+    grid: &Grid<'_>,
+) -> Result<(), RecordRunError> {
     let mut refused = None;
     let written = folder.write_lightly(name, |mut file| {
         write_vtu_grid(grid, VtuEncoding::RawAppended, &mut file).map_err(|error| {

@@ -37,6 +37,8 @@ mod companion;
 mod compare;
 mod error;
 mod fields;
+#[cfg(feature = "implicit")]
+mod modes;
 mod progress;
 mod recorder;
 mod report;
@@ -50,6 +52,8 @@ mod tables;
 pub use companion::Companion;
 pub use compare::{CompareError, Comparison, Difference, compare};
 pub use error::RecordRunError;
+#[cfg(feature = "implicit")]
+pub use modes::{NaturalMode, check_modes_folder, natural_modes, write_modes};
 pub use request::Request;
 pub use run_end::{Ended, RunEnd};
 pub use run_folder::RunFolder;

@@ -26,6 +26,8 @@ pub struct Request {
     pub threads: Option<String>,
     /// What is said before the run: it is kept in the summary.
     pub warnings: Vec<String>,
+    /// Values that were set in the scene, which holds them already: they are kept for people.
+    pub values: Vec<String>,
 }
 
 /// A request with the scene and its inputs, as a folder keeps it.
@@ -40,6 +42,8 @@ pub(crate) struct Record {
     pub(crate) inputs: Vec<InputFile>,
     pub(crate) threads: Option<String>,
     pub(crate) warnings: Vec<String>,
+    /// Values that the command line set in the scene.
+    values: Vec<String>,
 }
 
 /// A file that a run reads.
@@ -63,6 +67,7 @@ impl Record {
             inputs: inputs.collect::<Result<_, _>>()?,
             threads: request.threads.clone(),
             warnings: request.warnings.clone(),
+            values: request.values.clone(),
         })
     }
 

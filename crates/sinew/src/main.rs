@@ -26,6 +26,11 @@ enum Command {
     Run(command::run::Arguments),
     /// Go on with a run that was interrupted or killed.
     Resume(command::resume::Arguments),
+    /// Compare the results of two runs: the largest difference of each quantity, with its time.
+    Compare(command::compare::Arguments),
+    /// Find natural frequencies, mode shapes and the modes that the loads of a scene excite.
+    #[cfg(feature = "implicit")]
+    Modes(command::modes::Arguments),
     /// Inspect, check and convert mesh files.
     #[command(subcommand)]
     Mesh(command::mesh::Command),
@@ -42,6 +47,9 @@ fn main() -> ExitCode {
         Command::Plan(arguments) => command::plan::run(&arguments),
         Command::Run(arguments) => command::run::run(&arguments),
         Command::Resume(arguments) => command::resume::run(&arguments),
+        Command::Compare(arguments) => command::compare::run(&arguments),
+        #[cfg(feature = "implicit")]
+        Command::Modes(arguments) => command::modes::run(&arguments),
         Command::Mesh(arguments) => command::mesh::run(&arguments),
         Command::Integrators => command::integrators::run(),
     };

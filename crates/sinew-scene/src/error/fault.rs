@@ -2,6 +2,7 @@
 
 use super::no_step::NoStableStep;
 use super::words::{did_you_mean, quoted, quoted_or_none};
+use crate::overrides::OverrideError;
 
 /// A mistake in a scene.
 #[derive(Debug, thiserror::Error)]
@@ -16,6 +17,9 @@ pub enum Fault {
         /// The message of the TOML parser.
         message: String,
     },
+    /// A value of the command line that cannot be set.
+    #[error(transparent)]
+    Override(#[from] OverrideError),
     /// A key that means nothing in its table.
     #[error("unknown key `{key}`{}", did_you_mean(*nearest))]
     UnknownKey {

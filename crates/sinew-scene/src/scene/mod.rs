@@ -128,9 +128,29 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] when the file cannot be read, and as for [`Scene::parse`].
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        Self::load_with::<&str>(path, &[])
+    }
+
+    /// Reads a scene file with other values; see [`SceneSource::with_values`].
+    ///
+    /// # Errors
+    /// As [`Scene::load`], and where a value cannot be set.
+    pub fn load_with<T: AsRef<str>>(
+        path: impl AsRef<Path>,
+        values: &[T],
+    ) -> Result<Self, SceneError> {
         let path = path.as_ref();
         match std::fs::read_to_string(path) {
-            Ok(text) => Self::parse(SceneSource::new(path, text)),
+            Ok(text) => {
+                let source = SceneSource::new(path, text);
+                match source.with_values(values) {
+                    Ok(source) => Self::parse(source),
+                    Err(error) => {
+                        let source = Arc::new(source);
+                        Err(SceneError::new(&source, Fault::Override(error)))
+                    }
+                }
+            }
             Err(error) => {
                 let nothing = Arc::new(SceneSource::new(path, ""));
                 Err(SceneError::new(&nothing, Fault::Unreadable(error)))

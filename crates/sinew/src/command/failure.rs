@@ -9,7 +9,7 @@ use sinew_core::{OptionError, SetupError, SimulateError};
 use sinew_measure::advice::AdviceError;
 use sinew_mesh::vtu::WriteVtuError;
 use sinew_mesh::{MshFileError, WriteMshError};
-use sinew_record::RecordRunError;
+use sinew_record::{CompareError, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
 use sinew_scene::{ReactionError, RefusedLoad, SceneError, Warning};
 
@@ -112,6 +112,17 @@ pub(crate) enum Failure {
         /// What goes on with it; empty where nothing does.
         remedy: String,
     },
+    /// Results that differ by more than was allowed.
+    #[error("the results differ by {largest:.3e}, more than {tolerance:e}")]
+    Differ {
+        /// The largest relative difference.
+        largest: f64,
+        /// The largest that was allowed.
+        tolerance: f64,
+    },
+    /// Results that cannot be compared.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
     /// A run that leaves no result in its folder.
     #[error(transparent)]
     Record(#[from] RecordRunError),
@@ -165,8 +176,10 @@ impl Failure {
                 | RecordRunError::OtherInput { .. }
                 | RecordRunError::NoInput { .. },
             ) => REFUSED,
+            Self::Compare(_) => REFUSED,
             Self::Interrupted { .. } => INTERRUPTED,
             Self::Output(_)
+            | Self::Differ { .. }
             | Self::Record(_)
             | Self::Signals(_)
             | Self::Findings

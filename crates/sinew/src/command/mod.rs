@@ -1,12 +1,16 @@
 //! The subcommands.
 
+pub(crate) mod compare;
 mod failure;
 pub(crate) mod integrators;
 mod interruption;
 pub(crate) mod mesh;
+#[cfg(feature = "implicit")]
+pub(crate) mod modes;
 mod onlooker;
 pub(crate) mod plan;
 pub(crate) mod resume;
 pub(crate) mod run;
+mod scene_with;
 
 pub(crate) use failure::Failure;

@@ -13,10 +13,10 @@ use sinew_measure::advice::{
     DEFAULT_PILOT_SECONDS, Question, QuestionError, advise, check_budget, check_pilot_seconds,
     check_tolerance,
 };
-use sinew_scene::Scene;
 use sinew_scene::output::say;
 
 use super::Failure;
+use super::scene_with::Values;
 
 /// A scene and the error that its run may have.
 #[derive(clap::Args)]
@@ -58,10 +58,12 @@ pub(crate) struct Arguments {
     /// Make warnings errors
     #[arg(long)]
     strict: bool,
+    #[command(flatten)]
+    values: Values,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let simulation = Scene::load(&arguments.scene)?.build()?;
+    let simulation = arguments.values.load(&arguments.scene)?.build()?;
     if !arguments.json {
         say(simulation.plan().to_string().trim_end())?;
     } else if arguments.tolerance.is_none() && !arguments.program {

@@ -6,11 +6,12 @@ use sinew_core::{OptionError, OptionValue, Outcome, Recorders, RunReport, simula
 use sinew_integrators::Stepper;
 use sinew_record::{Companion, Ended, Request, RunEnd, RunFolder};
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
-use sinew_scene::{ProbeCsv, Reaction, Scene, Simulation, WarningKind};
+use sinew_scene::{ProbeCsv, Reaction, Simulation, WarningKind};
 
 use super::Failure;
 use super::interruption::Interruption;
 use super::onlooker::Onlooker;
+use super::scene_with::Values;
 
 /// What no run knows of itself.
 const ERROR_NOT_KNOWN: &str =
@@ -36,11 +37,13 @@ pub(crate) struct Arguments {
     /// Make warnings errors, before the run begins
     #[arg(long)]
     strict: bool,
+    #[command(flatten)]
+    values: Values,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let interruption = Interruption::listen().map_err(Failure::Signals)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = arguments.values.load(&arguments.scene)?;
     let destination = match &arguments.out {
         Some(folder) => {
             if RunFolder::check(folder, &scene)? == Tenant::Earlier {
@@ -77,6 +80,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             let request = Request {
                 threads: arguments.threads.as_ref().map(in_words),
                 warnings: warnings.iter().map(ToString::to_string).collect(),
+                values: arguments.values.assignments(),
             };
             let folder = RunFolder::create(path, &simulation, &request)?;
             in_folder(path, &folder, &simulation, &mut *integrator, interruption)

@@ -1,0 +1,264 @@
+//! Natural frequencies and mode shapes of a scene.
+
+use std::path::{Path, PathBuf};
+
+use sinew_core::{Integrator, LinearOperators, SetupError};
+use sinew_fem::Model;
+use sinew_integrators::Frame;
+use sinew_integrators::implicit::Modal;
+use sinew_mesh::vtu::{Array, Grid};
+use sinew_scene::Simulation;
+use sinew_scene::output::{OwnedFolder, Tenant};
+
+use crate::error::RecordRunError;
+use crate::fields;
+
+/// The kind of result, in manifests and messages.
+const KIND: &str = "modes";
+
+/// The table of frequencies.
+const TABLE: &str = "modes.csv";
+
+/// Largest displacement of a drawn mode shape as a share of the body's size.
+const DRAWN: f64 = 0.1;
+
+/// A natural mode of an undamped body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NaturalMode {
+    /// Angular frequency (rad/s); 0 for a rigid motion.
+    pub omega: f64,
+    /// Share of the moving mass that takes part in motions along x, y and z: `(phi' M e)^2 / (e' M e)` with the shape phi
+    /// of modal mass 1 and e moving all as one (Bathe, Finite Element Procedures, section 9.3).
+    pub effective_mass: [f64; 3],
+    /// Share of the elastic energy under all loads at their full value, at rest: `(phi' F)^2 / omega^2` over the sum of
+    /// all modes found; NaN where the scene has no loads or the motion is rigid.
+    pub of_loads: f64,
+    /// Its shape (kg^-1/2) over the degrees of freedom.
+    shape: Vec<f64>,
+}
+
+impl NaturalMode {
+    /// Frequency (Hz).
+    #[must_use]
+    pub fn frequency(&self) -> f64 {
+        self.omega / std::f64::consts::TAU
+    }
+}
+
+/// The modes of the lowest frequencies of a simulation.
+///
+/// # Errors
+/// [`SetupError`] for a system without matrices and for one that has no such modes.
+pub fn natural_modes(
+    simulation: &Simulation,
+    count: usize,
+) -> Result<Vec<NaturalMode>, SetupError> {
+    let system = simulation.system();
+    let mut modal = Frame::new(Modal::with_modes(count));
+    modal.prepare(system, simulation.dt())?;
+    let Some(linear) = system.as_linear() else {
+        return Ok(Vec::new());
+    };
+    let operators = linear.operators();
+    let force = full_load(operators);
+    let mut modes = Vec::new();
+    for (number, omega) in modal.frequencies().iter().enumerate() {
+        let shape = modal.shape(number).unwrap_or_default().to_vec();
+        let effective_mass = [0, 1, 2].map(|axis| effective_mass(operators, &shape, axis));
+        let along: f64 = shape
+            .iter()
+            .zip(&force)
+            .map(|(shape, force)| shape * force)
+            .sum();
+        modes.push(NaturalMode {
+            omega: *omega,
+            effective_mass,
+            of_loads: match *omega > 0.0 {
+                true => (along / omega).powi(2),
+                false => f64::NAN,
+            },
+            shape,
+        });
+    }
+    let whole: f64 = modes
+        .iter()
+        .map(|mode| mode.of_loads)
+        .filter(|share| share.is_finite())
+        .sum();
+    for mode in &mut modes {
+        mode.of_loads /= whole;
+    }
+    Ok(modes)
+}
+
+/// All loads (N) at their full value.
+fn full_load(operators: &LinearOperators) -> Vec<f64> {
+    let mut force = vec![0.0; operators.dofs()];
+    for load in operators.loads() {
+        for (dof, value) in &load.entries {
+            force[*dof as usize] += value;
+        }
+    }
+    force
+}
+
+fn effective_mass(operators: &LinearOperators, shape: &[f64], axis: usize) -> f64 {
+    let layers = operators.stiffness().layers().count();
+    if axis >= layers {
+        return 0.0;
+    }
+    let masses = operators.mass().iter().skip(axis).step_by(layers);
+    let shape = shape.iter().skip(axis).step_by(layers);
+    let (mut along, mut whole) = (0.0, 0.0);
+    for (mass, shape) in masses.zip(shape) {
+        along += mass * shape;
+        whole += mass;
+    }
+    along * along / whole
+}
+
+/// Checks that modes may be written into a folder at `path`. Changes nothing.
+///
+/// # Errors
+/// [`RecordRunError::Output`].
+pub fn check_modes_folder(path: &Path, inputs: &[PathBuf]) -> Result<Tenant, RecordRunError> {
+    Ok(OwnedFolder::check(path, KIND, inputs)?)
+}
+
+/// Writes modes into a folder: a table, and for ParaView the shapes of a body as a series with a mode at each whole time.
+///
+/// # Errors
+/// [`RecordRunError`].
+pub fn write_modes(
+    path: &Path,
+    simulation: &Simulation,
+    modes: &[NaturalMode],
+) -> Result<(), RecordRunError> {
+    let body = simulation.model().body();
+    let mut names = vec![TABLE.to_owned()];
+    if body.is_some() {
+        names.push(fields::SERIES.to_owned());
+        names.extend((0..modes.len()).map(fields::frame_name));
+    }
+    let folder = OwnedFolder::claim(path, KIND, &simulation.scene().input_files(), &names)?;
+    let mut table = String::from(
+        "mode,frequency_Hz,omega_rad_per_s,effective_mass_x_1,effective_mass_y_1,effective_mass_z_1,share_of_loads_1\n",
+    );
+    for (number, mode) in (1..).zip(modes) {
+        let [x, y, z] = mode.effective_mass;
+        let (frequency, omega, loads) = (mode.frequency(), mode.omega, mode.of_loads);
+        table.push_str(&format!(
+            "{number},{frequency:?},{omega:?},{x:?},{y:?},{z:?},{loads:?}\n"
+        ));
+    }
+    folder.write(TABLE, table.as_bytes())?;
+    if let Some(body) = body {
+        for (number, mode) in modes.iter().enumerate() {
+            write_shape(&folder, number, &body.model, mode)?;
+        }
+        let times: Vec<f64> = (1..=modes.len()).map(|number| number as f64).collect();
+        fields::write_series(&folder, &times)?;
+    }
+    Ok(())
+}
+
+/// Writes the shape of a mode with a displacement that can be seen.
+fn write_shape(
+    folder: &OwnedFolder,
+    number: usize,
+    model: &Model,
+    mode: &NaturalMode,
+) -> Result<(), RecordRunError> {
+    let mut shape = vec![[0.0; 3]; model.mesh().points.len()];
+    model.to_nodes(&mode.shape, &mut shape)?;
+    let size = |u: &[f64; 3]| u.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let largest = shape.iter().map(size).fold(0.0, f64::max);
+    let extent = sinew_core::System::extent(model).unwrap_or(1.0);
+    let factor = if largest > 0.0 {
+        DRAWN * extent / largest
+    } else {
+        0.0
+    };
+    let drawn: Vec<f32> = shape
+        .iter()
+        .flatten()
+        .map(|x| (factor * x) as f32)
+        .collect();
+    let grid = Grid {
+        point_data: vec![Array::of_singles("displacement", 3, drawn)],
+        ..Grid::of(model.mesh())
+    };
+    fields::write(folder, &fields::frame_name(number), &grid)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use sinew_scene::{Scene, SceneSource};
+
+    use super::*;
+
+    fn simulation(text: &str) -> Simulation {
+        let scene = Scene::parse(SceneSource::new("scene.toml", text)).unwrap();
+        scene.build().unwrap()
+    }
+
+    /// A bar that is held at one end and moves along itself alone: omega_k = (2k - 1) pi/2 sqrt(E/rho)/L for nu = 0
+    /// (Rao, Vibration of Continuous Systems, section 9.2).
+    #[test]
+    fn a_bar_has_the_frequencies_of_the_wave_equation() {
+        let simulation = simulation(
+            "[mesh]\nblock = { cells = [2, 2, 24], size = [0.02, 0.02, 0.24] }\n[[region]]\ndensity = 1000.0\n\
+             model = \"linear\"\nyoungs_modulus = 4000.0\npoissons_ratio = 0.0\n[[fixed]]\ngroup = \"bottom\"\n\
+             axes = \"z\"\n[[fixed]]\ngroup = \"tissue\"\naxes = \"xy\"\n[run]\nduration = 1.0\n\
+             integrator = \"newmark\"\ndt = 0.01\n",
+        );
+        let modes = natural_modes(&simulation, 3).unwrap();
+        for (k, mode) in (1..).zip(&modes) {
+            let odd = f64::from(2 * k - 1);
+            let expected = odd * PI / 2.0 * (4000.0_f64 / 1000.0).sqrt() / 0.24;
+            let error = mode.omega / expected - 1.0;
+            assert!(error.abs() < 0.01, "{k}: {error}");
+            // The share of mode k is 8/((2k - 1) pi)^2.
+            let share = mode.effective_mass[2];
+            let expected = 8.0 / (odd * PI).powi(2);
+            assert!(
+                (share / expected - 1.0).abs() < 0.05,
+                "{k}: {share} {expected}"
+            );
+            assert!(mode.effective_mass[0] < 1e-12);
+            assert!(mode.of_loads.is_nan(), "there is no load");
+        }
+    }
+
+    #[test]
+    fn shares_of_loads_add_up_to_one() {
+        let simulation = simulation(
+            "[mesh]\ncube = { cells = 3, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
+             youngs_modulus = 4000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[[load]]\ngroup = \"top\"\n\
+             pressure = 10.0\n[run]\nduration = 1.0\nintegrator = \"newmark\"\ndt = 0.01\n",
+        );
+        let modes = natural_modes(&simulation, 12).unwrap();
+        let sum: f64 = modes.iter().map(|mode| mode.of_loads).sum();
+        assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+        // A pressure from above excites the first mode along z most.
+        let most = modes
+            .iter()
+            .max_by(|a, b| a.of_loads.total_cmp(&b.of_loads))
+            .unwrap();
+        let along_z = most.effective_mass[2];
+        assert!(
+            along_z > most.effective_mass[0] && along_z > 0.5,
+            "{along_z}"
+        );
+
+        let place = tempfile::tempdir().unwrap();
+        let out = place.path().join("modes");
+        write_modes(&out, &simulation, &modes).unwrap();
+        let table = std::fs::read_to_string(out.join(TABLE)).unwrap();
+        assert_eq!(table.lines().count(), 13);
+        assert!(out.join("fields/frame-00011.vtu").exists());
+        assert_eq!(check_modes_folder(&out, &[]).unwrap(), Tenant::Earlier);
+    }
+}
