@@ -40,6 +40,7 @@ pub mod output;
 mod overrides;
 mod plan;
 mod probe_csv;
+mod proposal;
 mod scene;
 mod simulation;
 mod source;
@@ -48,6 +49,7 @@ pub use error::{Fault, NoStableStep, SceneError, StableStepError};
 pub use overrides::OverrideError;
 pub use plan::{Plan, PlanSection};
 pub use probe_csv::ProbeCsv;
+pub use proposal::propose;
 pub use scene::{
     Body, Choice, Initial, Instants, Members, MeshChanges, MeshSource, Motion, Oscillator,
     OutputSettings, ProbeAt, ProbePoint, Rotation, RunSettings, Scene, Selected, Subject, TimeStep,

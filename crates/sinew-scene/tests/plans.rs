@@ -239,7 +239,7 @@ point = [0.05, 0.05, 0.06]
                 1 step for 0.01 s, error taken at 51 instants
                 `newmark` is stable at any step
     warning     [[initial]] 2 displaces 5 nodes that are held or moved there: they stay, and the body is torn from them at t = 0; displace other nodes, or by a stretch whose origin is at the support
-                dt = 0.02 s is longer than the duration, 0.01 s
+                dt = 0.02 s is longer than the duration, 0.01 s; `sinew run` takes one step that ends with it
     "#);
 }
 

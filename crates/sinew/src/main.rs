@@ -31,6 +31,8 @@ enum Command {
     /// Find natural frequencies, mode shapes and the modes that the loads of a scene excite.
     #[cfg(feature = "implicit")]
     Modes(command::modes::Arguments),
+    /// Write a first scene for a mesh, or one of the ready scenes.
+    New(command::new::Arguments),
     /// Inspect, check and convert mesh files.
     #[command(subcommand)]
     Mesh(command::mesh::Command),
@@ -50,6 +52,7 @@ fn main() -> ExitCode {
         Command::Compare(arguments) => command::compare::run(&arguments),
         #[cfg(feature = "implicit")]
         Command::Modes(arguments) => command::modes::run(&arguments),
+        Command::New(arguments) => command::new::run(&arguments),
         Command::Mesh(arguments) => command::mesh::run(&arguments),
         Command::Integrators => command::integrators::run(),
     };

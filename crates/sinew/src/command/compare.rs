@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::CellAlignment;
 use serde_json::json;
 use sinew_record::{Comparison, Difference, compare};
 use sinew_scene::output::say;
 
 use super::Failure;
+use super::ruled;
 
 /// Two results and the difference that they may have.
 #[derive(clap::Args)]
@@ -38,8 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn in_words(comparison: &Comparison) -> String {
-    let mut table = Table::new();
-    table.load_preset(presets::ASCII_MARKDOWN);
+    let mut table = ruled::table();
     table.set_header([
         "of",
         "quantity",

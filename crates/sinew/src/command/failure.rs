@@ -8,7 +8,7 @@ use miette::{LabeledSpan, NamedSource, Report, miette};
 use sinew_core::{OptionError, SetupError, SimulateError};
 use sinew_measure::advice::AdviceError;
 use sinew_mesh::vtu::WriteVtuError;
-use sinew_mesh::{MshFileError, WriteMshError};
+use sinew_mesh::{MshFileError, TetMeshError, WriteMshError};
 use sinew_record::{CompareError, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
 use sinew_scene::{ReactionError, RefusedLoad, SceneError, Warning};
@@ -54,6 +54,28 @@ pub(crate) enum Failure {
     /// A mesh file that cannot be read.
     #[error(transparent)]
     Mesh(#[from] MshFileError),
+    /// A mesh that is not a body of tetrahedra.
+    #[error("{}: {source}", mesh.display())]
+    Tetrahedra {
+        /// The mesh file.
+        mesh: PathBuf,
+        /// The reason.
+        source: TetMeshError,
+    },
+    /// A file that is there already and may have been changed by hand.
+    #[error("{} exists and stays as it is; name another file with --out", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A ready scene that does not exist.
+    #[error("no ready scene is named \"{name}\"; there are {}", known.join(", "))]
+    NotReady {
+        /// The name given.
+        name: String,
+        /// The names of all.
+        known: Vec<&'static str>,
+    },
     /// A name that does not tell a mesh format.
     #[error("{}: expected a name that ends in .msh or .vtu", path.display())]
     MeshFormat {
@@ -158,6 +180,9 @@ impl Failure {
             | Self::Warnings { .. }
             | Self::Advice { .. }
             | Self::Mesh(_)
+            | Self::Tetrahedra { .. }
+            | Self::Exists { .. }
+            | Self::NotReady { .. }
             | Self::MeshFormat { .. }
             | Self::WriteMsh { .. }
             | Self::WriteVtu { .. }

@@ -7,9 +7,11 @@ mod interruption;
 pub(crate) mod mesh;
 #[cfg(feature = "implicit")]
 pub(crate) mod modes;
+pub(crate) mod new;
 mod onlooker;
 pub(crate) mod plan;
 pub(crate) mod resume;
+mod ruled;
 pub(crate) mod run;
 mod scene_with;
 

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::CellAlignment;
 use sinew_record::{NaturalMode, check_modes_folder, natural_modes, write_modes};
 use sinew_scene::output::say;
 
 use super::Failure;
+use super::ruled;
 use super::scene_with::Values;
 
 /// A scene and the number of its modes.
@@ -44,8 +45,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn table(modes: &[NaturalMode]) -> String {
-    let mut table = Table::new();
-    table.load_preset(presets::ASCII_MARKDOWN);
+    let mut table = ruled::table();
     table.set_header([
         "mode",
         "frequency [Hz]",

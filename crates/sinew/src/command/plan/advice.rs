@@ -1,12 +1,10 @@
 //! Advice in words.
 
-use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use crate::command::ruled;
+use comfy_table::CellAlignment;
 use sinew_measure::number::{milliseconds, percent, short, three};
 use sinew_measure::search::Pilot;
 use sinew_measure::{Advice, Answer, Row, RowOutcome};
-
-const RULED_HEAD: TableStyle =
-    TableStyle::new().header_separator(LineStyle::new('─', '─', '─', '─'));
 
 /// Heading of the column that is shown only where pilots covered a part of the scene.
 const EXPECTED: &str = "expected\n[%]";
@@ -269,16 +267,13 @@ fn provenance(advice: &Advice) -> String {
 }
 
 fn table(advice: &Advice, rows: &[(&str, &Pilot)]) -> String {
-    let mut table = Table::new();
+    let mut table = ruled::table();
     let shown = |cells: [String; HEAD.len()]| {
         let cells = HEAD.into_iter().zip(cells);
         let cells = cells.filter(|(head, _)| *head != EXPECTED || !advice.covers_the_scene());
         cells.map(|(_, cell)| cell).collect::<Vec<String>>()
     };
-    table
-        .load_style(RULED_HEAD)
-        .set_content_arrangement(ContentArrangement::Disabled)
-        .set_header(shown(HEAD.map(str::to_owned)));
+    table.set_header(shown(HEAD.map(str::to_owned)));
     for (label, pilot) in rows {
         let row = &pilot.row;
         table.add_row(shown([

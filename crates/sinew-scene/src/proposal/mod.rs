@@ -1,0 +1,43 @@
+//! A first scene for a mesh, to be changed by whoever knows the body.
+
+mod force;
+mod parts;
+mod text;
+mod unit;
+
+use std::path::Path;
+
+use sinew_mesh::{Mesh, TetMeshError};
+
+use parts::Parts;
+use unit::Unit;
+
+/// Writes a commented scene for a mesh that runs as it is: a region for each volume group, a support and a load proposed
+/// by the groups' names or, where none tells, by place, a force that moves the body by some 2 % of its length, and a unit guessed
+/// from the mesh's extent.
+///
+/// `file` is the path of the mesh as the scene names it. Material and load are placeholders and say so. Cells of higher order
+/// are taken by their corners.
+///
+/// # Errors
+/// [`TetMeshError`] for a mesh that is no body of tetrahedra.
+pub fn propose(mut mesh: Mesh, file: &Path) -> Result<String, TetMeshError> {
+    let is_linear = mesh.linearise().cells.is_empty();
+    let mut mesh = mesh.to_tet_mesh()?;
+    let unit = Unit::guessed(&mesh);
+    mesh.scale(unit.metres);
+    let parts = Parts::proposed(&mesh);
+    let file = MeshFile {
+        path: file,
+        unit,
+        is_linear,
+    };
+    Ok(text::scene(&mesh, &file, &parts))
+}
+
+/// The mesh file as the scene reads it.
+struct MeshFile<'a> {
+    path: &'a Path,
+    unit: Unit,
+    is_linear: bool,
+}

@@ -1,0 +1,154 @@
+//! The parts of a mesh that a first scene gives a material to, holds and loads.
+
+use sinew_mesh::{Condition, GroupMembers, Selection, TetMesh};
+
+use crate::number::short;
+
+/// Words in names of groups that are usually held.
+const HELD: [&str; 10] = [
+    "fix", "clamp", "attach", "support", "held", "base", "bottom", "ground", "end", "root",
+];
+
+/// Words in names of groups that are usually loaded.
+const LOADED: [&str; 10] = [
+    "load", "press", "push", "pull", "tip", "top", "contact", "tool", "inner", "lip",
+];
+
+/// Shares of the body's height that a place at its bottom or top takes, tried one after another.
+const SHARES: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
+
+/// The fewest nodes by which a body is held against turning.
+const HOLDING: usize = 3;
+
+/// A part of the body as a scene's table names it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Part {
+    /// A group.
+    Group(String),
+    /// All below this height (m).
+    Below(f64),
+    /// All above this height (m).
+    Above(f64),
+}
+
+/// What a first scene says of the parts of a body.
+#[derive(Debug)]
+pub(super) struct Parts {
+    /// The groups of the regions; `None` where the whole body is one.
+    pub(super) regions: Option<Vec<String>>,
+    /// Whether some tetrahedra are in none of these groups.
+    pub(super) rest: bool,
+    /// The part that is held.
+    pub(super) held: Part,
+    /// The part that is loaded.
+    pub(super) loaded: Part,
+    /// The highest node (m), which a probe follows.
+    pub(super) highest: [f64; 3],
+}
+
+impl Parts {
+    pub(super) fn proposed(mesh: &TetMesh) -> Self {
+        let held = named(mesh, &HELD, &[]).map_or_else(|| bottom(mesh), Part::Group);
+        let held_nodes = held.nodes(mesh);
+        let loaded = named(mesh, &LOADED, &held_nodes).map_or_else(|| top(mesh), Part::Group);
+        let (regions, rest) = regions(mesh);
+        let highest = mesh.points.iter().max_by(|a, b| a[2].total_cmp(&b[2]));
+        Self {
+            regions,
+            rest,
+            held,
+            loaded,
+            highest: highest.copied().unwrap_or_default(),
+        }
+    }
+}
+
+impl Part {
+    /// Its nodes, ascending.
+    pub(super) fn nodes(&self, mesh: &TetMesh) -> Vec<u32> {
+        let below = |z: f64| Condition::below([f64::INFINITY, f64::INFINITY, z]);
+        let above = |z: f64| Condition::above([f64::NEG_INFINITY, f64::NEG_INFINITY, z]);
+        let condition = match self {
+            Self::Group(name) => {
+                let group = mesh.group(name);
+                return group.map_or_else(|_| Vec::new(), |group| mesh.group_nodes(group));
+            }
+            Self::Below(z) => below(*z),
+            Self::Above(z) => above(*z),
+        };
+        let selection = Selection::new(vec![condition]);
+        selection.nodes(mesh).unwrap_or_default()
+    }
+}
+
+/// The surface or group of nodes whose name tells, and which has nodes other than `taken` without being all of the body.
+fn named(mesh: &TetMesh, words: &[&str], taken: &[u32]) -> Option<String> {
+    let tells = |name: &str| {
+        let name = name.to_lowercase();
+        words.iter().position(|word| name.contains(word))
+    };
+    let groups = mesh.groups.iter().filter(|group| group.dim < 3);
+    let found = groups.filter_map(|group| Some((tells(&group.name)?, group)));
+    let fits = found.filter(|(_, group)| {
+        // The name must lead to this group, not to a volume of the same name.
+        let same = mesh
+            .group(&group.name)
+            .is_ok_and(|first| first.dim == group.dim);
+        let nodes = mesh.group_nodes(group);
+        let free = nodes
+            .iter()
+            .filter(|node| taken.binary_search(node).is_err());
+        same && nodes.len() < mesh.points.len() && free.count() >= HOLDING
+    });
+    let best = fits.min_by_key(|(place, _)| *place)?;
+    Some(best.1.name.clone())
+}
+
+fn bottom(mesh: &TetMesh) -> Part {
+    at_an_end(mesh, |low, height, share| Part::Below(low + share * height))
+}
+
+fn top(mesh: &TetMesh) -> Part {
+    at_an_end(mesh, |low, height, share| {
+        Part::Above(low + (1.0 - share) * height)
+    })
+}
+
+/// The smallest place at the bottom or top by which a body can be held.
+fn at_an_end(mesh: &TetMesh, place: impl Fn(f64, f64, f64) -> Part) -> Part {
+    let (low, high) = mesh.bounding_box();
+    let of_share = |share: f64| match place(low[2], high[2] - low[2], share) {
+        // As few digits as a person would write.
+        Part::Below(z) => Part::Below(short(z).parse().unwrap_or(z)),
+        Part::Above(z) => Part::Above(short(z).parse().unwrap_or(z)),
+        part @ Part::Group(_) => part,
+    };
+    let mut places = SHARES.into_iter().map(of_share);
+    let holds = |part: &Part| part.nodes(mesh).len() >= HOLDING;
+    places.find(holds).unwrap_or_else(|| of_share(0.5))
+}
+
+/// The groups of tetrahedra that can be regions, and whether they leave some; none where they overlap.
+fn regions(mesh: &TetMesh) -> (Option<Vec<String>>, bool) {
+    let mut taken = vec![false; mesh.tets.len()];
+    let mut names = Vec::new();
+    for group in &mesh.groups {
+        let GroupMembers::Tets(tets) = &group.members else {
+            continue;
+        };
+        if tets.is_empty() {
+            continue;
+        }
+        if tets.iter().any(|tet| taken[*tet as usize]) {
+            return (None, false);
+        }
+        for tet in tets {
+            taken[*tet as usize] = true;
+        }
+        names.push(group.name.clone());
+    }
+    match names.is_empty() {
+        true => (None, false),
+        false => (Some(names), taken.contains(&false)),
+    }
+}

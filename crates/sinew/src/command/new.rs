@@ -1,0 +1,122 @@
+//! `sinew new`.
+
+mod ready;
+
+use std::path::{Component, Path, PathBuf};
+
+use sinew_mesh::read_msh_file;
+use sinew_scene::output::{Destination, Voice, say};
+use sinew_scene::propose;
+
+use super::Failure;
+
+/// The scene to write.
+#[derive(clap::Args)]
+#[command(group = clap::ArgGroup::new("what").args(["mesh", "list", "ready"]).required(true))]
+pub(crate) struct Arguments {
+    /// The mesh file to write a first scene for: its groups with their sizes, its unit as far as its extent tells, and a
+    /// material, a support and a load as proposals; it runs as it is
+    mesh: Option<PathBuf>,
+    /// List the ready scenes
+    #[arg(long)]
+    list: bool,
+    /// Write a ready scene and, beside it, its mesh
+    #[arg(long, value_name = "NAME")]
+    ready: Option<String>,
+    /// The scene file to write, which must not exist, or - for standard output [default: the name of the mesh or of the
+    /// ready scene with .toml, in the current folder]
+    #[arg(long, value_name = "FILE", conflicts_with = "list")]
+    out: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let out = |stem: &Path| match &arguments.out {
+        Some(out) => out.clone(),
+        None => named_after(stem),
+    };
+    if let Some(mesh) = &arguments.mesh {
+        return first(mesh, &out(mesh));
+    }
+    if let Some(name) = &arguments.ready {
+        return ready::write(name, &out(Path::new(name)));
+    }
+    ready::list()
+}
+
+/// A file name ending in .toml.
+fn named_after(path: &Path) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(".toml");
+    name.into()
+}
+
+/// Writes a first scene for a mesh.
+fn first(mesh: &Path, out: &Path) -> Result<(), Failure> {
+    let destination = new_file(out, &[mesh.to_owned()])?;
+    let text = propose(read_msh_file(mesh)?, &seen_from(out, mesh));
+    let text = text.map_err(|source| Failure::Tetrahedra {
+        mesh: mesh.to_owned(),
+        source,
+    })?;
+    written(destination, &text)
+}
+
+/// A destination that is a stream or a new file: a scene may have been changed by hand.
+fn new_file(path: &Path, inputs: &[PathBuf]) -> Result<Destination, Failure> {
+    let destination = Destination::new(path, inputs)?;
+    if !destination.is_stream() && path.symlink_metadata().is_ok() {
+        let path = path.to_owned();
+        return Err(Failure::Exists { path });
+    }
+    Ok(destination)
+}
+
+/// Writes a scene and says what can be done with it.
+fn written(destination: Destination, scene: &str) -> Result<(), Failure> {
+    let path = destination.path().display().to_string();
+    let voice = Voice::apart_from(&destination);
+    // A reader that closed its pipe is no error.
+    let _ = destination.write(scene.as_bytes())?;
+    if voice == Voice::StandardOutput {
+        say(&format!(
+            "written {path}: `sinew plan {path}` says what it builds, `sinew run {path}` runs it"
+        ))?;
+    }
+    Ok(())
+}
+
+/// The path of a mesh as seen from the folder of a scene: relative where the folder is known, else absolute.
+fn seen_from(scene: &Path, mesh: &Path) -> PathBuf {
+    let folder = match scene.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    match (folder.canonicalize(), mesh.canonicalize()) {
+        (Ok(folder), Ok(mesh)) => relative(&folder, &mesh),
+        _ => mesh.to_owned(),
+    }
+}
+
+/// The way from an absolute folder to an absolute path.
+fn relative(folder: &Path, path: &Path) -> PathBuf {
+    let shared = folder.components().zip(path.components());
+    let shared = shared.take_while(|(a, b)| a == b).count();
+    let up = folder
+        .components()
+        .skip(shared)
+        .map(|_| Component::ParentDir);
+    up.chain(path.components().skip(shared)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_way_goes_up_to_the_shared_folder_and_down_again() {
+        let way = |folder: &str, path: &str| relative(Path::new(folder), Path::new(path));
+        assert_eq!(way("/a/b", "/a/b/m.msh"), Path::new("m.msh"));
+        assert_eq!(way("/a/b/c", "/a/m.msh"), Path::new("../../m.msh"));
+        assert_eq!(way("/a/b", "/c/m.msh"), Path::new("../../c/m.msh"));
+    }
+}
