@@ -259,6 +259,9 @@ mod tests {
         assert_eq!(values("data-x"), "0.1 10 1");
         assert_eq!(values("data-y"), "-1 1 0");
         assert_eq!(values("data-over"), "t [s]");
+        assert_eq!(values("data-read"), "lines");
+        log.series[0].style = Style::nth(0);
+        assert!(!log.svg().contains("data-read"));
         assert!(svg.contains("<g data-series=\"0\">") && svg.contains("<g data-key=\"0\">"));
     }
 

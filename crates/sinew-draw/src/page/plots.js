@@ -48,7 +48,7 @@ function follow(svg, plot) {
     return { at, note: element.dataset.note, series: part.dataset.series };
   }));
   // Lines without marks have no notes; their places are read.
-  const lines = marks.length ? [] : parts.map(part => ({
+  const lines = plot.dataset.read !== "lines" ? [] : parts.map(part => ({
     series: part.dataset.series,
     points: [...part.querySelectorAll("path[fill=none]")].flatMap(path =>
       path.getAttribute("d").split(/[ML]/).slice(1).map(pair => pair.split(" ").map(Number))),

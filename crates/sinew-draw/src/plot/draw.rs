@@ -83,8 +83,12 @@ fn described(plot: &Plot) -> String {
 
 impl Layout {
     /// Frame and axes, by which a script turns a place into values.
-    fn for_scripts(&self, plot: &Plot) -> [(&'static str, String); 4] {
+    fn for_scripts(&self, plot: &Plot) -> [(&'static str, String); 5] {
         let frame = self.frame;
+        let is_lines = plot
+            .series
+            .iter()
+            .all(|series| series.style.marker.is_none());
         let axis = |axis: &Fitted| {
             let (low, high) = axis.ends();
             format!("{low} {high} {}", u8::from(axis.scale() == Scale::Log))
@@ -100,6 +104,7 @@ impl Layout {
             ("data-x", axis(&self.x)),
             ("data-y", axis(&self.y)),
             ("data-over", plot.x.label.clone()),
+            ("data-read", if is_lines { "lines" } else { "" }.to_owned()),
         ]
     }
 
