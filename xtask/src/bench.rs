@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use sinew_bench::hard::HardBench;
 use sinew_bench::kernels::KernelBench;
 use sinew_bench::output::{OutputFolder, say};
-use sinew_bench::report::{WriteError, terminal, write_all};
+use sinew_bench::report::{WriteError, brief, terminal, write_all};
 use sinew_bench::results::BenchResults;
 use sinew_bench::scale::ScaleBench;
 use sinew_bench::{Bench, machine, revision};
@@ -39,8 +39,11 @@ pub(crate) struct Arguments {
     /// Fewer steps and repeats, to see whether everything runs
     #[arg(long)]
     quick: bool,
+    /// Print every run instead of the answer in at most 40 lines
+    #[arg(long)]
+    all: bool,
     /// The folder for results.json, report.html and the plots, checked before anything is measured
-    /// [default: target/bench, target/bench-hard, ..]
+    /// [default: target/bench, target/bench-scene with --scene, target/bench-hard, ..]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Measure the hard cases under scenes/hard instead: failures, stability maps and pass marks; exits
@@ -58,7 +61,7 @@ pub(crate) struct Arguments {
     /// Run another program in turn with ours and print the ratios of CPU time, nothing else: scipy (installed by pip into
     /// target/) with our cheapest methods on the peers' cube, or CHOLMOD (skipped where it is not installed) with our
     /// sparse factors
-    #[arg(long, value_enum, value_name = "PROGRAM", conflicts_with_all = ["scenes", "steps", "out"])]
+    #[arg(long, value_enum, value_name = "PROGRAM", conflicts_with_all = ["scenes", "steps", "out", "all"])]
     beside: Option<Program>,
 }
 
@@ -87,14 +90,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(program) = arguments.beside {
         return beside::run(program, &bench);
     }
-    let folder = folder(arguments, "bench", &bench.input_files());
+    let folder = folder(arguments, &bench.input_files());
     bench.check().map_err(Failure::input)?;
     folder.check(&bench.output_files())?;
     let bar = Bar::new();
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();
     let results = results.map_err(Failure::input)?;
-    conclude(&results, &folder)
+    conclude(&results, &folder, arguments.all)
 }
 
 /// Measures the hard cases.
@@ -103,13 +106,13 @@ fn run_hard(arguments: &Arguments) -> Result<(), Failure> {
         scenes: root().join("scenes"),
         quick: arguments.quick,
     };
-    let folder = folder(arguments, "bench-hard", &bench.input_files());
+    let folder = folder(arguments, &bench.input_files());
     folder.check(&bench.output_files())?;
     let bar = Bar::new();
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();
     let results = results.map_err(Failure::input)?;
-    conclude(&results, &folder)
+    conclude(&results, &folder, arguments.all)
 }
 
 /// Measures the kernels.
@@ -123,11 +126,7 @@ fn run_kernels(arguments: &Arguments) -> Result<(), Failure> {
         },
         quick: arguments.quick,
     };
-    let folder = folder(
-        arguments,
-        "bench-kernels",
-        &[bench.meshes.join("organ.msh")],
-    );
+    let folder = folder(arguments, &[bench.meshes.join("organ.msh")]);
     let (name, page) = ("kernels.json", "kernels.html");
     folder.check(&[name, page].map(str::to_owned))?;
     let bar = Bar::new();
@@ -136,7 +135,11 @@ fn run_kernels(arguments: &Arguments) -> Result<(), Failure> {
     let results = results.map_err(Failure::chore)?;
     let json = serde_json::to_vec_pretty(&results).map_err(Failure::chore)?;
     let written = folder.write(name, &json)?;
-    say(&results.to_string())?;
+    let text = match arguments.all {
+        true => results.to_string(),
+        false => results.brief(),
+    };
+    say(&text)?;
     let page = folder.write(page, results.html().as_bytes())?;
     say(&format!(
         "\nresults: {}\npage:    {}",
@@ -157,7 +160,7 @@ fn run_scale(arguments: &Arguments) -> Result<(), Failure> {
     let bench = ScaleBench {
         quick: arguments.quick,
     };
-    let folder = folder(arguments, "bench-scale", &[]);
+    let folder = folder(arguments, &[]);
     let [json, picture] = ["scale.json", "real-time.svg"];
     folder.check(&[json.to_owned(), picture.to_owned()])?;
     let bar = Bar::new();
@@ -167,7 +170,11 @@ fn run_scale(arguments: &Arguments) -> Result<(), Failure> {
     let rows = serde_json::to_vec_pretty(&results).map_err(Failure::chore)?;
     let rows = folder.write(json, &rows)?;
     let picture = folder.write(picture, results.plot().svg().as_bytes())?;
-    say(&results.to_string())?;
+    let text = match arguments.all {
+        true => results.to_string(),
+        false => results.brief(),
+    };
+    say(&text)?;
     say(&format!(
         "\nresults: {}\nplot:    {}",
         rows.display(),
@@ -176,15 +183,30 @@ fn run_scale(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn folder(arguments: &Arguments, default: &str, inputs: &[PathBuf]) -> OutputFolder {
+fn folder(arguments: &Arguments, inputs: &[PathBuf]) -> OutputFolder {
     let out = arguments.out.clone();
-    let out = out.unwrap_or_else(|| root().join("target").join(default));
+    let out = out.unwrap_or_else(|| root().join("target").join(default_folder(arguments)));
     OutputFolder::new(out, inputs)
 }
 
+/// A folder for each kind of bench, so that none writes over the report of another.
+fn default_folder(arguments: &Arguments) -> &'static str {
+    if arguments.hard {
+        "bench-hard"
+    } else if arguments.kernels {
+        "bench-kernels"
+    } else if arguments.scale {
+        "bench-scale"
+    } else if arguments.scenes.is_empty() {
+        "bench"
+    } else {
+        "bench-scene"
+    }
+}
+
 /// Writes everything, then fails if a mark is not passed or something is missing.
-fn conclude(results: &BenchResults, folder: &OutputFolder) -> Result<(), Failure> {
-    write(results, folder)?;
+fn conclude(results: &BenchResults, folder: &OutputFolder, all: bool) -> Result<(), Failure> {
+    write(results, folder, all)?;
     let failures: Vec<String> = [failed_marks(results), missing(results)]
         .into_iter()
         .flatten()
@@ -214,14 +236,22 @@ fn missing(results: &BenchResults) -> Option<String> {
     (count > 0).then(|| format!("{count} missing from the results: {list}"))
 }
 
-fn write(results: &BenchResults, folder: &OutputFolder) -> Result<(), Failure> {
+fn write(results: &BenchResults, folder: &OutputFolder, all: bool) -> Result<(), Failure> {
     let written = write_all(results, folder).map_err(|error| match error {
         WriteError::Output(error) => error.into(),
         error => Failure::chore(error),
     })?;
-    say(&terminal(results))?;
+    let every = match all {
+        true => "",
+        false => "all runs: in the report, or here with --all\n",
+    };
+    say(&if all {
+        terminal(results)
+    } else {
+        brief(results)
+    })?;
     say(&format!(
-        "results: {}\nreport:  {}\nplots:   {}",
+        "\n{every}results: {}\nreport:  {}\nplots:   {}",
         written.results.display(),
         written.report.display(),
         folder.path().display()
@@ -251,7 +281,7 @@ mod tests {
     fn concluded(verdict: MarkVerdict) -> (Result<(), Failure>, String) {
         let directory = tempfile::tempdir().unwrap();
         let folder = OutputFolder::new(directory.path(), &[]);
-        let outcome = conclude(&results(verdict), &folder);
+        let outcome = conclude(&results(verdict), &folder, false);
         let page = std::fs::read_to_string(directory.path().join("report.html")).unwrap();
         assert!(directory.path().join("results.json").exists());
         (outcome, page)
@@ -280,7 +310,7 @@ mod tests {
             max_u_m: f64::INFINITY,
             ..CaseInfo::default()
         });
-        let failure = conclude(&results, &folder).unwrap_err();
+        let failure = conclude(&results, &folder, false).unwrap_err();
         let Failure::Chore(message) = &failure else {
             panic!("{failure:?}");
         };
@@ -290,6 +320,28 @@ mod tests {
         );
         assert!(directory.path().join("results.json").exists());
         assert!(directory.path().join("report.html").exists());
+    }
+
+    #[test]
+    fn no_kind_of_bench_writes_over_the_report_of_another() {
+        let of = |change: fn(&mut Arguments)| {
+            let mut arguments = Arguments::default();
+            change(&mut arguments);
+            default_folder(&arguments)
+        };
+        let mut folders = [
+            of(|_| {}),
+            of(|arguments| arguments.scenes.push("my.toml".into())),
+            of(|arguments| arguments.hard = true),
+            of(|arguments| arguments.kernels = true),
+            of(|arguments| arguments.scale = true),
+        ];
+        assert_eq!(folders[0], "bench");
+        folders.sort_unstable();
+        assert!(
+            folders.windows(2).all(|pair| pair[0] != pair[1]),
+            "{folders:?}"
+        );
     }
 
     #[test]

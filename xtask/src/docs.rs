@@ -1,17 +1,14 @@
 //! `cargo xtask docs`.
 
 use sinew_bench::output::{Destination, OutputError, say};
-use sinew_bench::report::{markdown_rows, work_precision};
+use sinew_bench::report::{markdown_cheapest, work_precision};
 use sinew_bench::results::BenchResults;
-use sinew_measure::Row;
 
 use crate::failure::Failure;
 use crate::repository::root;
 
-/// The case that the README shows.
+/// The case of which the README shows a plot.
 const CASE: &str = "paper-cube";
-/// Steps in the README's table (ms).
-const STEPS: [f64; 2] = [20.0, 20.0 / 3.0];
 /// A stability map of the hard cases that the README shows.
 const MAP: &str = "map-poisson.svg";
 const BEGIN: &str = "<!-- bench -->\n";
@@ -35,28 +32,20 @@ pub(crate) fn run() -> Result<(), Failure> {
         Failure::Input(format!("{path}: {error}; run `cargo xtask bench` first"))
     })?;
     let results = BenchResults::from_json(&text).map_err(Failure::input)?;
-    let shown = |row: &&Row| STEPS.iter().any(|ms| (row.dt * 1e3 - ms).abs() < 1e-6);
-    let table = markdown_rows(results.rows_of(CASE).filter(shown));
+    let table = markdown_cheapest(&results);
 
     let readme = root().join("README.md");
     let text = std::fs::read_to_string(&readme).map_err(Failure::chore)?;
-    let parts = text.split_once(BEGIN).and_then(|(before, rest)| {
-        let (_, after) = rest.split_once(END)?;
-        Some((before, after))
-    });
-    let Some((before, after)) = parts else {
+    let machine = &results.machine;
+    let machine = format!(
+        "{} ({} {}), one thread.",
+        machine.cpu, machine.os, machine.arch
+    );
+    let Some(text) = with_table(&text, &table, &machine) else {
         return Err(Failure::Chore(
             "README.md has lost the marks round its table".into(),
         ));
     };
-    let machine = &results.machine;
-    let text = format!(
-        "{before}{BEGIN}{}\n\n{} ({} {}), one thread.\n{END}{after}",
-        table.trim_end(),
-        machine.cpu,
-        machine.os,
-        machine.arch
-    );
     let picture = work_precision(&results, CASE).svg();
     let outputs = [
         (readme, text),
@@ -78,4 +67,34 @@ pub(crate) fn run() -> Result<(), Failure> {
         say(&path)?;
     }
     Ok(())
+}
+
+/// The text with this table and a line on the computer between its marks; `None` where it has none.
+fn with_table(text: &str, table: &str, machine: &str) -> Option<String> {
+    let (before, rest) = text.split_once(BEGIN)?;
+    let (_, after) = rest.split_once(END)?;
+    let table = table.trim_end();
+    Some(format!("{before}{BEGIN}{table}\n\n{machine}\n{END}{after}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_stands_between_the_marks_changes() {
+        let text = format!("before\n{BEGIN}old\nlines\n{END}after {END}");
+        let new = with_table(&text, "| new |\n", "a computer");
+        let expected = format!("before\n{BEGIN}| new |\n\na computer\n{END}after {END}");
+        assert_eq!(new.as_deref(), Some(expected.as_str()));
+        let again = with_table(&expected, "| new |", "a computer");
+        assert_eq!(again, Some(expected));
+        assert_eq!(with_table("no marks", "| new |", ""), None);
+    }
+
+    #[test]
+    fn the_readme_has_the_marks() {
+        let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+        assert!(with_table(&readme, "", "").is_some());
+    }
 }

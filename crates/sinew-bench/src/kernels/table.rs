@@ -42,6 +42,35 @@ impl fmt::Display for KernelResults {
     }
 }
 
+impl KernelResults {
+    /// The fastest kernel of each body and precision on one thread, and the guards, for a terminal.
+    #[must_use]
+    pub fn brief(&self) -> String {
+        let mut fastest: Vec<&KernelRow> = Vec::new();
+        for row in self.rows.iter().filter(|row| row.threads == 1) {
+            let same = |other: &&mut &KernelRow| {
+                (&other.mesh, other.precision) == (&row.mesh, row.precision)
+            };
+            match fastest.iter_mut().find(same) {
+                Some(best) if best.step_s > row.step_s => *best = row,
+                Some(_) => {}
+                None => fastest.push(row),
+            }
+        }
+        let table = ruled::table(HEAD, fastest.into_iter().map(cells), 3);
+        let guards = self.guards.iter().map(|guard| {
+            let verdict = if guard.holds() { "" } else { "FAIL " };
+            format!("{verdict}{guard}")
+        });
+        let guards: Vec<String> = guards.collect();
+        format!(
+            "The fastest kernels on one thread beside one scalar CSR product in f64 with the update (B1)\n\n{}\n\n{}",
+            ruled::lines(table, 2),
+            guards.join("\n")
+        )
+    }
+}
+
 impl fmt::Display for Roofs {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let reads = self.reads.iter().map(|read| {

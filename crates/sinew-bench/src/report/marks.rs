@@ -22,6 +22,24 @@ pub fn terminal_marks(marks: &[Mark]) -> String {
     ruled::lines(table(marks, RULED_HEAD, str::to_owned), 1)
 }
 
+/// What was asked and measured, failed marks first, in at most this many rows, and how many there are.
+pub(super) fn brief(marks: &[Mark], most: usize) -> String {
+    let mut sorted: Vec<&Mark> = marks.iter().collect();
+    sorted.sort_by_key(|mark| mark.verdict == MarkVerdict::Pass);
+    let rows = sorted.iter().take(most).map(|mark| {
+        let [case, asked, measured, _, verdict] = cells(mark);
+        [verdict, case, asked, measured].map(str::to_owned)
+    });
+    let table = ruled::table(["verdict", "case", "asked", "measured"], rows, 4);
+    format!("{}\n{}", ruled::lines(table, 2), counted(marks))
+}
+
+fn counted(marks: &[Mark]) -> String {
+    let count = |verdict| marks.iter().filter(|mark| mark.verdict == verdict).count();
+    let (pass, fail) = (count(MarkVerdict::Pass), count(MarkVerdict::Fail));
+    format!("{pass} passed, {fail} failed")
+}
+
 /// The marks as a Markdown table.
 #[must_use]
 pub fn markdown_marks(marks: &[Mark]) -> String {
@@ -47,11 +65,9 @@ pub(super) fn section(page: &mut Page, marks: &[Mark]) {
         return;
     }
     page.section("marks", "Pass marks of the hard cases");
-    let count = |verdict| marks.iter().filter(|mark| mark.verdict == verdict).count();
     page.paragraph(&format!(
-        "{} passed, {} failed. Figures are measured in this run; limits were set before it.",
-        count(MarkVerdict::Pass),
-        count(MarkVerdict::Fail),
+        "{}. Figures are measured in this run; limits were set before it.",
+        counted(marks)
     ));
     page.table(&Table {
         columns: HEADS.map(Column::sentences).into(),

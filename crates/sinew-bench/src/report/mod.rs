@@ -1,5 +1,6 @@
 //! Tables, plots and a page of a bench. No speed stands without its error beside it.
 
+mod brief;
 mod case_section;
 mod columns;
 mod front;
@@ -16,6 +17,7 @@ mod verdict;
 mod work_precision;
 mod write;
 
+pub use brief::{brief, markdown_cheapest};
 pub use front::{FrontMember, front_members, modal_sentence, paper_sentence};
 pub use heat_map::heat_map;
 pub use html::html;

@@ -62,12 +62,19 @@ impl fmt::Display for ScaleResults {
         for run in &self.skipped {
             writeln!(f, "not run: {} on {}: {}", run.method, run.mesh, run.reason)?;
         }
-        writeln!(
-            f,
-            "\nPowers of the number of tetrahedra, and the largest body in real time (* beyond the sizes measured)\n"
-        )?;
+        write!(f, "\n{}", self.brief())
+    }
+}
+
+impl ScaleResults {
+    /// How all figures grow with the size, for a terminal.
+    #[must_use]
+    pub fn brief(&self) -> String {
         let fits = ruled::table(FITS, self.fits.iter().map(fit), 3);
-        f.write_str(&ruled::lines(fits, 2))
+        format!(
+            "Powers of the number of tetrahedra, and the largest body in real time (* beyond the sizes measured)\n\n{}",
+            ruled::lines(fits, 2)
+        )
     }
 }
 
