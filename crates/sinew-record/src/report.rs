@@ -79,7 +79,7 @@ pub(crate) fn page(
     page.section("scene", "The scene as it was run");
     let text = sinew_draw::markup::escape(simulation.scene().source().text());
     page.folded("Its text", |page| {
-        page.markup(&format!("<pre>{text}</pre>\n"))
+        page.markup(&format!("<pre>{text}</pre>\n"));
     });
     Ok(page.finish())
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{CompareError, Comparison, Difference, damaged, read, relative};
+use super::outcome::{CompareError, Comparison, Difference, damaged, read, relative};
 use crate::fields::SERIES;
 
 /// Fields that are compared, with their units.

@@ -1,11 +1,6 @@
-//! Differences between the results of two runs.
-
-mod frames;
-mod tables;
+//! What a comparison finds, and why there is none.
 
 use std::path::{Path, PathBuf};
-
-use crate::tables::{ENERGY, PROBES, REACTIONS};
 
 /// The largest difference between two results in one quantity.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,26 +58,6 @@ pub enum CompareError {
     },
 }
 
-/// Compares the results in two folders: tables at the times of the first (those of the second between its rows on
-/// straight lines), displacements and velocities of frames at equal times.
-///
-/// # Errors
-/// [`CompareError`] for a folder without a result and for damaged files.
-pub fn compare(one: &Path, other: &Path) -> Result<Comparison, CompareError> {
-    for path in [one, other] {
-        if !path.join(crate::summary::NAME).is_file() {
-            let path = path.to_owned();
-            return Err(CompareError::NoRun { path });
-        }
-    }
-    let mut comparison = Comparison::default();
-    for name in [PROBES, ENERGY, REACTIONS] {
-        tables::compare(&mut comparison, name, one, other)?;
-    }
-    frames::compare(&mut comparison, one, other)?;
-    Ok(comparison)
-}
-
 impl Comparison {
     /// The largest of all relative differences.
     #[must_use]
@@ -100,21 +75,21 @@ impl Comparison {
 }
 
 /// A difference over the size of what differs.
-fn relative(difference: f64, size: f64) -> f64 {
+pub(super) fn relative(difference: f64, size: f64) -> f64 {
     match difference == 0.0 {
         true => 0.0,
         false => difference / size,
     }
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, CompareError> {
+pub(super) fn read(path: &Path) -> Result<Vec<u8>, CompareError> {
     std::fs::read(path).map_err(|source| CompareError::Unreadable {
         path: path.to_owned(),
         source,
     })
 }
 
-fn damaged(path: &Path, reason: impl Into<String>) -> CompareError {
+pub(super) fn damaged(path: &Path, reason: impl Into<String>) -> CompareError {
     CompareError::Damaged {
         path: path.to_owned(),
         reason: reason.into(),

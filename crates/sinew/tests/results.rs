@@ -1,0 +1,159 @@
+//! `sinew compare`, `sinew modes` and values of the command line.
+
+#![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::sinew;
+
+const BEAM: &str = "[mesh]\ncube = { cells = 3, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
+                    youngs_modulus = 3000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[[load]]\n\
+                    group = \"top\"\npressure = 20.0\n[run]\nduration = 0.1\nintegrator = \"newmark\"\ndt = 0.005\n\
+                    [[probe]]\nname = \"top\"\npoint = [0.05, 0.05, 0.1]\n";
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("beam.toml"), BEAM).unwrap();
+    folder
+}
+
+#[test]
+fn twice_as_stiff_is_half_as_far_and_the_folder_says_what_was_set() {
+    let folder = folder();
+    let run = |arguments: &[&str]| {
+        let said = sinew(folder.path(), arguments);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+    };
+    let stiff = [
+        "--set",
+        "region.1.youngs_modulus=6e3",
+        "--set",
+        "region.1.density=2000",
+    ];
+    run(&["run", "beam.toml", "--out", "soft"]);
+    run(&[&["run", "beam.toml", "--out", "stiff"][..], &stiff].concat());
+    run(&[
+        "run",
+        "beam.toml",
+        "--out",
+        "other",
+        "--integrator",
+        "generalized-alpha",
+        "--dt",
+        "0.001",
+    ]);
+
+    // With both doubled all moves as before, half as far.
+    let said = sinew(folder.path(), &["compare", "soft", "stiff", "--json"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let object: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let differences = object["differences"].as_array().unwrap();
+    let top = differences
+        .iter()
+        .find(|difference| difference["quantity"] == "top_u")
+        .unwrap();
+    assert!(
+        (top["relative"].as_f64().unwrap() - 0.5).abs() < 1e-9,
+        "{top}"
+    );
+
+    let said = sinew(
+        folder.path(),
+        &["compare", "soft", "other", "--tolerance", "0.05"],
+    );
+    assert_eq!(said.code, Some(0), "{}\n{}", said.out, said.err);
+    let said = sinew(
+        folder.path(),
+        &["compare", "soft", "stiff", "--tolerance", "0.05"],
+    );
+    assert_eq!(said.code, Some(1));
+    assert!(
+        said.err.contains("the results differ by") && said.out.contains("top_u"),
+        "{}",
+        said.err
+    );
+
+    let repeat = std::fs::read_to_string(folder.path().join("stiff/run.json")).unwrap();
+    assert!(repeat.contains("region.1.youngs_modulus=6e3"), "{repeat}");
+    let scene = std::fs::read_to_string(folder.path().join("stiff/scene.toml")).unwrap();
+    assert_eq!(
+        scene,
+        BEAM.replace("= 3000.0", "= 6e3")
+            .replace("= 1000.0", "= 2000")
+    );
+    assert_eq!(
+        std::fs::read_to_string(folder.path().join("beam.toml")).unwrap(),
+        BEAM
+    );
+}
+
+#[test]
+fn values_that_do_not_fit_are_one_error() {
+    let folder = folder();
+    let cases = [
+        (
+            "regoin.1.density=1",
+            "the scene has no `regoin`; did you mean `region`?",
+        ),
+        (
+            "region.2.density=1",
+            "the scene has 1 of `region`, counted from 1",
+        ),
+        ("region.1.density=-1", "density = -1: expected"),
+        ("run.dt", "expected KEY=VALUE"),
+        ("run.integrator=newmakr", "unknown integrator `newmakr`"),
+    ];
+    for (value, expected) in cases {
+        let said = sinew(
+            folder.path(),
+            &["run", "beam.toml", "--set", value, "--out", "out"],
+        );
+        assert_eq!(said.code, Some(2), "{value}");
+        assert!(said.err.contains(expected), "{value}: {}", said.err);
+        assert_eq!(said.err.matches("error:").count(), 1);
+        assert!(!folder.path().join("out").exists());
+    }
+    let said = sinew(folder.path(), &["compare", "beam.toml", "."]);
+    assert_eq!(said.code, Some(2));
+    assert!(
+        said.err.contains("no run has come to an end there"),
+        "{}",
+        said.err
+    );
+}
+
+#[test]
+fn modes_are_a_table_and_a_series() {
+    let folder = folder();
+    let said = sinew(
+        folder.path(),
+        &["modes", "beam.toml", "--count", "4", "--out", "modes"],
+    );
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let rows = said
+        .out
+        .lines()
+        .filter(|line| line.trim_start().starts_with(['1', '2', '3', '4']));
+    assert_eq!(rows.count(), 4, "{}", said.out);
+    for name in ["modes.csv", "fields.pvd", "fields/frame-00003.vtu"] {
+        assert!(folder.path().join("modes").join(name).exists(), "{name}");
+    }
+    let table = std::fs::read_to_string(folder.path().join("modes/modes.csv")).unwrap();
+    let rows = table.lines().skip(1);
+    let rows: Vec<Vec<f64>> = rows
+        .map(|row| row.split(',').map(|value| value.parse().unwrap()).collect())
+        .collect();
+    for pair in rows.windows(2) {
+        assert!(0.0 < pair[0][1] && pair[0][1] <= pair[1][1], "{table}");
+    }
+    // A part of the mass, and most of it in the first modes.
+    for axis in 3..6 {
+        let sum: f64 = rows.iter().map(|row| row[axis]).sum();
+        assert!((0.05..1.0).contains(&sum), "{table}");
+    }
+    for count in ["0", "-1", "many"] {
+        let said = sinew(folder.path(), &["modes", "beam.toml", "--count", count]);
+        assert_eq!(said.code, Some(2), "{count}");
+    }
+}
