@@ -33,7 +33,7 @@ enum Command {
     Modes(command::modes::Arguments),
     /// Write a first scene for a mesh, or one of the ready scenes.
     New(command::new::Arguments),
-    /// Inspect, check and convert mesh files.
+    /// Inspect, check, convert and refine mesh files.
     #[command(subcommand)]
     Mesh(command::mesh::Command),
     /// List the integrators and their options.

@@ -223,3 +223,52 @@ fn a_file_of_another_format_is_refused_with_the_command_that_converts_it() {
         assert_eq!(said.lines().nth(1), Some(help.as_str()), "{said}");
     }
 }
+
+#[test]
+fn a_refined_mesh_has_eight_tetrahedra_for_each_and_the_volume_and_groups_of_before() {
+    let directory = tempfile::tempdir().unwrap();
+    let beam = repository("meshes/beam.msh");
+    let fine = directory.path().join("fine.msh");
+    let output = mesh(&["refine", beam.to_str().unwrap(), fine.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0));
+    let said = String::from_utf8(output.stdout).unwrap();
+    // By Euler's formula for a ball, the beam's 1758 boundary triangles give it 5592 edges.
+    let facts = "29032 tetrahedra in the place of 3629, 6677 nodes in the place of 1085";
+    assert!(said.contains(facts), "{said}");
+    let [before, after] =
+        [&beam, &fine].map(|path| json(&mesh(&["info", path.to_str().unwrap(), "--json"])));
+    let volume = |info: &serde_json::Value| info["tet_volume"].as_f64().unwrap();
+    assert!((volume(&after) / volume(&before) - 1.0).abs() < 1e-12);
+    let groups = |info: &serde_json::Value| -> Vec<(String, u64)> {
+        let groups = info["physical"].as_array().unwrap().iter();
+        let count = |group: &serde_json::Value| {
+            let cells = group["cells"].as_object().unwrap().values();
+            cells.map(|count| count.as_u64().unwrap()).sum::<u64>()
+        };
+        groups
+            .map(|group| (group["name"].as_str().unwrap().to_owned(), count(group)))
+            .collect()
+    };
+    for ((name, count), (fine_name, fine_count)) in groups(&before).iter().zip(groups(&after)) {
+        assert_eq!(*name, fine_name);
+        let factor = if name == "tissue" { 8 } else { 4 };
+        assert_eq!(fine_count, factor * count, "{name}");
+    }
+    assert_eq!(
+        mesh(&["check", fine.to_str().unwrap()]).status.code(),
+        Some(0)
+    );
+}
+
+#[test]
+fn a_mesh_is_not_refined_over_itself_or_into_an_unknown_format() {
+    let directory = tempfile::tempdir().unwrap();
+    let cube = directory.path().join("cube.msh");
+    std::fs::copy(repository("meshes/inclusion.msh"), &cube).unwrap();
+    let before = std::fs::read(&cube).unwrap();
+    for output in [cube.clone(), directory.path().join("cube.stl")] {
+        let output = mesh(&["refine", cube.to_str().unwrap(), output.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(2));
+    }
+    assert_eq!(std::fs::read(&cube).unwrap(), before);
+}

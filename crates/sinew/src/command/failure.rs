@@ -8,7 +8,7 @@ use miette::{LabeledSpan, NamedSource, Report, miette};
 use sinew_core::{OptionError, SetupError, SimulateError};
 use sinew_measure::advice::AdviceError;
 use sinew_mesh::vtu::WriteVtuError;
-use sinew_mesh::{MshFileError, TetMeshError, WriteMshError};
+use sinew_mesh::{MshFileError, RefineError, TetMeshError, WriteMshError};
 use sinew_record::{CompareError, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
 use sinew_scene::{ReactionError, RefusedLoad, SceneError, Warning};
@@ -81,6 +81,14 @@ pub(crate) enum Failure {
     MeshFormat {
         /// The path.
         path: PathBuf,
+    },
+    /// A mesh that cannot be refined.
+    #[error("{}: {source}", path.display())]
+    Refine {
+        /// The mesh file.
+        path: PathBuf,
+        /// The reason.
+        source: RefineError,
     },
     /// A mesh that a .msh file cannot hold.
     #[error("cannot write {}: {source}", path.display())]
@@ -184,6 +192,7 @@ impl Failure {
             | Self::Exists { .. }
             | Self::NotReady { .. }
             | Self::MeshFormat { .. }
+            | Self::Refine { .. }
             | Self::WriteMsh { .. }
             | Self::WriteVtu { .. }
             | Self::SharedOutput { .. } => REFUSED,

@@ -1,8 +1,8 @@
-//! `sinew mesh info | check | convert`.
+//! `sinew mesh info | check | convert | refine`.
 
 use std::path::{Path, PathBuf};
 
-use clap::{Subcommand, ValueEnum};
+use clap::{Args, Subcommand, ValueEnum};
 use serde_json::json;
 use sinew_mesh::info::MeshInfo;
 use sinew_mesh::vtu::{VtuEncoding, write_vtu};
@@ -45,16 +45,33 @@ pub(crate) enum Command {
         input: PathBuf,
         /// The file to write.
         output: PathBuf,
-        /// Version of a .msh file.
-        #[arg(long, default_value = "4.1")]
-        version: Version,
-        /// Write numbers as text.
-        #[arg(long, conflicts_with = "binary")]
-        ascii: bool,
-        /// Write numbers as bytes [default for .vtu; .msh is text by default]
-        #[arg(long)]
-        binary: bool,
+        #[command(flatten)]
+        style: Style,
     },
+    /// Write a mesh with each tetrahedron cut into eight, all groups kept: whether a mesh is fine enough
+    /// shows where its answer is compared with that of the finer one. Formats are those of convert.
+    Refine {
+        /// The .msh file.
+        input: PathBuf,
+        /// The file to write.
+        output: PathBuf,
+        #[command(flatten)]
+        style: Style,
+    },
+}
+
+/// The version and the encoding of a written mesh.
+#[derive(Args, Clone, Copy)]
+pub(crate) struct Style {
+    /// Version of a .msh file.
+    #[arg(long, default_value = "4.1")]
+    version: Version,
+    /// Write numbers as text.
+    #[arg(long, conflicts_with = "binary")]
+    ascii: bool,
+    /// Write numbers as bytes [default for .vtu; .msh is text by default]
+    #[arg(long)]
+    binary: bool,
 }
 
 /// A repair.
@@ -91,10 +108,13 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         Command::Convert {
             input,
             output,
-            version,
-            ascii,
-            binary,
-        } => convert(input, output, *version, *ascii, *binary),
+            style,
+        } => convert(input, output, *style),
+        Command::Refine {
+            input,
+            output,
+            style,
+        } => refine(input, output, *style),
     }
 }
 
@@ -282,58 +302,109 @@ fn as_json(
     })
 }
 
-fn convert(
-    input: &Path,
-    output: &Path,
-    version: Version,
-    ascii: bool,
-    binary: bool,
-) -> Result<(), Failure> {
-    let destination = Destination::new(output, &[input.to_owned()])?;
-    let extension = output.extension().and_then(|extension| extension.to_str());
-    let extension = match extension.map(str::to_ascii_lowercase) {
-        // Names of streams do not tell a format.
-        None if destination.is_stream() => "msh".to_owned(),
-        extension => extension.unwrap_or_default(),
-    };
-    if !["msh", "vtu"].contains(&extension.as_str()) {
-        return Err(Failure::MeshFormat {
-            path: output.to_owned(),
-        });
-    }
+fn convert(input: &Path, output: &Path, style: Style) -> Result<(), Failure> {
+    let output = MeshOutput::new(input, output, style)?;
     let mesh = read(input)?;
-    let mut bytes = Vec::new();
-    if extension == "vtu" {
-        let encoding = if ascii {
-            VtuEncoding::Base64
-        } else {
-            VtuEncoding::RawAppended
-        };
-        write_vtu(&mesh, encoding, &mut bytes).map_err(|source| Failure::WriteVtu {
-            path: output.to_owned(),
-            source,
-        })?;
-    } else {
-        let version = match version {
-            Version::V22 => MshVersion::V22,
-            Version::V41 => MshVersion::V41,
-        };
-        let encoding = if binary {
-            MshEncoding::Binary
-        } else {
-            MshEncoding::Text
-        };
-        write_msh(&mesh, version, encoding, &mut bytes)
-            .map_err(|source| cannot_write_msh(output, source))?;
-    }
-    let voice = Voice::apart_from(&destination);
-    // A reader that closed its pipe is no error.
-    let _ = destination.write(&bytes)?;
     for warning in &mesh.warnings {
         complain(&format!("warning: {}: {warning}", input.display()));
     }
-    voice.say(&format!("{}: {} bytes", output.display(), bytes.len()))?;
-    Ok(())
+    output.write(&mesh, "")
+}
+
+fn refine(input: &Path, output: &Path, style: Style) -> Result<(), Failure> {
+    let output = MeshOutput::new(input, output, style)?;
+    let mesh = read(input)?;
+    let coarse = mesh.to_tet_mesh().map_err(|source| Failure::Tetrahedra {
+        mesh: input.to_owned(),
+        source,
+    })?;
+    let fine = coarse.refined().map_err(|source| Failure::Refine {
+        path: input.to_owned(),
+        source,
+    })?;
+    let warnings = mesh.warnings.iter().map(ToString::to_string);
+    for warning in warnings.chain(fine.notes.iter().cloned()) {
+        complain(&format!("warning: {}: {warning}", input.display()));
+    }
+    let growth = format!(
+        "{} tetrahedra in the place of {}, {} nodes in the place of {}; ",
+        fine.tets.len(),
+        coarse.tets.len(),
+        fine.points.len(),
+        coarse.points.len()
+    );
+    output.write(&fine.to_mesh(), &growth)
+}
+
+/// A file for a mesh, checked before the work begins.
+struct MeshOutput<'a> {
+    path: &'a Path,
+    destination: Destination,
+    is_vtu: bool,
+    style: Style,
+}
+
+impl<'a> MeshOutput<'a> {
+    fn new(input: &Path, path: &'a Path, style: Style) -> Result<Self, Failure> {
+        let destination = Destination::new(path, &[input.to_owned()])?;
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        let is_vtu = match extension.map(str::to_ascii_lowercase).as_deref() {
+            // Names of streams do not tell a format.
+            None if destination.is_stream() => false,
+            Some("msh") => false,
+            Some("vtu") => true,
+            _ => {
+                return Err(Failure::MeshFormat {
+                    path: path.to_owned(),
+                });
+            }
+        };
+        Ok(Self {
+            path,
+            destination,
+            is_vtu,
+            style,
+        })
+    }
+
+    /// Writes a mesh, and says so after `facts` about it.
+    fn write(self, mesh: &Mesh, facts: &str) -> Result<(), Failure> {
+        let Self {
+            path,
+            destination,
+            is_vtu,
+            style,
+        } = self;
+        let mut bytes = Vec::new();
+        if is_vtu {
+            let encoding = if style.ascii {
+                VtuEncoding::Base64
+            } else {
+                VtuEncoding::RawAppended
+            };
+            write_vtu(mesh, encoding, &mut bytes).map_err(|source| Failure::WriteVtu {
+                path: path.to_owned(),
+                source,
+            })?;
+        } else {
+            let version = match style.version {
+                Version::V22 => MshVersion::V22,
+                Version::V41 => MshVersion::V41,
+            };
+            let encoding = if style.binary {
+                MshEncoding::Binary
+            } else {
+                MshEncoding::Text
+            };
+            write_msh(mesh, version, encoding, &mut bytes)
+                .map_err(|source| cannot_write_msh(path, source))?;
+        }
+        let voice = Voice::apart_from(&destination);
+        // A reader that closed its pipe is no error.
+        let _ = destination.write(&bytes)?;
+        voice.say(&format!("{}: {facts}{} bytes", path.display(), bytes.len()))?;
+        Ok(())
+    }
 }
 
 fn cannot_write_msh(path: &Path, source: WriteMshError) -> Failure {
