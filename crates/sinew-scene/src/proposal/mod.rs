@@ -1,5 +1,6 @@
 //! A first scene for a mesh, to be changed by whoever knows the body.
 
+mod file;
 mod force;
 mod parts;
 mod text;
@@ -9,6 +10,7 @@ use std::path::Path;
 
 use sinew_mesh::{Mesh, TetMeshError};
 
+use file::MeshFile;
 use parts::Parts;
 use unit::Unit;
 
@@ -33,11 +35,4 @@ pub fn propose(mut mesh: Mesh, file: &Path) -> Result<String, TetMeshError> {
         is_linear,
     };
     Ok(text::scene(&mesh, &file, &parts))
-}
-
-/// The mesh file as the scene reads it.
-struct MeshFile<'a> {
-    path: &'a Path,
-    unit: Unit,
-    is_linear: bool,
 }

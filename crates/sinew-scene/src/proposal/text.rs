@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
-use super::MeshFile;
+use super::file::MeshFile;
 use super::force::{self, DENSITY, POISSONS_RATIO, YOUNGS_MODULUS};
 use super::parts::{Part, Parts};
 use crate::number::short;

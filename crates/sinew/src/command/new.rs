@@ -1,12 +1,14 @@
 //! `sinew new`.
 
 mod ready;
+mod scene_file;
 
 use std::path::{Component, Path, PathBuf};
 
 use sinew_mesh::read_msh_file;
-use sinew_scene::output::{Destination, Voice, say};
 use sinew_scene::propose;
+
+use scene_file::{new_file, written};
 
 use super::Failure;
 
@@ -59,30 +61,6 @@ fn first(mesh: &Path, out: &Path) -> Result<(), Failure> {
         source,
     })?;
     written(destination, &text)
-}
-
-/// A destination that is a stream or a new file: a scene may have been changed by hand.
-fn new_file(path: &Path, inputs: &[PathBuf]) -> Result<Destination, Failure> {
-    let destination = Destination::new(path, inputs)?;
-    if !destination.is_stream() && path.symlink_metadata().is_ok() {
-        let path = path.to_owned();
-        return Err(Failure::Exists { path });
-    }
-    Ok(destination)
-}
-
-/// Writes a scene and says what can be done with it.
-fn written(destination: Destination, scene: &str) -> Result<(), Failure> {
-    let path = destination.path().display().to_string();
-    let voice = Voice::apart_from(&destination);
-    // A reader that closed its pipe is no error.
-    let _ = destination.write(scene.as_bytes())?;
-    if voice == Voice::StandardOutput {
-        say(&format!(
-            "written {path}: `sinew plan {path}` says what it builds, `sinew run {path}` runs it"
-        ))?;
-    }
-    Ok(())
 }
 
 /// The path of a mesh as seen from the folder of a scene: relative where the folder is known, else absolute.

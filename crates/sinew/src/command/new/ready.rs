@@ -5,7 +5,7 @@ use std::path::Path;
 use sinew_scene::output::say;
 use sinew_scene::{Scene, SceneSource};
 
-use super::{new_file, written};
+use super::scene_file::{new_file, written};
 use crate::command::Failure;
 
 /// A ready scene, with its mesh.
