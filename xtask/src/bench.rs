@@ -137,7 +137,7 @@ fn run_kernels(arguments: &Arguments) -> Result<(), Failure> {
     let written = folder.write(name, &json)?;
     let text = match arguments.all {
         true => results.to_string(),
-        false => results.brief(),
+        false => format!("{}\n\nall rows: with --all", results.brief()),
     };
     say(&text)?;
     let page = folder.write(page, results.html().as_bytes())?;
@@ -172,7 +172,7 @@ fn run_scale(arguments: &Arguments) -> Result<(), Failure> {
     let picture = folder.write(picture, results.plot().svg().as_bytes())?;
     let text = match arguments.all {
         true => results.to_string(),
-        false => results.brief(),
+        false => format!("{}\n\nall rows: with --all", results.brief()),
     };
     say(&text)?;
     say(&format!(
