@@ -53,6 +53,16 @@ for file in ["raw.vtu", "base64.vtu"]:
     dump(meshio.read(directory + "/" + file), False)
     print("file", file, "pyvista")
     dump_pyvista(pyvista.read(directory + "/" + file))
+for file in ["overlapping-text.msh", "overlapping-binary.msh"]:
+    print("file", file)
+    mesh = meshio.gmsh.read(directory + "/" + file)
+    first = np.cumsum([0] + [len(block.data) for block in mesh.cells])
+    for name in sorted(set(mesh.cell_sets) - {"gmsh:bounding_entities"}):
+        show("set " + name, np.concatenate([start + cells for start, cells in zip(first, mesh.cell_sets[name])]))
+print("file overlapping.vtu")
+grid = pyvista.read(directory + "/overlapping.vtu")
+for name in sorted(name for name in grid.cell_data.keys() if name.startswith("group ")):
+    show("set " + name.removeprefix("group "), np.flatnonzero(grid.cell_data[name]))
 print("file grid.vtu")
 grid = pyvista.read(directory + "/grid.vtu")
 show("points", grid.points)

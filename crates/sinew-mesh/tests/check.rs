@@ -96,7 +96,8 @@ fn copies_orphans_parts_and_groups_are_found() {
     let unit = mesh.check().unit.expect("100 metres are no tissue");
     assert_eq!(
         unit,
-        "the mesh is 100.0000 wide: that looks like millimetres, not metres, for tissue"
+        "the mesh is 100.0000 wide, more than tissue is in metres: probably millimetres, which `scale = 0.001` in the \
+         scene's [mesh] turns into metres (`scale = 0.01` if they are centimetres)"
     );
 
     let mut mesh = cube_mesh();
@@ -122,6 +123,8 @@ fn copies_orphans_parts_and_groups_are_found() {
     mesh.physical_names.insert((3, 50), "nothing".to_owned());
     let check = mesh.check();
     assert_eq!((check.part_count, check.parts.len()), (2, 2));
+    let loose = "loose parts: 2, which share no node and need a support each";
+    assert!(check.problems().iter().any(|problem| problem == loose));
     assert_eq!(check.outside_volume.first_tags, [u64::from(outside) + 1]);
     assert_eq!(check.empty_groups, [(3, 50, "nothing".to_owned())]);
 }
@@ -283,4 +286,52 @@ fn a_summary_is_json() {
         info.to_json()
             .contains("\"warnings\":[\"$Elements: tetra cells with")
     );
+}
+
+#[test]
+fn parts_are_told_by_size_largest_first() {
+    // Three tetrahedra in a row, of 1, 2 and 3 lengths, and a fourth that shares a corner with the last.
+    let mut mesh = Mesh::default();
+    for (x, length) in [(0.0, 1.0), (2.0, 2.0), (5.0, 3.0)] {
+        let corner = [x, 0.0, 0.0];
+        mesh.points.push(corner);
+        for axis in 0..3 {
+            let mut point = corner;
+            point[axis] += length * f64::from(1 << axis) / 16.0;
+            mesh.points.push(point);
+        }
+    }
+    mesh.points
+        .extend([[5.0, 0.0, -0.5], [5.0, 0.5, -0.5], [4.5, 0.0, -0.5]]);
+    let rows = (0..12).chain([8, 13, 12, 14]).collect();
+    mesh.cells = vec![CellBlock::new(CellType::Tetra, rows)];
+    let check = mesh.check();
+    assert_eq!(check.part_count, 3);
+    let found: Vec<(usize, u64)> = check.parts.iter().map(|p| (p.cells, p.first_tag)).collect();
+    assert_eq!(found, [(2, 3), (1, 1), (1, 2)]);
+    assert_eq!(check.parts[0].size, [0.6875, 0.5, 1.25]);
+    assert_eq!(check.parts[1].size, [0.0625, 0.125, 0.25]);
+    assert!(check.to_string().contains(
+        "  a part of 2 cells, 6.875e-1 x 5.000e-1 x 1.250e0 wide, the first with tag 3\n"
+    ));
+}
+
+#[test]
+fn a_mesh_without_tetrahedra_is_no_clean_one() {
+    let mut mesh = cube_mesh();
+    mesh.cells.retain(|block| block.kind.dim() == 2);
+    let check = mesh.check();
+    assert_eq!(check.tets, 0);
+    assert!(!check.is_clean());
+    assert_eq!(
+        check.problems()[0],
+        "no tetrahedra: there is nothing to simulate"
+    );
+}
+
+#[test]
+fn five_metres_are_the_limit_of_tissue() {
+    let wide = |edge: f64| cube(1, edge, Split::Kuhn).expect("valid").to_mesh();
+    assert_eq!(wide(4.99).check().unit, None);
+    assert!(wide(5.01).check().unit.is_some());
 }

@@ -86,7 +86,7 @@ fn check_finds_the_slivers_and_says_so_by_its_exit_code() {
     let check = json(&output);
     assert_eq!(check["clean"], false);
     assert!(check["slivers"]["total"].as_u64().unwrap() >= 16);
-    assert!(check["least_dihedral_deg"].as_f64().unwrap() < 0.1);
+    assert!(check["least_dihedral_deg"]["value"].as_f64().unwrap() < 0.1);
 }
 
 #[test]
@@ -271,4 +271,127 @@ fn a_mesh_is_not_refined_over_itself_or_into_an_unknown_format() {
         assert_eq!(output.status.code(), Some(2));
     }
     assert_eq!(std::fs::read(&cube).unwrap(), before);
+}
+
+/// Two bodies in millimetres, a flat tetrahedron, an orphan, a group without cells: all that a check can say, twice.
+#[test]
+fn the_check_as_text_says_what_the_check_as_json_says() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("bad.msh");
+    let file = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 9 \"nothing\"\n$EndPhysicalNames\n$Nodes\n11\n\
+                1 0 0 0\n2 10 0 0\n3 0 10 0\n4 0 0 10\n5 50 0 0\n6 60 0 0\n7 50 10 0\n8 60 10 0\n9 0 0 90\n10 0 0 -10\n\
+                11 5 5 -20\n$EndNodes\n$Elements\n5\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 5 6 7 8\n3 4 2 1 1 1 2 3 10\n\
+                4 4 2 1 1 1 3 2 11\n5 4 2 1 1 1 2 3 4\n$EndElements\n";
+    std::fs::write(&path, file).unwrap();
+    let text = mesh(&["check", path.to_str().unwrap()]);
+    let output = mesh(&["check", path.to_str().unwrap(), "--json"]);
+    assert_eq!(
+        (text.status.code(), output.status.code()),
+        (Some(1), Some(1))
+    );
+    let (text, json) = (String::from_utf8(text.stdout).unwrap(), json(&output));
+    let lines = |label: &str| -> Vec<&str> {
+        let lines = text.lines().filter_map(|line| line.strip_prefix(label));
+        lines.map(str::trim).collect()
+    };
+    let problems: Vec<&str> = json["problems"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|problem| problem.as_str().unwrap())
+        .collect();
+    assert_eq!(lines("problem"), problems);
+    assert_eq!(json["clean"], false);
+    assert_eq!(json["unit"], *problems.last().unwrap());
+    let checked = format!(
+        "{} tetrahedra in {} part(s)",
+        json["tets"], json["part_count"]
+    );
+    assert_eq!(lines("checked"), [checked]);
+    let parts = json["parts"].as_array().unwrap();
+    assert_eq!((parts.len(), lines("part ").len()), (2, 2));
+    for (part, line) in parts.iter().zip(lines("part ")) {
+        let size = |axis: usize| format!("{:.3e}", part["size"][axis].as_f64().unwrap());
+        let expected = format!(
+            "{} cells, {} x {} x {} wide, the first with tag {}",
+            part["cells"],
+            size(0),
+            size(1),
+            size(2),
+            part["first_tag"]
+        );
+        assert_eq!(line, expected);
+    }
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let angle = &json["least_dihedral_deg"];
+    let expected = format!(
+        "least between two faces {:.3} degrees, in tetrahedron {}",
+        number(&angle["value"]),
+        angle["tag"]
+    );
+    assert_eq!(lines("angle"), [expected]);
+    let shape = &json["least_radius_ratio"];
+    let expected = format!(
+        "least radius ratio {:.4}, in tetrahedron {}",
+        number(&shape["value"]),
+        shape["tag"]
+    );
+    assert_eq!(lines("shape"), [expected]);
+    let expected = format!(
+        "from {:.4e} to {:.4e}, {:.4e} in the mean",
+        number(&json["shortest_edge"]),
+        number(&json["longest_edge"]),
+        number(&json["mean_edge"])
+    );
+    assert_eq!(lines("edges"), [expected]);
+    let faces = json["first_non_manifold"].as_array().unwrap();
+    assert_eq!(
+        (faces.len() as u64, json["non_manifold_faces"].as_u64()),
+        (1, Some(1))
+    );
+    let expected = format!(
+        "of nodes {} in tetrahedra {}",
+        faces[0]["nodes"], faces[0]["tets"]
+    );
+    assert_eq!(lines("face"), [expected.replace(',', ", ")]);
+    for (key, what) in [
+        ("inverted", "inverted tetrahedra"),
+        ("flat", "flat tetrahedra"),
+        ("duplicates", "cells with the nodes of an earlier one"),
+        ("orphans", "nodes that no cell has"),
+    ] {
+        let total = json[key]["total"].as_u64().unwrap();
+        assert!(total > 0, "{key}");
+        let said = format!("{what}: {total} (tags ");
+        assert!(
+            problems.iter().any(|problem| problem.starts_with(&said)),
+            "{key}"
+        );
+    }
+}
+
+#[test]
+fn a_file_of_version_1_is_told_with_the_names_that_scenes_give_to_its_groups() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("one.msh");
+    let file = "$NOD\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$ENDNOD\n$ELM\n2\n1 2 7 1 3 1 3 2\n2 4 5 1 4 1 2 3 4\n$ENDELM\n";
+    std::fs::write(&path, file).unwrap();
+    let output = mesh(&["info", path.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0));
+    let said = String::from_utf8(output.stdout).unwrap();
+    for line in [
+        "group    `2:7` (dimension 2, tag 7): 1 triangle",
+        "group    `3:5` (dimension 3, tag 5): 1 tetra",
+    ] {
+        assert!(said.lines().any(|other| other == line), "{said}");
+    }
+    let converted = directory.path().join("two.msh");
+    let output = mesh(&[
+        "convert",
+        path.to_str().unwrap(),
+        converted.to_str().unwrap(),
+    ]);
+    assert_eq!(output.status.code(), Some(0));
+    let [before, after] = [&path, &converted].map(|path| read_msh_file(path).unwrap());
+    assert_eq!(cells(&before), cells(&after));
 }

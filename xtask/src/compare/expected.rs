@@ -2,7 +2,7 @@
 
 use sinew_mesh::{CellBlock, CellType, Mesh};
 
-use super::files::{GRID, MSH, VTU, integers};
+use super::files::{GRID, MSH, OVERLAPPING_MSH, OVERLAPPING_VTU, VTU, integers};
 
 /// A difference between the numbers that were written and those that were read.
 #[derive(Debug, PartialEq, thiserror::Error)]
@@ -19,7 +19,7 @@ pub(super) enum Difference {
 }
 
 /// The lines that `xtask/python/read_meshes.py` prints where it reads everything as it was written.
-pub(super) fn of(mesh: &Mesh) -> String {
+pub(super) fn of(mesh: &Mesh, overlapping: &Mesh) -> String {
     let mut lines = String::new();
     for (file, ..) in MSH {
         lines.push_str(&format!("file {file}\n{}", arrays(mesh, true)));
@@ -30,6 +30,11 @@ pub(super) fn of(mesh: &Mesh) -> String {
             "file {file}\n{arrays}file {file} pyvista\n{arrays}"
         ));
     }
+    let sets = sets(overlapping);
+    for file in OVERLAPPING_MSH.map(|(file, _)| file) {
+        lines.push_str(&format!("file {file}\n{sets}"));
+    }
+    lines.push_str(&format!("file {OVERLAPPING_VTU}\n{sets}"));
     let tets = mesh
         .cells
         .iter()
@@ -44,6 +49,23 @@ pub(super) fn of(mesh: &Mesh) -> String {
     lines.push_str("int64 int64\n");
     let cells: usize = mesh.cells.iter().map(CellBlock::len).sum();
     lines.push_str(&format!("times [0.0, 0.5]\ncells {cells}\n"));
+    lines
+}
+
+/// The cells of each named group, counted over all blocks.
+fn sets(mesh: &Mesh) -> String {
+    let mut sets = mesh.cell_sets();
+    sets.sort_unstable_by(|a, b| a.name.cmp(&b.name));
+    let mut lines = String::new();
+    for set in sets {
+        let mut first = 0.0;
+        let mut cells = Vec::new();
+        for (block, indices) in mesh.cells.iter().zip(&set.blocks) {
+            cells.extend(indices.iter().map(|&index| first + f64::from(index)));
+            first += block.len() as f64;
+        }
+        lines.push_str(&line(&format!("set {}", set.name), cells.into_iter()));
+    }
     lines
 }
 
@@ -115,7 +137,7 @@ fn normalised(line: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compare::files::mesh;
+    use crate::compare::files::{mesh, overlapping};
 
     #[test]
     fn numbers_of_python_are_the_same_numbers() {
@@ -127,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_last_bit_and_a_missing_line_are_differences() {
-        let expected = of(&mesh().unwrap());
+        let expected = of(&mesh().unwrap(), &overlapping().unwrap());
         assert!(compare(&expected, &expected).is_ok());
         let third = format!("{:?}", 0.1 / 3.0 - 1e-30);
         let off = format!("{:?}", (0.1f64 / 3.0).next_up());

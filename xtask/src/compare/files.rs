@@ -5,12 +5,17 @@ use sinew_mesh::vtu::{
     Array, Grid, VtuEncoding, WriteVtuError, write_pvd, write_vtu, write_vtu_grid,
 };
 use sinew_mesh::{
-    CellData, Mesh, MshEncoding, MshVersion, PointData, TetMeshError, WriteMshError, write_msh,
+    AddGroupError, CellData, GroupMembers, Mesh, MshEncoding, MshVersion, PointData, TetMeshError,
+    WriteMshError, write_msh,
 };
 
 /// Why a file could not be written.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum FilesError {
+    #[error(transparent)]
+    Cube(#[from] StructuredError),
+    #[error(transparent)]
+    Group(#[from] AddGroupError),
     #[error(transparent)]
     NoTets(#[from] TetMeshError),
     #[error(transparent)]
@@ -32,6 +37,15 @@ pub(super) const VTU: [(&str, VtuEncoding); 2] = [
     ("raw.vtu", VtuEncoding::RawAppended),
     ("base64.vtu", VtuEncoding::Base64),
 ];
+
+/// Files of the mesh whose groups overlap.
+pub(super) const OVERLAPPING_MSH: [(&str, MshEncoding); 2] = [
+    ("overlapping-text.msh", MshEncoding::Text),
+    ("overlapping-binary.msh", MshEncoding::Binary),
+];
+
+/// The same as .vtu, with an array for each group.
+pub(super) const OVERLAPPING_VTU: &str = "overlapping.vtu";
 
 /// The tetrahedra alone, with whole numbers at nodes and tetrahedra.
 pub(super) const GRID: &str = "grid.vtu";
@@ -85,6 +99,15 @@ pub(super) fn mesh() -> Result<Mesh, StructuredError> {
     Ok(mesh)
 }
 
+/// A cube with tetrahedra in two groups and triangles in two groups.
+pub(super) fn overlapping() -> Result<Mesh, FilesError> {
+    let mut cube = cube(2, 0.1, Split::Kuhn)?;
+    let patch = cube.boundary(None)[..5].to_vec();
+    cube.add_group("stiff \u{e4}", GroupMembers::Tets((3..30).collect()))?;
+    cube.add_group("patch", GroupMembers::Triangles(patch))?;
+    Ok(cube.to_mesh())
+}
+
 /// The names and bytes of all files.
 pub(super) fn all(mesh: &Mesh) -> Result<Vec<(&'static str, Vec<u8>)>, FilesError> {
     let mut files = Vec::new();
@@ -98,6 +121,15 @@ pub(super) fn all(mesh: &Mesh) -> Result<Vec<(&'static str, Vec<u8>)>, FilesErro
         write_vtu(mesh, encoding, &mut bytes)?;
         files.push((name, bytes));
     }
+    let with_overlaps = overlapping()?;
+    for (name, encoding) in OVERLAPPING_MSH {
+        let mut bytes = Vec::new();
+        write_msh(&with_overlaps, MshVersion::V41, encoding, &mut bytes)?;
+        files.push((name, bytes));
+    }
+    let mut bytes = Vec::new();
+    write_vtu(&with_overlaps, VtuEncoding::RawAppended, &mut bytes)?;
+    files.push((OVERLAPPING_VTU, bytes));
     let tissue = mesh.to_tet_mesh()?;
     let grid = Grid {
         point_data: vec![Array::of_integers("node", integers(tissue.points.len()))],

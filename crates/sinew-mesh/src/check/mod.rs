@@ -33,7 +33,7 @@ impl Default for CheckLimits {
             flat_volume: 1e-9,
             sliver_dihedral: 5.0,
             sliver_radius_ratio: 0.02,
-            widest_in_metres: 2.5,
+            widest_in_metres: 5.0,
         }
     }
 }
@@ -102,12 +102,28 @@ pub struct EdgeLengths {
 }
 
 /// Volume cells that are connected through shared nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Part {
     /// Number of cells.
     pub cells: usize,
     /// Tag of the first cell.
     pub first_tag: u64,
+    /// Widths along x, y and z, in the mesh's own unit.
+    pub size: [f64; 3],
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Part {
+            cells,
+            first_tag,
+            size: [x, y, z],
+        } = self;
+        write!(
+            f,
+            "{cells} cells, {x:.3e} x {y:.3e} x {z:.3e} wide, the first with tag {first_tag}"
+        )
+    }
 }
 
 /// A face of more than two tetrahedra.
@@ -203,7 +219,7 @@ impl Mesh {
 }
 
 impl MeshCheck {
-    /// Whether nothing needs attention. A mesh of several parts alone does not.
+    /// Whether nothing needs attention.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.problems().is_empty()
@@ -213,6 +229,9 @@ impl MeshCheck {
     #[must_use]
     pub fn problems(&self) -> Vec<String> {
         let mut problems = Vec::new();
+        if self.tets == 0 {
+            problems.push("no tetrahedra: there is nothing to simulate".to_owned());
+        }
         let mut add = |finding: &Finding, what: &str| {
             if !finding.is_empty() {
                 problems.push(format!("{what}: {finding}"));
@@ -229,6 +248,12 @@ impl MeshCheck {
             problems.push(format!(
                 "faces of more than two tetrahedra: {}",
                 self.non_manifold_faces
+            ));
+        }
+        if self.part_count > 1 {
+            problems.push(format!(
+                "loose parts: {}, which share no node and need a support each",
+                self.part_count
             ));
         }
         for (dim, tag, name) in &self.empty_groups {
@@ -251,11 +276,7 @@ impl fmt::Display for MeshCheck {
         )?;
         if self.part_count > 1 {
             for part in &self.parts {
-                writeln!(
-                    f,
-                    "  a part of {} cells, the first with tag {}",
-                    part.cells, part.first_tag
-                )?;
+                writeln!(f, "  a part of {part}")?;
             }
         }
         if let Some(edges) = self.edges {
@@ -415,16 +436,27 @@ fn check_parts(mesh: &Mesh, check: &mut MeshCheck) {
             sets.join(pair[0], pair[1]);
         }
     }
-    let mut parts: BTreeMap<u32, Part> = BTreeMap::new();
+    let mut parts: BTreeMap<u32, (Part, Bounds)> = BTreeMap::new();
     for (at, row) in volume_cells() {
-        let part = parts.entry(sets.root(row[0])).or_insert_with(|| Part {
-            cells: 0,
-            first_tag: mesh.element_tag(at),
+        let (part, bounds) = parts.entry(sets.root(row[0])).or_insert_with(|| {
+            let part = Part {
+                cells: 0,
+                first_tag: mesh.element_tag(at),
+                size: [0.0; 3],
+            };
+            (part, Bounds::default())
         });
         part.cells += 1;
+        for &node in row {
+            bounds.add(mesh.points[node as usize]);
+        }
     }
     check.part_count = parts.len();
-    let mut parts: Vec<Part> = parts.into_values().collect();
+    let sized = |(part, bounds): (Part, Bounds)| Part {
+        size: bounds.widths(),
+        ..part
+    };
+    let mut parts: Vec<Part> = parts.into_values().map(sized).collect();
     parts.sort_by_key(|part| std::cmp::Reverse(part.cells));
     parts.truncate(EXAMPLES);
     check.parts = parts;
@@ -484,23 +516,45 @@ pub(crate) fn empty_groups(mesh: &Mesh) -> Vec<(u8, i32, String)> {
 }
 
 fn unit_guess(mesh: &Mesh, limits: &CheckLimits) -> Option<String> {
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
+    let mut bounds = Bounds::default();
     for (_, row) in cells_of(mesh, |_| true) {
-        for point in row
-            .iter()
-            .filter_map(|&node| mesh.points.get(node as usize))
-        {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(point[axis]);
-                high[axis] = high[axis].max(point[axis]);
-            }
+        let points = row.iter().filter_map(|&n| mesh.points.get(n as usize));
+        points.for_each(|&point| bounds.add(point));
+    }
+    let width = bounds.widths().into_iter().fold(0.0, f64::max);
+    (width > limits.widest_in_metres).then(|| {
+        format!(
+            "the mesh is {width:.4} wide, more than tissue is in metres: probably millimetres, which `scale = 0.001` in the \
+             scene's [mesh] turns into metres (`scale = 0.01` if they are centimetres)"
+        )
+    })
+}
+
+/// The least and the greatest coordinates of points.
+struct Bounds {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Default for Bounds {
+    fn default() -> Bounds {
+        Bounds {
+            low: [f64::INFINITY; 3],
+            high: [f64::NEG_INFINITY; 3],
         }
     }
-    let width = (0..3)
-        .map(|axis| high[axis] - low[axis])
-        .fold(0.0, f64::max);
-    (width > limits.widest_in_metres).then(|| {
-        format!("the mesh is {width:.4} wide: that looks like millimetres, not metres, for tissue")
-    })
+}
+
+impl Bounds {
+    fn add(&mut self, point: [f64; 3]) {
+        for ((low, high), x) in self.low.iter_mut().zip(&mut self.high).zip(point) {
+            *low = low.min(x);
+            *high = high.max(x);
+        }
+    }
+
+    /// Widths along x, y and z; 0 where no point was added.
+    fn widths(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| (self.high[axis] - self.low[axis]).max(0.0))
+    }
 }

@@ -1,5 +1,6 @@
 //! Writes a mesh with its data fields.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 
 use super::error::WriteVtuError;
@@ -12,7 +13,9 @@ use crate::mesh::{CellBlock, Mesh};
 ///
 /// Arrays keep the names of their fields; of several fields of one name, all but the first get their
 /// time step appended. Cells have their first group as `gmsh:physical`, their entity as `gmsh:geometrical` and their
-/// tag as `gmsh:element_tag`; points have `gmsh:node_tag`. Values at the nodes of elements are not written.
+/// tag as `gmsh:element_tag`; points have `gmsh:node_tag`. Each named group is an array of its own, `group NAME`, 1 in its cells and
+/// 0 elsewhere, so that names stay and groups may overlap; where groups of several dimensions share a name, they share the array.
+/// Values at the nodes of elements are not written.
 ///
 /// # Errors
 ///
@@ -46,6 +49,7 @@ pub fn write_vtu(
             .flat_map(|block| (0..block.len()).map(move |cell| value(block, cell)))
             .collect()
     };
+    let groups = named_groups(mesh);
     let mut cell_data = vec![
         Array::of_integers(
             "gmsh:physical",
@@ -64,6 +68,9 @@ pub fn write_vtu(
         let tags = mesh.cells.iter().flat_map(|block| &block.element_tags);
         let tags: Vec<i64> = tags.map(|&tag| tag as i64).collect();
         cell_data.push(Array::of_integers("gmsh:element_tag", tags));
+    }
+    for (name, is_member) in &groups {
+        cell_data.push(Array::of_integers(name, is_member.as_slice()));
     }
     for (data, name) in mesh.cell_data.iter().zip(&cell_names) {
         cell_data.push(Array {
@@ -84,6 +91,33 @@ pub fn write_vtu(
     write_vtu_grid(&grid, encoding, to)
 }
 
+/// The name of the array of each named group, and 1 for each of its cells, 0 for the others.
+fn named_groups(mesh: &Mesh) -> Vec<(String, Vec<i64>)> {
+    let cells: usize = mesh.cells.iter().map(CellBlock::len).sum();
+    let names: BTreeSet<&str> = mesh.physical_names.values().map(String::as_str).collect();
+    let mut groups: Vec<(String, Vec<i64>)> = names
+        .iter()
+        .map(|name| (format!("group {name}"), vec![0; cells]))
+        .collect();
+    let index_of: BTreeMap<(u8, i32), usize> = mesh
+        .physical_names
+        .iter()
+        .filter_map(|(&key, name)| Some((key, names.iter().position(|other| other == name)?)))
+        .collect();
+    let mut cell = 0;
+    for block in &mesh.cells {
+        for tags in (0..block.len()).map(|index| block.physical.of(index)) {
+            for tag in tags {
+                if let Some(&group) = index_of.get(&(block.kind.dim(), tag.saturating_abs())) {
+                    groups[group].1[cell] = 1;
+                }
+            }
+            cell += 1;
+        }
+    }
+    groups
+}
+
 /// The names, with the time step appended where a name has been used before.
 fn distinct_names<'n>(fields: impl Iterator<Item = (&'n String, i32)>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
@@ -98,4 +132,31 @@ fn distinct_names<'n>(fields: impl Iterator<Item = (&'n String, i32)>) -> Vec<St
         names.push(distinct);
     }
     names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::structured::{Split, cube};
+    use crate::tet_mesh::GroupMembers;
+
+    #[test]
+    fn groups_that_overlap_are_arrays_of_their_own() {
+        let mut cube = cube(1, 0.1, Split::Kuhn).expect("valid");
+        cube.add_group("half", GroupMembers::Tets(vec![1, 4, 5]))
+            .expect("it is new");
+        let mut mesh = cube.to_mesh();
+        // Another dimension may have a group of the same name, and the sign of a tag does not matter.
+        mesh.physical_names.insert((2, 3), "half".to_owned());
+        let groups: BTreeMap<String, Vec<i64>> = named_groups(&mesh).into_iter().collect();
+        let names: Vec<&str> = groups.keys().map(String::as_str).collect();
+        let expected = ["group bottom", "group half", "group sides", "group tissue"];
+        assert_eq!(names, expected);
+        let count = |name: &str| groups[name].iter().sum::<i64>();
+        assert_eq!(expected.map(count), [2, 2 + 3, 8, 6]);
+        assert!(groups.values().all(|array| array.len() == 12 + 6));
+        // The tetrahedra of both groups are in a block of their own.
+        let in_both = (0..18).filter(|&i| groups["group half"][i] + groups["group tissue"][i] == 2);
+        assert_eq!(in_both.count(), 3);
+    }
 }

@@ -7,7 +7,8 @@ use serde_json::json;
 use sinew_mesh::info::MeshInfo;
 use sinew_mesh::vtu::{VtuEncoding, write_vtu};
 use sinew_mesh::{
-    Finding, Mesh, MeshCheck, MshEncoding, MshVersion, WriteMshError, read_msh_file, write_msh,
+    Extreme, Finding, Mesh, MeshCheck, MshEncoding, MshVersion, WriteMshError, read_msh_file,
+    write_msh,
 };
 use sinew_scene::output::{Destination, Voice, complain, say};
 
@@ -146,7 +147,14 @@ fn info(file: &Path, json: bool) -> Result<(), Failure> {
             .iter()
             .map(|(kind, count)| format!("{count} {kind}"))
             .collect();
-        let (dim, tag, name) = (group.dim, group.tag, &group.name);
+        let (dim, tag) = (group.dim, group.tag);
+        // Scenes call a group without a name so.
+        let unnamed = format!("{dim}:{tag}");
+        let name = if group.name.is_empty() {
+            &unnamed
+        } else {
+            &group.name
+        };
         say(&format!(
             "group    `{name}` (dimension {dim}, tag {tag}): {}",
             cells.join(", ")
@@ -233,6 +241,11 @@ fn report(check: &MeshCheck, voice: Voice) -> Result<(), Failure> {
         "checked  {} tetrahedra in {} part(s)",
         check.tets, check.part_count
     ))?;
+    if check.part_count > 1 {
+        for part in &check.parts {
+            voice.say(&format!("part     {part}"))?;
+        }
+    }
     if let Some(extreme) = &check.least_dihedral {
         let (value, tag) = (extreme.value, extreme.element_tag);
         voice.say(&format!(
@@ -247,8 +260,14 @@ fn report(check: &MeshCheck, voice: Voice) -> Result<(), Failure> {
     }
     if let Some(edges) = &check.edges {
         voice.say(&format!(
-            "edges    from {:.4e} to {:.4e}",
-            edges.shortest, edges.longest
+            "edges    from {:.4e} to {:.4e}, {:.4e} in the mean",
+            edges.shortest, edges.longest, edges.mean
+        ))?;
+    }
+    for face in &check.first_non_manifold {
+        voice.say(&format!(
+            "face     of nodes {:?} in tetrahedra {:?}",
+            face.node_tags, face.element_tags
         ))?;
     }
     for problem in check.problems() {
@@ -267,7 +286,19 @@ fn as_json(
 ) -> serde_json::Value {
     let finding =
         |finding: &Finding| json!({ "total": finding.total, "first_tags": finding.first_tags });
-    let parts: Vec<usize> = check.parts.iter().map(|part| part.cells).collect();
+    let extreme = |extreme: &Option<Extreme>| {
+        extreme.map(|Extreme { value, element_tag }| json!({ "value": value, "tag": element_tag }))
+    };
+    let parts: Vec<_> = check
+        .parts
+        .iter()
+        .map(|part| json!({ "cells": part.cells, "first_tag": part.first_tag, "size": part.size }))
+        .collect();
+    let faces: Vec<_> = check
+        .first_non_manifold
+        .iter()
+        .map(|face| json!({ "nodes": face.node_tags, "tets": face.element_tags }))
+        .collect();
     let empty: Vec<_> = check
         .empty_groups
         .iter()
@@ -288,13 +319,15 @@ fn as_json(
         "orphans": finding(&check.orphans),
         "outside_volume": finding(&check.outside_volume),
         "part_count": check.part_count,
-        "largest_parts": parts,
+        "parts": parts,
         "non_manifold_faces": check.non_manifold_faces,
+        "first_non_manifold": faces,
         "empty_groups": empty,
         "shortest_edge": check.edges.as_ref().map(|edges| edges.shortest),
         "longest_edge": check.edges.as_ref().map(|edges| edges.longest),
-        "least_dihedral_deg": check.least_dihedral.as_ref().map(|extreme| extreme.value),
-        "least_radius_ratio": check.least_radius_ratio.as_ref().map(|extreme| extreme.value),
+        "mean_edge": check.edges.as_ref().map(|edges| edges.mean),
+        "least_dihedral_deg": extreme(&check.least_dihedral),
+        "least_radius_ratio": extreme(&check.least_radius_ratio),
         "unit": check.unit,
         "problems": check.problems(),
         "fixed": fixed,
