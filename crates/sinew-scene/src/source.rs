@@ -1,5 +1,7 @@
 //! The text of a scene and where it came from.
 
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// The text of a scene file, kept so that messages can point at a line of it.
@@ -59,6 +61,27 @@ impl SceneSource {
             .count();
         (line, column)
     }
+}
+
+/// Size of a file beyond which it is no scene that someone wrote (bytes).
+const LARGEST: u64 = 16 << 20;
+
+/// The text of a scene file. Pipes, devices and files without end are not waited for.
+pub(crate) fn text_of(path: &Path) -> io::Result<String> {
+    let refused = |reason: String| io::Error::new(ErrorKind::InvalidInput, reason);
+    // Looked at before it is opened, which would wait for the writer of a pipe.
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(refused("it is no file; expected a file of TOML".to_owned()));
+    }
+    let mut text = String::new();
+    let read = File::open(path)?
+        .take(LARGEST + 1)
+        .read_to_string(&mut text);
+    if text.len() as u64 > LARGEST {
+        let reason = format!("it is larger than {} MB; expected a scene", LARGEST >> 20);
+        return Err(refused(reason));
+    }
+    read.map(|_| text)
 }
 
 #[cfg(test)]

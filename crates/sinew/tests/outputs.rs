@@ -342,3 +342,33 @@ fn the_probes_go_by_default_to_standard_output() {
     assert!(is_csv(out(&output)), "{}", out(&output));
     assert_eq!(folder.contents(), before);
 }
+
+#[test]
+fn a_scene_without_end_or_with_a_key_without_end_is_one_short_error() {
+    let folder = Folder::new();
+    let made = Command::new("mkfifo")
+        .arg(folder.path("pipe.toml"))
+        .status();
+    assert!(made.unwrap().success());
+    let key = "a".repeat(1 << 20);
+    fs::write(folder.path("key.toml"), format!("[mesh]\n{key} = 1\n")).unwrap();
+    let large = File::create(folder.path("large.toml")).unwrap();
+    large.set_len(1 << 30).unwrap();
+    let cases = [
+        ("pipe.toml", "it is no file"),
+        ("/dev/zero", "it is no file"),
+        (".", "it is no file"),
+        ("large.toml", "it is larger than 16 MB"),
+        ("key.toml", "unknown key `aaaaaaaa"),
+    ];
+    for command in ["run", "plan"] {
+        for (scene, expected) in cases {
+            let begin = Instant::now();
+            let said = folder.sinew(&[command, scene]).output().unwrap();
+            assert_eq!(code(&said), Some(2), "{}", err(&said));
+            assert!(err(&said).contains(expected), "{}", err(&said));
+            assert!(err(&said).len() < 600, "{} bytes", err(&said).len());
+            assert!(begin.elapsed() < Duration::from_secs(10));
+        }
+    }
+}

@@ -8,7 +8,7 @@ use toml::de::{DeString, DeTable, DeValue};
 
 use super::place::{KeyPlace, Place};
 use super::value::{Misfit, kind, text};
-use crate::error::{Fault, SceneError};
+use crate::error::{Fault, SceneError, shortened};
 use crate::nearest::nearest;
 use crate::source::SceneSource;
 
@@ -266,13 +266,8 @@ impl<'a> Table<'a> {
 
     /// A value as the user wrote it, on one line and shortened.
     fn written(&self, value: &Spanned<DeValue<'_>>) -> String {
-        const LONGEST: usize = 60;
         let text = self.scene.text().get(value.span()).unwrap_or_default();
-        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        match text.char_indices().nth(LONGEST) {
-            None => text,
-            Some((end, _)) => format!("{}..", &text[..end]),
-        }
+        shortened(&text.split_whitespace().collect::<Vec<_>>().join(" "))
     }
 }
 

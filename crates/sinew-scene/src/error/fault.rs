@@ -1,7 +1,7 @@
 //! The kinds of mistakes in a scene.
 
 use super::no_step::NoStableStep;
-use super::words::{did_you_mean, quoted, quoted_or_none};
+use super::words::{did_you_mean, quoted, quoted_or_none, shortened};
 use crate::overrides::OverrideError;
 
 /// A mistake in a scene.
@@ -21,7 +21,7 @@ pub enum Fault {
     #[error(transparent)]
     Override(#[from] OverrideError),
     /// A key that means nothing in its table.
-    #[error("unknown key `{key}`{}", did_you_mean(*nearest))]
+    #[error("unknown key `{}`{}", shortened(key), did_you_mean(*nearest))]
     UnknownKey {
         /// The key given.
         key: String,

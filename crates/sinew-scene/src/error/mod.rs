@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 pub use fault::Fault;
 pub use no_step::{NoStableStep, StableStepError};
+pub(crate) use words::shortened;
 
 use crate::source::SceneSource;
 

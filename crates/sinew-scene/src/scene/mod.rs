@@ -35,7 +35,7 @@ pub use selected::{Choice, Members, Selected};
 use crate::decode::value::{text, vector};
 use crate::decode::{Place, Table};
 use crate::error::{Fault, SceneError};
-use crate::source::SceneSource;
+use crate::source::{SceneSource, text_of};
 
 /// A scene as its user wrote it, every key checked.
 #[derive(Debug, Clone)]
@@ -140,7 +140,7 @@ impl Scene {
         values: &[T],
     ) -> Result<Self, SceneError> {
         let path = path.as_ref();
-        match std::fs::read_to_string(path) {
+        match text_of(path) {
             Ok(text) => {
                 let source = SceneSource::new(path, text);
                 match source.with_values(values) {
@@ -232,8 +232,7 @@ impl Scene {
     /// far as they can be found.
     #[must_use]
     pub fn input_files_of(path: &Path) -> Vec<PathBuf> {
-        let text = std::fs::read(path).unwrap_or_default();
-        let text = String::from_utf8_lossy(&text);
+        let text = text_of(path).unwrap_or_default();
         let (document, _) = DeTable::parse_recoverable(&text);
         let mesh = document.get_ref().get("mesh");
         let file = mesh.and_then(|mesh| mesh.get_ref().as_table()?.get("file")?.get_ref().as_str());

@@ -252,9 +252,12 @@ fn plural(count: usize, what: &str) -> String {
     }
 }
 
+/// Bytes of a mark beyond which an excerpt would fill the terminal.
+const LONGEST_MARK: usize = 400;
+
 /// The marked text at fault and the hint.
 fn excerpt(error: &SceneError) -> Option<Report> {
-    let span = error.span()?;
+    let span = error.span().filter(|span| span.len() <= LONGEST_MARK)?;
     let label = LabeledSpan::at(span, error.fault().to_string());
     let help = error.help().unwrap_or_default();
     let source = NamedSource::new(
