@@ -27,7 +27,7 @@ pub(crate) fn page(
         "" => "A run",
         title => title,
     };
-    let mut page = Page::new(title);
+    let mut page = Page::new(title).with_style(body::STYLE);
     for warning in summary.record.warnings.iter().chain(summary.warnings) {
         page.warning(warning);
     }

@@ -1,8 +1,10 @@
-//! `cargo xtask compare`: meshio and pyvista read what sinew-mesh writes.
+//! `cargo xtask compare`: meshio and pyvista read what sinew-mesh and sinew-record write.
 
 mod expected;
 mod files;
+mod run_folder;
 
+use std::path::Path;
 use std::process::Stdio;
 
 use sinew_bench::output::{OutputFolder, say};
@@ -42,11 +44,35 @@ pub(crate) fn run_with(python: &Python) -> Result<(), Failure> {
     for (name, bytes) in &files {
         let _ = folder.write(name, bytes)?;
     }
-    let script = root().join("xtask/python/read_meshes.py");
+    let read = said_by(python, "read_meshes.py", folder.path())?;
+    let overlapping = files::overlapping().map_err(Failure::chore)?;
+    let expected = expected::of(&mesh, &overlapping);
+    let lines = expected::compare(&read, &expected).map_err(Failure::chore)?;
+    let names = names.join(", ");
+    say(&format!(
+        "meshio and pyvista read what was written: {lines} lines of numbers from {names}"
+    ))?;
+    compare_run(python)
+}
+
+/// Runs a scene into a folder, and lets meshio and pyvista compare its fields with its probes.
+fn compare_run(python: &Python) -> Result<(), Failure> {
+    let folder = root().join("target/compare-run");
+    run_folder::write(&folder)?;
+    let read = said_by(python, "read_run.py", &folder)?;
+    Ok(say(&format!(
+        "meshio and pyvista read the folder of a run: {}",
+        read.trim_end()
+    ))?)
+}
+
+/// What a script of `xtask/python` prints about a folder.
+fn said_by(python: &Python, script: &str, folder: &Path) -> Result<String, Failure> {
+    let script = root().join("xtask/python").join(script);
     let output = python
         .command()
         .arg(&script)
-        .arg(folder.path())
+        .arg(folder)
         .stdin(Stdio::null())
         .output()
         .map_err(Failure::chore)?;
@@ -54,12 +80,5 @@ pub(crate) fn run_with(python: &Python) -> Result<(), Failure> {
         let (script, reason) = (script.display(), last_line(&output));
         return Err(Failure::Chore(format!("{script}: {reason}")));
     }
-    let read = String::from_utf8_lossy(&output.stdout);
-    let overlapping = files::overlapping().map_err(Failure::chore)?;
-    let expected = expected::of(&mesh, &overlapping);
-    let lines = expected::compare(&read, &expected).map_err(Failure::chore)?;
-    let names = names.join(", ");
-    Ok(say(&format!(
-        "meshio and pyvista read what was written: {lines} lines of numbers from {names}"
-    ))?)
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }

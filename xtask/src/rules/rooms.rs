@@ -72,7 +72,16 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-draw",
         ],
     ),
-    ("xtask", &["sinew-bench", "sinew-measure", "sinew-mesh"]),
+    (
+        "xtask",
+        &[
+            "sinew-bench",
+            "sinew-measure",
+            "sinew-mesh",
+            "sinew-record",
+            "sinew-scene",
+        ],
+    ),
 ];
 
 /// Libraries that only one crate may name.

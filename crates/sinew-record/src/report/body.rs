@@ -6,7 +6,7 @@ use crate::fields::Surface;
 use crate::summary::Summary;
 
 /// Triangles beyond which a page with two pictures takes long to open.
-const MOST_TRIANGLES: usize = 40_000;
+const MOST_TRIANGLES: usize = 80_000;
 
 /// Share of the body's size below which a displacement cannot be seen.
 const SEEN: f64 = 0.02;
@@ -17,6 +17,10 @@ const DRAWN: f64 = 0.08;
 /// The direction in which pictures look.
 const AWAY: [f64; 3] = [1.0, 1.0, -1.0];
 
+/// Rules by which both pictures stand side by side where there is room, and shrink where there is little.
+pub(super) const STYLE: &str =
+    ".pair { display: flex; flex-wrap: wrap; gap: 1rem; }\n.pair .plot svg { min-width: 0; }\n";
+
 /// The body at rest and at its largest motion.
 pub(super) fn section(page: &mut Page, summary: &Summary<'_>, surface: &Surface, largest: &[f64]) {
     page.section("body", "The body");
@@ -24,6 +28,13 @@ pub(super) fn section(page: &mut Page, summary: &Summary<'_>, surface: &Surface,
     let moved = largest.as_chunks::<3>().0;
     if moved.len() != surface.points.len() {
         page.paragraph("It did not move at any instant of the fields.");
+        return;
+    }
+    if surface.triangles.len() > MOST_TRIANGLES {
+        page.paragraph(&format!(
+            "A picture of {} triangles would make this page slow: `surface.vtu` and `fields.pvd` show them.",
+            surface.triangles.len()
+        ));
         return;
     }
     let extent = summary.simulation.system().extent().unwrap_or(1.0);
@@ -55,7 +66,7 @@ pub(super) fn section(page: &mut Page, summary: &Summary<'_>, surface: &Surface,
         ("At rest".to_owned(), rest, vec![0.0; sizes.len()]),
         (words, then, sizes),
     ];
-    let mut drawn = String::new();
+    page.markup("<div class=\"pair\">\n");
     for (title, points, values) in pictures {
         let facing: Vec<[u32; 3]> = surface
             .triangles
@@ -63,21 +74,14 @@ pub(super) fn section(page: &mut Page, summary: &Summary<'_>, surface: &Surface,
             .filter(|triangle| faces(&triangle.map(|point| points[point as usize])))
             .copied()
             .collect();
-        if facing.len() > MOST_TRIANGLES {
-            page.paragraph(&format!(
-                "A picture of {} triangles would make this page slow: `surface.vtu` and `fields.pvd` show them.",
-                surface.triangles.len()
-            ));
-            return;
-        }
         let picture = Picture {
             range,
             view: Some(view),
             ..Picture::new(title, &points, &facing, &values, "displacement [mm]")
         };
-        drawn.push_str(&picture.svg());
+        page.figure(&picture.svg(), "");
     }
-    page.figure(&drawn, "");
+    page.markup("</div>\n");
 }
 
 /// Whether a triangle shows its outside.

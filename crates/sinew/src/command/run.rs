@@ -160,7 +160,7 @@ fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> Vec<String>
     lines.extend(warnings.map(|warning| format!("warning: {warning}")));
     lines.push(ERROR_NOT_KNOWN.to_owned());
     lines.push(format!(
-        "{}: fields.pvd for ParaView, tables, summary.json",
+        "{}: report.html, fields.pvd for ParaView, tables, summary.json",
         path.display()
     ));
     lines
