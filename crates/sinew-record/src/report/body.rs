@@ -18,8 +18,9 @@ const DRAWN: f64 = 0.08;
 const AWAY: [f64; 3] = [1.0, 1.0, -1.0];
 
 /// Rules by which both pictures stand side by side where there is room, and shrink where there is little.
-pub(super) const STYLE: &str =
-    ".pair { display: flex; flex-wrap: wrap; gap: 1rem; }\n.pair .plot svg { min-width: 0; }\n";
+pub(super) const STYLE: &str = ".pair { display: flex; flex-wrap: wrap; gap: 1rem; }\n\
+     .pair figure { flex: 1 1 24rem; margin: 0; }\n\
+     .pair .plot svg { min-width: 0; }\n";
 
 /// The body at rest and at its largest motion.
 pub(super) fn section(page: &mut Page, summary: &Summary<'_>, surface: &Surface, largest: &[f64]) {
