@@ -35,10 +35,12 @@ mod balance;
 mod checkpoint;
 mod companion;
 mod compare;
+mod csv;
 mod error;
 mod fields;
 #[cfg(feature = "implicit")]
 mod modes;
+mod pace;
 mod progress;
 mod recorder;
 mod report;
@@ -54,6 +56,7 @@ pub use compare::{CompareError, Comparison, Difference, compare};
 pub use error::RecordRunError;
 #[cfg(feature = "implicit")]
 pub use modes::{NaturalMode, check_modes_folder, natural_modes, write_modes};
+pub use pace::Pace;
 pub use request::Request;
 pub use run_end::{Ended, RunEnd};
 pub use run_folder::RunFolder;

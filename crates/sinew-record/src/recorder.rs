@@ -1,16 +1,17 @@
 //! The recorder of a run: writes what is due after each step.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use sinew_core::{Moment, RecordError, Recorder, Verdict};
 use sinew_scene::output::{GrowingFile, OwnedFolder};
-use sinew_scene::{Instants, Simulation};
+use sinew_scene::{Instants, Simulation, probe_rows};
 
 use crate::balance::Balance;
 use crate::checkpoint::Checkpoint;
 use crate::companion::Companion;
 use crate::error::RecordRunError;
 use crate::fields::{Fields, Surface};
+use crate::pace::Pace;
 use crate::progress::{Lengths, Progress};
 use crate::schedule::Schedule;
 use crate::tables::{self, Reactions};
@@ -23,9 +24,6 @@ const SMALL: usize = 30_000;
 
 /// Rows of energies and reactions of larger bodies: each costs about as much as several steps.
 const ROWS_OF_LARGE_BODIES: usize = 100;
-
-/// Wall time between two looks at whether the run is to stop.
-const LOOK: Duration = Duration::from_millis(40);
 
 /// What is written when.
 #[derive(Debug, Clone, Copy)]
@@ -122,42 +120,11 @@ pub(crate) struct RunRecorder<'a> {
     /// Steps whose rows of probes have come.
     pub(crate) watched: usize,
     pub(crate) pace: Pace,
+    /// Instant of the last checkpoint, or of the beginning.
+    pub(crate) saved: Instant,
     pub(crate) line: String,
     /// Velocity (m/s) of the moment that is being written.
     pub(crate) v: Vec<f64>,
-}
-
-/// How often a run looks up from its steps.
-pub(crate) struct Pace {
-    /// Steps between two looks.
-    steps: usize,
-    looked: Instant,
-    /// The step at the last look.
-    at: usize,
-    saved: Instant,
-}
-
-impl Pace {
-    pub(crate) fn new(at: usize) -> Self {
-        let now = Instant::now();
-        Self {
-            steps: 1,
-            looked: now,
-            at,
-            saved: now,
-        }
-    }
-
-    /// Makes as many steps go by until the next look as take [`LOOK`].
-    fn look(&mut self, step: usize) {
-        let taken = step.saturating_sub(self.at);
-        if taken > 0 {
-            let each = self.looked.elapsed().as_secs_f64() / taken as f64;
-            let fitting = LOOK.as_secs_f64() / each.max(1e-9);
-            self.steps = (fitting as usize).clamp(1, 2 * self.steps);
-        }
-        (self.at, self.looked) = (step, Instant::now());
-    }
 }
 
 impl RunRecorder<'_> {
@@ -193,8 +160,7 @@ impl RunRecorder<'_> {
         let last = step == self.simulation.run().steps;
         self.companion.progress(step, moment.state.t());
         let stop = self.companion.is_interrupted() && !last;
-        let due =
-            self.pace.saved.elapsed().as_secs_f64() >= self.simulation.scene().output().checkpoint;
+        let due = self.saved.elapsed().as_secs_f64() >= self.simulation.scene().output().checkpoint;
         if stop || (due && !last) {
             self.save(moment)?;
         }
@@ -251,7 +217,7 @@ impl RunRecorder<'_> {
             &row,
             &self.largest,
         )?;
-        self.pace.saved = Instant::now();
+        self.saved = Instant::now();
         Ok(())
     }
 }
@@ -276,7 +242,7 @@ impl Recorder for RunRecorder<'_> {
         let fields = self.schedules.fields.and_then(|fields| fields.next(step));
         let energy = self.schedules.energy.next(step);
         let end = self.simulation.run().steps;
-        let look = (self.pace.at + self.pace.steps).clamp(step, end.max(step));
+        let look = self.pace.next().clamp(step, end.max(step));
         let next = [fields, energy, Some(look)].into_iter().flatten().min()?;
         next.checked_sub(self.before)
     }
@@ -287,7 +253,7 @@ impl Recorder for RunRecorder<'_> {
     }
 
     fn watches(&self) -> Vec<u32> {
-        tables::watched_dofs(self.simulation.probes())
+        probe_rows::watched(self.simulation.probes())
     }
 
     fn watched(&mut self, t: f64, u: &[f64]) -> Result<Verdict, RecordError> {
@@ -295,7 +261,7 @@ impl Recorder for RunRecorder<'_> {
         self.watched += 1;
         let known = self.resumed && step == self.before;
         if !known && self.schedules.probes.is_due(step) {
-            tables::probes_row(&mut self.line, self.simulation.probes(), t, u);
+            probe_rows::write(&mut self.line, self.simulation.probes(), t, u);
             self.tables
                 .probes
                 .push(&self.line)

@@ -6,12 +6,13 @@ mod curves;
 use sinew_draw::Page;
 use sinew_scene::output::OwnedFolder;
 
+use crate::csv::Table;
 use crate::error::RecordRunError;
 use crate::fields::Surface;
 use crate::run_end::Ended;
 use crate::summary::Summary;
 use crate::tables;
-use curves::Curves;
+use curves::plot;
 
 pub(crate) const NAME: &str = "report.html";
 
@@ -38,14 +39,27 @@ pub(crate) fn page(
     if let Some(surface) = surface {
         body::section(&mut page, summary, surface, largest);
     }
-    let read = |name: &str| Curves::read(folder, name);
+    let read = |name: &'static str| -> Result<Option<Table>, RecordRunError> {
+        let Some(content) = folder.read(name)? else {
+            return Ok(None);
+        };
+        let table = Table::parse(&String::from_utf8_lossy(&content));
+        table.map(Some).map_err(|reason| RecordRunError::Unusable {
+            folder: folder.path().to_owned(),
+            name,
+            reason,
+        })
+    };
     if let Some(probes) = read(tables::PROBES)? {
         page.section("probes", "Probes");
         for probe in simulation.probes() {
             let begin = format!("{}_u_", probe.name);
-            let plot = probes.plot(&probe.name, "displacement [m]", |column| {
-                let axis = column.strip_prefix(&begin)?.strip_suffix("_m")?;
-                Some(axis.to_owned())
+            let plot = plot(&probes, &probe.name, "displacement [m]", |column| {
+                // The mass of an oscillator has one direction without a name.
+                match column.strip_prefix(&begin)? {
+                    "m" => Some("u".to_owned()),
+                    axis => Some(axis.strip_suffix("_m")?.to_owned()),
+                }
             });
             page.figure(&plot.svg(), "");
         }
@@ -57,7 +71,7 @@ pub(crate) fn page(
     }
     if let Some(energy) = read(tables::ENERGY)? {
         page.section("energy", "Energy");
-        let plot = energy.plot("Balance of energy", "energy [J]", |column| {
+        let plot = plot(&energy, "Balance of energy", "energy [J]", |column| {
             Some(column.strip_suffix("_J")?.replace('_', " "))
         });
         page.figure(
@@ -69,10 +83,15 @@ pub(crate) fn page(
         page.section("reactions", "Forces of supports");
         for part in summary.parts {
             let begin = format!("{}_f_", part.name);
-            let plot = reactions.plot(&part.by.replace('`', ""), "force [N]", |column| {
-                let axis = column.strip_prefix(&begin)?.strip_suffix("_N")?;
-                Some(axis.to_owned())
-            });
+            let plot = plot(
+                &reactions,
+                &part.by.replace('`', ""),
+                "force [N]",
+                |column| {
+                    let axis = column.strip_prefix(&begin)?.strip_suffix("_N")?;
+                    Some(axis.to_owned())
+                },
+            );
             page.figure(&plot.svg(), "");
         }
     }

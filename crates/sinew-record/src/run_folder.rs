@@ -13,8 +13,9 @@ use crate::checkpoint::{self, Checkpoint};
 use crate::companion::Companion;
 use crate::error::RecordRunError;
 use crate::fields::{self, Fields, Surface};
+use crate::pace::Pace;
 use crate::progress::Progress;
-use crate::recorder::{Pace, RunRecorder, Schedules, Tables};
+use crate::recorder::{RunRecorder, Schedules, Tables};
 use crate::report;
 use crate::request::{self, Record, Request};
 use crate::run_end::{Ended, RunEnd};
@@ -161,6 +162,7 @@ impl RunFolder {
             resumed,
             watched: before,
             pace: Pace::new(before),
+            saved: Instant::now(),
             line: String::new(),
             v: Vec::new(),
         };

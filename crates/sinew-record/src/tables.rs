@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use sinew_core::Moment;
 use sinew_fem::On;
-use sinew_scene::{Probe, ReactionOf, Simulation};
+use sinew_scene::{ReactionOf, Simulation, probe_rows};
 
 use crate::balance::Energies;
 use crate::error::RecordRunError;
@@ -16,7 +16,6 @@ pub(crate) const REACTIONS: &str = "reactions.csv";
 /// A line that says where each probe is, and the line of column names.
 pub(crate) fn probes_head(simulation: &Simulation) -> String {
     let mut text = String::new();
-    let mut columns = vec!["t_s".to_owned()];
     for probe in simulation.probes() {
         if let (Some(node), Some(body)) = (&probe.node, simulation.model().body()) {
             let [x, y, z] = body.mesh.points[node.index as usize];
@@ -25,49 +24,10 @@ pub(crate) fn probes_head(simulation: &Simulation) -> String {
                 "# {name}: node {tag} at {x:?} {y:?} {z:?} m, {distance:?} m from the point asked for\n"
             ));
         }
-        columns.extend(probe_columns(probe));
     }
-    text.push_str(&columns.join(","));
+    text.push_str(&probe_rows::columns(simulation.probes()).join(","));
     text.push('\n');
     text
-}
-
-fn probe_columns(probe: &Probe) -> Vec<String> {
-    let name = &probe.name;
-    match probe.dofs.len() {
-        1 => vec![format!("{name}_u_m")],
-        _ => ["x", "y", "z"]
-            .map(|axis| format!("{name}_u_{axis}_m"))
-            .to_vec(),
-    }
-}
-
-/// A row of displacements; `moving` holds those of the degrees of freedom of [`watched_dofs`].
-pub(crate) fn probes_row(out: &mut String, probes: &[Probe], t: f64, moving: &[f64]) {
-    out.clear();
-    let mut moving = moving.iter().copied();
-    push(out, t);
-    for probe in probes {
-        for (axis, dof) in probe.dofs.iter().enumerate() {
-            out.push(',');
-            push(
-                out,
-                match dof {
-                    Some(_) => moving.next().unwrap_or(f64::NAN),
-                    None => probe.prescribed(axis, t),
-                },
-            );
-        }
-    }
-    out.push('\n');
-}
-
-/// Degrees of freedom that the probes' rows need.
-pub(crate) fn watched_dofs(probes: &[Probe]) -> Vec<u32> {
-    let dofs = probes.iter().flat_map(|probe| &probe.dofs);
-    let dofs: Vec<u32> = dofs.flatten().map(|dof| *dof as u32).collect();
-    // Steps are shown to those who watch something; where all is held or moved, anything will do.
-    if dofs.is_empty() { vec![0] } else { dofs }
 }
 
 pub(crate) const ENERGY_HEAD: &str =

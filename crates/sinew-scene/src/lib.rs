@@ -40,6 +40,7 @@ pub mod output;
 mod overrides;
 mod plan;
 mod probe_csv;
+pub mod probe_rows;
 mod proposal;
 mod scene;
 mod simulation;

@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use sinew_core::{Moment, RecordError, Recorder, Verdict};
 
 use crate::output::{Delivery, Output, OutputError};
+use crate::probe_rows;
 use crate::simulation::Probe;
 
 /// Writes the displacement of probes after every step: columns `t_s`, then `<probe>_u_x_m`,
@@ -18,6 +19,7 @@ use crate::simulation::Probe;
 pub struct ProbeCsv {
     probes: Vec<Probe>,
     output: Output,
+    row: String,
 }
 
 impl ProbeCsv {
@@ -26,10 +28,11 @@ impl ProbeCsv {
     /// # Errors
     /// [`OutputError::Failed`].
     pub fn new(mut output: Output, probes: &[Probe]) -> Result<Self, OutputError> {
-        match writeln!(output, "{}", columns(probes).join(",")) {
+        match writeln!(output, "{}", probe_rows::columns(probes).join(",")) {
             Ok(()) => Ok(Self {
                 probes: probes.to_vec(),
                 output,
+                row: String::new(),
             }),
             Err(source) => Err(output.failed(source)),
         }
@@ -45,18 +48,8 @@ impl ProbeCsv {
 
     /// Writes a row; `moving` holds the displacements of the degrees of freedom, which are not held or moved.
     fn write(&mut self, t: f64, moving: &[f64]) -> io::Result<()> {
-        write!(self.output, "{t:?}")?;
-        let mut moving = moving.iter().copied();
-        for probe in &self.probes {
-            for (axis, dof) in probe.dofs.iter().enumerate() {
-                let value = match dof {
-                    Some(_) => moving.next().unwrap_or(f64::NAN),
-                    None => probe.prescribed(axis, t),
-                };
-                write!(self.output, ",{value:?}")?;
-            }
-        }
-        writeln!(self.output)
+        probe_rows::write(&mut self.row, &self.probes, t, moving);
+        self.output.write_all(self.row.as_bytes())
     }
 }
 
@@ -70,10 +63,7 @@ impl Recorder for ProbeCsv {
     }
 
     fn watches(&self) -> Vec<u32> {
-        let dofs = self.probes.iter().flat_map(|probe| &probe.dofs);
-        let dofs: Vec<u32> = dofs.flatten().map(|dof| *dof as u32).collect();
-        // Steps are shown to those who watch something; where all is held or moved, anything will do.
-        if dofs.is_empty() { vec![0] } else { dofs }
+        probe_rows::watched(&self.probes)
     }
 
     fn watched(&mut self, t: f64, moving: &[f64]) -> Result<Verdict, RecordError> {
@@ -86,17 +76,6 @@ impl Recorder for ProbeCsv {
             }),
         }
     }
-}
-
-fn columns(probes: &[Probe]) -> Vec<String> {
-    let mut columns = vec!["t_s".to_owned()];
-    for Probe { name, dofs, .. } in probes {
-        match dofs.len() {
-            1 => columns.push(format!("{name}_u_m")),
-            _ => columns.extend(["x", "y", "z"].map(|axis| format!("{name}_u_{axis}_m"))),
-        }
-    }
-    columns
 }
 
 #[cfg(test)]

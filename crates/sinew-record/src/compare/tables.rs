@@ -3,54 +3,8 @@
 use std::path::Path;
 
 use super::outcome::{CompareError, Comparison, Difference, damaged, read, relative};
+use crate::csv::Table;
 use crate::tables::ENERGY;
-
-/// A table over time.
-struct Table {
-    names: Vec<String>,
-    /// Rows of equal length, the time first.
-    rows: Vec<Vec<f64>>,
-}
-
-impl Table {
-    fn read(path: &Path) -> Result<Self, CompareError> {
-        let content = read(path)?;
-        let text = String::from_utf8_lossy(&content);
-        let mut lines = text.lines().filter(|line| !line.starts_with('#'));
-        let names: Vec<String> = match lines.next() {
-            Some(head) => head.split(',').map(str::to_owned).collect(),
-            None => return Err(damaged(path, "expected a line of column names")),
-        };
-        let mut rows = Vec::new();
-        for line in lines {
-            let values = line.split(',').map(str::parse);
-            let row = values.collect::<Result<Vec<f64>, _>>();
-            match row {
-                Ok(row) if row.len() == names.len() => rows.push(row),
-                _ => {
-                    return Err(damaged(
-                        path,
-                        format!("expected {} numbers: {line}", names.len()),
-                    ));
-                }
-            }
-        }
-        Ok(Self { names, rows })
-    }
-
-    /// Values at a time (s), on a straight line between rows; `None` beyond them.
-    fn at(&self, t: f64) -> Option<Vec<f64>> {
-        let after = self.rows.partition_point(|row| row[0] < t);
-        let next = self.rows.get(after)?;
-        if next[0] == t {
-            return Some(next.clone());
-        }
-        let before = self.rows.get(after.checked_sub(1)?)?;
-        let share = (t - before[0]) / (next[0] - before[0]);
-        let values = before.iter().zip(next);
-        Some(values.map(|(a, b)| a + share * (b - a)).collect())
-    }
-}
 
 /// Columns that belong to one quantity: a vector's components, or one column.
 struct Quantity {
@@ -75,7 +29,7 @@ pub(super) fn compare(
             return Ok(());
         }
     }
-    let (one, other) = (Table::read(&one)?, Table::read(&other)?);
+    let (one, other) = (table(&one)?, table(&other)?);
     let quantities = quantities(&one, &other);
     let alone = |a: &Table, b: &Table| {
         a.names
@@ -155,4 +109,9 @@ fn quantities(one: &Table, other: &Table) -> Vec<Quantity> {
         }
     }
     quantities
+}
+
+fn table(path: &Path) -> Result<Table, CompareError> {
+    let content = read(path)?;
+    Table::parse(&String::from_utf8_lossy(&content)).map_err(|reason| damaged(path, reason))
 }

@@ -41,8 +41,7 @@ impl Probe {
     }
 
     /// The displacement (m) that is prescribed in a direction at time `t` (s); 0 where none is.
-    #[must_use]
-    pub fn prescribed(&self, axis: usize, t: f64) -> f64 {
+    pub(crate) fn prescribed(&self, axis: usize, t: f64) -> f64 {
         let courses = self.courses.get(axis).into_iter().flatten();
         // A scene has no inputs.
         let along = |course: &Course| course.displacement_at(t, axis).unwrap_or(f64::NAN);

@@ -4,15 +4,12 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use sinew_core::{Moment, RecordError, Recorder, Verdict};
-use sinew_record::Companion;
+use sinew_record::{Companion, Pace};
 
 use super::interruption::Interruption;
 
 /// Time between two changes of what is shown.
 const REFRESH: Duration = Duration::from_millis(100);
-
-/// Wall time between two looks at whether a run is to stop.
-const LOOK: Duration = Duration::from_millis(40);
 
 /// Shows how far a run is and ends it when asked to. The bar is hidden where standard error is no terminal.
 pub(crate) struct Onlooker {
@@ -23,10 +20,8 @@ pub(crate) struct Onlooker {
     /// Where this process began: steps and time (s).
     from: Option<f64>,
     shown: Instant,
-    looked: Instant,
-    /// Steps between two looks, for runs that nobody else cuts into batches.
-    stride: usize,
-    next: usize,
+    /// For runs that nobody else cuts into batches.
+    pace: Pace,
 }
 
 impl Onlooker {
@@ -45,9 +40,7 @@ impl Onlooker {
             begun: now,
             from: None,
             shown: now,
-            looked: now,
-            stride: 1,
-            next: 0,
+            pace: Pace::new(0),
         }
     }
 
@@ -83,15 +76,11 @@ impl Companion for Onlooker {
 /// Beside a recorder that needs no look at states.
 impl Recorder for Onlooker {
     fn next(&mut self, step: usize) -> Option<usize> {
-        Some(self.next.max(step))
+        Some(self.pace.next().max(step))
     }
 
     fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
-        let elapsed = self.looked.elapsed();
-        let fits = LOOK.as_secs_f64() / elapsed.as_secs_f64().max(1e-9) * self.stride as f64;
-        self.stride = (fits as usize).clamp(1, 2 * self.stride);
-        self.looked = Instant::now();
-        self.next = moment.step + self.stride;
+        self.pace.look(moment.step);
         self.show(moment.step, moment.state.t());
         Ok(match self.is_interrupted() {
             true => Verdict::Stop,

@@ -1,0 +1,45 @@
+//! How often a run looks up from its steps.
+
+use std::time::{Duration, Instant};
+
+/// Wall time between two looks.
+const LOOK: Duration = Duration::from_millis(40);
+
+/// Says after how many steps a run looks up, to show where it is and to see whether it is to stop: several times a
+/// second, however long a step takes.
+#[derive(Debug, Clone, Copy)]
+pub struct Pace {
+    steps: usize,
+    at: usize,
+    looked: Instant,
+}
+
+impl Pace {
+    /// A run that begins now, after so many steps.
+    #[must_use]
+    pub fn new(step: usize) -> Self {
+        Self {
+            steps: 1,
+            at: step,
+            looked: Instant::now(),
+        }
+    }
+
+    /// The step after which it looks up next.
+    #[must_use]
+    pub fn next(&self) -> usize {
+        self.at.saturating_add(self.steps)
+    }
+
+    /// It looks up after a step.
+    pub fn look(&mut self, step: usize) {
+        let taken = step.saturating_sub(self.at);
+        if taken > 0 {
+            let each = self.looked.elapsed().as_secs_f64() / taken as f64;
+            let fitting = LOOK.as_secs_f64() / each.max(1e-9);
+            // Steps at the beginning are no measure of later ones.
+            self.steps = (fitting as usize).clamp(1, 2 * self.steps);
+        }
+        (self.at, self.looked) = (step, Instant::now());
+    }
+}
