@@ -337,6 +337,8 @@ fn every_integrator_is_listed() {
     for id in sinew::integrators::ids() {
         assert!(said.out.contains(id));
     }
+    let advice: Vec<&str> = said.out.lines().take(7).collect();
+    assert_eq!((advice[0], advice[6]), ("Which one do I take?", ""));
     let guards = said.out.matches("saturation: guard").count();
     assert_eq!(guards, 6, "{}", said.out);
     let orders = said

@@ -5,7 +5,18 @@ use sinew_scene::output::say;
 
 use super::Failure;
 
+/// Which one to take, before what each is.
+const WHICH: &str = "\
+Which one do I take?
+  most scenes, an error near 1 %      central-difference with dt = \"auto\": the cheapest of its kind
+  stiff tissue, long steps            newmark: stable at any step, one solution with a factor a step
+  an error of any number of digits    propagator with kind = \"two-step\": exact in time for linear tissue
+  a network, bounded at any step      cnn-stabilised; cnn is the published one, for comparison
+  not sure                            sinew plan SCENE --tolerance 1e-2 measures it on the scene itself
+";
+
 pub(crate) fn run() -> Result<(), Failure> {
+    say(WHICH)?;
     for entry in sinew_integrators::entries() {
         say(&format!("{:20} {}", entry.id, entry.summary))?;
         if let Ok(integrator) = entry.build(&Options::new()) {
