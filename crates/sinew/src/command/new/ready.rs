@@ -18,17 +18,13 @@ struct Ready {
 
 macro_rules! scene {
     ($file:literal) => {
-        include_str!(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../scenes/ready/",
-            $file
-        ))
+        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/ready/", $file))
     };
 }
 
 macro_rules! mesh {
     ($file:literal) => {
-        include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/", $file))
+        include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/ready/", $file))
     };
 }
 
