@@ -43,7 +43,8 @@ pub(crate) struct LastRow {
 /// Sums up, from row to row, what loads, moved supports and damping do.
 ///
 /// Between two rows forces are taken as the mean of both ends and velocities as `du/dt`, so that for the mean
-/// acceleration method (Newmark with gamma 1/2 and beta 1/4), with a row for every step, nothing remains but rounding.
+/// acceleration method (Newmark with gamma 1/2 and beta 1/4), with a row for every step and loads that do not jump, nothing
+/// remains but rounding. Jumps and kinks of loads and of prescribed motions between two rows remain in part.
 pub(crate) struct Balance<'a> {
     simulation: &'a Simulation,
     pub(crate) sums: Sums,
@@ -229,17 +230,39 @@ impl<'a> Balance<'a> {
         };
         let w = mean(u_after, u_before);
         let w = w.as_chunks::<3>().0;
-        let moving = w.iter().zip(model.node_masses());
-        let of_mass = moving.map(|(w, mass)| mass * w.iter().map(|w| w * w).sum::<f64>());
-        let of_mass = damping.mass * of_mass.sum::<f64>();
-        let of_stiffness = match damping.stiffness {
-            0.0 => 0.0,
-            beta => 2.0 * beta * model.elastic_energy(w)?,
+        // With f for free components and p for held ones, and D being symmetric, w' D w is
+        // w_f' D_ff w_f + 2 w_p' (D w)_p - w_p' D_pp w_p.
+        let mut held = w.to_vec();
+        for (node, own) in (0..).zip(&mut held) {
+            for (axis, own) in own.iter_mut().enumerate() {
+                if moves_by_itself(model, node, axis) {
+                    *own = 0.0;
+                }
+            }
+        }
+        let still = vec![[0.0; 3]; w.len()];
+        let rows = |v: &[[f64; 3]]| -> Result<Vec<[f64; 3]>, RecordRunError> {
+            let mut out = vec![[0.0; 3]; w.len()];
+            model.moving_reactions(here.t, [&still, v, &still], &mut out)?;
+            Ok(out)
         };
-        let of_dashpots = damping
-            .extra
-            .as_ref()
-            .map_or(0.0, |extra| power(&|out| extra.subtract_product(&own, out)));
-        Ok(span * (of_mass + of_stiffness + of_dashpots))
+        // Without motion they are the loads alone.
+        let (all, own_rows, loads) = (rows(w)?, rows(&held)?, rows(&still)?);
+        let mut at_held = 0.0;
+        for (((w, all), own), load) in held.iter().zip(&all).zip(&own_rows).zip(&loads) {
+            for axis in 0..3 {
+                at_held += w[axis] * (2.0 * all[axis] - own[axis] - load[axis]);
+            }
+        }
+        let free = power(&|out| operators.subtract_damping(&own, out));
+        Ok(span * (free + at_held))
     }
+}
+
+/// Whether a component of a node is a degree of freedom.
+fn moves_by_itself(model: &Model, node: u32, axis: usize) -> bool {
+    let dof = |cell: u32| 3 * cell as usize + axis;
+    model
+        .cell_of_node(node)
+        .is_some_and(|cell| !model.pinned()[dof(cell)])
 }

@@ -1,5 +1,6 @@
 //! The file from which a run goes on.
 
+use sha2::{Digest, Sha256};
 use sinew_core::State;
 use sinew_scene::Simulation;
 use sinew_scene::output::OwnedFolder;
@@ -7,12 +8,16 @@ use sinew_scene::output::OwnedFolder;
 use crate::balance::LastRow;
 use crate::error::RecordRunError;
 use crate::progress::Progress;
+use crate::request;
 
 /// Its name.
 pub(crate) const NAME: &str = "checkpoint.bin";
 
 /// The first line, with the version of what follows.
 const HEAD: &str = "sinew checkpoint 1";
+
+/// Bytes of the checksum at its end.
+const CHECKSUM: usize = 32;
 
 /// Everything from which a run goes on: a line of JSON, then the state as `sinew-core` writes it, then numbers.
 #[derive(Debug)]
@@ -46,6 +51,8 @@ impl Checkpoint {
         bytes.extend(state);
         let numbers = lists.into_iter().flatten();
         bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
+        let checksum = checksum(folder, &bytes)?;
+        bytes.extend(checksum);
         Ok(folder.write(NAME, &bytes)?)
     }
 
@@ -57,12 +64,18 @@ impl Checkpoint {
         let Some(bytes) = folder.read(NAME)? else {
             return Ok(None);
         };
-        let mut lines = bytes.splitn(4, |byte| *byte == b'\n');
-        let damaged = || unusable(folder, &"it is damaged");
-        let head = lines.next().unwrap_or_default();
-        if head != HEAD.as_bytes() {
+        let damaged = || unusable(folder, &"it is damaged, or that of another run");
+        let (bytes, found) = bytes.split_last_chunk::<CHECKSUM>().ok_or_else(damaged)?;
+        if !HEAD
+            .as_bytes()
+            .starts_with(&bytes[..bytes.len().min(HEAD.len())])
+        {
             return Err(unusable(folder, &"another version of sinew wrote it"));
         }
+        if checksum(folder, bytes)? != *found {
+            return Err(damaged());
+        }
+        let mut lines = bytes.splitn(4, |byte| *byte == b'\n').skip(1);
         let progress = serde_json::from_slice(lines.next().unwrap_or_default())
             .map_err(|error| unusable(folder, &error))?;
         let sizes = str::from_utf8(lines.next().unwrap_or_default()).map_err(|_| damaged())?;
@@ -101,6 +114,16 @@ impl Checkpoint {
             largest,
         }))
     }
+}
+
+/// The checksum of a checkpoint together with what was run, so that that of another run does not fit.
+fn checksum(folder: &OwnedFolder, bytes: &[u8]) -> Result<[u8; CHECKSUM], RecordRunError> {
+    let mut hash = Sha256::new();
+    hash.update(bytes);
+    for name in [request::NAME, request::SCENE] {
+        hash.update(folder.read(name)?.unwrap_or_default());
+    }
+    Ok(hash.finalize().into())
 }
 
 fn unusable(folder: &OwnedFolder, reason: &dyn std::fmt::Display) -> RecordRunError {

@@ -248,7 +248,7 @@ impl<'a> Fields<'a> {
         Ok(())
     }
 
-    /// Accelerations of nodes that move by themselves; 0 for others.
+    /// Accelerations (m/s^2) of all nodes, the prescribed ones where they are moved.
     fn accelerations(
         &self,
         moment: &Moment<'_>,
@@ -268,7 +268,7 @@ impl<'a> Fields<'a> {
             *force /= mass;
         }
         let mut field = vec![[0.0; 3]; self.u.len()];
-        self.model.to_nodes(&force, &mut field)?;
+        self.model.accelerations_at(state.t(), &force, &mut field)?;
         Ok(field)
     }
 }

@@ -55,7 +55,7 @@ pub use companion::Companion;
 pub use compare::{CompareError, Comparison, Difference, compare};
 pub use error::RecordRunError;
 #[cfg(feature = "implicit")]
-pub use modes::{NaturalMode, check_modes_folder, natural_modes, write_modes};
+pub use modes::{ModesError, NaturalMode, check_modes_folder, natural_modes, write_modes};
 pub use pace::Pace;
 pub use request::Request;
 pub use run_end::{Ended, RunEnd};

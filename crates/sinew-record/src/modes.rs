@@ -1,17 +1,20 @@
 //! Natural frequencies and mode shapes of a scene.
 
+mod jacobi;
+mod subspace;
+
 use std::path::{Path, PathBuf};
 
-use sinew_core::{Integrator, LinearOperators, SetupError};
+use sinew_core::LinearOperators;
 use sinew_fem::Model;
-use sinew_integrators::Frame;
-use sinew_integrators::implicit::Modal;
 use sinew_mesh::vtu::{Array, Grid};
 use sinew_scene::Simulation;
 use sinew_scene::output::{OwnedFolder, Tenant};
 
 use crate::error::RecordRunError;
 use crate::fields;
+pub use subspace::ModesError;
+use subspace::lowest;
 
 /// The kind of result, in manifests and messages.
 const KIND: &str = "modes";
@@ -45,25 +48,22 @@ impl NaturalMode {
     }
 }
 
-/// The modes of the lowest frequencies of a simulation.
+/// The modes of the lowest frequencies of a simulation, multiple ones and those that no load excites included.
 ///
 /// # Errors
-/// [`SetupError`] for a system without matrices and for one that has no such modes.
+/// [`ModesError`] for a system without matrices, a matrix without a factor and an iteration that does not converge.
 pub fn natural_modes(
     simulation: &Simulation,
     count: usize,
-) -> Result<Vec<NaturalMode>, SetupError> {
-    let system = simulation.system();
-    let mut modal = Frame::new(Modal::with_modes(count));
-    modal.prepare(system, simulation.dt())?;
-    let Some(linear) = system.as_linear() else {
-        return Ok(Vec::new());
-    };
+) -> Result<Vec<NaturalMode>, ModesError> {
+    let linear = simulation
+        .system()
+        .as_linear()
+        .ok_or(ModesError::NoMatrices)?;
     let operators = linear.operators();
     let force = full_load(operators);
     let mut modes = Vec::new();
-    for (number, omega) in modal.frequencies().iter().enumerate() {
-        let shape = modal.shape(number).unwrap_or_default().to_vec();
+    for (eigenvalue, shape) in lowest(operators, count)? {
         let effective_mass = [0, 1, 2].map(|axis| effective_mass(operators, &shape, axis));
         let along: f64 = shape
             .iter()
@@ -71,20 +71,17 @@ pub fn natural_modes(
             .map(|(shape, force)| shape * force)
             .sum();
         modes.push(NaturalMode {
-            omega: *omega,
+            omega: eigenvalue.sqrt(),
             effective_mass,
-            of_loads: match *omega > 0.0 {
-                true => (along / omega).powi(2),
+            of_loads: match eigenvalue > 0.0 {
+                true => along * along / eigenvalue,
                 false => f64::NAN,
             },
             shape,
         });
     }
-    let whole: f64 = modes
-        .iter()
-        .map(|mode| mode.of_loads)
-        .filter(|share| share.is_finite())
-        .sum();
+    let shares = modes.iter().map(|mode| mode.of_loads);
+    let whole: f64 = shares.filter(|share| share.is_finite()).sum();
     for mode in &mut modes {
         mode.of_loads /= whole;
     }
@@ -230,6 +227,38 @@ mod tests {
             assert!(mode.effective_mass[0] < 1e-12);
             assert!(mode.of_loads.is_nan(), "there is no load");
         }
+    }
+
+    /// A cube that is alike in x and y has its swings in pairs, and a free body six motions without a spring: neither is
+    /// seen by its loads alone.
+    #[test]
+    fn multiple_modes_and_rigid_motions_are_found() {
+        let cube = |support: &str| {
+            simulation(&format!(
+                "[mesh]\ncube = {{ cells = 2, edge = 0.1, split = \"mirrored\" }}\n[[region]]\ndensity = 1000.0\n\
+                 model = \"linear\"\nyoungs_modulus = 4000.0\npoissons_ratio = 0.3\n{support}[[load]]\n\
+                 group = \"top\"\npressure = 10.0\n[run]\nduration = 1.0\nintegrator = \"newmark\"\ndt = 0.01\n"
+            ))
+        };
+        let held = natural_modes(&cube("[[fixed]]\ngroup = \"bottom\"\n"), 3).unwrap();
+        assert!((held[0].omega / held[1].omega - 1.0).abs() < 1e-9, "a pair");
+        assert!(held[2].omega > 1.05 * held[1].omega);
+        // All 54 at once are those of the matrix: their squares add up to the trace of M^-1 K.
+        let simulation = cube("[[fixed]]\ngroup = \"bottom\"\n");
+        let all = natural_modes(&simulation, 54).unwrap();
+        let operators = simulation.system().as_linear().unwrap().operators();
+        let trace: f64 = (0..operators.dofs() / 3)
+            .flat_map(|cell| {
+                let block = operators.stiffness().block(cell, cell).unwrap();
+                (0..3).map(move |axis| block[4 * axis] / operators.mass()[3 * cell + axis])
+            })
+            .sum();
+        let sum: f64 = all.iter().map(|mode| mode.omega.powi(2)).sum();
+        assert_eq!(all.len(), operators.dofs());
+        assert!((sum / trace - 1.0).abs() < 1e-9, "{sum} {trace}");
+        let free = natural_modes(&cube(""), 8).unwrap();
+        assert!(free[..6].iter().all(|mode| mode.omega == 0.0));
+        assert!(free[6].omega > 1.0);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use sinew_core::Moment;
 use sinew_fem::On;
-use sinew_scene::{ReactionOf, Simulation, probe_rows};
+use sinew_scene::{HeldPlace, ReactionOf, Simulation, probe_rows};
 
 use crate::balance::Energies;
 use crate::error::RecordRunError;
@@ -63,7 +63,8 @@ pub(crate) struct HeldPart {
     pub(crate) name: String,
     /// The table that holds or moves it, in words.
     pub(crate) by: String,
-    nodes: Vec<u32>,
+    /// Its nodes, with the components that it holds and no part before it does.
+    nodes: Vec<(u32, [bool; 3])>,
     /// Mean of its nodes at rest (m), about which moments are taken.
     pub(crate) centre: [f64; 3],
 }
@@ -83,7 +84,8 @@ impl<'a> Reactions<'a> {
             return Ok(None);
         };
         let mut parts = Vec::new();
-        for (by, on) in simulation.held_parts() {
+        let mut taken = vec![[false; 3]; body.mesh.points.len()];
+        for HeldPlace { by, on, axes } in simulation.held_parts() {
             let nodes = on.nodes(&body.mesh).map_err(sinew_fem::FieldError::from)?;
             let count = nodes.len().max(1) as f64;
             let sum = |axis: usize| -> f64 {
@@ -94,7 +96,15 @@ impl<'a> Reactions<'a> {
                 name: column_name(by, &on),
                 by: format!("{by} on {on}"),
                 centre: [0, 1, 2].map(|axis| sum(axis) / count),
-                nodes,
+                nodes: nodes
+                    .iter()
+                    .map(|node| {
+                        let taken = &mut taken[*node as usize];
+                        let own = [0, 1, 2].map(|axis| axes[axis] && !taken[axis]);
+                        own.iter().zip(taken).for_each(|(own, taken)| *taken |= own);
+                        (*node, own)
+                    })
+                    .collect(),
             });
         }
         let nodes = body.mesh.points.len();
@@ -141,9 +151,12 @@ impl<'a> Reactions<'a> {
         push(out, t);
         for part in &self.parts {
             let (mut force, mut torque) = ([0.0; 3], [0.0; 3]);
-            for node in &part.nodes {
+            for (node, own) in &part.nodes {
                 let node = *node as usize;
-                let f = self.forces[node];
+                let f: [f64; 3] = std::array::from_fn(|axis| match own[axis] {
+                    true => self.forces[node][axis],
+                    false => 0.0,
+                });
                 let (point, moved) = (body.mesh.points[node], self.u[node]);
                 let arm: [f64; 3] =
                     std::array::from_fn(|axis| point[axis] + moved[axis] - part.centre[axis]);

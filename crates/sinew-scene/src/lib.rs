@@ -57,8 +57,8 @@ pub use scene::{
     Way,
 };
 pub use simulation::{
-    BodyModel, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe, Reaction,
-    ReactionError, ReactionOf, RefusedLoad, SceneModel, SelectedPart, Simulation, UnresolvedLoad,
-    Warning, WarningKind,
+    BodyModel, HeldPlace, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe,
+    Reaction, ReactionError, ReactionOf, RefusedLoad, SceneModel, SelectedPart, Simulation,
+    UnresolvedLoad, Warning, WarningKind,
 };
 pub use source::SceneSource;

@@ -161,6 +161,24 @@ fn a_run_ends_in_order_when_it_is_asked_to() {
         assert_eq!(code, Some(0), "{said}");
         assert_same(&folder.path("whole"), &folder.path(signal));
     }
+    // Under nohup a hang-up is ignored.
+    let mut command = Command::new("sh");
+    let program = Command::cargo_bin("sinew")
+        .unwrap()
+        .get_program()
+        .to_owned();
+    command.args(["-c", "trap '' HUP; exec \"$0\" run long.toml --out nohup"]);
+    command
+        .arg(program)
+        .current_dir(folder.0.path())
+        .stderr(Stdio::null());
+    let mut run = command.spawn().unwrap();
+    folder.wait_for("nohup/checkpoint.bin");
+    let kill = Command::new("kill")
+        .args(["-HUP", &run.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+    assert!(run.wait().unwrap().success());
     // Alone, the table of probes is completed up to there.
     let mut command = folder.sinew(&["run", "long.toml", "--probes", "p.csv"]);
     let run = command.stderr(Stdio::piped()).spawn().unwrap();
@@ -211,6 +229,10 @@ fn a_folder_that_holds_other_things_is_left_alone() {
     assert!(
         said.contains("out: the results of an earlier run in it will be replaced"),
         "{said}"
+    );
+    refused(
+        &["run", "out/scene.toml", "--out", "out"],
+        "cannot write into out: this run reads out/scene.toml in it",
     );
     // An oscillator has no fields: those of the run before are gone.
     let spring = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = -5.0\n[run]\nduration = 1.0\n\

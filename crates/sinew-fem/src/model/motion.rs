@@ -81,6 +81,20 @@ impl Model {
         self.field_at(when.into(), 1, v, out)
     }
 
+    /// Writes the accelerations (m/s^2) of all nodes of the mesh at a time (s), with the acceleration `a` (m/s^2) of the
+    /// degrees of freedom then; as [`Model::displacements_at`].
+    ///
+    /// # Errors
+    /// Same as [`Model::displacements_at`].
+    pub fn accelerations_at<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        a: &[f64],
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
+        self.field_at(when.into(), 2, a, out)
+    }
+
     /// Writes the positions (m) of all nodes of the mesh at a time (s), with the displacement `u` (m) of the degrees
     /// of freedom then; as [`Model::displacements_at`].
     ///

@@ -89,3 +89,31 @@ fn supports_in_motion_do_work() {
     assert!((3.0..5.0).contains(&(coarse / fine)), "{coarse} {fine}");
     assert!(fine < 1e-3, "{fine}");
 }
+
+/// Dashpots between a part that is moved and the rest take energy too.
+#[test]
+fn dashpots_at_moved_supports_are_in_it() {
+    let text = |dt: &str| {
+        format!(
+            "[mesh]\ncube = {{ cells = 3, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"springs\"\n\
+             youngs_modulus = 3000.0\nsprings = {{ rule = \"lloyd\", damping_ratio = 0.2 }}\n[[fixed]]\n\
+             group = \"bottom\"\n[[move]]\ngroup = \"top\"\ndisplacement = [0.0, 0.0, -0.01]\n\
+             ramp = {{ kind = \"sin2\", rise = 0.2 }}\n[run]\nduration = 0.3\nintegrator = \"newmark\"\ndt = {dt}\n"
+        )
+    };
+    let remainder = |dt: &str| -> f64 {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("out");
+        run(&path, &crate::common::build(&text(dt)), &mut ());
+        let energy = table(&path.join("energy.csv"));
+        let most = |name: &str| {
+            energy[name]
+                .iter()
+                .fold(0.0_f64, |most, x| x.abs().max(most))
+        };
+        assert!(most("damped_J") > 0.1 * most("work_of_supports_J"));
+        most("remainder_J") / most("work_of_supports_J")
+    };
+    let (coarse, fine) = (remainder("0.002"), remainder("0.001"));
+    assert!(fine < 2e-3 && coarse > 3.0 * fine, "{coarse} {fine}");
+}

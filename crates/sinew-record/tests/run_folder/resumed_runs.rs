@@ -131,7 +131,29 @@ fn another_mesh_and_a_damaged_checkpoint_are_refused() {
             RecordRunError::Unusable { .. } | RecordRunError::Checkpoint { .. }
         ));
     }
+    // Any byte, and the scene with which it was begun.
+    for at in [20, whole.len() / 3, whole.len() - 40, whole.len() - 1] {
+        let mut flipped = whole.clone();
+        flipped[at] ^= 1;
+        fs::write(&checkpoint, flipped).unwrap();
+        let (folder, _) = RunFolder::reopen(&out).unwrap();
+        let refused = folder.run(&simulation, &mut *simulation.integrator().unwrap(), &mut ());
+        assert!(
+            matches!(refused.unwrap_err(), RecordRunError::Unusable { .. }),
+            "{at}"
+        );
+    }
     fs::write(&checkpoint, whole).unwrap();
+    let scene = fs::read_to_string(out.join("scene.toml")).unwrap();
+    fs::write(out.join("scene.toml"), scene.replace("1.0]", "2.0]")).unwrap();
+    let (folder, _) = RunFolder::reopen(&out).unwrap();
+    let refused = folder.run(&simulation, &mut *simulation.integrator().unwrap(), &mut ());
+    assert!(matches!(
+        refused.unwrap_err(),
+        RecordRunError::Unusable { .. }
+    ));
+    drop(folder);
+    fs::write(out.join("scene.toml"), scene).unwrap();
 
     let longer = fs::read_to_string(&mesh).unwrap() + "\n";
     fs::write(&mesh, longer).unwrap();

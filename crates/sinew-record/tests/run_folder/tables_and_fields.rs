@@ -106,3 +106,24 @@ fn the_stress_of_a_bar_that_is_pulled_is_the_pull() {
     assert!((largest - 0.01).abs() < 1e-9, "{largest}");
     assert_eq!(summary["outcome"], "finished");
 }
+
+/// Two supports that share nodes, one along z and one across: each carries what it holds, and together the load.
+#[test]
+fn supports_that_share_nodes_share_no_force() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("out");
+    let simulation = cube(
+        "gravity = [1.0, 0.0, -9.81]\n[[fixed]]\ngroup = \"bottom\"\naxes = \"z\"\n[[fixed]]\ngroup = \"bottom\"\n\
+         axes = \"xy\"\n[[initial]]\nstatic = [\"gravity\"]\n[run]\nduration = 0.01\nintegrator = \"newmark\"\n\
+         dt = 0.001\n",
+    );
+    run(&out, &simulation, &mut ());
+    let reactions = table(&out.join("reactions.csv"));
+    let of = |name: &str| reactions[name][5];
+    let mass = 1.0;
+    assert!((of("fixed_1_bottom_f_z_N") / (9.81 * mass) - 1.0).abs() < 1e-8);
+    assert!((of("fixed_2_bottom_f_x_N") / -mass - 1.0).abs() < 1e-8);
+    for name in ["fixed_1_bottom_f_x_N", "fixed_2_bottom_f_z_N"] {
+        assert_eq!(of(name), 0.0, "{name}");
+    }
+}

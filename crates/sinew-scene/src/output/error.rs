@@ -49,6 +49,14 @@ pub enum OutputError {
         /// Names of the others in it.
         names: Vec<String>,
     },
+    /// A folder that holds a file which this run reads.
+    #[error("cannot write into {}: this run reads {} in it; name a new folder", path.display(), input.display())]
+    InputWithin {
+        /// The path.
+        path: PathBuf,
+        /// The input.
+        input: PathBuf,
+    },
     /// A folder that another process writes into.
     #[error("cannot write into {}: another run writes into it; name another folder", path.display())]
     Busy {

@@ -47,6 +47,18 @@ impl OwnedFolder {
         inputs: &[PathBuf],
     ) -> Result<Tenant, OutputError> {
         OutputFolder::new(path, inputs).check(&[])?;
+        if let Ok(folder) = path.canonicalize() {
+            let within = |input: &&PathBuf| {
+                let input = input.canonicalize();
+                input.is_ok_and(|input| input.starts_with(&folder))
+            };
+            if let Some(input) = inputs.iter().find(within) {
+                return Err(OutputError::InputWithin {
+                    path: path.to_owned(),
+                    input: input.clone(),
+                });
+            }
+        }
         let entries = match entries(path, "") {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Tenant::Nobody),
             entries => entries.map_err(|source| not_opened(path, source))?,

@@ -23,7 +23,7 @@ pub use load_problems::{LoadRemedy, RefusedLoad, UnresolvedLoad};
 pub use model::{BodyModel, SceneModel};
 pub use motion_table::{MotionTableError, MotionTableFault};
 pub use probe::{NearestNode, Probe};
-pub use reaction::{Reaction, ReactionError, ReactionOf};
+pub use reaction::{HeldPlace, Reaction, ReactionError, ReactionOf};
 pub use selected::SelectedPart;
 
 pub use warnings::{Warning, WarningKind};
@@ -85,7 +85,7 @@ impl Simulation {
         let before = self.dt;
         let even = self.settings().duration / self.run().steps.max(1) as f64;
         // Steps that divide the duration but for rounding stay as they are written.
-        if (before - even).abs() <= 1e-9 * before {
+        if (before - even).abs() <= 4.0 * f64::EPSILON * before {
             return None;
         }
         self.dt = even;

@@ -19,6 +19,17 @@ pub struct Reaction {
     pub force: [f64; 3],
 }
 
+/// A part of the body that a table of the scene holds or moves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeldPlace {
+    /// The table.
+    pub by: ReactionOf,
+    /// The part of the body.
+    pub on: On,
+    /// Whether it holds or moves x, y and z.
+    pub axes: [bool; 3],
+}
+
 /// A table of a scene by which components are held or moved, by its place in the list (0-based).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ReactionOf {
@@ -50,19 +61,23 @@ pub enum ReactionError {
 }
 
 impl Simulation {
-    /// The tables by which parts of the body are held or moved, with these parts, in the order of the scene; none for
-    /// an oscillator.
+    /// The parts of the body that are held or moved, in the order of the scene; none for an oscillator.
     #[must_use]
-    pub fn held_parts(&self) -> Vec<(ReactionOf, On)> {
+    pub fn held_parts(&self) -> Vec<HeldPlace> {
         let Subject::Body(body) = self.scene().subject() else {
             return Vec::new();
         };
         let fixed = body.problem.fixed.iter().enumerate();
-        let fixed = fixed.map(|(index, fixed)| (ReactionOf::Fixed(index), fixed.on.clone()));
+        let fixed = fixed.map(|(index, fixed)| HeldPlace {
+            by: ReactionOf::Fixed(index),
+            on: fixed.on.clone(),
+            axes: fixed.axes,
+        });
         let moves = body.motions.iter().enumerate();
-        let moves = moves.map(|(index, motion)| {
-            let on = On::Group(motion.group.clone());
-            (ReactionOf::Move(index), on)
+        let moves = moves.map(|(index, motion)| HeldPlace {
+            by: ReactionOf::Move(index),
+            on: On::Group(motion.group.clone()),
+            axes: motion.axes,
         });
         fixed.chain(moves).collect()
     }
@@ -79,7 +94,7 @@ impl Simulation {
         };
         let mut v = vec![0.0; state.u.len()];
         state.velocity_at_t(self.system(), Inputs::none(), &mut v)?;
-        let reaction = |(by, on): (ReactionOf, On)| {
+        let reaction = |HeldPlace { by, on, .. }: HeldPlace| {
             let force = built.model.reaction(state.t(), &state.u, &v, &on)?;
             Ok(Reaction { by, on, force })
         };

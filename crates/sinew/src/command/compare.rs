@@ -34,6 +34,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let largest = comparison.largest_relative();
     match arguments.tolerance {
         Some(tolerance) if largest > tolerance => Err(Failure::Differ { largest, tolerance }),
+        Some(_) if !comparison.left_out.is_empty() => Err(Failure::NotCompared {
+            count: comparison.left_out.len(),
+        }),
         _ => Ok(()),
     }
 }

@@ -153,6 +153,18 @@ pub(crate) enum Failure {
     /// Results that cannot be compared.
     #[error(transparent)]
     Compare(#[from] CompareError),
+    /// A scene whose natural modes cannot be found.
+    #[cfg(feature = "implicit")]
+    #[error(transparent)]
+    Modes(#[from] sinew_record::ModesError),
+    /// Results of which a part could not be compared.
+    #[error(
+        "{count} parts of the results could not be compared, so that a tolerance says nothing of them"
+    )]
+    NotCompared {
+        /// Number of sentences about what was left out.
+        count: usize,
+    },
     /// A run that leaves no result in its folder.
     #[error(transparent)]
     Record(#[from] RecordRunError),
@@ -210,10 +222,13 @@ impl Failure {
                 | RecordRunError::OtherInput { .. }
                 | RecordRunError::NoInput { .. },
             ) => REFUSED,
+            #[cfg(feature = "implicit")]
+            Self::Modes(_) => FAILED,
             Self::Compare(_) => REFUSED,
             Self::Interrupted { .. } => INTERRUPTED,
             Self::Output(_)
             | Self::Differ { .. }
+            | Self::NotCompared { .. }
             | Self::Record(_)
             | Self::Signals(_)
             | Self::Findings

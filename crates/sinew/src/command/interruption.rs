@@ -14,7 +14,10 @@ impl Interruption {
     /// Listens from now on.
     pub(crate) fn listen() -> io::Result<Self> {
         let flag = Arc::new(AtomicBool::new(false));
-        for signal in TERM_SIGNALS.iter().copied().chain(hang_up()) {
+        let ignored = ignored();
+        let signals = TERM_SIGNALS.iter().copied().chain(hang_up());
+        // What was to be ignored from the beginning, as under nohup, stays so.
+        for signal in signals.filter(|signal| ignored >> (signal - 1) & 1 == 0) {
             // The first request sets the flag; where it is set already, the default follows.
             signal_hook::flag::register_conditional_default(signal, Arc::clone(&flag))?;
             signal_hook::flag::register(signal, Arc::clone(&flag))?;
@@ -35,4 +38,12 @@ fn hang_up() -> Option<i32> {
 #[cfg(not(unix))]
 fn hang_up() -> Option<i32> {
     None
+}
+
+/// The signals that this process was started to ignore, a bit each from 1 on, where the system tells.
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .unwrap_or(0)
 }

@@ -16,7 +16,7 @@ pub(crate) struct Arguments {
     /// The scene file; its loads say which modes they excite
     scene: PathBuf,
     /// The number of modes, from the lowest frequency on
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=200))]
     count: u16,
     /// The folder for the table and the mode shapes, a series for ParaView: a new one, or that of earlier
     /// modes, which is replaced
