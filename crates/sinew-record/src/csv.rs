@@ -1,5 +1,8 @@
 //! Tables of numbers over time, read back.
 
+/// Share of a time by which two may differ and still be the same.
+pub(crate) const SAME_TIME: f64 = 1e-9;
+
 /// A table of numbers: names of columns, of which the first is the time, and rows of equal length.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Table {
@@ -35,7 +38,14 @@ impl Table {
     /// Values at a time (s), on a straight line between rows; `None` beyond them.
     pub(crate) fn at(&self, t: f64) -> Option<Vec<f64>> {
         let after = self.rows.partition_point(|row| row[0] < t);
-        let next = self.rows.get(after)?;
+        // Times are steps multiplied by their length: the last ones of two tables may differ by a rounding.
+        let last = self
+            .rows
+            .last()
+            .filter(|last| (t - last[0]).abs() <= SAME_TIME * t);
+        let Some(next) = self.rows.get(after) else {
+            return last.cloned();
+        };
         if next[0] == t {
             return Some(next.clone());
         }

@@ -136,11 +136,22 @@ fn fifty_kills_cost_no_byte() {
     assert!(said.contains("has come to its end"), "{said}");
 }
 
+/// Signals that this process ignores, a bit each from 1 on.
+fn ignored() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.map_or(0, |mask| u64::from_str_radix(mask.trim(), 16).unwrap())
+}
+
 #[test]
 fn a_run_ends_in_order_when_it_is_asked_to() {
     let folder = Folder::new();
     folder.says(&["run", "long.toml", "--out", "whole"]);
-    for signal in ["INT", "TERM", "HUP"] {
+    for (number, signal) in [(2, "INT"), (15, "TERM"), (1, "HUP")] {
+        // What this test was started to ignore, for instance under nohup, the run ignores too.
+        if ignored() >> (number - 1) & 1 == 1 {
+            continue;
+        }
         let mut command = folder.sinew(&["run", "long.toml", "--out", signal]);
         let run = command.stderr(Stdio::piped()).spawn().unwrap();
         folder.wait_for(&format!("{signal}/checkpoint.bin"));
@@ -211,7 +222,7 @@ fn a_folder_that_holds_other_things_is_left_alone() {
     );
     refused(
         &run("."),
-        "it holds long.toml, notes, short.toml, which no run",
+        "cannot write into .: this run reads short.toml in it",
     );
     refused(&run("short.toml"), "it is no folder");
     refused(

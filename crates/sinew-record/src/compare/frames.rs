@@ -3,13 +3,11 @@
 use std::path::Path;
 
 use super::outcome::{CompareError, Comparison, Difference, damaged, read, relative};
+use crate::csv::SAME_TIME;
 use crate::fields::SERIES;
 
 /// Fields that are compared, with their units.
 const FIELDS: [(&str, &str); 2] = [("displacement", "m"), ("velocity", "m/s")];
-
-/// Share of a time by which two frames may be apart and still be at the same one: steps are multiplied, not added up.
-const SAME_TIME: f64 = 1e-9;
 
 /// Compares the frames at equal times.
 pub(super) fn compare(
