@@ -10,7 +10,8 @@ use common::sinew;
 const BEAM: &str = "[mesh]\ncube = { cells = 3, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
                     youngs_modulus = 3000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[[load]]\n\
                     group = \"top\"\npressure = 20.0\n[run]\nduration = 0.1\nintegrator = \"newmark\"\ndt = 0.005\n\
-                    [[probe]]\nname = \"top\"\npoint = [0.05, 0.05, 0.1]\n";
+                    [[probe]]\nname = \"top\"\npoint = [0.05, 0.05, 0.1]\n\
+                    [output]\nfields = { frames = 10 }\n";
 
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
