@@ -176,6 +176,20 @@ fn nothing_grows_in_a_hundred_thousand_steps() {
     }
 }
 
+/// All modes of a heavily damped body creep; the fastest is not loaded. A loose fit once let it overshoot to 2.24 times its
+/// displacement.
+#[test]
+fn a_mode_that_creeps_does_not_overshoot() {
+    let mut squares = vec![1e-4; 24];
+    (squares[0], squares[23]) = (0.408_503_871, 0.059_154_028);
+    squares.push(1.0);
+    let mut forces = vec![0.0; 25];
+    (forces[0], forces[23]) = (0.2, 1.0);
+    let system = modes(&squares, &forces, 2.440_756_973);
+    let found = largest_amplitude(&system, 15.530_391_334, 0.5, 2000);
+    assert!(found <= 2.0, "{found}");
+}
+
 /// A mode at each of 3000 places, the polynomial's double roots among them.
 #[test]
 fn no_mode_grows_wherever_it_lies() {

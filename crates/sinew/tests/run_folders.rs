@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
@@ -16,7 +17,7 @@ use assert_cmd::cargo::CommandCargoExt;
 /// A run of several seconds, with a checkpoint at every chance.
 const LONG: &str = "title = \"a long run\"\n[mesh]\ncube = { cells = 4, edge = 0.1 }\n[[region]]\ndensity = 1060.0\n\
                     model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.3\n[damping]\nmass = 1.0\n[[fixed]]\n\
-                    group = \"bottom\"\n[[load]]\ngroup = \"top\"\npressure = 60.0\n[run]\nduration = 80.0\n\
+                    group = \"bottom\"\n[[load]]\ngroup = \"top\"\npressure = 60.0\n[run]\nduration = 160.0\n\
                     integrator = \"central-difference\"\ndt = 0.001\n[[probe]]\nname = \"top\"\npoint = [0.05, 0.05, 0.1]\n\
                     [output]\ncheckpoint = { every = 0.01 }\nfields = { frames = 40 }\n";
 
@@ -26,7 +27,7 @@ impl Folder {
     fn new() -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
         fs::write(folder.path("long.toml"), LONG).unwrap();
-        fs::write(folder.path("short.toml"), LONG.replace("80.0", "0.5")).unwrap();
+        fs::write(folder.path("short.toml"), LONG.replace("160.0", "0.5")).unwrap();
         folder
     }
 
@@ -118,7 +119,7 @@ fn fifty_kills_cost_no_byte() {
         };
         run = folder.start(&again);
     }
-    assert!(kills >= 20, "the run is too short to be killed: {kills}");
+    assert!(kills >= 10, "the run is too short to be killed: {kills}");
     assert!(run.wait().unwrap().success());
     assert_same(&folder.path("whole"), &folder.path("killed"));
     let left = fs::read_dir(folder.path("killed")).unwrap();
@@ -191,17 +192,20 @@ fn a_run_ends_in_order_when_it_is_asked_to() {
     assert!(kill.unwrap().success());
     assert!(run.wait().unwrap().success());
     // Alone, the table of probes is completed up to there.
-    let mut command = folder.sinew(&["run", "long.toml", "--probes", "p.csv"]);
-    let run = command.stderr(Stdio::piped()).spawn().unwrap();
-    sleep(Duration::from_millis(200));
+    let mut command = folder.sinew(&["run", "long.toml", "--set", "run.duration=1e6"]);
+    let mut run = command.stdout(Stdio::piped()).spawn().unwrap();
+    let mut table = BufReader::new(run.stdout.take().unwrap());
+    let mut line = String::new();
+    table.read_line(&mut line).unwrap();
+    assert!(line.starts_with("t_s,"), "{line}");
     let kill = Command::new("kill")
         .args(["-INT", &run.id().to_string()])
         .status();
     assert!(kill.unwrap().success());
-    let ended = run.wait_with_output().unwrap();
-    assert_eq!(ended.status.code(), Some(130));
-    let table = fs::read_to_string(folder.path("p.csv")).unwrap();
-    assert!(table.lines().count() > 1 && table.ends_with('\n'));
+    let mut rest = String::new();
+    table.read_to_string(&mut rest).unwrap();
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    assert!(rest.lines().count() > 1 && rest.ends_with('\n'));
 }
 
 #[test]
