@@ -48,7 +48,7 @@ directory = sys.argv[1]
 for file in ["22-text.msh", "22-binary.msh", "41-text.msh", "41-binary.msh"]:
     print("file", file)
     dump(meshio.gmsh.read(directory + "/" + file), True)
-for file in ["raw.vtu", "base64.vtu"]:
+for file in ["raw.vtu", "compressed.vtu", "base64.vtu"]:
     print("file", file)
     dump(meshio.read(directory + "/" + file), False)
     print("file", file, "pyvista")

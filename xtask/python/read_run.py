@@ -43,7 +43,7 @@ def main(folder):
         (shown,) = reader.read()
         names = {"displacement", "velocity", "acceleration"}
         assert names <= set(grid.point_data) and names <= set(shown.point_data.keys())
-        cells = {"region", "inverted", "strain", "von_mises", "stress"}
+        cells = {"region", "inverted", "strain", "von_mises", "stress", "step_limit"}
         assert cells <= set(grid.cell_data) and cells <= set(shown.cell_data.keys())
         assert (grid.points == shown.points).all()
         for name in names:

@@ -1,6 +1,6 @@
 //! Recorders, which see states while a simulation runs.
 
-use crate::{EvaluationError, Inputs, State, StepReport, System};
+use crate::{EvaluationError, Inputs, State, StepReport, System, Trial};
 
 /// Whether a simulation goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +44,26 @@ impl Moment<'_> {
     /// [`EvaluationError`] when the system refuses the state.
     pub fn velocity(&self, out: &mut [f64]) -> Result<(), EvaluationError> {
         self.state.velocity_at_t(self.system, self.inputs, out)
+    }
+
+    /// Writes the acceleration (m/s^2) that the system gives a motion with the displacement of this moment and a
+    /// velocity `v` (m/s) at the same time.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] when the system refuses the state.
+    pub fn acceleration(&self, v: &[f64], out: &mut [f64]) -> Result<(), EvaluationError> {
+        let trial = Trial {
+            load: self.state.t().into(),
+            dt: 0.0,
+            u: &self.state.u,
+            v,
+            internal: &self.state.internal,
+        };
+        self.system.net_force(&trial, out)?;
+        for (force, mass) in out.iter_mut().zip(self.system.mass()) {
+            *force /= mass;
+        }
+        Ok(())
     }
 }
 

@@ -1,97 +1,51 @@
-//! Fields over the body, as a series of .vtu files.
+//! Fields over the body at an instant.
 
-use std::collections::HashMap;
-use std::io;
-
-use sinew_core::Moment;
+use sinew_core::{Moment, System, element_omegas_squared};
 use sinew_fem::{Model, stress};
-use sinew_mesh::vtu::{Array, Grid, VtuEncoding, write_pvd, write_vtu_grid};
-use sinew_mesh::{CellType, GroupMembers, TetMesh};
+use sinew_mesh::CellType;
+use sinew_mesh::vtu::{Array, Grid, VtuEncoding};
 use sinew_scene::OutputSettings;
 use sinew_scene::output::OwnedFolder;
 
 use crate::error::RecordRunError;
+use crate::frames::{self, frame_name};
 use crate::progress::Seen;
+use crate::surface::Surface;
 
-/// The file that lists the frames with their times.
-pub(crate) const SERIES: &str = "fields.pvd";
-
-/// The surface at rest with the groups on it.
-pub(crate) const SURFACE: &str = "surface.vtu";
-
-/// The file of a frame (0-based).
-pub(crate) fn frame_name(frame: usize) -> String {
-    format!("fields/frame-{frame:05}.vtu")
+/// The motion of the degrees of freedom at an instant, as a frame shows it.
+#[derive(Debug, Default)]
+pub(crate) struct Snapshot {
+    /// Number of the frame, from 0.
+    pub(crate) frame: usize,
+    /// Time (s).
+    pub(crate) t: f64,
+    /// Displacement (m).
+    pub(crate) u: Vec<f64>,
+    /// Velocity (m/s).
+    pub(crate) v: Vec<f64>,
+    /// Acceleration (m/s^2); empty where none is asked for.
+    pub(crate) a: Vec<f64>,
 }
 
-/// The boundary of a body, with points of its own.
-#[derive(Debug)]
-pub(crate) struct Surface {
-    /// Node of the mesh (0-based) of each point.
-    pub(crate) nodes: Vec<u32>,
-    pub(crate) points: Vec<[f64; 3]>,
-    /// Outward triangles between points.
-    pub(crate) triangles: Vec<[u32; 3]>,
-}
-
-impl Surface {
-    pub(crate) fn of(mesh: &TetMesh) -> Self {
-        let boundary = mesh.boundary(None);
-        let mut nodes: Vec<u32> = boundary.iter().flatten().copied().collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        let place = |node: &u32| nodes.binary_search(node).unwrap_or_default() as u32;
-        let triangles = boundary
-            .iter()
-            .map(|triangle| triangle.each_ref().map(place));
-        Self {
-            triangles: triangles.collect(),
-            points: nodes
-                .iter()
-                .map(|node| mesh.points[*node as usize])
-                .collect(),
-            nodes,
+impl Snapshot {
+    /// Takes the motion of a moment with the velocity (m/s) at its time.
+    pub(crate) fn take(
+        &mut self,
+        frame: usize,
+        moment: &Moment<'_>,
+        v: &[f64],
+        has_acceleration: bool,
+    ) -> Result<(), RecordRunError> {
+        let state = moment.state;
+        (self.frame, self.t) = (frame, state.t());
+        self.u.clone_from(&state.u);
+        self.v.clear();
+        self.v.extend_from_slice(v);
+        if has_acceleration {
+            self.a.resize(v.len(), 0.0);
+            moment.acceleration(v, &mut self.a)?;
         }
-    }
-
-    /// The surface at rest; groups of triangles are arrays of their names, 1 inside and 0 outside.
-    pub(crate) fn write(&self, folder: &OwnedFolder, mesh: &TetMesh) -> Result<(), RecordRunError> {
-        let sorted = |triangle: &[u32; 3]| {
-            let mut sorted = *triangle;
-            sorted.sort_unstable();
-            sorted
-        };
-        let of_mesh =
-            |triangle: &[u32; 3]| sorted(&triangle.map(|point| self.nodes[point as usize]));
-        let places: HashMap<[u32; 3], usize> =
-            self.triangles.iter().map(of_mesh).zip(0..).collect();
-        let mut groups: Vec<(String, Vec<u8>)> = Vec::new();
-        for group in &mesh.groups {
-            let GroupMembers::Triangles(triangles) = &group.members else {
-                continue;
-            };
-            let mut inside = vec![0; self.triangles.len()];
-            for triangle in triangles {
-                if let Some(place) = places.get(&sorted(triangle)) {
-                    inside[*place] = 1;
-                }
-            }
-            groups.push((group.name.clone(), inside));
-        }
-        let tags = self
-            .nodes
-            .iter()
-            .map(|node| mesh.node_tags[*node as usize] as i64);
-        let grid = Grid {
-            points: &self.points,
-            cells: vec![(CellType::Triangle, self.triangles.as_flattened())],
-            point_data: vec![Array::of_integers("node_tag", tags.collect::<Vec<_>>())],
-            cell_data: groups
-                .iter()
-                .map(|(name, inside)| Array::of_flags(name, &inside[..]))
-                .collect(),
-        };
-        write(folder, SURFACE, &grid)
+        Ok(())
     }
 }
 
@@ -117,18 +71,22 @@ impl Tets {
 #[derive(Debug)]
 pub(crate) struct Fields<'a> {
     model: &'a Model,
-    settings: &'a OutputSettings,
+    settings: OutputSettings,
     u: Vec<[f64; 3]>,
     v: Vec<[f64; 3]>,
+    /// Accelerations; empty where none are asked for.
+    a: Vec<[f64; 3]>,
     tets: Tets,
     /// Region of each tetrahedron, counted from 1.
     regions: Vec<u8>,
     /// Whether all regions have stress, which springs have not.
     stressed: bool,
+    /// The largest step (s) at which each tetrahedron alone would be stable; empty where it is not asked for.
+    step_limits: Vec<f32>,
 }
 
 impl<'a> Fields<'a> {
-    pub(crate) fn new(model: &'a Model, settings: &'a OutputSettings) -> Self {
+    pub(crate) fn new(model: &'a Model, settings: OutputSettings) -> Self {
         let nodes = model.mesh().points.len();
         let springs = model
             .report()
@@ -136,14 +94,20 @@ impl<'a> Fields<'a> {
             .iter()
             .any(|region| region.network.is_some());
         let number = |region: &u32| u8::try_from(region + 1).unwrap_or(u8::MAX);
+        let of_nodes = |is_asked: bool| vec![[0.0; 3]; if is_asked { nodes } else { 0 }];
         Self {
             model,
             settings,
-            u: vec![[0.0; 3]; nodes],
-            v: vec![[0.0; 3]; nodes],
+            u: of_nodes(true),
+            v: of_nodes(true),
+            a: of_nodes(settings.acceleration),
             tets: Tets::default(),
             regions: model.region_of().iter().map(number).collect(),
             stressed: !springs,
+            step_limits: match settings.step_limit && !settings.surface_only {
+                true => step_limits(model),
+                false => Vec::new(),
+            },
         }
     }
 
@@ -152,73 +116,74 @@ impl<'a> Fields<'a> {
         &self.u
     }
 
-    /// Writes a frame of a moment with the velocity (m/s) at its time, and sees what is largest in it.
+    /// Writes a frame, and sees what is largest in it.
     pub(crate) fn write(
         &mut self,
         folder: &OwnedFolder,
-        frame: usize,
         surface: &Surface,
-        (moment, v): (&Moment<'_>, &[f64]),
+        snapshot: &Snapshot,
         seen: &mut Seen,
     ) -> Result<(), RecordRunError> {
-        let (model, t, u) = (self.model, moment.state.t(), &moment.state.u);
-        model.displacements_at(t, u, &mut self.u)?;
-        model.velocities_at(t, v, &mut self.v)?;
-        self.deform(t, seen)?;
-        let accelerations = match self.settings.acceleration {
-            true => Some(self.accelerations(moment, v)?),
-            false => None,
-        };
-        let name = frame_name(frame);
-        if self.settings.surface_only {
-            let of = |field: &[[f64; 3]]| -> Vec<f32> {
+        let Snapshot { frame, t, u, v, a } = snapshot;
+        self.model.displacements_at(*t, u, &mut self.u)?;
+        self.model.velocities_at(*t, v, &mut self.v)?;
+        if self.settings.acceleration {
+            self.model.accelerations_at(*t, a, &mut self.a)?;
+        }
+        self.deform(*t, seen)?;
+        let grid = if self.settings.surface_only {
+            let of = |field: &[[f64; 3]]| {
                 let nodes = surface.nodes.iter();
                 singles(nodes.flat_map(|node| field[*node as usize]))
             };
-            let mut point_data = vec![
-                Array::of_singles("displacement", 3, of(&self.u)),
-                Array::of_singles("velocity", 3, of(&self.v)),
-            ];
-            if let Some(accelerations) = &accelerations {
-                point_data.push(Array::of_singles("acceleration", 3, of(accelerations)));
-            }
-            let grid = Grid {
+            Grid {
                 points: &surface.points,
                 cells: vec![(CellType::Triangle, surface.triangles.as_flattened())],
-                point_data,
+                point_data: self.point_data(&of),
                 cell_data: Vec::new(),
-            };
-            return write(folder, &name, &grid);
-        }
-        let of = |field: &[[f64; 3]]| singles(field.iter().flatten().copied());
-        let mut point_data = vec![
+            }
+        } else {
+            let of = |field: &[[f64; 3]]| singles(field.iter().flatten().copied());
+            Grid {
+                point_data: self.point_data(&of),
+                cell_data: self.cell_data(),
+                ..Grid::of(self.model.mesh())
+            }
+        };
+        let encoding = match self.settings.compress {
+            true => VtuEncoding::CompressedAppended,
+            false => VtuEncoding::RawAppended,
+        };
+        frames::write(folder, &frame_name(*frame), &grid, encoding)
+    }
+
+    /// The fields at points, each as `of` picks and rounds it.
+    fn point_data(&self, of: &dyn Fn(&[[f64; 3]]) -> Vec<f32>) -> Vec<Array<'_>> {
+        let mut fields = vec![
             Array::of_singles("displacement", 3, of(&self.u)),
             Array::of_singles("velocity", 3, of(&self.v)),
         ];
-        if let Some(accelerations) = &accelerations {
-            point_data.push(Array::of_singles("acceleration", 3, of(accelerations)));
+        if self.settings.acceleration {
+            fields.push(Array::of_singles("acceleration", 3, of(&self.a)));
         }
-        let Tets {
-            strain,
-            stress,
-            von_mises,
-            inverted,
-        } = &self.tets;
-        let mut cell_data = vec![
+        fields
+    }
+
+    fn cell_data(&self) -> Vec<Array<'_>> {
+        let tets = &self.tets;
+        let mut fields = vec![
             Array::of_flags("region", &self.regions[..]),
-            Array::of_flags("inverted", &inverted[..]),
-            Array::of_singles("strain", 6, &strain[..]),
+            Array::of_flags("inverted", &tets.inverted[..]),
+            Array::of_singles("strain", 6, &tets.strain[..]),
         ];
         if self.stressed {
-            cell_data.push(Array::of_singles("von_mises", 1, &von_mises[..]));
-            cell_data.push(Array::of_singles("stress", 6, &stress[..]));
+            fields.push(Array::of_singles("von_mises", 1, &tets.von_mises[..]));
+            fields.push(Array::of_singles("stress", 6, &tets.stress[..]));
         }
-        let grid = Grid {
-            point_data,
-            cell_data,
-            ..Grid::of(model.mesh())
-        };
-        write(folder, &name, &grid)
+        if !self.step_limits.is_empty() {
+            fields.push(Array::of_singles("step_limit", 1, &self.step_limits[..]));
+        }
+        fields
     }
 
     /// Makes the fields on tetrahedra of the displacement, and sees what is largest.
@@ -247,63 +212,18 @@ impl<'a> Fields<'a> {
         seen.inverted = seen.inverted.max(inverted);
         Ok(())
     }
-
-    /// Accelerations (m/s^2) of all nodes, the prescribed ones where they are moved.
-    fn accelerations(
-        &self,
-        moment: &Moment<'_>,
-        v: &[f64],
-    ) -> Result<Vec<[f64; 3]>, RecordRunError> {
-        let state = moment.state;
-        let mut force = vec![0.0; state.u.len()];
-        let trial = sinew_core::Trial {
-            load: state.t().into(),
-            dt: 0.0,
-            u: &state.u,
-            v,
-            internal: &state.internal,
-        };
-        moment.system.net_force(&trial, &mut force)?;
-        for (force, mass) in force.iter_mut().zip(moment.system.mass()) {
-            *force /= mass;
-        }
-        let mut field = vec![[0.0; 3]; self.u.len()];
-        self.model.accelerations_at(state.t(), &force, &mut field)?;
-        Ok(field)
-    }
 }
 
-/// Writes the list of frames with their times (s).
-pub(crate) fn write_series(folder: &OwnedFolder, times: &[f64]) -> Result<(), RecordRunError> {
-    let names: Vec<String> = (0..times.len()).map(frame_name).collect();
-    let frames: Vec<(f64, &str)> = times
+/// The largest step (s) at which each tetrahedron alone would be stable under central difference: 2/omega with its
+/// largest frequency (Hughes, The Finite Element Method, section 9.2).
+fn step_limits(model: &Model) -> Vec<f32> {
+    let omegas = element_omegas_squared(model, model.mass());
+    let limits = omegas
         .iter()
-        .copied()
-        .zip(names.iter().map(String::as_str))
-        .collect();
-    Ok(folder.write_lightly(SERIES, |mut file| write_pvd(&frames, &mut file))?)
+        .map(|omega_squared| 2.0 / omega_squared.sqrt());
+    singles(limits)
 }
 
 fn singles(values: impl Iterator<Item = f64>) -> Vec<f32> {
     values.map(|value| value as f32).collect()
-}
-
-/// Writes a grid under a name of the folder.
-pub(crate) fn write(
-    folder: &OwnedFolder,
-    name: &str,
-    grid: &Grid<'_>,
-) -> Result<(), RecordRunError> {
-    let mut refused = None;
-    let written = folder.write_lightly(name, |mut file| {
-        write_vtu_grid(grid, VtuEncoding::RawAppended, &mut file).map_err(|error| {
-            let message = error.to_string();
-            refused = Some(error);
-            io::Error::other(message)
-        })
-    });
-    match refused {
-        Some(sinew_mesh::vtu::WriteVtuError::Io(_)) | None => Ok(written?),
-        Some(error) => Err(error.into()),
-    }
 }

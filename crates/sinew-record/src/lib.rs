@@ -38,6 +38,8 @@ mod compare;
 mod csv;
 mod error;
 mod fields;
+mod frame_writer;
+mod frames;
 #[cfg(feature = "implicit")]
 mod modes;
 mod pace;
@@ -49,6 +51,7 @@ mod run_end;
 mod run_folder;
 mod schedule;
 mod summary;
+mod surface;
 mod tables;
 
 pub use companion::Companion;

@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 
 use sinew_core::LinearOperators;
 use sinew_fem::Model;
-use sinew_mesh::vtu::{Array, Grid};
+use sinew_mesh::vtu::{Array, Grid, VtuEncoding};
 use sinew_scene::Simulation;
 use sinew_scene::output::{OwnedFolder, Tenant};
 
 use crate::error::RecordRunError;
-use crate::fields;
+use crate::frames;
 pub use subspace::ModesError;
 use subspace::lowest;
 
@@ -134,8 +134,8 @@ pub fn write_modes(
     let body = simulation.model().body();
     let mut names = vec![TABLE.to_owned()];
     if body.is_some() {
-        names.push(fields::SERIES.to_owned());
-        names.extend((0..modes.len()).map(fields::frame_name));
+        names.push(frames::SERIES.to_owned());
+        names.extend((0..modes.len()).map(frames::frame_name));
     }
     let folder = OwnedFolder::claim(path, KIND, &simulation.scene().input_files(), &names)?;
     let mut table = String::from(
@@ -154,7 +154,7 @@ pub fn write_modes(
             write_shape(&folder, number, &body.model, mode)?;
         }
         let times: Vec<f64> = (1..=modes.len()).map(|number| number as f64).collect();
-        fields::write_series(&folder, &times)?;
+        frames::write_series(&folder, &times)?;
     }
     Ok(())
 }
@@ -185,7 +185,12 @@ fn write_shape(
         point_data: vec![Array::of_singles("displacement", 3, drawn)],
         ..Grid::of(model.mesh())
     };
-    fields::write(folder, &fields::frame_name(number), &grid)
+    frames::write(
+        folder,
+        &frames::frame_name(number),
+        &grid,
+        VtuEncoding::RawAppended,
+    )
 }
 
 #[cfg(test)]

@@ -16,6 +16,8 @@ pub(crate) struct Progress {
     pub(crate) lengths: Lengths,
     pub(crate) energy: Sums,
     pub(crate) seen: Seen,
+    /// Kinetic energy (J), the largest and the last.
+    pub(crate) kinetic: [f64; 2],
 }
 
 /// Bytes of the files that grow.
@@ -35,8 +37,6 @@ pub(crate) struct Seen {
     pub(crate) rotation: Largest,
     /// Tetrahedra with a volume of 0 or below, the most at an instant.
     pub(crate) inverted: usize,
-    /// Kinetic energy (J), the largest and the last.
-    pub(crate) kinetic: [f64; 2],
 }
 
 /// A largest value with its time (s) and the tag of the node or the tetrahedron that it is at.

@@ -10,7 +10,7 @@ use crate::balance::Balance;
 use crate::checkpoint::Checkpoint;
 use crate::companion::Companion;
 use crate::error::RecordRunError;
-use crate::fields::{Fields, Surface};
+use crate::frame_writer::{FrameWriter, SeenInFrames};
 use crate::pace::Pace;
 use crate::progress::{Lengths, Progress};
 use crate::schedule::Schedule;
@@ -21,9 +21,6 @@ const MOST_ROWS: usize = 10_000;
 
 /// Degrees of freedom up to which energies and reactions of every step cost next to nothing.
 const SMALL: usize = 30_000;
-
-/// Rows of energies and reactions of larger bodies: each costs about as much as several steps.
-const ROWS_OF_LARGE_BODIES: usize = 100;
 
 /// What is written when.
 #[derive(Debug, Clone, Copy)]
@@ -38,18 +35,19 @@ impl Schedules {
     pub(crate) fn of(simulation: &Simulation) -> Self {
         let (output, dt) = (simulation.scene().output(), simulation.dt());
         let steps = simulation.run().steps;
-        let asked = |instants: Option<Instants>, most: usize| match instants {
+        let asked = |instants: Option<Instants>| match instants {
             Some(instants) => Schedule::at(instants, steps, dt),
-            None => Schedule::at_most(most, steps),
+            None => Schedule::at_most(MOST_ROWS, steps),
         };
-        let rows = match simulation.system().dofs() > SMALL {
-            true => ROWS_OF_LARGE_BODIES,
-            false => MOST_ROWS,
+        // Of a larger body a row costs about as much as several steps, and has its velocity in common with a frame.
+        let energy = match simulation.system().dofs() > SMALL {
+            true => output.energy.or(Some(output.fields)),
+            false => output.energy,
         };
         let body = simulation.model().body();
         Self {
-            probes: asked(output.probes, MOST_ROWS),
-            energy: asked(output.energy, rows),
+            probes: asked(output.probes),
+            energy: asked(energy),
             fields: body.map(|_| Schedule::at(output.fields, steps, dt)),
         }
     }
@@ -109,9 +107,8 @@ pub(crate) struct RunRecorder<'a> {
     pub(crate) tables: Tables,
     pub(crate) balance: Balance<'a>,
     pub(crate) reactions: Option<Reactions<'a>>,
-    pub(crate) fields: Option<(Fields<'a>, Surface)>,
-    /// Displacements (m) of the surface where it was largest so far.
-    pub(crate) largest: Vec<f64>,
+    /// None for an oscillator.
+    pub(crate) frames: Option<FrameWriter<'a>>,
     pub(crate) progress: Progress,
     /// Steps that an earlier run had taken.
     pub(crate) before: usize,
@@ -142,7 +139,7 @@ impl RunRecorder<'_> {
         }
         if energy {
             let row = self.balance.row(moment, &self.v)?;
-            let kinetic = &mut self.progress.seen.kinetic;
+            let kinetic = &mut self.progress.kinetic;
             *kinetic = [kinetic[0].max(row.kinetic), row.kinetic];
             tables::energy_row(&mut self.line, &row);
             self.tables.energy.push(&self.line)?;
@@ -172,42 +169,32 @@ impl RunRecorder<'_> {
     }
 
     fn frame(&mut self, moment: &Moment<'_>) -> Result<(), RecordRunError> {
-        let (Some((fields, surface)), Some(body)) =
-            (&mut self.fields, self.simulation.model().body())
-        else {
+        let Some(frames) = &mut self.frames else {
             return Ok(());
         };
-        let (t, seen) = (moment.state.t(), &mut self.progress.seen);
-        fields.write(
-            self.folder,
-            self.progress.frames,
-            surface,
-            (moment, &self.v),
-            seen,
-        )?;
+        let has_acceleration = self.simulation.scene().output().acceleration;
+        frames.write(self.progress.frames, moment, &self.v, has_acceleration)?;
         self.progress.frames += 1;
-        let sizes = fields.displacements().iter().map(|u| size(*u));
-        let (mut node, mut most) = (0, 0.0);
-        for (index, size) in sizes.enumerate() {
-            if size > most {
-                (node, most) = (index, size);
-            }
-        }
-        if seen.displacement.see(most, t, || body.mesh.node_tags[node]) {
-            let moved = surface.nodes.iter();
-            let moved = moved.flat_map(|node| fields.displacements()[*node as usize]);
-            self.largest.clear();
-            self.largest.extend(moved);
-        }
         Ok(())
+    }
+
+    /// Completes what is being written; then how far the run is, and the displacements (m) of the surface where one of
+    /// them was largest.
+    pub(crate) fn settle(&mut self) -> Result<(Progress, Vec<f64>), RecordRunError> {
+        self.progress.lengths = self.tables.secure()?;
+        self.progress.energy = self.balance.sums;
+        let Some(frames) = &mut self.frames else {
+            return Ok((self.progress.clone(), Vec::new()));
+        };
+        let SeenInFrames { seen, largest } = frames.settle()?.clone();
+        self.progress.seen = seen;
+        Ok((self.progress.clone(), largest))
     }
 
     /// Leaves a checkpoint.
     fn save(&mut self, moment: &Moment<'_>) -> Result<(), RecordRunError> {
-        self.progress.lengths = self.tables.secure()?;
-        self.progress.energy = self.balance.sums;
+        let (mut progress, largest) = self.settle()?;
         let row = self.balance.last.clone().unwrap_or_default();
-        let mut progress = self.progress.clone();
         progress.work.add(moment.work);
         Checkpoint::write(
             self.folder,
@@ -215,15 +202,11 @@ impl RunRecorder<'_> {
             &progress,
             moment.state,
             &row,
-            &self.largest,
+            &largest,
         )?;
         self.saved = Instant::now();
         Ok(())
     }
-}
-
-fn size(u: [f64; 3]) -> f64 {
-    u.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 fn failed(t: f64, error: RecordRunError) -> RecordError {

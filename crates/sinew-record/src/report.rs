@@ -8,9 +8,9 @@ use sinew_scene::output::OwnedFolder;
 
 use crate::csv::Table;
 use crate::error::RecordRunError;
-use crate::fields::Surface;
 use crate::run_end::Ended;
 use crate::summary::Summary;
+use crate::surface::Surface;
 use crate::tables;
 use curves::plot;
 

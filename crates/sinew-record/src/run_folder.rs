@@ -1,6 +1,8 @@
 //! The folder of a run.
 
 use std::path::Path;
+use std::sync::Mutex;
+use std::thread;
 use std::time::Instant;
 
 use sinew_core::{Outcome, simulate};
@@ -12,7 +14,9 @@ use crate::balance::Balance;
 use crate::checkpoint::{self, Checkpoint};
 use crate::companion::Companion;
 use crate::error::RecordRunError;
-use crate::fields::{self, Fields, Surface};
+use crate::fields::Fields;
+use crate::frame_writer::{FrameJob, FrameWriter, SeenInFrames};
+use crate::frames;
 use crate::pace::Pace;
 use crate::progress::Progress;
 use crate::recorder::{RunRecorder, Schedules, Tables};
@@ -20,6 +24,7 @@ use crate::report;
 use crate::request::{self, Record, Request};
 use crate::run_end::{Ended, RunEnd};
 use crate::summary::{self, Summary};
+use crate::surface::{self, Surface};
 use crate::tables::{self, Reactions};
 
 /// The kind of result, in manifests and messages.
@@ -67,9 +72,9 @@ impl RunFolder {
         if !simulation.held_parts().is_empty() {
             names.push(tables::REACTIONS.to_owned());
         }
-        if let Some(frames) = schedules.fields {
-            names.extend([fields::SERIES, fields::SURFACE].map(str::to_owned));
-            names.extend((0..frames.count()).map(fields::frame_name));
+        if let Some(fields) = schedules.fields {
+            names.extend([frames::SERIES, surface::NAME].map(str::to_owned));
+            names.extend((0..fields.count()).map(frames::frame_name));
         }
         let folder = OwnedFolder::claim(path, KIND, &scene.input_files(), &names)?;
         record.write(&folder, scene)?;
@@ -133,50 +138,59 @@ impl RunFolder {
                 (state, Progress::default(), Vec::new(), balance)
             }
         };
+        let schedules = Schedules::of(simulation);
         let reactions = Reactions::of(simulation)?;
+        let parts = reactions
+            .as_ref()
+            .map_or_else(Vec::new, |reactions| reactions.parts.clone());
         let tables = Tables::open(
             &self.folder,
             progress.lengths,
             reactions.as_ref(),
             simulation,
         )?;
-        let fields = simulation.model().body().map(|body| {
-            let fields = Fields::new(&body.model, simulation.scene().output());
-            (fields, Surface::of(&body.mesh))
+        let body = simulation.model().body();
+        let surface = body.map(|body| Surface::of(&body.mesh));
+        let seen = Mutex::new(SeenInFrames {
+            seen: progress.seen.clone(),
+            largest,
         });
         let before = progress.steps;
         let mut run = simulation.run();
         run.steps -= before.min(run.steps);
-        let mut recorder = RunRecorder {
-            simulation,
-            folder: &self.folder,
-            companion,
-            schedules: Schedules::of(simulation),
-            tables,
-            balance,
-            reactions,
-            fields,
-            largest,
-            progress,
-            before,
-            resumed,
-            watched: before,
-            pace: Pace::new(before),
-            saved: Instant::now(),
-            line: String::new(),
-            v: Vec::new(),
-        };
-        let report = simulate(system, integrator, &mut state, &run, &mut recorder)?;
-        recorder.tables.secure()?;
-        recorder.progress.work.add(report.work);
-        let RunRecorder {
-            progress,
-            reactions,
-            fields,
-            schedules,
-            largest,
-            ..
-        } = recorder;
+        let (report, (mut progress, largest)) = thread::scope(|scope| {
+            let frames = body.zip(surface.as_ref()).map(|(body, surface)| {
+                let job = FrameJob {
+                    folder: &self.folder,
+                    mesh: &body.mesh,
+                    surface,
+                    fields: Fields::new(&body.model, *simulation.scene().output()),
+                    seen: &seen,
+                };
+                FrameWriter::start(scope, job)
+            });
+            let mut recorder = RunRecorder {
+                simulation,
+                folder: &self.folder,
+                companion,
+                schedules,
+                tables,
+                balance,
+                reactions,
+                frames,
+                progress,
+                before,
+                resumed,
+                watched: before,
+                pace: Pace::new(before),
+                saved: Instant::now(),
+                line: String::new(),
+                v: Vec::new(),
+            };
+            let report = simulate(system, integrator, &mut state, &run, &mut recorder)?;
+            Ok::<_, RecordRunError>((report, recorder.settle()?))
+        })?;
+        progress.work.add(report.work);
         let ended = match report.outcome {
             Outcome::Finished => Ended::Finished,
             Outcome::Diverged { t, dof } => Ended::Diverged {
@@ -185,10 +199,10 @@ impl RunFolder {
             },
             Outcome::Stopped => Ended::Interrupted { t: state.t() },
         };
-        if let (Some((_, surface)), Some(body)) = (&fields, simulation.model().body()) {
+        if let (Some(surface), Some(body)) = (&surface, body) {
             surface.write(&self.folder, &body.mesh)?;
             let times = frame_times(&schedules, progress.frames, simulation.dt());
-            fields::write_series(&self.folder, &times)?;
+            frames::write_series(&self.folder, &times)?;
         }
         let warnings = summary::warnings(&progress.seen);
         let wall = begun.elapsed().as_secs_f64();
@@ -200,16 +214,13 @@ impl RunFolder {
             t: state.t(),
             progress: &progress,
             schedules: &schedules,
-            parts: reactions
-                .as_ref()
-                .map_or(&[][..], |reactions| &reactions.parts),
+            parts: &parts,
             integrator,
             wall,
             resumed,
             warnings: &warnings,
         };
-        let surface = fields.as_ref().map(|(_, surface)| surface);
-        let page = report::page(&summary, surface, &largest, &self.folder)?;
+        let page = report::page(&summary, surface.as_ref(), &largest, &self.folder)?;
         self.folder.write(report::NAME, page.as_bytes())?;
         self.folder
             .write(summary::NAME, summary.to_json().as_bytes())?;

@@ -90,7 +90,7 @@ impl Summary<'_> {
             Ended::Diverged { t, place } => ("diverged", json!({ "t_s": t, "at": place })),
             Ended::Interrupted { .. } => ("interrupted", Value::Null),
         };
-        let [most, last] = seen.kinetic;
+        let [most, last] = progress.kinetic;
         let of_velocities = (self.steps * simulation.system().dofs()).max(1) as f64;
         let largest = |largest: &Largest, unit: &str, at: &str, factor: f64| json!({ unit: largest.value * factor, "t_s": largest.t, at: largest.at });
         let extremes = simulation.model().body().map(|_| {

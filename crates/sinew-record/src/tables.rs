@@ -58,6 +58,7 @@ fn push(out: &mut String, value: f64) {
 }
 
 /// A part of the body that is held or moved.
+#[derive(Debug, Clone)]
 pub(crate) struct HeldPart {
     /// The beginning of its columns' names.
     pub(crate) name: String,

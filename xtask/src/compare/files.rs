@@ -33,8 +33,9 @@ pub(super) const MSH: [(&str, MshVersion, MshEncoding); 4] = [
     ("41-binary.msh", MshVersion::V41, MshEncoding::Binary),
 ];
 
-pub(super) const VTU: [(&str, VtuEncoding); 2] = [
+pub(super) const VTU: [(&str, VtuEncoding); 3] = [
     ("raw.vtu", VtuEncoding::RawAppended),
+    ("compressed.vtu", VtuEncoding::CompressedAppended),
     ("base64.vtu", VtuEncoding::Base64),
 ];
 

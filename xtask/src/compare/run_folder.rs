@@ -12,7 +12,8 @@ const SCENE: &str = "[mesh]\ncube = { cells = 4, edge = 0.1 }\n[[region]]\ndensi
                      youngs_modulus = 3000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"sides\"\n[[load]]\n\
                      group = \"top\"\npressure = 100.0\n[run]\nduration = 0.1\nintegrator = \"central-difference\"\n\
                      dt = 0.0025\n[[probe]]\nname = \"top\"\npoint = [0.05, 0.05, 0.1]\n[output]\n\
-                     fields = { frames = 5 }\nacceleration = true\n";
+                     fields = { frames = 5 }\nacceleration = true\n\
+                     step_limit = true\ncompress = true\n";
 
 /// Runs a small scene into a folder.
 pub(super) fn write(path: &Path) -> Result<(), Failure> {

@@ -23,6 +23,7 @@ mod error;
 mod grid;
 mod of_mesh;
 mod out;
+mod read;
 mod series;
 mod write;
 
@@ -30,5 +31,6 @@ pub use error::WriteVtuError;
 pub use grid::{Array, Grid, Values};
 pub use of_mesh::write_vtu;
 pub use out::VtuEncoding;
+pub use read::{ReadVtuError, read_appended_array};
 pub use series::write_pvd;
 pub use write::write_vtu_grid;

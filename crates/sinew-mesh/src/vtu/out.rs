@@ -5,11 +5,14 @@ use std::io::{self, Write};
 use super::base64::Base64;
 use super::grid::Values;
 
-/// Encoding of the numbers in a .vtu file. Both are exact.
+/// Encoding of the numbers in a .vtu file. All are exact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum VtuEncoding {
-    /// Bytes after the text: smallest and fastest, but not valid XML.
+    /// Bytes after the text: fastest, but not valid XML.
     RawAppended,
+    /// Bytes after the text, compressed by zlib: smaller, and several times as slow to write.
+    #[cfg(feature = "compress")]
+    CompressedAppended,
     /// Base64 in valid XML.
     Base64,
 }
@@ -65,8 +68,12 @@ impl Numbers<'_> {
     }
 
     /// Writes their length in bytes, then the bytes.
-    fn write(self, to: &mut impl Write) -> io::Result<()> {
+    fn write_with_length(self, to: &mut impl Write) -> io::Result<()> {
         to.write_all(&self.byte_length().to_le_bytes())?;
+        self.write(to)
+    }
+
+    fn write(self, to: &mut impl Write) -> io::Result<()> {
         match self {
             Numbers::F64(values) => in_blocks(values, f64::to_le_bytes, to),
             Numbers::F32(values) => in_blocks(values, f32::to_le_bytes, to),
@@ -95,21 +102,58 @@ fn in_blocks<T: Copy, const N: usize>(
     Ok(())
 }
 
-pub(super) struct Out<W: Write> {
+/// Numbers that follow the text.
+enum Appended<'a> {
+    Plain(Numbers<'a>),
+    #[cfg(feature = "compress")]
+    Compressed(Vec<u8>),
+}
+
+impl Appended<'_> {
+    fn byte_length(&self) -> u64 {
+        match self {
+            Appended::Plain(numbers) => size_of::<u64>() as u64 + numbers.byte_length(),
+            #[cfg(feature = "compress")]
+            Appended::Compressed(bytes) => bytes.len() as u64,
+        }
+    }
+
+    fn write(&self, to: &mut impl Write) -> io::Result<()> {
+        match self {
+            Appended::Plain(numbers) => numbers.write_with_length(to),
+            #[cfg(feature = "compress")]
+            Appended::Compressed(bytes) => to.write_all(bytes),
+        }
+    }
+}
+
+pub(super) struct Out<'a, W: Write> {
     to: io::BufWriter<W>,
     encoding: VtuEncoding,
-    /// The bytes that follow the text, if numbers are appended.
-    appended: Vec<u8>,
+    /// The numbers that follow the text, if numbers are appended.
+    appended: Vec<Appended<'a>>,
     appended_bytes: u64,
 }
 
-impl<W: Write> Out<W> {
-    pub(super) fn new(to: W, encoding: VtuEncoding) -> Out<W> {
+/// Bytes that are written at once.
+const BUFFER: usize = 1 << 17;
+
+impl<'a, W: Write> Out<'a, W> {
+    pub(super) fn new(to: W, encoding: VtuEncoding) -> Out<'a, W> {
         Out {
-            to: io::BufWriter::new(to),
+            to: io::BufWriter::with_capacity(BUFFER, to),
             encoding,
             appended: Vec::new(),
             appended_bytes: 0,
+        }
+    }
+
+    /// Attributes of the file that say how its numbers are encoded.
+    pub(super) fn attributes(&self) -> &'static str {
+        match self.encoding {
+            VtuEncoding::RawAppended | VtuEncoding::Base64 => "",
+            #[cfg(feature = "compress")]
+            VtuEncoding::CompressedAppended => " compressor=\"vtkZLibDataCompressor\"",
         }
     }
 
@@ -122,39 +166,70 @@ impl<W: Write> Out<W> {
         name: &str,
         vtk_type: &str,
         components: usize,
-        numbers: Numbers<'_>,
+        numbers: Numbers<'a>,
     ) -> io::Result<()> {
         let name = escaped(name);
         let start = format!(
             "<DataArray type=\"{vtk_type}\" Name=\"{name}\" NumberOfComponents=\"{components}\""
         );
-        match self.encoding {
-            VtuEncoding::RawAppended => {
-                let offset = self.appended_bytes;
-                self.text(&format!(
-                    "{start} format=\"appended\" offset=\"{offset}\"/>\n"
-                ))?;
-                numbers.write(&mut self.appended)?;
-                self.appended_bytes = self.appended.len() as u64;
-            }
+        let appended = match self.encoding {
+            VtuEncoding::RawAppended => Appended::Plain(numbers),
+            #[cfg(feature = "compress")]
+            VtuEncoding::CompressedAppended => Appended::Compressed(compressed(numbers)?),
             VtuEncoding::Base64 => {
                 self.text(&format!("{start} format=\"binary\">\n"))?;
                 let mut base64 = Base64::new(&mut self.to);
-                numbers.write(&mut base64)?;
+                numbers.write_with_length(&mut base64)?;
                 base64.finish()?;
-                self.text("\n</DataArray>\n")?;
+                return self.text("\n</DataArray>\n");
             }
-        }
+        };
+        let offset = self.appended_bytes;
+        self.text(&format!(
+            "{start} format=\"appended\" offset=\"{offset}\"/>\n"
+        ))?;
+        self.appended_bytes += appended.byte_length();
+        self.appended.push(appended);
         Ok(())
     }
 
     pub(super) fn finish(mut self) -> io::Result<()> {
-        if self.encoding == VtuEncoding::RawAppended {
+        if self.encoding != VtuEncoding::Base64 {
             self.text("<AppendedData encoding=\"raw\">\n_")?;
-            self.to.write_all(&self.appended)?;
+            for numbers in &self.appended {
+                numbers.write(&mut self.to)?;
+            }
             self.text("\n</AppendedData>\n")?;
         }
         self.text("</VTKFile>\n")?;
         self.to.flush()
     }
+}
+
+/// Numbers as VTK compresses them: the number of blocks, the size of a block before compression and that of the last one
+/// if it is smaller, the size of each after compression, then the blocks, each a zlib stream of its own
+/// (vtkXMLWriter, "compressed data").
+#[cfg(feature = "compress")]
+fn compressed(numbers: Numbers<'_>) -> io::Result<Vec<u8>> {
+    use flate2::{Compression, write::ZlibEncoder};
+
+    const BLOCK: usize = 1 << 16;
+    let mut plain = Vec::with_capacity(numbers.byte_length() as usize);
+    numbers.write(&mut plain)?;
+    let mut sizes = Vec::new();
+    let mut blocks = Vec::new();
+    for block in plain.chunks(BLOCK) {
+        let before = blocks.len();
+        let mut encoder = ZlibEncoder::new(&mut blocks, Compression::fast());
+        encoder.write_all(block)?;
+        encoder.finish()?;
+        sizes.push(blocks.len() - before);
+    }
+    let head = [sizes.len(), BLOCK, plain.len() % BLOCK];
+    let mut bytes = Vec::with_capacity((head.len() + sizes.len()) * 8 + blocks.len());
+    for number in head.iter().chain(&sizes) {
+        bytes.extend((*number as u64).to_le_bytes());
+    }
+    bytes.extend(blocks);
+    Ok(bytes)
 }

@@ -18,11 +18,14 @@ pub fn write_vtu_grid(
     to: &mut impl Write,
 ) -> Result<(), WriteVtuError> {
     let types = checked_cell_types(grid)?;
+    let connectivity: Vec<&[u32]> = grid.cells.iter().map(|&(_, nodes)| nodes).collect();
+    let offsets = ends_of_cells(grid);
     let mut out = Out::new(to, encoding);
-    out.text(
+    let attributes = out.attributes();
+    out.text(&format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-         header_type=\"UInt64\">\n<UnstructuredGrid>\n",
-    )?;
+         header_type=\"UInt64\"{attributes}>\n<UnstructuredGrid>\n",
+    ))?;
     let (points, cells) = (grid.points.len(), types.len());
     out.text(&format!(
         "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n"
@@ -51,26 +54,26 @@ pub fn write_vtu_grid(
         Numbers::F64(grid.points.as_flattened()),
     )?;
     out.text("</Points>\n<Cells>\n")?;
-    let connectivity: Vec<&[u32]> = grid.cells.iter().map(|&(_, nodes)| nodes).collect();
     out.array("connectivity", "UInt32", 1, Numbers::U32(&connectivity))?;
-    let mut end = 0;
-    let offsets: Vec<i64> = grid
-        .cells
-        .iter()
-        .flat_map(|&(kind, nodes)| {
-            let count = kind.node_count();
-            (0..nodes.len() / count).map(move |_| count as i64)
-        })
-        .map(|nodes| {
-            end += nodes;
-            end
-        })
-        .collect();
     out.array("offsets", "Int64", 1, Numbers::I64(&offsets))?;
     out.array("types", "UInt8", 1, Numbers::U8(&types))?;
     out.text("</Cells>\n</Piece>\n</UnstructuredGrid>\n")?;
     out.finish()?;
     Ok(())
+}
+
+/// The number of entries of the list of nodes up to the end of each cell.
+fn ends_of_cells(grid: &Grid<'_>) -> Vec<i64> {
+    let mut end = 0;
+    let blocks = grid.cells.iter().flat_map(|&(kind, nodes)| {
+        let count = kind.node_count();
+        (0..nodes.len() / count).map(move |_| count as i64)
+    });
+    let ends = blocks.map(|nodes| {
+        end += nodes;
+        end
+    });
+    ends.collect()
 }
 
 /// VTK's number for the type of each cell.

@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use sinew_mesh::vtu::read_appended_array;
+
 use super::outcome::{CompareError, Comparison, Difference, damaged, read, relative};
 use crate::csv::SAME_TIME;
-use crate::fields::SERIES;
+use crate::frames::SERIES;
 
 /// Fields that are compared, with their units.
 const FIELDS: [(&str, &str); 2] = [("displacement", "m"), ("velocity", "m/s")];
@@ -93,34 +95,10 @@ fn series(folder: &Path) -> Result<Vec<(f64, String)>, CompareError> {
     Ok(frames)
 }
 
-/// A field of vectors of a frame as a run writes it: single precision, appended to the text.
+/// A field of vectors of a frame.
 fn vectors(path: &Path, bytes: &[u8], name: &str) -> Result<Vec<[f64; 3]>, CompareError> {
-    let wrong = || {
-        damaged(
-            path,
-            format!("expected a field `{name}` as a run writes it"),
-        )
-    };
-    let marker = bytes.windows(2).position(|pair| pair == b"\n_");
-    let (text, data) = bytes.split_at(marker.ok_or_else(wrong)? + 2);
-    let text = str::from_utf8(text).map_err(|_| wrong())?;
-    let array = text
-        .lines()
-        .find(|line| {
-            attribute(line, "Name") == Some(name) && attribute(line, "type") == Some("Float32")
-        })
-        .ok_or_else(wrong)?;
-    let offset: usize = attribute(array, "offset")
-        .and_then(|offset| offset.parse().ok())
-        .ok_or_else(wrong)?;
-    let data = data.get(offset..).ok_or_else(wrong)?;
-    let (length, data) = data.split_first_chunk::<8>().ok_or_else(wrong)?;
-    let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|_| wrong())?;
-    let data = data.get(..length).ok_or_else(wrong)?;
-    let numbers = data.as_chunks::<4>().0.iter();
-    let numbers: Vec<f64> = numbers
-        .map(|bytes| f64::from(f32::from_le_bytes(*bytes)))
-        .collect();
+    let numbers =
+        read_appended_array(bytes, name).map_err(|error| damaged(path, error.to_string()))?;
     Ok(numbers.as_chunks::<3>().0.to_vec())
 }
 

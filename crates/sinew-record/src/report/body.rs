@@ -2,8 +2,8 @@
 
 use sinew_draw::{Page, Surface as Picture};
 
-use crate::fields::Surface;
 use crate::summary::Summary;
+use crate::surface::Surface;
 
 /// Triangles beyond which a page with two pictures takes long to open.
 const MOST_TRIANGLES: usize = 80_000;

@@ -122,7 +122,7 @@ fn what_cannot_be_compared_is_said() {
     fs::write(&frame, "no frame").unwrap();
     let refused = compare(&path("one"), &path("one")).unwrap_err().to_string();
     assert!(
-        refused.contains("frame-00001.vtu: expected a field `displacement`"),
+        refused.contains("frame-00001.vtu: expected a .vtu file"),
         "{refused}"
     );
 }

@@ -3,29 +3,15 @@
 use std::fs;
 use std::path::Path;
 
+use sinew_mesh::vtu::read_appended_array;
+use sinew_record::{Request, RunFolder};
+
 use crate::common::{cube, run, table};
 
-/// An array of single-precision numbers of a .vtu file with appended data.
+/// An array of a frame.
 fn singles(path: &Path, name: &str) -> Vec<f32> {
-    let bytes = fs::read(path).unwrap();
-    let begin = bytes.windows(2).position(|pair| pair == b"\n_").unwrap() + 2;
-    let text = String::from_utf8_lossy(&bytes[..begin]).into_owned();
-    let array = text
-        .split("<DataArray")
-        .find(|array| array.contains(&format!("Name=\"{name}\"")));
-    let array = array.unwrap();
-    assert!(array.contains("type=\"Float32\""), "{array}");
-    let offset = array
-        .split("offset=\"")
-        .nth(1)
-        .unwrap()
-        .split('"')
-        .next()
-        .unwrap();
-    let data = &bytes[begin + offset.parse::<usize>().unwrap()..];
-    let length = u64::from_le_bytes(*data.first_chunk().unwrap()) as usize;
-    let numbers = data[8..8 + length].as_chunks::<4>().0.iter();
-    numbers.map(|number| f32::from_le_bytes(*number)).collect()
+    let numbers = read_appended_array(&fs::read(path).unwrap(), name).unwrap();
+    numbers.into_iter().map(|number| number as f32).collect()
 }
 
 /// A column under its own weight: supports carry it to 1e-8, and their moment about their middle is that of forces that
@@ -77,6 +63,53 @@ fn fields_are_those_of_the_probes() {
         }
     }
     assert!(!out.join("fields/frame-00005.vtu").exists());
+}
+
+/// Compression changes no number, and the step of the whole body is between that of its most restricting tetrahedron and
+/// twice that (Irons and Treharne 1971; Fried 1972 for lumped masses bounds it from below, and a vertex is in few others).
+#[test]
+fn compressed_fields_are_the_same_and_steps_of_tetrahedra_bound_that_of_the_body() {
+    let place = tempfile::tempdir().unwrap();
+    let body = |output: &str| {
+        cube(&format!(
+            "[[fixed]]\ngroup = \"sides\"\n[[load]]\ngroup = \"top\"\npressure = 100.0\n[run]\nduration = 0.1\n\
+             integrator = \"central-difference\"\ndt = 0.0025\n[output]\nfields = {{ frames = 1 }}\nstep_limit = true\n\
+             {output}"
+        ))
+    };
+    let mut frames = Vec::new();
+    for (name, output) in [("plain", ""), ("packed", "compress = true\n")] {
+        let out = place.path().join(name);
+        run(&out, &body(output), &mut ());
+        frames.push(fs::read(out.join("fields/frame-00001.vtu")).unwrap());
+    }
+    assert!(frames[1].len() < frames[0].len());
+    for name in ["Points", "displacement", "velocity", "strain", "stress", "von_mises", "step_limit"] {
+        let [plain, packed] = [0, 1].map(|frame| read_appended_array(&frames[frame], name).unwrap());
+        assert_eq!(plain, packed, "{name}");
+    }
+    let limits = read_appended_array(&frames[0], "step_limit").unwrap();
+    let least = limits.iter().copied().fold(f64::INFINITY, f64::min);
+    let simulation = body("");
+    let linear = simulation.system().as_linear().unwrap();
+    let of_body = 2.0 / linear.spectrum().unwrap().omega_max;
+    assert!(least <= of_body * (1.0 + 1e-6) && of_body <= 2.0 * least, "{least} {of_body}");
+}
+
+#[test]
+fn a_frame_that_cannot_be_written_ends_the_run_with_its_reason() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("out");
+    let simulation = cube(
+        "[[load]]\ngroup = \"top\"\npressure = 100.0\n[run]\nduration = 0.1\nintegrator = \"newmark\"\ndt = 0.0025\n",
+    );
+    let folder = RunFolder::create(&out, &simulation, &Request::default()).unwrap();
+    fs::write(out.join("fields"), "in the way").unwrap();
+    let mut integrator = simulation.integrator().unwrap();
+    let refused = folder.run(&simulation, &mut *integrator, &mut ());
+    let refused = refused.unwrap_err().to_string();
+    assert!(refused.contains("fields"), "{refused}");
+    assert!(!out.join("summary.json").exists());
 }
 
 /// Uniaxial stress: a bar that is pulled has the same stress everywhere, and von Mises' is the pull.

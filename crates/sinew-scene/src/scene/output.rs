@@ -19,6 +19,10 @@ pub struct OutputSettings {
     pub surface_only: bool,
     /// Whether fields have accelerations too.
     pub acceleration: bool,
+    /// Whether fields have the largest step at which each tetrahedron alone would be stable.
+    pub step_limit: bool,
+    /// Whether fields are compressed.
+    pub compress: bool,
 }
 
 /// Evenly spaced instants of a run, its beginning and its end among them.
@@ -39,6 +43,8 @@ impl Default for OutputSettings {
             checkpoint: 10.0,
             surface_only: false,
             acceleration: false,
+            step_limit: false,
+            compress: false,
         }
     }
 }
@@ -50,6 +56,8 @@ pub(super) const KEYS: &[&str] = &[
     "checkpoint",
     "surface_only",
     "acceleration",
+    "step_limit",
+    "compress",
 ];
 
 /// A larger number of files would fill a folder that nobody opens.
@@ -70,6 +78,8 @@ impl OutputSettings {
             checkpoint,
             surface_only: flag("surface_only")?.unwrap_or(default.surface_only),
             acceleration: flag("acceleration")?.unwrap_or(default.acceleration),
+            step_limit: flag("step_limit")?.unwrap_or(default.step_limit),
+            compress: flag("compress")?.unwrap_or(default.compress),
         })
     }
 }

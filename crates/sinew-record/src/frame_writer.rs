@@ -1,0 +1,149 @@
+//! Frames written beside the run.
+
+use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::Scope;
+
+use sinew_core::{Moment, vectors};
+use sinew_mesh::TetMesh;
+use sinew_scene::output::OwnedFolder;
+
+use crate::error::RecordRunError;
+use crate::fields::{Fields, Snapshot};
+use crate::progress::Seen;
+use crate::surface::Surface;
+
+/// Snapshots in use: one that is written, and one that is taken meanwhile.
+const SNAPSHOTS: usize = 2;
+
+/// What was seen in the frames that are written.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct SeenInFrames {
+    pub(crate) seen: Seen,
+    /// Displacements (m) of the surface where one of them was largest so far.
+    pub(crate) largest: Vec<f64>,
+}
+
+/// Makes fields of snapshots and writes them, on a thread of its own, so that the run need not wait for them. Frames are
+/// written in order, so what is seen in them does not depend on when.
+pub(crate) struct FrameWriter<'a> {
+    to_write: SyncSender<Snapshot>,
+    written: Receiver<Result<Snapshot, RecordRunError>>,
+    /// Snapshots that are not in use.
+    free: Vec<Snapshot>,
+    seen: &'a Mutex<SeenInFrames>,
+}
+
+/// What the writing thread needs.
+pub(crate) struct FrameJob<'a> {
+    pub(crate) folder: &'a OwnedFolder,
+    pub(crate) mesh: &'a TetMesh,
+    pub(crate) surface: &'a Surface,
+    pub(crate) fields: Fields<'a>,
+    pub(crate) seen: &'a Mutex<SeenInFrames>,
+}
+
+impl FrameJob<'_> {
+    fn write(&mut self, snapshot: &Snapshot) -> Result<(), RecordRunError> {
+        let mut guard = lock(self.seen);
+        let SeenInFrames { seen, largest } = &mut *guard;
+        self.fields
+            .write(self.folder, self.surface, snapshot, seen)?;
+        let displacements = self.fields.displacements();
+        let (mut node, mut most) = (0, 0.0);
+        for (index, u) in displacements.iter().enumerate() {
+            let size = vectors::norm(u);
+            if size > most {
+                (node, most) = (index, size);
+            }
+        }
+        let tag = || self.mesh.node_tags[node];
+        if seen.displacement.see(most, snapshot.t, tag) {
+            let nodes = self.surface.nodes.iter();
+            largest.clear();
+            largest.extend(nodes.flat_map(|node| displacements[*node as usize]));
+        }
+        Ok(())
+    }
+
+    fn serve(
+        mut self,
+        snapshots: &Receiver<Snapshot>,
+        done: &Sender<Result<Snapshot, RecordRunError>>,
+    ) {
+        for snapshot in snapshots {
+            let written = self.write(&snapshot).map(|()| snapshot);
+            let failed = written.is_err();
+            // A run that has ended wants no answer.
+            if done.send(written).is_err() || failed {
+                return;
+            }
+        }
+    }
+}
+
+impl<'a> FrameWriter<'a> {
+    /// Starts the thread, which ends when this is dropped.
+    pub(crate) fn start<'scope>(scope: &'scope Scope<'scope, '_>, job: FrameJob<'a>) -> Self
+    where
+        'a: 'scope,
+    {
+        let seen = job.seen;
+        let (to_write, snapshots) = sync_channel(SNAPSHOTS);
+        let (done, written) = channel();
+        scope.spawn(move || job.serve(&snapshots, &done));
+        Self {
+            to_write,
+            written,
+            free: (0..SNAPSHOTS).map(|_| Snapshot::default()).collect(),
+            seen,
+        }
+    }
+
+    /// Has a frame written of a moment with the velocity (m/s) at its time. Waits where the one before the last is not
+    /// written yet.
+    ///
+    /// # Errors
+    /// The reason for which an earlier frame, or this moment, cannot be written.
+    pub(crate) fn write(
+        &mut self,
+        frame: usize,
+        moment: &Moment<'_>,
+        v: &[f64],
+        has_acceleration: bool,
+    ) -> Result<(), RecordRunError> {
+        if self.free.is_empty() {
+            self.wait()?;
+        }
+        let mut snapshot = self.free.pop().unwrap_or_default();
+        snapshot.take(frame, moment, v, has_acceleration)?;
+        // Where nobody listens any more, the reason has come already and is found when it is waited for.
+        let _ = self.to_write.send(snapshot);
+        Ok(())
+    }
+
+    /// Waits until all frames are written; then what was seen in them.
+    ///
+    /// # Errors
+    /// The reason for which one of them cannot be written.
+    pub(crate) fn settle(&mut self) -> Result<MutexGuard<'a, SeenInFrames>, RecordRunError> {
+        while self.free.len() < SNAPSHOTS {
+            self.wait()?;
+        }
+        Ok(lock(self.seen))
+    }
+
+    /// Waits for the next frame.
+    fn wait(&mut self) -> Result<(), RecordRunError> {
+        match self.written.recv() {
+            Ok(written) => self.free.push(written?),
+            // The thread panicked, which ends the scope that it belongs to in the same way.
+            Err(_) => self.free.push(Snapshot::default()),
+        }
+        Ok(())
+    }
+}
+
+fn lock(seen: &Mutex<SeenInFrames>) -> MutexGuard<'_, SeenInFrames> {
+    seen.lock().unwrap_or_else(PoisonError::into_inner)
+}
