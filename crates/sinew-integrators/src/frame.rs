@@ -8,9 +8,10 @@ use sinew_core::{
     State, StepError, StepReport, System, VelocityTime,
 };
 
-use crate::rounding::f32_rounding;
 use sinew_machines::{Chosen, Kind, PrecisionName, Settings};
 
+use crate::numerical_dissipation::NumericalDissipation;
+use crate::rounding::f32_rounding;
 use crate::scheme::{Scheme, StepByHand, Steps};
 use crate::stepper::Stepper;
 
@@ -80,6 +81,10 @@ impl<M: Scheme> Stepper for Frame<M> {
             Ready::Program(loaded) => Some(Program::clone(&loaded.program)),
             Ready::Not | Ready::ByHand(_) => None,
         }
+    }
+
+    fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
+        self.scheme.numerical_dissipation()
     }
 
     fn computed_by(&self) -> Vec<String> {

@@ -8,6 +8,8 @@ use sinew_core::{
     StepReport, Stepped, System,
 };
 
+use crate::numerical_dissipation::NumericalDissipation;
+
 /// A method whose steps are made by set-up and framed by [`crate::Frame`].
 pub trait Scheme: Send + Sized + 'static {
     /// The name users type.
@@ -23,6 +25,11 @@ pub trait Scheme: Send + Sized + 'static {
     /// The error (relative) that its user asked for, where there is such an option: a precision that rounds
     /// more than that is refused.
     fn asked_error(&self) -> Option<f64> {
+        None
+    }
+
+    /// The energy that it takes by itself, where there is a closed form.
+    fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
         None
     }
 

@@ -3,11 +3,18 @@
 use sinew_cnn::Program;
 use sinew_core::Integrator;
 
+use crate::numerical_dissipation::NumericalDissipation;
+
 /// An integrator that may have a program.
 pub trait Stepper: Integrator {
     /// The program of a step as set-up made it; `None` before set-up and where no program of sweeps
     /// expresses the method.
     fn program(&self) -> Option<Program> {
+        None
+    }
+
+    /// The energy that it takes by itself from a linear system, where there is a closed form.
+    fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
         None
     }
 

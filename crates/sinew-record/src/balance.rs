@@ -1,11 +1,14 @@
 //! The balance of energy of a run.
 
 use serde::{Deserialize, Serialize};
-use sinew_core::{LinearOperators, Moment};
+use sinew_core::vectors::dot;
+use sinew_core::{Acceleration, LinearOperators, Moment};
 use sinew_fem::Model;
+use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
 use sinew_scene::{SceneModel, Simulation};
 
 use crate::error::RecordRunError;
+use crate::schedule::Schedule;
 
 /// Energies (J) of a run at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,7 +22,10 @@ pub(crate) struct Energies {
     pub(crate) supports: f64,
     /// Energy that damping took since the beginning.
     pub(crate) damped: f64,
-    /// What the energy gained beyond all that: what the method, and the distance of the rows, bring in or take away.
+    /// Energy that the method took since the beginning, where its closed form is known.
+    pub(crate) method: Option<f64>,
+    /// What the energy gained beyond all that: what the method, where that is not known, and the distance of the rows bring
+    /// in or take away.
     pub(crate) remainder: f64,
 }
 
@@ -30,14 +36,17 @@ pub(crate) struct Sums {
     loads: f64,
     supports: f64,
     damped: f64,
+    method: f64,
 }
 
-/// Motion at the last row: time (s), displacement (m) and velocity (m/s) of the degrees of freedom.
+/// Motion at the last row: time (s), displacement (m) and velocity (m/s) of the degrees of freedom, and the acceleration
+/// (m/s^2) where what the method takes is known.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct LastRow {
     pub(crate) t: f64,
     pub(crate) u: Vec<f64>,
     pub(crate) v: Vec<f64>,
+    pub(crate) a: Vec<f64>,
 }
 
 /// Sums up, from row to row, what loads, moved supports and damping do.
@@ -51,6 +60,8 @@ pub(crate) struct Balance<'a> {
     pub(crate) last: Option<LastRow>,
     /// Forces and displacements at the last row.
     acting: Option<Acting>,
+    /// What the method takes, where that is known.
+    form: Option<NumericalDissipation>,
 }
 
 /// Forces (N) and displacements (m) that do work.
@@ -63,26 +74,33 @@ struct Acting {
 }
 
 impl<'a> Balance<'a> {
-    pub(crate) fn new(simulation: &'a Simulation) -> Self {
-        Self {
+    /// Begins with rows at these steps of the method.
+    pub(crate) fn new(simulation: &'a Simulation, method: &dyn Stepper, rows: Schedule) -> Self {
+        let mut balance = Self {
             simulation,
             sums: Sums::default(),
             last: None,
             acting: None,
+            form: None,
+        };
+        // The form is that of one step of free degrees of freedom.
+        if rows.is_every_step() && balance.moved_body().is_none() && balance.operators().is_some() {
+            balance.form = method.numerical_dissipation();
         }
+        balance
+    }
+
+    /// Whether it is known what the method takes.
+    pub(crate) fn knows_method(&self) -> bool {
+        self.form.is_some()
     }
 
     /// Goes on after a row that was written by an earlier run.
-    pub(crate) fn resumed(
-        simulation: &'a Simulation,
-        sums: Sums,
-        last: LastRow,
-    ) -> Result<Self, RecordRunError> {
-        let mut balance = Self::new(simulation);
-        balance.sums = sums;
-        balance.acting = Some(balance.acting(&last)?);
-        balance.last = Some(last);
-        Ok(balance)
+    pub(crate) fn resumed(mut self, sums: Sums, last: LastRow) -> Result<Self, RecordRunError> {
+        self.sums = sums;
+        self.acting = Some(self.acting(&last)?);
+        self.last = Some(last);
+        Ok(self)
     }
 
     fn operators(&self) -> Option<&'a LinearOperators> {
@@ -105,6 +123,7 @@ impl<'a> Balance<'a> {
             t: moment.state.t(),
             u: moment.state.u.clone(),
             v: v.to_vec(),
+            a: self.acceleration(moment, v)?,
         };
         let acting = self.acting(&here)?;
         let (kinetic, elastic) = self.stored(&here, &acting)?;
@@ -123,6 +142,7 @@ impl<'a> Balance<'a> {
                 self.sums.loads += work(&before.loads, &acting.loads, &before.u);
                 self.sums.supports += work(&before.supports, &acting.supports, &before.u);
                 self.sums.damped += self.damped(last, &here, &before.u, &acting.u)?;
+                self.sums.method += self.taken_by_method([(last, before), (&here, &acting)]);
             }
             _ => self.sums.first = kinetic + elastic,
         }
@@ -134,6 +154,7 @@ impl<'a> Balance<'a> {
             loads,
             supports,
             damped,
+            method,
         } = self.sums;
         Ok(Energies {
             t,
@@ -142,8 +163,37 @@ impl<'a> Balance<'a> {
             loads,
             supports,
             damped,
-            remainder: kinetic + elastic - first - loads - supports + damped,
+            method: self.form.map(|_| method),
+            remainder: kinetic + elastic - first - loads - supports + damped + method,
         })
+    }
+
+    /// The acceleration that the method keeps, where it matters; before the first step the consistent one.
+    fn acceleration(&self, moment: &Moment<'_>, v: &[f64]) -> Result<Vec<f64>, RecordRunError> {
+        if self.form.is_none() {
+            return Ok(Vec::new());
+        }
+        if moment.state.acceleration == Acceleration::Same {
+            return Ok(moment.state.a.clone());
+        }
+        let mut a = vec![0.0; v.len()];
+        moment.acceleration(v, &mut a)?;
+        Ok(a)
+    }
+
+    /// The energy (J) that the method takes in a step between two rows, 0 where that is not known.
+    fn taken_by_method(&self, [before, after]: [(&LastRow, &Acting); 2]) -> f64 {
+        let (Some(form), Some(operators)) = (self.form, self.operators()) else {
+            return 0.0;
+        };
+        let dt = after.0.t - before.0.t;
+        let ends = [before, after].map(|(row, acting)| StepEnd {
+            u: &row.u,
+            v: &row.v,
+            a: &row.a,
+            load: &acting.loads,
+        });
+        form.taken(operators, dt, ends)
     }
 
     fn acting(&self, row: &LastRow) -> Result<Acting, RecordRunError> {
@@ -219,11 +269,7 @@ impl<'a> Balance<'a> {
         let power = |product: &dyn Fn(&mut [f64])| -> f64 {
             let mut force = vec![0.0; own.len()];
             product(&mut force);
-            -force
-                .iter()
-                .zip(&own)
-                .map(|(force, w)| force * w)
-                .sum::<f64>()
+            -dot(&force, &own)
         };
         let Some(model) = self.moved_body() else {
             return Ok(span * power(&|out| operators.subtract_damping(&own, out)));

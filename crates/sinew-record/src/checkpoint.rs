@@ -40,7 +40,7 @@ impl Checkpoint {
         largest: &[f64],
     ) -> Result<(), RecordRunError> {
         let state = state.to_bytes(simulation.system());
-        let lists: [&[f64]; 4] = [&[row.t], &row.u, &row.v, largest];
+        let lists: [&[f64]; 5] = [&[row.t], &row.u, &row.v, &row.a, largest];
         let json = serde_json::to_string(progress).map_err(|error| unusable(folder, &error))?;
         let mut bytes = format!("{HEAD}\n{json}\n{}", state.len());
         for list in lists {
@@ -101,7 +101,7 @@ impl Checkpoint {
             .iter()
             .zip(counts)
             .all(|(list, count)| list.len() == *count);
-        let Ok([t, u, v, largest]) = <[Vec<f64>; 4]>::try_from(lists) else {
+        let Ok([t, u, v, a, largest]) = <[Vec<f64>; 5]>::try_from(lists) else {
             return Err(damaged());
         };
         if !whole || numbers.next().is_some() || t.len() != 1 {
@@ -110,7 +110,7 @@ impl Checkpoint {
         Ok(Some(Self {
             progress,
             state,
-            row: LastRow { t: t[0], u, v },
+            row: LastRow { t: t[0], u, v, a },
             largest,
         }))
     }

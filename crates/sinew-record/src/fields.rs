@@ -214,8 +214,8 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// The largest step (s) at which each tetrahedron alone would be stable under central difference: 2/omega with its
-/// largest frequency (Hughes, The Finite Element Method, section 9.2).
+/// The largest step (s) at which each tetrahedron alone, with the masses of its nodes, would be stable under central
+/// difference: 2/omega with its largest frequency. That of the body is below all of them (Rayleigh's principle).
 fn step_limits(model: &Model) -> Vec<f32> {
     let omegas = element_omegas_squared(model, model.mass());
     let limits = omegas

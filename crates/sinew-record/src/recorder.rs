@@ -65,6 +65,7 @@ impl Tables {
     pub(crate) fn open(
         folder: &OwnedFolder,
         lengths: Lengths,
+        balance: &Balance<'_>,
         reactions: Option<&Reactions<'_>>,
         simulation: &Simulation,
     ) -> Result<Self, RecordRunError> {
@@ -80,7 +81,7 @@ impl Tables {
                 tables::probes_head(simulation)
             })?,
             energy: open(tables::ENERGY, lengths.energy, &|| {
-                tables::ENERGY_HEAD.to_owned()
+                tables::energy_head(balance.knows_method())
             })?,
             reactions: reactions
                 .map(|reactions| open(tables::REACTIONS, lengths.reactions, &|| reactions.head()))

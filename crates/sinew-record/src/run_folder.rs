@@ -122,6 +122,8 @@ impl RunFolder {
         let checkpoint = Checkpoint::read(&self.folder, simulation)?;
         self.folder.remove(summary::NAME)?;
         let resumed = checkpoint.is_some();
+        let schedules = Schedules::of(simulation);
+        let balance = Balance::new(simulation, integrator, schedules.energy);
         let (mut state, progress, largest, balance) = match checkpoint {
             Some(Checkpoint {
                 progress,
@@ -129,16 +131,14 @@ impl RunFolder {
                 row,
                 largest,
             }) => {
-                let balance = Balance::resumed(simulation, progress.energy, row)?;
+                let balance = balance.resumed(progress.energy, row)?;
                 (state, progress, largest, balance)
             }
             None => {
                 let state = simulation.initial_state().clone();
-                let balance = Balance::new(simulation);
                 (state, Progress::default(), Vec::new(), balance)
             }
         };
-        let schedules = Schedules::of(simulation);
         let reactions = Reactions::of(simulation)?;
         let parts = reactions
             .as_ref()
@@ -146,6 +146,7 @@ impl RunFolder {
         let tables = Tables::open(
             &self.folder,
             progress.lengths,
+            &balance,
             reactions.as_ref(),
             simulation,
         )?;

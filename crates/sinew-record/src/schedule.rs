@@ -47,6 +47,10 @@ impl Schedule {
         self.next(step) == Some(step)
     }
 
+    pub(crate) fn is_every_step(&self) -> bool {
+        self.spacing == 1.0
+    }
+
     /// Their number.
     pub(crate) fn count(&self) -> usize {
         // The end is one more where the spacing does not meet it.

@@ -30,8 +30,13 @@ pub(crate) fn probes_head(simulation: &Simulation) -> String {
     text
 }
 
-pub(crate) const ENERGY_HEAD: &str =
-    "t_s,kinetic_J,elastic_J,work_of_loads_J,work_of_supports_J,damped_J,remainder_J\n";
+/// The line of column names; what the method takes has one where it is known.
+pub(crate) fn energy_head(knows_method: bool) -> String {
+    let method = if knows_method { "method_J," } else { "" };
+    format!(
+        "t_s,kinetic_J,elastic_J,work_of_loads_J,work_of_supports_J,damped_J,{method}remainder_J\n"
+    )
+}
 
 pub(crate) fn energy_row(out: &mut String, row: &Energies) {
     out.clear();
@@ -42,9 +47,8 @@ pub(crate) fn energy_row(out: &mut String, row: &Energies) {
         row.loads,
         row.supports,
         row.damped,
-        row.remainder,
     ];
-    for value in columns {
+    for value in columns.into_iter().chain(row.method).chain([row.remainder]) {
         out.push(',');
         push(out, value);
     }

@@ -6,7 +6,7 @@ use sinew_core::{
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, ONE_SOLVE, OneSolve};
-use crate::{Method, OptionHelp, Scheme, SetUp};
+use crate::{Method, NumericalDissipation, OptionHelp, Scheme, SetUp};
 
 /// The generalised-alpha method (Chung and Hulbert, J. Appl. Mech. 60, 1993): the equation of motion
 /// holds for `(1 - a_m) a+ + a_m a` and `(1 - a_f)` of everything else at t + dt with `a_f` of it at t,
@@ -95,6 +95,16 @@ impl Scheme for GeneralizedAlpha {
             EnergyBehaviour::Falls
         };
         Properties::of_order(2, Needs::Matrices, energy)
+    }
+
+    fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
+        Some(NumericalDissipation::Newmark {
+            beta: self.beta(),
+            gamma: self.gamma(),
+            of_mass: self.of_mass,
+            of_forces: self.of_forces,
+            load_shift: 0.0,
+        })
     }
 
     fn set_up(

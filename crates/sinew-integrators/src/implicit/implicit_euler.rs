@@ -6,7 +6,7 @@ use sinew_core::{
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, ONE_SOLVE, OneSolve};
-use crate::{Method, Scheme, SetUp};
+use crate::{Method, NumericalDissipation, Scheme, SetUp};
 
 /// `v+ = v + dt a+`, `u+ = u + dt v+` with `(M + dt D + dt^2 K) a+ = F(t + dt) - K (u + dt v) - D v`
 /// (Baraff and Witkin, Large steps in cloth simulation, 1998, for a linear system). Stable at any
@@ -30,6 +30,10 @@ impl Scheme for ImplicitEuler {
 
     fn properties(&self) -> Properties {
         Properties::of_order(1, Needs::Matrices, EnergyBehaviour::Falls)
+    }
+
+    fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
+        Some(NumericalDissipation::ImplicitEuler)
     }
 
     fn set_up(

@@ -6,7 +6,7 @@ use sinew_core::{
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, ONE_SOLVE, OneSolve};
-use crate::{Method, OptionHelp, Scheme, SetUp};
+use crate::{Method, NumericalDissipation, OptionHelp, Scheme, SetUp};
 
 /// Newmark's method (J. Eng. Mech. Div. ASCE 85, 1959) in its acceleration form (Hughes, The
 /// Finite Element Method, section 9.1): with `u* = u + dt v + dt^2 (1/2 - beta) a` and
@@ -76,6 +76,16 @@ impl Scheme for Newmark {
             _ => EnergyBehaviour::Grows,
         };
         Properties::of_order(order, Needs::Matrices, energy)
+    }
+
+    fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
+        Some(NumericalDissipation::Newmark {
+            beta: self.beta,
+            gamma: self.gamma,
+            of_mass: 0.0,
+            of_forces: 0.0,
+            load_shift: 0.5 - self.gamma,
+        })
     }
 
     fn set_up(

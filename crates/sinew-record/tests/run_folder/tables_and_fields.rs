@@ -65,10 +65,9 @@ fn fields_are_those_of_the_probes() {
     assert!(!out.join("fields/frame-00005.vtu").exists());
 }
 
-/// Compression changes no number, and the step of the whole body is between that of its most restricting tetrahedron and
-/// twice that (Irons and Treharne 1971; Fried 1972 for lumped masses bounds it from below, and a vertex is in few others).
+/// Compression changes no number, and no tetrahedron alone swings faster than the body (Rayleigh's principle).
 #[test]
-fn compressed_fields_are_the_same_and_steps_of_tetrahedra_bound_that_of_the_body() {
+fn compressed_fields_are_the_same_and_steps_of_tetrahedra_are_above_that_of_the_body() {
     let place = tempfile::tempdir().unwrap();
     let body = |output: &str| {
         cube(&format!(
@@ -84,16 +83,27 @@ fn compressed_fields_are_the_same_and_steps_of_tetrahedra_bound_that_of_the_body
         frames.push(fs::read(out.join("fields/frame-00001.vtu")).unwrap());
     }
     assert!(frames[1].len() < frames[0].len());
-    for name in ["Points", "displacement", "velocity", "strain", "stress", "von_mises", "step_limit"] {
-        let [plain, packed] = [0, 1].map(|frame| read_appended_array(&frames[frame], name).unwrap());
+    for name in [
+        "Points",
+        "displacement",
+        "velocity",
+        "strain",
+        "stress",
+        "von_mises",
+        "step_limit",
+    ] {
+        let [plain, packed] =
+            [0, 1].map(|frame| read_appended_array(&frames[frame], name).unwrap());
         assert_eq!(plain, packed, "{name}");
     }
     let limits = read_appended_array(&frames[0], "step_limit").unwrap();
     let least = limits.iter().copied().fold(f64::INFINITY, f64::min);
     let simulation = body("");
-    let linear = simulation.system().as_linear().unwrap();
-    let of_body = 2.0 / linear.spectrum().unwrap().omega_max;
-    assert!(least <= of_body * (1.0 + 1e-6) && of_body <= 2.0 * least, "{least} {of_body}");
+    let of_body = 2.0 / simulation.system().spectrum(None).unwrap().omega_max;
+    assert!(
+        of_body <= least && least < 3.0 * of_body,
+        "{least} {of_body}"
+    );
 }
 
 #[test]
