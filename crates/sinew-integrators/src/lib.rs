@@ -25,6 +25,7 @@ mod machine_options;
 mod method;
 mod numerical_dissipation;
 mod option_help;
+mod option_kind;
 pub mod propagator;
 mod registry;
 mod rounding;
@@ -38,7 +39,8 @@ pub use implicit::{Combination, Factor, FactorError, StaticError, static_solutio
 pub use machine_options::MACHINE_OPTIONS;
 pub use method::{ConservedEnergy, Method};
 pub use numerical_dissipation::{NumericalDissipation, StepEnd};
-pub use option_help::{OptionHelp, OptionLabel};
+pub use option_help::{OptionDefault, OptionHelp, OptionLabel};
+pub use option_kind::OptionKind;
 pub use registry::{Entry, build, entries, entry, ids};
 pub use rounding::LEAST_F32_ROUNDING;
 pub use scheme::{Scheme, SetUp, StepByHand, Steps};

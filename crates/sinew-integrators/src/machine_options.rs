@@ -5,25 +5,37 @@ use std::num::NonZero;
 use sinew_core::{OptionError, Options};
 use sinew_machines::{Kind, PrecisionName, Settings, Threads};
 
-use crate::OptionHelp;
+use crate::{OptionDefault, OptionHelp, OptionKind};
 
 const MACHINE: OptionHelp = OptionHelp {
     key: "machine",
-    help: "\"auto\" (templates where rows repeat on a lattice and that pays, else the general kernels), \"reference\" \
-           (plain loops), \"general\" or \"repeated\"; default \"auto\"",
+    help: "what computes the steps: \"auto\" (templates where rows repeat on a lattice and that pays, else the general kernels), \
+           \"reference\" (plain loops), \"general\" or \"repeated\"",
+    expected: "\"auto\", \"reference\", \"general\" or \"repeated\"",
+    kind: OptionKind::Words(&["auto", "reference", "general", "repeated"]),
+    default: OptionDefault::Value("\"auto\""),
+    example: "machine = \"reference\"",
     shown_default: None,
 };
 
 const PRECISION: OptionHelp = OptionHelp {
     key: "precision",
-    help: "\"f64\" or \"f32\": half the memory and twice the lanes, with errors of rounding; default \"f64\"",
+    help: "\"f32\": half the memory and twice the lanes, with errors of rounding",
+    expected: "\"f64\" or \"f32\"",
+    kind: OptionKind::Words(&["f64", "f32"]),
+    default: OptionDefault::Value("\"f64\""),
+    example: "precision = \"f32\"",
     shown_default: None,
 };
 
 const THREADS: OptionHelp = OptionHelp {
     key: "threads",
     help: "the largest number of threads, or \"auto\" for one a processor; fewer where they do not pay, \
-           with the same bits for every number; default 1",
+           with the same bits for every number",
+    expected: "a whole number from 1 on, or \"auto\"",
+    kind: OptionKind::Either(&[OptionKind::Count(u32::MAX), OptionKind::Words(&["auto"])]),
+    default: OptionDefault::Value("1"),
+    example: "threads = \"auto\"",
     shown_default: None,
 };
 
@@ -38,8 +50,7 @@ pub(crate) fn take_settings(
     options: &mut Options,
     integrator: &str,
 ) -> Result<Settings, OptionError> {
-    let kinds = "\"auto\", \"reference\", \"general\" or \"repeated\"";
-    let kind = options.read(integrator, MACHINE.key, kinds, |value| match value.word() {
+    let kind = MACHINE.read(options, integrator, |value| match value.word() {
         Some("auto") => Some(Kind::Auto),
         Some("reference") => Some(Kind::Reference),
         Some("general") => Some(Kind::General),
@@ -49,7 +60,7 @@ pub(crate) fn take_settings(
     let is_plain = kind == Some(Kind::Reference);
     let precisions = match is_plain {
         true => "\"f64\", in which machine = \"reference\" computes",
-        false => "\"f64\" or \"f32\"",
+        false => PRECISION.expected,
     };
     let precision = options.read(integrator, PRECISION.key, precisions, |value| {
         match value.word() {
@@ -58,12 +69,9 @@ pub(crate) fn take_settings(
             _ => None,
         }
     })?;
-    let counts = "a whole number from 1 on, or \"auto\"";
-    let threads = options.read(integrator, THREADS.key, counts, |value| {
-        match value.word() {
-            Some("auto") => Some(Threads::All),
-            _ => NonZero::new(value.count(u32::MAX)?).map(Threads::UpTo),
-        }
+    let threads = THREADS.read(options, integrator, |value| match value.word() {
+        Some(_) => Some(Threads::All),
+        None => NonZero::new(value.count(u32::MAX)?).map(Threads::UpTo),
     })?;
     for help in MACHINE_OPTIONS {
         options.remove(help.key);

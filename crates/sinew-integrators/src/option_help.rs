@@ -1,14 +1,68 @@
-//! Options in words.
+//! Options in words and as data.
 
-/// An option in words.
+use sinew_core::{OptionError, OptionValue, Options};
+
+use crate::option_kind::OptionKind;
+
+/// An option: what a method reads it by, and what help and the reference of scenes say about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OptionHelp {
     /// Its key.
     pub key: &'static str,
-    /// Effect of the option, values that fit and the default.
+    /// Its effect.
     pub help: &'static str,
+    /// The values that fit, in words that follow "expected".
+    pub expected: &'static str,
+    /// The values that fit, as data.
+    pub kind: OptionKind,
+    /// What holds where it is absent.
+    pub default: OptionDefault,
+    /// Lines of `[run]` that use it.
+    pub example: &'static str,
     /// A default that results name with the integrator, because it changes what the run means.
     pub shown_default: Option<f64>,
+}
+
+/// What holds where an option is absent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OptionDefault {
+    /// This value, as a scene writes it.
+    Value(&'static str),
+    /// This, in words.
+    InWords(&'static str),
+}
+
+impl std::fmt::Display for OptionDefault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Value(text) | Self::InWords(text) => f.write_str(text),
+        }
+    }
+}
+
+impl OptionHelp {
+    /// Reads the option by `read`, where its kind of values fits; `None` where it is absent.
+    ///
+    /// # Errors
+    /// [`OptionError::Value`] where the value does not fit.
+    pub fn read<T>(
+        &self,
+        options: &Options,
+        integrator: &str,
+        read: impl FnOnce(&OptionValue) -> Option<T>,
+    ) -> Result<Option<T>, OptionError> {
+        options.read(integrator, self.key, self.expected, |value| {
+            self.kind.fits(value).then(|| read(value)).flatten()
+        })
+    }
+
+    /// The number that is given, if one is.
+    ///
+    /// # Errors
+    /// [`OptionError::Value`] where the value does not fit.
+    pub fn number(&self, options: &Options, integrator: &str) -> Result<Option<f64>, OptionError> {
+        self.read(options, integrator, OptionValue::number)
+    }
 }
 
 /// Form of an option in the label of a run.

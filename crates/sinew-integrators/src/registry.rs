@@ -104,19 +104,26 @@ impl Entry {
         }
     }
 
+    /// Every option it takes: its own, the guard's, `substeps` and those of machines.
+    #[must_use]
+    pub fn all_options(&self) -> Vec<OptionHelp> {
+        let mut options = self.options.to_vec();
+        options.extend(self.guard.help());
+        if self.substeps {
+            options.push(Substeps::HELP);
+        }
+        if self.programs {
+            options.extend(MACHINE_OPTIONS);
+        }
+        options
+    }
+
     /// Builds the integrator.
     ///
     /// # Errors
     /// [`OptionError`] for an option it does not take or a value that does not fit.
     pub fn build(&self, options: &Options) -> Result<Box<dyn Stepper>, OptionError> {
-        let mut known: Vec<&'static str> = self.options.iter().map(|help| help.key).collect();
-        known.extend(self.guard.help().map(|help| help.key));
-        if self.substeps {
-            known.push(Substeps::KEY);
-        }
-        if self.programs {
-            known.extend(MACHINE_OPTIONS.iter().map(|help| help.key));
-        }
+        let known: Vec<&'static str> = self.all_options().iter().map(|help| help.key).collect();
         options.only(self.id, &known)?;
         let mut options = options.clone();
         let machine = take_settings(&mut options, self.id)?;

@@ -3,13 +3,14 @@
 use sinew_cnn::{Clamp, Program, Register, Saturation, Update};
 use sinew_core::{OptionError, OptionValue, Options};
 
-use crate::OptionHelp;
 use crate::explicit::GuardOption;
+use crate::{OptionDefault, OptionHelp};
 
 pub(super) const SATURATION: OptionHelp = OptionHelp {
-    key: "saturation",
-    help: "saturation voltage Q [m/s] above 0, \"auto\" for a guard in its place (steps beyond the stable one are cut, speeds limited by the energy there is), or \"off\"; default 4, the paper's",
+    help: "saturation voltage Q (m/s), by default the paper's; \"auto\" for a guard in its place, which cuts steps beyond the stable one and limits speeds by the energy there is",
+    default: OptionDefault::Value("4.0"),
     shown_default: Some(Saturation::PAPER.voltage()),
+    ..GuardOption::HELP
 };
 
 /// The option `saturation`; its "auto" is the guard's.
@@ -18,7 +19,7 @@ pub(super) fn saturation(options: &Options, integrator: &str) -> Result<Saturati
         Some("off") => Some(Saturation::OFF),
         _ => Saturation::at(value.number()?).ok(),
     };
-    let given = options.read(integrator, SATURATION.key, GuardOption::EXPECTED, read)?;
+    let given = SATURATION.read(options, integrator, read)?;
     Ok(given.unwrap_or_default())
 }
 

@@ -1,5 +1,7 @@
 //! `cnn-stabilised`: the network with a stabilising matrix in template B.
 
+use std::ops::Bound;
+
 use sinew_cnn::{
     Blend, DampingShare, GammaRule, Inner, LoadAt, Loads, Physics, Program, Register, Stabiliser,
     Sweep,
@@ -12,7 +14,10 @@ use sinew_core::{
 use super::ordered::OrderedSteps;
 use crate::explicit::{CentralDifference, GuardOption};
 use crate::scheme::linear;
-use crate::{ConservedEnergy, Explicit, Method, OptionHelp, OptionLabel, Scheme, SetUp};
+use crate::{
+    ConservedEnergy, Explicit, Method, OptionDefault, OptionHelp, OptionKind, OptionLabel, Scheme,
+    SetUp,
+};
 
 /// `P (v+ - v-) = dt (F(t) - K u - D v-)`, `u += dt v+`, the velocity half a step behind, started with
 /// `P v_half = M v0 + dt/2 (F(0) - K u0 - D_lag v0)`, D_lag being the part of D that is not in P: the
@@ -66,25 +71,51 @@ const INNER: &str = "inner";
 const GAMMA: &str = "gamma";
 const S: &str = "s";
 
+/// Most inner iterations: far more than any can use.
+const MOST_SWEEPS: u32 = 10_000;
+
+const INNER_OPTION: OptionHelp = OptionHelp {
+    key: INNER,
+    help: "the iteration that solves with the stabilising matrix; two or more sweeps are of order 2 with any damping; in long steps \"gauss-seidel\" depends on the numbering of the nodes",
+    expected: "{ kind = \"block\" }, or kind = \"jacobi\", \"chebyshev\" or \"gauss-seidel\" with sweeps = a whole number from 1 on",
+    kind: OptionKind::Table(&[
+        (
+            "kind",
+            OptionKind::Words(&["block", "jacobi", "chebyshev", "gauss-seidel"]),
+        ),
+        ("sweeps", OptionKind::Count(MOST_SWEEPS)),
+    ]),
+    default: OptionDefault::Value("{ kind = \"block\" }"),
+    example: "inner = { kind = \"chebyshev\", sweeps = 4 }",
+    shown_default: None,
+};
+
+const GAMMA_OPTION: OptionHelp = OptionHelp {
+    key: GAMMA,
+    help: "how the bound of what is added to M is found: \"power\", by iteration, or \"gershgorin\", from the rows alone",
+    expected: "\"power\" or \"gershgorin\"",
+    kind: OptionKind::Words(&["power", "gershgorin"]),
+    default: OptionDefault::Value("\"power\""),
+    example: "gamma = \"gershgorin\"",
+    shown_default: None,
+};
+
+const S_OPTION: OptionHelp = OptionHelp {
+    key: S,
+    help: "share of dt^2/4 K (and of lagging damping) added to M: \"auto\" for as much as stability needs, or 1 for all of it at every step",
+    expected: "\"auto\" or 1",
+    kind: OptionKind::Either(&[
+        OptionKind::Words(&["auto"]),
+        OptionKind::Number(Bound::Included(1.0), Bound::Included(1.0)),
+    ]),
+    default: OptionDefault::Value("\"auto\""),
+    example: "s = 1",
+    shown_default: None,
+};
+
 impl Method for CnnStabilised {
     const SUMMARY: &'static str = "cellular network, order 2 with mass damping, stable at any step; one sweep a step, more with `inner`";
-    const OPTIONS: &'static [OptionHelp] = &[
-        OptionHelp {
-            key: INNER,
-            help: "{ kind = \"block\" | \"jacobi\" | \"chebyshev\" | \"gauss-seidel\", sweeps = p }; default { kind = \"block\" }; two or more sweeps are of order 2 with any damping; in long steps \"gauss-seidel\" depends on the numbering of the nodes",
-            shown_default: None,
-        },
-        OptionHelp {
-            key: GAMMA,
-            help: "how the bound of what is added to M is found: \"power\" (default) or \"gershgorin\"",
-            shown_default: None,
-        },
-        OptionHelp {
-            key: S,
-            help: "share of dt^2/4 K (and of lagging damping) added to M: \"auto\" (default), or 1 for all of it at every step",
-            shown_default: None,
-        },
-    ];
+    const OPTIONS: &'static [OptionHelp] = &[INNER_OPTION, GAMMA_OPTION, S_OPTION];
 
     const GUARD: GuardOption = GuardOption::Any;
 
@@ -115,17 +146,15 @@ impl Method for CnnStabilised {
     const PROGRAMS: bool = true;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
-        let inner = options.read(Self::ID, INNER, INNER_EXPECTED, inner_of)?;
-        let rules = "\"power\" or \"gershgorin\"";
-        let gamma = options.read(Self::ID, GAMMA, rules, |value| match value.word()? {
+        let inner = INNER_OPTION.read(options, Self::ID, inner_of)?;
+        let gamma = GAMMA_OPTION.read(options, Self::ID, |value| match value.word()? {
             "power" => Some(GammaRule::Power),
             "gershgorin" => Some(GammaRule::Gershgorin),
             _ => None,
         })?;
-        let blend = options.read(Self::ID, S, "\"auto\" or 1", |value| match value {
-            OptionValue::Text(word) if word == "auto" => Some(Blend::Auto),
-            OptionValue::Number(1.0) => Some(Blend::Full),
-            _ => None,
+        let blend = S_OPTION.read(options, Self::ID, |value| match value {
+            OptionValue::Text(_) => Some(Blend::Auto),
+            _ => Some(Blend::Full),
         })?;
         let (inner, gamma) = (inner.unwrap_or_default(), gamma.unwrap_or_default());
         Ok(Self::new(inner, gamma, blend.unwrap_or_default()))
@@ -141,18 +170,10 @@ fn chebyshev(sweeps: f64) -> Options {
     Options::new().with(INNER, OptionValue::Table(inner.into()))
 }
 
-const INNER_EXPECTED: &str = "{ kind = \"block\" }, or kind = \"jacobi\", \"chebyshev\" or \"gauss-seidel\" with sweeps = a whole number from 1 on";
-
-/// Most inner iterations: far more than any can use.
-const MOST_SWEEPS: u32 = 10_000;
-
 fn inner_of(value: &OptionValue) -> Option<Inner> {
     let OptionValue::Table(entries) = value else {
         return None;
     };
-    if entries.keys().any(|key| key != "kind" && key != "sweeps") {
-        return None;
-    }
     let sweeps = match entries.get("sweeps") {
         Some(given) => Some(given.count(MOST_SWEEPS)?),
         None => None,

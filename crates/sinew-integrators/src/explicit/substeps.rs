@@ -6,7 +6,7 @@ use sinew_core::{
     State, StepError, StepReport, System,
 };
 
-use crate::Stepper;
+use crate::{OptionDefault, OptionHelp, OptionKind, Stepper};
 
 /// Share of the stable step that automatic sub-steps stay below.
 const MARGIN: f64 = 0.9;
@@ -23,6 +23,17 @@ pub enum Substeps {
 impl Substeps {
     /// The option's key.
     pub const KEY: &'static str = "substeps";
+
+    /// The option.
+    pub(crate) const HELP: OptionHelp = OptionHelp {
+        key: Self::KEY,
+        help: "equal parts into which each step is cut; \"auto\" for as many as keep them stable",
+        expected: "a whole number from 1 on, or \"auto\"",
+        kind: OptionKind::Either(&[OptionKind::Count(u32::MAX), OptionKind::Words(&["auto"])]),
+        default: OptionDefault::Value("1"),
+        example: "substeps = 4",
+        shown_default: None,
+    };
 
     /// The fewest equal parts (from 1 on) of a step of `dt` (s) that are no longer than nine tenths
     /// of `limit` (s), which is above 0; at most `u32::MAX`.
@@ -71,12 +82,9 @@ impl Substeps {
     /// # Errors
     /// [`OptionError::Value`] for anything but a whole number from 1 on or "auto".
     pub fn take_from(options: &mut Options, integrator: &str) -> Result<Option<Self>, OptionError> {
-        let expected = "a whole number from 1 on, or \"auto\"";
-        let substeps = options.read(integrator, Self::KEY, expected, |value| {
-            match value.word() {
-                Some("auto") => Some(Self::Auto),
-                _ => value.count(u32::MAX).map(Self::Fixed),
-            }
+        let substeps = Self::HELP.read(options, integrator, |value| match value.word() {
+            Some(_) => Some(Self::Auto),
+            None => value.count(u32::MAX).map(Self::Fixed),
         })?;
         options.remove(Self::KEY);
         Ok(substeps)

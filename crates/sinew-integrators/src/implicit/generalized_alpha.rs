@@ -1,12 +1,16 @@
 //! `generalized-alpha`: implicit, with damping of motions that the step does not resolve.
 
+use std::ops::Bound;
+
 use sinew_core::{
     Acceleration, EnergyBehaviour, LoadTime, Needs, OptionError, Options, Properties, SetupError,
     State, Step, StepError, Stepped, System,
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, ONE_SOLVE, OneSolve};
-use crate::{Method, NumericalDissipation, OptionHelp, Scheme, SetUp};
+use crate::{
+    Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
+};
 
 /// The generalised-alpha method (Chung and Hulbert, J. Appl. Mech. 60, 1993): the equation of motion
 /// holds for `(1 - a_m) a+ + a_m a` and `(1 - a_f)` of everything else at t + dt with `a_f` of it at t,
@@ -48,37 +52,40 @@ impl GeneralizedAlpha {
     }
 }
 
-const RHO: &str = "rho_inf";
-const HHT: &str = "hht";
+const RHO: OptionHelp = OptionHelp {
+    key: "rho_inf",
+    help: "what is left of the fastest motion after a step",
+    expected: "a number from 0 to 1",
+    kind: OptionKind::SHARE,
+    default: OptionDefault::Value("0.8"),
+    example: "rho_inf = 0.5",
+    shown_default: None,
+};
+
+const HHT: OptionHelp = OptionHelp {
+    key: "hht",
+    help: "alpha of Hilber, Hughes and Taylor, instead of rho_inf",
+    expected: "a number from 0 to 1/3",
+    kind: OptionKind::Number(Bound::Included(0.0), Bound::Included(1.0 / 3.0)),
+    default: OptionDefault::InWords("rho_inf says all"),
+    example: "hht = 0.1",
+    shown_default: None,
+};
 
 impl Method for GeneralizedAlpha {
     const SUMMARY: &'static str =
         "implicit, order 2, one sparse solve a step, damps what the step does not resolve";
-    const OPTIONS: &'static [OptionHelp] = &[
-        OptionHelp {
-            key: RHO,
-            help: "what is left of the fastest motion after a step, 0 to 1; default 0.8",
-            shown_default: None,
-        },
-        OptionHelp {
-            key: HHT,
-            help: "alpha of Hilber, Hughes and Taylor, 0 to 1/3, instead of rho_inf",
-            shown_default: None,
-        },
-    ];
+    const OPTIONS: &'static [OptionHelp] = &[RHO, HHT];
 
     const FACTORISES: bool = true;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
-        if options.get(HHT).is_none() {
-            let unit = |rho: f64| (0.0..=1.0).contains(&rho);
-            let rho = options.number(Self::ID, RHO, 0.8, "a number from 0 to 1", unit)?;
-            return Ok(Self::with_spectral_radius(rho));
-        }
+        let Some(alpha) = HHT.number(options, Self::ID)? else {
+            let rho = RHO.number(options, Self::ID)?;
+            return Ok(Self::with_spectral_radius(rho.unwrap_or(0.8)));
+        };
         let expected = "nothing beside hht: one of the two says all";
-        options.read(Self::ID, RHO, expected, |_| None::<()>)?;
-        let third = |alpha: f64| (0.0..=1.0 / 3.0).contains(&alpha);
-        let alpha = options.number(Self::ID, HHT, 0.0, "a number from 0 to 1/3", third)?;
+        options.read(Self::ID, RHO.key, expected, |_| None::<()>)?;
         Ok(Self::hht(alpha))
     }
 }

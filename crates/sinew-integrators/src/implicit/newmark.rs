@@ -6,7 +6,9 @@ use sinew_core::{
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, ONE_SOLVE, OneSolve};
-use crate::{Method, NumericalDissipation, OptionHelp, Scheme, SetUp};
+use crate::{
+    Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
+};
 
 /// Newmark's method (J. Eng. Mech. Div. ASCE 85, 1959) in its acceleration form (Hughes, The
 /// Finite Element Method, section 9.1): with `u* = u + dt v + dt^2 (1/2 - beta) a` and
@@ -35,30 +37,38 @@ impl Default for Newmark {
     }
 }
 
+const BETA: OptionHelp = OptionHelp {
+    key: "beta",
+    help: "weight of the acceleration at the end of a step in its displacement",
+    expected: "a number from 0 to 1",
+    kind: OptionKind::SHARE,
+    default: OptionDefault::Value("0.25"),
+    example: "beta = 0.3",
+    shown_default: None,
+};
+
+const GAMMA: OptionHelp = OptionHelp {
+    key: "gamma",
+    help: "weight of the acceleration at the end of a step in its velocity; above 0.5 motion is damped and the order is 1",
+    expected: "a number from 0 to 1",
+    kind: OptionKind::SHARE,
+    default: OptionDefault::Value("0.5"),
+    example: "gamma = 0.6",
+    shown_default: None,
+};
+
 impl Method for Newmark {
     const SUMMARY: &'static str = "implicit, order 2, one sparse solve a step, stable at any step";
-    const OPTIONS: &'static [OptionHelp] = &[
-        OptionHelp {
-            key: "beta",
-            help: "0 to 1; default 0.25",
-            shown_default: None,
-        },
-        OptionHelp {
-            key: "gamma",
-            help: "0 to 1; default 0.5, above it motion is damped and the order is 1",
-            shown_default: None,
-        },
-    ];
+    const OPTIONS: &'static [OptionHelp] = &[BETA, GAMMA];
 
     const FACTORISES: bool = true;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
-        let share = |key, default| {
-            options.number(Self::ID, key, default, "a number from 0 to 1", |value| {
-                (0.0..=1.0).contains(&value)
-            })
-        };
-        Ok(Self::new(share("beta", 0.25)?, share("gamma", 0.5)?))
+        let Self { beta, gamma } = Self::default();
+        Ok(Self::new(
+            BETA.number(options, Self::ID)?.unwrap_or(beta),
+            GAMMA.number(options, Self::ID)?.unwrap_or(gamma),
+        ))
     }
 }
 

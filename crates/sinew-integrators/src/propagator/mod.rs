@@ -25,7 +25,7 @@ use sinew_core::{
 use two_step::TwoStep;
 
 use crate::scheme::linear;
-use crate::{Method, OptionHelp, OptionLabel, Scheme, SetUp};
+use crate::{Method, OptionDefault, OptionHelp, OptionKind, OptionLabel, Scheme, SetUp};
 
 /// The exact motion of a linear system over a step, by sweeps of the network only.
 ///
@@ -185,30 +185,50 @@ fn of_fit(fit: &str) -> Options {
 /// Estimated error below which weights would be rounding.
 const LEAST_ESTIMATE: f64 = 1e-6;
 
+const KIND_OPTION: OptionHelp = OptionHelp {
+    key: KIND,
+    help: "form of the polynomial: \"chebyshev\" (proportional damping, any ramp), \"two-step\" (half the sweeps; mass damping, loads constant over each step) or \"krylov\" (any damping)",
+    expected: "\"chebyshev\", \"two-step\" or \"krylov\"",
+    kind: OptionKind::Words(&["chebyshev", "two-step", "krylov"]),
+    default: OptionDefault::Value("\"chebyshev\""),
+    example: "kind = \"krylov\"",
+    shown_default: None,
+};
+
+const FIT_OPTION: OptionHelp = OptionHelp {
+    key: FIT,
+    help: "with kind = \"two-step\", what the polynomial is fitted to: \"uniform\" (every mode alike, with a bound of each mode's error) or \"load\" (the modes that the loads excite, in their measure: fewer sweeps, with an estimate for these loads instead of a bound). Either is stable for every motion",
+    expected: "\"uniform\" or \"load\"",
+    kind: OptionKind::Words(&["uniform", "load"]),
+    default: OptionDefault::InWords("\"uniform\""),
+    example: "kind = \"two-step\"\nfit = \"load\"",
+    shown_default: None,
+};
+
+const TOLERANCE_OPTION: OptionHelp = OptionHelp {
+    key: TOLERANCE,
+    help: "largest error of a step in the energy norm, relative to the distance from equilibrium (\"chebyshev\"); two fifths of the largest error of any mode's sin(omega dt/2), so of the phase, not of the step (\"two-step\"); estimated error of a run from rest under these loads, suddenly applied and kept, over eight periods of their mean frequency (fit = \"load\"), which forces from outside, initial motions and short pulses may pass; estimated error of a step relative to its change (\"krylov\")",
+    expected: "a number above 0 and below 1",
+    kind: OptionKind::PART,
+    default: OptionDefault::InWords("1e-10; 1e-2 with fit = \"load\" or a degree"),
+    example: "tolerance = 1e-6",
+    shown_default: None,
+};
+
+const DEGREE_OPTION: OptionHelp = OptionHelp {
+    key: DEGREE,
+    help: "degree of the polynomial. A step takes a sweep and two more per degree, with fit = \"load\" one per degree",
+    expected: "a whole number from 1 to 500",
+    kind: OptionKind::Count(HIGHEST_DEGREE as u32),
+    default: OptionDefault::InWords("the smallest that meets the tolerance"),
+    example: "degree = 20",
+    shown_default: None,
+};
+
 impl Method for Propagator {
     const SUMMARY: &'static str = "the exact motion over a step as a polynomial: sweeps only";
-    const OPTIONS: &'static [OptionHelp] = &[
-        OptionHelp {
-            key: KIND,
-            help: "\"chebyshev\" (default; proportional damping, any ramp), \"two-step\" (half the sweeps; mass damping, loads constant over each step) or \"krylov\" (any damping)",
-            shown_default: None,
-        },
-        OptionHelp {
-            key: FIT,
-            help: "with kind = \"two-step\", what the polynomial is fitted to: \"uniform\" (default; every mode alike, with a bound of each mode's error) or \"load\" (the modes that the loads excite, in their measure: fewer sweeps, with an estimate for these loads instead of a bound). Either is stable for every motion",
-            shown_default: None,
-        },
-        OptionHelp {
-            key: TOLERANCE,
-            help: "largest error of a step in the energy norm, relative to the distance from equilibrium (\"chebyshev\"); two fifths of the largest error of any mode's sin(omega dt/2), so of the phase, not of the step (\"two-step\"); estimated error of a run from rest under these loads, suddenly applied and kept, over eight periods of their mean frequency (fit = \"load\", default 1e-2), which forces from outside, initial motions and short pulses may pass; estimated error of a step relative to its change (\"krylov\"); default 1e-10",
-            shown_default: None,
-        },
-        OptionHelp {
-            key: DEGREE,
-            help: "degree of the polynomial; default: the smallest that meets the tolerance. A step takes a sweep and two more per degree, with fit = \"load\" one per degree",
-            shown_default: None,
-        },
-    ];
+    const OPTIONS: &'static [OptionHelp] =
+        &[KIND_OPTION, FIT_OPTION, TOLERANCE_OPTION, DEGREE_OPTION];
 
     const LABELS: &'static [(&'static str, OptionLabel)] = &[(KIND, OptionLabel::Value)];
 
@@ -240,19 +260,16 @@ impl Method for Propagator {
     const PROGRAMS: bool = true;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
-        let kinds = "\"chebyshev\", \"two-step\" or \"krylov\"";
-        let kind = options.read(ID, KIND, kinds, |value| match value.word()? {
+        let kind = KIND_OPTION.read(options, ID, |value| match value.word()? {
             "chebyshev" => Some(PropagatorKind::Chebyshev),
             "two-step" => Some(PropagatorKind::TwoStep),
             "krylov" => Some(PropagatorKind::Krylov),
             _ => None,
         })?;
-        let fit = options.read(ID, FIT, "\"uniform\" or \"load\"", |value| {
-            match value.word()? {
-                "uniform" => Some(Fit::Uniform),
-                "load" => Some(Fit::Load),
-                _ => None,
-            }
+        let fit = FIT_OPTION.read(options, ID, |value| match value.word()? {
+            "uniform" => Some(Fit::Uniform),
+            "load" => Some(Fit::Load),
+            _ => None,
         })?;
         let kind = kind.unwrap_or_default();
         if kind != PropagatorKind::TwoStep {
@@ -264,24 +281,21 @@ impl Method for Propagator {
             )?;
         }
         let fit = fit.unwrap_or_default();
-        let (expected, least) = match fit {
-            Fit::Uniform => ("a number above 0 and below 1", 0.0),
-            Fit::Load => (
-                "a number above 1e-6 and below 1 for fit = \"load\"",
-                LEAST_ESTIMATE,
-            ),
-        };
-        let share = |x: f64| x > least && x < 1.0;
-        let expected_degree = "a whole number from 1 to 500";
-        let degree = options.read(ID, DEGREE, expected_degree, |value| {
-            value.count(HIGHEST_DEGREE as u32)
-        })?;
+        let degree = DEGREE_OPTION.read(options, ID, |value| value.count(HIGHEST_DEGREE as u32))?;
         let default = match (degree, fit) {
             (None, Fit::Uniform) => 1e-10,
             _ => LOOSE,
         };
+        let tolerance = match fit {
+            Fit::Uniform => TOLERANCE_OPTION.number(options, ID)?,
+            Fit::Load => {
+                let expected = "a number above 1e-6 and below 1 for fit = \"load\"";
+                let fits = |tolerance: &f64| *tolerance > LEAST_ESTIMATE && *tolerance < 1.0;
+                options.read(ID, TOLERANCE, expected, |value| value.number().filter(fits))?
+            }
+        };
         let resolution = Resolution {
-            tolerance: options.number(ID, TOLERANCE, default, expected, share)?,
+            tolerance: tolerance.unwrap_or(default),
             degree: degree.map(|degree| degree as usize),
         };
         Ok(Self {

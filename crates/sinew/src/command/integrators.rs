@@ -28,18 +28,10 @@ pub(crate) fn run() -> Result<(), Failure> {
                 say(&format!("{:20}   {words}", ""))?;
             }
         }
-        for option in entry.options.iter().copied().chain(entry.guard.help()) {
-            say(&format!("{:20}   {}: {}", "", option.key, option.help))?;
-        }
-        if entry.programs {
-            for option in sinew_integrators::MACHINE_OPTIONS {
-                say(&format!("{:20}   {}: {}", "", option.key, option.help))?;
-            }
-        }
-        if entry.substeps {
+        for option in entry.all_options() {
             say(&format!(
-                "{:20}   substeps: parts each step is cut into, or \"auto\"; default 1",
-                ""
+                "{:20}   {}: {}; takes {}; default {}",
+                "", option.key, option.help, option.expected, option.default
             ))?;
         }
     }

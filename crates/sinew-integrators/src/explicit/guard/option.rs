@@ -2,7 +2,8 @@
 
 use sinew_core::{OptionError, OptionValue, Options};
 
-use crate::option_help::OptionHelp;
+use crate::option_help::{OptionDefault, OptionHelp};
+use crate::option_kind::OptionKind;
 
 /// Bound of the velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,17 +33,21 @@ impl GuardOption {
     /// The option's key.
     pub const KEY: &'static str = "saturation";
 
-    /// Values that fit.
-    pub(crate) const EXPECTED: &'static str = "a number above 0 [m/s], \"auto\" or \"off\"";
+    /// The option of methods that have no saturation of their own.
+    pub(crate) const HELP: OptionHelp = OptionHelp {
+        key: Self::KEY,
+        help: "guard: the largest speed of a cell (m/s); \"auto\" cuts steps beyond the stable one and limits speeds by the energy there is",
+        expected: "a number above 0 [m/s], \"auto\" or \"off\"",
+        kind: OptionKind::Either(&[OptionKind::ABOVE_ZERO, OptionKind::Words(&[AUTO, OFF])]),
+        default: OptionDefault::Value("\"off\""),
+        example: "saturation = \"auto\"",
+        shown_default: None,
+    };
 
     /// The option in words, where the method does not list it itself.
     #[must_use]
     pub fn help(self) -> Option<OptionHelp> {
-        matches!(self, Self::Any).then_some(OptionHelp {
-            key: Self::KEY,
-            help: "guard: largest speed of a cell [m/s], \"auto\" to cut steps beyond the stable one and limit speeds by the energy there is, or \"off\"; default \"off\"",
-            shown_default: None,
-        })
+        matches!(self, Self::Any).then_some(Self::HELP)
     }
 
     /// Takes the guard out of the other options; `None` where there is none.
@@ -66,12 +71,9 @@ impl GuardOption {
                 let read = |value: &OptionValue| match value.word() {
                     Some(AUTO) => Some(Some(Guard::Auto)),
                     Some(OFF) => Some(None),
-                    _ => {
-                        let limit = value.number().filter(|limit| *limit > 0.0);
-                        limit.map(|limit| Some(Guard::At(limit)))
-                    }
+                    _ => value.number().map(|limit| Some(Guard::At(limit))),
                 };
-                let guard = options.read(integrator, Self::KEY, Self::EXPECTED, read)?;
+                let guard = Self::HELP.read(options, integrator, read)?;
                 options.remove(Self::KEY);
                 Ok(guard.flatten())
             }

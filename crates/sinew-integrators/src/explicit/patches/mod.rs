@@ -23,10 +23,24 @@ use super::{CentralDifference, GuardOption};
 use crate::implicit::factor::{Combination, Factor};
 use crate::implicit::factor_error::FactorError;
 use crate::scheme::linear;
-use crate::{ConservedEnergy, Explicit, Method, OptionHelp, Scheme, SetUp, StepByHand};
+use crate::{
+    ConservedEnergy, Explicit, Method, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
+    StepByHand,
+};
 use stiff_elements::StiffElements;
 
 const KEY: &str = "patches";
+const AUTO: &str = "auto";
+
+const PATCHES: OptionHelp = OptionHelp {
+    key: KEY,
+    help: "\"auto\": the few elements that forbid dt are solved as small blocks",
+    expected: "\"auto\" or \"off\"",
+    kind: OptionKind::Words(&[AUTO, "off"]),
+    default: OptionDefault::Value("\"off\""),
+    example: "patches = \"auto\"",
+    shown_default: None,
+};
 
 /// Elements named in a remark.
 const NAMED: usize = 5;
@@ -44,23 +58,14 @@ pub struct PatchedCentralDifference {
 
 impl Method for PatchedCentralDifference {
     const SUMMARY: &'static str = <CentralDifference as Explicit>::SUMMARY;
-    const OPTIONS: &'static [OptionHelp] = &[OptionHelp {
-        key: KEY,
-        help: "\"auto\": the few elements that forbid dt are solved as small blocks; \"off\" (default)",
-        shown_default: None,
-    }];
+    const OPTIONS: &'static [OptionHelp] = &[PATCHES];
     const SUBSTEPS: bool = true;
     const GUARD: GuardOption = <CentralDifference as Explicit>::GUARD;
 
     const PROGRAMS: bool = true;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
-        let expected = "\"auto\" or \"off\"";
-        let auto = options.read(Self::ID, KEY, expected, |value| match value.word()? {
-            "auto" => Some(true),
-            "off" => Some(false),
-            _ => None,
-        })?;
+        let auto = PATCHES.read(options, Self::ID, |value| Some(value.word()? == AUTO))?;
         Ok(Self {
             auto: auto.unwrap_or(false),
             ..Self::default()

@@ -26,7 +26,7 @@ use self::motion::{Mode, Piece, Response, harmonic_rate};
 use crate::exponential::Exponential;
 use crate::load_case::LoadCase;
 use crate::scheme::linear;
-use crate::{Frame, Method, OptionHelp, Scheme, SetUp, StepByHand};
+use crate::{Frame, Method, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp, StepByHand};
 
 /// Modal superposition (Clough and Penzien, Dynamics of Structures, chapter 12): with the modes phi
 /// of `K phi = omega^2 M phi`, `phi' M phi = 1`, each `q = phi' M u` is an oscillator of its own,
@@ -357,31 +357,53 @@ fn ritz() -> Options {
     Options::new().with("vectors", OptionValue::Text("ritz".into()))
 }
 
+const TOLERANCE: OptionHelp = OptionHelp {
+    key: "tolerance",
+    help: "share of the response to suddenly applied, constant loads that may be lost. Short pulses and loads that switch excite faster modes and may lose several times as much",
+    expected: "a number above 0 and below 1",
+    kind: OptionKind::PART,
+    default: OptionDefault::Value("0.01"),
+    example: "tolerance = 0.001",
+    shown_default: None,
+};
+
+/// More modes than any body has use for.
+const MOST_MODES: u32 = 1_000_000_000;
+
+const MODES: OptionHelp = OptionHelp {
+    key: "modes",
+    help: "that many modes, instead of a tolerance",
+    expected: "a whole number above 0",
+    kind: OptionKind::Count(MOST_MODES),
+    default: OptionDefault::InWords("as many as the tolerance asks for"),
+    example: "modes = 20",
+    shown_default: None,
+};
+
+const VECTORS: OptionHelp = OptionHelp {
+    key: "vectors",
+    help: "\"eigen\": modes, the most excited ones; \"ritz\": vectors made from the loads by a factor and two solutions for each, where the static response is exact, and the estimated error is said before the run",
+    expected: "\"eigen\" or \"ritz\"",
+    kind: OptionKind::Words(&["eigen", "ritz"]),
+    default: OptionDefault::Value("\"eigen\""),
+    example: "vectors = \"ritz\"",
+    shown_default: None,
+};
+
+const BASIS: OptionHelp = OptionHelp {
+    key: "basis",
+    help: "with `modes`: size of the Lanczos basis they are taken from",
+    expected: "a whole number not below `modes`",
+    kind: OptionKind::Count(MOST_MODES),
+    default: OptionDefault::InWords("twice as many as modes"),
+    example: "modes = 20\nbasis = 60",
+    shown_default: None,
+};
+
 impl Method for Modal {
     const SUMMARY: &'static str =
         "superposition of the modes that the loads excite, exact in time; long set-up";
-    const OPTIONS: &'static [OptionHelp] = &[
-        OptionHelp {
-            key: "tolerance",
-            help: "share of the response to suddenly applied, constant loads that may be lost, above 0 and below 1; default 0.01. Short pulses and loads that switch excite faster modes and may lose several times as much",
-            shown_default: None,
-        },
-        OptionHelp {
-            key: "modes",
-            help: "a whole number instead of a tolerance: that many modes",
-            shown_default: None,
-        },
-        OptionHelp {
-            key: "vectors",
-            help: "\"eigen\" (default; modes, the most excited ones) or \"ritz\" (vectors made from the loads by a factor and two solutions for each; the static response is exact, and the estimated error is said before the run)",
-            shown_default: None,
-        },
-        OptionHelp {
-            key: "basis",
-            help: "with `modes`: size of the Lanczos basis they are taken from; default twice as many",
-            shown_default: None,
-        },
-    ];
+    const OPTIONS: &'static [OptionHelp] = &[TOLERANCE, MODES, VECTORS, BASIS];
 
     const FACTORISES: bool = true;
 
@@ -399,37 +421,34 @@ impl Method for Modal {
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
         let refuse = |key, expected| options.read(Self::ID, key, expected, |_| None::<()>);
-        let count = |key, least: f64, expected| {
-            let fits = |value: f64| value >= least && value.fract() == 0.0 && value <= 1e9;
-            let value = options.number(Self::ID, key, least, expected, fits)?;
-            Ok(options.get(key).map(|_| value as usize))
+        let count = |option: OptionHelp, least: u32| {
+            let fits = |count: &u32| *count >= least;
+            let count = |value: &OptionValue| value.count(MOST_MODES).filter(fits);
+            option.read(options, Self::ID, count)
         };
-        let kinds = "\"eigen\" or \"ritz\"";
-        let vectors = options.read(Self::ID, "vectors", kinds, |value| match value.word()? {
+        let vectors = VECTORS.read(options, Self::ID, |value| match value.word()? {
             "eigen" => Some(Vectors::Eigen),
             "ritz" => Some(Vectors::Ritz),
             _ => None,
         })?;
         let vectors = vectors.unwrap_or_default();
-        if let Some(modes) = count("modes", 1.0, "a whole number above 0")? {
-            refuse("tolerance", "nothing beside `modes`")?;
-            let basis = count("basis", modes as f64, "a whole number not below `modes`")?;
+        if let Some(modes) = count(MODES, 1)? {
+            refuse(TOLERANCE.key, "nothing beside `modes`")?;
+            let basis = count(BASIS, modes)?;
             if vectors == Vectors::Ritz {
                 refuse(
-                    "basis",
+                    BASIS.key,
                     "nothing with vectors = \"ritz\", which are all of their basis",
                 )?;
             }
             let choice = Choice::Modes {
-                count: modes,
-                basis,
+                count: modes as usize,
+                basis: basis.map(|basis| basis as usize),
             };
             return Ok(Self::of(choice).with_vectors(vectors));
         }
-        refuse("basis", "nothing without `modes`")?;
-        let expected = "a number above 0 and below 1";
-        let fits = |x| x > 0.0 && x < 1.0;
-        let tolerance = options.number(Self::ID, "tolerance", 1e-2, expected, fits)?;
+        refuse(BASIS.key, "nothing without `modes`")?;
+        let tolerance = TOLERANCE.number(options, Self::ID)?.unwrap_or(1e-2);
         Ok(Self::with_tolerance(tolerance).with_vectors(vectors))
     }
 }
