@@ -8,9 +8,7 @@ use sinew_core::{
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, ONE_SOLVE, OneSolve};
-use crate::{
-    Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
-};
+use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp};
 
 /// The generalised-alpha method (Chung and Hulbert, J. Appl. Mech. 60, 1993): the equation of motion
 /// holds for `(1 - a_m) a+ + a_m a` and `(1 - a_f)` of everything else at t + dt with `a_f` of it at t,

@@ -6,9 +6,7 @@ use sinew_core::{
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, ONE_SOLVE, OneSolve};
-use crate::{
-    Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
-};
+use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp};
 
 /// Newmark's method (J. Eng. Mech. Div. ASCE 85, 1959) in its acceleration form (Hughes, The
 /// Finite Element Method, section 9.1): with `u* = u + dt v + dt^2 (1/2 - beta) a` and

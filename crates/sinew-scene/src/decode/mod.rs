@@ -1,8 +1,20 @@
-//! Values from TOML: the keys of a table, what each must hold, and its place in the text.
+//! Values from TOML: the description of each table and key, and what reads them by it.
 
+mod condition;
+mod description;
+mod key;
 mod place;
+mod presence;
 mod table;
 pub(crate) mod value;
+mod values;
 
+pub(crate) use condition::{Condition, Goes};
+pub(crate) use description::{Described, KeyDescription, Needs, Shape, Stated, TableDescription};
+pub(crate) use key::Key;
 pub(crate) use place::Place;
+pub(crate) use presence::{Optional, Or, Usual};
 pub(crate) use table::Table;
+pub(crate) use values::{
+    Count, Flag, Inner, Kind, List, Number, Text, Values, Vector, Words, Written,
+};

@@ -6,30 +6,33 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
+use super::condition::{Condition, Goes};
+use super::description::{Needs, TableDescription};
+use super::key::Key;
 use super::place::{KeyPlace, Place};
-use super::value::{Misfit, kind, text};
+use super::presence::Presence;
+use super::value::{Misfit, kind};
+use super::values::{Inner, Kind, Values};
 use crate::error::{Fault, SceneError, shortened};
 use crate::nearest::nearest;
 use crate::source::SceneSource;
 
-type Keys = &'static [&'static str];
-
-/// A table whose keys were checked. Its methods read the values.
+/// A table whose keys were checked against its description. Its methods read the values.
 pub(crate) struct Table<'a> {
     scene: &'a Arc<SceneSource>,
     entries: &'a DeTable<'a>,
-    keys: Keys,
+    description: &'static TableDescription,
     place: Place,
 }
 
 impl<'a> Table<'a> {
-    /// The whole document; a key that is not in `keys` is an error.
+    /// The whole document; a key that is not described is an error.
     pub(crate) fn document(
         scene: &'a Arc<SceneSource>,
         entries: &'a DeTable<'a>,
-        keys: Keys,
+        description: &'static TableDescription,
     ) -> Result<Self, SceneError> {
-        Self::new(scene, String::new(), None, entries, keys).closed()
+        Self::new(scene, String::new(), None, entries, description).closed()
     }
 
     fn new(
@@ -37,7 +40,7 @@ impl<'a> Table<'a> {
         name: String,
         header: Option<Range<usize>>,
         entries: &'a DeTable<'a>,
-        keys: Keys,
+        description: &'static TableDescription,
     ) -> Self {
         let places = entries.iter().map(|(key, value)| {
             let place = KeyPlace {
@@ -49,7 +52,7 @@ impl<'a> Table<'a> {
         Self {
             scene,
             entries,
-            keys,
+            description,
             place: Place::new(scene, name, header, places.collect()),
         }
     }
@@ -63,22 +66,28 @@ impl<'a> Table<'a> {
 
     /// The error for a key that means nothing here.
     pub(crate) fn unknown(&self, key: &Spanned<DeString<'_>>) -> SceneError {
+        let known: Vec<&'static str> = self.known().collect();
         let fault = Fault::UnknownKey {
             key: key.get_ref().clone().into_owned(),
-            nearest: nearest(key.get_ref(), self.keys.iter().copied()),
-            known: self.keys,
+            nearest: nearest(key.get_ref(), known.iter().copied()),
+            known,
         };
         self.place.key_fault(key.get_ref(), fault)
     }
 
-    /// The entries whose keys are not among the known ones.
+    /// The names of the keys that are described.
+    fn known(&self) -> impl Iterator<Item = &'static str> + use<> {
+        self.description.keys.iter().map(|key| key.name())
+    }
+
+    /// The entries whose keys are not described.
     pub(crate) fn others(
         &self,
     ) -> impl Iterator<Item = (&'a Spanned<DeString<'a>>, &'a Spanned<DeValue<'a>>)> {
-        let keys = self.keys;
+        let known: Vec<&'static str> = self.known().collect();
         self.entries
             .iter()
-            .filter(move |(key, _)| !keys.contains(&key.get_ref().as_ref()))
+            .filter(move |(key, _)| !known.contains(&key.get_ref().as_ref()))
     }
 
     /// The table's place in the text.
@@ -95,121 +104,75 @@ impl<'a> Table<'a> {
         self.entries.contains_key(key)
     }
 
-    /// The value of a key, if the key is given.
-    pub(crate) fn optional<T>(
+    /// The value of a key, or what holds where it is not given.
+    pub(crate) fn read<V: Values, P: Presence<V::Read>>(
         &self,
-        key: &'static str,
-        expected: &str,
-        read: impl FnOnce(&DeValue<'_>) -> Result<T, Misfit>,
-    ) -> Result<Option<T>, SceneError> {
-        debug_assert!(
-            self.keys.contains(&key),
-            "{key} would be refused as unknown"
-        );
-        let Some(value) = self.entries.get(key) else {
-            return Ok(None);
-        };
-        read(value.get_ref())
-            .map(Some)
-            .map_err(|misfit| self.misfit(key, value, expected.to_owned(), misfit))
-    }
-
-    /// The value of a key that must be given.
-    pub(crate) fn required<T>(
-        &self,
-        key: &'static str,
-        expected: &str,
-        read: impl FnOnce(&DeValue<'_>) -> Result<T, Misfit>,
-    ) -> Result<T, SceneError> {
-        self.optional(key, expected, read)?
-            .ok_or_else(|| self.missing(key, expected))
-    }
-
-    /// The meaning of a key whose value is one of a few words, if the key is given.
-    pub(crate) fn optional_choice<T: Copy>(
-        &self,
-        key: &'static str,
-        choices: &[(&'static str, T)],
-    ) -> Result<Option<T>, SceneError> {
-        self.optional(key, &any_of(choices), |value| {
-            let word = text(value)?;
-            let choice = choices.iter().find(|(name, _)| *name == word);
-            choice.map(|(_, value)| *value).ok_or(Misfit::Value)
-        })
-    }
-
-    /// The meaning of a key whose value is one of a few words.
-    pub(crate) fn choice<T: Copy>(
-        &self,
-        key: &'static str,
-        choices: &[(&'static str, T)],
-    ) -> Result<T, SceneError> {
-        self.optional_choice(key, choices)?
-            .ok_or_else(|| self.missing(key, &any_of(choices)))
-    }
-
-    /// The only key among `of` that is given; none or several are an error.
-    pub(crate) fn exactly_one(&self, of: Keys) -> Result<&'static str, SceneError> {
-        let found: Vec<&'static str> = of.iter().copied().filter(|key| self.has(key)).collect();
-        match found[..] {
-            [key] => Ok(key),
-            [] => Err(self.place.fault(Fault::NotExactlyOne { of, found })),
-            [_, second, ..] => {
-                let fault = Fault::NotExactlyOne { of, found };
-                Err(self.place.key_fault(second, fault))
+        key: &Key<V, P>,
+    ) -> Result<P::Read, SceneError> {
+        let expected = || key.values.expected();
+        let given = match self.given(key.name) {
+            None => None,
+            Some(value) => {
+                let read = key.values.read(value.get_ref());
+                Some(read.map_err(|misfit| self.misfit(key.name, value, expected(), misfit))?)
             }
-        }
+        };
+        key.presence
+            .settle(given, || self.missing(key.name, expected()))
     }
 
-    /// Returns an error if one of `keys` is given, for `reason`.
-    pub(crate) fn refuse(&self, keys: Keys, reason: &str) -> Result<(), SceneError> {
-        match keys.iter().copied().find(|key| self.has(key)) {
-            None => Ok(()),
-            Some(key) => {
-                let reason = reason.to_owned();
-                Err(self.place.key_fault(key, Fault::Misplaced { key, reason }))
-            }
-        }
+    /// The table that a key holds, or what holds where it is not given.
+    pub(crate) fn table<P: Presence<Table<'a>>>(
+        &self,
+        key: &Key<Inner, P>,
+    ) -> Result<P::Read, SceneError> {
+        let open = self.inner(key.name, key.values.table)?;
+        let table = open.map(Table::closed).transpose()?;
+        key.presence
+            .settle(table, || self.missing(key.name, key.values.expected()))
     }
 
-    /// A table inside this one, if it is given.
-    pub(crate) fn table(
+    /// The table that a key holds, which may have keys that are not described.
+    pub(crate) fn open_table<P: Presence<Table<'a>>>(
+        &self,
+        key: &Key<Inner, P>,
+    ) -> Result<P::Read, SceneError> {
+        let table = self.inner(key.name, key.values.table)?;
+        key.presence
+            .settle(table, || self.missing(key.name, key.values.expected()))
+    }
+
+    /// The table that a key of any kind holds, if it holds one.
+    pub(crate) fn table_of(
         &self,
         key: &'static str,
-        keys: Keys,
+        description: &'static TableDescription,
     ) -> Result<Option<Table<'a>>, SceneError> {
-        self.open_table(key, keys)?.map(Table::closed).transpose()
-    }
-
-    /// A table inside this one that may have other keys than `keys`.
-    pub(crate) fn open_table(
-        &self,
-        key: &'static str,
-        keys: Keys,
-    ) -> Result<Option<Table<'a>>, SceneError> {
-        let Some(value) = self.entries.get(key) else {
-            return Ok(None);
-        };
-        let name = match self.place.name() {
-            "" => format!("[{key}]"),
-            outer => format!("{outer} {key}"),
-        };
-        let DeValue::Table(entries) = value.get_ref() else {
-            return Err(self.misfit(key, value, "a table".into(), Misfit::Type));
-        };
-        let header = header_or_key(value, self.entries, key);
-        Ok(Some(Self::new(self.scene, name, header, entries, keys)))
+        let table = self.inner(key, description)?;
+        table.map(Table::closed).transpose()
     }
 
     /// The tables of a list such as `[[load]]`, in the order of the file.
-    pub(crate) fn tables(
+    pub(crate) fn tables<P: Presence<()>>(
+        &self,
+        key: &Key<Inner, P>,
+    ) -> Result<Vec<Table<'a>>, SceneError> {
+        let tables = match self.given(key.name) {
+            None => Vec::new(),
+            Some(value) => self.items(key.name, value, key.values.table)?,
+        };
+        let given = (!tables.is_empty()).then_some(());
+        let missing = || self.missing(key.name, key.values.expected());
+        let _ = key.presence.settle(given, missing)?;
+        Ok(tables)
+    }
+
+    fn items(
         &self,
         key: &'static str,
-        keys: Keys,
+        value: &'a Spanned<DeValue<'a>>,
+        description: &'static TableDescription,
     ) -> Result<Vec<Table<'a>>, SceneError> {
-        let Some(value) = self.entries.get(key) else {
-            return Ok(Vec::new());
-        };
         let expected = format!("a list of tables, each under its own [[{key}]]");
         let items = match value.get_ref() {
             DeValue::Array(items) => items,
@@ -226,17 +189,101 @@ impl<'a> Table<'a> {
                 return Err(self.misfit(key, item, expected.clone(), Misfit::Type));
             };
             let name = format!("[[{key}]] {}", index + 1);
-            Self::new(self.scene, name, Some(item.span()), entries, keys).closed()
+            Self::new(self.scene, name, Some(item.span()), entries, description).closed()
         };
         items.iter().enumerate().map(table).collect()
     }
 
+    fn inner(
+        &self,
+        key: &'static str,
+        description: &'static TableDescription,
+    ) -> Result<Option<Table<'a>>, SceneError> {
+        let Some(value) = self.given(key) else {
+            return Ok(None);
+        };
+        let name = match self.place.name() {
+            "" => format!("[{key}]"),
+            outer => format!("{outer} {key}"),
+        };
+        let DeValue::Table(entries) = value.get_ref() else {
+            return Err(self.misfit(key, value, "a table".into(), Misfit::Type));
+        };
+        let header = header_or_key(value, self.entries, key);
+        Ok(Some(Self::new(
+            self.scene,
+            name,
+            header,
+            entries,
+            description,
+        )))
+    }
+
+    /// The value of a key that the table's description has.
+    fn given(&self, key: &'static str) -> Option<&'a Spanned<DeValue<'a>>> {
+        debug_assert!(
+            self.known().any(|known| known == key),
+            "{key} would be refused as unknown"
+        );
+        self.entries.get(key)
+    }
+
+    /// The only key that is given of those of which the table has one; none or several are an error.
+    pub(crate) fn exactly_one(&self) -> Result<&'static str, SceneError> {
+        let of = match self.description.needs {
+            Needs::OneOf(keys) => keys,
+            Needs::Any | Needs::Some => &[],
+        };
+        let found: Vec<&'static str> = of.iter().copied().filter(|key| self.has(key)).collect();
+        match found[..] {
+            [key] => Ok(key),
+            [] => Err(self.place.fault(Fault::NotExactlyOne { of, found })),
+            [_, second, ..] => {
+                let fault = Fault::NotExactlyOne { of, found };
+                Err(self.place.key_fault(second, fault))
+            }
+        }
+    }
+
+    /// Returns an error for the first key that is given and does not go with the others.
+    pub(crate) fn check_conditions(&self) -> Result<(), SceneError> {
+        for key in self.description.keys {
+            let key_is_given = self.has(key.name());
+            let broken = key
+                .conditions()
+                .iter()
+                .find(|condition| !self.meets(condition));
+            if let (true, Some(condition)) = (key_is_given, broken) {
+                return Err(self.misplaced(key.name(), condition));
+            }
+        }
+        Ok(())
+    }
+
+    fn meets(&self, condition: &Condition) -> bool {
+        match condition.goes {
+            Goes::With(other) => self.has(other),
+            Goes::Without(other) => !self.has(other),
+            Goes::If(other, word) => {
+                let value = self.entries.get(other);
+                value.is_some_and(|value| value.get_ref().as_str() == Some(word))
+            }
+            Goes::Never => false,
+        }
+    }
+
+    fn misplaced(&self, key: &'static str, condition: &Condition) -> SceneError {
+        let reason = condition.reason.to_owned();
+        let error = self.place.key_fault(key, Fault::Misplaced { key, reason });
+        match condition.help {
+            Some(help) => error.with_help(help),
+            None => error,
+        }
+    }
+
     /// The error for a key that is missing.
-    pub(crate) fn missing(&self, key: &'static str, expected: &str) -> SceneError {
-        self.place.fault(Fault::Missing {
-            key,
-            expected: expected.to_owned(),
-        })
+    pub(crate) fn missing(&self, key: &'static str, expected: String) -> SceneError {
+        self.place.fault(Fault::Missing { key, expected })
     }
 
     /// The error for a value that does not fit.
@@ -282,15 +329,4 @@ fn header_or_key(
         return Some(span);
     }
     entries.get_key_value(key).map(|(key, _)| key.span())
-}
-
-fn any_of<T>(choices: &[(&'static str, T)]) -> String {
-    let names: Vec<String> = choices
-        .iter()
-        .map(|(name, _)| format!("\"{name}\""))
-        .collect();
-    match names.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
-        _ => names.concat(),
-    }
 }

@@ -24,7 +24,7 @@ pub(crate) fn kind(value: &DeValue<'_>) -> &'static str {
     }
 }
 
-fn satisfying<T>(value: T, fits: impl FnOnce(&T) -> bool) -> Result<T, Misfit> {
+pub(super) fn satisfying<T>(value: T, fits: impl FnOnce(&T) -> bool) -> Result<T, Misfit> {
     if fits(&value) {
         Ok(value)
     } else {
@@ -42,15 +42,7 @@ pub(crate) fn finite(value: &DeValue<'_>) -> Result<f64, Misfit> {
     satisfying(number, |number: &f64| number.is_finite())
 }
 
-pub(crate) fn above_zero(value: &DeValue<'_>) -> Result<f64, Misfit> {
-    satisfying(finite(value)?, |number| *number > 0.0)
-}
-
-pub(crate) fn zero_or_above(value: &DeValue<'_>) -> Result<f64, Misfit> {
-    satisfying(finite(value)?, |number| *number >= 0.0)
-}
-
-fn integer(value: &DeValue<'_>) -> Result<i64, Misfit> {
+pub(crate) fn integer(value: &DeValue<'_>) -> Result<i64, Misfit> {
     let DeValue::Integer(integer) = value else {
         return Err(Misfit::Type);
     };
@@ -85,22 +77,6 @@ pub(crate) fn list<T>(
     items.collect::<Result<_, _>>().map_err(|_| Misfit::Value)
 }
 
-/// One or more tags of nodes or cells: whole numbers, 0 or above.
-pub(crate) fn tags(value: &DeValue<'_>) -> Result<Vec<u64>, Misfit> {
-    let tag = |value: &DeValue<'_>| u64::try_from(integer(value)?).map_err(|_| Misfit::Value);
-    satisfying(list(value, tag)?, |tags| !tags.is_empty())
-}
-
-/// Any number of finite numbers.
-pub(crate) fn numbers(value: &DeValue<'_>) -> Result<Vec<f64>, Misfit> {
-    list(value, finite)
-}
-
-/// Three finite numbers.
-pub(crate) fn vector(value: &DeValue<'_>) -> Result<[f64; 3], Misfit> {
-    <[f64; 3]>::try_from(numbers(value)?).map_err(|_| Misfit::Value)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -124,27 +100,11 @@ mod tests {
     }
 
     #[test]
-    fn signs_are_told_apart() {
-        assert_eq!(read("0", above_zero), Err(Misfit::Value));
-        assert_eq!(read("0", zero_or_above), Ok(0.0));
-        assert_eq!(read("-1e-300", zero_or_above), Err(Misfit::Value));
-    }
-
-    #[test]
     fn counts_are_whole_and_bounded() {
         assert_eq!(read("3", count_up_to(3)), Ok(3));
         assert_eq!(read("4", count_up_to(3)), Err(Misfit::Value));
         assert_eq!(read("0", count_up_to(3)), Err(Misfit::Value));
         assert_eq!(read("-1", count_up_to(3)), Err(Misfit::Value));
         assert_eq!(read("2.0", count_up_to(3)), Err(Misfit::Type));
-    }
-
-    #[test]
-    fn a_vector_has_three_numbers() {
-        assert_eq!(read("[1, 2.5, -3]", vector), Ok([1.0, 2.5, -3.0]));
-        for wrong in ["[1, 2]", "[1, 2, 3, 4]", "[1, 2, \"z\"]", "[1, 2, inf]"] {
-            assert_eq!(read(wrong, vector), Err(Misfit::Value), "{wrong}");
-        }
-        assert_eq!(read("1.0", vector), Err(Misfit::Type));
     }
 }

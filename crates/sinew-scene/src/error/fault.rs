@@ -28,7 +28,7 @@ pub enum Fault {
         /// The most similar key of the table, if one is similar.
         nearest: Option<&'static str>,
         /// The keys of the table.
-        known: &'static [&'static str],
+        known: Vec<&'static str>,
     },
     /// A required key that is missing.
     #[error("`{key}` is missing: expected {expected}")]

@@ -1,9 +1,9 @@
 //! `[[initial]]`: displacement and velocity at t = 0.
 
-use super::keys::GRAVITY;
-use super::selected::{Members, Selections};
-use crate::decode::value::{Misfit, list, text, vector};
-use crate::decode::{Place, Table};
+use super::selected::{self, Members, Selections, Where};
+use crate::decode::{
+    Condition, Key, List, Needs, Optional, Or, Place, Table, TableDescription, Text, Vector,
+};
 use crate::error::{Fault, SceneError};
 
 /// A part of the state at t = 0. Where several parts set the same node, the last one counts.
@@ -39,28 +39,83 @@ pub enum Initial {
     },
 }
 
-const KEYS: &[&str] = &[
-    "group",
-    "where",
-    "displacement",
-    "velocity",
-    "stretch",
-    "origin",
-    "static",
-];
+pub(super) const INITIAL: TableDescription = TableDescription {
+    name: "initial",
+    meaning: "The state at t = 0, which is at rest without it. Where several tables set the same node, the last one counts.",
+    keys: &[
+        &GROUP,
+        &WHERE,
+        &DISPLACEMENT,
+        &VELOCITY,
+        &STRETCH,
+        &ORIGIN,
+        &STATIC,
+    ],
+    needs: Needs::OneOf(&[DISPLACEMENT.name, VELOCITY.name, STRETCH.name, STATIC.name]),
+    examples: &[
+        "[[initial]]\nstatic = [\"gravity\"]\n",
+        "[[initial]]\ngroup = \"top\"\nvelocity = [0.0, 0.0, -0.1]\n",
+        "[[initial]]\nwhere = { above = { z = 0.199 } }\ndisplacement = [0.0, 0.0, -0.001]\n",
+        "[[initial]]\nstretch = [0.05, 0.0, 0.0]\norigin = [0.1, 0.1, 0.0]\n",
+    ],
+};
 
-/// Reads all parts; a static state may name the loads in `load_names`, and gravity.
+const NOT_STATIC: Condition = Condition::without(
+    "static",
+    "does not go with `static`, which moves the whole body",
+);
+
+const GROUP: Key<Text, Optional> =
+    selected::OPTIONAL_GROUP.only(&[selected::NOT_WHERE, NOT_STATIC]);
+
+const WHERE: Key<Where, Optional> = selected::WHERE.only(&[NOT_STATIC]);
+
+const DISPLACEMENT: Key<Vector> = Key::required(
+    "displacement",
+    "Displacement of all nodes of the part.",
+    Vector::finite("[x, y, z] in m, all finite"),
+)
+.unit("m");
+
+const VELOCITY: Key<Vector> = Key::required(
+    "velocity",
+    "Velocity of all nodes of the part.",
+    Vector::finite("[x, y, z] in m/s, all finite"),
+)
+.unit("m/s");
+
+const STRETCH: Key<Vector> = Key::required(
+    "stretch",
+    "Strains along x, y and z: each node is displaced by them times its distance from `origin`.",
+    Vector::finite("strains [x, y, z], all finite"),
+);
+
+const ORIGIN: Key<Vector, Or<[f64; 3]>> = Key::or(
+    "origin",
+    "The point that a stretch leaves where it is.",
+    Vector::finite("[x, y, z] in m, all finite"),
+    [0.0; 3],
+)
+.unit("m")
+.only(&[Condition::with(STRETCH.name, "goes with `stretch` only")]);
+
+const STATIC: Key<List<Text>> = Key::required(
+    "static",
+    "Names of loads, or `gravity`: the body begins at rest under them, at their full value.",
+    List {
+        expected: "a list of names of loads",
+        of: Text::any("the name of a load"),
+        least: 1,
+    },
+);
+
+/// Reads all parts; a static state may name the `known` loads.
 pub(super) fn read_all(
-    document: &Table<'_>,
-    load_names: &[Option<String>],
+    tables: Vec<Table<'_>>,
+    known: &[String],
     selections: &mut Selections,
 ) -> Result<(Vec<Initial>, Vec<Place>), SceneError> {
-    let tables = document.tables("initial", KEYS)?;
-    let mut known: Vec<String> = load_names.iter().flatten().cloned().collect();
-    if document.has(GRAVITY) {
-        known.push(GRAVITY.into());
-    }
-    let initial = tables.iter().map(|table| read(table, &known, selections));
+    let initial = tables.iter().map(|table| read(table, known, selections));
     let initial = initial.collect::<Result<_, _>>()?;
     Ok((initial, tables.into_iter().map(Table::into_place).collect()))
 }
@@ -70,50 +125,36 @@ fn read(
     known: &[String],
     selections: &mut Selections,
 ) -> Result<Initial, SceneError> {
-    let kind = table.exactly_one(&["displacement", "velocity", "stretch", "static"])?;
-    if kind != "stretch" {
-        table.refuse(&["origin"], "goes with `stretch` only")?;
-    }
-    if kind == "static" {
-        table.refuse(
-            &["group", "where"],
-            "does not go with `static`, which moves the whole body",
-        )?;
-    }
-    let group = selections.optional(table, Members::Nodes)?;
+    let kind = table.exactly_one()?;
+    table.check_conditions()?;
+    let group = selections.at_most_one_of(table, (&GROUP, &WHERE), Members::Nodes)?;
     Ok(match kind {
-        "displacement" => Initial::Displacement {
+        key if key == DISPLACEMENT.name => Initial::Displacement {
             group,
-            value: table.required("displacement", "[x, y, z] in m, all finite", vector)?,
+            value: table.read(&DISPLACEMENT)?,
         },
-        "velocity" => Initial::Velocity {
+        key if key == VELOCITY.name => Initial::Velocity {
             group,
-            value: table.required("velocity", "[x, y, z] in m/s, all finite", vector)?,
+            value: table.read(&VELOCITY)?,
         },
-        "stretch" => Initial::Stretch {
+        key if key == STRETCH.name => Initial::Stretch {
             group,
-            strain: table.required("stretch", "strains [x, y, z], all finite", vector)?,
-            origin: table
-                .optional("origin", "[x, y, z] in m, all finite", vector)?
-                .unwrap_or_default(),
+            strain: table.read(&STRETCH)?,
+            origin: table.read(&ORIGIN)?,
         },
         _ => static_state(table, known)?,
     })
 }
 
 fn static_state(table: &Table<'_>, known: &[String]) -> Result<Initial, SceneError> {
-    let names = |value: &toml::de::DeValue<'_>| match list(value, text)? {
-        names if names.is_empty() => Err(Misfit::Value),
-        names => Ok(names),
-    };
-    let loads = table.required("static", "a list of names of loads", names)?;
+    let loads = table.read(&STATIC)?;
     let unknown = loads.iter().find(|name| !known.contains(name));
     if let Some(name) = unknown {
         let fault = Fault::UnknownLoad {
             name: name.clone(),
             known: known.to_vec(),
         };
-        return Err(table.place().value_fault("static", fault));
+        return Err(table.place().value_fault(STATIC.name, fault));
     }
     Ok(Initial::Static { loads })
 }

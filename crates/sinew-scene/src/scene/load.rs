@@ -1,18 +1,74 @@
 //! `[[load]]`: forces on the body.
 
+use sinew_core::Ramp;
 use sinew_fem::{LoadKind, LoadSpec, On};
 
 use super::keys::GRAVITY;
-use super::ramp;
+use super::ramp::{self, RAMP};
 use super::region::taken;
-use super::selected::{Members, Selections};
-use crate::decode::value::{Misfit, finite, text, vector};
-use crate::decode::{Place, Table};
+use super::selected::{GROUP, Members, Selections, WHERE};
+use crate::decode::{
+    Inner, Key, Needs, Number, Optional, Place, Table, TableDescription, Text, Usual, Vector,
+};
 use crate::error::SceneError;
 
-const KEYS: &[&str] = &[
-    "name", "group", "where", "traction", "pressure", "force", "ramp",
-];
+pub(super) const LOAD: TableDescription = TableDescription {
+    name: "load",
+    meaning: "A force on a part of the body.",
+    keys: &[
+        &NAME,
+        &GROUP,
+        &WHERE,
+        &TRACTION,
+        &PRESSURE,
+        &FORCE,
+        &RAMP_OF_LOAD,
+    ],
+    needs: Needs::OneOf(&[TRACTION.name, PRESSURE.name, FORCE.name]),
+    examples: &[
+        "[[load]]\nname = \"press\"\ngroup = \"top\"\ntraction = [0.0, 0.0, -500.0]\nramp = { kind = \"sin2\", rise = 0.2 }\n",
+        "[[load]]\ngroup = \"top\"\npressure = 2000.0\n",
+        "[[load]]\nwhere = { sphere = { center = [0.1, 0.1, 0.2], radius = 0.02 } }\nforce = [0.0, 0.0, -1.5]\n",
+    ],
+};
+
+const NAME: Key<Text, Optional> = Key::optional(
+    "name",
+    "A name of its own, by which [[initial]] can call the load.",
+    Text {
+        except: Some(GRAVITY),
+        ..Text::any("a name other than \"gravity\"")
+    },
+    "the load has no name",
+);
+
+const TRACTION: Key<Vector> = Key::required(
+    "traction",
+    "Force on each square metre of a surface.",
+    Vector::finite("[x, y, z] in Pa, all finite"),
+)
+.unit("Pa");
+
+const PRESSURE: Key<Number> = Key::required(
+    "pressure",
+    "Force on each square metre of a surface against its outward normal: it pushes where it is above 0.",
+    Number::finite("a finite number of Pa"),
+)
+.unit("Pa");
+
+const FORCE: Key<Vector> = Key::required(
+    "force",
+    "Total force, in equal parts on the nodes of the part that are not held.",
+    Vector::finite("[x, y, z] in N, all finite"),
+)
+.unit("N");
+
+const RAMP_OF_LOAD: Key<Inner, Usual> = Key::usual(
+    "ramp",
+    "Factor of the load over time.",
+    Inner::one("a table such as { kind = \"sin2\", rise = 0.2 }", &RAMP),
+    "{ kind = \"step\" }",
+);
 
 /// The tables `[[load]]`, in the order of the file.
 pub(super) struct LoadTables {
@@ -25,20 +81,19 @@ pub(super) struct LoadTables {
 }
 
 pub(super) fn read_all(
-    document: &Table<'_>,
+    tables: Vec<Table<'_>>,
     selections: &mut Selections,
 ) -> Result<LoadTables, SceneError> {
-    let tables = document.tables("load", KEYS)?;
     let specs = tables.iter().map(|table| read(table, selections));
     let specs = specs.collect::<Result<_, _>>()?;
     let mut names: Vec<Option<String>> = Vec::new();
     for table in &tables {
-        let name = table.optional("name", "a name other than \"gravity\"", name)?;
+        let name = table.read(&NAME)?;
         let same = name
             .as_ref()
             .and_then(|_| names.iter().position(|other| *other == name));
         if let (Some(first), Some(name)) = (same, &name) {
-            return Err(taken(table.place(), "name", name, tables[first].place()));
+            return Err(taken(table.place(), NAME.name, name, tables[first].place()));
         }
         names.push(name);
     }
@@ -50,30 +105,23 @@ pub(super) fn read_all(
     })
 }
 
-fn name(value: &toml::de::DeValue<'_>) -> Result<String, Misfit> {
-    match text(value)? {
-        name if name == GRAVITY => Err(Misfit::Value),
-        name => Ok(name),
-    }
-}
-
 fn read(table: &Table<'_>, selections: &mut Selections) -> Result<LoadSpec, SceneError> {
-    let kind = match table.exactly_one(&["traction", "pressure", "force"])? {
-        "traction" => {
-            LoadKind::Traction(table.required("traction", "[x, y, z] in Pa, all finite", vector)?)
-        }
-        "force" => {
-            LoadKind::Force(table.required("force", "[x, y, z] in N, all finite", vector)?)
-        }
-        _ => LoadKind::Pressure(table.required("pressure", "a finite number of Pa", finite)?),
+    let kind = match table.exactly_one()? {
+        key if key == TRACTION.name => LoadKind::Traction(table.read(&TRACTION)?),
+        key if key == FORCE.name => LoadKind::Force(table.read(&FORCE)?),
+        _ => LoadKind::Pressure(table.read(&PRESSURE)?),
     };
+    table.check_conditions()?;
     let members = match kind {
         LoadKind::Force(_) => Members::Nodes,
         LoadKind::Traction(_) | LoadKind::Pressure(_) => Members::Triangles,
     };
+    let group = selections.one_of(table, (&GROUP, &WHERE), members)?;
+    let ramp = table.table(&RAMP_OF_LOAD)?;
+    let ramp = ramp.as_ref().map(ramp::read).transpose()?;
     Ok(LoadSpec {
-        on: On::Group(selections.required(table, members)?),
+        on: On::Group(group),
         kind,
-        ramp: ramp::read(table)?,
+        ramp: ramp.unwrap_or(Ramp::Step),
     })
 }

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use sinew_mesh::structured::Split;
-use toml::de::DeValue;
 
-use crate::decode::Table;
-use crate::decode::value::{Misfit, above_zero, count_up_to, finite, list, text, vector};
+use crate::decode::{
+    Condition, Count, Inner, Key, Needs, Number, Optional, Or, Table, TableDescription, Text,
+    Vector, Words,
+};
 use crate::error::SceneError;
 
 /// The source of the body's shape.
@@ -62,60 +63,187 @@ const MOST_CELLS: usize = 100;
 /// The number of cells of the largest cube, and of the largest block.
 const MOST_CELLS_IN_ALL: usize = MOST_CELLS * MOST_CELLS * MOST_CELLS;
 
-const SPLITS: [(&str, Split); 2] = [("kuhn", Split::Kuhn), ("mirrored", Split::Mirrored)];
+pub(super) const MESH: TableDescription = TableDescription {
+    name: "mesh",
+    meaning: "The shape of the body: a mesh of tetrahedra from a file of gmsh, or a cube or a block made here. What a scene \
+              says besides is in the metres and axes of the body, after `scale` and `rotate`.",
+    keys: &[&FILE, &CUBE, &BLOCK, &SCALE, &ROTATE, &ORDER],
+    needs: Needs::OneOf(&[FILE.name, CUBE.name, BLOCK.name]),
+    examples: &[
+        "[mesh]\ncube = { cells = 10, edge = 0.2 }\n",
+        "[mesh]\nblock = { cells = [24, 4, 4], size = [0.3, 0.05, 0.05] }\n",
+        "[mesh]\nfile = \"liver.msh\"\nscale = 0.001\nrotate = { axis = [0, 0, 1], degrees = 90 }\norder = \"linear\"\n",
+    ],
+};
 
-const SOURCES: &[&str] = &["file", "cube", "block"];
+pub(super) const FILE: Key<Text> = Key::required(
+    "file",
+    "Mesh file of gmsh (.msh), its path relative to the scene's folder.",
+    Text::any("the path of a mesh, seen from the scene"),
+);
 
-pub(super) const KEYS: &[&str] = &["file", "cube", "block", "scale", "rotate", "order"];
+const CUBE: Key<Inner> = Key::required(
+    "cube",
+    "A cube with one corner at the origin and the groups `tissue`, `sides`, `top` and `bottom`.",
+    Inner::one("a table such as { cells = 10, edge = 0.2 }", &CUBES),
+);
+
+const BLOCK: Key<Inner> = Key::required(
+    "block",
+    "A block with one corner at the origin and the groups of a cube.",
+    Inner::one(
+        "a table such as { cells = [24, 4, 4], size = [0.3, 0.05, 0.05] }",
+        &BLOCKS,
+    ),
+);
+
+const SCALE: Key<Number, Optional> = Key::optional(
+    "scale",
+    "Factor of all coordinates, for meshes that are not in metres.",
+    Number::above_zero("a finite factor above 0, e.g. 0.001 for a mesh in millimetres"),
+    "coordinates are in metres",
+);
+
+const ROTATE: Key<Inner, Optional> = Key::optional(
+    "rotate",
+    "A turn of the mesh about an axis through the origin.",
+    Inner::one(
+        "a table such as { axis = [0, 0, 1], degrees = 90 }",
+        &ROTATIONS,
+    ),
+    "no turn",
+);
+
+const ORDER: Key<Words<bool>, Optional> = Key::optional(
+    "order",
+    "Takes cells of second and higher order by their corners; what that changes of the shape is said.",
+    Words(&[("linear", true)]),
+    "such cells are refused",
+)
+.only(&[Condition::with(
+    FILE.name,
+    "goes with `file`: cubes and blocks are linear",
+)]);
+
+const CUBES: TableDescription = TableDescription {
+    name: "cube",
+    meaning: "A cube of equal cells, each cut into tetrahedra.",
+    keys: &[&CELLS, &EDGE, &SPLIT],
+    needs: Needs::Any,
+    examples: &["{ cells = 10, edge = 0.2, split = \"mirrored\" }"],
+};
+
+const CELLS: Key<Count> = Key::required(
+    "cells",
+    "Cells along each edge. A cube of n cells has 6 n^3 tetrahedra.",
+    Count { most: MOST_CELLS },
+);
+
+const EDGE: Key<Number> = Key::required(
+    "edge",
+    "Length of an edge.",
+    Number::above_zero("a finite length above 0 m"),
+)
+.unit("m");
+
+const SPLIT: Key<Words<Split>, Or<Split>> = Key::or(
+    "split",
+    "How cells are cut. `\"kuhn\"`: all their diagonals point one way, which makes the mesh stiffer in some directions. \
+     `\"mirrored\"`: they point in turn, and no direction is preferred over its mirror image.",
+    Words(&[("kuhn", Split::Kuhn), ("mirrored", Split::Mirrored)]),
+    Split::Kuhn,
+);
+
+const BLOCKS: TableDescription = TableDescription {
+    name: "block",
+    meaning: "A block of equal cells, each cut into tetrahedra.",
+    keys: &[&CELLS_OF_BLOCK, &SIZE, &SPLIT],
+    needs: Needs::Any,
+    examples: &["{ cells = [24, 4, 4], size = [0.3, 0.05, 0.05], split = \"kuhn\" }"],
+};
+
+const CELLS_OF_BLOCK: Key<Vector<Count, usize>> = Key::required(
+    "cells",
+    "Cells along x, y and z.",
+    Vector {
+        expected: "three whole numbers above 0 with a product of at most 1000000",
+        of: Count {
+            most: MOST_CELLS_IN_ALL,
+        },
+        fits: are_not_too_many,
+    },
+);
+
+const SIZE: Key<Vector> = Key::required(
+    "size",
+    "Lengths along x, y and z.",
+    Vector {
+        expected: "three finite lengths above 0 m",
+        of: Number::above_zero("a finite length above 0 m"),
+        ..Vector::finite("three lengths")
+    },
+)
+.unit("m");
+
+const ROTATIONS: TableDescription = TableDescription {
+    name: "rotate",
+    meaning: "A turn about an axis through the origin, after the scale.",
+    keys: &[&AXIS, &DEGREES],
+    needs: Needs::Any,
+    examples: &["{ axis = [0, 0, 1], degrees = 90 }"],
+};
+
+const AXIS: Key<Vector> = Key::required(
+    "axis",
+    "Direction of the axis, of any length.",
+    Vector {
+        expected: "[x, y, z], all finite, not all 0",
+        fits: |axis| *axis != [0.0; 3],
+        ..Vector::finite("[x, y, z]")
+    },
+);
+
+const DEGREES: Key<Number> = Key::required(
+    "degrees",
+    "Angle, counter-clockwise as seen from the tip of the axis.",
+    Number::finite("a finite angle in degrees"),
+)
+.unit("degrees");
 
 impl MeshSource {
     pub(super) fn read(table: &Table<'_>) -> Result<Self, SceneError> {
-        table.exactly_one(SOURCES)?;
-        if let Some(cube) = table.table("cube", &["cells", "edge", "split"])? {
-            return Ok(Self::Cube {
-                cells: cube.required(
-                    "cells",
-                    &format!("a whole number from 1 to {MOST_CELLS}"),
-                    count_up_to(MOST_CELLS),
-                )?,
-                edge: cube.required("edge", "a finite length above 0 m", above_zero)?,
-                split: split(&cube)?,
-            });
-        }
-        if let Some(block) = table.table("block", &["cells", "size", "split"])? {
-            return Ok(Self::Block {
-                cells: block.required(
-                    "cells",
-                    &format!(
-                        "three whole numbers above 0 with a product of at most {MOST_CELLS_IN_ALL}"
-                    ),
-                    three_counts,
-                )?,
-                size: block.required("size", "three finite lengths above 0 m", three_lengths)?,
-                split: split(&block)?,
-            });
-        }
-        let file = table.required("file", "the path of a mesh, seen from the scene", text)?;
-        Ok(Self::File(file.into()))
+        Ok(match table.exactly_one()? {
+            key if key == CUBE.name => {
+                let cube = table.table(&CUBE)?;
+                Self::Cube {
+                    cells: cube.read(&CELLS)?,
+                    edge: cube.read(&EDGE)?,
+                    split: cube.read(&SPLIT)?,
+                }
+            }
+            key if key == BLOCK.name => {
+                let block = table.table(&BLOCK)?;
+                Self::Block {
+                    cells: block.read(&CELLS_OF_BLOCK)?,
+                    size: block.read(&SIZE)?,
+                    split: block.read(&SPLIT)?,
+                }
+            }
+            _ => Self::File(table.read(&FILE)?.into()),
+        })
     }
 }
 
 impl MeshChanges {
     pub(super) fn read(table: &Table<'_>) -> Result<Self, SceneError> {
-        if !table.has("file") {
-            table.refuse(&["order"], "goes with `file`: cubes and blocks are linear")?;
-        }
-        let linear = table.optional_choice("order", &[("linear", true)])?;
-        let scale = table.optional(
-            "scale",
-            "a finite factor above 0, e.g. 0.001 for a mesh in millimetres",
-            above_zero,
-        )?;
-        let rotation = match table.table("rotate", &["axis", "degrees"])? {
+        table.check_conditions()?;
+        let linear = table.read(&ORDER)?;
+        let scale = table.read(&SCALE)?;
+        let rotation = match table.table(&ROTATE)? {
             None => None,
             Some(rotate) => Some(Rotation {
-                axis: rotate.required("axis", "[x, y, z], all finite, not all 0", direction)?,
-                degrees: rotate.required("degrees", "a finite angle in degrees", finite)?,
+                axis: rotate.read(&AXIS)?,
+                degrees: rotate.read(&DEGREES)?,
             }),
         };
         Ok(Self {
@@ -126,29 +254,7 @@ impl MeshChanges {
     }
 }
 
-fn split(table: &Table<'_>) -> Result<Split, SceneError> {
-    let split = table.optional_choice("split", &SPLITS)?;
-    Ok(split.unwrap_or(Split::Kuhn))
-}
-
-fn three_counts(value: &DeValue<'_>) -> Result<[usize; 3], Misfit> {
-    let counts = list(value, |count| count_up_to(MOST_CELLS_IN_ALL)(count))?;
-    let [x, y, z] = <[usize; 3]>::try_from(counts).map_err(|_| Misfit::Value)?;
-    let product = x.checked_mul(y).and_then(|xy| xy.checked_mul(z));
-    match product {
-        Some(product) if product <= MOST_CELLS_IN_ALL => Ok([x, y, z]),
-        _ => Err(Misfit::Value),
-    }
-}
-
-fn three_lengths(value: &DeValue<'_>) -> Result<[f64; 3], Misfit> {
-    let lengths = list(value, above_zero)?;
-    <[f64; 3]>::try_from(lengths).map_err(|_| Misfit::Value)
-}
-
-fn direction(value: &DeValue<'_>) -> Result<[f64; 3], Misfit> {
-    match vector(value)? {
-        [0.0, 0.0, 0.0] => Err(Misfit::Value),
-        direction => Ok(direction),
-    }
+fn are_not_too_many([x, y, z]: &[usize; 3]) -> bool {
+    let product = x.checked_mul(*y).and_then(|xy| xy.checked_mul(*z));
+    product.is_some_and(|product| product <= MOST_CELLS_IN_ALL)
 }

@@ -1,6 +1,7 @@
 //! The tables of a scene as the user wrote them, checked one by one.
 
 mod damping;
+mod document;
 mod fixed;
 mod initial;
 pub(crate) mod keys;
@@ -9,6 +10,7 @@ mod mesh;
 mod motion;
 mod oscillator;
 mod output;
+mod place;
 mod probe;
 mod ramp;
 mod region;
@@ -21,6 +23,11 @@ use std::sync::Arc;
 use sinew_fem::Problem;
 use toml::de::DeTable;
 
+pub(crate) use document::DOCUMENT;
+use document::{
+    DAMPING_TABLE, GRAVITY_VECTOR, INITIAL_STATES, LOADS, MESH_TABLE, MOTIONS, OSCILLATOR_TABLE,
+    OUTPUT_TABLE, PROBES, REGIONS, RUN_TABLE, SUPPORTS, TITLE,
+};
 pub use initial::Initial;
 use keys::GRAVITY;
 pub use mesh::{MeshChanges, MeshSource, Rotation};
@@ -28,11 +35,11 @@ pub use motion::{Motion, Way};
 pub use oscillator::Oscillator;
 pub use output::{Instants, OutputSettings};
 pub use probe::{ProbeAt, ProbePoint};
+pub(crate) use run::{INTEGRATOR, RUN};
 pub use run::{RunSettings, TimeStep};
 use selected::Selections;
 pub use selected::{Choice, Members, Selected};
 
-use crate::decode::value::{text, vector};
 use crate::decode::{Place, Table};
 use crate::error::{Fault, SceneError};
 use crate::source::{SceneSource, text_of};
@@ -102,26 +109,6 @@ impl Places {
     }
 }
 
-const BODY_KEYS: &[&str] = &[
-    "region", "damping", "fixed", "move", "load", GRAVITY, "initial", "probe",
-];
-
-const KEYS: &[&str] = &[
-    "title",
-    "mesh",
-    "oscillator",
-    "region",
-    "damping",
-    "fixed",
-    "move",
-    "load",
-    GRAVITY,
-    "initial",
-    "run",
-    "probe",
-    "output",
-];
-
 impl Scene {
     /// Reads a scene file.
     ///
@@ -172,7 +159,7 @@ impl Scene {
                 None => fault,
             }
         })?;
-        Self::read(&Table::document(&source, document.get_ref(), KEYS)?)
+        Self::read(&Table::document(&source, document.get_ref(), &DOCUMENT)?)
     }
 
     /// The title; empty where the scene has none.
@@ -234,16 +221,19 @@ impl Scene {
     pub fn input_files_of(path: &Path) -> Vec<PathBuf> {
         let text = text_of(path).unwrap_or_default();
         let (document, _) = DeTable::parse_recoverable(&text);
-        let mesh = document.get_ref().get("mesh");
-        let file = mesh.and_then(|mesh| mesh.get_ref().as_table()?.get("file")?.get_ref().as_str());
-        let motions = document.get_ref().get("move");
+        let mesh = document.get_ref().get(MESH_TABLE.name);
+        let file = mesh.and_then(|mesh| {
+            let file = mesh.get_ref().as_table()?.get(mesh::FILE.name)?;
+            file.get_ref().as_str()
+        });
+        let motions = document.get_ref().get(MOTIONS.name);
         let motions = motions.and_then(|motions| motions.get_ref().as_array());
         let motions = motions.into_iter().flat_map(|motions| motions.iter());
         let tables = motions.filter_map(|motion| {
             motion
                 .get_ref()
                 .as_table()?
-                .get("table")?
+                .get(motion::TABLE.name)?
                 .get_ref()
                 .as_str()
         });
@@ -254,9 +244,7 @@ impl Scene {
     }
 
     fn read(document: &Table<'_>) -> Result<Self, SceneError> {
-        let title = document
-            .optional("title", "a title in quotes", text)?
-            .unwrap_or_default();
+        let title = document.read(&TITLE)?.unwrap_or_default();
         let mut places = Places {
             document: document.place().clone(),
             mesh: None,
@@ -271,22 +259,20 @@ impl Scene {
             selected: Vec::new(),
             run: document.place().clone(),
         };
-        document.exactly_one(&["mesh", "oscillator"])?;
-        let subject = match document.table("oscillator", oscillator::KEYS)? {
-            Some(table) => {
-                document.refuse(BODY_KEYS, "does not go with [oscillator]")?;
+        let subject = match document.exactly_one()? {
+            key if key == OSCILLATOR_TABLE.name => {
+                let table = document.table(&OSCILLATOR_TABLE)?;
+                document.check_conditions()?;
                 let oscillator = Oscillator::read(&table)?;
                 places.oscillator = Some(table.into_place());
                 Subject::Oscillator(oscillator)
             }
-            None => Subject::Body(Box::new(Body::read(document, &mut places)?)),
+            _ => Subject::Body(Box::new(Body::read(document, &mut places)?)),
         };
-        let run = document
-            .open_table("run", run::KEYS)?
-            .ok_or_else(|| document.missing("run", "a table [run]"))?;
+        let run = document.open_table(&RUN_TABLE)?;
         let settings = RunSettings::read(&run)?;
         places.run = run.into_place();
-        let output = document.table("output", output::KEYS)?;
+        let output = document.table(&OUTPUT_TABLE)?;
         let output = output.as_ref().map(OutputSettings::read).transpose()?;
         Ok(Self {
             title,
@@ -317,24 +303,24 @@ impl Body {
     }
 
     fn read(document: &Table<'_>, places: &mut Places) -> Result<Self, SceneError> {
-        let mesh_table = document
-            .table("mesh", mesh::KEYS)?
-            .ok_or_else(|| document.missing("mesh", "a table [mesh]"))?;
+        let mesh_table = document.table(&MESH_TABLE)?;
         let mesh = MeshSource::read(&mesh_table)?;
         let mesh_changes = MeshChanges::read(&mesh_table)?;
         let mut selections = Selections::default();
-        let (regions, region_places) = region::read_all(document, &mut selections)?;
-        if regions.is_empty() {
-            return Err(document.missing("region", "a table [[region]] for each material"));
-        }
-        let damping_table = document.table("damping", damping::KEYS)?;
+        let (regions, region_places) =
+            region::read_all(document.tables(&REGIONS)?, &mut selections)?;
+        let damping_table = document.table(&DAMPING_TABLE)?;
         let damping = damping_table.as_ref().map(damping::read).transpose()?;
-        let (fixed, fixed_places) = fixed::read_all(document, &mut selections)?;
-        let (motions, motion_places) = motion::read_all(document, &mut selections)?;
-        let loads = load::read_all(document, &mut selections)?;
-        let gravity = document.optional(GRAVITY, "[x, y, z] in m/s2, all finite", vector)?;
-        let (initial, initial_places) = initial::read_all(document, &loads.names, &mut selections)?;
-        let (probes, probe_places) = probe::read_all(document, &mut selections)?;
+        let (fixed, fixed_places) = fixed::read_all(document.tables(&SUPPORTS)?, &mut selections)?;
+        let (motions, motion_places) =
+            motion::read_all(document.tables(&MOTIONS)?, &mut selections)?;
+        let loads = load::read_all(document.tables(&LOADS)?, &mut selections)?;
+        let gravity = document.read(&GRAVITY_VECTOR)?;
+        let mut names: Vec<String> = loads.names.iter().flatten().cloned().collect();
+        names.extend(gravity.map(|_| GRAVITY.to_owned()));
+        let initial = document.tables(&INITIAL_STATES)?;
+        let (initial, initial_places) = initial::read_all(initial, &names, &mut selections)?;
+        let (probes, probe_places) = probe::read_all(document.tables(&PROBES)?, &mut selections)?;
         places.mesh = Some(mesh_table.into_place());
         places.regions = region_places;
         places.damping = damping_table.map(Table::into_place);

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use sinew_core::Ramp;
 
-use super::selected::{Members, Selections};
-use super::{fixed, ramp};
-use crate::decode::value::{text, vector};
-use crate::decode::{Place, Table};
+use super::fixed::AXES;
+use super::ramp::{self, RAMP};
+use super::selected::{GROUP, Members, Selections, WHERE};
+use crate::decode::{Condition, Inner, Key, Needs, Place, Table, TableDescription, Text, Vector};
 use crate::error::SceneError;
 
 /// A part of the body that is moved.
@@ -36,53 +36,87 @@ impl Way {
     /// The key that gives it.
     pub(crate) fn key(&self) -> &'static str {
         match self {
-            Self::Displacement(..) => "displacement",
-            Self::Velocity(_) => "velocity",
-            Self::Table(_) => "table",
+            Self::Displacement(..) => DISPLACEMENT.name,
+            Self::Velocity(_) => VELOCITY.name,
+            Self::Table(_) => TABLE.name,
         }
     }
 }
 
-const KEYS: &[&str] = &[
-    "group",
-    "where",
-    "axes",
+pub(super) const MOVE: TableDescription = TableDescription {
+    name: "move",
+    meaning: "A part of the body whose motion is given, such as the tissue that a tool holds. The force that it takes is \
+              among the reactions of a run.",
+    keys: &[
+        &GROUP,
+        &WHERE,
+        &AXES,
+        &DISPLACEMENT,
+        &VELOCITY,
+        &TABLE,
+        &RAMP_OF_MOTION,
+    ],
+    needs: Needs::OneOf(&[DISPLACEMENT.name, VELOCITY.name, TABLE.name]),
+    examples: &[
+        "[[move]]\ngroup = \"top\"\naxes = \"z\"\ndisplacement = [0.0, 0.0, -0.01]\nramp = { kind = \"sin2\", rise = 0.2 }\n",
+        "[[move]]\nwhere = { above = { z = 0.199 } }\nvelocity = [0.01, 0.0, 0.0]\n",
+        "[[move]]\ngroup = \"top\"\ntable = \"tool.csv\"\n",
+    ],
+};
+
+const DISPLACEMENT: Key<Vector> = Key::required(
     "displacement",
+    "Displacement from the place at rest, times the ramp.",
+    Vector::finite("[x, y, z] in m, all finite"),
+)
+.unit("m");
+
+const VELOCITY: Key<Vector> = Key::required(
     "velocity",
+    "Velocity from t = 0 on.",
+    Vector::finite("[x, y, z] in m/s, all finite"),
+)
+.unit("m/s");
+
+pub(super) const TABLE: Key<Text> = Key::required(
     "table",
+    "CSV file with the columns `t_s`, `x_m`, `y_m`, `z_m`: displacements from the place at rest over time, with straight \
+     lines between the rows. Its path is relative to the scene's folder.",
+    Text::any("the path of a CSV file, seen from the scene"),
+);
+
+const RAMP_OF_MOTION: Key<Inner> = Key::required(
     "ramp",
-];
+    "Factor of the displacement over time.",
+    Inner::one("a table such as { kind = \"sin2\", rise = 0.2 }", &RAMP),
+)
+.only(&[Condition::with(
+    DISPLACEMENT.name,
+    "goes with `displacement` only",
+)]);
 
 pub(super) fn read_all(
-    document: &Table<'_>,
+    tables: Vec<Table<'_>>,
     selections: &mut Selections,
 ) -> Result<(Vec<Motion>, Vec<Place>), SceneError> {
-    let tables = document.tables("move", KEYS)?;
     let motions = tables.iter().map(|table| read(table, selections));
     let motions = motions.collect::<Result<_, _>>()?;
     Ok((motions, tables.into_iter().map(Table::into_place).collect()))
 }
 
 fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Motion, SceneError> {
-    let kind = table.exactly_one(&["displacement", "velocity", "table"])?;
-    if kind != "displacement" {
-        table.refuse(&["ramp"], "goes with `displacement` only")?;
-    }
+    let way = table.exactly_one()?;
+    table.check_conditions()?;
     Ok(Motion {
-        group: selections.required(table, Members::Nodes)?,
-        axes: fixed::axes_of(table)?,
-        way: match kind {
-            "displacement" => Way::Displacement(
-                table.required("displacement", "[x, y, z] in m, all finite", vector)?,
-                ramp::required(table)?,
+        group: selections.one_of(table, (&GROUP, &WHERE), Members::Nodes)?,
+        axes: table.read(&AXES)?,
+        way: match way {
+            key if key == DISPLACEMENT.name => Way::Displacement(
+                table.read(&DISPLACEMENT)?,
+                ramp::read(&table.table(&RAMP_OF_MOTION)?)?,
             ),
-            "velocity" => {
-                Way::Velocity(table.required("velocity", "[x, y, z] in m/s, all finite", vector)?)
-            }
-            _ => {
-                let file = "the path of a CSV file, seen from the scene";
-                Way::Table(table.required("table", file, text)?.into())
-            }
+            key if key == VELOCITY.name => Way::Velocity(table.read(&VELOCITY)?),
+            _ => Way::Table(table.read(&TABLE)?.into()),
         },
     })
 }

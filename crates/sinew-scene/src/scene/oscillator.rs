@@ -1,7 +1,6 @@
 //! `[oscillator]`: one mass on a spring and a dashpot, in place of a body.
 
-use crate::decode::Table;
-use crate::decode::value::{above_zero, finite, zero_or_above};
+use crate::decode::{Key, Needs, Number, Or, Table, TableDescription};
 use crate::error::SceneError;
 
 /// One mass on a spring and a dashpot: m u'' + d u' + k u = f from u(0), u'(0).
@@ -21,30 +20,79 @@ pub struct Oscillator {
     pub force: f64,
 }
 
-pub(super) const KEYS: &[&str] = &[
+pub(super) const OSCILLATOR: TableDescription = TableDescription {
+    name: "oscillator",
+    meaning: "One mass on a spring and a dashpot, in place of a body: m u'' + d u' + k u = f. Its exact motion is known, \
+              so it shows what a method does.",
+    keys: &[
+        &MASS,
+        &STIFFNESS,
+        &DAMPING,
+        &DISPLACEMENT,
+        &VELOCITY,
+        &FORCE,
+    ],
+    needs: Needs::Any,
+    examples: &[
+        "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\ndisplacement = 0.01\nvelocity = -5.0\nforce = 0.5\n",
+    ],
+};
+
+const MASS: Key<Number> = Key::required(
     "mass",
+    "The mass m.",
+    Number::above_zero("a finite mass above 0 kg"),
+)
+.unit("kg");
+
+const STIFFNESS: Key<Number> = Key::required(
     "stiffness",
+    "The stiffness k of the spring.",
+    Number::above_zero("a finite stiffness above 0 N/m"),
+)
+.unit("N/m");
+
+const DAMPING: Key<Number> = Key::required(
     "damping",
+    "The damping d of the dashpot.",
+    Number::zero_or_above("a finite damping, 0 N s/m or above"),
+)
+.unit("N s/m");
+
+const DISPLACEMENT: Key<Number, Or<f64>> = Key::or(
     "displacement",
+    "The displacement u at t = 0.",
+    Number::finite("a finite length in m"),
+    0.0,
+)
+.unit("m");
+
+const VELOCITY: Key<Number> = Key::required(
     "velocity",
+    "The velocity u' at t = 0.",
+    Number::finite("a finite velocity in m/s"),
+)
+.unit("m/s");
+
+const FORCE: Key<Number, Or<f64>> = Key::or(
     "force",
-];
+    "The force f, which acts from t = 0 on.",
+    Number::finite("a finite force in N"),
+    0.0,
+)
+.unit("N");
 
 impl Oscillator {
     pub(super) fn read(table: &Table<'_>) -> Result<Self, SceneError> {
-        let displacement = table.optional("displacement", "a finite length in m", finite)?;
-        let force = table.optional("force", "a finite force in N", finite)?;
+        let displacement = table.read(&DISPLACEMENT)?;
+        let force = table.read(&FORCE)?;
         Ok(Self {
-            mass: table.required("mass", "a finite mass above 0 kg", above_zero)?,
-            stiffness: table.required("stiffness", "a finite stiffness above 0 N/m", above_zero)?,
-            damping: table.required(
-                "damping",
-                "a finite damping, 0 N s/m or above",
-                zero_or_above,
-            )?,
-            displacement: displacement.unwrap_or(0.0),
-            velocity: table.required("velocity", "a finite velocity in m/s", finite)?,
-            force: force.unwrap_or(0.0),
+            mass: table.read(&MASS)?,
+            stiffness: table.read(&STIFFNESS)?,
+            damping: table.read(&DAMPING)?,
+            displacement,
+            velocity: table.read(&VELOCITY)?,
+            force,
         })
     }
 }

@@ -1,7 +1,8 @@
 //! `[output]`: what a run writes into its folder, and how often.
 
-use crate::decode::Table;
-use crate::decode::value::{above_zero, boolean, count_up_to};
+use crate::decode::{
+    Count, Flag, Inner, Key, Needs, Number, Optional, Or, Table, TableDescription, Usual,
+};
 use crate::error::SceneError;
 
 /// What a run writes into its folder, and how often.
@@ -11,7 +12,7 @@ pub struct OutputSettings {
     pub fields: Instants,
     /// Instants of the rows of probes and reactions; every step, as far as a table has room, where none are given.
     pub probes: Option<Instants>,
-    /// Instants of the rows of energies; as often as costs little where none are given.
+    /// Instants of the rows of energies; every step up to 10,000 of them; at the instants of the fields for bodies of more than 30,000 degrees of freedom where none are given.
     pub energy: Option<Instants>,
     /// Wall time (s) after which a run writes a checkpoint.
     pub checkpoint: f64,
@@ -34,68 +35,159 @@ pub enum Instants {
     Frames(usize),
 }
 
+const DEFAULT: OutputSettings = OutputSettings {
+    fields: Instants::Frames(50),
+    probes: None,
+    energy: None,
+    checkpoint: 10.0,
+    surface_only: false,
+    acceleration: false,
+    step_limit: false,
+    compress: false,
+};
+
 impl Default for OutputSettings {
     fn default() -> Self {
-        Self {
-            fields: Instants::Frames(50),
-            probes: None,
-            energy: None,
-            checkpoint: 10.0,
-            surface_only: false,
-            acceleration: false,
-            step_limit: false,
-            compress: false,
-        }
+        DEFAULT
     }
 }
 
-pub(super) const KEYS: &[&str] = &[
-    "fields",
-    "probes",
-    "energy",
-    "checkpoint",
-    "surface_only",
-    "acceleration",
-    "step_limit",
-    "compress",
-];
+pub(super) const OUTPUT: TableDescription = TableDescription {
+    name: "output",
+    meaning: "What `sinew run --out` writes into its folder, and how often.",
+    keys: &[
+        &FIELDS,
+        &PROBES,
+        &ENERGY,
+        &CHECKPOINT,
+        &SURFACE_ONLY,
+        &ACCELERATION,
+        &STEP_LIMIT,
+        &COMPRESS,
+    ],
+    needs: Needs::Any,
+    examples: &[
+        "[output]\nfields = { every = 0.02 }\nprobes = { every = 0.001 }\nenergy = { frames = 200 }\n\
+         checkpoint = { every = 60.0 }\nsurface_only = true\nacceleration = true\nstep_limit = true\ncompress = true\n",
+    ],
+};
 
-/// A larger number of files would fill a folder that nobody opens.
-const MOST_FRAMES: usize = 100_000;
+const FIELDS: Key<Inner, Usual> = Key::usual(
+    "fields",
+    "Instants at which the displacements, velocities and stresses of the whole body are written.",
+    Inner::one("a table such as { every = 0.02 }", &INSTANTS),
+    "{ frames = 50 }",
+);
+
+const PROBES: Key<Inner, Optional> = Key::optional(
+    "probes",
+    "Instants at which probes and reactions get a row in their tables.",
+    Inner::one("a table such as { every = 0.001 }", &INSTANTS),
+    "every step up to 10,000 of them, beyond that 10,000 evenly spaced ones",
+);
+
+const ENERGY: Key<Inner, Optional> = Key::optional(
+    "energy",
+    "Instants at which energies get a row in their table.",
+    Inner::one("a table such as { frames = 200 }", &INSTANTS),
+    "every step up to 10,000 of them; at the instants of the fields for bodies of more than 30,000 degrees of freedom",
+);
+
+const CHECKPOINT: Key<Inner, Usual> = Key::usual(
+    "checkpoint",
+    "How often a run leaves a checkpoint, from which `sinew resume` goes on.",
+    Inner::one("a table such as { every = 10.0 }", &CHECKPOINTS),
+    "{ every = 10.0 }",
+);
+
+const SURFACE_ONLY: Key<Flag, Or<bool>> = Key::or(
+    "surface_only",
+    "Whether fields are those of the surface alone, which makes their files small.",
+    Flag,
+    DEFAULT.surface_only,
+);
+
+const ACCELERATION: Key<Flag, Or<bool>> = Key::or(
+    "acceleration",
+    "Whether fields have accelerations too.",
+    Flag,
+    DEFAULT.acceleration,
+);
+
+const STEP_LIMIT: Key<Flag, Or<bool>> = Key::or(
+    "step_limit",
+    "Whether fields have the largest step at which each tetrahedron alone would be stable under central difference.",
+    Flag,
+    DEFAULT.step_limit,
+);
+
+const COMPRESS: Key<Flag, Or<bool>> = Key::or(
+    "compress",
+    "Whether fields are compressed, by zlib: smaller files that take several times as long to write.",
+    Flag,
+    DEFAULT.compress,
+);
+
+const CHECKPOINTS: TableDescription = TableDescription {
+    name: "checkpoint",
+    meaning: "The time between two checkpoints.",
+    keys: &[&WALL_TIME],
+    needs: Needs::Any,
+    examples: &["{ every = 60.0 }"],
+};
+
+const WALL_TIME: Key<Number> = Key::required(
+    "every",
+    "Time that passes while the computer works, not simulated time.",
+    Number::above_zero("a wall time above 0 s"),
+)
+.unit("s");
+
+const INSTANTS: TableDescription = TableDescription {
+    name: "instants",
+    meaning: "Evenly spaced instants, the beginning and the end of the run among them.",
+    keys: &[&EVERY, &FRAMES],
+    needs: Needs::OneOf(&[EVERY.name, FRAMES.name]),
+    examples: &["{ every = 0.02 }", "{ frames = 100 }"],
+};
+
+const EVERY: Key<Number> = Key::required(
+    "every",
+    "Simulated time from one instant to the next, as nearly as steps allow.",
+    Number::above_zero("a time above 0 s"),
+)
+.unit("s");
+
+const FRAMES: Key<Count> = Key::required(
+    "frames",
+    "Number of intervals into which the run is divided.",
+    // A larger number of files would fill a folder that nobody opens.
+    Count { most: 100_000 },
+);
 
 impl OutputSettings {
     pub(super) fn read(table: &Table<'_>) -> Result<Self, SceneError> {
-        let default = Self::default();
-        let flag = |key| table.optional(key, "true or false", boolean);
-        let checkpoint = match table.table("checkpoint", &["every"])? {
-            Some(table) => table.required("every", "a wall time above 0 s", above_zero)?,
-            None => default.checkpoint,
+        let checkpoint = match table.table(&CHECKPOINT)? {
+            Some(table) => table.read(&WALL_TIME)?,
+            None => DEFAULT.checkpoint,
         };
+        let instants = |table: Option<Table<'_>>| table.as_ref().map(instants).transpose();
         Ok(Self {
-            fields: instants(table, "fields")?.unwrap_or(default.fields),
-            probes: instants(table, "probes")?,
-            energy: instants(table, "energy")?,
+            fields: instants(table.table(&FIELDS)?)?.unwrap_or(DEFAULT.fields),
+            probes: instants(table.table(&PROBES)?)?,
+            energy: instants(table.table(&ENERGY)?)?,
             checkpoint,
-            surface_only: flag("surface_only")?.unwrap_or(default.surface_only),
-            acceleration: flag("acceleration")?.unwrap_or(default.acceleration),
-            step_limit: flag("step_limit")?.unwrap_or(default.step_limit),
-            compress: flag("compress")?.unwrap_or(default.compress),
+            surface_only: table.read(&SURFACE_ONLY)?,
+            acceleration: table.read(&ACCELERATION)?,
+            step_limit: table.read(&STEP_LIMIT)?,
+            compress: table.read(&COMPRESS)?,
         })
     }
 }
 
-fn instants(table: &Table<'_>, key: &'static str) -> Result<Option<Instants>, SceneError> {
-    const CHOICE: &[&str] = &["every", "frames"];
-    let Some(table) = table.table(key, CHOICE)? else {
-        return Ok(None);
-    };
-    let found = match table.exactly_one(CHOICE)? {
-        "every" => Instants::Every(table.required("every", "a time above 0 s", above_zero)?),
-        _ => {
-            let expected = format!("a whole number from 1 to {MOST_FRAMES}");
-            let frames = table.required("frames", &expected, count_up_to(MOST_FRAMES))?;
-            Instants::Frames(frames)
-        }
-    };
-    Ok(Some(found))
+fn instants(table: &Table<'_>) -> Result<Instants, SceneError> {
+    Ok(match table.exactly_one()? {
+        key if key == EVERY.name => Instants::Every(table.read(&EVERY)?),
+        _ => Instants::Frames(table.read(&FRAMES)?),
+    })
 }

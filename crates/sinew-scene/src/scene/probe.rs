@@ -1,11 +1,8 @@
 //! `[[probe]]`: points whose motion is recorded.
 
-use toml::de::DeValue;
-
 use super::region::taken;
-use super::selected::{Members, Selections};
-use crate::decode::value::{Misfit, text, vector};
-use crate::decode::{Place, Table};
+use super::selected::{self, Members, NOT_WHERE, Selections, Where};
+use crate::decode::{Key, Needs, Optional, Place, Table, TableDescription, Text, Vector};
 use crate::error::SceneError;
 
 /// A node whose motion is recorded.
@@ -26,22 +23,49 @@ pub enum ProbeAt {
     Group(String),
 }
 
+pub(super) const PROBE: TableDescription = TableDescription {
+    name: "probe",
+    meaning: "A node of the body whose motion is written down.",
+    keys: &[&NAME, &POINT, &WHERE],
+    needs: Needs::Any,
+    examples: &[
+        "[[probe]]\nname = \"top-centre\"\npoint = [0.1, 0.1, 0.2]\n",
+        "[[probe]]\nname = \"node-42\"\nwhere = { nodes = [42] }\n",
+    ],
+};
+
+const NAME: Key<Text> = Key::required(
+    "name",
+    "A name of its own, with which its columns in tables begin.",
+    Text {
+        expected: "a name made of letters, digits, `-`, `_` and `.`",
+        pattern: Some("^[^ -,/:-@\\[-^`{-~]+$"),
+        except: None,
+        fits: is_plain,
+    },
+);
+
+const POINT: Key<Vector> = Key::required(
+    "point",
+    "A place in the body at rest; the node nearest to it is followed.",
+    Vector::finite("[x, y, z] in m, all finite"),
+)
+.unit("m")
+.only(&[NOT_WHERE]);
+
+const WHERE: Key<Where, Optional> = selected::WHERE.otherwise("see `point`");
+
 pub(super) fn read_all(
-    document: &Table<'_>,
+    tables: Vec<Table<'_>>,
     selections: &mut Selections,
 ) -> Result<(Vec<ProbePoint>, Vec<Place>), SceneError> {
-    let tables = document.tables("probe", &["name", "point", "where"])?;
     let mut probes: Vec<ProbePoint> = Vec::new();
     for table in &tables {
         let probe = read(table, selections)?;
         let same = probes.iter().position(|other| other.name == probe.name);
         if let Some(first) = same {
-            return Err(taken(
-                table.place(),
-                "name",
-                &probe.name,
-                tables[first].place(),
-            ));
+            let owner = tables[first].place();
+            return Err(taken(table.place(), NAME.name, &probe.name, owner));
         }
         probes.push(probe);
     }
@@ -49,28 +73,17 @@ pub(super) fn read_all(
 }
 
 fn read(table: &Table<'_>, selections: &mut Selections) -> Result<ProbePoint, SceneError> {
-    let expected = "a name made of letters, digits, `-`, `_` and `.`";
-    let name = table.required("name", expected, column_name)?;
-    let at = match table.has("where") {
-        true => {
-            table.refuse(
-                &["point"],
-                "does not go with `where`, which stands in its place",
-            )?;
-            ProbeAt::Group(selections.required(table, Members::Nodes)?)
-        }
-        false => ProbeAt::Point(table.required("point", "[x, y, z] in m, all finite", vector)?),
+    let name = table.read(&NAME)?;
+    table.check_conditions()?;
+    let at = match selections.place(table, &WHERE, Members::Nodes)? {
+        Some(group) => ProbeAt::Group(group),
+        None => ProbeAt::Point(table.read(&POINT)?),
     };
     Ok(ProbePoint { name, at })
 }
 
-/// A name that needs no quotes in a CSV file.
-fn column_name(value: &DeValue<'_>) -> Result<String, Misfit> {
-    let name = text(value)?;
+/// Whether a name needs no quotes in a CSV file.
+fn is_plain(name: &str) -> bool {
     let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
-    if name.chars().all(plain) {
-        Ok(name)
-    } else {
-        Err(Misfit::Value)
-    }
+    name.chars().all(plain)
 }

@@ -2,76 +2,124 @@
 
 use sinew_core::{Ramp, RampError};
 
-use crate::decode::Table;
-use crate::decode::value::{above_zero, finite, numbers};
+use crate::decode::{Condition, Key, List, Needs, Number, Table, TableDescription, Words};
 use crate::error::{Fault, SceneError};
 
-#[derive(Clone, Copy)]
-enum Kind {
+#[derive(Clone, Copy, PartialEq)]
+enum Of {
     Step,
     Sin2,
     Pulse,
     Table,
 }
 
-const KINDS: [(&str, Kind); 4] = [
-    ("step", Kind::Step),
-    ("sin2", Kind::Sin2),
-    ("pulse", Kind::Pulse),
-    ("table", Kind::Table),
-];
+pub(super) const RAMP: TableDescription = TableDescription {
+    name: "ramp",
+    meaning: "The factor of a load or a motion over time: `\"step\"` is 1 from t = 0 on, `\"sin2\"` rises smoothly from 0 to \
+              1, as the square of a sine, and stays there, `\"pulse\"` is 1 from one time to another and 0 besides, and \
+              `\"table\"` goes in straight lines between given values, with the first one before and the last one after.",
+    keys: &[&KIND, &RISE, &FROM, &TO, &TIMES, &VALUES],
+    needs: Needs::Any,
+    examples: &[
+        "{ kind = \"sin2\", rise = 0.2 }",
+        "{ kind = \"pulse\", from = 0.1, to = 0.15 }",
+        "{ kind = \"table\", times = [0.0, 0.1, 0.4], values = [0.0, 1.0, 0.5] }",
+        "{ kind = \"step\" }",
+    ],
+};
 
-const KEYS: &[&str] = &["kind", "rise", "from", "to", "times", "values"];
+const KIND: Key<Words<Of>> = Key::required(
+    "kind",
+    "Course of the factor.",
+    Words(&[
+        (STEP, Of::Step),
+        (SIN2, Of::Sin2),
+        (PULSE, Of::Pulse),
+        (TABLE, Of::Table),
+    ]),
+);
 
-impl Kind {
-    /// The keys that make no sense with this kind.
-    fn foreign_keys(self) -> &'static [&'static str] {
-        match self {
-            Self::Step => &["rise", "from", "to", "times", "values"],
-            Self::Sin2 => &["from", "to", "times", "values"],
-            Self::Pulse => &["rise", "times", "values"],
-            Self::Table => &["rise", "from", "to"],
-        }
-    }
+const STEP: &str = "step";
+const SIN2: &str = "sin2";
+const PULSE: &str = "pulse";
+const TABLE: &str = "table";
+
+/// A key that goes with one kind only.
+const fn with(kind: &'static str) -> Condition {
+    Condition::where_is(KIND.name, kind, "does not go with this kind of ramp")
 }
 
-/// The ramp of a load's table; a step where it is not given.
-pub(super) fn read(load: &Table<'_>) -> Result<Ramp, SceneError> {
-    Ok(given(load)?.unwrap_or(Ramp::Step))
-}
+const RISE: Key<Number> = Key::required(
+    "rise",
+    "Time from t = 0 on after which the factor is 1.",
+    Number::above_zero("a finite time above 0 s"),
+)
+.unit("s")
+.only(&[with(SIN2)]);
 
-/// The ramp of a motion's table.
-pub(super) fn required(motion: &Table<'_>) -> Result<Ramp, SceneError> {
-    let expected = "a table such as { kind = \"sin2\", rise = 0.2 }";
-    given(motion)?.ok_or_else(|| motion.missing("ramp", expected))
-}
+const FROM: Key<Number> = Key::required(
+    "from",
+    "Time at which the pulse begins.",
+    Number::finite("a finite time in s"),
+)
+.unit("s")
+.only(&[with(PULSE)]);
 
-fn given(of: &Table<'_>) -> Result<Option<Ramp>, SceneError> {
-    let Some(table) = of.table("ramp", KEYS)? else {
-        return Ok(None);
-    };
-    let kind = table.choice("kind", &KINDS)?;
-    table.refuse(kind.foreign_keys(), "does not go with this kind of ramp")?;
+const TO: Key<Number> = Key::required(
+    "to",
+    "Time at which the pulse ends, after it began.",
+    Number::finite("a finite time in s"),
+)
+.unit("s")
+.only(&[with(PULSE)]);
+
+const TIMES: Key<List<Number>> = Key::required(
+    "times",
+    "Times of the values, in increasing order.",
+    List {
+        expected: "a list of finite times in s",
+        of: Number::finite("a finite time in s"),
+        least: 0,
+    },
+)
+.unit("s")
+.only(&[with(TABLE)]);
+
+const VALUES: Key<List<Number>> = Key::required(
+    "values",
+    "Factors at these times, as many as there are times.",
+    List {
+        expected: "a list of finite numbers",
+        of: Number::finite("a finite number"),
+        least: 0,
+    },
+)
+.only(&[with(TABLE)]);
+
+/// The ramp that a table states.
+pub(super) fn read(table: &Table<'_>) -> Result<Ramp, SceneError> {
+    let kind = table.read(&KIND)?;
+    table.check_conditions()?;
     let ramp = match kind {
-        Kind::Step => Ramp::Step,
-        Kind::Sin2 => Ramp::Sin2 {
-            rise: table.required("rise", "a finite time above 0 s", above_zero)?,
+        Of::Step => Ramp::Step,
+        Of::Sin2 => Ramp::Sin2 {
+            rise: table.read(&RISE)?,
         },
-        Kind::Pulse => Ramp::Pulse {
-            from: table.required("from", "a finite time in s", finite)?,
-            to: table.required("to", "a finite time in s", finite)?,
+        Of::Pulse => Ramp::Pulse {
+            from: table.read(&FROM)?,
+            to: table.read(&TO)?,
         },
-        Kind::Table => Ramp::Table {
-            times: table.required("times", "a list of finite times in s", numbers)?,
-            values: table.required("values", "a list of finite numbers", numbers)?,
+        Of::Table => Ramp::Table {
+            times: table.read(&TIMES)?,
+            values: table.read(&VALUES)?,
         },
     };
-    ramp.check().map(|()| Some(ramp)).map_err(|error| {
+    ramp.check().map(|()| ramp).map_err(|error| {
         let key = match error {
-            RampError::Pulse { .. } => "to",
-            RampError::TableLengths { .. } => "values",
-            RampError::TableEntry { .. } => "times",
-            _ => "rise",
+            RampError::Pulse { .. } => TO.name,
+            RampError::TableLengths { .. } => VALUES.name,
+            RampError::TableEntry { .. } => TIMES.name,
+            _ => RISE.name,
         };
         table.place().value_fault(key, Fault::Ramp(error))
     })

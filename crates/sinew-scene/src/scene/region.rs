@@ -1,54 +1,149 @@
 //! `[[region]]`: materials and their regions.
 
+use std::ops::Bound;
+
 use sinew_fem::{Law, Region, SpringRule};
 
-use super::selected::{Members, Selections};
-use crate::decode::value::{Misfit, above_zero, boolean, finite, zero_or_above};
-use crate::decode::{Place, Table};
+use super::selected::{Members, NOT_WHERE, OPTIONAL_GROUP, Selections, WHERE_OF_TETRAHEDRA};
+use crate::decode::{
+    Condition, Flag, Inner, Key, Needs, Number, Optional, Or, Place, Table, TableDescription, Text,
+    Words,
+};
 use crate::error::{Fault, SceneError};
 
-const KEYS: &[&str] = &[
-    "group",
-    "where",
-    "density",
-    "model",
-    "youngs_modulus",
-    "poissons_ratio",
-    "springs",
-];
+pub(super) const REGION: TableDescription = TableDescription {
+    name: "region",
+    meaning: "A part of the body and the material that it is made of. Every tetrahedron must be in one region.",
+    keys: &[
+        &GROUP,
+        &WHERE_OF_TETRAHEDRA,
+        &DENSITY,
+        &MODEL,
+        &YOUNGS_MODULUS,
+        &POISSONS_RATIO,
+        &SPRINGS_OF_REGION,
+    ],
+    needs: Needs::Any,
+    examples: &[
+        "[[region]]\ngroup = \"tissue\"\ndensity = 1060.0\nmodel = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\n",
+        "[[region]]\nwhere = { box = [[0.0, 0.0, 0.1], [0.2, 0.2, 0.2]] }\ndensity = 1060.0\nmodel = \"springs\"\n\
+         youngs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n",
+    ],
+};
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 enum MaterialModel {
     Springs,
     Linear,
 }
 
-const MODELS: [(&str, MaterialModel); 2] = [
-    ("springs", MaterialModel::Springs),
-    ("linear", MaterialModel::Linear),
-];
+const GROUP: Key<Text, Optional> = OPTIONAL_GROUP.only(&[NOT_WHERE]);
 
-const RULES: [(&str, SpringRule); 2] = [
-    ("lloyd", SpringRule::Lloyd),
-    ("van-gelder", SpringRule::VanGelder),
-];
+const DENSITY: Key<Number> = Key::required(
+    "density",
+    "Mass of each cubic metre.",
+    Number::above_zero("a finite density above 0 kg/m3"),
+)
+.unit("kg/m3");
+
+const MODEL: Key<Words<MaterialModel>> = Key::required(
+    "model",
+    "`\"linear\"`: an isotropic elastic solid on tetrahedra of constant strain. `\"springs\"`: springs along the edges of \
+     the mesh.",
+    Words(&[
+        (SPRINGS_MODEL, MaterialModel::Springs),
+        (LINEAR_MODEL, MaterialModel::Linear),
+    ]),
+);
+
+const SPRINGS_MODEL: &str = "springs";
+const LINEAR_MODEL: &str = "linear";
+
+const YOUNGS_MODULUS: Key<Number> = Key::required(
+    "youngs_modulus",
+    "Young's modulus: the stress for each unit of strain when a bar of the material is pulled.",
+    Number::above_zero("a finite Young's modulus above 0 Pa"),
+)
+.unit("Pa");
+
+const POISSONS_RATIO: Key<Number> = Key::required(
+    "poissons_ratio",
+    "Poisson's ratio: the strain across over the strain along when a bar of the material is pulled. Tetrahedra of constant \
+     strain are too stiff from 0.45 on.",
+    Number::between(
+        "a number above -1 and below 0.5",
+        Bound::Excluded(-1.0),
+        Bound::Excluded(0.5),
+    ),
+)
+.only(&[Condition::where_is(
+    MODEL.name,
+    LINEAR_MODEL,
+    "does not go with springs: their Poisson's ratio is 1/4, whatever their stiffness",
+)
+.help("take the key out, or use model = \"linear\"")]);
+
+const SPRINGS_OF_REGION: Key<Inner> = Key::required(
+    "springs",
+    "The stiffness of the springs.",
+    Inner::one("a table such as { rule = \"lloyd\" }", &SPRINGS),
+)
+.only(&[Condition::where_is(
+    MODEL.name,
+    SPRINGS_MODEL,
+    "does not go with model = \"linear\"",
+)]);
+
+const SPRINGS: TableDescription = TableDescription {
+    name: "springs",
+    meaning: "Springs along the edges of tetrahedra, with a stiffness that follows from Young's modulus.",
+    keys: &[&RULE, &CALIBRATE, &DAMPING_RATIO],
+    needs: Needs::Any,
+    examples: &[
+        "{ rule = \"lloyd\" }",
+        "{ rule = \"van-gelder\", calibrate = true, damping_ratio = 0.05 }",
+    ],
+};
+
+const RULE: Key<Words<SpringRule>> = Key::required(
+    "rule",
+    "`\"lloyd\"`: the six edges of a tetrahedron are equally stiff (Lloyd, Szekely and Harders 2007). `\"van-gelder\"`: an \
+     edge is the stiffer the larger the volume around it and the shorter it is (Van Gelder 1998).",
+    Words(&[
+        ("lloyd", SpringRule::Lloyd),
+        ("van-gelder", SpringRule::VanGelder),
+    ]),
+);
+
+const CALIBRATE: Key<Flag, Or<bool>> = Key::or(
+    "calibrate",
+    "Whether all stiffnesses of the region are scaled so that the springs' average modulus (after Voigt) is Young's modulus.",
+    Flag,
+    false,
+);
+
+const DAMPING_RATIO: Key<Number, Or<f64>> = Key::or(
+    "damping_ratio",
+    "Dashpots beside the springs: the damping of each over the least at which its two masses, by themselves, no longer swing.",
+    Number::zero_or_above("a finite share of the critical damping, 0 or above"),
+    0.0,
+);
 
 const NEARLY_INCOMPRESSIBLE: &str = "0.5 is incompressible, which a displacement alone cannot \
     describe; soft tissue is usually given 0.45 to 0.49, where 4-node tetrahedra are already \
     stiffer than the material";
 
 pub(super) fn read_all(
-    document: &Table<'_>,
+    tables: Vec<Table<'_>>,
     selections: &mut Selections,
 ) -> Result<(Vec<Region>, Vec<Place>), SceneError> {
-    let tables = document.tables("region", KEYS)?;
     let regions = tables.iter().map(|table| read(table, selections));
     let regions = regions.collect::<Result<Vec<_>, _>>()?;
     for (index, (region, table)) in regions.iter().zip(&tables).enumerate() {
         let Some(group) = &region.group else {
             if regions.len() > 1 {
                 let expected = "a group, or where = \"rest\", as there are several regions";
-                return Err(table.missing("group", expected));
+                return Err(table.missing(GROUP.name, expected.to_owned()));
             }
             continue;
         };
@@ -77,13 +172,14 @@ pub(super) fn taken(place: &Place, key: &'static str, name: &str, owner: &Place)
 }
 
 fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneError> {
-    let model = table.choice("model", &MODELS)?;
-    let group = selections.optional(table, Members::Tetrahedra)?;
-    let density = table.required("density", "a finite density above 0 kg/m3", above_zero)?;
-    let modulus = "a finite Young's modulus above 0 Pa";
-    let youngs_modulus = table.required("youngs_modulus", modulus, above_zero)?;
+    let model = table.read(&MODEL)?;
+    table.check_conditions()?;
+    let group =
+        selections.at_most_one_of(table, (&GROUP, &WHERE_OF_TETRAHEDRA), Members::Tetrahedra)?;
+    let density = table.read(&DENSITY)?;
+    let youngs_modulus = table.read(&YOUNGS_MODULUS)?;
     let law = match model {
-        MaterialModel::Springs => springs(table, youngs_modulus)?,
+        MaterialModel::Springs => springs(&table.table(&SPRINGS_OF_REGION)?, youngs_modulus)?,
         MaterialModel::Linear => linear(table, youngs_modulus)?,
     };
     Ok(Region {
@@ -94,40 +190,17 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
 }
 
 fn springs(table: &Table<'_>, youngs_modulus: f64) -> Result<Law, SceneError> {
-    table
-        .refuse(
-            &["poissons_ratio"],
-            "does not go with springs: their Poisson's ratio is 1/4, whatever their stiffness",
-        )
-        .map_err(|error| error.with_help("take the key out, or use model = \"linear\""))?;
-    let springs = table
-        .table("springs", &["rule", "calibrate", "damping_ratio"])?
-        .ok_or_else(|| table.missing("springs", "a table such as { rule = \"lloyd\" }"))?;
-    let ratio = "a finite share of the critical damping, 0 or above";
     Ok(Law::Springs {
         youngs_modulus,
-        rule: springs.choice("rule", &RULES)?,
-        calibrate: springs
-            .optional("calibrate", "true or false", boolean)?
-            .unwrap_or(false),
-        damping_ratio: springs
-            .optional("damping_ratio", ratio, zero_or_above)?
-            .unwrap_or(0.0),
+        rule: table.read(&RULE)?,
+        calibrate: table.read(&CALIBRATE)?,
+        damping_ratio: table.read(&DAMPING_RATIO)?,
     })
 }
 
 fn linear(table: &Table<'_>, youngs_modulus: f64) -> Result<Law, SceneError> {
-    table.refuse(&["springs"], "does not go with model = \"linear\"")?;
-    let read_ratio = |value: &toml::de::DeValue<'_>| match finite(value)? {
-        ratio if ratio > -1.0 && ratio < 0.5 => Ok(ratio),
-        _ => Err(Misfit::Value),
-    };
     let poissons_ratio = table
-        .required(
-            "poissons_ratio",
-            "a number above -1 and below 0.5",
-            read_ratio,
-        )
+        .read(&POISSONS_RATIO)
         .map_err(|error| match error.fault() {
             Fault::Value { found, .. } if found.parse().is_ok_and(|nu: f64| nu >= 0.5) => {
                 error.with_help(NEARLY_INCOMPRESSIBLE)

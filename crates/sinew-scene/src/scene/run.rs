@@ -7,8 +7,10 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::keys::AT_THE_TOP;
-use crate::decode::value::{Misfit, above_zero, boolean, count_up_to, finite, text};
-use crate::decode::{Place, Table};
+use crate::decode::value::{Misfit, finite};
+use crate::decode::{
+    Count, Flag, Key, Kind, Needs, Number, Or, Place, Shape, Table, TableDescription, Text, Values,
+};
 use crate::error::{Fault, SceneError};
 
 /// Duration, integrator and steps of a run.
@@ -39,42 +41,102 @@ pub enum TimeStep {
     Auto,
 }
 
-pub(super) const KEYS: &[&str] = &["duration", "samples", "integrator", "dt", "free_flight"];
+/// Keys besides are options of the integrator.
+pub(crate) const RUN: TableDescription = TableDescription {
+    name: "run",
+    meaning: "How long is simulated, by which method and in which steps. Further keys are options of the integrator.",
+    keys: &[&DURATION, &SAMPLES, &INTEGRATOR, &DT, &FREE_FLIGHT],
+    needs: Needs::Any,
+    examples: &[
+        "[run]\nduration = 1.0\nintegrator = \"central-difference\"\ndt = \"auto\"\n",
+        "[run]\nduration = 2.0\nsamples = 100\nintegrator = \"propagator\"\nkind = \"two-step\"\ntolerance = 1e-6\ndt = 0.02\nfree_flight = true\n",
+    ],
+};
 
-const MOST_SAMPLES: usize = 1_000_000;
+const DURATION: Key<Number> = Key::required(
+    "duration",
+    "Time that is simulated. A run ends with it exactly.",
+    Number::above_zero("a finite time above 0 s"),
+)
+.unit("s");
+
+const SAMPLES: Key<Count, Or<usize>> = Key::or(
+    "samples",
+    "Number of intervals between the instants at which errors are measured by `sinew plan --tolerance` and the bench.",
+    Count { most: 1_000_000 },
+    50,
+);
+
+pub(crate) const INTEGRATOR: Key<Text> = Key::required(
+    "integrator",
+    "The method that takes the steps; `sinew integrators` says which one fits what.",
+    Text::any("the id of an integrator"),
+);
+
+const DT: Key<Step> = Key::required(
+    "dt",
+    "Step, or `\"auto\"` for the longest one up to nine tenths of the stable step of the method.",
+    Step,
+)
+.unit("s");
+
+const FREE_FLIGHT: Key<Flag, Or<bool>> = Key::or(
+    "free_flight",
+    "Whether it is meant that nothing holds the body or a part of it; there is no warning then.",
+    Flag,
+    false,
+);
 
 impl RunSettings {
     pub(super) fn read(table: &Table<'_>) -> Result<Self, SceneError> {
-        let integrator = table.required("integrator", "the id of an integrator", text)?;
+        let integrator = table.read(&INTEGRATOR)?;
         // Before the other keys, so that a misspelt key is not reported as a missing one.
         let options = options(table)?;
         sinew_integrators::build(&integrator, &options)
             .map_err(|error| refused(error, table.place()))?;
-        let samples = format!("a whole number from 1 to {MOST_SAMPLES}");
-        let samples = table.optional("samples", &samples, count_up_to(MOST_SAMPLES))?;
+        let samples = table.read(&SAMPLES)?;
         Ok(Self {
-            duration: table.required("duration", "a finite time above 0 s", above_zero)?,
-            samples: samples.unwrap_or(50),
+            duration: table.read(&DURATION)?,
+            samples,
             integrator,
-            dt: table.required("dt", "a finite step above 0 s, or \"auto\"", step)?,
-            free_flight: table
-                .optional("free_flight", "true or false", boolean)?
-                .unwrap_or(false),
+            dt: table.read(&DT)?,
+            free_flight: table.read(&FREE_FLIGHT)?,
             options,
         })
     }
 }
 
-fn step(value: &DeValue<'_>) -> Result<TimeStep, Misfit> {
-    match value.as_str() {
-        Some("auto") => Ok(TimeStep::Auto),
-        Some(_) => Err(Misfit::Value),
-        None => above_zero(value).map(TimeStep::Given),
+/// A step in seconds, or the word for one that is chosen.
+#[derive(Debug, Clone, Copy)]
+struct Step;
+
+const SECONDS: Number = Number::above_zero("a finite step above 0 s");
+const AUTO: &str = "auto";
+
+impl Kind for Step {
+    fn expected(&self) -> String {
+        format!("{}, or \"{AUTO}\"", SECONDS.expected())
+    }
+
+    fn shape(&self) -> Shape {
+        Shape::Either(vec![SECONDS.shape(), Shape::Words(vec![AUTO])])
+    }
+}
+
+impl Values for Step {
+    type Read = TimeStep;
+
+    fn read(&self, value: &DeValue<'_>) -> Result<TimeStep, Misfit> {
+        match value.as_str() {
+            Some(AUTO) => Ok(TimeStep::Auto),
+            Some(_) => Err(Misfit::Value),
+            None => SECONDS.read(value).map(TimeStep::Given),
+        }
     }
 }
 
 fn refused(error: OptionError, run: &Place) -> SceneError {
-    let key = error.key().unwrap_or("integrator").to_owned();
+    let key = error.key().unwrap_or(INTEGRATOR.name).to_owned();
     run.value_fault(&key, Fault::Integrator(error))
 }
 

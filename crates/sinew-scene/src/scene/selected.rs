@@ -1,11 +1,14 @@
 //! `group` and `where`: the part of the body that a table is about.
 
-use sinew_mesh::{Condition, Selection};
+use sinew_mesh::Selection;
 use toml::de::DeValue;
 
-use crate::decode::value::{Misfit, above_zero, finite, list, tags, text, vector, zero_or_above};
-use crate::decode::{Place, Table};
-use crate::error::{Fault, SceneError};
+use super::place::{PLACE, PLACE_OF_TETRAHEDRA, conditions};
+use crate::decode::value::Misfit;
+use crate::decode::{
+    Condition, Key, Kind, Optional, Place, Shape, Table, TableDescription, Text, Values,
+};
+use crate::error::SceneError;
 
 /// A part of the body that a scene chooses by where it lies. It becomes a group of the mesh when the scene is built.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,27 +48,144 @@ pub(super) struct Selections {
     pub(super) places: Vec<Place>,
 }
 
-pub(super) const KEYS: &[&str] = &["below", "above", "box", "sphere", "plane", "face", "nodes"];
+const EXPECTED_GROUP: Text = Text::any("the name of a group, or where = { .. } in its place");
 
-const GROUP: &str = "the name of a group, or where = { .. } in its place";
+/// A group beside `where`.
+pub(super) const NOT_WHERE: Condition = Condition::without(
+    "where",
+    "does not go with `where`, which stands in its place",
+);
+
+/// The group of a table that is about a part of the body.
+pub(super) const GROUP: Key<Text> = Key::required(
+    "group",
+    "Name of a group of the mesh. A cube or a block has `tissue`, `sides`, `top` and `bottom`.",
+    EXPECTED_GROUP,
+)
+.only(&[NOT_WHERE]);
+
+/// The group of a table that may also be about the whole body.
+pub(super) const OPTIONAL_GROUP: Key<Text, Optional> = Key::optional(
+    "group",
+    "Name of a group of the mesh. A cube or a block has `tissue`, `sides`, `top` and `bottom`.",
+    EXPECTED_GROUP,
+    "the whole body",
+);
+
+/// A place that stands for a group of nodes or of triangles.
+pub(super) const WHERE: Key<Where, Optional> = Key::optional(
+    "where",
+    "The part of the body by where it lies, in place of a group.",
+    Where {
+        expected: "conditions such as { below = { z = 0.01 } }",
+        place: &PLACE,
+        takes_rest: false,
+    },
+    "see `group`",
+);
+
+/// A place that stands for a group of tetrahedra.
+pub(super) const WHERE_OF_TETRAHEDRA: Key<Where, Optional> = Key::optional(
+    "where",
+    "The part of the body by where it lies, in place of a group; `\"rest\"` is all that no other region has.",
+    Where {
+        expected: "conditions such as { below = { z = 0.01 } }, or \"rest\"",
+        place: &PLACE_OF_TETRAHEDRA,
+        takes_rest: true,
+    },
+    "see `group`",
+);
+
+/// A place, or the rest of the body.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Where {
+    expected: &'static str,
+    place: &'static TableDescription,
+    takes_rest: bool,
+}
+
+const REST: &str = "rest";
+
+/// The two forms of `where`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Form {
+    Conditions,
+    Rest,
+}
+
+impl Kind for Where {
+    fn expected(&self) -> String {
+        self.expected.to_owned()
+    }
+
+    fn shape(&self) -> Shape {
+        let place = Shape::Table(self.place);
+        match self.takes_rest {
+            true => Shape::Either(vec![place, Shape::Words(vec![REST])]),
+            false => place,
+        }
+    }
+}
+
+impl Values for Where {
+    type Read = Form;
+
+    fn read(&self, value: &DeValue<'_>) -> Result<Form, Misfit> {
+        match value {
+            DeValue::String(word) if self.takes_rest && word.as_ref() == REST => Ok(Form::Rest),
+            DeValue::String(_) if self.takes_rest => Err(Misfit::Value),
+            DeValue::Table(entries) if entries.is_empty() => Err(Misfit::Value),
+            DeValue::Table(_) => Ok(Form::Conditions),
+            _ => Err(Misfit::Type),
+        }
+    }
+}
 
 impl Selections {
-    /// The group that a table names or selects, if it does either.
-    pub(super) fn optional(
+    /// The group that a table names or selects, which must be one of both.
+    pub(super) fn one_of(
         &mut self,
         table: &Table<'_>,
+        (group, place): (&Key<Text>, &Key<Where, Optional>),
+        members: Members,
+    ) -> Result<String, SceneError> {
+        match self.place(table, place, members)? {
+            Some(name) => Ok(name),
+            None => table.read(group),
+        }
+    }
+
+    /// The group that a table names or selects, if it does either.
+    pub(super) fn at_most_one_of(
+        &mut self,
+        table: &Table<'_>,
+        (group, place): (&Key<Text, Optional>, &Key<Where, Optional>),
         members: Members,
     ) -> Result<Option<String>, SceneError> {
-        if !table.has("where") {
-            return table.optional("group", GROUP, text);
+        match self.place(table, place, members)? {
+            Some(name) => Ok(Some(name)),
+            None => table.read(group),
         }
-        table.refuse(
-            &["group"],
-            "does not go with `where`, which stands in its place",
-        )?;
-        let choice = choice(table, members)?;
+    }
+
+    /// The group that a table selects by where it lies, if it does.
+    pub(super) fn place(
+        &mut self,
+        table: &Table<'_>,
+        key: &Key<Where, Optional>,
+        members: Members,
+    ) -> Result<Option<String>, SceneError> {
+        let choice = match table.read(key)? {
+            None => return Ok(None),
+            Some(Form::Rest) => Choice::Rest,
+            Some(Form::Conditions) => {
+                let place = table.table_of(key.name, key.values.place)?;
+                let conditions = place.as_ref().map(conditions).transpose()?;
+                Choice::Where(Selection::new(conditions.unwrap_or_default()))
+            }
+        };
         let name = match (&choice, members) {
-            (Choice::Rest, _) => "rest".to_owned(),
+            (Choice::Rest, _) => REST.to_owned(),
             (Choice::Where(selection), Members::Nodes) => format!("nodes {selection}"),
             (Choice::Where(selection), Members::Triangles) => format!("triangles {selection}"),
             (Choice::Where(selection), Members::Tetrahedra) => format!("tetrahedra {selection}"),
@@ -77,141 +197,5 @@ impl Selections {
         });
         self.places.push(table.place().clone());
         Ok(Some(name))
-    }
-
-    /// The group that a table must name or select.
-    pub(super) fn required(
-        &mut self,
-        table: &Table<'_>,
-        members: Members,
-    ) -> Result<String, SceneError> {
-        let group = self.optional(table, members)?;
-        group.ok_or_else(|| table.missing("group", GROUP))
-    }
-}
-
-fn choice(table: &Table<'_>, members: Members) -> Result<Choice, SceneError> {
-    let (of_region, expected) = match members {
-        Members::Tetrahedra => (
-            true,
-            "conditions such as { below = { z = 0.01 } }, or \"rest\"",
-        ),
-        Members::Nodes | Members::Triangles => {
-            (false, "conditions such as { below = { z = 0.01 } }")
-        }
-    };
-    let rest = table.optional("where", expected, |value| match value {
-        DeValue::String(word) if of_region && word.as_ref() == "rest" => Ok(true),
-        DeValue::String(_) if of_region => Err(Misfit::Value),
-        DeValue::Table(entries) if entries.is_empty() => Err(Misfit::Value),
-        DeValue::Table(_) => Ok(false),
-        _ => Err(Misfit::Type),
-    })?;
-    if rest == Some(true) {
-        return Ok(Choice::Rest);
-    }
-    let conditions = match table.table("where", KEYS)? {
-        Some(place) => conditions(&place, of_region)?,
-        None => Vec::new(),
-    };
-    Ok(Choice::Where(Selection::new(conditions)))
-}
-
-fn conditions(place: &Table<'_>, of_region: bool) -> Result<Vec<Condition>, SceneError> {
-    if of_region {
-        place.refuse(
-            &["face"],
-            "chooses triangles of the boundary, and a region is made of tetrahedra",
-        )?;
-    }
-    let mut conditions = Vec::new();
-    if let Some(bounds) = bounds(place, "below", f64::INFINITY)? {
-        conditions.push(Condition::below(bounds));
-    }
-    if let Some(bounds) = bounds(place, "above", f64::NEG_INFINITY)? {
-        conditions.push(Condition::above(bounds));
-    }
-    let corners = "two corners [[x, y, z], [x, y, z]] in m, the lower one first";
-    if let Some([low, high]) = place.optional("box", corners, corners_of_box)? {
-        conditions.push(Condition::Box { low, high });
-    }
-    if let Some(sphere) = place.table("sphere", &["center", "radius"])? {
-        conditions.push(Condition::Sphere {
-            center: sphere.required("center", "[x, y, z] in m, all finite", vector)?,
-            radius: sphere.required("radius", "a finite radius above 0 m", above_zero)?,
-        });
-    }
-    let direction = "[x, y, z], all finite and not all 0";
-    if let Some(plane) = place.table("plane", &["point", "normal", "within"])? {
-        let within = "a finite distance, 0 m or above";
-        conditions.push(Condition::Plane {
-            point: plane.required("point", "[x, y, z] in m, all finite", vector)?,
-            normal: plane.required("normal", direction, nonzero)?,
-            within: plane.required("within", within, zero_or_above)?,
-        });
-    }
-    if let Some(face) = place.table("face", &["normal", "angle"])? {
-        let angle = "an angle from 0 to 180 degrees";
-        conditions.push(Condition::Facing {
-            normal: face.required("normal", direction, nonzero)?,
-            angle: face.required("angle", angle, angle_in_degrees)?,
-        });
-    }
-    let node_tags = "a list of tags of nodes of the mesh file";
-    if let Some(tags) = place.optional("nodes", node_tags, tags)? {
-        conditions.push(Condition::Tags(tags));
-    }
-    Ok(conditions)
-}
-
-/// The bounds of `below` or `above`; `none` along axes that are not named.
-fn bounds(place: &Table<'_>, key: &'static str, none: f64) -> Result<Option<[f64; 3]>, SceneError> {
-    const AXES: [&str; 3] = ["x", "y", "z"];
-    let Some(table) = place.table(key, &AXES)? else {
-        return Ok(None);
-    };
-    let mut bounds = [none; 3];
-    for (bound, axis) in bounds.iter_mut().zip(AXES) {
-        if let Some(given) = table.optional(axis, "a finite coordinate in m", finite)? {
-            *bound = given;
-        }
-    }
-    if bounds == [none; 3] {
-        let expected = "a coordinate along x, y or z such as { z = 0.01 }".to_owned();
-        let found = "{}".to_owned();
-        let key = key.to_owned();
-        let fault = Fault::Value {
-            key: key.clone(),
-            found,
-            expected,
-        };
-        return Err(place.place().value_fault(&key, fault));
-    }
-    Ok(Some(bounds))
-}
-
-fn corners_of_box(value: &DeValue<'_>) -> Result<[[f64; 3]; 2], Misfit> {
-    let corners = <[[f64; 3]; 2]>::try_from(list(value, vector)?).map_err(|_| Misfit::Value)?;
-    let [low, high] = corners;
-    match (0..3).all(|axis| low[axis] <= high[axis]) {
-        true => Ok(corners),
-        false => Err(Misfit::Value),
-    }
-}
-
-fn nonzero(value: &DeValue<'_>) -> Result<[f64; 3], Misfit> {
-    let vector = vector(value)?;
-    // Of components so small or large that a length is 0 or infinite, no direction can be made.
-    let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-    match length > 0.0 && length.is_finite() {
-        true => Ok(vector),
-        false => Err(Misfit::Value),
-    }
-}
-
-fn angle_in_degrees(value: &DeValue<'_>) -> Result<f64, Misfit> {
-    match zero_or_above(value)? {
-        angle if angle <= 180.0 => Ok(angle),
-        _ => Err(Misfit::Value),
     }
 }

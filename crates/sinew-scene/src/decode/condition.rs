@@ -1,0 +1,67 @@
+//! The other keys with which a key goes.
+
+/// A condition that must hold where a key is given.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Condition {
+    /// What must hold.
+    pub(crate) goes: Goes,
+    /// The end of the sentence, begun by the key, that refuses it otherwise.
+    pub(crate) reason: &'static str,
+    /// What to do then, if anything.
+    pub(crate) help: Option<&'static str>,
+}
+
+/// What must hold of the other keys of a table.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Goes {
+    /// This key is given.
+    With(&'static str),
+    /// This key is not given.
+    Without(&'static str),
+    /// This key is this word.
+    If(&'static str, &'static str),
+    /// Nothing can: the key is known here only to be refused with a reason.
+    Never,
+}
+
+impl Condition {
+    const fn new(goes: Goes, reason: &'static str) -> Self {
+        Self {
+            goes,
+            reason,
+            help: None,
+        }
+    }
+
+    /// The other key must be given.
+    pub(crate) const fn with(other: &'static str, reason: &'static str) -> Self {
+        Self::new(Goes::With(other), reason)
+    }
+
+    /// The other key must not be given.
+    pub(crate) const fn without(other: &'static str, reason: &'static str) -> Self {
+        Self::new(Goes::Without(other), reason)
+    }
+
+    /// The other key must be this word.
+    pub(crate) const fn where_is(
+        other: &'static str,
+        word: &'static str,
+        reason: &'static str,
+    ) -> Self {
+        Self::new(Goes::If(other, word), reason)
+    }
+
+    /// The key is refused.
+    pub(crate) const fn never(reason: &'static str) -> Self {
+        Self::new(Goes::Never, reason)
+    }
+
+    /// What to do where the condition does not hold.
+    pub(crate) const fn help(self, help: &'static str) -> Self {
+        Self {
+            help: Some(help),
+            ..self
+        }
+    }
+}

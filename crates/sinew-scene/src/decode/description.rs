@@ -1,0 +1,114 @@
+//! Tables and keys as data, from which the reference and the schema are written.
+
+use std::ops::Bound;
+
+use super::condition::Condition;
+
+/// The description of a table.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TableDescription {
+    /// Its name among the definitions of the schema.
+    pub(crate) name: &'static str,
+    /// What it is for, in sentences.
+    pub(crate) meaning: &'static str,
+    /// Its keys, in the order in which messages list them.
+    pub(crate) keys: &'static [&'static dyn Described],
+    /// The number of its keys that must be given, beside those that are required.
+    pub(crate) needs: Needs,
+    /// Tables as a user writes them, in which every key stands at least once.
+    pub(crate) examples: &'static [&'static str],
+}
+
+/// The number of keys that must be given in a table.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Needs {
+    /// Any number.
+    Any,
+    /// At least one.
+    Some,
+    /// Exactly one of these, and any of the others.
+    OneOf(&'static [&'static str]),
+}
+
+/// A key that describes itself.
+pub(crate) trait Described: Sync {
+    /// Its name.
+    fn name(&self) -> &'static str;
+
+    /// The conditions under which it may be given.
+    fn conditions(&self) -> &'static [Condition];
+
+    /// All that there is to say about it.
+    fn describe(&self) -> KeyDescription;
+}
+
+impl std::fmt::Debug for dyn Described {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The description of a key.
+#[derive(Debug, Clone)]
+pub(crate) struct KeyDescription {
+    /// Its name.
+    pub(crate) name: &'static str,
+    /// What it means, in sentences.
+    pub(crate) meaning: &'static str,
+    /// Its unit; empty where it has none.
+    pub(crate) unit: &'static str,
+    /// The values that fit, in words.
+    pub(crate) expected: String,
+    /// The values that fit, as data.
+    pub(crate) shape: Shape,
+    /// What holds where it is not given.
+    pub(crate) otherwise: Stated,
+    /// The conditions under which it may be given, and must where it is required.
+    pub(crate) conditions: &'static [Condition],
+}
+
+/// What holds where a key is not given.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Stated {
+    /// It must be given.
+    Required,
+    /// This, in words.
+    InWords(&'static str),
+    /// This value, in TOML.
+    Default(String),
+}
+
+/// The values that a key takes, as far as one value tells.
+#[derive(Debug, Clone)]
+pub(crate) enum Shape {
+    /// A finite number between two bounds.
+    Number(Bound<f64>, Bound<f64>),
+    /// A whole number from the first to the second.
+    Whole(u64, Option<u64>),
+    /// true or false.
+    Flag,
+    /// A string.
+    Text {
+        /// A regular expression for it.
+        pattern: Option<&'static str>,
+        /// The one string that does not fit.
+        except: Option<&'static str>,
+    },
+    /// One of these strings.
+    Words(Vec<&'static str>),
+    /// A list.
+    List {
+        /// Each item.
+        of: Box<Shape>,
+        /// The least number of items.
+        least: usize,
+        /// The largest number of items.
+        most: Option<usize>,
+    },
+    /// A table.
+    Table(&'static TableDescription),
+    /// A list of tables.
+    Tables(&'static TableDescription),
+    /// One of several.
+    Either(Vec<Shape>),
+}

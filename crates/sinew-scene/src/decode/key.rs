@@ -1,0 +1,136 @@
+//! The description of a key, by which it is read, refused and explained.
+
+use super::condition::Condition;
+use super::description::{Described, KeyDescription, Stated};
+use super::presence::{Optional, Or, Required, Usual};
+use super::values::{Kind, Written};
+
+/// A key: its name, its meaning, the values `V` that fit, and what holds where it is not given, `P`.
+///
+/// Tables are read by these constants, and the reference and the schema of scenes are written from them, so that neither
+/// can say anything else than what is read.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Key<V, P = Required> {
+    pub(crate) name: &'static str,
+    pub(crate) values: V,
+    pub(super) presence: P,
+    meaning: &'static str,
+    unit: &'static str,
+    conditions: &'static [Condition],
+}
+
+impl<V: Copy> Key<V, Required> {
+    /// A key that must be given.
+    pub(crate) const fn required(name: &'static str, meaning: &'static str, values: V) -> Self {
+        Self::new(name, meaning, values, Required)
+    }
+}
+
+impl<V: Copy> Key<V, Optional> {
+    /// A key that may be left out; what holds then stands in `otherwise`.
+    pub(crate) const fn optional(
+        name: &'static str,
+        meaning: &'static str,
+        values: V,
+        otherwise: &'static str,
+    ) -> Self {
+        Self::new(name, meaning, values, Optional(otherwise))
+    }
+}
+
+impl<V: Copy> Key<V, Optional> {
+    /// The key where something else holds without it.
+    pub(crate) const fn otherwise(self, otherwise: &'static str) -> Self {
+        let presence = Optional(otherwise);
+        Self { presence, ..self }
+    }
+}
+
+impl<V: Written> Key<V, Or<V::Read>>
+where
+    V::Read: Copy,
+{
+    /// A key with a default.
+    pub(crate) const fn or(
+        name: &'static str,
+        meaning: &'static str,
+        values: V,
+        default: V::Read,
+    ) -> Self {
+        Self::new(name, meaning, values, Or(default))
+    }
+}
+
+impl<V: Copy> Key<V, Usual> {
+    /// A key of a table whose reader has a default, here in TOML.
+    pub(crate) const fn usual(
+        name: &'static str,
+        meaning: &'static str,
+        values: V,
+        default: &'static str,
+    ) -> Self {
+        Self::new(name, meaning, values, Usual(default))
+    }
+}
+
+impl<V: Copy, P: Copy> Key<V, P> {
+    const fn new(name: &'static str, meaning: &'static str, values: V, presence: P) -> Self {
+        Self {
+            name,
+            values,
+            presence,
+            meaning,
+            unit: "",
+            conditions: &[],
+        }
+    }
+
+    /// The key with a unit.
+    pub(crate) const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// The key under these conditions.
+    pub(crate) const fn only(self, conditions: &'static [Condition]) -> Self {
+        Self { conditions, ..self }
+    }
+}
+
+impl<V: Kind, P> Key<V, P> {
+    fn describe_with(&self, otherwise: Stated) -> KeyDescription {
+        KeyDescription {
+            name: self.name,
+            meaning: self.meaning,
+            unit: self.unit,
+            expected: self.values.expected(),
+            shape: self.values.shape(),
+            otherwise,
+            conditions: self.conditions,
+        }
+    }
+}
+
+/// Describes a key whose value is a `V`, by what holds where it is not given.
+macro_rules! described {
+    ([$($generics:tt)*] $presence:ty, $key:ident => $stated:expr) => {
+        impl<$($generics)*> Described for Key<V, $presence> {
+            fn name(&self) -> &'static str {
+                self.name
+            }
+
+            fn conditions(&self) -> &'static [Condition] {
+                self.conditions
+            }
+
+            fn describe(&self) -> KeyDescription {
+                let $key = self;
+                self.describe_with($stated)
+            }
+        }
+    };
+}
+
+described!([V: Kind] Required, _key => Stated::Required);
+described!([V: Kind] Optional, key => Stated::InWords(key.presence.0));
+described!([V: Kind] Usual, key => Stated::Default(key.presence.0.to_owned()));
+described!([V: Written<Read = T>, T: Sync] Or<T>, key => Stated::Default(key.values.written(&key.presence.0)));
