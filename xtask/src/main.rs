@@ -1,4 +1,4 @@
-//! Repository chores: `cargo xtask bench | native | memory | reproduce | meshes | compare | docs | rules | ci`.
+//! Repository chores: `cargo xtask bench | native | memory | reproduce | meshes | compare | docs | reference | rules | ci`.
 
 mod bench;
 mod beside;
@@ -12,6 +12,7 @@ mod meshes;
 mod native;
 mod progress;
 mod python;
+mod reference;
 mod repository;
 mod reproduce;
 mod rules;
@@ -49,6 +50,8 @@ enum Chore {
     Compare,
     /// Bring the README's table and pictures up to the last bench and the last hard bench.
     Docs,
+    /// Write the reference and the JSON schema of scenes into docs.
+    Reference,
     /// Check the rules of ARCHITECTURE.md that a machine can check; part of `ci`.
     Rules,
     /// Everything that must hold before a change lands.
@@ -64,6 +67,7 @@ fn main() -> ExitCode {
         Chore::Meshes => meshes::run(),
         Chore::Compare => compare::run(),
         Chore::Docs => docs::run(),
+        Chore::Reference => reference::run(),
         Chore::Rules => ci::check_rules(),
         Chore::Ci => ci::run(),
     };

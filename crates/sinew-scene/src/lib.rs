@@ -42,6 +42,7 @@ mod plan;
 mod probe_csv;
 pub mod probe_rows;
 mod proposal;
+mod reference;
 mod scene;
 mod simulation;
 mod source;
@@ -51,6 +52,7 @@ pub use overrides::OverrideError;
 pub use plan::{Plan, PlanSection};
 pub use probe_csv::ProbeCsv;
 pub use proposal::propose;
+pub use reference::{scene_reference, scene_schema};
 pub use scene::{
     Body, Choice, Initial, Instants, Members, MeshChanges, MeshSource, Motion, Oscillator,
     OutputSettings, ProbeAt, ProbePoint, Rotation, RunSettings, Scene, Selected, Subject, TimeStep,

@@ -38,6 +38,8 @@ enum Command {
     Mesh(command::mesh::Command),
     /// List the integrators and their options.
     Integrators,
+    /// List the tables and keys of a scene, or print a JSON schema of scenes for editors.
+    SceneReference(command::scene_reference::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -55,6 +57,7 @@ fn main() -> ExitCode {
         Command::New(arguments) => command::new::run(&arguments),
         Command::Mesh(arguments) => command::mesh::run(&arguments),
         Command::Integrators => command::integrators::run(),
+        Command::SceneReference(arguments) => command::scene_reference::run(&arguments),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -13,6 +13,7 @@ pub(crate) mod plan;
 pub(crate) mod resume;
 mod ruled;
 pub(crate) mod run;
+pub(crate) mod scene_reference;
 mod scene_with;
 
 pub(crate) use failure::Failure;

@@ -1,0 +1,23 @@
+//! What a scene may hold, for people and for editors, written from the descriptions that the decoder reads by.
+
+mod examples;
+mod markdown;
+mod options;
+mod schema;
+mod sections;
+#[cfg(test)]
+mod tests;
+
+use crate::scene::DOCUMENT;
+
+/// Every table and key of a scene with its values, unit, default and an example, as Markdown.
+#[must_use]
+pub fn scene_reference() -> String {
+    markdown::of(&DOCUMENT)
+}
+
+/// A JSON schema (draft 7) of scenes, for editors.
+#[must_use]
+pub fn scene_schema() -> String {
+    format!("{:#}\n", schema::of(&DOCUMENT))
+}
