@@ -12,9 +12,12 @@ pub enum NumericalDissipation {
     /// else at the start of the step (Newmark's method: both 0).
     ///
     /// Multiplied by `du`, that equation gives (as Hughes, The Finite Element Method, section 9.2, for Newmark's
-    /// method): `du' ((a_f - 1/2) (dF - K du - D dv) + (1/2 - a_m) M da) + dt (1/2 - gamma) v' M da
-    /// + dt^2 (beta - gamma/2) da' M a - dt (beta - gamma/2) du' D da - s du' dF` with the means v and a of both
-    /// ends and s for the shift of loads.
+    /// method), with the means v and a of both ends and s for the shift of loads,
+    ///
+    /// ```text
+    /// du' ((a_f - 1/2) (dF - K du - D dv) + (1/2 - a_m) M da - s dF) + dt (1/2 - gamma) v' M da
+    ///     + dt^2 (beta - gamma/2) da' M a - dt (beta - gamma/2) du' D da
+    /// ```
     Newmark {
         /// Share of the new acceleration in the displacement, twice.
         beta: f64,

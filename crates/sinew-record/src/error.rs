@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use sinew_core::{EvaluationError, OptionError, SetupError, SimulateError, StateBytesError};
 use sinew_fem::FieldError;
 use sinew_mesh::vtu::WriteVtuError;
-use sinew_scene::SceneError;
 use sinew_scene::output::OutputError;
+use sinew_scene::{ProbeRowError, SceneError};
 
 /// A reason for which a run leaves no result, or cannot go on.
 #[derive(Debug, thiserror::Error)]
@@ -33,6 +33,9 @@ pub enum RecordRunError {
     /// A field that cannot be written.
     #[error(transparent)]
     Field(#[from] FieldError),
+    /// A row of probes that cannot be written.
+    #[error(transparent)]
+    ProbeRow(#[from] ProbeRowError),
     /// A field that a .vtu file cannot hold.
     #[error(transparent)]
     Vtu(#[from] WriteVtuError),

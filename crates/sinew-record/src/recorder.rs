@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use sinew_core::{Moment, RecordError, Recorder, Verdict};
 use sinew_scene::output::{GrowingFile, OwnedFolder};
-use sinew_scene::{Instants, Simulation, probe_rows};
+use sinew_scene::{Instants, ProbeRows, Simulation};
 
 use crate::balance::Balance;
 use crate::checkpoint::Checkpoint;
@@ -106,6 +106,7 @@ pub(crate) struct RunRecorder<'a> {
     pub(crate) companion: &'a mut dyn Companion,
     pub(crate) schedules: Schedules,
     pub(crate) tables: Tables,
+    pub(crate) probes: ProbeRows<'a>,
     pub(crate) balance: Balance<'a>,
     pub(crate) reactions: Option<Reactions<'a>>,
     /// None for an oscillator.
@@ -152,6 +153,10 @@ impl RunRecorder<'_> {
         }
         if frame {
             self.frame(moment)?;
+        }
+        if self.probes.need_moments() && self.schedules.probes.is_due(step) {
+            let row = self.probes.of_moment(moment)?;
+            self.tables.probes.push(row)?;
         }
         self.progress.steps = step;
         self.pace.look(step);
@@ -226,8 +231,15 @@ impl Recorder for RunRecorder<'_> {
         let fields = self.schedules.fields.and_then(|fields| fields.next(step));
         let energy = self.schedules.energy.next(step);
         let end = self.simulation.run().steps;
+        let probes = match self.probes.need_moments() {
+            true => self.schedules.probes.next(step),
+            false => None,
+        };
         let look = self.pace.next().clamp(step, end.max(step));
-        let next = [fields, energy, Some(look)].into_iter().flatten().min()?;
+        let next = [fields, energy, probes, Some(look)]
+            .into_iter()
+            .flatten()
+            .min()?;
         next.checked_sub(self.before)
     }
 
@@ -237,7 +249,7 @@ impl Recorder for RunRecorder<'_> {
     }
 
     fn watches(&self) -> Vec<u32> {
-        probe_rows::watched(self.simulation.probes())
+        self.probes.watched()
     }
 
     fn watched(&mut self, t: f64, u: &[f64]) -> Result<Verdict, RecordError> {
@@ -245,11 +257,9 @@ impl Recorder for RunRecorder<'_> {
         self.watched += 1;
         let known = self.resumed && step == self.before;
         if !known && self.schedules.probes.is_due(step) {
-            probe_rows::write(&mut self.line, self.simulation.probes(), t, u);
-            self.tables
-                .probes
-                .push(&self.line)
-                .map_err(|error| failed(t, error.into()))?;
+            let row = self.probes.of_watched(t, u);
+            let written = self.tables.probes.push(row);
+            written.map_err(|error| failed(t, error.into()))?;
         }
         Ok(Verdict::Continue)
     }

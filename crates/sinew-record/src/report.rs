@@ -4,6 +4,7 @@ mod body;
 mod curves;
 
 use sinew_draw::Page;
+use sinew_scene::Quantity;
 use sinew_scene::output::OwnedFolder;
 
 use crate::csv::Table;
@@ -53,13 +54,20 @@ pub(crate) fn page(
     if let Some(probes) = read(tables::PROBES)? {
         page.section("probes", "Probes");
         for probe in simulation.probes() {
-            let begin = format!("{}_u_", probe.name);
-            let plot = plot(&probes, &probe.name, "displacement [m]", |column| {
+            let (letter, label, unit) = match probe.quantity {
+                Quantity::Displacement => ("u", "displacement [m]", "m"),
+                Quantity::Velocity => ("v", "velocity [m/s]", "m_per_s"),
+                Quantity::Stress => ("s", "stress [Pa]", "Pa"),
+            };
+            let begin = format!("{}_{letter}_", probe.name);
+            let plot = plot(&probes, &probe.name, label, |column| {
+                let part = column.strip_prefix(&begin)?;
                 // The mass of an oscillator has one direction without a name.
-                match column.strip_prefix(&begin)? {
-                    "m" => Some("u".to_owned()),
-                    axis => Some(axis.strip_suffix("_m")?.to_owned()),
+                if part == unit {
+                    return Some(letter.to_owned());
                 }
+                let part = part.strip_suffix(unit)?.strip_suffix('_')?;
+                Some(part.replace('_', " "))
             });
             page.figure(&plot.svg(), "");
         }
@@ -76,7 +84,7 @@ pub(crate) fn page(
         });
         page.figure(
             &plot.svg(),
-            "What remains is what the method, or rows that are steps apart, bring in or take away.",
+            "What remains is what the method, where that is not known, or rows that are steps apart bring in or take away.",
         );
     }
     if let Some(reactions) = read(tables::REACTIONS)? {

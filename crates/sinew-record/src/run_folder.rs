@@ -8,7 +8,7 @@ use std::time::Instant;
 use sinew_core::{Outcome, simulate};
 use sinew_integrators::Stepper;
 use sinew_scene::output::{OutputError, OwnedFolder, Tenant};
-use sinew_scene::{Scene, Simulation};
+use sinew_scene::{ProbeRows, Scene, Simulation};
 
 use crate::balance::Balance;
 use crate::checkpoint::{self, Checkpoint};
@@ -176,6 +176,7 @@ impl RunFolder {
                 companion,
                 schedules,
                 tables,
+                probes: ProbeRows::new(simulation),
                 balance,
                 reactions,
                 frames,

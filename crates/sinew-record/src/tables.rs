@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use sinew_core::Moment;
 use sinew_fem::On;
-use sinew_scene::{HeldPlace, ReactionOf, Simulation, probe_rows};
+use sinew_scene::{HeldPlace, ProbeRows, ReactionOf, Simulation};
 
 use crate::balance::Energies;
 use crate::error::RecordRunError;
@@ -17,15 +17,20 @@ pub(crate) const REACTIONS: &str = "reactions.csv";
 pub(crate) fn probes_head(simulation: &Simulation) -> String {
     let mut text = String::new();
     for probe in simulation.probes() {
-        if let (Some(node), Some(body)) = (&probe.node, simulation.model().body()) {
-            let [x, y, z] = body.mesh.points[node.index as usize];
-            let (name, tag, distance) = (&probe.name, node.tag, node.distance);
-            text.push_str(&format!(
-                "# {name}: node {tag} at {x:?} {y:?} {z:?} m, {distance:?} m from the point asked for\n"
-            ));
-        }
+        let place = match (&probe.node, simulation.model().body()) {
+            (Some(node), Some(body)) => {
+                let [x, y, z] = body.mesh.points[node.index as usize];
+                let (tag, distance) = (node.tag, node.distance);
+                format!(
+                    "node {tag} at {x:?} {y:?} {z:?} m, {distance:?} m from the point asked for"
+                )
+            }
+            (None, Some(_)) => probe.place.clone(),
+            (_, None) => continue,
+        };
+        text.push_str(&format!("# {}: {place}\n", probe.name));
     }
-    text.push_str(&probe_rows::columns(simulation.probes()).join(","));
+    text.push_str(&ProbeRows::new(simulation).columns().join(","));
     text.push('\n');
     text
 }

@@ -40,7 +40,7 @@ pub mod output;
 mod overrides;
 mod plan;
 mod probe_csv;
-pub mod probe_rows;
+mod probe_rows;
 mod proposal;
 mod reference;
 mod scene;
@@ -51,16 +51,17 @@ pub use error::{Fault, NoStableStep, SceneError, StableStepError};
 pub use overrides::OverrideError;
 pub use plan::{Plan, PlanSection};
 pub use probe_csv::ProbeCsv;
+pub use probe_rows::{ProbeRowError, ProbeRows};
 pub use proposal::propose;
 pub use reference::{scene_reference, scene_schema};
 pub use scene::{
     Body, Choice, Initial, Instants, Members, MeshChanges, MeshSource, Motion, Oscillator,
-    OutputSettings, ProbeAt, ProbePoint, Rotation, RunSettings, Scene, Selected, Subject, TimeStep,
-    Way,
+    OutputSettings, ProbeAt, ProbePoint, Quantity, Rotation, RunSettings, Scene, Selected, Subject,
+    TimeStep, Way,
 };
 pub use simulation::{
     BodyModel, HeldPlace, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe,
-    Reaction, ReactionError, ReactionOf, RefusedLoad, SceneModel, SelectedPart, Simulation,
-    UnresolvedLoad, Warning, WarningKind,
+    ProbeNode, Reaction, ReactionError, ReactionOf, RefusedLoad, SceneModel, SelectedPart,
+    Simulation, UnresolvedLoad, Warning, WarningKind,
 };
 pub use source::SceneSource;

@@ -1,39 +1,32 @@
 //! The motion of probes as a CSV file.
 
-use std::io::{self, Write};
+use std::io::Write;
 
 use sinew_core::{Moment, RecordError, Recorder, Verdict};
 
 use crate::output::{Delivery, Output, OutputError};
-use crate::probe_rows;
-use crate::simulation::Probe;
+use crate::probe_rows::ProbeRows;
 
-/// Writes the displacement of probes after every step: columns `t_s`, then `<probe>_u_x_m`,
-/// `<probe>_u_y_m`, `<probe>_u_z_m` of each probe (`<probe>_u_m` for an oscillator). Numbers
-/// are written so that reading them gives the same bits.
+/// Writes what probes write down after every step, in the columns of [`ProbeRows`]. Numbers are written so that reading
+/// them gives the same bits.
 ///
 /// A file has a temporary name until [`ProbeCsv::finish`], so that a file under its final name is
 /// always complete; dropped before that, it leaves nothing behind. Where the output is a pipe and its
 /// reader closes it, the run is stopped.
 #[derive(Debug)]
-pub struct ProbeCsv {
-    probes: Vec<Probe>,
+pub struct ProbeCsv<'a> {
+    rows: ProbeRows<'a>,
     output: Output,
-    row: String,
 }
 
-impl ProbeCsv {
+impl<'a> ProbeCsv<'a> {
     /// Starts the output with the row of column names.
     ///
     /// # Errors
     /// [`OutputError::Failed`].
-    pub fn new(mut output: Output, probes: &[Probe]) -> Result<Self, OutputError> {
-        match writeln!(output, "{}", probe_rows::columns(probes).join(",")) {
-            Ok(()) => Ok(Self {
-                probes: probes.to_vec(),
-                output,
-                row: String::new(),
-            }),
+    pub fn new(mut output: Output, rows: ProbeRows<'a>) -> Result<Self, OutputError> {
+        match writeln!(output, "{}", rows.columns().join(",")) {
+            Ok(()) => Ok(Self { rows, output }),
             Err(source) => Err(output.failed(source)),
         }
     }
@@ -45,36 +38,41 @@ impl ProbeCsv {
     pub fn finish(self) -> Result<Delivery, OutputError> {
         self.output.finish()
     }
+}
 
-    /// Writes a row; `moving` holds the displacements of the degrees of freedom, which are not held or moved.
-    fn write(&mut self, t: f64, moving: &[f64]) -> io::Result<()> {
-        probe_rows::write(&mut self.row, &self.probes, t, moving);
-        self.output.write_all(self.row.as_bytes())
+/// Writes a row.
+fn write(output: &mut Output, t: f64, row: &str) -> Result<Verdict, RecordError> {
+    match output.write_all(row.as_bytes()) {
+        Ok(()) if output.reader_left() => Ok(Verdict::Stop),
+        Ok(()) => Ok(Verdict::Continue),
+        Err(error) => Err(RecordError {
+            t,
+            source: output.failed(error).into(),
+        }),
     }
 }
 
-impl Recorder for ProbeCsv {
-    fn next(&mut self, _step: usize) -> Option<usize> {
-        None
+impl Recorder for ProbeCsv<'_> {
+    fn next(&mut self, step: usize) -> Option<usize> {
+        self.rows.need_moments().then_some(step)
     }
 
-    fn record(&mut self, _moment: &Moment<'_>) -> Result<Verdict, RecordError> {
-        Ok(Verdict::Continue)
+    fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        let t = moment.state.t();
+        let row = self.rows.of_moment(moment);
+        let row = row.map_err(|error| RecordError {
+            t,
+            source: error.into(),
+        })?;
+        write(&mut self.output, t, row)
     }
 
     fn watches(&self) -> Vec<u32> {
-        probe_rows::watched(&self.probes)
+        self.rows.watched()
     }
 
     fn watched(&mut self, t: f64, moving: &[f64]) -> Result<Verdict, RecordError> {
-        match self.write(t, moving) {
-            Ok(()) if self.output.reader_left() => Ok(Verdict::Stop),
-            Ok(()) => Ok(Verdict::Continue),
-            Err(error) => Err(RecordError {
-                t,
-                source: self.output.failed(error).into(),
-            }),
-        }
+        write(&mut self.output, t, self.rows.of_watched(t, moving))
     }
 }
 
@@ -87,48 +85,66 @@ mod tests {
 
     use super::*;
     use crate::output::Destination;
+    use crate::scene::Quantity;
+    use crate::simulation::{Probe, ProbeNode};
 
-    fn csv(path: &std::path::Path) -> ProbeCsv {
+    fn csv<'a>(path: &std::path::Path, probes: &'a [Probe]) -> ProbeCsv<'a> {
         let output = Destination::new(path, &[]).unwrap().open().unwrap();
-        ProbeCsv::new(output, &probes()).unwrap()
+        ProbeCsv::new(output, ProbeRows::of(probes, None)).unwrap()
     }
 
     fn probes() -> Vec<Probe> {
-        let probe = |name: &str, dofs: &[Option<usize>]| Probe {
-            name: name.into(),
-            node: None,
+        let node = |share: f64, dofs: &[Option<usize>], courses: Vec<Vec<Course>>| ProbeNode {
+            share,
+            index: 0,
             dofs: dofs.to_vec(),
-            courses: Vec::new(),
+            courses,
+        };
+        let probe = |name: &str, nodes: Vec<ProbeNode>| Probe {
+            name: name.into(),
+            quantity: Quantity::Displacement,
+            node: None,
+            nodes,
+            tets: Vec::new(),
+            place: String::new(),
         };
         let along_y = Course {
             displacement: [9.0, 0.25, 9.0],
             ramp: Ramp::Linear,
         };
+        let moved = [Vec::new(), vec![along_y], Vec::new()];
         vec![
-            probe("tip", &[Some(3), None, Some(5)]),
-            probe("mass", &[Some(0)]),
-            Probe {
-                courses: vec![Vec::new(), vec![along_y], Vec::new()],
-                ..probe("moved", &[None, None, Some(8)])
-            },
+            probe(
+                "tip",
+                vec![node(1.0, &[Some(3), None, Some(5)], Vec::new())],
+            ),
+            probe("mass", vec![node(1.0, &[Some(0)], Vec::new())]),
+            probe(
+                "mean",
+                vec![
+                    node(0.75, &[None, None, Some(8)], moved.to_vec()),
+                    node(0.25, &[Some(9), None, Some(11)], Vec::new()),
+                ],
+            ),
         ]
     }
 
-    /// Of the degrees of freedom 3, 5, 0 and 8.
-    const MOVING: [f64; 4] = [1e-7, 0.3, 0.1, 0.7];
+    /// Of the degrees of freedom 3, 5, 0, 8, 9 and 11.
+    const MOVING: [f64; 6] = [1e-7, 0.3, 0.1, 0.5, 4.0, 1.0];
 
     #[test]
     fn rows_hold_the_probes_in_order() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run.csv");
-        let mut csv = csv(&path);
-        csv.write(2.0, &MOVING).unwrap();
+        let probes = probes();
+        let mut csv = csv(&path, &probes);
+        csv.watched(2.0, &MOVING).unwrap();
         assert!(!path.exists(), "unfinished files have another name");
         assert_eq!(csv.finish().unwrap(), Delivery::Whole);
         assert_eq!(
             fs::read_to_string(&path).unwrap(),
-            "t_s,tip_u_x_m,tip_u_y_m,tip_u_z_m,mass_u_m,moved_u_x_m,moved_u_y_m,moved_u_z_m\n\
-             2.0,1e-7,0.0,0.3,0.1,0.0,0.5,0.7\n"
+            "t_s,tip_u_x_m,tip_u_y_m,tip_u_z_m,mass_u_m,mean_u_x_m,mean_u_y_m,mean_u_z_m\n\
+             2.0,1e-7,0.0,0.3,0.1,1.0,0.375,0.625\n"
         );
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
@@ -138,8 +154,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run.csv");
         fs::write(&path, "old").unwrap();
-        let mut csv = csv(&path);
-        csv.write(0.0, &MOVING).unwrap();
+        let probes = probes();
+        let mut csv = csv(&path, &probes);
+        csv.watched(0.0, &MOVING).unwrap();
         drop(csv);
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);

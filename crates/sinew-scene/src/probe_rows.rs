@@ -1,47 +1,193 @@
-//! Rows of a table of probes: the time, then the displacement of each probe.
+//! Rows of a table of probes: the time, then what each probe writes down.
 
 use std::fmt::Write;
 
-use crate::simulation::Probe;
+use sinew_core::{EvaluationError, Moment};
+use sinew_fem::{FieldError, Model, stress};
 
-/// Names of the columns: `t_s`, then `<probe>_u_x_m`, `<probe>_u_y_m`, `<probe>_u_z_m` of each probe (`<probe>_u_m` for an
-/// oscillator).
-#[must_use]
-pub fn columns(probes: &[Probe]) -> Vec<String> {
-    let mut columns = vec!["t_s".to_owned()];
-    for Probe { name, dofs, .. } in probes {
-        match dofs.len() {
-            1 => columns.push(format!("{name}_u_m")),
-            _ => columns.extend(["x", "y", "z"].map(|axis| format!("{name}_u_{axis}_m"))),
+use crate::scene::Quantity;
+use crate::simulation::{Probe, ProbeNode, Simulation};
+
+/// A reason for which a row cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProbeRowError {
+    /// A state that the system refuses.
+    #[error(transparent)]
+    State(#[from] EvaluationError),
+    /// A field that the body does not have then.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+}
+
+/// Rows of the probes of a simulation. Where all of them write displacements down, a row takes no more than the
+/// degrees of freedom that are [watched](ProbeRows::watched), so that a method can take many steps at once.
+#[derive(Debug, Clone)]
+pub struct ProbeRows<'a> {
+    probes: &'a [Probe],
+    /// The body; `None` for an oscillator.
+    model: Option<&'a Model>,
+    row: String,
+    /// Velocity (m/s) of the moment that is written.
+    v: Vec<f64>,
+}
+
+impl<'a> ProbeRows<'a> {
+    /// The rows of a simulation's probes.
+    #[must_use]
+    pub fn new(simulation: &'a Simulation) -> Self {
+        let model = simulation.model().body().map(|body| &body.model);
+        Self::of(simulation.probes(), model)
+    }
+
+    pub(crate) fn of(probes: &'a [Probe], model: Option<&'a Model>) -> Self {
+        Self {
+            probes,
+            model,
+            row: String::new(),
+            v: Vec::new(),
         }
     }
-    columns
-}
 
-/// Degrees of freedom whose displacements a row takes, at least one.
-#[must_use]
-pub fn watched(probes: &[Probe]) -> Vec<u32> {
-    let dofs = probes.iter().flat_map(|probe| &probe.dofs);
-    let dofs: Vec<u32> = dofs.flatten().map(|dof| *dof as u32).collect();
-    // Steps are shown to those who watch something; where all is held or moved, anything will do.
-    if dofs.is_empty() { vec![0] } else { dofs }
-}
-
-/// Writes a row over the content of `out`, with the end of its line; `moving` holds the displacements (m) of the
-/// [`watched`] degrees of freedom at time `t` (s). Numbers are written so that reading them gives the same bits.
-pub fn write(out: &mut String, probes: &[Probe], t: f64, moving: &[f64]) {
-    out.clear();
-    // Writing to a string does not fail.
-    let _ = write!(out, "{t:?}");
-    let mut moving = moving.iter().copied();
-    for probe in probes {
-        for (axis, dof) in probe.dofs.iter().enumerate() {
-            let value = match dof {
-                Some(_) => moving.next().unwrap_or(f64::NAN),
-                None => probe.prescribed(axis, t),
+    /// Names of the columns: `t_s`, then of each probe `<probe>_u_x_m`, `<probe>_u_y_m`, `<probe>_u_z_m` (`<probe>_u_m`
+    /// for an oscillator), or `<probe>_v_x_m_per_s` and so on, or `<probe>_s_xx_Pa`, yy, zz, xy, yz, zx and
+    /// `<probe>_s_von_mises_Pa`.
+    #[must_use]
+    pub fn columns(&self) -> Vec<String> {
+        let mut columns = vec!["t_s".to_owned()];
+        for probe in self.probes {
+            let name = &probe.name;
+            let (letter, unit) = match probe.quantity {
+                Quantity::Displacement => ("u", "m"),
+                Quantity::Velocity => ("v", "m_per_s"),
+                Quantity::Stress => ("s", "Pa"),
             };
-            let _ = write!(out, ",{value:?}");
+            match (probe.quantity, probe.axes()) {
+                (Quantity::Stress, _) => {
+                    let parts = ["xx", "yy", "zz", "xy", "yz", "zx", "von_mises"];
+                    columns.extend(parts.map(|part| format!("{name}_{letter}_{part}_{unit}")));
+                }
+                (_, 1) => columns.push(format!("{name}_{letter}_{unit}")),
+                _ => {
+                    let axes = ["x", "y", "z"];
+                    columns.extend(axes.map(|axis| format!("{name}_{letter}_{axis}_{unit}")));
+                }
+            }
         }
+        columns
     }
-    out.push('\n');
+
+    /// Whether a row takes the whole state, as for velocities and stresses.
+    #[must_use]
+    pub fn need_moments(&self) -> bool {
+        let others = |probe: &Probe| probe.quantity != Quantity::Displacement;
+        self.probes.iter().any(others)
+    }
+
+    /// Degrees of freedom whose displacements a row takes, at least one; none where rows [need
+    /// moments](ProbeRows::need_moments).
+    #[must_use]
+    pub fn watched(&self) -> Vec<u32> {
+        if self.need_moments() {
+            return Vec::new();
+        }
+        let nodes = self.probes.iter().flat_map(|probe| &probe.nodes);
+        let dofs = nodes.flat_map(|node| &node.dofs);
+        let dofs: Vec<u32> = dofs.flatten().map(|dof| *dof as u32).collect();
+        // Steps are shown to those who watch something; where all is held or moved, anything will do.
+        if dofs.is_empty() { vec![0] } else { dofs }
+    }
+
+    /// A row with the end of its line; `moving` holds the displacements (m) of the watched degrees of freedom at time
+    /// `t` (s). Numbers are written so that reading them gives the same bits.
+    pub fn of_watched(&mut self, t: f64, moving: &[f64]) -> &str {
+        self.begin(t);
+        let mut rest = moving;
+        for probe in self.probes {
+            let of_node = |node: &ProbeNode| node.dofs.iter().flatten().count();
+            let own: usize = probe.nodes.iter().map(of_node).sum();
+            let (own, others) = rest.split_at_checked(own).unwrap_or((rest, &[]));
+            rest = others;
+            for axis in 0..probe.axes() {
+                // Those of its nodes come one after the other, each with its moving directions.
+                let mut next = 0;
+                let value = probe.mean(|node| {
+                    let first = next;
+                    next += of_node(node);
+                    match node.dofs[axis] {
+                        Some(_) => {
+                            let before = node.dofs[..axis].iter().flatten().count();
+                            own.get(first + before).copied().unwrap_or(f64::NAN)
+                        }
+                        None => node.prescribed(axis, t),
+                    }
+                });
+                push(&mut self.row, value);
+            }
+        }
+        self.end()
+    }
+
+    /// A row of a moment, as [`ProbeRows::of_watched`].
+    ///
+    /// # Errors
+    /// [`ProbeRowError`] where the system refuses the state.
+    pub fn of_moment(&mut self, moment: &Moment<'_>) -> Result<&str, ProbeRowError> {
+        let (t, u) = (moment.state.t(), &moment.state.u);
+        self.begin(t);
+        let Self {
+            probes,
+            model,
+            row,
+            v,
+        } = self;
+        let needs_velocity = |probe: &Probe| probe.quantity == Quantity::Velocity;
+        if probes.iter().any(needs_velocity) {
+            v.resize(u.len(), 0.0);
+            moment.velocity(v)?;
+        }
+        for probe in *probes {
+            match (probe.quantity, *model) {
+                (Quantity::Displacement, _) | (_, None) => {
+                    probe.displacement(t, u).for_each(|value| push(row, value));
+                }
+                (Quantity::Velocity, Some(model)) => {
+                    let velocity = model.node_velocities(t, v)?;
+                    for axis in 0..3 {
+                        push(row, probe.mean(|node| velocity(node.index)[axis]));
+                    }
+                }
+                (Quantity::Stress, Some(model)) => {
+                    let mut mean = [0.0; 6];
+                    for (tet, share) in &probe.tets {
+                        let stress = model.tet_stress(t, u, *tet as usize)?;
+                        for (mean, stress) in mean.iter_mut().zip(stress) {
+                            *mean += share * stress;
+                        }
+                    }
+                    let von_mises = stress::von_mises(&mean);
+                    mean.into_iter()
+                        .chain([von_mises])
+                        .for_each(|value| push(row, value));
+                }
+            }
+        }
+        Ok(self.end())
+    }
+
+    fn begin(&mut self, t: f64) {
+        self.row.clear();
+        // Writing to a string does not fail.
+        let _ = write!(self.row, "{t:?}");
+    }
+
+    fn end(&mut self) -> &str {
+        self.row.push('\n');
+        &self.row
+    }
+}
+
+fn push(row: &mut String, value: f64) {
+    // Writing to a string does not fail.
+    let _ = write!(row, ",{value:?}");
 }

@@ -168,7 +168,7 @@ fn probes_follow_the_nearest_node() {
         corner.displacement(0.0, u).collect::<Vec<_>>(),
         [1.0, 2.0, 3.0]
     );
-    assert_eq!(held.dofs, [None; 3]);
+    assert_eq!(held.nodes[0].dofs, [None; 3]);
     assert_eq!(held.displacement(0.0, u).collect::<Vec<_>>(), [0.0; 3]);
 }
 

@@ -130,6 +130,20 @@ impl Model {
         Ok(self.at_nodes(when.into(), 0, Some(u))?(node))
     }
 
+    /// A function that gives the velocity (m/s) of each mesh node (0-based) at a time (s), with the velocity `v` (m/s) of
+    /// the degrees of freedom then: for a few nodes of many.
+    ///
+    /// # Errors
+    /// Same as [`Model::displacements_at`].
+    pub fn node_velocities<'a, 't>(
+        &'a self,
+        when: impl Into<LoadTime<'t>>,
+        v: &'a [f64],
+    ) -> Result<impl Fn(u32) -> [f64; 3] + 'a, FieldError> {
+        self.require_dofs("the velocity", v)?;
+        self.at_nodes(when.into(), 1, Some(v))
+    }
+
     /// A function that gives the field number `order` of displacement, velocity and acceleration at each node, from the
     /// `values` of the degrees of freedom.
     pub(super) fn at_nodes<'a>(

@@ -7,7 +7,7 @@ use sinew_mesh::structured::Split;
 
 use super::section::PlanSection;
 use crate::number::{count, length, short, vector};
-use crate::scene::{Body, Initial, MeshChanges, MeshSource, Rotation, Way};
+use crate::scene::{Body, Initial, MeshChanges, MeshSource, Quantity, Rotation, Way};
 use crate::simulation::{BodyModel, Probe, SelectedPart};
 
 /// The sections about a body and its probes.
@@ -316,19 +316,19 @@ fn start(initial: &Initial, built: &BodyModel) -> String {
 }
 
 fn probe(probe: &Probe) -> String {
-    let held = match probe.dofs.iter().filter(|dof| dof.is_none()).count() {
-        0 => "",
-        _ if probe.courses.iter().any(|courses| !courses.is_empty()) => ", moved",
-        3 => ", held in x, y and z",
-        _ => ", held in some directions",
+    let held = match &probe.nodes[..] {
+        [node] => match node.dofs.iter().filter(|dof| dof.is_none()).count() {
+            0 => "",
+            _ if node.courses.iter().any(|courses| !courses.is_empty()) => ", moved",
+            3 => ", held in x, y and z",
+            _ => ", held in some directions",
+        },
+        _ => "",
     };
-    match &probe.node {
-        Some(node) => format!(
-            "`{}`: node {}, {} m from the point{held}",
-            probe.name,
-            node.tag,
-            short(node.distance)
-        ),
-        None => format!("`{}`", probe.name),
-    }
+    let quantity = match probe.quantity {
+        Quantity::Displacement => "",
+        Quantity::Velocity => "velocity, ",
+        Quantity::Stress => "stress, ",
+    };
+    format!("`{}`: {quantity}{}{held}", probe.name, probe.place)
 }

@@ -34,7 +34,7 @@ pub use mesh::{MeshChanges, MeshSource, Rotation};
 pub use motion::{Motion, Way};
 pub use oscillator::Oscillator;
 pub use output::{Instants, OutputSettings};
-pub use probe::{ProbeAt, ProbePoint};
+pub use probe::{ProbeAt, ProbePoint, Quantity};
 pub(crate) use run::{INTEGRATOR, RUN};
 pub use run::{RunSettings, TimeStep};
 use selected::Selections;

@@ -1,36 +1,56 @@
-//! `[[probe]]`: points whose motion is recorded.
+//! `[[probe]]`: what is written down of the motion of points and parts.
 
 use super::region::taken;
 use super::selected::{self, Members, NOT_WHERE, Selections, Where};
-use crate::decode::{Key, Needs, Optional, Place, Table, TableDescription, Text, Vector};
+use crate::decode::{
+    Condition, Count, Key, Needs, Optional, Or, Place, Table, TableDescription, Text, Vector, Words,
+};
 use crate::error::SceneError;
 
-/// A node whose motion is recorded.
+/// A place of which something is written down.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProbePoint {
     /// Its name, which also begins the names of its columns.
     pub name: String,
-    /// The node.
+    /// The place.
     pub at: ProbeAt,
+    /// What is written down of it.
+    pub quantity: Quantity,
 }
 
-/// The node of a probe.
+/// The place of a probe.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ProbeAt {
-    /// The node nearest to a position in the undeformed body (m).
+    /// The node nearest to a position in the undeformed body (m); for stress the tetrahedron that holds it.
     Point([f64; 3]),
     /// The only node of a group.
     Group(String),
+    /// The mean over a group: by area over triangles, by volume over tetrahedra.
+    Mean(String),
+}
+
+/// What a probe writes down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Displacement (m).
+    Displacement,
+    /// Velocity (m/s).
+    Velocity,
+    /// Stress (Pa), and von Mises' of it.
+    Stress,
 }
 
 pub(super) const PROBE: TableDescription = TableDescription {
     name: "probe",
-    meaning: "A node of the body whose motion is written down.",
-    keys: &[&NAME, &POINT, &WHERE],
+    meaning: "A node or a part of the body of which the motion or the stress is written down.",
+    keys: &[&NAME, &POINT, &TO, &COUNT, &WHERE, &GROUP, &QUANTITY],
     needs: Needs::Any,
     examples: &[
         "[[probe]]\nname = \"top-centre\"\npoint = [0.1, 0.1, 0.2]\n",
         "[[probe]]\nname = \"node-42\"\nwhere = { nodes = [42] }\n",
+        "[[probe]]\nname = \"axis\"\npoint = [0.1, 0.1, 0.0]\nto = [0.1, 0.1, 0.2]\ncount = 5\n",
+        "[[probe]]\nname = \"top\"\ngroup = \"top\"\nquantity = \"velocity\"\n",
+        "[[probe]]\nname = \"inside\"\npoint = [0.1, 0.1, 0.1]\nquantity = \"stress\"\n",
     ],
 };
 
@@ -47,11 +67,55 @@ const NAME: Key<Text> = Key::required(
 
 const POINT: Key<Vector> = Key::required(
     "point",
-    "A place in the body at rest; the node nearest to it is followed.",
+    "A place in the body at rest; the node nearest to it is followed, or for stress the tetrahedron that holds it.",
     Vector::finite("[x, y, z] in m, all finite"),
 )
 .unit("m")
+.only(&[NOT_WHERE, NOT_GROUP]);
+
+const NOT_GROUP: Condition = Condition::without(
+    "group",
+    "does not go with `group`, over which the mean is taken",
+);
+
+const TO: Key<Vector, Optional> = Key::optional(
+    "to",
+    "End of a line of probes that begins at `point`; their names end in -1, -2 and so on.",
+    Vector::finite("[x, y, z] in m, all finite"),
+    "one probe at `point`",
+)
+.unit("m")
+.only(&[
+    Condition::with("point", "needs `point`, the beginning of the line"),
+    Condition::with("count", "needs `count`, the number of probes on the line"),
+]);
+
+const COUNT: Key<Count, Optional> = Key::optional(
+    "count",
+    "Number of probes on the line from `point` to `to`, both ends included where there are several.",
+    Count { most: 1000 },
+    "one probe at `point`",
+)
+.only(&[Condition::with("to", "needs `to`, the end of the line")]);
+
+const GROUP: Key<Text, Optional> = Key::optional(
+    "group",
+    "Name of a group of the mesh over which the mean is taken: by area over triangles, by volume over tetrahedra.",
+    Text::any("the name of a group"),
+    "see `point`",
+)
 .only(&[NOT_WHERE]);
+
+const QUANTITY: Key<Words<Quantity>, Or<Quantity>> = Key::or(
+    "quantity",
+    "What is written down. The stress is that of the elastic law, with von Mises' beside it.",
+    Words(&[
+        ("displacement", Quantity::Displacement),
+        ("velocity", Quantity::Velocity),
+        ("stress", Quantity::Stress),
+    ]),
+    Quantity::Displacement,
+);
 
 const WHERE: Key<Where, Optional> = selected::WHERE.otherwise("see `point`");
 
@@ -59,27 +123,48 @@ pub(super) fn read_all(
     tables: Vec<Table<'_>>,
     selections: &mut Selections,
 ) -> Result<(Vec<ProbePoint>, Vec<Place>), SceneError> {
-    let mut probes: Vec<ProbePoint> = Vec::new();
-    for table in &tables {
-        let probe = read(table, selections)?;
-        let same = probes.iter().position(|other| other.name == probe.name);
-        if let Some(first) = same {
-            let owner = tables[first].place();
-            return Err(taken(table.place(), NAME.name, &probe.name, owner));
+    let (mut probes, mut places): (Vec<ProbePoint>, Vec<Place>) = Default::default();
+    for table in tables {
+        for probe in read(&table, selections)? {
+            let same = probes.iter().position(|other| other.name == probe.name);
+            if let Some(first) = same {
+                return Err(taken(table.place(), NAME.name, &probe.name, &places[first]));
+            }
+            probes.push(probe);
+            places.push(table.place().clone());
         }
-        probes.push(probe);
     }
-    Ok((probes, tables.into_iter().map(Table::into_place).collect()))
+    Ok((probes, places))
 }
 
-fn read(table: &Table<'_>, selections: &mut Selections) -> Result<ProbePoint, SceneError> {
-    let name = table.read(&NAME)?;
+/// The probes of a table: one, or those on a line.
+fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Vec<ProbePoint>, SceneError> {
+    let (name, quantity) = (table.read(&NAME)?, table.read(&QUANTITY)?);
     table.check_conditions()?;
-    let at = match selections.place(table, &WHERE, Members::Nodes)? {
-        Some(group) => ProbeAt::Group(group),
-        None => ProbeAt::Point(table.read(&POINT)?),
+    let one = |at| {
+        let name = name.clone();
+        Ok(vec![ProbePoint { name, at, quantity }])
     };
-    Ok(ProbePoint { name, at })
+    if let Some(group) = selections.place(table, &WHERE, Members::Nodes)? {
+        return one(ProbeAt::Group(group));
+    }
+    if let Some(group) = table.read(&GROUP)? {
+        return one(ProbeAt::Mean(group));
+    }
+    let from = table.read(&POINT)?;
+    let (Some(to), Some(count)) = (table.read(&TO)?, table.read(&COUNT)?) else {
+        return one(ProbeAt::Point(from));
+    };
+    let probe = |number: usize| {
+        let share = number as f64 / (count - 1).max(1) as f64;
+        let point = |axis: usize| (1.0 - share) * from[axis] + share * to[axis];
+        ProbePoint {
+            name: format!("{name}-{}", number + 1),
+            at: ProbeAt::Point([0, 1, 2].map(point)),
+            quantity,
+        }
+    };
+    Ok((0..count).map(probe).collect())
 }
 
 /// Whether a name needs no quotes in a CSV file.

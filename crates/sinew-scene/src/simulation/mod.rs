@@ -22,7 +22,7 @@ use sinew_integrators::Stepper;
 pub use load_problems::{LoadRemedy, RefusedLoad, UnresolvedLoad};
 pub use model::{BodyModel, SceneModel};
 pub use motion_table::{MotionTableError, MotionTableFault};
-pub use probe::{NearestNode, Probe};
+pub use probe::{NearestNode, Probe, ProbeNode};
 pub use reaction::{HeldPlace, Reaction, ReactionError, ReactionOf};
 pub use selected::SelectedPart;
 

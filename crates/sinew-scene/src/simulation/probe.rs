@@ -1,18 +1,39 @@
-//! Probes: the degrees of freedom that are recorded.
+//! Probes: the nodes and the tetrahedra of which something is written down.
+
+use std::collections::HashMap;
 
 use sinew_fem::Course;
+use sinew_mesh::{GroupMembers, TetMesh};
 
 use super::model::BodyModel;
 use crate::error::{Fault, SceneError};
-use crate::scene::{Places, ProbeAt, ProbePoint};
+use crate::number::short;
+use crate::scene::{Places, ProbeAt, ProbePoint, Quantity};
 
-/// A node, or the mass of an oscillator, whose motion is recorded.
+/// A node, a part of the body, or the mass of an oscillator, of which something is written down.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Probe {
     /// Its name.
     pub name: String,
-    /// Its node; `None` for an oscillator.
+    /// What is written down.
+    pub quantity: Quantity,
+    /// Its node; `None` for an oscillator, for a mean over a group, and for stress.
     pub node: Option<NearestNode>,
+    /// The nodes whose motion it is the mean of; none for stress.
+    pub nodes: Vec<ProbeNode>,
+    /// The tetrahedra (0-based) whose stress it is the mean of, with shares that add up to 1; none for motions.
+    pub tets: Vec<(u32, f64)>,
+    /// Its place in words.
+    pub place: String,
+}
+
+/// A node of a probe, or the mass of an oscillator.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProbeNode {
+    /// Its share of the mean: those of a probe add up to 1.
+    pub share: f64,
+    /// Index in the mesh, from 0.
+    pub index: u32,
     /// Its degrees of freedom: along x, y and z for a node, one for an oscillator. `None` stands for a
     /// direction in which the node is held or moved.
     pub dofs: Vec<Option<usize>>,
@@ -31,15 +52,7 @@ pub struct NearestNode {
     pub distance: f64,
 }
 
-impl Probe {
-    /// The displacement (m) in each of its directions at time `t` (s), with that of the degrees of freedom then: 0
-    /// where it is held, the prescribed one where it is moved.
-    pub fn displacement<'a>(&'a self, t: f64, u: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        let own = move |dof: usize| u.get(dof).copied().unwrap_or(f64::NAN);
-        let directions = self.dofs.iter().enumerate();
-        directions.map(move |(axis, dof)| dof.map_or_else(|| self.prescribed(axis, t), own))
-    }
-
+impl ProbeNode {
     /// The displacement (m) that is prescribed in a direction at time `t` (s); 0 where none is.
     pub(crate) fn prescribed(&self, axis: usize, t: f64) -> f64 {
         let courses = self.courses.get(axis).into_iter().flatten();
@@ -49,52 +62,285 @@ impl Probe {
     }
 }
 
+impl Probe {
+    /// Its directions: three, or one for an oscillator; none for stress.
+    pub(crate) fn axes(&self) -> usize {
+        self.nodes.first().map_or(0, |node| node.dofs.len())
+    }
+
+    /// The displacement (m) in each of its directions at time `t` (s), with that of the degrees of freedom then: 0
+    /// where it is held, the prescribed one where it is moved.
+    pub fn displacement<'a>(&'a self, t: f64, u: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let own = move |dof: usize| u.get(dof).copied().unwrap_or(f64::NAN);
+        (0..self.axes()).map(move |axis| {
+            let along = |node: &ProbeNode| match node.dofs.get(axis) {
+                Some(Some(dof)) => own(*dof),
+                _ => node.prescribed(axis, t),
+            };
+            self.mean(along)
+        })
+    }
+
+    /// The mean of a value of its nodes. That of a single one keeps its bits.
+    pub(crate) fn mean(&self, mut of: impl FnMut(&ProbeNode) -> f64) -> f64 {
+        match &self.nodes[..] {
+            [node] => of(node),
+            nodes => nodes.iter().map(|node| node.share * of(node)).sum(),
+        }
+    }
+}
+
 /// The probes of a body.
 pub(super) fn of_body(
     points: &[ProbePoint],
     places: &Places,
     body: &BodyModel,
 ) -> Result<Vec<Probe>, SceneError> {
-    let nearest = |at: &ProbeAt| match at {
-        ProbeAt::Point(point) => Ok(body.mesh.nearest_node(*point)),
-        ProbeAt::Group(name) => match body.mesh.group_nodes(body.mesh.group(name)?)[..] {
-            [node] => Ok((node, 0.0)),
-            ref nodes => {
-                let nodes = nodes.len();
-                Err(Fault::SeveralNodes { nodes })
-            }
-        },
-    };
-    let probe = |(place, ProbePoint { name, at }): (usize, &ProbePoint)| {
-        let place = places.of(&places.probes, place);
-        let (index, distance) =
-            nearest(at).map_err(|fault| place.value_fault(place.part_key(), fault))?;
-        let cell = body.model.cell_of_node(index);
-        let dof = |axis: usize| -> Option<usize> {
-            let dof = 3 * cell? as usize + axis;
-            (!body.model.pinned()[dof]).then_some(dof)
+    let probe = |(index, point): (usize, &ProbePoint)| {
+        let place = places.of(&places.probes, index);
+        let made = match point.quantity {
+            Quantity::Displacement | Quantity::Velocity => of_motion(point, body),
+            Quantity::Stress => of_stress(point, body),
         };
-        Ok(Probe {
-            name: name.clone(),
-            node: Some(NearestNode {
-                index,
-                tag: body.mesh.node_tags[index as usize],
-                distance,
-            }),
-            dofs: (0..3).map(dof).collect(),
-            courses: (0..3)
-                .map(|axis| body.model.courses(index, axis).to_vec())
-                .collect(),
+        made.map_err(|fault| match fault {
+            Fault::Misplaced { key, .. } => place.value_fault(key, fault),
+            _ => place.value_fault(place.part_key(), fault),
         })
     };
     points.iter().enumerate().map(probe).collect()
 }
 
+fn of_motion(point: &ProbePoint, body: &BodyModel) -> Result<Probe, Fault> {
+    let mesh = &body.mesh;
+    let nearest = |(index, distance): (u32, f64)| NearestNode {
+        index,
+        tag: mesh.node_tags[index as usize],
+        distance,
+    };
+    let node = match &point.at {
+        ProbeAt::Point(point) => Some(nearest(mesh.nearest_node(*point))),
+        ProbeAt::Group(name) => Some(nearest((only_node(mesh, name)?, 0.0))),
+        ProbeAt::Mean(_) => None,
+    };
+    let (shares, place) = match (&point.at, node) {
+        (ProbeAt::Mean(group), _) => {
+            let shares = shares_of_nodes(mesh, group)?;
+            let place = format!("mean over the {} nodes of `{group}`", shares.len());
+            (shares, place)
+        }
+        (
+            _,
+            Some(NearestNode {
+                index,
+                tag,
+                distance,
+            }),
+        ) => {
+            let distance = short(distance);
+            (
+                vec![(index, 1.0)],
+                format!("node {tag}, {distance} m from the point"),
+            )
+        }
+        (_, None) => (Vec::new(), String::new()),
+    };
+    let nodes = shares.into_iter().map(|(index, share)| {
+        let cell = body.model.cell_of_node(index);
+        let dof = |axis: usize| -> Option<usize> {
+            let dof = 3 * cell? as usize + axis;
+            (!body.model.pinned()[dof]).then_some(dof)
+        };
+        ProbeNode {
+            share,
+            index,
+            dofs: (0..3).map(dof).collect(),
+            courses: (0..3)
+                .map(|axis| body.model.courses(index, axis).to_vec())
+                .collect(),
+        }
+    });
+    Ok(Probe {
+        name: point.name.clone(),
+        quantity: point.quantity,
+        node,
+        nodes: nodes.collect(),
+        tets: Vec::new(),
+        place,
+    })
+}
+
+fn of_stress(point: &ProbePoint, body: &BodyModel) -> Result<Probe, Fault> {
+    let mesh = &body.mesh;
+    let (tets, place) = match &point.at {
+        ProbeAt::Point(point) => {
+            let tet = tet_at(mesh, *point);
+            let place = format!("tetrahedron {}", mesh.tet_tags[tet as usize]);
+            (vec![(tet, 1.0)], place)
+        }
+        ProbeAt::Group(name) => {
+            let node = only_node(mesh, name)?;
+            let tag = mesh.node_tags[node as usize];
+            let tets = by_volume(mesh, |tet| mesh.tets[tet as usize].contains(&node));
+            let place = format!("mean over the {} tetrahedra at node {tag}", tets.len());
+            (tets, place)
+        }
+        ProbeAt::Mean(name) => {
+            let tets = shares_of_tets(mesh, name)?;
+            let place = format!("mean over {} tetrahedra of `{name}`", tets.len());
+            (tets, place)
+        }
+    };
+    let regions = &body.model.report().regions;
+    let springs = tets
+        .iter()
+        .map(|(tet, _)| body.model.region_of()[*tet as usize])
+        .find(|region| regions[*region as usize].network.is_some());
+    if let Some(region) = springs {
+        let reason = format!(
+            "\"stress\" is not known in [[region]] {}, which is made of springs",
+            region + 1
+        );
+        return Err(Fault::Misplaced {
+            key: "quantity",
+            reason,
+        });
+    }
+    Ok(Probe {
+        name: point.name.clone(),
+        quantity: point.quantity,
+        node: None,
+        nodes: Vec::new(),
+        tets,
+        place,
+    })
+}
+
+fn only_node(mesh: &TetMesh, group: &str) -> Result<u32, Fault> {
+    match mesh.group_nodes(mesh.group(group)?)[..] {
+        [node] => Ok(node),
+        ref nodes => {
+            let nodes = nodes.len();
+            Err(Fault::SeveralNodes { nodes })
+        }
+    }
+}
+
+/// The share of each node in the mean of a linear field over a group, in the order of the nodes.
+fn shares_of_nodes(mesh: &TetMesh, group: &str) -> Result<Vec<(u32, f64)>, Fault> {
+    let mut weights = vec![0.0; mesh.points.len()];
+    let mut add = |nodes: &[u32], weight: f64| {
+        for node in nodes {
+            weights[*node as usize] += weight;
+        }
+    };
+    let group = mesh.group(group)?;
+    match &group.members {
+        GroupMembers::Tets(tets) => tets
+            .iter()
+            .for_each(|tet| add(&mesh.tets[*tet as usize], mesh.volume(*tet as usize))),
+        GroupMembers::Triangles(triangles) => triangles
+            .iter()
+            .for_each(|triangle| add(triangle, mesh.area(*triangle))),
+        GroupMembers::Lines(_) | GroupMembers::Nodes(_) => add(&mesh.group_nodes(group), 1.0),
+    }
+    let weighted = (0..).zip(weights).filter(|(_, weight)| *weight > 0.0);
+    Ok(of_sum_one(weighted.collect()))
+}
+
+/// The share of each tetrahedron in the mean over a group; over those at its triangles by their area.
+fn shares_of_tets(mesh: &TetMesh, group: &str) -> Result<Vec<(u32, f64)>, Fault> {
+    let group = mesh.group(group)?;
+    Ok(match &group.members {
+        GroupMembers::Tets(tets) => {
+            let weighted = tets.iter().map(|tet| (*tet, mesh.volume(*tet as usize)));
+            of_sum_one(weighted.collect())
+        }
+        GroupMembers::Triangles(triangles) => {
+            let sorted = |mut nodes: [u32; 3]| {
+                nodes.sort_unstable();
+                nodes
+            };
+            let areas: HashMap<[u32; 3], f64> = triangles
+                .iter()
+                .map(|triangle| (sorted(*triangle), mesh.area(*triangle)))
+                .collect();
+            let area = |[a, b, c, d]: [u32; 4]| -> f64 {
+                let faces = [[a, b, c], [a, b, d], [a, c, d], [b, c, d]];
+                faces
+                    .iter()
+                    .filter_map(|face| areas.get(&sorted(*face)))
+                    .sum()
+            };
+            let weighted = (0..)
+                .zip(&mesh.tets)
+                .map(|(tet, nodes)| (tet, area(*nodes)));
+            of_sum_one(weighted.filter(|(_, area)| *area > 0.0).collect())
+        }
+        GroupMembers::Lines(_) | GroupMembers::Nodes(_) => {
+            let nodes = mesh.group_nodes(group);
+            by_volume(mesh, |tet| {
+                let of = mesh.tets[tet as usize].iter();
+                of.clone().any(|node| nodes.binary_search(node).is_ok())
+            })
+        }
+    })
+}
+
+fn by_volume(mesh: &TetMesh, is_in: impl Fn(u32) -> bool) -> Vec<(u32, f64)> {
+    let tets = (0..mesh.tets.len() as u32).filter(|tet| is_in(*tet));
+    of_sum_one(tets.map(|tet| (tet, mesh.volume(tet as usize))).collect())
+}
+
+/// Weights divided by their sum.
+fn of_sum_one(mut weighted: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
+    let sum: f64 = weighted.iter().map(|(_, weight)| weight).sum();
+    for (_, weight) in &mut weighted {
+        *weight /= sum;
+    }
+    weighted
+}
+
+/// The tetrahedron that holds a point, or in whose coordinates the point is least outside.
+fn tet_at(mesh: &TetMesh, point: [f64; 3]) -> u32 {
+    let least = |nodes: &[u32; 4]| {
+        let vertices = nodes.map(|node| mesh.points[node as usize]);
+        let whole = volume(vertices);
+        // The share of each vertex is the volume with the point in its place, over the whole.
+        let share = |vertex: usize| {
+            let mut with_point = vertices;
+            with_point[vertex] = point;
+            volume(with_point) / whole
+        };
+        (0..4).map(share).fold(f64::INFINITY, f64::min)
+    };
+    let inside = (0..)
+        .zip(&mesh.tets)
+        .map(|(tet, nodes)| (tet, least(nodes)));
+    let best = inside.max_by(|(_, a), (_, b)| a.total_cmp(b));
+    best.map_or(0, |(tet, _)| tet)
+}
+
+/// Six times the signed volume.
+fn volume([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
+    let edge = |to: [f64; 3]| -> [f64; 3] { std::array::from_fn(|axis| to[axis] - a[axis]) };
+    let (p, q, r) = (edge(b), edge(c), edge(d));
+    p[0] * (q[1] * r[2] - q[2] * r[1])
+        + p[1] * (q[2] * r[0] - q[0] * r[2])
+        + p[2] * (q[0] * r[1] - q[1] * r[0])
+}
+
 pub(super) fn of_oscillator() -> Probe {
     Probe {
         name: "mass".into(),
+        quantity: Quantity::Displacement,
         node: None,
-        dofs: vec![Some(0)],
-        courses: Vec::new(),
+        nodes: vec![ProbeNode {
+            share: 1.0,
+            index: 0,
+            dofs: vec![Some(0)],
+            courses: Vec::new(),
+        }],
+        tets: Vec::new(),
+        place: "the mass".into(),
     }
 }

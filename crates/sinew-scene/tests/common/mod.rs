@@ -8,7 +8,7 @@ use std::path::Path;
 
 use sinew_core::{State, simulate};
 use sinew_scene::output::{Delivery, Destination};
-use sinew_scene::{ProbeCsv, Scene, SceneError, SceneSource, Simulation};
+use sinew_scene::{ProbeCsv, ProbeRows, Scene, SceneError, SceneSource, Simulation};
 
 /// Reads and builds the scene that stands in a file called `scene.toml`.
 pub(crate) fn try_build(text: &str) -> Result<Simulation, SceneError> {
@@ -24,7 +24,7 @@ pub(crate) fn build(text: &str) -> Simulation {
 pub(crate) fn run(simulation: &Simulation, folder: &Path) -> (State, String) {
     let path = folder.join("probes.csv");
     let output = Destination::new(&path, &[]).unwrap().open().unwrap();
-    let mut csv = ProbeCsv::new(output, simulation.probes()).unwrap();
+    let mut csv = ProbeCsv::new(output, ProbeRows::new(simulation)).unwrap();
     let mut state = simulation.initial_state().clone();
     let mut integrator = simulation.integrator().unwrap();
     simulate(

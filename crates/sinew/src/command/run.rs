@@ -6,7 +6,7 @@ use sinew_core::{OptionError, OptionValue, Outcome, Recorders, RunReport, simula
 use sinew_integrators::Stepper;
 use sinew_record::{Companion, Ended, Request, RunEnd, RunFolder};
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
-use sinew_scene::{ProbeCsv, Reaction, Simulation, WarningKind};
+use sinew_scene::{Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Simulation, WarningKind};
 
 use super::Failure;
 use super::interruption::Interruption;
@@ -177,7 +177,7 @@ fn probes_alone(
     let voice = Voice::apart_from(&destination);
     let system = simulation.system();
     integrator.prepare(system, simulation.dt())?;
-    let mut csv = ProbeCsv::new(destination.open()?, simulation.probes())?;
+    let mut csv = ProbeCsv::new(destination.open()?, ProbeRows::new(simulation))?;
     let mut state = simulation.initial_state().clone();
     let settings = simulation.run();
     let mut onlooker = Onlooker::new(interruption, settings.steps, simulation.settings().duration);
@@ -194,7 +194,8 @@ fn probes_alone(
         for remark in integrator.computed_by().iter().chain(&integrator.remarks()) {
             voice.say(remark)?;
         }
-        for probe in simulation.probes() {
+        let displaced = |probe: &&Probe| probe.quantity == Quantity::Displacement;
+        for probe in simulation.probes().iter().filter(displaced) {
             let u: Vec<String> = probe
                 .displacement(state.t(), &state.u)
                 .map(|u| format!("{u:.6e}"))
