@@ -3,12 +3,14 @@
 //! A [`Case`] is a scene with its reference solution; [`measure()`] makes one [`Row`] of a run on it,
 //! [`measure_with()`] the same of an integrator that is not in the list of the workspace.
 //! [`search`] finds the cheapest runs for an error without measuring them all; [`advise()`] answers
-//! with it which method and step a scene should take.
+//! with it which method and step a scene should take; [`converge()`] estimates the error of its mesh.
 
 pub mod advice;
 mod case;
+pub mod convergence;
 mod cost;
 mod cpu_time;
+mod forecast;
 mod growth;
 mod measure;
 mod method_choice;
@@ -21,8 +23,10 @@ mod timing;
 
 pub use advice::{Advice, AdviceError, Answer, LeftOut, NotMeasured, Question, advise};
 pub use case::{Case, CaseError, Span};
+pub use convergence::converge;
 pub use cost::Cost;
 pub use cpu_time::{process_cpu_time, thread_cpu_time};
+pub use forecast::{Forecast, ForecastError};
 pub use measure::{MeasureError, measure, measure_with};
 pub use method_choice::{MethodChoice, MethodError};
 pub use one_thread::{ThreadError, on_one_thread};

@@ -61,7 +61,7 @@ pub use scene::{
 };
 pub use simulation::{
     BodyModel, HeldPlace, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe,
-    ProbeNode, Reaction, ReactionError, ReactionOf, RefusedLoad, SceneModel, SelectedPart,
-    Simulation, UnresolvedLoad, Warning, WarningKind,
+    ProbeNode, Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad, SceneModel,
+    SelectedPart, Simulation, UnresolvedLoad, Warning, WarningKind,
 };
 pub use source::SceneSource;

@@ -28,6 +28,9 @@ enum Command {
     Resume(command::resume::Arguments),
     /// Compare the results of two runs: the largest difference of each quantity, with its time.
     Compare(command::compare::Arguments),
+    /// Estimate the error of a scene's mesh: the scene again on a refined one, beside the error of its
+    /// step.
+    Converge(command::converge::Arguments),
     /// Find natural frequencies, mode shapes and the modes that the loads of a scene excite.
     #[cfg(feature = "implicit")]
     Modes(command::modes::Arguments),
@@ -52,6 +55,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => command::run::run(&arguments),
         Command::Resume(arguments) => command::resume::run(&arguments),
         Command::Compare(arguments) => command::compare::run(&arguments),
+        Command::Converge(arguments) => command::converge::run(&arguments),
         #[cfg(feature = "implicit")]
         Command::Modes(arguments) => command::modes::run(&arguments),
         Command::New(arguments) => command::new::run(&arguments),

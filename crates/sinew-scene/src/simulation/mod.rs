@@ -9,6 +9,7 @@ mod model;
 mod motion_table;
 mod probe;
 mod reaction;
+mod refined;
 mod selected;
 mod start;
 mod step;
@@ -24,6 +25,7 @@ pub use model::{BodyModel, SceneModel};
 pub use motion_table::{MotionTableError, MotionTableFault};
 pub use probe::{NearestNode, Probe, ProbeNode};
 pub use reaction::{HeldPlace, Reaction, ReactionError, ReactionOf};
+pub use refined::RefinementError;
 pub use selected::SelectedPart;
 
 pub use warnings::{Warning, WarningKind};

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use miette::{LabeledSpan, NamedSource, Report, miette};
 use sinew_core::{OptionError, SetupError, SimulateError};
 use sinew_measure::advice::AdviceError;
+use sinew_measure::convergence::ConvergeError;
 use sinew_mesh::vtu::WriteVtuError;
 use sinew_mesh::{MshFileError, RefineError, TetMeshError, WriteMshError};
 use sinew_record::{CompareError, RecordRunError};
@@ -50,6 +51,24 @@ pub(crate) enum Failure {
         scene: PathBuf,
         /// The reason.
         source: AdviceError,
+    },
+    /// A scene whose error in space cannot be estimated.
+    #[error("{}: {source}", scene.display())]
+    Converge {
+        /// The scene file.
+        scene: PathBuf,
+        /// The reason.
+        source: ConvergeError,
+    },
+    /// An estimate that takes long.
+    #[error(
+        "predicted to take {seconds:.0} s, more than {limit} s; --yes begins it, and fewer --levels or a coarser mesh take less"
+    )]
+    LongConverge {
+        /// Predicted time (s).
+        seconds: f64,
+        /// Time (s) up to which nobody is asked.
+        limit: f64,
     },
     /// A mesh file that cannot be read.
     #[error(transparent)]
@@ -199,6 +218,7 @@ impl Failure {
             | Self::Setup(_)
             | Self::Warnings { .. }
             | Self::Advice { .. }
+            | Self::LongConverge { .. }
             | Self::Mesh(_)
             | Self::Tetrahedra { .. }
             | Self::Exists { .. }
@@ -225,6 +245,13 @@ impl Failure {
             #[cfg(feature = "implicit")]
             Self::Modes(_) => FAILED,
             Self::Compare(_) => REFUSED,
+            Self::Converge { source, .. } => match source {
+                ConvergeError::Refinement(_)
+                | ConvergeError::Options(_)
+                | ConvergeError::Setup(_)
+                | ConvergeError::NothingMoves => REFUSED,
+                _ => FAILED,
+            },
             Self::Interrupted { .. } => INTERRUPTED,
             Self::Output(_)
             | Self::Differ { .. }

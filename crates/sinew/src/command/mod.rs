@@ -1,9 +1,11 @@
 //! The subcommands.
 
 pub(crate) mod compare;
+pub(crate) mod converge;
 mod failure;
 pub(crate) mod integrators;
 mod interruption;
+mod lines;
 pub(crate) mod mesh;
 #[cfg(feature = "implicit")]
 pub(crate) mod modes;

@@ -1,0 +1,52 @@
+//! Why the error in space of a scene is not known.
+
+use sinew_core::{OptionError, SetupError, SimulateError};
+use sinew_scene::RefinementError;
+
+use crate::forecast::ForecastError;
+use crate::reference::ReferenceError;
+
+/// Why a scene could not be solved on several meshes.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConvergeError {
+    /// There is no finer mesh.
+    #[error(transparent)]
+    Refinement(#[from] RefinementError),
+    /// The integrator's options do not fit.
+    #[error(transparent)]
+    Options(#[from] OptionError),
+    /// The integrator cannot be set up.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A step failed.
+    #[error(transparent)]
+    Run(#[from] SimulateError),
+    /// The first steps on the scene's mesh failed.
+    #[error(transparent)]
+    Forecast(#[from] ForecastError),
+    /// There is no reference.
+    #[error("on mesh {level}: {source}")]
+    Reference {
+        /// The mesh, from 1 on.
+        level: usize,
+        /// The reason.
+        source: ReferenceError,
+    },
+    /// The run with half the step diverged, so that nothing is left to compare.
+    #[error(
+        "on mesh {level} the run in steps of {dt:e} s diverged, so that nothing can be compared; `sinew plan` names the stable step"
+    )]
+    Diverged {
+        /// The mesh, from 1 on.
+        level: usize,
+        /// The step (s).
+        dt: f64,
+    },
+    /// Errors are relative to the motion, and there is none.
+    #[error("nothing moves in this scene, so that there is no error to estimate")]
+    NothingMoves,
+    /// A displacement could not be found at all nodes.
+    #[error("the motion of the nodes cannot be told: {0}")]
+    Field(String),
+}

@@ -1,0 +1,231 @@
+//! What is compared between meshes: displacements at places that all have, and energies.
+
+use sinew_scene::{BodyModel, ProbeAt, ProbePoint, Simulation, Subject as SceneSubject};
+
+use super::caveats::Caveat;
+use super::error::ConvergeError;
+use super::quantity::Subject;
+
+/// Displacements and energies of a motion, instant after instant.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Observed {
+    /// Of the nodes of the scene's mesh, which are the first of every refined one (m).
+    nodes: Vec<f64>,
+    /// At the points of probes (m).
+    probes: Vec<Vec<f64>>,
+    /// Elastic (J).
+    energy: Vec<f64>,
+}
+
+/// The values of a quantity within what was observed.
+pub(super) type Of = Box<dyn Fn(&Observed) -> &[f64]>;
+
+/// The places that are observed on every mesh.
+#[derive(Clone, Debug)]
+pub(super) struct Places {
+    nodes: usize,
+    probes: Vec<ProbePlace>,
+}
+
+/// The place of a probe.
+#[derive(Clone, Debug)]
+struct ProbePlace {
+    name: String,
+    at: At,
+    /// Its distance (m) from the body, where it lies outside.
+    outside: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum At {
+    /// A point within the body (m).
+    Point([f64; 3]),
+    /// A node of the scene's mesh.
+    Node(u32),
+}
+
+/// Barycentric coordinates above the negative of this belong to a tetrahedron.
+const ON_FACE: f64 = 1e-9;
+
+impl Places {
+    pub(super) fn of(simulation: &Simulation) -> Result<Self, ConvergeError> {
+        let body = body_of(simulation)?;
+        let written = match simulation.scene().subject() {
+            SceneSubject::Body(body) => &body.probes[..],
+            SceneSubject::Oscillator(_) => &[],
+        };
+        let probes = simulation.probes().iter().filter_map(|probe| {
+            let node = probe.node?;
+            let asked = written
+                .iter()
+                .find_map(|written| asked(written, &probe.name));
+            let inside = asked.filter(|point| surrounding(body, *point).is_some());
+            Some(ProbePlace {
+                name: probe.name.clone(),
+                at: inside.map_or(At::Node(node.index), At::Point),
+                outside: (asked.is_some() && inside.is_none()).then_some(node.distance),
+            })
+        });
+        Ok(Self {
+            nodes: body.mesh.points.len(),
+            probes: probes.collect(),
+        })
+    }
+
+    /// All that is observed.
+    pub(super) fn subjects(&self) -> Vec<(Subject, Of)> {
+        let probes = self.probes.iter().enumerate().map(|(index, probe)| {
+            let of: Of = Box::new(move |observed| &observed.probes[index]);
+            (Subject::Probe(probe.name.clone()), of)
+        });
+        let nodes: Of = Box::new(|observed| &observed.nodes);
+        let energy: Of = Box::new(|observed| &observed.energy);
+        probes
+            .chain([
+                (Subject::Displacement, nodes),
+                (Subject::ElasticEnergy, energy),
+            ])
+            .collect()
+    }
+
+    /// Probes outside the body, of which the nearest node is taken on all meshes.
+    pub(super) fn outside(&self) -> impl Iterator<Item = Caveat> {
+        self.probes.iter().filter_map(|probe| {
+            Some(Caveat::ProbeOutside {
+                name: probe.name.clone(),
+                distance: probe.outside?,
+            })
+        })
+    }
+}
+
+/// The point that the scene asks for, where it asks for one.
+fn asked(written: &ProbePoint, name: &str) -> Option<[f64; 3]> {
+    match written.at {
+        ProbeAt::Point(point) if written.name == name => Some(point),
+        _ => None,
+    }
+}
+
+fn body_of(simulation: &Simulation) -> Result<&BodyModel, ConvergeError> {
+    let body = simulation.model().body();
+    Ok(body.ok_or(sinew_scene::RefinementError::NoMesh)?)
+}
+
+/// The places as they lie in one of the meshes.
+pub(super) struct Eye<'a> {
+    simulation: &'a Simulation,
+    body: &'a BodyModel,
+    nodes: usize,
+    /// Nodes of each probe and their shares.
+    probes: Vec<[(u32, f64); 4]>,
+    /// Displacement of all nodes (m).
+    all: Vec<[f64; 3]>,
+    pub(super) seen: Observed,
+}
+
+impl<'a> Eye<'a> {
+    pub(super) fn new(simulation: &'a Simulation, places: &Places) -> Result<Self, ConvergeError> {
+        let body = body_of(simulation)?;
+        let shares = |probe: &ProbePlace| match probe.at {
+            At::Node(node) => [(node, 1.0), (node, 0.0), (node, 0.0), (node, 0.0)],
+            // Refined tetrahedra fill the same body but for rounding.
+            At::Point(point) => surrounding(body, point).unwrap_or_else(|| {
+                let node = body.mesh.nearest_node(point).0;
+                [(node, 1.0), (node, 0.0), (node, 0.0), (node, 0.0)]
+            }),
+        };
+        Ok(Self {
+            simulation,
+            body,
+            nodes: places.nodes,
+            probes: places.probes.iter().map(shares).collect(),
+            all: vec![[0.0; 3]; body.mesh.points.len()],
+            seen: Observed {
+                probes: vec![Vec::new(); places.probes.len()],
+                ..Observed::default()
+            },
+        })
+    }
+
+    /// Looks at the displacement `u` (m) of the degrees of freedom at a time (s).
+    pub(super) fn look(&mut self, t: f64, u: &[f64]) -> Result<(), ConvergeError> {
+        let found = self.body.model.displacements_at(t, u, &mut self.all);
+        found.map_err(|error| ConvergeError::Field(error.to_string()))?;
+        let seen = &mut self.seen;
+        seen.nodes
+            .extend(self.all[..self.nodes].iter().flatten().copied());
+        for (values, shares) in seen.probes.iter_mut().zip(&self.probes) {
+            let along = |axis: usize| {
+                let terms = shares.iter();
+                let terms = terms.map(|(node, share)| share * self.all[*node as usize][axis]);
+                terms.sum::<f64>()
+            };
+            values.extend([along(0), along(1), along(2)]);
+        }
+        // Where supports move, elements between them and the body are in no matrix.
+        let energy = match self.body.problem.moves.is_empty() {
+            true => {
+                let energy = self.simulation.system().energy(u, &vec![0.0; u.len()]);
+                energy.map(|energy| energy.elastic)
+            }
+            false => None,
+        };
+        seen.energy.push(match energy {
+            Some(energy) => energy,
+            None => {
+                let energy = self.body.model.elastic_energy(&self.all);
+                energy.map_err(|error| ConvergeError::Field(error.to_string()))?
+            }
+        });
+        Ok(())
+    }
+}
+
+impl Observed {
+    /// What was seen last.
+    pub(super) fn last(&self, nodes: usize) -> &[f64] {
+        &self.nodes[self.nodes.len().saturating_sub(3 * nodes)..]
+    }
+
+    /// The displacement of the scene's nodes, instant after instant.
+    pub(super) fn nodes(&self) -> &[f64] {
+        &self.nodes
+    }
+}
+
+impl Places {
+    /// Number of nodes of the scene's mesh.
+    pub(super) fn nodes(&self) -> usize {
+        self.nodes
+    }
+}
+
+/// The tetrahedron around a point, as its nodes and their shares of the point; the first of those that meet there.
+fn surrounding(body: &BodyModel, point: [f64; 3]) -> Option<[(u32, f64); 4]> {
+    let mesh = &body.mesh;
+    mesh.tets.iter().find_map(|tet| {
+        let [a, b, c, d] = tet.map(|node| {
+            let corner = mesh.points[node as usize];
+            std::array::from_fn::<f64, 3, _>(|axis| corner[axis] - point[axis])
+        });
+        let volumes = [
+            triple(b, d, c),
+            triple(a, c, d),
+            triple(a, d, b),
+            triple(a, b, c),
+        ];
+        let whole: f64 = volumes.iter().sum();
+        let shares = volumes.map(|volume| volume / whole);
+        // False for what is not a number.
+        let holds = shares.iter().all(|share| *share >= -ON_FACE);
+        holds.then(|| std::array::from_fn(|corner| (tet[corner], shares[corner])))
+    })
+}
+
+/// The determinant of three vectors.
+fn triple(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
+    a[0] * (b[1] * c[2] - b[2] * c[1])
+        + a[1] * (b[2] * c[0] - b[0] * c[2])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+}

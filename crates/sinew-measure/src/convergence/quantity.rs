@@ -1,0 +1,41 @@
+//! A quantity that is compared between meshes.
+
+use super::richardson::Estimate;
+
+/// The subject of a quantity.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// The displacement of all nodes of the scene's mesh (m).
+    Displacement,
+    /// The displacement at the point of a probe (m).
+    Probe(String),
+    /// The elastic energy (J).
+    ElasticEnergy,
+}
+
+/// The time of a quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// The whole run.
+    Run,
+    /// The rest in which the run ends, solved as such.
+    Rest,
+}
+
+/// A quantity on all meshes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// Its subject.
+    pub subject: Subject,
+    /// Its time.
+    pub when: When,
+    /// Its size on the finest mesh, its root mean square over nodes and instants (m or J).
+    pub size: f64,
+    /// The error in time on each mesh over [`Quantity::size`] (fraction), the scene's mesh first; none at rest and for a run that
+    /// diverged.
+    pub errors_in_time: Vec<Option<f64>>,
+    /// The error in time, over the size, of the solutions that are compared between meshes (fraction); 0 for references.
+    pub left_in_time: f64,
+    /// What the meshes say about its error in space.
+    pub estimate: Estimate,
+}

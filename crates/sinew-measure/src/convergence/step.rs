@@ -1,0 +1,23 @@
+//! The step of the scene's method on a refined mesh.
+
+use sinew_core::StableStep;
+use sinew_scene::Simulation;
+
+/// Share of the stable step of which refined meshes take at most: at the step itself a fastest mode of leapfrog methods grows.
+const WITHIN_STABLE: f64 = 0.9;
+
+/// Parts into which the scene's step is cut on a refined mesh, so that it is stable.
+pub(super) fn parts(dt: f64, stable_step: Option<f64>) -> usize {
+    match stable_step {
+        Some(limit) if limit > 0.0 && dt > limit => (dt / (WITHIN_STABLE * limit)).ceil() as usize,
+        _ => 1,
+    }
+}
+
+/// The largest stable step (s) of the scene's integrator, where it has one and knows it.
+pub(super) fn stable_step(simulation: &Simulation) -> Option<f64> {
+    match simulation.stable_step() {
+        Ok(StableStep::UpTo(limit)) => Some(limit),
+        _ => None,
+    }
+}

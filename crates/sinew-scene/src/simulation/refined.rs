@@ -1,0 +1,36 @@
+//! The same scene on a finer mesh.
+
+use sinew_mesh::RefineError;
+
+use super::Simulation;
+use crate::error::SceneError;
+
+/// Why there is no finer mesh for a scene.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RefinementError {
+    /// There is no mesh.
+    #[error("an oscillator has no mesh")]
+    NoMesh,
+    /// The mesh would become too large.
+    #[error(transparent)]
+    Mesh(#[from] RefineError),
+    /// The scene does not fit the finer mesh.
+    #[error("on the refined mesh: {0}")]
+    Scene(#[from] SceneError),
+}
+
+impl Simulation {
+    /// The same scene on its mesh with each tetrahedron cut into eight. Groups of the mesh take the same part of the body as
+    /// before; places of the scene (`where`) are selected anew, and may follow the body more closely.
+    ///
+    /// # Errors
+    /// [`RefinementError`] for an oscillator, and where the finer mesh cannot be made or used.
+    pub fn refined(&self) -> Result<Self, RefinementError> {
+        let body = self.model().body().ok_or(RefinementError::NoMesh)?;
+        let mut mesh = body.mesh.refined()?;
+        let is_selected = |name: &str| body.selected.iter().any(|part| part.name == name);
+        mesh.groups.retain(|group| !is_selected(&group.name));
+        Ok(self.scene().clone().build_on(mesh)?)
+    }
+}
