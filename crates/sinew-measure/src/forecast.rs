@@ -88,6 +88,30 @@ impl Forecast {
         })
     }
 
+    /// As [`Forecast::of`], for a run that may be long: nothing more than a step is taken where that shows that the run takes less
+    /// than `seconds`, and then there is no forecast.
+    ///
+    /// # Errors
+    /// [`ForecastError`].
+    pub fn of_long_run(
+        simulation: &Simulation,
+        integrator: &mut dyn Integrator,
+        seconds: f64,
+    ) -> Result<Option<Self>, ForecastError> {
+        let run = simulation.run();
+        integrator.prepare(simulation.system(), run.dt)?;
+        let mut state = simulation.initial_state().clone();
+        let one = Run { steps: 1, ..run };
+        let begun = Instant::now();
+        simulate(simulation.system(), integrator, &mut state, &one, &mut ())?;
+        // A first step takes longer than others.
+        if begun.elapsed().as_secs_f64() * (run.steps as f64) < seconds {
+            return Ok(None);
+        }
+        let forecast = Self::of(simulation, integrator)?;
+        Ok((forecast.run_s() > seconds).then_some(forecast))
+    }
+
     /// Time (s) of the run by the clock on the wall, set-up included, without what is written.
     #[must_use]
     pub fn run_s(&self) -> f64 {

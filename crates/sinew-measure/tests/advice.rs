@@ -271,6 +271,39 @@ fn a_budget_filters_and_what_misses_it_comes_nearest() {
 }
 
 #[test]
+fn a_budget_alone_buys_the_smallest_error_and_twice_of_it_a_smaller_one() {
+    let cost = advised(&advise(small_cube(), question(1e-2)).unwrap())
+        .row
+        .cpu_s_per_s;
+    let within = |budget| {
+        let question = Question {
+            budget: Some(budget),
+            tolerance: None,
+            ..question(1e-2)
+        };
+        advise(small_cube(), question).unwrap()
+    };
+    let (once, twice) = (within(1.05 * cost), within(2.1 * cost));
+    for (advice, budget) in [(&once, 1.05 * cost), (&twice, 2.1 * cost)] {
+        let best = advised(advice).row.error.unwrap();
+        assert!(advised(advice).row.cpu_s_per_s <= budget);
+        let Answer::Met { cheapest, .. } = &advice.answer else {
+            panic!("{:?}", advice.answer);
+        };
+        assert!(cheapest.iter().all(|run| run.row.error.unwrap() >= best));
+    }
+    let (once, twice) = (
+        advised(&once).row.error.unwrap(),
+        advised(&twice).row.error.unwrap(),
+    );
+    // What 1 % costs is there to be bought.
+    assert!(once <= 1e-2, "{once}");
+    // By a method of second order, half the step at the least.
+    assert!(twice <= once / 3.0, "{once} {twice}");
+    assert!(matches!(within(1e-9 * cost).answer, Answer::Missed { .. }));
+}
+
+#[test]
 fn where_time_is_short_a_first_part_of_the_scene_is_measured() {
     // The reference of all four seconds takes several seconds of CPU time, in long steps too.
     let path = path("peers-cube.toml");

@@ -60,8 +60,8 @@ pub use scene::{
     TimeStep, Way,
 };
 pub use simulation::{
-    BodyModel, HeldPlace, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe,
-    ProbeNode, Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad, SceneModel,
-    SelectedPart, Simulation, UnresolvedLoad, Warning, WarningKind,
+    BodyModel, Footprint, HeldPlace, LoadRemedy, MotionTableError, MotionTableFault, NearestNode,
+    Probe, ProbeNode, Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad,
+    SceneModel, SelectedPart, Simulation, UnresolvedLoad, Warning, WarningKind,
 };
 pub use source::SceneSource;

@@ -25,11 +25,18 @@ fn plan(text: &str) -> Plan {
 
 /// A plan's text with the same instructions on every computer.
 fn anywhere(plan: &Plan) -> String {
-    let mut text = plan.to_string();
-    for set in ["portable", "avx2", "avx512"] {
-        text = text.replace(&format!(" by {set}"), " by SIMD");
+    let mut plan = plan.clone();
+    // Before the text is broken into lines.
+    for line in plan
+        .sections
+        .iter_mut()
+        .flat_map(|section| &mut section.lines)
+    {
+        for set in ["portable", "avx2", "avx512"] {
+            *line = line.replace(&format!(" by {set}"), " by SIMD");
+        }
     }
-    text
+    plan.to_string()
 }
 
 /// The paper's cube from the generator, which makes the same mesh as the file holds.
@@ -46,13 +53,16 @@ fn the_papers_cube() {
     The paper's cube, reproduction scene
     mesh        cube of 10 x 10 x 10 cells, edge 0.2 m, split "kuhn"
                 1331 nodes, 6000 tetrahedra, 7930 edges; 0.008 m3, 8.48 kg
-                groups `tissue` (6000 tetrahedra), `sides` (800 triangles), `top` (200 triangles), `bottom` (200 triangles)
-    regions     `tissue`: 6000 tetrahedra, 1060 kg/m3, springs "lloyd" not calibrated, E = 3500 Pa, nu = 1/4 by nature
+                groups `tissue` (6000 tetrahedra), `sides` (800 triangles), `top` (200 triangles),
+                  `bottom` (200 triangles)
+    regions     `tissue`: 6000 tetrahedra, 1060 kg/m3, springs "lloyd" not calibrated, E = 3500 Pa, nu =
+                  1/4 by nature
                 its springs average to 1.27 E (Voigt), 0.3904 to 2.857 E by direction
     damping     80 1/s times M, no matrix
     fixed       `sides` in x, y, z
                 3993 -> 2673 degrees of freedom; 891 of 1331 nodes move, the others are removed
-    loads       traction [0, 0, -500] Pa on `top` from t = 0: 20 N asked, 16.2 N act, 3.8 N fall on fixed nodes
+    loads       traction [0, 0, -500] Pa on `top` from t = 0: 20 N asked, 16.2 N act, 3.8 N fall on
+                  fixed nodes
     probes      `top-centre`: node 1271, 0 m from the point
     matrices    linear: assembled once, no loop over elements afterwards
                 K with 11247 blocks of 3 x 3, lumped M: 883.3 kB
@@ -63,7 +73,9 @@ fn the_papers_cube() {
                 no element sets the step alone: all allow about the same
                 computed by 3 templates in the place of 891 rows (3028 bytes for 854 kB) in f64 by SIMD
     warning     dt = 0.02 s is 15.96 times the stable step of `cnn`, 0.001253 s
-                only its clamp keeps `cnn` bounded at this step, and that makes no motion right: on the paper's cube, in steps of 16 times the stable one, its error is 2520 %; `cnn-stabilised` takes such a step; saturation = "auto" cuts it into stable ones
+                only its clamp keeps `cnn` bounded at this step, and that makes no motion right: on the
+                  paper's cube, in steps of 16 times the stable one, its error is 2520 %;
+                  `cnn-stabilised` takes such a step; saturation = "auto" cuts it into stable ones
     "#);
 }
 
@@ -169,7 +181,9 @@ fn the_papers_oscillator() {
                 `cnn` is stable up to dt = 0.01 s
                 computed by plain loops in f64
     warning     dt = 0.02 s is 2 times the stable step of `cnn`, 0.01 s
-                only its clamp keeps `cnn` bounded at this step, and that makes no motion right: on the paper's cube, in steps of 16 times the stable one, its error is 2520 %; `cnn-stabilised` takes such a step; saturation = "auto" cuts it into stable ones
+                only its clamp keeps `cnn` bounded at this step, and that makes no motion right: on the
+                  paper's cube, in steps of 16 times the stable one, its error is 2520 %;
+                  `cnn-stabilised` takes such a step; saturation = "auto" cuts it into stable ones
     "#);
 }
 
@@ -218,10 +232,13 @@ point = [0.05, 0.05, 0.06]
     insta::assert_snapshot!(plan(text), @r#"
     mesh        cube of 2 x 2 x 2 cells, edge 0.1 m, split "mirrored"
                 27 nodes, 48 tetrahedra, 98 edges; 0.001 m3, 1 kg
-                groups `tissue` (48 tetrahedra), `sides` (32 triangles), `top` (8 triangles), `bottom` (8 triangles)
-    regions     whole mesh: 48 tetrahedra, 1000 kg/m3, springs "van-gelder" calibrated, E = 10000 Pa, nu = 1/4 by nature
+                groups `tissue` (48 tetrahedra), `sides` (32 triangles), `top` (8 triangles), `bottom`
+                  (8 triangles)
+    regions     whole mesh: 48 tetrahedra, 1000 kg/m3, springs "van-gelder" calibrated, E = 10000 Pa, nu
+                  = 1/4 by nature
                 its springs average to 1 E (Voigt), 0.7317 to 1.355 E by direction
-    damping     1 1/s times M, no matrix; 0.0001 s times K, in the product with K; dashpots along springs, a matrix of their own
+    damping     1 1/s times M, no matrix; 0.0001 s times K, in the product with K; dashpots along
+                  springs, a matrix of their own
     fixed       `bottom` in y, z
                 `sides` in x
                 81 -> 39 degrees of freedom; 19 of 27 nodes move, the others are removed
@@ -238,8 +255,11 @@ point = [0.05, 0.05, 0.06]
     run         `newmark`, dt = 0.02 s
                 1 step for 0.01 s, error taken at 51 instants
                 `newmark` is stable at any step
-    warning     [[initial]] 2 displaces 5 nodes that are held or moved there: they stay, and the body is torn from them at t = 0; displace other nodes, or by a stretch whose origin is at the support
-                dt = 0.02 s is longer than the duration, 0.01 s; `sinew run` takes one step that ends with it
+    warning     [[initial]] 2 displaces 5 nodes that are held or moved there: they stay, and the body is
+                  torn from them at t = 0; displace other nodes, or by a stretch whose origin is at the
+                  support
+                dt = 0.02 s is longer than the duration, 0.01 s; `sinew run` takes one step that ends
+                  with it
     "#);
 }
 

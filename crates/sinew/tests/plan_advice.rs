@@ -167,7 +167,7 @@ fn what_no_budget_buys_is_an_answer_too() {
 fn a_question_without_an_answer_is_refused_with_what_to_ask() {
     let tolerance = "expected a fraction above 0 and below 1, such as 1e-2";
     let budget = "expected finite CPU seconds per simulated second above 0";
-    let cases: [(&[&str], &str); 10] = [
+    let cases: [(&[&str], &str); 9] = [
         (&["--tolerance", "0"], tolerance),
         (&["--tolerance", "-1e-2"], tolerance),
         (&["--tolerance", "1"], tolerance),
@@ -176,7 +176,6 @@ fn a_question_without_an_answer_is_refused_with_what_to_ask() {
         (&["--tolerance", "1e-2", "--budget", "0"], budget),
         (&["--tolerance", "1e-2", "--budget", "-1"], budget),
         (&["--tolerance", "1e-2", "--budget", "inf"], budget),
-        (&["--budget", "1"], "--tolerance <ERROR>"),
         (
             &["--tolerance", "1e-2", "--pilot-seconds", "0"],
             "expected a finite time above 0 s",
@@ -217,4 +216,29 @@ fn a_scene_without_a_reference_says_what_to_do() {
         assert_eq!(said.err.matches("error:").count(), 1, "{}", said.err);
         assert_eq!(said.out, "", "{to}");
     }
+}
+
+#[test]
+fn a_budget_alone_is_a_question_and_json_has_the_plan_beside_its_answer() {
+    let said = plan(SPRING, &["--budget", "1"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(
+        said.out.contains("most accurate with at most 1 CPU s/s: "),
+        "{}",
+        said.out
+    );
+    assert!(
+        said.out.contains("\n[run]\n") && !said.out.contains("ten times"),
+        "{}",
+        said.out
+    );
+
+    let said = plan(SPRING, &["--budget", "1", "--json"]);
+    let object: Value = serde_json::from_str(&said.out).unwrap();
+    assert!(object["advised"]["row"]["cpu_s_per_s"].as_f64().unwrap() <= 1.0);
+    let missing = object["missing"].as_array().unwrap();
+    assert!(missing.iter().any(|entry| entry["field"] == "tolerance"));
+    assert_eq!(object["plan"]["steps"], 50);
+    let sweeps = object["plan"]["cost"]["time"]["sweeps"].as_f64().unwrap();
+    assert!((45.0..110.0).contains(&sweeps), "{sweeps}");
 }

@@ -33,7 +33,15 @@ fn warned_by_plan(scene: &Path) -> Vec<String> {
     assert_eq!(said.code, Some(0), "{}", said.err);
     let lines = said.out.lines();
     let warnings = lines.skip_while(|line| !line.starts_with("warning "));
-    warnings.map(|line| line[12..].to_owned()).collect()
+    let mut joined: Vec<String> = Vec::new();
+    for line in warnings {
+        // Lines that go on with a warning stand farther in.
+        match (line.strip_prefix("              "), joined.last_mut()) {
+            (Some(rest), Some(before)) => *before = format!("{before} {rest}"),
+            _ => joined.push(line[12..].to_owned()),
+        }
+    }
+    joined
 }
 
 fn warned_by_run(scene: &Path) -> Vec<String> {
@@ -168,4 +176,31 @@ fn a_plan_in_json_lists_its_warnings_with_their_numbers() {
     let headings = plan["sections"].as_array().unwrap().iter();
     let headings: Vec<&str> = headings.map(|s| s["heading"].as_str().unwrap()).collect();
     assert_eq!(headings[..2], ["mesh", "regions"]);
+}
+
+#[test]
+fn a_run_of_more_than_a_minute_is_warned_of_before_it_begins() {
+    let folder = tempfile::tempdir().unwrap();
+    let spring = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = -5.0\n[run]\nduration = 1e9\n\
+                  integrator = \"newmark\"\ndt = 0.01\n";
+    fs::write(folder.path().join("spring.toml"), spring).unwrap();
+    for arguments in [
+        &["plan", "spring.toml"][..],
+        &["run", "spring.toml"],
+        &["run", "spring.toml", "--out", "long"],
+    ] {
+        let said = sinew(folder.path(), &[arguments, &["--strict"]].concat());
+        assert_eq!(said.code, Some(2), "{}", said.err);
+        let text = format!("{}{}", said.out, said.err);
+        // The plan breaks its lines.
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(text.contains("the run is predicted to take"), "{text}");
+        assert!(text.contains("100000000000 steps of 0.01 s"), "{text}");
+        assert!(!folder.path().join("long").exists(), "no folder");
+    }
+    let said = sinew(folder.path(), &["plan", "spring.toml", "--json"]);
+    let plan: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let warning = &plan["warnings"][0];
+    assert_eq!(warning["kind"], "long-run");
+    assert!(warning["numbers"]["run_s"].as_f64().unwrap() > 60.0);
 }

@@ -32,6 +32,12 @@ const FOR_THE_REFERENCE: f64 = 0.5;
 /// cheapest run.
 const RUNNERS_UP_WITHIN: f64 = 4.0;
 
+/// Errors to which options of methods are set that trade error for cost, where only a cost is given.
+const TOLERANCES_OF_BUDGETS: [f64; 2] = [1e-3, 1e-6];
+
+/// Smallest error that is looked for where only a cost is given.
+const LEAST_ERROR: f64 = 1e-12;
+
 /// Why a method is no candidate for the answer.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -100,7 +106,8 @@ pub struct Advice {
 pub enum Answer {
     /// At least one run keeps to tolerance and budget.
     Met {
-        /// The cheapest run of each integrator in total, the advised one first.
+        /// The cheapest run of each integrator in total, the advised one first; where only a budget was given, the most accurate
+        /// within it.
         cheapest: Vec<Pilot>,
         /// The cheapest run with a tenth of the error, at any cost.
         tenfold: Option<Box<Pilot>>,
@@ -127,7 +134,10 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
     let begun = thread_cpu_time();
     let until = begun + Duration::from_secs_f64(question.pilot_seconds);
     let whole = Span::of(&simulation);
-    let tolerances = [question.tolerance, question.tolerance / 10.0];
+    let tolerances = match question.tolerance {
+        Some(tolerance) => [tolerance, tolerance / 10.0],
+        None => TOLERANCES_OF_BUDGETS,
+    };
     let (mut candidates, unusable) = candidates(&simulation, &tolerances);
     let unusable = unusable.into_iter();
     let mut refused: Vec<(MethodChoice, LeftOut)> = unusable
@@ -225,8 +235,11 @@ fn answer(
     question: Question,
     also: impl FnOnce(&mut Search<CasePilots<'_>>),
 ) -> (Answer, bool) {
-    let any_cost = Goal::error(question.tolerance);
-    let tenth = Goal::error(question.tolerance / 10.0);
+    let Some(tolerance) = question.tolerance else {
+        return smallest_error(search, question.budget.unwrap_or(f64::INFINITY), also);
+    };
+    let any_cost = Goal::error(tolerance);
+    let tenth = Goal::error(tolerance / 10.0);
     let goal = Goal {
         budget: question.budget.unwrap_or(f64::INFINITY),
         ..any_cost
@@ -258,6 +271,49 @@ fn answer(
     (met, cut_short)
 }
 
+/// The runs with the smallest error of each integrator within a budget (CPU s per simulated s), the smallest of all first; and
+/// whether the time ran out before they were found.
+fn smallest_error(
+    search: &mut Search<CasePilots<'_>>,
+    budget: f64,
+    also: impl FnOnce(&mut Search<CasePilots<'_>>),
+) -> (Answer, bool) {
+    let goal = Goal {
+        error: LEAST_ERROR,
+        budget,
+    };
+    search.seek(goal);
+    also(search);
+    // The shortest step that the budget allows lies between two that were tried.
+    search.spend(budget);
+    let cut_short = search.cut_short();
+    let within = Goal { error: 1.0, budget };
+    let mut best: Vec<Pilot> = Vec::new();
+    let error = |pilot: &Pilot| pilot.row.sound_error_over_scene().unwrap_or(f64::INFINITY);
+    let mut runs: Vec<&Pilot> = search
+        .runs()
+        .filter(|run| within.is_met_by(&run.row))
+        .collect();
+    runs.sort_by(|a, b| error(a).total_cmp(&error(b)));
+    for run in runs {
+        let same = |known: &Pilot| known.method.integrator == run.method.integrator;
+        if !best.iter().any(same) {
+            best.push(run.clone());
+        }
+    }
+    let answer = match best.is_empty() {
+        false => Answer::Met {
+            cheapest: best,
+            tenfold: None,
+        },
+        true => Answer::Missed {
+            within_tolerance: None,
+            within_budget: None,
+        },
+    };
+    (answer, cut_short)
+}
+
 fn boxed(pilot: Option<&Pilot>) -> Option<Box<Pilot>> {
     pilot.cloned().map(Box::new)
 }
@@ -273,7 +329,7 @@ fn changes_after(simulation: &Simulation, followed: Span) -> Vec<f64> {
     changes
 }
 
-fn check_reference(case: &Case, whole: Span, tolerance: f64) -> Result<(), AdviceError> {
+fn check_reference(case: &Case, whole: Span, tolerance: Option<f64>) -> Result<(), AdviceError> {
     let duration = case.span().duration;
     if case.samples().max_u == 0.0 {
         return Err(AdviceError::NothingMoves {
@@ -287,14 +343,14 @@ fn check_reference(case: &Case, whole: Span, tolerance: f64) -> Result<(), Advic
     }
     let reference = case.samples().error;
     let least = TOLD_APART * reference;
-    if tolerance >= least {
-        return Ok(());
+    match tolerance {
+        Some(tolerance) if tolerance < least => Err(AdviceError::BeyondReference {
+            tolerance,
+            reference,
+            least,
+        }),
+        _ => Ok(()),
     }
-    Err(AdviceError::BeyondReference {
-        tolerance,
-        reference,
-        least,
-    })
 }
 
 /// The run that the scene asks for.

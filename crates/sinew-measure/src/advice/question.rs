@@ -5,11 +5,11 @@ use crate::cost::Cost;
 /// Time for pilots (CPU s) unless another is given.
 pub const DEFAULT_PILOT_SECONDS: f64 = 10.0;
 
-/// An error that is to be met, and what it may cost.
+/// An error that is to be met, and what it may cost; at least one of them is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Question {
-    /// Largest relative error (fraction).
-    pub tolerance: f64,
+    /// Largest relative error (fraction); without one, the smallest within the budget is asked for.
+    pub tolerance: Option<f64>,
     /// Most CPU seconds per simulated second, set-up apart.
     pub budget: Option<f64>,
     /// CPU time (s) after which no pilot is begun.
@@ -32,6 +32,9 @@ pub enum QuestionError {
         "a budget of {0}: expected finite CPU seconds per simulated second above 0; 1 is real time"
     )]
     Budget(f64),
+    /// Neither of both.
+    #[error("neither a tolerance nor a budget is given; expected one of them, or both")]
+    Nothing,
     /// The time for pilots.
     #[error("{0} s for pilots: expected a finite time above 0 s and up to 1e9 s, such as 10")]
     PilotSeconds(f64),
@@ -42,15 +45,28 @@ impl Question {
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         Self {
-            tolerance,
+            tolerance: Some(tolerance),
             budget: None,
             pilot_seconds: DEFAULT_PILOT_SECONDS,
             cost: Cost::default(),
         }
     }
 
+    /// The smallest error for a cost (CPU s per simulated s).
+    #[must_use]
+    pub fn within(budget: f64) -> Self {
+        Self {
+            tolerance: None,
+            budget: Some(budget),
+            ..Self::new(f64::NAN)
+        }
+    }
+
     pub(super) fn check(self) -> Result<(), QuestionError> {
-        check_tolerance(self.tolerance)?;
+        if self.tolerance.is_none() && self.budget.is_none() {
+            return Err(QuestionError::Nothing);
+        }
+        self.tolerance.map_or(Ok(()), check_tolerance)?;
         self.budget.map_or(Ok(()), check_budget)?;
         check_pilot_seconds(self.pilot_seconds)
     }
@@ -128,5 +144,11 @@ mod tests {
             ..Question::new(0.99)
         };
         assert_eq!(question.check(), Ok(()));
+        assert_eq!(Question::within(1e-3).check(), Ok(()));
+        let nothing = Question {
+            budget: None,
+            ..Question::within(1e-3)
+        };
+        assert_eq!(nothing.check(), Err(QuestionError::Nothing));
     }
 }

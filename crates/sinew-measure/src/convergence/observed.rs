@@ -1,6 +1,6 @@
 //! What is compared between meshes: displacements at places that all have, and energies.
 
-use sinew_scene::{BodyModel, ProbeAt, ProbePoint, Simulation, Subject as SceneSubject};
+use sinew_scene::{BodyModel, ProbeAt, ProbePoint, Quantity, Simulation, Subject as SceneSubject};
 
 use super::caveats::Caveat;
 use super::error::ConvergeError;
@@ -54,7 +54,9 @@ impl Places {
             SceneSubject::Body(body) => &body.probes[..],
             SceneSubject::Oscillator(_) => &[],
         };
-        let probes = simulation.probes().iter().filter_map(|probe| {
+        let displaced = simulation.probes().iter();
+        let displaced = displaced.filter(|probe| probe.quantity == Quantity::Displacement);
+        let probes = displaced.filter_map(|probe| {
             let node = probe.node?;
             let asked = written
                 .iter()
@@ -201,31 +203,10 @@ impl Places {
     }
 }
 
-/// The tetrahedron around a point, as its nodes and their shares of the point; the first of those that meet there.
+/// The tetrahedron around a point, as its nodes and their shares of the point; `None` for a point outside.
 fn surrounding(body: &BodyModel, point: [f64; 3]) -> Option<[(u32, f64); 4]> {
-    let mesh = &body.mesh;
-    mesh.tets.iter().find_map(|tet| {
-        let [a, b, c, d] = tet.map(|node| {
-            let corner = mesh.points[node as usize];
-            std::array::from_fn::<f64, 3, _>(|axis| corner[axis] - point[axis])
-        });
-        let volumes = [
-            triple(b, d, c),
-            triple(a, c, d),
-            triple(a, d, b),
-            triple(a, b, c),
-        ];
-        let whole: f64 = volumes.iter().sum();
-        let shares = volumes.map(|volume| volume / whole);
-        // False for what is not a number.
-        let holds = shares.iter().all(|share| *share >= -ON_FACE);
-        holds.then(|| std::array::from_fn(|corner| (tet[corner], shares[corner])))
-    })
-}
-
-/// The determinant of three vectors.
-fn triple(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
-    a[0] * (b[1] * c[2] - b[2] * c[1])
-        + a[1] * (b[2] * c[0] - b[0] * c[2])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    let (tet, shares) = body.mesh.tet_at(point)?;
+    let nodes = body.mesh.tets[tet as usize];
+    let holds = shares.iter().all(|share| *share >= -ON_FACE);
+    holds.then(|| std::array::from_fn(|corner| (nodes[corner], shares[corner])))
 }

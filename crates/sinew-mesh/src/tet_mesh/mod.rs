@@ -154,6 +154,34 @@ impl TetMesh {
         }
         (nearest.0, nearest.1.sqrt())
     }
+
+    /// The tetrahedron (0-based) that holds a point, and the share of each of its vertices in it (barycentric coordinates);
+    /// where none holds it, the one in whose coordinates it is least outside, with a share below 0. Of several alike, the
+    /// first.
+    ///
+    /// Looks at every tetrahedron. `None` in a mesh without tetrahedra, and for a point that is not finite.
+    #[must_use]
+    pub fn tet_at(&self, point: [f64; 3]) -> Option<(u32, [f64; 4])> {
+        let mut best: Option<(u32, [f64; 4])> = None;
+        let least = |shares: &[f64; 4]| shares.iter().copied().fold(f64::INFINITY, f64::min);
+        for (tet, nodes) in (0u32..).zip(&self.tets) {
+            let [a, b, c, d] = nodes.map(|node| sub(self.points[node as usize], point));
+            let triple = |p, q, r| dot(p, cross(q, r));
+            let volumes = [
+                triple(b, d, c),
+                triple(a, c, d),
+                triple(a, d, b),
+                triple(a, b, c),
+            ];
+            let whole: f64 = volumes.iter().sum();
+            let shares = volumes.map(|volume| volume / whole);
+            let is_number = shares.iter().all(|share| share.is_finite());
+            if is_number && best.is_none_or(|(_, found)| least(&shares) > least(&found)) {
+                best = Some((tet, shares));
+            }
+        }
+        best
+    }
 }
 
 #[cfg(test)]
@@ -169,6 +197,26 @@ mod tests {
             [0.0, 0.0, -1.0],
         ];
         TetMesh::new(points, vec![[0, 1, 2, 3], [0, 1, 2, 4]]).expect("valid indices")
+    }
+
+    #[test]
+    fn the_tetrahedron_around_a_point_has_it_as_the_mean_of_its_vertices() {
+        let mesh = two_tets();
+        for (point, expected) in [([0.2, 0.3, 1.0], 0), ([0.2, 0.3, -0.4], 1)] {
+            let (tet, shares) = mesh.tet_at(point).expect("it is inside");
+            assert_eq!(tet, expected);
+            assert!(shares.iter().all(|share| *share > 0.0));
+            for axis in 0..3 {
+                let nodes = mesh.tets[tet as usize].iter().zip(shares);
+                let mean: f64 = nodes
+                    .map(|(node, share)| share * mesh.points[*node as usize][axis])
+                    .sum();
+                assert!((mean - point[axis]).abs() < 1e-15);
+            }
+        }
+        let (tet, shares) = mesh.tet_at([0.1, 0.1, 9.0]).expect("there are tetrahedra");
+        assert!(tet == 0 && shares.iter().any(|share| *share < 0.0));
+        assert_eq!(mesh.tet_at([f64::NAN; 3]), None);
     }
 
     #[test]

@@ -9,6 +9,7 @@ mod destination;
 mod error;
 mod folder;
 mod identity;
+mod lines;
 mod owned_folder;
 mod stream;
 mod target;
@@ -18,6 +19,7 @@ mod whole_file;
 pub use destination::{Delivery, Destination, Output};
 pub use error::OutputError;
 pub use folder::OutputFolder;
+pub use lines::{WIDTH, hanging};
 pub use owned_folder::{GrowingFile, OwnedFolder, Tenant};
 pub use voice::{Voice, complain, say};
 

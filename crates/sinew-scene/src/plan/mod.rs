@@ -12,12 +12,13 @@ use sinew_core::StableStep;
 
 pub use section::PlanSection;
 
+use crate::output::hanging;
 use crate::scene::Subject;
 use crate::simulation::{Simulation, Warning};
 use matrices::Matrices;
 
 /// A description of a simulation: what was built, what was left out and why, and warnings. It prints
-/// one paragraph for each section.
+/// one paragraph for each section, in lines of at most 100 characters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     /// Title of the scene.
@@ -81,7 +82,7 @@ impl fmt::Display for Plan {
         for PlanSection { heading, lines } in self.sections.iter().chain([&warnings]) {
             for (index, line) in lines.iter().enumerate() {
                 let heading = if index == 0 { heading } else { "" };
-                writeln!(f, "{heading:<11} {line}")?;
+                writeln!(f, "{}", hanging(&format!("{heading:<11} "), line, 2))?;
             }
         }
         Ok(())

@@ -10,7 +10,9 @@ pub struct PlanSection {
 }
 
 impl PlanSection {
-    pub(super) fn new(heading: &'static str, lines: Vec<String>) -> Self {
+    /// A section under a heading.
+    #[must_use]
+    pub fn new(heading: &'static str, lines: Vec<String>) -> Self {
         Self { heading, lines }
     }
 }

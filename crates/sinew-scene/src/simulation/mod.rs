@@ -2,6 +2,7 @@
 
 mod body;
 mod build;
+mod footprint;
 mod load_problems;
 mod loads;
 mod mesh;
@@ -20,6 +21,7 @@ use std::sync::OnceLock;
 use sinew_core::{OptionError, Run, StableStep, State, System};
 use sinew_integrators::Stepper;
 
+pub use footprint::Footprint;
 pub use load_problems::{LoadRemedy, RefusedLoad, UnresolvedLoad};
 pub use model::{BodyModel, SceneModel};
 pub use motion_table::{MotionTableError, MotionTableFault};

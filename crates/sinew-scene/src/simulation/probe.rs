@@ -173,7 +173,7 @@ fn of_stress(point: &ProbePoint, body: &BodyModel) -> Result<Probe, Fault> {
     let mesh = &body.mesh;
     let (tets, place) = match &point.at {
         ProbeAt::Point(point) => {
-            let tet = tet_at(mesh, *point);
+            let (tet, _) = mesh.tet_at(*point).unwrap_or_default();
             let place = format!("tetrahedron {}", mesh.tet_tags[tet as usize]);
             (vec![(tet, 1.0)], place)
         }
@@ -298,35 +298,6 @@ fn of_sum_one(mut weighted: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
         *weight /= sum;
     }
     weighted
-}
-
-/// The tetrahedron that holds a point, or in whose coordinates the point is least outside.
-fn tet_at(mesh: &TetMesh, point: [f64; 3]) -> u32 {
-    let least = |nodes: &[u32; 4]| {
-        let vertices = nodes.map(|node| mesh.points[node as usize]);
-        let whole = volume(vertices);
-        // The share of each vertex is the volume with the point in its place, over the whole.
-        let share = |vertex: usize| {
-            let mut with_point = vertices;
-            with_point[vertex] = point;
-            volume(with_point) / whole
-        };
-        (0..4).map(share).fold(f64::INFINITY, f64::min)
-    };
-    let inside = (0..)
-        .zip(&mesh.tets)
-        .map(|(tet, nodes)| (tet, least(nodes)));
-    let best = inside.max_by(|(_, a), (_, b)| a.total_cmp(b));
-    best.map_or(0, |(tet, _)| tet)
-}
-
-/// Six times the signed volume.
-fn volume([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
-    let edge = |to: [f64; 3]| -> [f64; 3] { std::array::from_fn(|axis| to[axis] - a[axis]) };
-    let (p, q, r) = (edge(b), edge(c), edge(d));
-    p[0] * (q[1] * r[2] - q[2] * r[1])
-        + p[1] * (q[2] * r[0] - q[0] * r[2])
-        + p[2] * (q[0] * r[1] - q[1] * r[0])
 }
 
 pub(super) fn of_oscillator() -> Probe {

@@ -10,16 +10,13 @@ use sinew_measure::convergence::{
     Convergence, LEVELS, Prediction, Quantity, TimeCheck, When, converge, predict,
 };
 use sinew_measure::number::{milliseconds, percent, short, three};
-use sinew_scene::output::{complain, say};
+use sinew_scene::output::{complain, hanging, say};
 
 use super::Failure;
-use super::lines;
 use super::ruled;
+use super::run::LONG;
 use super::scene_with::Values;
 use words::{subject, unit};
-
-/// Predicted time (s) beyond which nothing is begun unless it is asked for.
-const LONG: f64 = 60.0;
 
 /// A scene and the number of meshes.
 #[derive(clap::Args)]
@@ -168,10 +165,10 @@ fn in_words(found: &Convergence) -> String {
         }
     }
     for caveat in &found.caveats {
-        text.push_str(&lines::hanging("but: ", &caveat.to_string()));
+        text.push_str(&hanging("but: ", &caveat.to_string(), 0));
         text.push('\n');
     }
-    text.push_str(&lines::hanging("", &answer(found)));
+    text.push_str(&hanging("", &answer(found), 0));
     text
 }
 

@@ -70,6 +70,16 @@ pub(crate) enum Failure {
         /// Time (s) up to which nobody is asked.
         limit: f64,
     },
+    /// A scene that needs more memory than there is.
+    #[error(
+        "the scene needs about {needed} MB and this computer has {available} MB left; a coarser mesh takes less"
+    )]
+    Memory {
+        /// Predicted memory (MB).
+        needed: u64,
+        /// Memory that is left (MB).
+        available: u64,
+    },
     /// A mesh file that cannot be read.
     #[error(transparent)]
     Mesh(#[from] MshFileError),
@@ -219,6 +229,7 @@ impl Failure {
             | Self::Warnings { .. }
             | Self::Advice { .. }
             | Self::LongConverge { .. }
+            | Self::Memory { .. }
             | Self::Mesh(_)
             | Self::Tetrahedra { .. }
             | Self::Exists { .. }

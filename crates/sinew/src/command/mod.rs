@@ -5,7 +5,6 @@ pub(crate) mod converge;
 mod failure;
 pub(crate) mod integrators;
 mod interruption;
-mod lines;
 pub(crate) mod mesh;
 #[cfg(feature = "implicit")]
 pub(crate) mod modes;

@@ -2,23 +2,26 @@
 
 mod advice;
 mod advice_json;
+mod cost;
+mod cost_json;
 mod plan_json;
 mod program;
 mod program_json;
 
 use std::path::PathBuf;
 
-use sinew_measure::Cost;
 use sinew_measure::advice::{
     DEFAULT_PILOT_SECONDS, Question, QuestionError, advise, check_budget, check_pilot_seconds,
     check_tolerance,
 };
+use sinew_scene::PlanSection;
 use sinew_scene::output::say;
 
 use super::Failure;
 use super::scene_with::Values;
+use cost::Cost;
 
-/// A scene and the error that its run may have.
+/// A scene, and the error or the cost that its run may have.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The scene file.
@@ -28,11 +31,11 @@ pub(crate) struct Arguments {
     /// holds
     #[arg(long, value_name = "ERROR", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
-    /// Largest cost in CPU seconds per simulated second, without set-up; 1 is real time
+    /// Largest cost in CPU seconds per simulated second, without set-up; 1 is real time. Without
+    /// --tolerance, advise the smallest error for it
     #[arg(
         long,
         value_name = "CPU_S_PER_S",
-        requires = "tolerance",
         value_parser = budget,
         allow_hyphen_values = true
     )]
@@ -41,7 +44,6 @@ pub(crate) struct Arguments {
     #[arg(
         long,
         value_name = "S",
-        requires = "tolerance",
         default_value_t = DEFAULT_PILOT_SECONDS,
         value_parser = pilot_seconds,
         allow_hyphen_values = true
@@ -49,10 +51,10 @@ pub(crate) struct Arguments {
     pilot_seconds: f64,
     /// Print what each cell computes in a step: the sweeps of the scene's integrator as formulas, with
     /// their coefficients
-    #[arg(long, conflicts_with = "tolerance")]
+    #[arg(long, conflicts_with_all = ["tolerance", "budget"])]
     program: bool,
-    /// Print the advice or the program as one JSON object, without the plan, or without these the plan;
-    /// in an advice the list `missing` explains each null
+    /// Print the plan as one JSON object, with --tolerance or --budget the advice, which has the plan in it, or the
+    /// program; in an advice the list `missing` explains each null
     #[arg(long)]
     json: bool,
     /// Make warnings errors
@@ -63,27 +65,38 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let simulation = arguments.values.load(&arguments.scene)?.build()?;
+    let scene = arguments.values.load(&arguments.scene)?;
+    let footprint = scene.footprint()?;
+    if let Some(footprint) = &footprint {
+        cost::check_memory(footprint)?;
+    }
+    let simulation = scene.build()?;
+    let cost = Cost::of(&simulation, footprint);
+    let mut plan = simulation.plan();
+    plan.warnings.extend(cost.warning());
+    let advised = arguments.tolerance.is_some() || arguments.budget.is_some();
     if !arguments.json {
-        say(simulation.plan().to_string().trim_end())?;
-    } else if arguments.tolerance.is_none() && !arguments.program {
-        say(&plan_json::as_json(&simulation).to_string())?;
+        plan.sections.push(PlanSection::new("cost", cost.lines()));
+        say(plan.to_string().trim_end())?;
+    } else if !advised && !arguments.program {
+        say(&plan_json::as_json(&simulation, &plan, &cost).to_string())?;
     }
     if arguments.strict {
-        Failure::of_warnings(&simulation.warnings())?;
+        Failure::of_warnings(&plan.warnings)?;
     }
     if arguments.program {
         return program::print(&simulation, arguments.json);
     }
-    let Some(tolerance) = arguments.tolerance else {
+    if !advised {
         return Ok(());
-    };
+    }
     let question = Question {
-        tolerance,
+        tolerance: arguments.tolerance,
         budget: arguments.budget,
         pilot_seconds: arguments.pilot_seconds,
-        cost: Cost::CpuTime,
+        cost: sinew_measure::Cost::CpuTime,
     };
+    let planned = plan_json::as_json(&simulation, &plan, &cost);
     let advice = advise(simulation, question);
     let advice = advice.map_err(|source| Failure::Advice {
         scene: arguments.scene.clone(),
@@ -93,7 +106,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         say(&format!("\n{}", advice::text(&advice)))?;
         return Ok(());
     }
-    let advice = advice_json::as_json(&advice);
+    let mut advice = advice_json::as_json(&advice);
+    if let Some(object) = advice.object.as_object_mut() {
+        object.insert("plan".to_owned(), planned);
+    }
     say(&advice.object.to_string())?;
     if advice.gaps.is_empty() {
         return Ok(());

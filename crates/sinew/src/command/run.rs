@@ -4,14 +4,20 @@ use std::path::{Path, PathBuf};
 
 use sinew_core::{OptionError, OptionValue, Outcome, Recorders, RunReport, simulate};
 use sinew_integrators::Stepper;
+use sinew_measure::Forecast;
 use sinew_record::{Companion, Ended, Request, RunEnd, RunFolder};
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
-use sinew_scene::{Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Simulation, WarningKind};
+use sinew_scene::{
+    Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Simulation, Warning, WarningKind,
+};
 
 use super::Failure;
 use super::interruption::Interruption;
 use super::onlooker::Onlooker;
 use super::scene_with::Values;
+
+/// Predicted time (s) of a run beyond which its user is warned.
+pub(crate) const LONG: f64 = 60.0;
 
 /// What no run knows of itself.
 const ERROR_NOT_KNOWN: &str =
@@ -73,6 +79,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     simulation.end_at_duration();
     let mut integrator = integrator(&simulation, arguments.threads.as_ref())?;
+    // What ends a first step with an error will end the run with it. The folder does not keep a warning that depends on the computer.
+    if let Ok(Some(forecast)) = Forecast::of_long_run(&simulation, &mut *integrator, LONG) {
+        let long = Warning::long_run(forecast.run_s(), forecast.steps, forecast.dt);
+        complain(&format!("warning: {long}"));
+        if arguments.strict {
+            Failure::of_warnings(&[long])?;
+        }
+    }
     match (destination, &arguments.out) {
         (None, Some(path)) => {
             // Before the folder is made, so that what cannot run leaves none.

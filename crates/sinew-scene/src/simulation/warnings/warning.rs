@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::number::short;
+
 /// Something about a scene that runs, and may not be what its author meant. It prints as one line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Warning {
@@ -25,10 +27,32 @@ impl Warning {
         }
     }
 
+    /// A run that is predicted to take long: time (s) by the clock on the wall, in so many steps.
+    #[must_use]
+    pub fn long_run(seconds: f64, steps: usize, dt: f64) -> Self {
+        let what = format!(
+            "the run is predicted to take {} by this computer's clock: {steps} steps of {} s",
+            time(seconds),
+            short(dt)
+        );
+        let mend = "`sinew plan --tolerance` finds the cheapest method and step, `sinew resume` goes on with a run in a folder \
+                    that was ended";
+        let numbers = [("run_s", seconds), ("steps", steps as f64), ("dt_s", dt)];
+        Self::new(WarningKind::LongRun, what, mend).with(&numbers)
+    }
+
     pub(super) fn with(mut self, numbers: &[(&'static str, f64)]) -> Self {
         self.numbers.extend_from_slice(numbers);
         self
     }
+}
+
+/// A time (s) in the largest unit of which it is more than two.
+fn time(seconds: f64) -> String {
+    let units = [("days", 86400.0), ("h", 3600.0), ("min", 60.0)];
+    let unit = units.into_iter().find(|(_, unit)| seconds > 2.0 * unit);
+    let (name, unit) = unit.unwrap_or(("s", 1.0));
+    format!("{} {name}", short((10.0 * seconds / unit).round() / 10.0))
 }
 
 impl fmt::Display for Warning {
@@ -79,6 +103,8 @@ pub enum WarningKind {
     LongStep,
     /// Steps that do not end at the duration.
     UnevenSteps,
+    /// A run that takes more than a minute, as its first steps tell.
+    LongRun,
     /// A probe farther from the body than an element.
     FarProbe,
     /// No probe.
@@ -107,6 +133,7 @@ impl WarningKind {
             Self::UnresolvedLoad => "unresolved-load",
             Self::LongStep => "long-step",
             Self::UnevenSteps => "uneven-steps",
+            Self::LongRun => "long-run",
             Self::FarProbe => "far-probe",
             Self::NoProbe => "no-probe",
         }

@@ -66,9 +66,14 @@ pub(super) fn text(advice: &Advice) -> String {
         paragraphs.push(table(advice, &rows));
     }
     if let Answer::Met { cheapest, tenfold } = &advice.answer
-        && let Some(best) = cheapest.first()
+        && let (Some(best), Some(tolerance)) = (cheapest.first(), advice.question.tolerance)
     {
-        paragraphs.push(ten_times_better(advice, best, tenfold.as_deref()));
+        paragraphs.push(ten_times_better(
+            advice,
+            tolerance,
+            best,
+            tenfold.as_deref(),
+        ));
     }
     paragraphs.push(provenance(advice));
     paragraphs.join("\n\n")
@@ -92,7 +97,11 @@ fn answer(advice: &Advice) -> String {
     match &advice.answer {
         Answer::Met { cheapest, .. } => match cheapest.first() {
             Some(best) => format!(
-                "cheapest with {asked}{}: {}\n\n{}",
+                "{} {asked}{}: {}\n\n{}",
+                match advice.question.tolerance {
+                    Some(_) => "cheapest with",
+                    None => "most accurate with",
+                },
                 up_to(advice),
                 run(advice, best),
                 advice.run_table(best).trim_end()
@@ -124,13 +133,18 @@ fn answer(advice: &Advice) -> String {
 
 fn asked(advice: &Advice) -> String {
     let question = advice.question;
-    let tolerance = format!(
-        "an error of at most {} %",
-        short(100.0 * question.tolerance)
-    );
-    match question.budget {
-        None => tolerance,
-        Some(budget) => format!("{tolerance} within {} CPU s/s", short(budget)),
+    let tolerance = question.tolerance;
+    let tolerance =
+        tolerance.map(|error| format!("an error of at most {} %", short(100.0 * error)));
+    let budget = question.budget;
+    match (
+        tolerance,
+        budget.map(|budget| format!("{} CPU s/s", short(budget))),
+    ) {
+        (Some(tolerance), Some(budget)) => format!("{tolerance} within {budget}"),
+        (Some(tolerance), None) => tolerance,
+        (None, Some(budget)) => format!("at most {budget}"),
+        (None, None) => String::new(),
     }
 }
 
@@ -200,8 +214,13 @@ fn expected(row: &Row) -> String {
     expected.map_or_else(|| "none".to_owned(), percent)
 }
 
-fn ten_times_better(advice: &Advice, best: &Pilot, tenfold: Option<&Pilot>) -> String {
-    let error = format!("{} %", short(10.0 * advice.question.tolerance));
+fn ten_times_better(
+    advice: &Advice,
+    tolerance: f64,
+    best: &Pilot,
+    tenfold: Option<&Pilot>,
+) -> String {
+    let error = format!("{} %", short(10.0 * tolerance));
     let Some(tenfold) = tenfold else {
         return format!("ten times better ({error}): nothing measured reaches it");
     };

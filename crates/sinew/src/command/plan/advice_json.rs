@@ -91,6 +91,9 @@ pub(super) fn as_json(advice: &Advice) -> AdviceJson {
     let refused: Vec<Value> = refused
         .map(|(method, reason)| json!({ "method": method.label(), "reason": reason.to_string() }))
         .collect();
+    if advice.question.tolerance.is_none() {
+        missing.explain("tolerance", "no tolerance was asked for");
+    }
     if advice.question.budget.is_none() {
         missing.explain("budget_cpu_s_per_s", "no budget was asked for");
     }
@@ -120,7 +123,10 @@ pub(super) fn as_json(advice: &Advice) -> AdviceJson {
                     "ten_times_better",
                     advice,
                     tenfold.as_deref(),
-                    "nothing measured reaches a tenth of the tolerance",
+                    match advice.question.tolerance {
+                        Some(_) => "nothing measured reaches a tenth of the tolerance",
+                        None => "no tolerance was asked for",
+                    },
                 ),
             })
         }
@@ -133,7 +139,10 @@ pub(super) fn as_json(advice: &Advice) -> AdviceJson {
                 "within_tolerance",
                 advice,
                 within_tolerance.as_deref(),
-                "nothing measured is within the tolerance",
+                match advice.question.tolerance {
+                    Some(_) => "nothing measured is within the tolerance",
+                    None => "no tolerance was asked for",
+                },
             ),
             "within_budget": missing.maybe(
                 "within_budget",
@@ -194,7 +203,7 @@ mod tests {
         };
         Advice {
             question: Question {
-                tolerance: 0.01,
+                tolerance: Some(0.01),
                 budget: None,
                 pilot_seconds: 10.0,
                 cost: Cost::CpuTime,

@@ -1,0 +1,96 @@
+//! The memory that a scene needs, before it is built.
+
+use sinew_fem::{Law, On};
+use sinew_mesh::TetMesh;
+
+use super::{mesh, selected};
+use crate::error::SceneError;
+use crate::scene::{Body, Scene, Subject};
+
+/// Counts of a body and the memory it needs, from its mesh and its supports.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Footprint {
+    /// Nodes.
+    pub nodes: usize,
+    /// Tetrahedra.
+    pub tets: usize,
+    /// Blocks of the stiffness matrix: one for each node that moves, and two for each edge between such nodes.
+    pub blocks: usize,
+    /// Memory (bytes) of the matrices.
+    pub matrix_bytes: usize,
+    /// Memory (bytes) of mesh, matrices, what a machine keeps of them, and motion; factors apart.
+    pub bytes: usize,
+}
+
+impl Footprint {
+    fn of(body: &Body, mesh: &TetMesh) -> Self {
+        const BLOCK: usize = 9 * size_of::<f64>();
+        let (nodes, tets) = (mesh.points.len(), mesh.tets.len());
+        let held = held(body, mesh);
+        let moves = |node: u32| !held[node as usize];
+        let cells = held.iter().filter(|held| !**held).count();
+        let edges = mesh.edges().into_iter();
+        let edges = edges.filter(|[a, b]| moves(*a) && moves(*b)).count();
+        let blocks = cells + 2 * edges;
+        let dashpots = body.problem.regions.iter().any(|region| {
+            matches!(region.law, Law::Springs { damping_ratio, .. } if damping_ratio > 0.0)
+        });
+        let matrices = 1 + usize::from(dashpots);
+        let pattern = blocks * size_of::<u32>() + (cells + 1) * size_of::<usize>();
+        let vector = 3 * cells * size_of::<f64>();
+        let matrix_bytes = matrices * blocks * BLOCK + pattern + vector;
+        // Corners, tags and region of each tetrahedron; place and tag of each node.
+        let of_mesh = tets * 28 + nodes * 32;
+        Self {
+            nodes,
+            tets,
+            blocks,
+            matrix_bytes,
+            bytes: of_mesh + 2 * matrix_bytes + VECTORS * vector,
+        }
+    }
+}
+
+/// Whether each node is held or moved in all directions. Groups that the mesh does not have are left to those who need them.
+fn held(body: &Body, mesh: &TetMesh) -> Vec<bool> {
+    let mut held = vec![[false; 3]; mesh.points.len()];
+    let fixed = body.problem.fixed.iter();
+    let fixed = fixed.filter_map(|fixed| match &fixed.on {
+        On::Group(name) => Some((name, fixed.axes)),
+        On::Nodes(_) | On::Triangles(_) => None,
+    });
+    let moved = body
+        .motions
+        .iter()
+        .map(|motion| (&motion.group, motion.axes));
+    for (name, axes) in fixed.chain(moved) {
+        let nodes = mesh.group(name).map(|group| mesh.group_nodes(group));
+        for node in nodes.unwrap_or_default() {
+            let held = &mut held[node as usize];
+            for (held, axis) in held.iter_mut().zip(axes) {
+                *held |= axis;
+            }
+        }
+    }
+    held.into_iter().map(|held| held == [true; 3]).collect()
+}
+
+/// Vectors that a run keeps: state, its start, registers, forces.
+const VECTORS: usize = 10;
+
+impl Scene {
+    /// Reads the mesh, and only that, for the memory that the scene will need; `None` for an oscillator.
+    ///
+    /// # Errors
+    /// [`SceneError`] for a mesh that cannot be read or made, and for places where it has nothing.
+    pub fn footprint(&self) -> Result<Option<Footprint>, SceneError> {
+        match self.subject() {
+            Subject::Body(body) => {
+                let (mut mesh, _) = mesh::of_body(body, self.places())?;
+                selected::add_to(&mut mesh, body, self.places())?;
+                Ok(Some(Footprint::of(body, &mesh)))
+            }
+            Subject::Oscillator(_) => Ok(None),
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! What a scene will cost: memory and time.
+
+use sinew_measure::Forecast;
+use sinew_measure::number::{short, three};
+use sinew_scene::{Footprint, Simulation, Warning};
+
+use crate::command::Failure;
+use crate::command::run::LONG;
+
+/// Degrees of freedom from which on no matrix is factorised for a plan.
+const LARGE_TO_FACTORISE: usize = 60_000;
+
+/// What a scene will cost.
+pub(super) struct Cost {
+    /// Memory as mesh and supports told it, for a body.
+    pub(super) footprint: Option<Footprint>,
+    /// Work and time, or why they are not known.
+    pub(super) forecast: Result<Forecast, String>,
+    /// Simulated time (s).
+    duration: f64,
+}
+
+impl Cost {
+    /// Takes a few steps of a scene.
+    pub(super) fn of(simulation: &Simulation, footprint: Option<Footprint>) -> Self {
+        let settings = simulation.settings();
+        let entry = sinew_integrators::entry(&settings.integrator);
+        let factorises = entry.is_some_and(|entry| entry.factorises);
+        let forecast = match factorises && simulation.system().dofs() > LARGE_TO_FACTORISE {
+            true => Err(format!(
+                "not predicted: a plan factorises no matrix of more than {LARGE_TO_FACTORISE} degrees of freedom; `sinew run` \
+                 says before it begins what it will take"
+            )),
+            false => simulation
+                .integrator()
+                .map_err(|error| error.to_string())
+                .and_then(|mut integrator| {
+                    let forecast = Forecast::of(simulation, &mut *integrator);
+                    forecast.map_err(|error| format!("not predicted: {error}"))
+                }),
+        };
+        Self {
+            footprint,
+            forecast,
+            duration: settings.duration,
+        }
+    }
+
+    /// The cost in words.
+    pub(super) fn lines(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        lines.extend(self.footprint.map(|footprint| {
+            format!(
+                "memory: about {} MB, {} MB of them for matrices, factors apart; told from the mesh, before anything was built",
+                three(footprint.bytes as f64 / 1e6),
+                three(footprint.matrix_bytes as f64 / 1e6)
+            )
+        }));
+        lines.push(match &self.forecast {
+            Ok(forecast) => {
+                let solves = match forecast.solves_per_step > 0.0 {
+                    true => format!(
+                        " and {} solutions with a factor",
+                        short(forecast.solves_per_step * forecast.steps as f64)
+                    ),
+                    false => String::new(),
+                };
+                format!(
+                    "time: {} sweeps{solves} for {} s, {} CPU s per simulated second on one thread; {} s in all with {} s of \
+                     set-up, as its first steps took here",
+                    short(forecast.sweeps()),
+                    short(self.duration),
+                    three(forecast.cpu_s_per_s()),
+                    three(forecast.run_s()),
+                    three(forecast.setup_s)
+                )
+            }
+            Err(reason) => format!("time: {reason}"),
+        });
+        lines
+    }
+
+    /// A warning about a run that takes long.
+    pub(super) fn warning(&self) -> Option<Warning> {
+        let forecast = self.forecast.as_ref().ok()?;
+        let seconds = forecast.run_s();
+        (seconds > LONG).then(|| Warning::long_run(seconds, forecast.steps, forecast.dt))
+    }
+}
+
+/// Refuses what does not fit the memory that this computer has left, before it is built.
+pub(super) fn check_memory(footprint: &Footprint) -> Result<(), Failure> {
+    match available() {
+        Some(available) if footprint.bytes as u64 > available => Err(Failure::Memory {
+            needed: footprint.bytes as u64 / 1_000_000,
+            available: available / 1_000_000,
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Memory (bytes) that the system says it has left, where it says so.
+fn available() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text
+        .lines()
+        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kilobytes: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
+    Some(1024 * kilobytes)
+}

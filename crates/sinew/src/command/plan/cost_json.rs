@@ -1,0 +1,41 @@
+//! What a scene will cost, as JSON.
+
+use serde_json::{Value, json};
+
+use super::cost::Cost;
+
+/// Memory and time; what is not known is left out, with its reason.
+pub(super) fn as_json(cost: &Cost) -> Value {
+    let mut object = json!({});
+    let Some(fields) = object.as_object_mut() else {
+        return object;
+    };
+    if let Some(footprint) = cost.footprint {
+        let memory = json!({
+            "nodes": footprint.nodes,
+            "tetrahedra": footprint.tets,
+            "blocks": footprint.blocks,
+            "matrix_bytes": footprint.matrix_bytes,
+            "bytes": footprint.bytes,
+        });
+        fields.insert("memory".to_owned(), memory);
+    }
+    let (name, value) = match &cost.forecast {
+        Ok(forecast) => (
+            "time",
+            json!({
+                "steps": forecast.steps,
+                "sweeps": forecast.sweeps(),
+                "sweeps_per_step": forecast.sweeps_per_step,
+                "solves_per_step": forecast.solves_per_step,
+                "setup_s": forecast.setup_s,
+                "step_s": forecast.step_s,
+                "cpu_s_per_s": forecast.cpu_s_per_s(),
+                "run_s": forecast.run_s(),
+            }),
+        ),
+        Err(reason) => ("time_unknown", json!(reason)),
+    };
+    fields.insert(name.to_owned(), value);
+    object
+}
