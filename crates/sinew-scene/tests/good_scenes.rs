@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 use sinew_core::{OptionValue, Options, Ramp};
 use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule};
 use sinew_scene::{
-    Body, Initial, MeshChanges, MeshSource, Oscillator, ProbeAt, ProbePoint, RunSettings, Scene,
-    SceneSource, Subject, TimeStep,
+    Body, Initial, MeshChanges, MeshSource, Oscillator, ProbeAt, ProbePoint, Quantity, RunSettings,
+    Scene, SceneSource, Subject, TimeStep,
 };
 
 fn scenes() -> Vec<PathBuf> {
@@ -157,6 +157,7 @@ fn the_papers_cube() {
         probes: vec![ProbePoint {
             name: "top-centre".into(),
             at: ProbeAt::Point([0.1, 0.1, 0.2]),
+            quantity: Quantity::Displacement,
         }],
         selected: Vec::new(),
     };

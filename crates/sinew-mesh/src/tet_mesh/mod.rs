@@ -206,12 +206,10 @@ mod tests {
             let (tet, shares) = mesh.tet_at(point).expect("it is inside");
             assert_eq!(tet, expected);
             assert!(shares.iter().all(|share| *share > 0.0));
-            for axis in 0..3 {
+            for (axis, expected) in point.iter().enumerate() {
                 let nodes = mesh.tets[tet as usize].iter().zip(shares);
-                let mean: f64 = nodes
-                    .map(|(node, share)| share * mesh.points[*node as usize][axis])
-                    .sum();
-                assert!((mean - point[axis]).abs() < 1e-15);
+                let terms = nodes.map(|(node, share)| share * mesh.points[*node as usize][axis]);
+                assert!((terms.sum::<f64>() - expected).abs() < 1e-15);
             }
         }
         let (tet, shares) = mesh.tet_at([0.1, 0.1, 9.0]).expect("there are tetrahedra");
