@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::{Number, Value};
+use serde_json::Value;
 use sinew_core::{Integrator, OptionError, OptionValue, Options, SetupError, StableStep};
-use sinew_scene::Simulation;
+use sinew_scene::{Simulation, options_json};
 
 use crate::case::Case;
 use crate::row::label;
@@ -86,10 +86,7 @@ impl MethodChoice {
 
     /// The options as a row keeps them.
     pub(crate) fn json_options(&self) -> BTreeMap<String, Value> {
-        let options = self.options.iter();
-        options
-            .map(|(key, value)| (key.to_owned(), json(value)))
-            .collect()
+        options_json(&self.options)
     }
 
     /// Name and options, as in `cnn Q=4`.
@@ -109,19 +106,4 @@ pub enum MethodError {
     /// The system lacks what it needs.
     #[error(transparent)]
     Setup(#[from] SetupError),
-}
-
-fn json(value: &OptionValue) -> Value {
-    match value {
-        OptionValue::Number(number) => Number::from_f64(*number).map_or(Value::Null, Value::Number),
-        OptionValue::Text(text) => Value::String(text.clone()),
-        OptionValue::Table(entries) => {
-            let entries = entries.iter();
-            Value::Object(
-                entries
-                    .map(|(key, value)| (key.clone(), json(value)))
-                    .collect(),
-            )
-        }
-    }
 }

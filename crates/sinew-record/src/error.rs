@@ -6,7 +6,7 @@ use sinew_core::{EvaluationError, OptionError, SetupError, SimulateError, StateB
 use sinew_fem::FieldError;
 use sinew_mesh::vtu::WriteVtuError;
 use sinew_scene::output::OutputError;
-use sinew_scene::{ProbeRowError, SceneError};
+use sinew_scene::{ProbeRowError, ReactionError, SceneError};
 
 /// A reason for which a run leaves no result, or cannot go on.
 #[derive(Debug, thiserror::Error)]
@@ -33,6 +33,9 @@ pub enum RecordRunError {
     /// A field that cannot be written.
     #[error(transparent)]
     Field(#[from] FieldError),
+    /// Supports without reactions.
+    #[error(transparent)]
+    Reaction(#[from] ReactionError),
     /// A row of probes that cannot be written.
     #[error(transparent)]
     ProbeRow(#[from] ProbeRowError),

@@ -6,6 +6,7 @@ mod subspace;
 use std::path::{Path, PathBuf};
 
 use sinew_core::LinearOperators;
+use sinew_core::vectors::norm;
 use sinew_fem::Model;
 use sinew_mesh::vtu::{Array, Grid, VtuEncoding};
 use sinew_scene::Simulation;
@@ -168,8 +169,7 @@ fn write_shape(
 ) -> Result<(), RecordRunError> {
     let mut shape = vec![[0.0; 3]; model.mesh().points.len()];
     model.to_nodes(&mode.shape, &mut shape)?;
-    let size = |u: &[f64; 3]| u.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let largest = shape.iter().map(size).fold(0.0, f64::max);
+    let largest = shape.iter().map(|u| norm(u)).fold(0.0, f64::max);
     let extent = sinew_core::System::extent(model).unwrap_or(1.0);
     let factor = if largest > 0.0 {
         DRAWN * extent / largest

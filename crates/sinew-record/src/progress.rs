@@ -69,6 +69,11 @@ pub(crate) struct Work {
 }
 
 impl Work {
+    /// Share of the velocities of so many steps that were saturated.
+    pub(crate) fn saturated_share(&self, steps: usize, dofs: usize) -> f64 {
+        self.saturated as f64 / (steps * dofs).max(1) as f64
+    }
+
     pub(crate) fn add(&mut self, of: StepReport) {
         self.sweeps += of.sweeps;
         self.force_evaluations += of.force_evaluations;

@@ -69,7 +69,7 @@ impl RunFolder {
         ]
         .map(str::to_owned)
         .to_vec();
-        if !simulation.held_parts().is_empty() {
+        if !simulation.held_parts()?.is_empty() {
             names.push(tables::REACTIONS.to_owned());
         }
         if let Some(fields) = schedules.fields {
@@ -235,14 +235,13 @@ impl RunFolder {
             progress.seen.displacement,
             progress.work,
         );
-        let velocities = (steps * system.dofs()).max(1) as f64;
         Ok(RunEnd {
             ended,
             steps,
             own: (report.steps, wall),
             frames: progress.frames,
             work: (work.sweeps, work.solves),
-            saturated: work.saturated as f64 / velocities,
+            saturated: work.saturated_share(steps, system.dofs()),
             largest: (seen.value, seen.t, seen.at),
             warnings,
         })

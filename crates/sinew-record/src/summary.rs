@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use sinew_integrators::Stepper;
-use sinew_scene::Simulation;
+use sinew_scene::{Simulation, options_json};
 
 use crate::progress::{Largest, Progress, Seen};
 use crate::recorder::Schedules;
@@ -91,7 +91,6 @@ impl Summary<'_> {
             Ended::Interrupted { .. } => ("interrupted", Value::Null),
         };
         let [most, last] = progress.kinetic;
-        let of_velocities = (self.steps * simulation.system().dofs()).max(1) as f64;
         let largest = |largest: &Largest, unit: &str, at: &str, factor: f64| json!({ unit: largest.value * factor, "t_s": largest.t, at: largest.at });
         let extremes = simulation.model().body().map(|_| {
             json!({
@@ -120,14 +119,14 @@ impl Summary<'_> {
             "diverged": diverged,
             "bounded": !matches!(self.ended, Ended::Diverged { .. }),
             "guarded": work.saturated > 0,
-            "saturated_share_of_velocities": work.saturated as f64 / of_velocities,
+            "saturated_share_of_velocities": work.saturated_share(self.steps, simulation.system().dofs()),
             "at_rest_at_the_end": last <= AT_REST * most,
             "t_s": self.t,
             "duration_s": settings.duration,
             "dt_s": simulation.dt(),
             "steps": self.steps,
             "integrator": settings.integrator,
-            "options": format!("{:?}", settings.options),
+            "options": options_json(&settings.options),
             "error": "not known: `sinew plan --tolerance` measures it",
             "extremes": extremes,
             "work": work,

@@ -93,30 +93,25 @@ impl<'a> Reactions<'a> {
         let Some(body) = simulation.model().body() else {
             return Ok(None);
         };
-        let mut parts = Vec::new();
-        let mut taken = vec![[false; 3]; body.mesh.points.len()];
-        for HeldPlace { by, on, axes } in simulation.held_parts() {
-            let nodes = on.nodes(&body.mesh).map_err(sinew_fem::FieldError::from)?;
-            let count = nodes.len().max(1) as f64;
-            let sum = |axis: usize| -> f64 {
-                let points = nodes.iter().map(|node| body.mesh.points[*node as usize]);
-                points.map(|point| point[axis]).sum()
-            };
-            parts.push(HeldPart {
-                name: column_name(by, &on),
-                by: format!("{by} on {on}"),
-                centre: [0, 1, 2].map(|axis| sum(axis) / count),
-                nodes: nodes
-                    .iter()
-                    .map(|node| {
-                        let taken = &mut taken[*node as usize];
-                        let own = [0, 1, 2].map(|axis| axes[axis] && !taken[axis]);
-                        own.iter().zip(taken).for_each(|(own, taken)| *taken |= own);
-                        (*node, own)
-                    })
-                    .collect(),
-            });
-        }
+        let parts: Vec<HeldPart> = simulation
+            .held_parts()?
+            .into_iter()
+            .map(|HeldPlace { by, on, nodes }| {
+                let count = nodes.len().max(1) as f64;
+                let sum = |axis: usize| -> f64 {
+                    let points = nodes
+                        .iter()
+                        .map(|(node, _)| body.mesh.points[*node as usize]);
+                    points.map(|point| point[axis]).sum()
+                };
+                HeldPart {
+                    name: column_name(by, &on),
+                    by: format!("{by} on {on}"),
+                    centre: [0, 1, 2].map(|axis| sum(axis) / count),
+                    nodes,
+                }
+            })
+            .collect();
         let nodes = body.mesh.points.len();
         Ok((!parts.is_empty()).then(|| Self {
             simulation,

@@ -36,6 +36,7 @@ mod decode;
 mod error;
 mod nearest;
 mod number;
+mod options_json;
 pub mod output;
 mod overrides;
 mod plan;
@@ -48,6 +49,7 @@ mod simulation;
 mod source;
 
 pub use error::{Fault, NoStableStep, SceneError, StableStepError};
+pub use options_json::options_json;
 pub use overrides::OverrideError;
 pub use plan::{Plan, PlanSection};
 pub use probe_csv::ProbeCsv;

@@ -1,6 +1,7 @@
 //! Energies and loads over all nodes, held and moved ones included.
 
 use sinew_core::LoadTime;
+use sinew_core::vectors::dot;
 
 use super::Model;
 use super::field_error::{FieldError, require_inputs};
@@ -61,8 +62,4 @@ impl Model {
         }
         Ok(())
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,6 +1,7 @@
 //! The lowest modes, all of them, by iteration of a subspace.
 
 use sinew_core::LinearOperators;
+use sinew_core::vectors::{add_scaled, dot, noise, norm, scale};
 use sinew_integrators::{Combination, Factor, FactorError};
 
 use super::jacobi::eigen;
@@ -121,7 +122,7 @@ fn about(
         let turned = |of: &[Vec<f64>], row: &[f64]| -> Vec<f64> {
             let mut sum = vec![0.0; n];
             for (x, share) in of.iter().zip(row) {
-                sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += share * x);
+                add_scaled(*share, x, &mut sum);
             }
             sum
         };
@@ -180,19 +181,18 @@ fn roots(operators: &LinearOperators) -> (Vec<f64>, f64) {
     (roots, stiffest)
 }
 
-/// Vectors in all directions, the same each time (Park and Miller, Comm. ACM 31, 1988).
+/// Vectors in all directions, the same each time.
 fn started(size: usize, root: &[f64]) -> Vec<Vec<f64>> {
-    let mut seed = 1_u64;
-    let mut random = || {
-        seed = seed * 48_271 % 0x7fff_ffff;
-        seed as f64 / f64::from(0x7fff_ffff) - 0.5
+    let vector = |seed: usize| {
+        let mut vector = noise(root.len(), seed as u64);
+        for (x, root) in vector.iter_mut().zip(root) {
+            if *root == 0.0 {
+                *x = 0.0;
+            }
+        }
+        vector
     };
-    let mut vector = || {
-        root.iter()
-            .map(|root| if *root > 0.0 { random() } else { 0.0 })
-            .collect()
-    };
-    (0..size).map(|_| vector()).collect()
+    (0..size).map(vector).collect()
 }
 
 /// Makes the vectors orthonormal, twice against rounding.
@@ -203,14 +203,10 @@ fn orthonormalise(vectors: &mut [Vec<f64>]) {
         for _ in 0..2 {
             for other in before.iter() {
                 let share = dot(other, own);
-                own.iter_mut().zip(other).for_each(|(x, y)| *x -= share * y);
+                add_scaled(-share, other, own);
             }
-            let length = dot(own, own).sqrt();
-            own.iter_mut().for_each(|x| *x /= length);
+            let length = norm(own);
+            scale(own, length.recip());
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

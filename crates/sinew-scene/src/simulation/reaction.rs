@@ -15,7 +15,7 @@ pub struct Reaction {
     pub by: ReactionOf,
     /// The part of the body.
     pub on: On,
-    /// The force (N) on the body at all held and moved nodes of the part together.
+    /// The force (N) on the body at the nodes of the part, of components that no part before it holds or moves.
     pub force: [f64; 3],
 }
 
@@ -26,8 +26,9 @@ pub struct HeldPlace {
     pub by: ReactionOf,
     /// The part of the body.
     pub on: On,
-    /// Whether it holds or moves x, y and z.
-    pub axes: [bool; 3],
+    /// Its nodes (0-based) with the components that it holds or moves and no part before it does, so that the forces of
+    /// all parts add up to that of the whole.
+    pub nodes: Vec<(u32, [bool; 3])>,
 }
 
 /// A table of a scene by which components are held or moved, by its place in the list (0-based).
@@ -62,29 +63,39 @@ pub enum ReactionError {
 
 impl Simulation {
     /// The parts of the body that are held or moved, in the order of the scene; none for an oscillator.
-    #[must_use]
-    pub fn held_parts(&self) -> Vec<HeldPlace> {
-        let Subject::Body(body) = self.scene().subject() else {
-            return Vec::new();
+    ///
+    /// # Errors
+    /// [`ReactionError::Field`] for a part that the body does not have, which building a scene rules out.
+    pub fn held_parts(&self) -> Result<Vec<HeldPlace>, ReactionError> {
+        let (Subject::Body(body), Some(built)) = (self.scene().subject(), self.model().body())
+        else {
+            return Ok(Vec::new());
         };
         let fixed = body.problem.fixed.iter().enumerate();
-        let fixed = fixed.map(|(index, fixed)| HeldPlace {
-            by: ReactionOf::Fixed(index),
-            on: fixed.on.clone(),
-            axes: fixed.axes,
-        });
+        let fixed =
+            fixed.map(|(index, fixed)| (ReactionOf::Fixed(index), fixed.on.clone(), fixed.axes));
         let moves = body.motions.iter().enumerate();
-        let moves = moves.map(|(index, motion)| HeldPlace {
-            by: ReactionOf::Move(index),
-            on: On::Group(motion.group.clone()),
-            axes: motion.axes,
+        let moves = moves.map(|(index, motion)| {
+            let on = On::Group(motion.group.clone());
+            (ReactionOf::Move(index), on, motion.axes)
         });
-        fixed.chain(moves).collect()
+        let mut taken = vec![[false; 3]; built.mesh.points.len()];
+        let mut own = |node: u32, axes: [bool; 3]| {
+            let taken = &mut taken[node as usize];
+            let own = [0, 1, 2].map(|axis| axes[axis] && !taken[axis]);
+            own.iter().zip(taken).for_each(|(own, taken)| *taken |= own);
+            (node, own)
+        };
+        let place = |(by, on, axes): (ReactionOf, On, [bool; 3])| {
+            let nodes = on.nodes(&built.mesh).map_err(FieldError::from)?;
+            let nodes = nodes.into_iter().map(|node| own(node, axes)).collect();
+            Ok(HeldPlace { by, on, nodes })
+        };
+        fixed.chain(moves).map(place).collect()
     }
 
     /// The forces of the scene's supports and motions in a state, in the order of the scene; none for an
-    /// oscillator. See [`sinew_fem::Model::reactions`], also for single nodes. A node of two parts counts in
-    /// both.
+    /// oscillator. See [`sinew_fem::Model::reactions`], also for single nodes.
     ///
     /// # Errors
     /// [`ReactionError`] when the state is that of another system or the system refuses it.
@@ -94,10 +105,21 @@ impl Simulation {
         };
         let mut v = vec![0.0; state.u.len()];
         state.velocity_at_t(self.system(), Inputs::none(), &mut v)?;
-        let reaction = |HeldPlace { by, on, .. }: HeldPlace| {
-            let force = built.model.reaction(state.t(), &state.u, &v, &on)?;
-            Ok(Reaction { by, on, force })
-        };
-        self.held_parts().into_iter().map(reaction).collect()
+        let mut forces = vec![[0.0; 3]; built.mesh.points.len()];
+        built
+            .model
+            .reactions(state.t(), &state.u, &v, &mut forces)?;
+        let parts = self.held_parts()?.into_iter();
+        Ok(parts
+            .map(|HeldPlace { by, on, nodes }| {
+                let mut force = [0.0; 3];
+                for (node, own) in nodes {
+                    for axis in (0..3).filter(|axis| own[*axis]) {
+                        force[axis] += forces[node as usize][axis];
+                    }
+                }
+                Reaction { by, on, force }
+            })
+            .collect())
     }
 }
