@@ -1,4 +1,4 @@
-//! `cargo xtask compare`: meshio and pyvista read what sinew-mesh and sinew-record write.
+//! `cargo xtask compare`: meshio and pyvista read what sinew-mesh and sinew-record write, jsonschema the schema of scenes.
 
 mod expected;
 mod files;
@@ -13,11 +13,11 @@ use crate::failure::Failure;
 use crate::python::{Packages, Python, last_line};
 use crate::repository::root;
 
-/// The packages that `xtask/python/read_meshes.py` imports.
+/// The packages that the scripts in `xtask/python` import.
 const PACKAGES: Packages = Packages {
     needed_by: "compare",
-    folder: "meshio",
-    names: &["meshio==5.3.5", "pyvista", "numpy"],
+    folder: "compare",
+    names: &["meshio==5.3.5", "pyvista", "numpy", "jsonschema==4.26.0"],
     beside_libraries: false,
 };
 
@@ -52,7 +52,17 @@ pub(crate) fn run_with(python: &Python) -> Result<(), Failure> {
     say(&format!(
         "meshio and pyvista read what was written: {lines} lines of numbers from {names}"
     ))?;
-    compare_run(python)
+    compare_run(python)?;
+    check_scenes(python)
+}
+
+/// Lets jsonschema check the schema of scenes in `docs`, and every scene against it.
+fn check_scenes(python: &Python) -> Result<(), Failure> {
+    let read = said_by(python, "check_scenes.py", &root())?;
+    Ok(say(&format!(
+        "jsonschema checks the schema of scenes: {}",
+        read.trim_end()
+    ))?)
 }
 
 /// Runs a scene into a folder, and lets meshio and pyvista compare its fields with its probes.

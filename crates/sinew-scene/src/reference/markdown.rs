@@ -166,13 +166,9 @@ fn push_options(text: &mut String) {
             .collect();
         let takes = match keys[..] {
             [] => "no options".to_owned(),
-            _ => codes(&keys),
+            _ => format!("options {}", codes(&keys)),
         };
-        let _ = writeln!(
-            text,
-            "* `{}`: {}. Options: {takes}.",
-            entry.id, entry.summary
-        );
+        let _ = writeln!(text, "* `{}`: {}; {takes}", entry.id, entry.summary);
     }
     let _ = write!(text, "\n{OPTION_COLUMNS}");
     for SharedOption {
