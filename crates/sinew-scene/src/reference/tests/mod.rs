@@ -7,6 +7,7 @@ mod validator;
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::ops::Bound;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value as Json;
@@ -139,6 +140,36 @@ fn a_value_outside_the_range_is_refused_by_decoder_and_schema() {
         }
     }
     assert!(tried.len() > 60, "{tried:?}");
+}
+
+#[test]
+fn bounds_are_those_that_messages_name() {
+    let mut seen = BTreeSet::new();
+    for key in spots::all().iter().flat_map(Spot::keys) {
+        let Shape::Number(low, high) = key.shape else {
+            continue;
+        };
+        let words = match low {
+            Bound::Unbounded => vec![String::new()],
+            Bound::Excluded(low) => vec![format!("above {low}")],
+            Bound::Included(low) => vec![format!("from {low}"), format!(", {low}")],
+        };
+        let says = |words: &[String]| words.iter().any(|words| key.expected.contains(words));
+        assert!(says(&words), "{}: {}, {low:?}", key.name, key.expected);
+        let words = match high {
+            Bound::Unbounded => String::new(),
+            Bound::Excluded(high) => format!("below {high}"),
+            Bound::Included(high) => format!("to {high}"),
+        };
+        assert!(says(&[words]), "{}: {}, {high:?}", key.name, key.expected);
+        if low == Bound::Unbounded {
+            let says_bound = ["above", "below", "from"];
+            let says_bound = says_bound.iter().any(|word| key.expected.contains(word));
+            assert!(!says_bound, "{}: {}", key.name, key.expected);
+        }
+        seen.insert(key.name);
+    }
+    assert!(seen.len() > 20);
 }
 
 #[test]
