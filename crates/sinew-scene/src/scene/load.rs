@@ -34,7 +34,7 @@ pub(super) const LOAD: TableDescription = TableDescription {
 
 const NAME: Key<Text, Optional> = Key::optional(
     "name",
-    "A name of its own, by which [[initial]] can call the load.",
+    "A name of its own, by which `[[initial]]` can call the load.",
     Text {
         except: Some(GRAVITY),
         ..Text::any("a name other than \"gravity\"")

@@ -13,7 +13,7 @@ use crate::decode::{
 use crate::error::{Fault, SceneError};
 
 const MEANING: &str = "A place in the body at rest. Where there are several keys, all of them must hold. A triangle or a \
-                       tetrahedron is chosen if all its nodes are. `sinew plan` prints how many were found; none is an error.";
+                       tetrahedron is chosen if all its nodes are. `sinew plan` prints how many were found; to find none is an error.";
 
 /// The places of nodes and of triangles.
 pub(super) const PLACE: TableDescription = TableDescription {

@@ -16,7 +16,7 @@ enum Of {
 pub(super) const RAMP: TableDescription = TableDescription {
     name: "ramp",
     meaning: "The factor of a load or a motion over time: `\"step\"` is 1 from t = 0 on, `\"sin2\"` rises smoothly from 0 to \
-              1, as the square of a sine, and stays there, `\"pulse\"` is 1 from one time to another and 0 besides, and \
+              1, as the square of a sine, and stays there, `\"pulse\"` is 1 from one time to another and 0 otherwise, and \
               `\"table\"` goes in straight lines between given values, with the first one before and the last one after.",
     keys: &[&KIND, &RISE, &FROM, &TO, &TIMES, &VALUES],
     needs: Needs::Any,
