@@ -517,3 +517,14 @@ fn names_of_version_2_0_have_no_dimension() {
 fn a_bare_4_is_settled_by_the_data() {
     assert_same_mesh(&TWO_REGIONS_41.replace("4.1 0 8", "4 0 8"), TWO_REGIONS_41);
 }
+
+/// As SOFA's meshes have it.
+#[test]
+fn a_version_on_the_line_of_the_section_is_read() {
+    for (file, version) in [(TWICE_22, "2.2 0 8"), (TWO_REGIONS_41, "4.1 0 8")] {
+        let on_one_line = with(file, &format!("\n{version}"), &format!(" {version}"));
+        assert_eq!(read(&on_one_line), read(file));
+        let with_blanks = with(file, "$MeshFormat\n", "$MeshFormat \t\r\n");
+        assert_eq!(read(&with_blanks), read(file));
+    }
+}

@@ -83,6 +83,21 @@ impl<'a> Cursor<'a> {
         passed_line_break
     }
 
+    /// Moves over a word that more words follow on the same line; without them it stays where it is.
+    pub(super) fn begins_with_word(&mut self, word: &[u8]) -> bool {
+        let after = self.rest().strip_prefix(word);
+        let Some([next, ..]) = after else {
+            return false;
+        };
+        let mut ahead = self.clone();
+        ahead.offset += word.len();
+        let found = is_blank(*next) && !ahead.is_at_line_end();
+        if found {
+            *self = ahead;
+        }
+        found
+    }
+
     /// Whether nothing but blanks is left on this line.
     pub(super) fn is_at_line_end(&self) -> bool {
         let next = self

@@ -7,6 +7,12 @@ use super::number;
 use super::remarks::Remarks;
 use super::source::{Binary, ByteOrder, SizeWidth};
 
+/// The section's name.
+pub(super) const NAME: &str = "MeshFormat";
+
+/// The word at its start.
+pub(super) const START: &[u8] = b"$MeshFormat";
+
 /// A version and its encoding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Format {

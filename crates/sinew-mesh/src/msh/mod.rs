@@ -38,6 +38,7 @@
 //! | a name that is not UTF-8 | replaces the bad bytes, warns |
 //! | a name with quotes inside | takes the text between the first and the last quote |
 //! | a UTF-8 byte order mark | skips it |
+//! | `$MeshFormat` and the version on one line (SOFA's files) | reads it |
 
 #![deny(
     clippy::indexing_slicing,

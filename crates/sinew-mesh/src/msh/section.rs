@@ -72,6 +72,10 @@ pub(super) fn read_all(
 
 fn section_name(cursor: &mut Cursor<'_>) -> Result<String, Fault> {
     let offset = cursor.offset();
+    if cursor.begins_with_word(header::START) {
+        // SOFA's meshes have the version on the same line.
+        return Ok(header::NAME.to_owned());
+    }
     let line = cursor.line();
     match line {
         [b'$', name @ ..] if !name.is_empty() && line.len() <= LONGEST => {
