@@ -395,3 +395,40 @@ fn a_file_of_version_1_is_told_with_the_names_that_scenes_give_to_its_groups() {
     let [before, after] = [&path, &converted].map(|path| read_msh_file(path).unwrap());
     assert_eq!(cells(&before), cells(&after));
 }
+
+/// A tetrahedron of second order with straight edges.
+const SECOND_ORDER: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n\
+                            5 0.5 0 0\n6 0.5 0.5 0\n7 0 0.5 0\n8 0 0 0.5\n9 0 0.5 0.5\n10 0.5 0 0.5\n$EndNodes\n\
+                            $Elements\n1\n1 11 2 1 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n";
+
+#[test]
+fn cells_of_second_order_are_refined_by_their_corners_as_the_refusal_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    std::fs::write(path("second.msh"), SECOND_ORDER).unwrap();
+    let refused = mesh(&["refine", &path("second.msh"), &path("fine.msh")]);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("--order linear") && said.contains("order = \"linear\""),
+        "{said}"
+    );
+    for command in ["convert", "refine"] {
+        let done = mesh(&[
+            command,
+            &path("second.msh"),
+            &path("out.msh"),
+            "--order",
+            "linear",
+        ]);
+        let said = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(0), "{said}");
+        let mesh = read_msh_file(path("out.msh"))
+            .unwrap()
+            .to_tet_mesh()
+            .unwrap();
+        // Eight of a tetrahedron: its four corners and the middles of its six edges.
+        let expected = if command == "refine" { (8, 10) } else { (1, 4) };
+        assert_eq!((mesh.tets.len(), mesh.points.len()), expected);
+    }
+}

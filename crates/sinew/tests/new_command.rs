@@ -118,3 +118,13 @@ fn a_mesh_that_differs_is_not_replaced_by_that_of_a_ready_scene() {
     );
     assert!(!folder.path().join("beam.toml").exists());
 }
+
+#[test]
+fn a_scene_in_the_place_of_a_mesh_is_told_from_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = sinew(folder.path(), &["new", "organ.toml"]);
+    assert_eq!(said.code, Some(2));
+    assert!(said.err.contains("name a .msh file"), "{}", said.err);
+    assert!(said.err.contains("sinew run organ.toml"), "{}", said.err);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}

@@ -158,3 +158,60 @@ fn modes_are_a_table_and_a_series() {
         assert_eq!(said.code, Some(2), "{count}");
     }
 }
+
+#[test]
+fn two_values_for_one_key_are_refused_and_both_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = sinew(folder.path(), &["new", "--ready", "held-cube"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    for (values, both) in [
+        (
+            ["--dt", "0.01", "--set", "run.dt=0.02"],
+            ["`--dt 0.01`", "`--set run.dt=0.02`"],
+        ),
+        (
+            [
+                "--integrator",
+                "newmark",
+                "--set",
+                "run . integrator = \"rk4\"",
+            ],
+            [
+                "`--integrator newmark`",
+                "`--set run . integrator = \"rk4\"`",
+            ],
+        ),
+        (
+            ["--set", "run.duration=1", "--set", "run.duration=2"],
+            ["`--set run.duration=1`", "`--set run.duration=2`"],
+        ),
+    ] {
+        let said = sinew(
+            folder.path(),
+            &[&["run", "held-cube.toml"][..], &values].concat(),
+        );
+        assert_eq!(said.code, Some(2), "{}", said.err);
+        assert!(
+            both.iter().all(|one| said.err.contains(one)),
+            "{}",
+            said.err
+        );
+        assert_eq!(said.out, "");
+    }
+}
+
+#[test]
+fn a_negative_step_and_one_without_end_are_named_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = sinew(folder.path(), &["new", "--ready", "held-cube"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    for (dt, expected) in [
+        ("-1", "dt = -1: expected a finite step above 0 s"),
+        ("1e-300", "takes 1.000e300 steps"),
+    ] {
+        let said = sinew(folder.path(), &["run", "held-cube.toml", "--dt", dt]);
+        assert_eq!(said.code, Some(2), "{}", said.err);
+        assert!(said.err.contains(expected), "{}", said.err);
+        assert_eq!(said.out, "");
+    }
+}

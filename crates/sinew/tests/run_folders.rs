@@ -292,3 +292,37 @@ fn two_runs_do_not_share_a_folder() {
     run.kill().unwrap();
     run.wait().unwrap();
 }
+
+#[test]
+fn a_folder_within_that_of_another_run_is_refused() {
+    let folder = Folder::new();
+    let (code, said) = folder.says(&["run", "short.toml", "--out", "out"]);
+    assert_eq!(code, Some(0), "{said}");
+    for within in ["out/sub", "out/fields/a/b", "out/../out/sub"] {
+        let (code, said) = folder.says(&["run", "short.toml", "--out", within]);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(
+            said.contains("it lies within") && said.contains("out,"),
+            "{said}"
+        );
+    }
+    assert!(!folder.path("out/sub").exists());
+    // The earlier run's folder is as replaceable as before.
+    let (code, said) = folder.says(&["run", "short.toml", "--out", "out"]);
+    assert_eq!(code, Some(0), "{said}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_second_run_into_a_folder_names_the_folder_and_the_first() {
+    let folder = Folder::new();
+    let mut first = folder.start(&["run", "long.toml", "--out", "out"]);
+    folder.wait_for("out/manifest.json");
+    let (code, said) = folder.says(&["run", "short.toml", "--out", "out"]);
+    let process = first.id();
+    first.kill().unwrap();
+    first.wait().unwrap();
+    assert_eq!(code, Some(2), "{said}");
+    let expected = format!("cannot write into out: another run writes into it (process {process})");
+    assert!(said.contains(&expected), "{said}");
+}

@@ -4,6 +4,9 @@ use super::no_step::NoStableStep;
 use super::words::{did_you_mean, quoted, quoted_or_none, shortened};
 use crate::overrides::OverrideError;
 
+/// Steps of a run, at most: whole numbers beyond are not told apart.
+pub(crate) const MOST_STEPS: f64 = 1.0 / f64::EPSILON;
+
 /// A mistake in a scene.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -151,6 +154,17 @@ pub enum Fault {
     /// dt = "auto" with an integrator that sets no step on this scene.
     #[error("dt = \"auto\" needs an integrator with a largest stable step: {0}")]
     NoStableStep(#[from] NoStableStep),
+    /// More steps than can be told apart.
+    #[error(
+        "dt = {dt:e} s: a duration of {duration:e} s takes {:.3e} steps, more than can be counted ({MOST_STEPS:.0e}); \
+         expected a longer step or a shorter duration", duration / dt
+    )]
+    TooManySteps {
+        /// The step (s).
+        dt: f64,
+        /// The duration (s).
+        duration: f64,
+    },
     /// A static state that cannot be solved for.
     #[cfg(feature = "implicit")]
     #[error("no static state: {0}")]

@@ -11,6 +11,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub use fault::Fault;
+pub(crate) use fault::MOST_STEPS;
 pub use no_step::{NoStableStep, StableStepError};
 pub(crate) use words::shortened;
 

@@ -58,10 +58,20 @@ pub enum OutputError {
         input: PathBuf,
     },
     /// A folder that another process writes into.
-    #[error("cannot write into {}: another run writes into it; name another folder", path.display())]
+    #[error("cannot write into {}: another run writes into it{}; name another folder", path.display(), process(*by))]
     Busy {
         /// The path.
         path: PathBuf,
+        /// The process, where the system tells it.
+        by: Option<u32>,
+    },
+    /// A folder within that of another result.
+    #[error("cannot write into {}: it lies within {}, which holds another result; name a folder beside it", path.display(), holder.display())]
+    Within {
+        /// The path.
+        path: PathBuf,
+        /// The folder of the other result.
+        holder: PathBuf,
     },
     /// A folder without an earlier result.
     #[error("there is no {kind} in {} to go on with; name the folder that `--out` named", path.display())]
@@ -131,6 +141,11 @@ impl OutputError {
     pub fn is_refusal(&self) -> bool {
         !matches!(self, Self::Failed { .. })
     }
+}
+
+/// The process in words.
+fn process(id: Option<u32>) -> String {
+    id.map_or_else(String::new, |id| format!(" (process {id})"))
 }
 
 /// A few of the names of other things.

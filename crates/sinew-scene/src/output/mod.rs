@@ -10,6 +10,7 @@ mod error;
 mod folder;
 mod identity;
 mod lines;
+mod lock_holder;
 mod owned_folder;
 mod stream;
 mod target;

@@ -7,8 +7,9 @@ use std::path::{Component, Path, PathBuf};
 use super::error::OutputError;
 use super::folder::OutputFolder;
 use super::identity::Input;
+use super::lock_holder::lock_holder;
 use super::target::Target;
-use super::whole_file::{WholeFile, is_left_behind};
+use super::whole_file::{WholeFile, is_left_behind, is_temporary};
 
 /// The file that says whose a folder is and what was written into it.
 const MANIFEST: &str = "manifest.json";
@@ -47,6 +48,12 @@ impl OwnedFolder {
         inputs: &[PathBuf],
     ) -> Result<Tenant, OutputError> {
         OutputFolder::new(path, inputs).check(&[])?;
+        if let Some(holder) = holder_of(path)? {
+            return Err(OutputError::Within {
+                path: path.to_owned(),
+                holder,
+            });
+        }
         if let Ok(folder) = path.canonicalize() {
             let within = |input: &&PathBuf| {
                 let input = input.canonicalize();
@@ -65,7 +72,7 @@ impl OwnedFolder {
         };
         let entries: Vec<String> = entries
             .into_iter()
-            .filter(|name| !is_left_behind(name))
+            .filter(|name| !is_temporary(name))
             .collect();
         if entries.is_empty() {
             return Ok(Tenant::Nobody);
@@ -75,6 +82,8 @@ impl OwnedFolder {
             names,
         };
         let Some(manifest) = Manifest::read(path)? else {
+            // Another run may have claimed the folder and not yet said so.
+            Self::lock(path, kind, &[])?;
             return Err(foreign(entries));
         };
         if manifest.kind != kind {
@@ -164,8 +173,9 @@ impl OwnedFolder {
         match lock.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
+                let by = lock_holder(&lock);
                 let path = path.to_owned();
-                return Err(OutputError::Busy { path });
+                return Err(OutputError::Busy { path, by });
             }
             // A file system without locks: the manifest still tells whose the folder is.
             Err(TryLockError::Error(_)) => {}
@@ -343,6 +353,25 @@ impl GrowingFile {
         secured.map_err(|source| failed(&self.path, source))?;
         Ok(self.length)
     }
+}
+
+/// The nearest folder above a path that holds a result.
+fn holder_of(path: &Path) -> Result<Option<PathBuf>, OutputError> {
+    let absolute = std::path::absolute(path).map_err(|source| not_opened(path, source))?;
+    // What lies at the end of links counts, as far as it exists.
+    let nearest = absolute.ancestors().find_map(|above| {
+        let found = above.canonicalize().ok()?;
+        Some((found, above == absolute))
+    });
+    let Some((nearest, is_whole)) = nearest else {
+        return Ok(None);
+    };
+    for above in nearest.ancestors().skip(usize::from(is_whole)) {
+        if Manifest::read(above)?.is_some() {
+            return Ok(Some(above.to_owned()));
+        }
+    }
+    Ok(None)
 }
 
 /// Kind and files of a result.

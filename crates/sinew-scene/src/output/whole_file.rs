@@ -79,13 +79,21 @@ impl Drop for WholeFile {
     }
 }
 
-/// Whether a name in a folder (with `/` after its own folders) is that of a temporary file whose process is gone.
-pub(super) fn is_left_behind(name: &str) -> bool {
+/// The process of a temporary file with this name in a folder (with `/` after its own folders).
+fn process_of(name: &str) -> Option<u32> {
     let name = name.rsplit('/').next().unwrap_or(name);
-    let numbers = name
-        .strip_prefix(".sinew-")
-        .and_then(|rest| rest.strip_suffix(".tmp"));
-    let process = numbers.and_then(|numbers| numbers.split_once('-')?.0.parse::<u32>().ok());
+    let numbers = name.strip_prefix(".sinew-")?.strip_suffix(".tmp")?;
+    numbers.split_once('-')?.0.parse().ok()
+}
+
+/// Whether a name is that of a temporary file: one left behind, or that another process is about to rename or remove.
+pub(super) fn is_temporary(name: &str) -> bool {
+    process_of(name).is_some()
+}
+
+/// Whether a name is that of a temporary file whose process is gone.
+pub(super) fn is_left_behind(name: &str) -> bool {
+    let process = process_of(name);
     // Where the system lists no processes, none is taken to be gone.
     let lists = Path::new("/proc/self").exists();
     process.is_some_and(|process| {

@@ -10,7 +10,7 @@ use super::body;
 use super::mesh::{self, MeshAndWarnings};
 use super::model::SceneModel;
 use super::{probe, start, step};
-use crate::error::{Fault, SceneError};
+use crate::error::{Fault, MOST_STEPS, SceneError};
 use crate::scene::{Body, Oscillator, Places, Scene, Subject};
 
 impl Scene {
@@ -64,6 +64,11 @@ impl Scene {
         };
         let dt = step::seconds(self.settings(), stable)
             .map_err(|fault| self.places().run.value_fault("dt", fault.into()))?;
+        let duration = self.settings().duration;
+        if duration / dt > MOST_STEPS {
+            let fault = Fault::TooManySteps { dt, duration };
+            return Err(self.places().run.value_fault("dt", fault));
+        }
         Ok(Simulation {
             dt,
             scene: self,

@@ -87,13 +87,18 @@ impl Simulation {
     /// where it did not.
     pub fn end_at_duration(&mut self) -> Option<f64> {
         let before = self.dt;
-        let even = self.settings().duration / self.run().steps.max(1) as f64;
+        let (duration, steps) = (self.settings().duration, self.run().steps.max(1) as f64);
+        let even = duration / steps;
         // Steps that divide the duration but for rounding stay as they are written.
-        if (before - even).abs() <= 4.0 * f64::EPSILON * before {
-            return None;
+        let divides = (before - even).abs() <= 4.0 * f64::EPSILON * before;
+        if !divides {
+            self.dt = even;
         }
-        self.dt = even;
-        Some(before)
+        // No time that is written lies past the duration, by however little.
+        while self.dt * steps > duration {
+            self.dt = self.dt.next_down();
+        }
+        (!divides).then_some(before)
     }
 
     /// Points whose motion is recorded; for an oscillator, its mass.
@@ -164,5 +169,38 @@ mod tests {
         assert_eq!(given.stable_step.get(), None, "building needs none");
         assert_eq!(given.stable_step(), automatic.stable_step());
         assert!(given.stable_step.get().is_some());
+    }
+
+    #[test]
+    fn no_run_ends_past_its_duration_by_a_rounding() {
+        for n in 1..400 {
+            for dt in [
+                1.0 / f64::from(n),
+                (1.0 / f64::from(n)).next_up(),
+                0.999 / f64::from(n),
+            ] {
+                let mut simulation = oscillator(&format!("{dt:e}"));
+                simulation.end_at_duration();
+                let end = simulation.dt() * simulation.run().steps as f64;
+                assert!((1.0 - 1e-13..=1.0).contains(&end), "{dt:e}: {end:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn more_steps_than_can_be_counted_are_one_error_with_their_number() {
+        for (dt, duration, steps) in [
+            ("1e-300", "1.0", "1.000e300"),
+            ("0.01", "1e300", "1.000e302"),
+        ] {
+            let text = format!(
+                "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 0.0\nvelocity = 1.0\n[run]\nduration = {duration}\n\
+                 integrator = \"newmark\"\ndt = {dt}\n"
+            );
+            let scene = Scene::parse(SceneSource::new("spring.toml", text)).unwrap();
+            let error = scene.build().unwrap_err().to_string();
+            assert!(error.contains(&format!("takes {steps} steps")), "{error}");
+            assert!(error.starts_with("spring.toml:9: [run]"), "{error}");
+        }
     }
 }

@@ -1,15 +1,16 @@
 //! Failures of commands: one message each, with the line of the scene where there is one.
 
-use std::io;
+use std::env::var_os;
+use std::io::{self, IsTerminal, stderr};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use miette::{LabeledSpan, NamedSource, Report, miette};
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use sinew_core::{OptionError, SetupError, SimulateError};
 use sinew_measure::advice::AdviceError;
 use sinew_measure::convergence::ConvergeError;
 use sinew_mesh::vtu::WriteVtuError;
-use sinew_mesh::{MshFileError, RefineError, TetMeshError, WriteMshError};
+use sinew_mesh::{CellType, MshFileError, RefineError, TetMeshError, WriteMshError};
 use sinew_record::{CompareError, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
 use sinew_scene::{ReactionError, RefusedLoad, SceneError, Warning};
@@ -29,6 +30,22 @@ pub(crate) enum Failure {
     /// A scene that cannot be used.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A key of the scene that the command line sets twice.
+    #[error("`{first}` and `{second}` both set {key}; take one of them out")]
+    SetTwice {
+        /// The key.
+        key: String,
+        /// The first option with its value.
+        first: String,
+        /// The second.
+        second: String,
+    },
+    /// A scene where a mesh is wanted.
+    #[error("{}: `sinew new` makes a scene for a mesh, and this is a scene; name a .msh file, or `sinew run {}`", path.display(), path.display())]
+    SceneForMesh {
+        /// The scene file.
+        path: PathBuf,
+    },
     /// A load that the scene's integrator refuses.
     #[error(transparent)]
     Load(#[from] RefusedLoad),
@@ -223,6 +240,8 @@ impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
             Self::Scene(_)
+            | Self::SetTwice { .. }
+            | Self::SceneForMesh { .. }
             | Self::Load(_)
             | Self::Option(_)
             | Self::Setup(_)
@@ -289,10 +308,20 @@ impl Failure {
         {
             complain(&format!("help: {advice}"));
         }
+        if let Self::Tetrahedra { mesh, source } = self
+            && let TetMeshError::UnsupportedCells { kind, .. } = source
+            && kind.linear() == CellType::Tetra
+        {
+            let mesh = mesh.display();
+            complain(&format!(
+                "help: `sinew mesh convert {mesh} OUTPUT --order linear` takes cells by their corners; in a scene, \
+                 `order = \"linear\"` in [mesh] does"
+            ));
+        }
         if let Self::Scene(error) = self
             && let Some(report) = excerpt(error)
         {
-            complain(&format!("{report:?}"));
+            complain(&report);
         }
         ExitCode::from(self.exit_code())
     }
@@ -309,18 +338,25 @@ fn plural(count: usize, what: &str) -> String {
 const LONGEST_MARK: usize = 400;
 
 /// The marked text at fault and the hint.
-fn excerpt(error: &SceneError) -> Option<Report> {
+fn excerpt(error: &SceneError) -> Option<String> {
     let span = error.span().filter(|span| span.len() <= LONGEST_MARK)?;
-    let label = LabeledSpan::at(span, error.fault().to_string());
-    let help = error.help().unwrap_or_default();
-    let source = NamedSource::new(
+    let (path, label) = (
         error.path().display().to_string(),
-        error.source_text().to_owned(),
+        error.fault().to_string(),
     );
-    let report = if help.is_empty() {
-        miette!(labels = vec![label], "in the scene")
+    let mark = AnnotationKind::Primary.span(span).label(label);
+    let snippet = Snippet::source(error.source_text())
+        .path(path)
+        .annotation(mark);
+    let mut excerpt = Group::with_level(Level::ERROR).element(snippet);
+    if let Some(help) = error.help().filter(|help| !help.is_empty()) {
+        excerpt = excerpt.element(Level::HELP.message(help));
+    }
+    let is_plain = !stderr().is_terminal() || var_os("NO_COLOR").is_some_and(|set| !set.is_empty());
+    let renderer = if is_plain {
+        Renderer::plain()
     } else {
-        miette!(labels = vec![label], help = help, "in the scene")
+        Renderer::styled()
     };
-    Some(report.with_source_code(source))
+    Some(renderer.render(&[excerpt]))
 }

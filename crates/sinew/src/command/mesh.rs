@@ -67,6 +67,9 @@ pub(crate) struct Style {
     /// Version of a .msh file.
     #[arg(long, default_value = "4.1")]
     version: Version,
+    /// Take cells of second and higher order by their corners.
+    #[arg(long)]
+    order: Option<Order>,
     /// Write numbers as text.
     #[arg(long, conflicts_with = "binary")]
     ascii: bool,
@@ -84,6 +87,13 @@ pub(crate) enum Fix {
     DropOrphans,
     /// Merge cells with the same nodes.
     MergeDuplicates,
+}
+
+/// Order of the cells of a written mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Order {
+    /// Straight edges, and nodes at corners only.
+    Linear,
 }
 
 /// Version of a .msh file.
@@ -121,6 +131,15 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
 
 fn read(file: &Path) -> Result<Mesh, Failure> {
     Ok(read_msh_file(file)?)
+}
+
+/// Reads a mesh in the order of cells that was asked for.
+fn read_in(file: &Path, style: Style) -> Result<Mesh, Failure> {
+    let mut mesh = read(file)?;
+    if style.order == Some(Order::Linear) {
+        let _ = mesh.linearise();
+    }
+    Ok(mesh)
 }
 
 fn info(file: &Path, json: bool) -> Result<(), Failure> {
@@ -337,7 +356,7 @@ fn as_json(
 
 fn convert(input: &Path, output: &Path, style: Style) -> Result<(), Failure> {
     let output = MeshOutput::new(input, output, style)?;
-    let mesh = read(input)?;
+    let mesh = read_in(input, style)?;
     for warning in &mesh.warnings {
         complain(&format!("warning: {}: {warning}", input.display()));
     }
@@ -346,7 +365,7 @@ fn convert(input: &Path, output: &Path, style: Style) -> Result<(), Failure> {
 
 fn refine(input: &Path, output: &Path, style: Style) -> Result<(), Failure> {
     let output = MeshOutput::new(input, output, style)?;
-    let mesh = read(input)?;
+    let mesh = read_in(input, style)?;
     let coarse = mesh.to_tet_mesh().map_err(|source| Failure::Tetrahedra {
         mesh: input.to_owned(),
         source,

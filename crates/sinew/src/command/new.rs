@@ -54,6 +54,11 @@ fn named_after(path: &Path) -> PathBuf {
 
 /// Writes a first scene for a mesh.
 fn first(mesh: &Path, out: &Path) -> Result<(), Failure> {
+    let extension = mesh.extension().unwrap_or_default();
+    if extension.eq_ignore_ascii_case("toml") {
+        let path = mesh.to_owned();
+        return Err(Failure::SceneForMesh { path });
+    }
     let destination = new_file(out, &[mesh.to_owned()])?;
     let text = propose(read_msh_file(mesh)?, &seen_from(out, mesh));
     let text = text.map_err(|source| Failure::Tetrahedra {

@@ -13,7 +13,7 @@ pub(crate) struct Values {
     #[arg(long, value_name = "ID")]
     integrator: Option<String>,
     /// Another step than the scene's, in s, or auto
-    #[arg(long, value_name = "STEP")]
+    #[arg(long, value_name = "STEP", allow_negative_numbers = true)]
     dt: Option<String>,
     /// Another value of a key of the scene, such as region.1.youngs_modulus=4000: tables of a list by their
     /// numbers from 1 on; may be given several times
@@ -33,6 +33,40 @@ impl Values {
 
     /// Reads a scene with them.
     pub(crate) fn load(&self, path: &Path) -> Result<Scene, Failure> {
+        self.check()?;
         Ok(Scene::load_with(path, &self.assignments())?)
+    }
+
+    /// Refuses two values for one key.
+    fn check(&self) -> Result<(), Failure> {
+        let integrator = self.integrator.iter().map(|value| ("--integrator", value));
+        let dt = self.dt.iter().map(|value| ("--dt", value));
+        let set = self.set.iter().map(|assignment| ("--set", assignment));
+        let given: Vec<(String, String)> = integrator
+            .chain(dt)
+            .chain(set)
+            .map(|(option, value)| (key_of(option, value), format!("{option} {value}")))
+            .collect();
+        for (index, (key, second)) in given.iter().enumerate() {
+            if let Some((_, first)) = given[..index].iter().find(|(other, _)| other == key) {
+                return Err(Failure::SetTwice {
+                    key: key.clone(),
+                    first: first.clone(),
+                    second: second.clone(),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The key of the scene that an option sets.
+fn key_of(option: &str, value: &str) -> String {
+    match option {
+        "--set" => {
+            let (key, _) = value.split_once('=').unwrap_or((value, ""));
+            key.split('.').map(str::trim).collect::<Vec<_>>().join(".")
+        }
+        option => format!("run.{}", option.trim_start_matches('-')),
     }
 }
