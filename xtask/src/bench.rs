@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use sinew_bench::hard::HardBench;
 use sinew_bench::kernels::KernelBench;
-use sinew_bench::output::{OutputFolder, say};
+use sinew_bench::output::{OutputError, OutputFolder, OwnedFolder, say};
 use sinew_bench::report::{WriteError, brief, terminal, write_all};
 use sinew_bench::results::BenchResults;
 use sinew_bench::scale::ScaleBench;
@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     all: bool,
     /// The folder for results.json, report.html and the plots, checked before anything is measured
-    /// [default: target/bench, target/bench-scene with --scene, target/bench-hard, ..]
+    /// [default: target/bench, target/bench-scene with --scene, target/bench-hard, .., with -quick at its end for --quick]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Measure the hard cases under scenes/hard instead: failures, stability maps and pass marks; exits
@@ -97,7 +97,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();
     let results = results.map_err(Failure::input)?;
-    conclude(&results, &folder, arguments.all)
+    let _mine = folder.claim(&bench.output_files())?;
+    conclude(&results, &folder.files, arguments.all)
 }
 
 /// Measures the hard cases.
@@ -112,7 +113,8 @@ fn run_hard(arguments: &Arguments) -> Result<(), Failure> {
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();
     let results = results.map_err(Failure::input)?;
-    conclude(&results, &folder, arguments.all)
+    let _mine = folder.claim(&bench.output_files())?;
+    conclude(&results, &folder.files, arguments.all)
 }
 
 /// Measures the kernels.
@@ -128,19 +130,21 @@ fn run_kernels(arguments: &Arguments) -> Result<(), Failure> {
     };
     let folder = folder(arguments, &[bench.meshes.join("organ.msh")]);
     let (name, page) = ("kernels.json", "kernels.html");
-    folder.check(&[name, page].map(str::to_owned))?;
+    let names = [name, page].map(str::to_owned);
+    folder.check(&names)?;
     let bar = Bar::new();
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();
     let results = results.map_err(Failure::chore)?;
     let json = serde_json::to_vec_pretty(&results).map_err(Failure::chore)?;
-    let written = folder.write(name, &json)?;
+    let _mine = folder.claim(&names)?;
+    let written = folder.files.write(name, &json)?;
     let text = match arguments.all {
         true => results.to_string(),
         false => format!("{}\n\nall rows: with --all", results.brief()),
     };
     say(&text)?;
-    let page = folder.write(page, results.html().as_bytes())?;
+    let page = folder.files.write(page, results.html().as_bytes())?;
     say(&format!(
         "\nresults: {}\npage:    {}",
         written.display(),
@@ -162,14 +166,18 @@ fn run_scale(arguments: &Arguments) -> Result<(), Failure> {
     };
     let folder = folder(arguments, &[]);
     let [json, picture] = ["scale.json", "real-time.svg"];
-    folder.check(&[json.to_owned(), picture.to_owned()])?;
+    let names = [json, picture].map(str::to_owned);
+    folder.check(&names)?;
     let bar = Bar::new();
     let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
     bar.finish();
     let results = results.map_err(Failure::chore)?;
     let rows = serde_json::to_vec_pretty(&results).map_err(Failure::chore)?;
-    let rows = folder.write(json, &rows)?;
-    let picture = folder.write(picture, results.plot().svg().as_bytes())?;
+    let _mine = folder.claim(&names)?;
+    let rows = folder.files.write(json, &rows)?;
+    let picture = folder
+        .files
+        .write(picture, results.plot().svg().as_bytes())?;
     let text = match arguments.all {
         true => results.to_string(),
         false => format!("{}\n\nall rows: with --all", results.brief()),
@@ -183,25 +191,54 @@ fn run_scale(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn folder(arguments: &Arguments, inputs: &[PathBuf]) -> OutputFolder {
-    let out = arguments.out.clone();
-    let out = out.unwrap_or_else(|| root().join("target").join(default_folder(arguments)));
-    OutputFolder::new(out, inputs)
+/// The folder of a bench.
+#[derive(Debug)]
+struct Folder {
+    kind: &'static str,
+    inputs: Vec<PathBuf>,
+    files: OutputFolder,
 }
 
-/// A folder for each kind of bench, so that none writes over the report of another.
-fn default_folder(arguments: &Arguments) -> &'static str {
-    if arguments.hard {
-        "bench-hard"
-    } else if arguments.kernels {
-        "bench-kernels"
-    } else if arguments.scale {
-        "bench-scale"
-    } else if arguments.scenes.is_empty() {
-        "bench"
-    } else {
-        "bench-scene"
+impl Folder {
+    /// Checks, before anything is measured, that the folder is new or empty, or holds an earlier result of the same kind
+    /// of bench, and that these files may be written. Changes nothing.
+    fn check(&self, names: &[String]) -> Result<(), OutputError> {
+        self.files.check(names)?;
+        OwnedFolder::check(self.files.path(), self.kind, &self.inputs)?;
+        Ok(())
     }
+
+    /// Removes an earlier result of the same kind and keeps others out while the new one is written.
+    fn claim(&self, names: &[String]) -> Result<OwnedFolder, OutputError> {
+        OwnedFolder::claim(self.files.path(), self.kind, &self.inputs, names)
+    }
+}
+
+fn folder(arguments: &Arguments, inputs: &[PathBuf]) -> Folder {
+    let kind = kind(arguments);
+    let out = arguments.out.clone();
+    let out = out.unwrap_or_else(|| root().join("target").join(kind));
+    Folder {
+        kind,
+        inputs: inputs.to_vec(),
+        files: OutputFolder::new(out, inputs),
+    }
+}
+
+/// The kind of bench, which is also the name of its folder under `target`, so that none writes over the report of another.
+fn kind(arguments: &Arguments) -> &'static str {
+    let [full, quick] = if arguments.hard {
+        ["bench-hard", "bench-hard-quick"]
+    } else if arguments.kernels {
+        ["bench-kernels", "bench-kernels-quick"]
+    } else if arguments.scale {
+        ["bench-scale", "bench-scale-quick"]
+    } else if arguments.scenes.is_empty() {
+        ["bench", "bench-quick"]
+    } else {
+        ["bench-scene", "bench-scene-quick"]
+    };
+    if arguments.quick { quick } else { full }
 }
 
 /// Writes everything, then fails if a mark is not passed or something is missing.
@@ -325,23 +362,63 @@ mod tests {
     #[test]
     fn no_kind_of_bench_writes_over_the_report_of_another() {
         let of = |change: fn(&mut Arguments)| {
-            let mut arguments = Arguments::default();
-            change(&mut arguments);
-            default_folder(&arguments)
+            [false, true].map(|quick| {
+                let mut arguments = Arguments {
+                    quick,
+                    ..Arguments::default()
+                };
+                change(&mut arguments);
+                kind(&arguments)
+            })
         };
-        let mut folders = [
+        let mut kinds = [
             of(|_| {}),
             of(|arguments| arguments.scenes.push("my.toml".into())),
             of(|arguments| arguments.hard = true),
             of(|arguments| arguments.kernels = true),
             of(|arguments| arguments.scale = true),
-        ];
-        assert_eq!(folders[0], "bench");
-        folders.sort_unstable();
+        ]
+        .concat();
+        assert_eq!(kinds[0], "bench");
+        kinds.sort_unstable();
+        assert!(kinds.windows(2).all(|pair| pair[0] != pair[1]), "{kinds:?}");
+    }
+
+    #[test]
+    fn a_folder_is_replaced_by_the_same_kind_of_bench_and_refused_where_it_holds_other_things() {
+        let parent = tempfile::tempdir().unwrap();
+        let of = |quick| {
+            let arguments = Arguments {
+                quick,
+                out: Some(parent.path().join("out")),
+                ..Arguments::default()
+            };
+            folder(&arguments, &[])
+        };
+        let names = |name: &str| vec![name.to_owned()];
+        let path = |name: &str| parent.path().join("out").join(name);
+        let write = |name: &str| {
+            let folder = of(false);
+            folder.check(&names(name)).unwrap();
+            let mine = folder.claim(&names(name)).unwrap();
+            assert!(matches!(
+                folder.claim(&names(name)),
+                Err(OutputError::Busy { .. })
+            ));
+            folder.files.write(name, b"rows").unwrap();
+            drop(mine);
+        };
+        write("earlier.svg");
+        write("later.svg");
+        assert!(path("later.svg").exists() && !path("earlier.svg").exists());
+        let quick = of(true).check(&names("later.svg"));
         assert!(
-            folders.windows(2).all(|pair| pair[0] != pair[1]),
-            "{folders:?}"
+            matches!(quick, Err(OutputError::Foreign { .. })),
+            "{quick:?}"
         );
+        std::fs::write(path("notes.txt"), b"mine").unwrap();
+        let foreign = of(false).check(&names("later.svg")).unwrap_err();
+        assert!(foreign.to_string().contains("notes.txt"), "{foreign}");
     }
 
     #[test]
