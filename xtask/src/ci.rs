@@ -83,6 +83,12 @@ fn steps(root: &Path) -> std::io::Result<Vec<Step>> {
         "quick hard cases",
         "xtask bench --hard --quick --out target/ci-hard",
     ));
+    steps.push(Step::new("commands of the README", "xtask readme"));
+    steps.push(Step::new("archive, tried elsewhere", "xtask dist"));
+    steps.push(Step::new(
+        "installation",
+        "install --path crates/sinew --root target/ci-install --locked --force --no-track --quiet",
+    ));
     Ok(steps)
 }
 

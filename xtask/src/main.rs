@@ -1,9 +1,11 @@
-//! Repository chores: `cargo xtask bench | native | memory | reproduce | meshes | compare | docs | reference | rules | ci`.
+//! Repository chores:
+//! `cargo xtask bench | native | memory | reproduce | meshes | compare | docs | reference | readme | dist | rules | ci`.
 
 mod bench;
 mod beside;
 mod ci;
 mod compare;
+mod dist;
 mod docs;
 mod failure;
 mod generated;
@@ -12,6 +14,7 @@ mod meshes;
 mod native;
 mod progress;
 mod python;
+mod readme;
 mod reference;
 mod repository;
 mod reproduce;
@@ -52,6 +55,10 @@ enum Chore {
     Docs,
     /// Write the reference and the JSON schema of scenes into docs.
     Reference,
+    /// Run the commands of the README as they are written there; part of `ci`.
+    Readme,
+    /// Pack the command with scenes, meshes and documents into an archive for computers without Rust, and try it elsewhere.
+    Dist(dist::Arguments),
     /// Check the rules of ARCHITECTURE.md that a machine can check; part of `ci`.
     Rules,
     /// Everything that must hold before a change lands.
@@ -68,6 +75,8 @@ fn main() -> ExitCode {
         Chore::Compare => compare::run(),
         Chore::Docs => docs::run(),
         Chore::Reference => reference::run(),
+        Chore::Readme => readme::run(),
+        Chore::Dist(arguments) => dist::run(&arguments),
         Chore::Rules => ci::check_rules(),
         Chore::Ci => ci::run(),
     };

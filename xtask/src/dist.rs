@@ -1,0 +1,209 @@
+//! `cargo xtask dist`: an archive with the command, for computers without a Rust toolchain.
+
+use std::env::consts::EXE_SUFFIX;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use sinew_bench::output::say;
+
+use crate::failure::Failure;
+use crate::repository::root;
+
+mod needs;
+mod trial;
+
+/// What goes into the archive beside the command, as `git ls-files` takes it.
+const CONTENT: [&str; 8] = [
+    "CHANGELOG.md",
+    "CITATION.cff",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "docs",
+    "meshes/*.md",
+    "meshes/*.msh",
+    "scenes",
+];
+
+const README: &str = include_str!("dist/README.md");
+
+/// The target of the archive.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The target triple, which rustup must have installed [default: this computer's]
+    #[arg(long, value_name = "TRIPLE")]
+    target: Option<String>,
+}
+
+/// Builds the command, packs it with scenes, meshes, documents and licences into `target/dist`, then unpacks the archive in
+/// a temporary folder and runs a scene there.
+///
+/// # Errors
+/// [`Failure`] where cargo, git or tar is missing or fails, and where the unpacked command does.
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let host = host()?;
+    let target = arguments.target.as_deref().unwrap_or(&host);
+    let program = build(target)?;
+    let name = format!("sinew-{}-{target}", env!("CARGO_PKG_VERSION"));
+    let dist = root().join("target/dist");
+    let folder = dist.join(&name);
+    let needs = needs::of(&program, target)?;
+    gather(&folder, &program, &readme(target, &needs))?;
+    let archive = pack(&dist, &name)?;
+    if target == host {
+        trial::run(&archive, &name)?;
+    } else {
+        say(&format!("not tried here: it is for {target}"))?;
+    }
+    let bytes = fs::metadata(&archive).map_err(Failure::chore)?.len();
+    Ok(say(&format!(
+        "{}: {:.1} MB; {needs}",
+        archive.display(),
+        bytes as f64 * 1e-6
+    ))?)
+}
+
+/// The triple of this computer.
+fn host() -> Result<String, Failure> {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let said = text_of(Command::new(rustc).arg("-vV"))?;
+    let host = said.lines().find_map(|line| line.strip_prefix("host: "));
+    let host = host.ok_or_else(|| Failure::chore("rustc -vV names no host"))?;
+    Ok(host.to_owned())
+}
+
+/// Builds the command for any processor of the target; `RUSTFLAGS` of the caller do not count.
+fn build(target: &str) -> Result<PathBuf, Failure> {
+    let output = root().join("target/dist-build");
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo
+        .args(["build", "--release", "--locked", "-psinew", "--bin=sinew"])
+        .args(["--config", "profile.release.strip=\"symbols\""])
+        .arg("--target")
+        .arg(target)
+        .arg("--target-dir")
+        .arg(&output)
+        .env("CARGO_ENCODED_RUSTFLAGS", flags(target))
+        .current_dir(root());
+    finish(&mut cargo)?;
+    let program = format!("sinew{EXE_SUFFIX}");
+    Ok(output.join(target).join("release").join(program))
+}
+
+/// Flags of rustc that make the program as independent as it may be.
+fn flags(target: &str) -> &'static str {
+    let is_gnu = target.contains("-linux-gnu");
+    if !is_gnu || has_static_libc() {
+        "-Ctarget-feature=+crt-static"
+    } else {
+        ""
+    }
+}
+
+/// Whether the C compiler has a C library to link statically.
+fn has_static_libc() -> bool {
+    let path = text_of(Command::new("cc").arg("-print-file-name=libc.a"));
+    path.is_ok_and(|path| Path::new(path.trim()).is_absolute())
+}
+
+/// The README of the archive.
+fn readme(target: &str, needs: &needs::Needs) -> String {
+    README
+        .replace("VERSION", env!("CARGO_PKG_VERSION"))
+        .replace("TARGET", target)
+        .replace("NEEDS", &format!("{needs}."))
+        .replace("REPOSITORY", env!("CARGO_PKG_REPOSITORY"))
+}
+
+/// Puts all files of the archive into a new folder.
+fn gather(folder: &Path, program: &Path, readme: &str) -> Result<(), Failure> {
+    if folder.exists() {
+        fs::remove_dir_all(folder).map_err(Failure::chore)?;
+    }
+    let mut git = Command::new("git");
+    git.args(["ls-files", "-z", "--"])
+        .args(CONTENT)
+        .current_dir(root());
+    let names = text_of(&mut git)?;
+    for name in names.split_terminator('\0') {
+        copy(&root().join(name), &folder.join(name))?;
+    }
+    let file = program.file_name().unwrap_or(program.as_os_str());
+    copy(program, &folder.join(file))?;
+    fs::write(folder.join("README.md"), readme).map_err(Failure::chore)
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
+    let failed = |error| Failure::Chore(format!("{}: {error}", from.display()));
+    if let Some(folder) = to.parent() {
+        fs::create_dir_all(folder).map_err(failed)?;
+    }
+    fs::copy(from, to).map_err(failed)?;
+    Ok(())
+}
+
+/// Packs the folder of this name in `dist`.
+fn pack(dist: &Path, name: &str) -> Result<PathBuf, Failure> {
+    let archive = format!("{name}.tar.gz");
+    let mut tar = Command::new("tar");
+    tar.arg("-czf").args([&archive, name]).current_dir(dist);
+    finish(&mut tar)?;
+    Ok(dist.join(archive))
+}
+
+/// Runs a program that says itself what is wrong.
+fn finish(command: &mut Command) -> Result<(), Failure> {
+    let status = command.status().map_err(|error| missing(command, &error))?;
+    match status.success() {
+        true => Ok(()),
+        false => Err(Failure::Chore(format!("{command:?}: {status}"))),
+    }
+}
+
+/// Standard output of a program.
+fn text_of(command: &mut Command) -> Result<String, Failure> {
+    let output = command.output().map_err(|error| missing(command, &error))?;
+    match output.status.success() {
+        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+        false => Err(Failure::Chore(format!(
+            "{command:?}: {}: {}",
+            output.status,
+            String::from_utf8_lossy(&output.stderr)
+        ))),
+    }
+}
+
+fn missing(command: &Command, error: &std::io::Error) -> Failure {
+    let program = command.get_program().to_string_lossy();
+    Failure::Input(format!(
+        "cannot run {program}: {error}; `cargo xtask dist` needs cargo, git and tar"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_readme_of_the_archive_has_no_place_left_to_fill() {
+        let text = readme("x86_64-unknown-linux-gnu", &needs::Needs::Nothing);
+        assert!(text.starts_with(concat!(
+            "# sinew ",
+            env!("CARGO_PKG_VERSION"),
+            " for x86_64"
+        )));
+        for place in ["VERSION", "TARGET", "NEEDS", "REPOSITORY"] {
+            assert!(!text.contains(place), "{text}");
+        }
+        assert!(text.contains("Source: https://"), "{text}");
+    }
+
+    #[test]
+    fn a_missing_program_is_named() {
+        let failure = text_of(&mut Command::new("no-such-program")).unwrap_err();
+        let Failure::Input(message) = failure else {
+            panic!("{failure:?}");
+        };
+        assert!(message.contains("cannot run no-such-program"), "{message}");
+    }
+}
