@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::{finish, text_of};
+use super::programs::{finish, text_of};
 use crate::failure::Failure;
 
 const SCENE: &str = "scenes/ready/held-cube.toml";
