@@ -26,7 +26,7 @@ enum Command {
     Run(command::run::Arguments),
     /// Go on with a run that was interrupted or killed.
     Resume(command::resume::Arguments),
-    /// Compare the results of two runs: the largest difference of each quantity, with its time.
+    /// Compare the results of two runs, or of two scenes: the largest difference of each quantity, with its time.
     Compare(command::compare::Arguments),
     /// Estimate the error of a scene's mesh: the scene again on a refined one, beside the error of its
     /// step.

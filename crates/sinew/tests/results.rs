@@ -215,3 +215,38 @@ fn a_negative_step_and_one_without_end_are_named_as_such() {
         assert_eq!(said.out, "");
     }
 }
+
+#[test]
+fn scenes_are_run_to_be_compared_and_leave_nothing() {
+    let folder = folder();
+    let temporary = tempfile::tempdir().unwrap();
+    let said = sinew(folder.path(), &["run", "beam.toml", "--out", "kept"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    std::fs::write(
+        folder.path().join("soft.toml"),
+        BEAM.replace("3000.0", "1500.0"),
+    )
+    .unwrap();
+    let compare = |one: &str, other: &str| {
+        let output = assert_cmd::Command::cargo_bin("sinew")
+            .unwrap()
+            .current_dir(folder.path())
+            .env("TMPDIR", temporary.path())
+            .args(["compare", one, other, "--tolerance", "1e-9", "--json"])
+            .output()
+            .unwrap();
+        let left = std::fs::read_dir(temporary.path()).unwrap().count();
+        assert_eq!(left, 0, "something stayed");
+        let object: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+        (output.status.code(), object["largest_relative"].as_f64())
+    };
+    assert_eq!(compare("kept", "beam.toml"), (Some(0), Some(0.0)));
+    assert_eq!(compare("beam.toml", "beam.toml"), (Some(0), Some(0.0)));
+    let (code, difference) = compare("soft.toml", "kept");
+    assert_eq!(code, Some(1));
+    assert!(difference.unwrap() > 0.3);
+    assert_eq!(compare("nowhere.toml", "kept").0, Some(2));
+    assert_eq!(compare("nowhere", "kept").0, Some(2));
+    let names = std::fs::read_dir(folder.path()).unwrap().count();
+    assert_eq!(names, 3, "two scenes and what was kept");
+}

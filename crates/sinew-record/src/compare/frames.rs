@@ -5,11 +5,15 @@ use std::path::Path;
 use sinew_mesh::vtu::read_appended_array;
 
 use super::outcome::{CompareError, Comparison, Difference, damaged, read, relative};
+use super::places;
 use crate::csv::SAME_TIME;
 use crate::frames::SERIES;
 
 /// Fields that are compared, with their units.
 const FIELDS: [(&str, &str); 2] = [("displacement", "m"), ("velocity", "m/s")];
+
+/// The points of the body at rest.
+const POINTS: &str = "Points";
 
 /// Compares the frames at equal times.
 pub(super) fn compare(
@@ -27,6 +31,7 @@ pub(super) fn compare(
     let (frames, others) = (series(one)?, series(other)?);
     let mut found = FIELDS.map(|_| (0.0_f64, 0.0, 0, 0.0_f64));
     let mut alone = 0;
+    let mut compared_points = false;
     for (t, file) in &frames {
         let same = |(time, _): &&(f64, String)| (time - t).abs() <= SAME_TIME * t.abs();
         let Some((_, counterpart)) = others.iter().find(same) else {
@@ -35,6 +40,17 @@ pub(super) fn compare(
         };
         let (path, counterpart) = (one.join(file), other.join(counterpart));
         let (bytes, others) = (read(&path)?, read(&counterpart)?);
+        if !compared_points {
+            compared_points = true;
+            let points = [(&path, &bytes), (&counterpart, &others)];
+            let [one, other] = points.map(|(path, bytes)| vectors(path, bytes, POINTS));
+            let (one, other) = (one?, other?);
+            if one.len() == other.len() {
+                comparison
+                    .differences
+                    .extend(places::apart("fields", &one, &other));
+            }
+        }
         for ((name, _), (largest, at, node, size)) in FIELDS.iter().zip(&mut found) {
             let (field, others) = (
                 vectors(&path, &bytes, name)?,

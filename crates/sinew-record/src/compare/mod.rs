@@ -2,6 +2,7 @@
 
 mod frames;
 mod outcome;
+mod places;
 mod tables;
 
 use std::path::Path;
@@ -11,7 +12,8 @@ pub use outcome::{CompareError, Comparison, Difference};
 use crate::tables::{ENERGY, PROBES, REACTIONS};
 
 /// Compares the results in two folders: tables at the times of the first (those of the second between its rows on
-/// straight lines), displacements and velocities of frames at equal times.
+/// straight lines), displacements and velocities of frames at equal times. Bodies of other shape and probes at other places are
+/// differences too.
 ///
 /// # Errors
 /// [`CompareError`] for a folder without a result and for damaged files.

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use super::outcome::{CompareError, Comparison, Difference, damaged, read, relative};
+use super::places;
 use crate::csv::Table;
-use crate::tables::ENERGY;
+use crate::tables::{ENERGY, PROBES};
 
 /// Columns that belong to one quantity: a vector's components, or one column.
 struct Quantity {
@@ -28,6 +29,11 @@ pub(super) fn compare(
             comparison.left_out.push(format!("only one has {name}"));
             return Ok(());
         }
+    }
+    if name == PROBES {
+        let (one, other) = (read(&one)?, read(&other)?);
+        let texts = [&one, &other].map(|bytes| String::from_utf8_lossy(bytes));
+        places::probes(comparison, &texts[0], &texts[1]);
     }
     let (one, other) = (table(&one)?, table(&other)?);
     let quantities = quantities(&one, &other);

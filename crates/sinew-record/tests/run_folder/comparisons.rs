@@ -4,7 +4,7 @@ use std::fs;
 
 use sinew_record::compare;
 
-use crate::common::{cube, run, table};
+use crate::common::{build, cube, run, table};
 
 fn scene(dt: &str, pressure: &str) -> String {
     format!(
@@ -125,4 +125,45 @@ fn what_cannot_be_compared_is_said() {
         refused.contains("frame-00001.vtu: expected a .vtu file"),
         "{refused}"
     );
+}
+
+#[test]
+fn other_bodies_and_probes_at_other_places_are_no_match() {
+    let place = tempfile::tempdir().unwrap();
+    let path = |name: &str| place.path().join(name);
+    // Gravity that grows as the body shrinks: both move alike but for the length of everything.
+    let text = |edge: &str, point: &str| {
+        format!(
+            "[mesh]\ncube = {{ cells = 2, edge = {edge} }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
+             youngs_modulus = 3000.0\npoissons_ratio = 0.3\n[[move]]\ngroup = \"tissue\"\nvelocity = [0.0, 0.0, 0.1]\n\
+             axes = \"z\"\n[[fixed]]\ngroup = \"bottom\"\naxes = \"xy\"\n[run]\nduration = 0.1\nintegrator = \"newmark\"\n\
+             dt = 0.01\n[[probe]]\nname = \"p\"\npoint = {point}\n[output]\nfields = {{ frames = 2 }}\n"
+        )
+    };
+    for (name, edge, point) in [
+        ("one", "0.1", "[0.1, 0.1, 0.1]"),
+        ("larger", "0.2", "[0.2, 0.2, 0.2]"),
+        ("elsewhere", "0.1", "[0.0, 0.1, 0.1]"),
+    ] {
+        run(&path(name), &build(&text(edge, point)), &mut ());
+    }
+    // All of them are carried alike, so that only the places tell.
+    let places = |other: &str| -> Vec<(String, f64)> {
+        let found = compare(&path("one"), &path(other)).unwrap();
+        let places = found
+            .differences
+            .into_iter()
+            .filter(|found| found.unit == "m" && found.relative > 1e-6);
+        places.map(|found| (found.what, found.largest)).collect()
+    };
+    let larger = places("larger");
+    let corner = 0.03_f64.sqrt();
+    assert_eq!(larger.len(), 2, "{larger:?}");
+    for (what, distance) in &larger {
+        assert!(what == "place of p" || what == "points at rest", "{what}");
+        assert!((distance - corner).abs() < 1e-7, "{what} {distance}");
+    }
+    let elsewhere = places("elsewhere");
+    assert_eq!(elsewhere, [("place of p".to_owned(), 0.1)]);
+    assert_eq!(places("one"), []);
 }

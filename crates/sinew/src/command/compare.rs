@@ -1,21 +1,24 @@
 //! `sinew compare`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use comfy_table::CellAlignment;
 use serde_json::json;
 use sinew_record::{Comparison, Difference, compare};
 use sinew_scene::output::say;
+use tempfile::TempDir;
 
 use super::Failure;
+use super::interruption::Interruption;
 use super::ruled;
+use super::run::run_for_comparison;
 
 /// Two results and the difference that they may have.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The folder of a run: `sinew run SCENE --out DIR`
+    /// The folder of a run, as `sinew run SCENE --out DIR` leaves it, or a scene file, which is run and leaves nothing
     one: PathBuf,
-    /// The folder of another run
+    /// Another folder or scene file
     other: PathBuf,
     /// The largest relative difference that is no finding; without it none is
     #[arg(long, value_name = "SHARE", value_parser = share)]
@@ -26,7 +29,10 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let comparison = compare(&arguments.one, &arguments.other)?;
+    let interruption = Interruption::listen().map_err(Failure::Signals)?;
+    let one = Results::of(&arguments.one, &interruption)?;
+    let other = Results::of(&arguments.other, &interruption)?;
+    let comparison = compare(one.folder(), other.folder())?;
     match arguments.json {
         true => say(&as_json(&comparison).to_string())?,
         false => say(&in_words(&comparison))?,
@@ -38,6 +44,37 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             count: comparison.left_out.len(),
         }),
         _ => Ok(()),
+    }
+}
+
+/// The results of a run.
+enum Results {
+    /// In a folder of the user's.
+    Kept(PathBuf),
+    /// In a folder that goes with this value.
+    Passing(TempDir),
+}
+
+impl Results {
+    /// Those in a folder, or those of a scene, which is run.
+    fn of(path: &Path, interruption: &Interruption) -> Result<Self, Failure> {
+        let is_scene = path
+            .extension()
+            .is_some_and(|extension| extension == "toml");
+        if path.is_dir() || !(path.is_file() || is_scene) {
+            return Ok(Self::Kept(path.to_owned()));
+        }
+        let folder = tempfile::Builder::new().prefix("sinew-compare-").tempdir();
+        let folder = folder.map_err(Failure::TemporaryFolder)?;
+        run_for_comparison(path, folder.path(), interruption.clone())?;
+        Ok(Self::Passing(folder))
+    }
+
+    fn folder(&self) -> &Path {
+        match self {
+            Self::Kept(path) => path,
+            Self::Passing(folder) => folder.path(),
+        }
     }
 }
 

@@ -203,6 +203,9 @@ pub(crate) enum Failure {
     #[cfg(feature = "implicit")]
     #[error(transparent)]
     Modes(#[from] sinew_record::ModesError),
+    /// No folder for the results of a scene that is compared.
+    #[error("no temporary folder for the results: {0}; TMPDIR names another place for it")]
+    TemporaryFolder(io::Error),
     /// Results of which a part could not be compared.
     #[error(
         "{count} parts of the results could not be compared, so that a tolerance says nothing of them"
@@ -288,6 +291,7 @@ impl Failure {
             | Self::NotCompared { .. }
             | Self::Record(_)
             | Self::Signals(_)
+            | Self::TemporaryFolder(_)
             | Self::Findings
             | Self::Run(_)
             | Self::Reactions(_)

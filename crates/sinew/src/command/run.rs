@@ -8,7 +8,7 @@ use sinew_measure::Forecast;
 use sinew_record::{Companion, Ended, Request, RunEnd, RunFolder};
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
 use sinew_scene::{
-    Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Simulation, Warning, WarningKind,
+    Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Simulation, Warning, WarningKind,
 };
 
 use super::Failure;
@@ -135,6 +135,37 @@ pub(crate) fn in_folder(
         Ended::Interrupted { t } => Err(Failure::Interrupted {
             t,
             remedy: format!("; `sinew resume {}` goes on", path.display()),
+        }),
+    }
+}
+
+/// Runs a scene into an empty folder, which nobody reads but a comparison.
+pub(crate) fn run_for_comparison(
+    scene: &Path,
+    folder: &Path,
+    interruption: Interruption,
+) -> Result<(), Failure> {
+    let mut simulation = Scene::load(scene)?.build()?;
+    if let Some(refused) = simulation.refused_load() {
+        return Err(refused.into());
+    }
+    for warning in simulation.warnings() {
+        complain(&format!("{}: warning: {warning}", scene.display()));
+    }
+    simulation.end_at_duration();
+    let mut integrator = integrator(&simulation, None)?;
+    integrator.prepare(simulation.system(), simulation.dt())?;
+    let folder = RunFolder::create(folder, &simulation, &Request::default())?;
+    let duration = simulation.settings().duration;
+    let mut onlooker = Onlooker::new(interruption, simulation.run().steps, duration);
+    let end = folder.run(&simulation, &mut *integrator, &mut onlooker);
+    onlooker.finish();
+    match end?.ended {
+        Ended::Finished => Ok(()),
+        Ended::Diverged { t, place } => Err(Failure::Diverged { t, place }),
+        Ended::Interrupted { t } => Err(Failure::Interrupted {
+            t,
+            remedy: String::new(),
         }),
     }
 }

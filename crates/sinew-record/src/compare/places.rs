@@ -1,0 +1,67 @@
+//! Differences of where things are: the places of probes, and the nodes of the body at rest.
+
+use super::outcome::{Comparison, Difference};
+use crate::tables::PROBES;
+
+/// Distance over the size of the coordinates within which two places are the same.
+const SAME: f64 = 1e-9;
+
+/// Compares the places of probes of the same name, which stand above the table in lines such as
+/// `# tip: node 9 at 0.1 0.2 0.3 m, ..`.
+pub(super) fn probes(comparison: &mut Comparison, one: &str, other: &str) {
+    let others: Vec<(&str, &str)> = other.lines().filter_map(described).collect();
+    for (name, place) in one.lines().filter_map(described) {
+        let counterpart = others.iter().find(|(other, _)| *other == name);
+        let Some((_, counterpart)) = counterpart.filter(|(_, other)| *other != place) else {
+            continue;
+        };
+        match point(place).zip(point(counterpart)) {
+            Some((a, b)) => comparison
+                .differences
+                .extend(apart(PROBES, &[a], &[b]).map(|found| Difference {
+                    what: format!("place of {name}"),
+                    node: None,
+                    ..found
+                })),
+            None => comparison.left_out.push(format!(
+                "{PROBES}: `{name}` is{place} in one and{counterpart} in the other"
+            )),
+        }
+    }
+}
+
+/// A probe's name and its place in words.
+fn described(line: &str) -> Option<(&str, &str)> {
+    line.strip_prefix("# ")?.split_once(':')
+}
+
+/// The coordinates (m) in a place.
+fn point(place: &str) -> Option<[f64; 3]> {
+    let (_, coordinates) = place.split_once(" at ")?;
+    let (coordinates, _) = coordinates.split_once(" m")?;
+    let numbers: Result<Vec<f64>, _> = coordinates.split(' ').map(str::parse).collect();
+    numbers.ok()?.try_into().ok()
+}
+
+/// The largest distance of points (m) from their counterparts; `None` where they are the same.
+pub(super) fn apart(of: &'static str, one: &[[f64; 3]], other: &[[f64; 3]]) -> Option<Difference> {
+    let coordinates = one.iter().chain(other).flatten();
+    let size = coordinates.fold(0.0_f64, |most, x| most.max(x.abs()));
+    let distances = one.iter().zip(other).map(|(a, b)| {
+        let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
+        squares.sum::<f64>().sqrt()
+    });
+    let largest = distances
+        .enumerate()
+        .max_by(|(_, a), (_, b)| a.total_cmp(b));
+    let (node, largest) = largest.filter(|(_, distance)| *distance > SAME * size)?;
+    Some(Difference {
+        of,
+        what: "points at rest".to_owned(),
+        unit: "m".to_owned(),
+        largest,
+        relative: largest / size,
+        t: 0.0,
+        node: Some(node),
+    })
+}
