@@ -1,5 +1,6 @@
 //! `report.html`: a run at a glance, in one page without network.
 
+mod beside;
 mod body;
 mod curves;
 
@@ -29,7 +30,7 @@ pub(crate) fn page(
         "" => "A run",
         title => title,
     };
-    let mut page = Page::new(title).with_style(body::STYLE);
+    let mut page = Page::new(title).with_style(beside::STYLE);
     for warning in summary.record.warnings.iter().chain(summary.warnings) {
         page.warning(warning);
     }
@@ -53,7 +54,7 @@ pub(crate) fn page(
     };
     if let Some(probes) = read(tables::PROBES)? {
         page.section("probes", "Probes");
-        for probe in simulation.probes() {
+        let drawn = simulation.probes().iter().map(|probe| {
             let (letter, label, unit) = match probe.quantity {
                 Quantity::Displacement => ("u", "displacement [m]", "m"),
                 Quantity::Velocity => ("v", "velocity [m/s]", "m_per_s"),
@@ -69,8 +70,9 @@ pub(crate) fn page(
                 let part = part.strip_suffix(unit)?.strip_suffix('_')?;
                 Some(part.replace('_', " "))
             });
-            page.figure(&plot.svg(), "");
-        }
+            plot.svg()
+        });
+        beside::figures(&mut page, &drawn.collect::<Vec<_>>());
         if simulation.probes().is_empty() {
             page.paragraph(
                 "The scene has none: a table `[[probe]]` with `name` and `point` makes one.",
@@ -89,7 +91,7 @@ pub(crate) fn page(
     }
     if let Some(reactions) = read(tables::REACTIONS)? {
         page.section("reactions", "Forces of supports");
-        for part in summary.parts {
+        let drawn = summary.parts.iter().map(|part| {
             let begin = format!("{}_f_", part.name);
             let plot = plot(
                 &reactions,
@@ -100,8 +102,9 @@ pub(crate) fn page(
                     Some(axis.to_owned())
                 },
             );
-            page.figure(&plot.svg(), "");
-        }
+            plot.svg()
+        });
+        beside::figures(&mut page, &drawn.collect::<Vec<_>>());
     }
     page.section("scene", "The scene as it was run");
     let text = sinew_draw::markup::escape(simulation.scene().source().text());

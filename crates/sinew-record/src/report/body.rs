@@ -2,6 +2,7 @@
 
 use sinew_draw::{Page, Surface as Picture};
 
+use super::beside;
 use crate::summary::Summary;
 use crate::surface::Surface;
 
@@ -16,11 +17,6 @@ const DRAWN: f64 = 0.08;
 
 /// The direction in which pictures look.
 const AWAY: [f64; 3] = [1.0, 1.0, -1.0];
-
-/// Rules by which both pictures stand side by side where there is room, and shrink where there is little.
-pub(super) const STYLE: &str = ".pair { display: flex; flex-wrap: wrap; gap: 1rem; }\n\
-     .pair figure { flex: 1 1 24rem; margin: 0; }\n\
-     .pair .plot svg { min-width: 0; }\n";
 
 /// The body at rest and at its largest motion.
 pub(super) fn section(page: &mut Page, summary: &Summary<'_>, surface: &Surface, largest: &[f64]) {
@@ -67,8 +63,7 @@ pub(super) fn section(page: &mut Page, summary: &Summary<'_>, surface: &Surface,
         ("At rest".to_owned(), rest, vec![0.0; sizes.len()]),
         (words, then, sizes),
     ];
-    page.markup("<div class=\"pair\">\n");
-    for (title, points, values) in pictures {
+    let drawn = pictures.map(|(title, points, values)| {
         let facing: Vec<[u32; 3]> = surface
             .triangles
             .iter()
@@ -80,9 +75,9 @@ pub(super) fn section(page: &mut Page, summary: &Summary<'_>, surface: &Surface,
             view: Some(view),
             ..Picture::new(title, &points, &facing, &values, "displacement [mm]")
         };
-        page.figure(&picture.svg(), "");
-    }
-    page.markup("</div>\n");
+        picture.svg()
+    });
+    beside::figures(page, &drawn);
 }
 
 /// Whether a triangle shows its outside.

@@ -1,0 +1,17 @@
+//! Figures side by side.
+
+use sinew_draw::Page;
+
+/// Rules by which figures stand side by side where there is room, and shrink where there is little.
+pub(super) const STYLE: &str = ".beside { display: flex; flex-wrap: wrap; gap: 1rem; }\n\
+     .beside figure { flex: 1 1 24rem; margin: 0; max-width: 40rem; }\n\
+     .beside .plot svg { min-width: 0; }\n";
+
+/// Puts drawings side by side.
+pub(super) fn figures<T: AsRef<str>>(page: &mut Page, drawings: &[T]) {
+    page.markup("<div class=\"beside\">\n");
+    for svg in drawings {
+        page.figure(svg.as_ref(), "");
+    }
+    page.markup("</div>\n");
+}
