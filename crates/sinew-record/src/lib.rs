@@ -38,6 +38,7 @@ mod compare;
 mod csv;
 mod error;
 mod fields;
+mod folder_size;
 mod frame_writer;
 mod frames;
 #[cfg(feature = "implicit")]
@@ -57,6 +58,7 @@ mod tables;
 pub use companion::Companion;
 pub use compare::{CompareError, Comparison, Difference, compare};
 pub use error::RecordRunError;
+pub use folder_size::FolderSize;
 #[cfg(feature = "implicit")]
 pub use modes::{ModesError, NaturalMode, check_modes_folder, natural_modes, write_modes};
 pub use pace::Pace;

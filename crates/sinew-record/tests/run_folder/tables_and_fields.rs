@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use sinew_mesh::vtu::read_appended_array;
-use sinew_record::{Request, RunFolder};
+use sinew_record::{FolderSize, Request, RunFolder};
 
 use crate::common::{cube, run, table};
 
@@ -104,6 +104,37 @@ fn compressed_fields_are_the_same_and_steps_of_tetrahedra_are_above_that_of_the_
         of_body <= least && least < 3.0 * of_body,
         "{least} {of_body}"
     );
+}
+
+/// What a plan says of the size of a folder is what a run writes: frames to their text, tables to how long numbers are.
+#[test]
+fn the_size_of_a_folder_is_told_before() {
+    let place = tempfile::tempdir().unwrap();
+    for (name, output) in [
+        ("all", "acceleration = true\nstep_limit = true\n"),
+        ("surface", "surface_only = true\n"),
+    ] {
+        let simulation = cube(&format!(
+            "[[fixed]]\ngroup = \"sides\"\n[[load]]\ngroup = \"top\"\npressure = 100.0\n[run]\nduration = 0.1\n\
+             integrator = \"newmark\"\ndt = 0.0025\n[[probe]]\nname = \"p\"\npoint = [0.0333, 0.0333, 0.1]\n\
+             [output]\nfields = {{ frames = 4 }}\n{output}"
+        ));
+        let size = FolderSize::of(&simulation);
+        let out = place.path().join(name);
+        run(&out, &simulation, &mut ());
+        let bytes = |path: &Path| fs::metadata(path).unwrap().len() as f64;
+        let frames = fs::read_dir(out.join("fields")).unwrap();
+        let frames: Vec<f64> = frames.map(|frame| bytes(&frame.unwrap().path())).collect();
+        assert_eq!(frames.len(), size.frames);
+        for frame in frames {
+            let text = frame - size.frame_bytes as f64;
+            assert!((500.0..3000.0).contains(&text), "{name}: {text}");
+        }
+        let tables = ["probes.csv", "energy.csv", "reactions.csv"];
+        let tables: f64 = tables.iter().map(|name| bytes(&out.join(name))).sum();
+        let ratio = tables / size.table_bytes as f64;
+        assert!((0.5..2.0).contains(&ratio), "{name}: {ratio}");
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use sinew_measure::Forecast;
 use sinew_measure::number::{short, three};
+use sinew_record::FolderSize;
 use sinew_scene::{Footprint, Simulation, Warning};
 
 use crate::command::Failure;
@@ -16,6 +17,8 @@ pub(super) struct Cost {
     pub(super) footprint: Option<Footprint>,
     /// Work and time, or why they are not known.
     pub(super) forecast: Result<Forecast, String>,
+    /// Files of a run with `--out`.
+    pub(super) folder: FolderSize,
     /// Simulated time (s).
     duration: f64,
 }
@@ -42,6 +45,7 @@ impl Cost {
         Self {
             footprint,
             forecast,
+            folder: FolderSize::of(simulation),
             duration: settings.duration,
         }
     }
@@ -77,6 +81,30 @@ impl Cost {
             }
             Err(reason) => format!("time: {reason}"),
         });
+        let megabytes = |bytes: usize| three(bytes as f64 / 1e6);
+        let FolderSize {
+            frames,
+            frame_bytes,
+            is_compressed,
+            table_bytes,
+        } = self.folder;
+        let fields = match frames {
+            0 => String::new(),
+            _ => format!(
+                "{frames} frames of {} MB, {} MB in all{}, and ",
+                megabytes(frame_bytes),
+                megabytes(self.folder.field_bytes()),
+                if is_compressed {
+                    " before compression"
+                } else {
+                    ""
+                }
+            ),
+        };
+        lines.push(format!(
+            "files of `run --out`: {fields}tables of about {} MB",
+            megabytes(table_bytes)
+        ));
         lines
     }
 

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::cost::Cost;
 
-/// Memory and time; what is not known is left out, with its reason.
+/// Memory, files and time; what is not known is left out, with its reason.
 pub(super) fn as_json(cost: &Cost) -> Value {
     let mut object = json!({});
     let Some(fields) = object.as_object_mut() else {
@@ -20,6 +20,14 @@ pub(super) fn as_json(cost: &Cost) -> Value {
         });
         fields.insert("memory".to_owned(), memory);
     }
+    let folder = json!({
+        "frames": cost.folder.frames,
+        "frame_bytes": cost.folder.frame_bytes,
+        "field_bytes": cost.folder.field_bytes(),
+        "compressed": cost.folder.is_compressed,
+        "table_bytes": cost.folder.table_bytes,
+    });
+    fields.insert("files_of_run_out".to_owned(), folder);
     let (name, value) = match &cost.forecast {
         Ok(forecast) => (
             "time",
