@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use sinew_core::vectors::dot;
-use sinew_core::{Acceleration, LinearOperators, Moment};
+use sinew_core::{Acceleration, LinearOperators, LoadTime, Moment};
 use sinew_fem::Model;
 use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
 use sinew_scene::{SceneModel, Simulation};
@@ -44,6 +44,8 @@ pub(crate) struct Sums {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct LastRow {
     pub(crate) t: f64,
+    /// Time (s) of the row before it; its own where it is the first.
+    pub(crate) before: f64,
     pub(crate) u: Vec<f64>,
     pub(crate) v: Vec<f64>,
     pub(crate) a: Vec<f64>,
@@ -52,24 +54,23 @@ pub(crate) struct LastRow {
 /// Sums up, from row to row, what loads, moved supports and damping do.
 ///
 /// Between two rows forces are taken as the mean of both ends and velocities as `du/dt`, so that for the mean
-/// acceleration method (Newmark with gamma 1/2 and beta 1/4), with a row for every step and loads that do not jump, nothing
-/// remains but rounding. Jumps and kinks of loads and of prescribed motions between two rows remain in part.
+/// acceleration method (Newmark with gamma 1/2 and beta 1/4), with a row for every step, nothing remains but rounding,
+/// jumps and kinks of loads included. Those of prescribed motions, and of loads beside them, remain in part.
 pub(crate) struct Balance<'a> {
     simulation: &'a Simulation,
     pub(crate) sums: Sums,
     pub(crate) last: Option<LastRow>,
-    /// Forces and displacements at the last row.
-    acting: Option<Acting>,
+    /// All nodes at the last row, where some are moved.
+    nodes: Option<Nodes>,
     /// What the method takes, where that is known.
     form: Option<NumericalDissipation>,
 }
 
-/// Forces (N) and displacements (m) that do work.
-struct Acting {
-    /// Of degrees of freedom, or of all nodes where some are moved.
-    loads: Vec<f64>,
+/// Displacements (m) of all nodes, held and moved ones included, and the forces (N) that do work on them.
+struct Nodes {
     u: Vec<f64>,
-    /// Of moved nodes; empty where there are none.
+    loads: Vec<f64>,
+    /// Of supports and moved parts.
     supports: Vec<f64>,
 }
 
@@ -80,7 +81,7 @@ impl<'a> Balance<'a> {
             simulation,
             sums: Sums::default(),
             last: None,
-            acting: None,
+            nodes: None,
             form: None,
         };
         // The form is that of one step of free degrees of freedom.
@@ -98,7 +99,7 @@ impl<'a> Balance<'a> {
     /// Goes on after a row that was written by an earlier run.
     pub(crate) fn resumed(mut self, sums: Sums, last: LastRow) -> Result<Self, RecordRunError> {
         self.sums = sums;
-        self.acting = Some(self.acting(&last)?);
+        self.nodes = self.nodes(&last)?;
         self.last = Some(last);
         Ok(self)
     }
@@ -119,35 +120,32 @@ impl<'a> Balance<'a> {
         moment: &Moment<'_>,
         v: &[f64],
     ) -> Result<Energies, RecordRunError> {
+        let t = moment.state.t();
         let here = LastRow {
-            t: moment.state.t(),
+            t,
+            before: self.last.as_ref().map_or(t, |last| last.t),
             u: moment.state.u.clone(),
             v: v.to_vec(),
             a: self.acceleration(moment, v)?,
         };
-        let acting = self.acting(&here)?;
-        let (kinetic, elastic) = self.stored(&here, &acting)?;
-        match (&self.acting, &self.last) {
-            (Some(before), Some(last)) => {
-                let work = |before: &[f64], after: &[f64], u_before: &[f64]| -> f64 {
-                    let forces = before.iter().zip(after);
-                    let moved = acting.u.iter().zip(u_before);
-                    let terms = forces.zip(moved);
-                    terms
-                        .map(|((before, after), (u, u_before))| {
-                            0.5 * (before + after) * (u - u_before)
-                        })
-                        .sum()
-                };
-                self.sums.loads += work(&before.loads, &acting.loads, &before.u);
-                self.sums.supports += work(&before.supports, &acting.supports, &before.u);
-                self.sums.damped += self.damped(last, &here, &before.u, &acting.u)?;
-                self.sums.method += self.taken_by_method([(last, before), (&here, &acting)]);
+        let nodes = self.nodes(&here)?;
+        let (kinetic, elastic) = self.stored(&here, nodes.as_ref())?;
+        if let Some(last) = &self.last {
+            if let (Some(before), Some(after)) = (&self.nodes, &nodes) {
+                let ends = [&before.u[..], &after.u];
+                self.sums.loads += work([&before.loads, &after.loads], ends);
+                self.sums.supports += work([&before.supports, &after.supports], ends);
+                self.sums.damped += self.damped(last, &here, Some(ends))?;
+            } else {
+                let (before, after) = self.loads_at_ends(last.t, here.t);
+                self.sums.loads += work([&before, &after], [&last.u, &here.u]);
+                self.sums.damped += self.damped(last, &here, None)?;
+                self.sums.method += self.taken_by_method([(last, &before), (&here, &after)]);
             }
-            _ => self.sums.first = kinetic + elastic,
+        } else {
+            self.sums.first = kinetic + elastic;
         }
-        self.acting = Some(acting);
-        let t = here.t;
+        self.nodes = nodes;
         self.last = Some(here);
         let Sums {
             first,
@@ -181,49 +179,72 @@ impl<'a> Balance<'a> {
         Ok(a)
     }
 
-    /// The energy (J) that the method takes in a step between two rows, 0 where that is not known.
-    fn taken_by_method(&self, [before, after]: [(&LastRow, &Acting); 2]) -> f64 {
+    /// The energy (J) that the method takes in a step between two rows with their loads, 0 where that is not known.
+    fn taken_by_method(&self, [before, after]: [(&LastRow, &[f64]); 2]) -> f64 {
         let (Some(form), Some(operators)) = (self.form, self.operators()) else {
             return 0.0;
         };
         let dt = after.0.t - before.0.t;
-        let ends = [before, after].map(|(row, acting)| StepEnd {
+        // The step begins with the acceleration of the last one and what the loads are other than at the end of that.
+        let ((row, load), mass) = (before, operators.mass());
+        let known = match row.before < row.t {
+            true => self.loads_at_ends(row.before, row.t).1,
+            false => self.loads_at(row.t.into()),
+        };
+        let change = load.iter().zip(&known).zip(mass);
+        let a = row.a.iter().zip(change);
+        let a: Vec<f64> = a
+            .map(|(a, ((load, known), mass))| a + (load - known) / mass)
+            .collect();
+        let first = StepEnd {
+            u: &row.u,
+            v: &row.v,
+            a: &a,
+            load,
+        };
+        let (row, load) = after;
+        let last = StepEnd {
             u: &row.u,
             v: &row.v,
             a: &row.a,
-            load: &acting.loads,
-        });
-        form.taken(operators, dt, ends)
+            load,
+        };
+        form.taken(operators, dt, [first, last])
     }
 
-    fn acting(&self, row: &LastRow) -> Result<Acting, RecordRunError> {
+    /// Loads (N) of the degrees of freedom at two rows, whose mean has the impulse of the loads between them, jumps included.
+    fn loads_at_ends(&self, from: f64, to: f64) -> (Vec<f64>, Vec<f64>) {
+        let [from, to] = LoadTime::at_both_ends(from, to - from, 0.5);
+        (self.loads_at(from), self.loads_at(to))
+    }
+
+    fn loads_at(&self, when: LoadTime<'_>) -> Vec<f64> {
+        let system = self.simulation.system();
+        let mut loads = vec![0.0; system.dofs()];
+        system.external_force(when, &mut loads);
+        loads
+    }
+
+    /// All nodes at a row, where some are moved.
+    fn nodes(&self, row: &LastRow) -> Result<Option<Nodes>, RecordRunError> {
         let Some(model) = self.moved_body() else {
-            let mut loads = vec![0.0; row.u.len()];
-            self.simulation
-                .system()
-                .external_force(row.t.into(), &mut loads);
-            return Ok(Acting {
-                loads,
-                u: row.u.clone(),
-                supports: Vec::new(),
-            });
+            return Ok(None);
         };
-        let nodes = model.mesh().points.len();
-        let mut u = vec![[0.0; 3]; nodes];
+        let mut u = vec![[0.0; 3]; model.mesh().points.len()];
         let (mut loads, mut supports) = (u.clone(), u.clone());
         model.displacements_at(row.t, &row.u, &mut u)?;
         model.load_forces(row.t, &mut loads)?;
         model.reactions(row.t, &row.u, &row.v, &mut supports)?;
-        Ok(Acting {
-            loads: loads.into_flattened(),
+        Ok(Some(Nodes {
             u: u.into_flattened(),
+            loads: loads.into_flattened(),
             supports: supports.into_flattened(),
-        })
+        }))
     }
 
     /// Kinetic and elastic energy.
-    fn stored(&self, row: &LastRow, acting: &Acting) -> Result<(f64, f64), RecordRunError> {
-        let Some(model) = self.moved_body() else {
+    fn stored(&self, row: &LastRow, nodes: Option<&Nodes>) -> Result<(f64, f64), RecordRunError> {
+        let (Some(model), Some(nodes)) = (self.moved_body(), nodes) else {
             let energy = match self.simulation.model() {
                 SceneModel::Body(_) => self.simulation.system().energy(&row.u, &row.v),
                 SceneModel::Oscillator(_) => self
@@ -238,17 +259,17 @@ impl<'a> Balance<'a> {
         model.velocities_at(row.t, &row.v, &mut v)?;
         let moving = v.iter().zip(model.node_masses());
         let kinetic = moving.map(|(v, mass)| 0.5 * mass * v.iter().map(|v| v * v).sum::<f64>());
-        let elastic = model.elastic_energy(acting.u.as_chunks::<3>().0)?;
+        let elastic = model.elastic_energy(nodes.u.as_chunks::<3>().0)?;
         Ok((kinetic.sum(), elastic))
     }
 
-    /// Energy (J) that damping takes between two rows: `w' D w dt` with `w = du/dt`.
+    /// Energy (J) that damping takes between two rows: `w' D w dt` with `w = du/dt`; of a body with moved parts, whose
+    /// nodes have these displacements (m) then, with all its nodes.
     fn damped(
         &self,
         last: &LastRow,
         here: &LastRow,
-        u_before: &[f64],
-        u_after: &[f64],
+        nodes: Option<[&[f64]; 2]>,
     ) -> Result<f64, RecordRunError> {
         let span = here.t - last.t;
         let Some(operators) = self.operators() else {
@@ -271,7 +292,7 @@ impl<'a> Balance<'a> {
             product(&mut force);
             -dot(&force, &own)
         };
-        let Some(model) = self.moved_body() else {
+        let (Some(model), Some([u_before, u_after])) = (self.moved_body(), nodes) else {
             return Ok(span * power(&|out| operators.subtract_damping(&own, out)));
         };
         let w = mean(u_after, u_before);
@@ -311,4 +332,14 @@ fn moves_by_itself(model: &Model, node: u32, axis: usize) -> bool {
     model
         .cell_of_node(node)
         .is_some_and(|cell| !model.pinned()[dof(cell)])
+}
+
+/// Work (J) between two rows of forces (N) that are linear in the displacement (m) between them.
+fn work([before, after]: [&[f64]; 2], [u_before, u_after]: [&[f64]; 2]) -> f64 {
+    let forces = before.iter().zip(after);
+    let moved = u_before.iter().zip(u_after);
+    let terms = forces.zip(moved);
+    terms
+        .map(|((before, after), (u_before, u_after))| 0.5 * (before + after) * (u_after - u_before))
+        .sum()
 }

@@ -40,7 +40,7 @@ impl Checkpoint {
         largest: &[f64],
     ) -> Result<(), RecordRunError> {
         let state = state.to_bytes(simulation.system());
-        let lists: [&[f64]; 5] = [&[row.t], &row.u, &row.v, &row.a, largest];
+        let lists: [&[f64]; 5] = [&[row.t, row.before], &row.u, &row.v, &row.a, largest];
         let json = serde_json::to_string(progress).map_err(|error| unusable(folder, &error))?;
         let mut bytes = format!("{HEAD}\n{json}\n{}", state.len());
         for list in lists {
@@ -104,13 +104,19 @@ impl Checkpoint {
         let Ok([t, u, v, a, largest]) = <[Vec<f64>; 5]>::try_from(lists) else {
             return Err(damaged());
         };
-        if !whole || numbers.next().is_some() || t.len() != 1 {
+        if !whole || numbers.next().is_some() || t.len() != 2 {
             return Err(damaged());
         }
         Ok(Some(Self {
             progress,
             state,
-            row: LastRow { t: t[0], u, v, a },
+            row: LastRow {
+                t: t[0],
+                before: t[1],
+                u,
+                v,
+                a,
+            },
             largest,
         }))
     }

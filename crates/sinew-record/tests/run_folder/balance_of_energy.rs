@@ -36,9 +36,13 @@ fn with(supports: &str, method: &str, dt: &str) -> String {
 #[test]
 fn the_mean_acceleration_method_leaves_rounding() {
     let damped = format!("{PRESSED}[damping]\nmass = 5.0\nstiffness = 0.002\n");
-    for supports in [PRESSED, &damped] {
+    // A jump and kinks between steps: the impulse counts.
+    let pulse = PRESSED.to_owned() + "ramp = { kind = \"pulse\", from = 0.0813, to = 0.2071 }\n";
+    let table = PRESSED.to_owned()
+        + "ramp = { kind = \"table\", times = [0.0, 0.0113, 0.21, 0.3], values = [0.0, 2.0, -1.0, 0.5] }\n";
+    for supports in [PRESSED, &damped, &pulse, &table] {
         let [largest, _] = remainder(&with(supports, "newmark", "0.005"));
-        assert!(largest < 1e-10, "{largest:e}");
+        assert!(largest < 1e-10, "{supports}: {largest:e}");
     }
 }
 

@@ -41,13 +41,26 @@ impl OwnedFolder {
     /// folder is new or empty, or holds an earlier result of the same kind and nothing else. Changes nothing.
     ///
     /// # Errors
-    /// [`OutputError`] for a folder that holds other things or cannot be written.
+    /// [`OutputError`] for a folder that holds other things, into which another process writes, or that cannot be written.
     pub fn check(
         path: &Path,
         kind: &'static str,
         inputs: &[PathBuf],
     ) -> Result<Tenant, OutputError> {
         OutputFolder::new(path, inputs).check(&[])?;
+        // What another process is writing is nothing to judge.
+        if path.is_dir() {
+            Self::lock(path, kind, &[])?;
+        }
+        Self::check_content(path, kind, inputs)
+    }
+
+    /// As [`OwnedFolder::check`], also for the process that writes into the folder.
+    fn check_content(
+        path: &Path,
+        kind: &'static str,
+        inputs: &[PathBuf],
+    ) -> Result<Tenant, OutputError> {
         if let Some(holder) = holder_of(path)? {
             return Err(OutputError::Within {
                 path: path.to_owned(),
@@ -82,8 +95,6 @@ impl OwnedFolder {
             names,
         };
         let Some(manifest) = Manifest::read(path)? else {
-            // Another run may have claimed the folder and not yet said so.
-            Self::lock(path, kind, &[])?;
             return Err(foreign(entries));
         };
         if manifest.kind != kind {
@@ -105,7 +116,8 @@ impl OwnedFolder {
                 others.push(name.clone());
             } else if path.join(name).is_dir() {
                 let within = entries_of_folder(path, name)?;
-                others.extend(within.into_iter().filter(|name| !is_own(name)));
+                let foreign = |name: &String| !is_own(name) && !is_temporary(name);
+                others.extend(within.into_iter().filter(foreign));
             }
         }
         match others.is_empty() {
@@ -129,7 +141,7 @@ impl OwnedFolder {
         fs::create_dir_all(path).map_err(|source| not_opened(path, source))?;
         let folder = Self::lock(path, kind, inputs)?;
         // Once more, now that nobody else writes into it.
-        Self::check(path, kind, inputs)?;
+        Self::check_content(path, kind, inputs)?;
         if let Some(earlier) = Manifest::read(path)? {
             for name in &earlier.files {
                 folder.remove(name)?;
