@@ -1,7 +1,7 @@
 //! Energy that a method takes by itself.
 
-use sinew_core::LinearOperators;
 use sinew_core::vectors::{dot, weighted_dot};
+use sinew_core::{LinearOperators, LoadTime};
 
 /// The closed form of the energy that a method takes from a linear system in a step, beside what loads bring as
 /// `du' (F + F+)/2` and damping takes as `du' D du/dt`.
@@ -44,11 +44,21 @@ pub struct StepEnd<'a> {
     pub v: &'a [f64],
     /// Acceleration (m/s^2) as the method keeps it.
     pub a: &'a [f64],
-    /// Loads (N).
+    /// Loads (N), as [`NumericalDissipation::loads_at_ends`].
     pub load: &'a [f64],
 }
 
 impl NumericalDissipation {
+    /// The loads that the method takes at both ends of a step from `t` (s), `dt` (s) long: those of [`StepEnd::load`].
+    #[must_use]
+    pub fn loads_at_ends(&self, t: f64, dt: f64) -> [LoadTime<'static>; 2] {
+        let load_shift = match *self {
+            Self::Newmark { load_shift, .. } => load_shift,
+            Self::ImplicitEuler => 0.0,
+        };
+        LoadTime::at_both_ends(t, dt, 0.5 - load_shift)
+    }
+
     /// The energy (J) that is taken in a step of `dt` (s) between these ends.
     #[must_use]
     pub fn taken(

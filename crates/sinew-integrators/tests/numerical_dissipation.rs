@@ -8,7 +8,7 @@ mod common;
 
 use common::cube::{altered, mass_damping, scene, springs};
 use sinew_core::{
-    Damping, LinearModel, LinearSystem, Load, Options, Ramp, State, System, vectors::dot,
+    Damping, LinearModel, LinearSystem, Load, LoadTime, Options, Ramp, State, System, vectors::dot,
 };
 use sinew_integrators::build;
 use sinew_integrators::{NumericalDissipation, StepEnd};
@@ -42,9 +42,9 @@ fn missing(id: &str, options: &Options, ramp: &Ramp) -> [f64; 2] {
         (0..model.dofs() as u32).map(value).collect()
     };
     let mut state = State::new(wave(1e-3, 7.1), wave(0.1, 3.7));
-    let load = |t: f64| {
+    let load = |when: LoadTime<'_>| {
         let mut load = vec![0.0; model.dofs()];
-        operators.external_force(t, &mut load);
+        operators.external_force(when, &mut load);
         load
     };
     let energy = |state: &State| {
@@ -58,7 +58,7 @@ fn missing(id: &str, options: &Options, ramp: &Ramp) -> [f64; 2] {
     for _ in 0..20 {
         let before = state.clone();
         common::advance(&mut *method, &model, &mut state, 1, dt);
-        let (old, new) = (load(before.t()), load(state.t()));
+        let [old, new] = [before.t(), state.t()].map(|t| load(t.into()));
         let du: Vec<f64> = state
             .u
             .iter()
@@ -69,13 +69,16 @@ fn missing(id: &str, options: &Options, ramp: &Ramp) -> [f64; 2] {
         operators.subtract_damping(&du, &mut damped);
         let damped = -dot(&du, &damped) / dt;
         let work = 0.5 * (dot(&old, &du) + dot(&new, &du));
-        let [a, b] = [(&before, &old), (&state, &new)].map(|(state, load)| StepEnd {
+        let taken_by_it = form.loads_at_ends(before.t(), dt).map(load);
+        let ends = [&before, &state].into_iter().zip(&taken_by_it);
+        let ends = ends.map(|(state, load)| StepEnd {
             u: &state.u,
             v: &state.v,
             a: &state.a,
             load,
         });
-        let taken = form.taken(operators, dt, [a, b]);
+        let ends: Vec<StepEnd<'_>> = ends.collect();
+        let taken = form.taken(operators, dt, [ends[0], ends[1]]);
         let missing = energy(&before) + work - damped - energy(&state);
         worst = worst.max((missing - taken).abs() / first);
         sum += taken / first;

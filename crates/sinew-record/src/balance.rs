@@ -140,7 +140,7 @@ impl<'a> Balance<'a> {
                 let (before, after) = self.loads_at_ends(last.t, here.t);
                 self.sums.loads += work([&before, &after], [&last.u, &here.u]);
                 self.sums.damped += self.damped(last, &here, None)?;
-                self.sums.method += self.taken_by_method([(last, &before), (&here, &after)]);
+                self.sums.method += self.taken_by_method(last, &here);
             }
         } else {
             self.sums.first = kinetic + elastic;
@@ -179,35 +179,39 @@ impl<'a> Balance<'a> {
         Ok(a)
     }
 
-    /// The energy (J) that the method takes in a step between two rows with their loads, 0 where that is not known.
-    fn taken_by_method(&self, [before, after]: [(&LastRow, &[f64]); 2]) -> f64 {
+    /// The energy (J) that the method takes in a step between two rows, 0 where that is not known.
+    fn taken_by_method(&self, last: &LastRow, here: &LastRow) -> f64 {
         let (Some(form), Some(operators)) = (self.form, self.operators()) else {
             return 0.0;
         };
-        let dt = after.0.t - before.0.t;
+        let loads = |from: f64, to: f64| {
+            form.loads_at_ends(from, to - from)
+                .map(|when| self.loads_at(when))
+        };
+        let dt = here.t - last.t;
+        let [before, after] = loads(last.t, here.t);
         // The step begins with the acceleration of the last one and what the loads are other than at the end of that.
-        let ((row, load), mass) = (before, operators.mass());
-        let known = match row.before < row.t {
-            true => self.loads_at_ends(row.before, row.t).1,
-            false => self.loads_at(row.t.into()),
+        let known = match last.before < last.t {
+            true => {
+                let [_, known] = loads(last.before, last.t);
+                known
+            }
+            false => self.loads_at(last.t.into()),
         };
-        let change = load.iter().zip(&known).zip(mass);
-        let a = row.a.iter().zip(change);
-        let a: Vec<f64> = a
-            .map(|(a, ((load, known), mass))| a + (load - known) / mass)
-            .collect();
+        let change = before.iter().zip(&known).zip(operators.mass());
+        let change = change.map(|((load, known), mass)| (load - known) / mass);
+        let a: Vec<f64> = last.a.iter().zip(change).map(|(a, b)| a + b).collect();
         let first = StepEnd {
-            u: &row.u,
-            v: &row.v,
+            u: &last.u,
+            v: &last.v,
             a: &a,
-            load,
+            load: &before,
         };
-        let (row, load) = after;
         let last = StepEnd {
-            u: &row.u,
-            v: &row.v,
-            a: &row.a,
-            load,
+            u: &here.u,
+            v: &here.v,
+            a: &here.a,
+            load: &after,
         };
         form.taken(operators, dt, [first, last])
     }

@@ -74,7 +74,9 @@ fn methods_that_take_energy_say_how_much() {
         ("generalized-alpha", "rho_inf = 0.5\n"),
         ("newmark", "beta = 0.3025\ngamma = 0.6\n"),
     ] {
-        for supports in [PRESSED, &damped] {
+        let growing = PRESSED.to_owned()
+            + "ramp = { kind = \"table\", times = [0.0, 0.5], values = [0.5, 1.0] }\n";
+        for supports in [PRESSED, &damped, &growing] {
             let text = format!("{}{options}", with(supports, method, "0.005"));
             let [largest, _] = remainder(&text);
             assert!(largest < 1e-10, "{method}: {largest:e}");
