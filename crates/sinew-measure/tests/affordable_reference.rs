@@ -229,7 +229,12 @@ fn it_differs_from_the_reference_to_rounding_by_no_more_than_it_says() {
         let exact = follow(simulation.system(), simulation.initial_state(), &times).unwrap();
         let error = ErrorNorm::between(&track.displacements, &exact.displacements);
         let said = track.error;
-        assert!(error <= said, "{name}: {error:e}, it says {said:e}");
+        // The other has rounding of its own.
+        let both = said + exact.error;
+        assert!(
+            error <= both,
+            "{name}: {error:e}, they say {both:e}, it {said:e}"
+        );
         assert!(said < 1e-8, "{name}: {said:e}");
         assert_eq!(track.method, ReferenceMethod::Faber);
         assert_eq!(exact.method, ReferenceMethod::Taylor);

@@ -35,6 +35,9 @@ const RUNNERS_UP_WITHIN: f64 = 4.0;
 /// Errors to which options of methods are set that trade error for cost, where only a cost is given.
 const TOLERANCES_OF_BUDGETS: [f64; 2] = [1e-3, 1e-6];
 
+/// Error below which runs are alike but for their cost where only a cost is given.
+const ROUNDING: f64 = 1e-10;
+
 /// Smallest error that is looked for where only a cost is given.
 const LEAST_ERROR: f64 = 1e-12;
 
@@ -289,12 +292,19 @@ fn smallest_error(
     let cut_short = search.cut_short();
     let within = Goal { error: 1.0, budget };
     let mut best: Vec<Pilot> = Vec::new();
-    let error = |pilot: &Pilot| pilot.row.sound_error_over_scene().unwrap_or(f64::INFINITY);
+    let error = |pilot: &Pilot| {
+        let error = pilot.row.sound_error_over_scene();
+        error.map_or(f64::INFINITY, |error| error.max(ROUNDING))
+    };
     let mut runs: Vec<&Pilot> = search
         .runs()
         .filter(|run| within.is_met_by(&run.row))
         .collect();
-    runs.sort_by(|a, b| error(a).total_cmp(&error(b)));
+    let cost = |pilot: &Pilot| pilot.row.cpu_s_per_s;
+    runs.sort_by(|a, b| {
+        let errors = error(a).total_cmp(&error(b));
+        errors.then_with(|| cost(a).total_cmp(&cost(b)))
+    });
     for run in runs {
         let same = |known: &Pilot| known.method.integrator == run.method.integrator;
         if !best.iter().any(same) {
@@ -403,7 +413,10 @@ fn advised_first(search: &Search<CasePilots<'_>>, goal: Goal) -> Vec<Pilot> {
 fn most_accurate<'a>(search: &'a Search<CasePilots<'_>>, budget: f64) -> Option<&'a Pilot> {
     let within = Goal { error: 1.0, budget };
     let runs = search.runs().filter(|pilot| within.is_met_by(&pilot.row));
-    let error = |pilot: &Pilot| pilot.row.sound_error_over_scene().unwrap_or(f64::INFINITY);
+    let error = |pilot: &Pilot| {
+        let error = pilot.row.sound_error_over_scene();
+        error.map_or(f64::INFINITY, |error| error.max(ROUNDING))
+    };
     runs.min_by(|a, b| error(a).total_cmp(&error(b)))
 }
 

@@ -2,7 +2,7 @@
 
 use sinew_scene::{MeshSource, Simulation, Subject as SceneSubject, WarningKind};
 
-use super::quantity::{Quantity, Subject};
+use super::quantity::{Quantity, Subject, is_estimated};
 use crate::number::{percent, three};
 
 /// A restriction of an estimate. It prints as one sentence.
@@ -93,6 +93,12 @@ pub enum Caveat {
         /// The table of the scene.
         by: String,
     },
+    /// A probe of which no error is estimated.
+    #[error("`{name}` is no displacement, and its error in space is not estimated")]
+    ProbeNotEstimated {
+        /// The probe.
+        name: String,
+    },
     /// A probe outside the body.
     #[error(
         "`{name}` lies outside the body: its nearest node of the scene's mesh, {} m away, is taken on all meshes",
@@ -133,6 +139,7 @@ impl Caveat {
             Self::Locking => "locking",
             Self::PlaceChanged { .. } => "place-changed",
             Self::PointPlace { .. } => "point-place",
+            Self::ProbeNotEstimated { .. } => "probe-not-estimated",
             Self::ProbeOutside { .. } => "probe-outside",
         }
     }
@@ -162,6 +169,11 @@ pub(super) fn of_scene(simulation: &Simulation, levels: usize) -> Vec<Caveat> {
     if regions.any(|region| region.network.is_some()) {
         caveats.push(Caveat::Springs);
     }
+    let probes = simulation.probes().iter();
+    let left_out = probes.filter(|probe| !is_estimated(probe));
+    caveats.extend(left_out.map(|probe| Caveat::ProbeNotEstimated {
+        name: probe.name.clone(),
+    }));
     let warnings = simulation.warnings();
     let locks = |kind: WarningKind| kind == WarningKind::Locking;
     if levels == 2 && warnings.iter().any(|warning| locks(warning.kind)) {

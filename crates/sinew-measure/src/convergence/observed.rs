@@ -1,10 +1,10 @@
 //! What is compared between meshes: displacements at places that all have, and energies.
 
-use sinew_scene::{BodyModel, ProbeAt, ProbePoint, Quantity, Simulation, Subject as SceneSubject};
+use sinew_scene::{BodyModel, ProbeAt, ProbePoint, Simulation, Subject as SceneSubject};
 
 use super::caveats::Caveat;
 use super::error::ConvergeError;
-use super::quantity::Subject;
+use super::quantity::{Subject, is_estimated};
 
 /// Displacements and energies of a motion, instant after instant.
 #[derive(Clone, Debug, Default)]
@@ -42,6 +42,8 @@ enum At {
     Point([f64; 3]),
     /// A node of the scene's mesh.
     Node(u32),
+    /// The mean over a group, of the probe with this place in the list.
+    Mean(usize),
 }
 
 /// Barycentric coordinates above the negative of this belong to a tetrahedron.
@@ -54,19 +56,23 @@ impl Places {
             SceneSubject::Body(body) => &body.probes[..],
             SceneSubject::Oscillator(_) => &[],
         };
-        let displaced = simulation.probes().iter();
-        let displaced = displaced.filter(|probe| probe.quantity == Quantity::Displacement);
-        let probes = displaced.filter_map(|probe| {
-            let node = probe.node?;
+        let displaced = simulation.probes().iter().enumerate();
+        let displaced = displaced.filter(|(_, probe)| is_estimated(probe));
+        let probes = displaced.map(|(index, probe)| {
             let asked = written
                 .iter()
                 .find_map(|written| asked(written, &probe.name));
             let inside = asked.filter(|point| surrounding(body, *point).is_some());
-            Some(ProbePlace {
+            let outside = probe.node.filter(|_| asked.is_some() && inside.is_none());
+            ProbePlace {
                 name: probe.name.clone(),
-                at: inside.map_or(At::Node(node.index), At::Point),
-                outside: (asked.is_some() && inside.is_none()).then_some(node.distance),
-            })
+                at: match (inside, probe.node) {
+                    (Some(point), _) => At::Point(point),
+                    (None, Some(node)) => At::Node(node.index),
+                    (None, None) => At::Mean(index),
+                },
+                outside: outside.map(|node| node.distance),
+            }
         });
         Ok(Self {
             nodes: body.mesh.points.len(),
@@ -120,7 +126,7 @@ pub(super) struct Eye<'a> {
     body: &'a BodyModel,
     nodes: usize,
     /// Nodes of each probe and their shares.
-    probes: Vec<[(u32, f64); 4]>,
+    probes: Vec<Vec<(u32, f64)>>,
     /// Displacement of all nodes (m).
     all: Vec<[f64; 3]>,
     pub(super) seen: Observed,
@@ -130,12 +136,17 @@ impl<'a> Eye<'a> {
     pub(super) fn new(simulation: &'a Simulation, places: &Places) -> Result<Self, ConvergeError> {
         let body = body_of(simulation)?;
         let shares = |probe: &ProbePlace| match probe.at {
-            At::Node(node) => [(node, 1.0), (node, 0.0), (node, 0.0), (node, 0.0)],
+            At::Node(node) => vec![(node, 1.0)],
             // Refined tetrahedra fill the same body but for rounding.
-            At::Point(point) => surrounding(body, point).unwrap_or_else(|| {
-                let node = body.mesh.nearest_node(point).0;
-                [(node, 1.0), (node, 0.0), (node, 0.0), (node, 0.0)]
-            }),
+            At::Point(point) => match surrounding(body, point) {
+                Some(shares) => shares.to_vec(),
+                None => vec![(body.mesh.nearest_node(point).0, 1.0)],
+            },
+            At::Mean(index) => {
+                let nodes = simulation.probes().get(index).into_iter();
+                let nodes = nodes.flat_map(|probe| &probe.nodes);
+                nodes.map(|node| (node.index, node.share)).collect()
+            }
         };
         Ok(Self {
             simulation,

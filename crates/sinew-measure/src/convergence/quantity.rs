@@ -39,3 +39,8 @@ pub struct Quantity {
     /// What the meshes say about its error in space.
     pub estimate: Estimate,
 }
+
+/// Whether an error in space is estimated of what a probe writes down.
+pub(super) fn is_estimated(probe: &sinew_scene::Probe) -> bool {
+    probe.quantity == sinew_scene::Quantity::Displacement
+}

@@ -16,6 +16,8 @@ pub(super) struct SpotChecks<'a> {
     /// Simulated time (s) of all steps, and of those that were solved again.
     offered: f64,
     solved: f64,
+    /// Number of steps offered, and of those that were solved again.
+    steps: [u32; 2],
     /// Sizes and differences of displacements (m), and of velocities (m/s).
     displacement: Differences,
     velocity: Differences,
@@ -36,6 +38,7 @@ impl<'a> SpotChecks<'a> {
             taylor: Taylor::checking(operators, spectrum),
             offered: 0.0,
             solved: 0.0,
+            steps: [0, 0],
             displacement: Differences::default(),
             velocity: Differences::default(),
         }
@@ -49,8 +52,10 @@ impl<'a> SpotChecks<'a> {
         let is_due = self.solved <= SHARE * self.offered;
         let time = after.t() - before.t();
         self.offered += time;
+        self.steps[0] += 1;
         if is_due {
             self.solved += time;
+            self.steps[1] += 1;
             let mut again = before.clone();
             self.taylor.advance(&mut again, after.t(), |_| {});
             self.displacement.add(&again.u, &after.u);
@@ -59,13 +64,20 @@ impl<'a> SpotChecks<'a> {
     }
 
     /// The error to expect of displacements, relative to `size` (m): the sum of the differences of all
-    /// steps, as if none decayed and those not solved again were like the others. A relative error of the
-    /// velocity counts as one of the displacement.
+    /// steps, as if none decayed and those not solved again were like the others, and the standard error of that mean where
+    /// the differences spread as widely as they are large. A relative error of the velocity counts as one of the
+    /// displacement.
     pub(super) fn error(&self, size: f64) -> f64 {
         let all = match self.solved > 0.0 {
             true => self.offered / self.solved,
             false => 1.0,
         };
+        let [steps, solved] = self.steps;
+        let spread = match solved < steps {
+            true => f64::from(solved).sqrt().recip(),
+            false => 0.0,
+        };
+        let all = all * (1.0 + spread);
         let relative = |sum: f64, size: f64| if sum == 0.0 { 0.0 } else { all * sum / size };
         let displacement = relative(self.displacement.sum, size);
         displacement.max(relative(self.velocity.sum, self.velocity.largest))
@@ -125,7 +137,8 @@ mod tests {
         for off in [1e-6, 1e-3] {
             let said = said(off);
             assert!(said >= 10.0 * off, "{said:e}");
-            assert!(said < 20.0 * off, "{said:e}");
+            // A mean of so few may be off by more than half.
+            assert!(said < 30.0 * off, "{said:e}");
         }
     }
 }

@@ -15,6 +15,10 @@ pub(super) fn probes(comparison: &mut Comparison, one: &str, other: &str) {
         let Some((_, counterpart)) = counterpart.filter(|(_, other)| *other != place) else {
             continue;
         };
+        // The mean over a group means the same on every mesh.
+        if group(place).is_some() && group(place) == group(counterpart) {
+            continue;
+        }
         match point(place).zip(point(counterpart)) {
             Some((a, b)) => comparison
                 .differences
@@ -33,6 +37,12 @@ pub(super) fn probes(comparison: &mut Comparison, one: &str, other: &str) {
 /// A probe's name and its place in words.
 fn described(line: &str) -> Option<(&str, &str)> {
     line.strip_prefix("# ")?.split_once(':')
+}
+
+/// The group over which a mean is taken.
+fn group(place: &str) -> Option<&str> {
+    let (_, group) = place.trim().strip_prefix("mean over ")?.split_once('`')?;
+    Some(group)
 }
 
 /// The coordinates (m) in a place.

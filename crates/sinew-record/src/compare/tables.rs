@@ -14,6 +14,9 @@ struct Quantity {
     columns: Vec<[usize; 2]>,
 }
 
+/// Ends of the names of components, of vectors and of tensors.
+const COMPONENTS: [&str; 9] = ["_x", "_y", "_z", "_xx", "_yy", "_zz", "_xy", "_yz", "_zx"];
+
 /// Compares a table that both results may have.
 pub(super) fn compare(
     comparison: &mut Comparison,
@@ -100,10 +103,13 @@ fn quantities(one: &Table, other: &Table) -> Vec<Quantity> {
         let Some(counterpart) = other.names.iter().position(|name| name == column) else {
             continue;
         };
-        let (name, unit) = column.rsplit_once('_').unwrap_or((column, ""));
-        let component = ["_x", "_y", "_z"]
+        let (name, unit) = match column.strip_suffix("_m_per_s") {
+            Some(name) => (name, "m/s"),
+            None => column.rsplit_once('_').unwrap_or((column, "")),
+        };
+        let component = COMPONENTS
             .iter()
-            .find_map(|axis| name.strip_suffix(axis));
+            .find_map(|component| name.strip_suffix(component));
         let name = component.unwrap_or(name);
         match quantities.iter_mut().find(|quantity| quantity.name == name) {
             Some(quantity) => quantity.columns.push([place, counterpart]),

@@ -102,7 +102,7 @@ const CHECKPOINT: Key<Inner, Usual> = Key::usual(
 
 const SURFACE_ONLY: Key<Flag, Or<bool>> = Key::or(
     "surface_only",
-    "Whether fields are those of the surface alone, which makes their files small.",
+    "Whether fields are those of the points of the surface alone, without strains, stresses and steps of tetrahedra, which makes their files small.",
     Flag,
     DEFAULT.surface_only,
 );
@@ -116,7 +116,7 @@ const ACCELERATION: Key<Flag, Or<bool>> = Key::or(
 
 const STEP_LIMIT: Key<Flag, Or<bool>> = Key::or(
     "step_limit",
-    "Whether fields have the largest step at which each tetrahedron alone would be stable under central difference.",
+    "Whether fields have the largest step at which each tetrahedron alone would be stable under central difference, with the masses of its nodes and without damping; infinite where all of them are held.",
     Flag,
     DEFAULT.step_limit,
 );

@@ -100,7 +100,7 @@ const COUNT: Key<Count, Optional> = Key::optional(
 
 const GROUP: Key<Text, Optional> = Key::optional(
     "group",
-    "Name of a group of the mesh over which the mean is taken: by area over triangles, by volume over tetrahedra.",
+    "Name of a group of the mesh over which the mean is taken: by area over triangles, by volume over tetrahedra, alike over nodes.",
     Text::any("the name of a group"),
     "see `point`",
 )
@@ -108,7 +108,7 @@ const GROUP: Key<Text, Optional> = Key::optional(
 
 const QUANTITY: Key<Words<Quantity>, Or<Quantity>> = Key::or(
     "quantity",
-    "What is written down. The stress is that of the elastic law, with von Mises' beside it.",
+    "What is written down. The stress is that of the elastic law, with von Mises' of the same (mean) stress beside it.",
     Words(&[
         ("displacement", Quantity::Displacement),
         ("velocity", Quantity::Velocity),

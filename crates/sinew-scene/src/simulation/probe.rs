@@ -227,10 +227,10 @@ fn only_node(mesh: &TetMesh, group: &str) -> Result<u32, Fault> {
 
 /// The share of each node in the mean of a linear field over a group, in the order of the nodes.
 fn shares_of_nodes(mesh: &TetMesh, group: &str) -> Result<Vec<(u32, f64)>, Fault> {
-    let mut weights = vec![0.0; mesh.points.len()];
+    let mut weights: Vec<Option<f64>> = vec![None; mesh.points.len()];
     let mut add = |nodes: &[u32], weight: f64| {
         for node in nodes {
-            weights[*node as usize] += weight;
+            *weights[*node as usize].get_or_insert(0.0) += weight;
         }
     };
     let group = mesh.group(group)?;
@@ -243,7 +243,8 @@ fn shares_of_nodes(mesh: &TetMesh, group: &str) -> Result<Vec<(u32, f64)>, Fault
             .for_each(|triangle| add(triangle, mesh.area(*triangle))),
         GroupMembers::Lines(_) | GroupMembers::Nodes(_) => add(&mesh.group_nodes(group), 1.0),
     }
-    let weighted = (0..).zip(weights).filter(|(_, weight)| *weight > 0.0);
+    let weighted = (0..).zip(weights);
+    let weighted = weighted.filter_map(|(node, weight)| Some((node, weight?)));
     Ok(of_sum_one(weighted.collect()))
 }
 
@@ -291,11 +292,16 @@ fn by_volume(mesh: &TetMesh, is_in: impl Fn(u32) -> bool) -> Vec<(u32, f64)> {
     of_sum_one(tets.map(|tet| (tet, mesh.volume(tet as usize))).collect())
 }
 
-/// Weights divided by their sum.
+/// Weights divided by their sum; alike where sizes are beyond the numbers of a computer.
 fn of_sum_one(mut weighted: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
     let sum: f64 = weighted.iter().map(|(_, weight)| weight).sum();
+    let alike = (weighted.len() as f64).recip();
     for (_, weight) in &mut weighted {
-        *weight /= sum;
+        *weight = if sum.is_normal() {
+            *weight / sum
+        } else {
+            alike
+        };
     }
     weighted
 }

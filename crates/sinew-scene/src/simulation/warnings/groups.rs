@@ -3,7 +3,7 @@
 use sinew_fem::On;
 
 use super::{Warning, WarningKind};
-use crate::scene::{Body, Initial, MeshSource};
+use crate::scene::{Body, Initial, MeshSource, ProbeAt};
 use crate::simulation::model::BodyModel;
 
 /// The groups of the structured cubes, of which few scenes need all.
@@ -63,5 +63,10 @@ fn used(body: &Body) -> Vec<&str> {
         | Initial::Stretch { group, .. } => group.as_deref(),
         Initial::Static { .. } => None,
     });
-    on.chain(regions).chain(motions).chain(initial).collect()
+    let probes = body.probes.iter().filter_map(|probe| match &probe.at {
+        ProbeAt::Mean(group) => Some(group.as_str()),
+        ProbeAt::Point(_) | ProbeAt::Group(_) => None,
+    });
+    let on = on.chain(regions).chain(motions).chain(initial);
+    on.chain(probes).collect()
 }

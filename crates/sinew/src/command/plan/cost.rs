@@ -70,8 +70,8 @@ impl Cost {
                     false => String::new(),
                 };
                 format!(
-                    "time: {} sweeps{solves} for {} s, {} CPU s per simulated second on one thread; {} s in all with {} s of \
-                     set-up, as its first steps took here",
+                    "time: {} sweeps{solves} for {} s, {} CPU s per simulated second on one thread; {} s by this computer's clock \
+                     in all, with {} s of set-up, as its first steps took here",
                     short(forecast.sweeps()),
                     short(self.duration),
                     three(forecast.cpu_s_per_s()),
