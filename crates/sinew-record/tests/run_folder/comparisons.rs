@@ -167,3 +167,33 @@ fn other_bodies_and_probes_at_other_places_are_no_match() {
     assert_eq!(elsewhere, [("place of p".to_owned(), 0.1)]);
     assert_eq!(places("one"), []);
 }
+
+/// Velocities are vectors, stresses tensors: a component that is 0 but for rounding counts by the size of the whole.
+#[test]
+fn velocities_and_stresses_are_compared_as_a_whole() {
+    let place = tempfile::tempdir().unwrap();
+    let path = |name: &str| place.path().join(name);
+    for (name, pressure) in [("one", 100.0), ("other", 110.0)] {
+        let simulation = cube(&format!(
+            "[[fixed]]\ngroup = \"sides\"\n[[load]]\ngroup = \"top\"\npressure = {pressure:?}\n[run]\nduration = 0.1\n\
+             integrator = \"newmark\"\ndt = 0.005\n[[probe]]\nname = \"p\"\ngroup = \"top\"\nquantity = \"velocity\"\n\
+             [[probe]]\nname = \"q\"\npoint = [0.05, 0.05, 0.05]\nquantity = \"stress\"\n"
+        ));
+        run(&path(name), &simulation, &mut ());
+    }
+    let comparison = compare(&path("one"), &path("other")).unwrap();
+    for (what, unit) in [("p_v", "m/s"), ("q_s", "Pa"), ("q_s_von_mises", "Pa")] {
+        let found = comparison
+            .differences
+            .iter()
+            .find(|found| found.what == what);
+        let found = found.unwrap();
+        assert_eq!(found.unit, unit);
+        // A tenth more load is a tenth more of everything.
+        assert!(
+            (found.relative - 0.1).abs() < 1e-9,
+            "{what}: {}",
+            found.relative
+        );
+    }
+}
