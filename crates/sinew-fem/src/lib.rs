@@ -113,7 +113,6 @@ pub mod springs;
 pub mod stress;
 mod supports;
 pub mod tetra;
-mod vector;
 mod vector_error;
 mod volumes;
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::Vector3;
 use sinew_core::{Load, Ramp};
 use sinew_mesh::TetMesh;
 
@@ -11,7 +12,6 @@ use crate::error::{Cause, FemError, Item};
 use crate::motion::Motions;
 use crate::report::LoadFacts;
 use crate::supports::HeldLoad;
-use crate::vector::Vector3;
 use crate::{LoadKind, LoadSpec, MoveFacts, Problem};
 
 /// The loads of a problem on a body.
@@ -95,11 +95,11 @@ fn assemble(
     item: Item,
 ) -> Result<Parts, FemError> {
     let (cells, on) = (&body.cells, &load.on);
-    let mut nodal: Vec<(u32, Vector3)> = Vec::new();
+    let mut nodal: Vec<(u32, Vector3<f64>)> = Vec::new();
     match load.kind {
         LoadKind::Traction(traction) => {
             for triangle in on.triangles(mesh).map_err(FemError::at(item))?.iter() {
-                let share = Vector3::from(traction) * (area_vector(mesh, triangle).norm() / 3.0);
+                let share = area_vector(mesh, triangle).norm() / 3.0 * Vector3::from(traction);
                 nodal.extend(triangle.map(|node| (node, share)));
             }
         }
@@ -129,18 +129,18 @@ fn assemble(
 /// The weight of every node.
 fn gravity(cells: &Cells, masses: &[f64], gravity: [f64; 3]) -> Parts {
     let weights = masses.iter().map(|mass| Vector3::from(gravity) * *mass);
-    let nodal: Vec<(u32, Vector3)> = (0..).zip(weights).collect();
+    let nodal: Vec<(u32, Vector3<f64>)> = (0..).zip(weights).collect();
     gather(cells, &nodal, Ramp::Step)
 }
 
-fn gather(cells: &Cells, nodal: &[(u32, Vector3)], ramp: Ramp) -> Parts {
+fn gather(cells: &Cells, nodal: &[(u32, Vector3<f64>)], ramp: Ramp) -> Parts {
     let mut force = vec![0.0; cells.pinned.len()];
     let mut loaded = vec![false; cells.pinned.len()];
-    let nothing_asked = nodal.iter().all(|(_, share)| *share == Vector3::ZERO);
-    let mut asked = Vector3::ZERO;
+    let nothing_asked = nodal.iter().all(|(_, share)| *share == Vector3::zeros());
+    let mut asked = Vector3::zeros();
     let mut held: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
     for (node, share) in nodal {
-        asked += *share;
+        asked += share;
         for axis in 0..3 {
             if let Some(dof) = cells.free_dof(*node, axis) {
                 let dof = dof as usize;
@@ -151,7 +151,7 @@ fn gather(cells: &Cells, nodal: &[(u32, Vector3)], ramp: Ramp) -> Parts {
             }
         }
     }
-    let mut acting = Vector3::ZERO;
+    let mut acting = Vector3::zeros();
     let mut entries = Vec::new();
     for (dof, value) in force
         .into_iter()
@@ -185,7 +185,7 @@ fn gather(cells: &Cells, nodal: &[(u32, Vector3)], ramp: Ramp) -> Parts {
 }
 
 /// Area times normal (m^2).
-fn area_vector(mesh: &TetMesh, triangle: &[u32; 3]) -> Vector3 {
+fn area_vector(mesh: &TetMesh, triangle: &[u32; 3]) -> Vector3<f64> {
     let [a, b, c] = triangle.map(|node| Vector3::from(mesh.points[node as usize]));
-    (b - a).cross(c - a) / 2.0
+    (b - a).cross(&(c - a)) / 2.0
 }

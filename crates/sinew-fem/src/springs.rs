@@ -6,11 +6,11 @@
 
 use std::sync::Arc;
 
+use nalgebra::{Matrix6, Vector3, Vector6};
 use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern};
 
 use crate::SpringRule;
 use crate::tetra;
-use crate::vector::{Vector3, inverse};
 
 /// A spring between two nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,7 +142,7 @@ pub(crate) fn summed(mut parts: Vec<Spring>) -> Vec<Spring> {
 
 /// Direction (unit) and length (m) of a spring.
 #[must_use]
-pub(crate) fn direction(points: &[[f64; 3]], nodes: [u32; 2]) -> (Vector3, f64) {
+pub(crate) fn direction(points: &[[f64; 3]], nodes: [u32; 2]) -> (Vector3<f64>, f64) {
     let [a, b] = nodes.map(|node| Vector3::from(points[node as usize]));
     let edge = b - a;
     let length = edge.norm();
@@ -172,26 +172,19 @@ pub struct NetworkModulus {
 /// (m^3). `softest` is 0 where some strain meets no resistance.
 #[must_use]
 pub fn network_modulus(points: &[[f64; 3]], springs: &[Spring], volume: f64) -> NetworkModulus {
-    let mut tensor = [[0.0; 6]; 6];
+    let mut tensor = Matrix6::zeros();
     for spring in springs {
         let (n, length) = direction(points, spring.nodes);
-        let dyad = mandel(n);
-        let weight = spring.stiffness * length * length / volume;
-        for (row, entry) in tensor.iter_mut().zip(dyad) {
-            for (sum, other) in row.iter_mut().zip(dyad) {
-                *sum += entry * other * weight;
-            }
-        }
+        let dyad = mandel(&n);
+        tensor += dyad * dyad.transpose() * (spring.stiffness * length * length / volume);
     }
     // C_iijj = 15 mu for lambda = mu, and E = 5/2 mu.
-    let normal = tensor[..3].iter().flat_map(|row| &row[..3]);
-    let voigt = normal.sum::<f64>() / 6.0;
+    let voigt = tensor.fixed_view::<3, 3>(0, 0).sum() / 6.0;
     let (mut softest, mut stiffest) = (0.0, f64::INFINITY);
-    if let Some(compliance) = inverse(tensor) {
-        let along = |n: Vector3| {
+    if let Some(compliance) = tensor.try_inverse() {
+        let along = |n: &Vector3<f64>| {
             let dyad = mandel(n);
-            let strain = compliance.map(|row| dot(row, dyad));
-            dot(dyad, strain)
+            dyad.dot(&(compliance * dyad))
         };
         softest = 1.0 / greatest(along);
         stiffest = -1.0 / greatest(|n| -along(n));
@@ -204,39 +197,36 @@ pub fn network_modulus(points: &[[f64; 3]], springs: &[Spring], volume: f64) -> 
 }
 
 /// n n in Mandel's notation.
-fn mandel(Vector3([x, y, z]): Vector3) -> [f64; 6] {
+fn mandel(n: &Vector3<f64>) -> Vector6<f64> {
     let root = 2.0_f64.sqrt();
-    [
-        x * x,
-        y * y,
-        z * z,
-        root * y * z,
-        root * x * z,
-        root * x * y,
-    ]
-}
-
-fn dot(a: [f64; 6], b: [f64; 6]) -> f64 {
-    a.into_iter().zip(b).map(|(a, b)| a * b).sum()
+    Vector6::new(
+        n.x * n.x,
+        n.y * n.y,
+        n.z * n.z,
+        root * n.y * n.z,
+        root * n.x * n.z,
+        root * n.x * n.y,
+    )
 }
 
 /// The greatest value of a smooth function over all directions: the best of many, improved by ever
 /// shorter steps.
-fn greatest(value: impl Fn(Vector3) -> f64) -> f64 {
-    let better = |(best, at): (f64, Vector3), n: Vector3| {
-        let candidate = value(n);
+fn greatest(value: impl Fn(&Vector3<f64>) -> f64) -> f64 {
+    let better = |(best, at): (f64, Vector3<f64>), n: Vector3<f64>| {
+        let candidate = value(&n);
         if candidate > best {
             (candidate, n)
         } else {
             (best, at)
         }
     };
-    let mut best = sphere_directions().fold((f64::NEG_INFINITY, Vector3::AXES[0]), better);
+    let mut best = sphere_directions().fold((f64::NEG_INFINITY, Vector3::x()), better);
     // The value is flat at its peak: a direction to seven digits gives the value to fourteen.
     let mut step = 0.1;
     while step > 1e-7 {
         let before = best;
-        let sides = Vector3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let sides = axes.into_iter().flat_map(|axis| [axis, -axis]);
         best = sides
             .map(|side| (before.1 + side * step).normalize())
             .fold(before, better);
@@ -249,13 +239,13 @@ fn greatest(value: impl Fn(Vector3) -> f64) -> f64 {
 }
 
 /// Directions at most 8 degrees apart, the axes, face and body diagonals among them.
-fn sphere_directions() -> impl Iterator<Item = Vector3> {
+fn sphere_directions() -> impl Iterator<Item = Vector3<f64>> {
     const N: i32 = 8;
     let side = move || -N..=N;
     side()
         .flat_map(move |i| side().flat_map(move |j| side().map(move |k| (i, j, k))))
         .filter(|(i, j, k)| i.abs().max(j.abs()).max(k.abs()) == N)
-        .map(|(i, j, k)| Vector3([i, j, k].map(f64::from)).normalize())
+        .map(|(i, j, k)| Vector3::new(f64::from(i), f64::from(j), f64::from(k)).normalize())
 }
 
 #[cfg(test)]

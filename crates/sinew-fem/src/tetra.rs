@@ -1,6 +1,6 @@
 //! The 4-node tetrahedron with linear displacement (P1).
 
-use crate::vector::Vector3;
+use nalgebra::{Matrix3, Matrix4x3, Vector3};
 
 /// Lame's constants (lambda, mu) (Pa) of Young's modulus (Pa) and Poisson's ratio.
 #[must_use]
@@ -20,18 +20,13 @@ pub(crate) fn vertices(points: &[[f64; 3]], [a, b, c, d]: [u32; 4]) -> [[f64; 3]
 /// Signed volume (m^3); positive when the fourth vertex sees the first three anticlockwise.
 #[must_use]
 pub fn signed_volume(vertices: &[[f64; 3]; 4]) -> f64 {
-    determinant(edges(vertices)) / 6.0
+    edge_matrix(vertices).determinant() / 6.0
 }
 
-/// The edges (m) from the first vertex to the others.
-fn edges(vertices: &[[f64; 3]; 4]) -> [Vector3; 3] {
+/// Matrix whose columns are the edges from the first vertex to the others.
+fn edge_matrix(vertices: &[[f64; 3]; 4]) -> Matrix3<f64> {
     let [first, second, third, fourth] = vertices.map(Vector3::from);
-    [second - first, third - first, fourth - first]
-}
-
-/// Determinant of the matrix with these columns.
-fn determinant([p, q, r]: [Vector3; 3]) -> f64 {
-    p.dot(q.cross(r))
+    Matrix3::from_columns(&[second - first, third - first, fourth - first])
 }
 
 /// Gradients (1/m) of the four shape functions, which are constant: the derivatives of each along
@@ -40,18 +35,19 @@ fn determinant([p, q, r]: [Vector3; 3]) -> f64 {
 /// `None` when the vertices lie in one plane.
 #[must_use]
 pub fn gradients(vertices: &[[f64; 3]; 4]) -> Option<[[f64; 3]; 4]> {
-    let [p, q, r] = edges(vertices);
-    let determinant = determinant([p, q, r]);
-    if determinant == 0.0 {
-        return None;
+    gradients_of(edge_matrix(vertices))
+        .map(|rows| std::array::from_fn(|vertex| std::array::from_fn(|axis| rows[(vertex, axis)])))
+}
+
+/// The gradients, a row for each vertex.
+fn gradients_of(edges: Matrix3<f64>) -> Option<Matrix4x3<f64>> {
+    let inverse = edges.try_inverse()?;
+    let mut gradients = Matrix4x3::zeros();
+    for row in 0..3 {
+        gradients.set_row(row + 1, &inverse.row(row));
     }
-    // Rows of the inverse of the matrix whose columns are the edges.
-    let (of_p, of_q, of_r) = (
-        q.cross(r) / determinant,
-        r.cross(p) / determinant,
-        p.cross(q) / determinant,
-    );
-    Some([-(of_p + of_q + of_r), of_p, of_q, of_r].map(Into::into))
+    gradients.set_row(0, &-(inverse.row(0) + inverse.row(1) + inverse.row(2)));
+    Some(gradients)
 }
 
 /// The gradient of a displacement (m), given at the vertices: row i, column j is `du_i/dx_j`. Not finite where the
@@ -87,7 +83,7 @@ pub(crate) fn displacement_gradient(
 /// `None` when the vertices lie in one plane.
 #[must_use]
 pub fn stiffness(vertices: &[[f64; 3]; 4], lambda: f64, mu: f64) -> Option<[f64; 144]> {
-    let volume = signed_volume(vertices).abs();
+    let volume = edge_matrix(vertices).determinant().abs() / 6.0;
     let gradients = gradients(vertices)?;
     let mut matrix = [0.0; 144];
     for (ga, rows) in gradients.iter().zip(matrix.as_chunks_mut::<36>().0) {
