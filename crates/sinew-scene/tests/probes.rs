@@ -7,6 +7,7 @@ mod common;
 
 use std::collections::BTreeMap;
 
+use sinew_mesh::GroupMembers;
 use sinew_scene::output::{Delivery, Destination};
 use sinew_scene::{ProbeCsv, ProbeRows, Scene, SceneSource};
 
@@ -168,4 +169,58 @@ fn places_that_contradict_each_other_are_refused() {
         said.contains("not known in [[region]] 1, which is made of springs"),
         "{said}"
     );
+}
+
+/// In a linear field the mean is the field at the centroid: of areas for triangles, of volumes for tetrahedra, whose sizes
+/// differ much in a mesh of an organ.
+#[test]
+fn means_of_a_linear_field_are_its_values_at_the_centroid() {
+    let text = "[mesh]\nfile = \"../../meshes/organ.msh\"\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
+                youngs_modulus = 3000.0\npoissons_ratio = 0.3\n[[initial]]\nstretch = [0.01, -0.02, 0.03]\n\
+                [[probe]]\nname = \"skin\"\ngroup = \"attachment\"\n[[probe]]\nname = \"inner\"\ngroup = \"inclusion\"\n\
+                [run]\nduration = 1e-5\nintegrator = \"central-difference\"\ndt = 1e-5\n";
+    let scene = Scene::parse(SceneSource::new("scene.toml", text)).unwrap();
+    let simulation = scene.build().unwrap();
+    let mesh = &simulation.model().body().unwrap().mesh;
+    let centroid = |parts: Vec<(f64, Vec<u32>)>| -> [f64; 3] {
+        let whole: f64 = parts.iter().map(|(size, _)| size).sum();
+        let along = |axis: usize| -> f64 {
+            let moments = parts.iter().map(|(size, nodes)| {
+                let sum: f64 = nodes
+                    .iter()
+                    .map(|node| mesh.points[*node as usize][axis])
+                    .sum();
+                size * sum / nodes.len() as f64
+            });
+            moments.sum::<f64>() / whole
+        };
+        [along(0), along(1), along(2)]
+    };
+    let parts = |name: &str| match &mesh.group(name).unwrap().members {
+        GroupMembers::Triangles(triangles) => {
+            let parts = triangles.iter();
+            parts
+                .map(|nodes| (mesh.area(*nodes), nodes.to_vec()))
+                .collect()
+        }
+        GroupMembers::Tets(tets) => {
+            let parts = tets.iter().map(|tet| *tet as usize);
+            parts
+                .map(|tet| (mesh.volume(tet), mesh.tets[tet].to_vec()))
+                .collect()
+        }
+        GroupMembers::Lines(_) | GroupMembers::Nodes(_) => Vec::new(),
+    };
+    let u = &simulation.initial_state().u;
+    for (probe, group) in simulation.probes().iter().zip(["attachment", "inclusion"]) {
+        let expected = centroid(parts(group));
+        let strains = [0.01, -0.02, 0.03];
+        for ((u, x), strain) in probe.displacement(0.0, u).zip(expected).zip(strains) {
+            assert!(
+                (u - strain * x).abs() < 1e-15,
+                "{group}: {u} {}",
+                strain * x
+            );
+        }
+    }
 }
