@@ -184,17 +184,15 @@ impl<'a> Balance<'a> {
         let (Some(form), Some(operators)) = (self.form, self.operators()) else {
             return 0.0;
         };
-        let loads = |from: f64, to: f64| {
-            form.loads_at_ends(from, to - from)
-                .map(|when| self.loads_at(when))
-        };
         let dt = here.t - last.t;
-        let [before, after] = loads(last.t, here.t);
+        let [before, after] = form
+            .loads_at_ends(last.t, dt)
+            .map(|when| self.loads_at(when));
         // The step begins with the acceleration of the last one and what the loads are other than at the end of that.
         let known = match last.before < last.t {
             true => {
-                let [_, known] = loads(last.before, last.t);
-                known
+                let [_, end] = form.loads_at_ends(last.before, last.t - last.before);
+                self.loads_at(end)
             }
             false => self.loads_at(last.t.into()),
         };

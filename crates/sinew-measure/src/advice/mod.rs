@@ -413,10 +413,7 @@ fn advised_first(search: &Search<CasePilots<'_>>, goal: Goal) -> Vec<Pilot> {
 fn most_accurate<'a>(search: &'a Search<CasePilots<'_>>, budget: f64) -> Option<&'a Pilot> {
     let within = Goal { error: 1.0, budget };
     let runs = search.runs().filter(|pilot| within.is_met_by(&pilot.row));
-    let error = |pilot: &Pilot| {
-        let error = pilot.row.sound_error_over_scene();
-        error.map_or(f64::INFINITY, |error| error.max(ROUNDING))
-    };
+    let error = |pilot: &Pilot| pilot.row.sound_error_over_scene().unwrap_or(f64::INFINITY);
     runs.min_by(|a, b| error(a).total_cmp(&error(b)))
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use sinew_core::vectors::norm;
 use sinew_mesh::vtu::read_appended_array;
 
 use super::outcome::{CompareError, Comparison, Difference, damaged, read, relative};
@@ -63,8 +64,8 @@ pub(super) fn compare(
                 return Ok(());
             }
             for (number, (a, b)) in field.iter().zip(&others).enumerate() {
-                let difference = length([a[0] - b[0], a[1] - b[1], a[2] - b[2]]);
-                *size = size.max(length(*a));
+                let difference = norm(&[a[0] - b[0], a[1] - b[1], a[2] - b[2]]);
+                *size = size.max(norm(a));
                 if difference > *largest || difference.is_nan() {
                     (*largest, *at, *node) = (difference, *t, number);
                 }
@@ -91,10 +92,6 @@ pub(super) fn compare(
         ));
     }
     Ok(())
-}
-
-fn length(v: [f64; 3]) -> f64 {
-    v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// Times (s) and files of the frames of a result.

@@ -1,5 +1,7 @@
 //! Differences of where things are: the places of probes, and the nodes of the body at rest.
 
+use sinew_core::vectors::norm;
+
 use super::outcome::{Comparison, Difference};
 use crate::tables::PROBES;
 
@@ -57,10 +59,8 @@ fn point(place: &str) -> Option<[f64; 3]> {
 pub(super) fn apart(of: &'static str, one: &[[f64; 3]], other: &[[f64; 3]]) -> Option<Difference> {
     let coordinates = one.iter().chain(other).flatten();
     let size = coordinates.fold(0.0_f64, |most, x| most.max(x.abs()));
-    let distances = one.iter().zip(other).map(|(a, b)| {
-        let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
-        squares.sum::<f64>().sqrt()
-    });
+    let distances = one.iter().zip(other);
+    let distances = distances.map(|(a, b)| norm(&[a[0] - b[0], a[1] - b[1], a[2] - b[2]]));
     let largest = distances
         .enumerate()
         .max_by(|(_, a), (_, b)| a.total_cmp(b));

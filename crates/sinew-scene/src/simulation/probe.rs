@@ -112,37 +112,24 @@ pub(super) fn of_body(
 
 fn of_motion(point: &ProbePoint, body: &BodyModel) -> Result<Probe, Fault> {
     let mesh = &body.mesh;
-    let nearest = |(index, distance): (u32, f64)| NearestNode {
-        index,
-        tag: mesh.node_tags[index as usize],
-        distance,
+    let at_node = |(index, distance): (u32, f64)| {
+        let tag = mesh.node_tags[index as usize];
+        let node = NearestNode {
+            index,
+            tag,
+            distance,
+        };
+        let place = format!("node {tag}, {} m from the point", short(distance));
+        (Some(node), vec![(index, 1.0)], place)
     };
-    let node = match &point.at {
-        ProbeAt::Point(point) => Some(nearest(mesh.nearest_node(*point))),
-        ProbeAt::Group(name) => Some(nearest((only_node(mesh, name)?, 0.0))),
-        ProbeAt::Mean(_) => None,
-    };
-    let (shares, place) = match (&point.at, node) {
-        (ProbeAt::Mean(group), _) => {
+    let (node, shares, place) = match &point.at {
+        ProbeAt::Point(point) => at_node(mesh.nearest_node(*point)),
+        ProbeAt::Group(name) => at_node((only_node(mesh, name)?, 0.0)),
+        ProbeAt::Mean(group) => {
             let shares = shares_of_nodes(mesh, group)?;
             let place = format!("mean over the {} nodes of `{group}`", shares.len());
-            (shares, place)
+            (None, shares, place)
         }
-        (
-            _,
-            Some(NearestNode {
-                index,
-                tag,
-                distance,
-            }),
-        ) => {
-            let distance = short(distance);
-            (
-                vec![(index, 1.0)],
-                format!("node {tag}, {distance} m from the point"),
-            )
-        }
-        (_, None) => (Vec::new(), String::new()),
     };
     let nodes = shares.into_iter().map(|(index, share)| {
         let cell = body.model.cell_of_node(index);
