@@ -1,7 +1,7 @@
 //! A body of the peers' tissue.
 
 use sinew_core::Ramp;
-use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Problem, Region};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Problem, Region};
 
 /// The peers' tissue, undamped, held on one group and pressed on another.
 pub(crate) fn problem(held: &str, pressed: &str) -> Problem {
@@ -13,6 +13,7 @@ pub(crate) fn problem(held: &str, pressed: &str) -> Problem {
                 youngs_modulus: 3500.0,
                 poissons_ratio: 0.45,
             },
+            element: Element::P1,
         }],
         fixed: vec![Fixed {
             on: held.into(),

@@ -11,7 +11,7 @@ use sinew_core::{
     BlockMatrix, Damping, Layers, LinearModel, LinearOperators, LinearSystem, LoadTime, Pattern,
     State, System,
 };
-use sinew_fem::{Fixed, Law, Model, Problem, Region};
+use sinew_fem::{Element, Fixed, Law, Model, Problem, Region};
 use sinew_mesh::structured::{self, Split};
 use sinew_testkit::body::bodies;
 use sinew_testkit::dense::{ROUNDING, dense, dense_damping, row_product};
@@ -176,6 +176,7 @@ fn a_node_of_no_tetrahedron_is_refused_by_its_tag() {
                 youngs_modulus: 1000.0,
                 poissons_ratio: 0.3,
             },
+            element: Element::P1,
         }],
         fixed: vec![Fixed {
             on: "bottom".into(),

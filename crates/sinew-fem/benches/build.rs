@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use sinew_core::{Ramp, System};
-use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
@@ -112,6 +112,7 @@ fn problem(law: Law) -> Problem {
             group: None,
             density: 1060.0,
             law,
+            element: Element::P1,
         }],
         fixed: vec![Fixed {
             on: "bottom".into(),

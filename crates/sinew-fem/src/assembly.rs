@@ -12,6 +12,7 @@ use crate::graph::Graph;
 use crate::lumped::Lumped;
 use crate::material::Material;
 use crate::network::{Dashpot, Network, dashpots};
+use crate::parts::{Parts, WholePart};
 use crate::report::RegionFacts;
 use crate::volumes::flat;
 use crate::{Problem, springs};
@@ -44,7 +45,7 @@ pub(crate) fn assemble(
     let members = members(problem.regions.len(), region_of);
     let (mut materials, mut networks, mut facts) = (Vec::new(), Vec::new(), Vec::new());
     for ((region, members), volume) in problem.regions.iter().zip(&members).zip(&lumped.volumes) {
-        let (material, network) = Material::new(&region.law, mesh, &mut graph, members, *volume)?;
+        let (material, network) = Material::new(region, mesh, &mut graph, members, *volume)?;
         facts.push(RegionFacts {
             tets: members.len(),
             volume: *volume,
@@ -55,7 +56,15 @@ pub(crate) fn assemble(
     }
     drop(graph);
     let dashpots = dashpots(&networks, &lumped.masses);
-    let stiffness = stiffness(mesh, body, &members, &materials, networks)?;
+    let mut stiffness = stiffness(mesh, body, &members, &materials, networks)?;
+    let parts = Parts {
+        mesh,
+        smoothing: &body.smoothing,
+        region_of,
+        materials: &materials,
+    };
+    add_averages(&mut stiffness, body, parts)?;
+    clear_held(&mut stiffness, body);
     Ok(Assembled {
         stiffness,
         damping: damping(mesh, body, &dashpots)?,
@@ -78,7 +87,7 @@ fn members(regions: usize, region_of: &[u32]) -> Vec<Vec<u32>> {
     members
 }
 
-/// K (N/m), of springs where a region is a network and of tetrahedra elsewhere. They are added one after another, so the
+/// K (N/m), of springs where a region is a network and of single tetrahedra elsewhere. They are added one after another, so the
 /// sums do not depend on the number of threads.
 fn stiffness(
     mesh: &TetMesh,
@@ -98,7 +107,6 @@ fn stiffness(
             None => add_tetrahedra(&mut stiffness, mesh, body, members, material)?,
         }
     }
-    clear_held(&mut stiffness, body);
     Ok(stiffness)
 }
 
@@ -146,6 +154,22 @@ fn add_tetrahedra(
                 stiffness.add_element(&part.cells, &part.matrix)
             }
         };
+        added.map_err(|error| refused(error.into()))?;
+    }
+    Ok(())
+}
+
+/// Adds the stiffness of edges and patches over which tetrahedra average their strain.
+fn add_averages(
+    stiffness: &mut BlockMatrix,
+    body: &Body,
+    parts: Parts<'_>,
+) -> Result<(), FemError> {
+    let (mut whole, mut moving) = (WholePart::default(), ElementStiffness::default());
+    for part in parts.averages() {
+        parts.whole(part, &mut whole);
+        whole.moving(&body.cells, &mut moving);
+        let added = stiffness.add_element(&moving.cells, &moving.matrix);
         added.map_err(|error| refused(error.into()))?;
     }
     Ok(())

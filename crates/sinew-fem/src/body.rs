@@ -7,8 +7,9 @@ use sinew_mesh::TetMesh;
 
 use crate::Problem;
 use crate::cells::Cells;
-use crate::error::FemError;
+use crate::error::{Cause, FemError, Item};
 use crate::scales::cell_sizes;
+use crate::smoothing::{Smoothing, nodes_of};
 
 /// A mesh under its supports: the common part of models with other materials and loads.
 #[derive(Debug)]
@@ -20,21 +21,29 @@ pub(crate) struct Body {
     pub(crate) pattern: Arc<Pattern>,
     /// Shortest edge at each cell (m).
     pub(crate) cell_size: Vec<f64>,
+    pub(crate) smoothing: Smoothing,
 }
 
 impl Body {
-    /// The body of a mesh with this graph, whose tetrahedra have positive volumes.
+    /// The body of a mesh with this graph, whose tetrahedra have positive volumes and are in the regions `region_of`.
     pub(crate) fn new(
         mesh: &TetMesh,
         graph: &Arc<Pattern>,
         problem: &Problem,
+        region_of: &[u32],
     ) -> Result<Self, FemError> {
         let cells = Cells::new(mesh, problem)?;
+        let smoothing = Smoothing::new(mesh, problem, region_of);
         let (low, high) = mesh.bounding_box();
-        let pattern = if cells.nodes.len() == graph.cells() {
+        let coupled = if smoothing.is_empty() {
             Arc::clone(graph)
         } else {
-            Arc::new(graph.restricted(|node| cells.of_node(node).is_some()))
+            Arc::new(coupled(mesh, &smoothing)?)
+        };
+        let pattern = if cells.nodes.len() == coupled.cells() {
+            coupled
+        } else {
+            Arc::new(coupled.restricted(|node| cells.of_node(node).is_some()))
         };
         Ok(Self {
             edges: (graph.blocks() - graph.cells()) / 2,
@@ -42,6 +51,19 @@ impl Body {
             pattern,
             cell_size: cell_sizes(mesh, graph, &cells),
             cells,
+            smoothing,
         })
     }
+}
+
+/// The nodes that are coupled through tetrahedra, and through the edges and patches over which they average.
+fn coupled(mesh: &TetMesh, smoothing: &Smoothing) -> Result<Pattern, FemError> {
+    let sets = smoothing.sets().map(|tets| {
+        let mut nodes = Vec::new();
+        nodes_of(mesh, tets, &mut nodes);
+        nodes
+    });
+    let elements = mesh.tets.iter().map(|tet| tet.to_vec()).chain(sets);
+    Pattern::from_elements(mesh.points.len(), elements)
+        .map_err(|error| FemError::new(Item::Mesh, Cause::Operators(error.into())))
 }

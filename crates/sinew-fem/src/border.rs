@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use sinew_mesh::TetMesh;
-
 use crate::network::Dashpot;
+use crate::parts::{Parts, WholePart};
 use crate::springs;
 
 /// The rows of K and of the dashpots' matrix at nodes with held components, against all their
@@ -23,22 +22,18 @@ pub(crate) struct Border {
 }
 
 impl Border {
-    /// Sums up the rows of `nodes` (increasing) from the tetrahedra at them, whose 12 x 12 matrices
-    /// `element` makes, and from `dashpots`; those that end at no such node are skipped.
-    pub(crate) fn new(
-        mesh: &TetMesh,
-        nodes: &[u32],
-        element: impl Fn(usize) -> [f64; 144],
-        dashpots: &[Dashpot],
-    ) -> Self {
-        let mut border = Self::zero(mesh, nodes);
-        for (index, tet) in tets_at(mesh, nodes) {
-            let matrix = element(index);
-            for (a, row) in tet.iter().enumerate() {
-                for (b, column) in tet.iter().enumerate() {
-                    let entry = |k: usize| matrix[(3 * a + k / 3) * 12 + 3 * b + k % 3];
+    /// Sums up the rows of `nodes` (increasing) from the parts of K at them and from `dashpots`; those that end
+    /// at no such node are skipped.
+    pub(crate) fn new(parts: Parts<'_>, nodes: &[u32], dashpots: &[Dashpot]) -> Self {
+        let (mesh, at_nodes) = (parts.mesh, parts_at(parts, nodes));
+        let mut border = Self::zero(parts, nodes, &at_nodes);
+        let mut whole = WholePart::default();
+        for part in at_nodes {
+            parts.whole(part, &mut whole);
+            for (a, row) in whole.nodes().iter().enumerate() {
+                for (b, column) in whole.nodes().iter().enumerate() {
                     if let Some(at) = border.find(*row, *column) {
-                        add(&mut border.stiffness[at], std::array::from_fn(entry));
+                        add(&mut border.stiffness[at], whole.block(a, b));
                     }
                 }
             }
@@ -60,12 +55,14 @@ impl Border {
         border
     }
 
-    fn zero(mesh: &TetMesh, nodes: &[u32]) -> Self {
+    fn zero(parts: Parts<'_>, nodes: &[u32], at_nodes: &[usize]) -> Self {
         let mut neighbours: Vec<Vec<u32>> = nodes.iter().map(|node| vec![*node]).collect();
-        for (_, tet) in tets_at(mesh, nodes) {
-            for node in tet {
+        let mut of_part = Vec::new();
+        for part in at_nodes {
+            parts.nodes(*part, &mut of_part);
+            for node in &of_part {
                 if let Ok(row) = nodes.binary_search(node) {
-                    neighbours[row].extend(tet);
+                    neighbours[row].extend(&of_part);
                 }
             }
         }
@@ -141,17 +138,18 @@ impl Border {
     }
 }
 
-/// The tetrahedra that have some of the nodes, with their indices.
-fn tets_at<'a>(
-    mesh: &'a TetMesh,
-    nodes: &[u32],
-) -> impl Iterator<Item = (usize, &'a [u32; 4])> + use<'a> {
-    let mut wanted = vec![false; mesh.points.len()];
+/// The numbers of the parts that have some of the nodes.
+fn parts_at(parts: Parts<'_>, nodes: &[u32]) -> Vec<usize> {
+    let mut wanted = vec![false; parts.mesh.points.len()];
     for &node in nodes {
         wanted[node as usize] = true;
     }
-    let tets = mesh.tets.iter().enumerate();
-    tets.filter(move |(_, tet)| tet.iter().any(|node| wanted[*node as usize]))
+    let mut of_part = Vec::new();
+    let has_some = |part: &usize| {
+        parts.nodes(*part, &mut of_part);
+        of_part.iter().any(|node| wanted[*node as usize])
+    };
+    (0..parts.count()).filter(has_some).collect()
 }
 
 fn add(sum: &mut [f64; 9], block: [f64; 9]) {

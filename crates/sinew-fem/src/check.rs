@@ -1,8 +1,8 @@
 //! Checks of a problem's numbers before anything is built.
 
-use crate::error::{FemError, Item};
+use crate::error::{Cause, FemError, Item};
 use crate::number::{require, require_finite};
-use crate::{LoadKind, Problem, motion};
+use crate::{Element, Law, LoadKind, Problem, motion};
 
 /// Refuses a problem with a number outside its range.
 pub(crate) fn numbers(problem: &Problem) -> Result<(), FemError> {
@@ -12,6 +12,10 @@ pub(crate) fn numbers(problem: &Problem) -> Result<(), FemError> {
         let expected = "a finite density above 0 kg/m3";
         require(item, "density", density, expected, density > 0.0)?;
         region.law.check(item)?;
+        region.element.check(item)?;
+        if matches!(region.law, Law::Springs { .. }) && region.element != Element::P1 {
+            return Err(FemError::new(item, Cause::ElementOnSprings));
+        }
     }
     let damping = [
         (

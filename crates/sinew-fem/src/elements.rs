@@ -1,18 +1,14 @@
-//! The moving part of a tetrahedron's matrix.
+//! The moving part of an element's matrix.
 
 use sinew_core::ElementStiffness;
 
 use crate::cells::Cells;
 
-/// Writes the rows and columns of those vertices of a tetrahedron that are cells; held components
-/// are zero. `whole` is 12 x 12, row-major and vertex-major.
-pub(crate) fn moving_part(
-    whole: &[f64; 144],
-    tet: &[u32; 4],
-    cells: &Cells,
-    out: &mut ElementStiffness,
-) {
-    let moving: Vec<(usize, u32)> = tet
+/// Writes the rows and columns of those nodes of an element that are cells; held components
+/// are zero. `whole` has all its nodes, row-major and node-major.
+pub(crate) fn moving_part(whole: &[f64], nodes: &[u32], cells: &Cells, out: &mut ElementStiffness) {
+    let columns = 3 * nodes.len();
+    let moving: Vec<(usize, u32)> = nodes
         .iter()
         .enumerate()
         .filter_map(|(vertex, node)| Some((vertex, cells.of_node(*node)?)))
@@ -33,7 +29,7 @@ pub(crate) fn moving_part(
             if row_held || held {
                 0.0
             } else {
-                whole[12 * row + column]
+                whole[columns * row + column]
             }
         }));
     }

@@ -83,6 +83,9 @@ pub enum Cause {
         /// The range that fits, with the unit.
         expected: &'static str,
     },
+    /// An element on a network of springs.
+    #[error("a network of springs has no element: expected none but p1")]
+    ElementOnSprings,
     /// A group the mesh does not have.
     #[error(transparent)]
     UnknownGroup(#[from] sinew_mesh::UnknownGroup),

@@ -2,7 +2,7 @@
 //!
 //! ```
 //! use sinew_core::{Ramp, System};
-//! use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region};
+//! use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region};
 //! use sinew_mesh::structured::{self, Split};
 //!
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
@@ -11,6 +11,7 @@
 //!         group: None,
 //!         density: 1060.0, // kg/m3
 //!         law: Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.45 },
+//!         element: Element::P1,
 //!     }],
 //!     fixed: vec![Fixed { on: "sides".into(), axes: [true; 3] }],
 //!     loads: vec![LoadSpec {
@@ -30,13 +31,13 @@
 //!
 //! ```
 //! # use sinew_core::System;
-//! # use sinew_fem::{Fixed, Law, Model, On, Problem, Region};
+//! # use sinew_fem::{Element, Fixed, Law, Model, On, Problem, Region};
 //! # use sinew_mesh::structured::{self, Split};
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
 //! let law = Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.0 };
 //! let floor: Vec<u32> = (0..25).collect();
 //! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region { group: None, density: 1060.0, law }],
+//!     regions: vec![Region { group: None, density: 1060.0, law, element: Element::P1 }],
 //!     fixed: vec![Fixed { on: On::Nodes(floor.clone()), axes: [true; 3] }],
 //!     ..Problem::default()
 //! })?;
@@ -57,12 +58,12 @@
 //!
 //! ```
 //! # use sinew_core::{Ramp, System};
-//! # use sinew_fem::{Course, Fixed, Law, Model, Moving, Problem, Region};
+//! # use sinew_fem::{Element, Course, Fixed, Law, Model, Moving, Problem, Region};
 //! # use sinew_mesh::structured::{self, Split};
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
 //! let law = Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.0 };
 //! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region { group: None, density: 1060.0, law }],
+//!     regions: vec![Region { group: None, density: 1060.0, law, element: Element::P1 }],
 //!     fixed: vec![Fixed { on: "bottom".into(), axes: [true; 3] }],
 //!     moves: vec![Moving {
 //!         on: "top".into(),
@@ -92,6 +93,7 @@ mod body;
 mod border;
 mod cells;
 mod check;
+mod element;
 mod elements;
 mod error;
 mod graph;
@@ -104,11 +106,13 @@ mod motion;
 mod network;
 mod number;
 mod on;
+mod parts;
 mod places;
 mod problem;
 mod regions;
 mod report;
 mod scales;
+mod smoothing;
 pub mod springs;
 pub mod stress;
 mod supports;
@@ -116,6 +120,7 @@ pub mod tetra;
 mod vector_error;
 mod volumes;
 
+pub use element::Element;
 pub use error::{Cause, FemError, Item};
 pub use law::{Law, SpringRule};
 pub use model::{DeformedTet, FieldError, Model, NodalForces, SupportMotion};

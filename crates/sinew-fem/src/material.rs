@@ -5,8 +5,9 @@ use sinew_mesh::TetMesh;
 use crate::error::{Cause, FemError, Item};
 use crate::graph::Graph;
 use crate::network::Network;
+use crate::smoothing::SmoothedStrain;
 use crate::springs::Spring;
-use crate::{Law, SpringRule, springs, stress, tetra};
+use crate::{Element, Law, Region, SpringRule, springs, stress, tetra};
 
 /// The law of a region ready for computation, calibration included.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +15,7 @@ pub(crate) enum Material {
     Continuum {
         /// Lame's constants (Pa).
         lame: (f64, f64),
+        element: Element,
     },
     Springs {
         youngs_modulus: f64,
@@ -25,19 +27,20 @@ impl Material {
     /// The material that a law makes of some tetrahedra of `volume` (m^3) together, and their springs
     /// where it is a network. `graph` is that of the mesh.
     pub(crate) fn new(
-        law: &Law,
+        region: &Region,
         mesh: &TetMesh,
         graph: &mut Graph<'_>,
         members: &[u32],
         volume: f64,
     ) -> Result<(Self, Option<Network>), FemError> {
-        match *law {
+        match region.law {
             Law::Linear {
                 youngs_modulus,
                 poissons_ratio,
             } => {
                 let lame = tetra::lame(youngs_modulus, poissons_ratio);
-                Ok((Self::Continuum { lame }, None))
+                let element = region.element;
+                Ok((Self::Continuum { lame, element }, None))
             }
             Law::Springs {
                 youngs_modulus,
@@ -69,17 +72,58 @@ impl Material {
         match *self {
             Self::Continuum {
                 lame: (first, shear),
+                ..
             } => (first + 2.0 * shear, shear),
             // nu = 1/4 and thus lambda = mu for any springs (Cauchy's relations).
             Self::Springs { youngs_modulus, .. } => (1.2 * youngs_modulus, 0.4 * youngs_modulus),
         }
     }
 
-    /// Stiffness matrix (N/m) of a tetrahedron, 12 x 12, row-major and vertex-major; `None` where it is
-    /// flat.
+    /// The element that it is on.
+    pub(crate) fn element(&self) -> Element {
+        match *self {
+            Self::Continuum { element, .. } => element,
+            Self::Springs { .. } => Element::P1,
+        }
+    }
+
+    /// Lame's constants (Pa) that act on the strain of a tetrahedron by itself.
+    fn of_tetrahedra((lambda, mu): (f64, f64), element: Element) -> (f64, f64) {
+        match element {
+            Element::P1 => (lambda, mu),
+            Element::Fbar { .. } => (0.0, mu),
+            Element::FbarEdge { edge_share, .. } => (0.0, (1.0 - edge_share) * mu),
+        }
+    }
+
+    /// Lame's constants (Pa) that act on the mean strain at an edge.
+    pub(crate) fn averaged_over_edges(&self) -> [f64; 2] {
+        match *self {
+            Self::Continuum {
+                lame: (_, mu),
+                element,
+            } => [0.0, element.edge_share() * mu],
+            Self::Springs { .. } => [0.0; 2],
+        }
+    }
+
+    /// Lame's constants (Pa) that act on the mean strain of a patch.
+    pub(crate) fn averaged_over_patches(&self) -> [f64; 2] {
+        match *self {
+            Self::Continuum {
+                lame: (lambda, _),
+                element,
+            } if element.has_patches() => [lambda, 0.0],
+            Self::Continuum { .. } | Self::Springs { .. } => [0.0; 2],
+        }
+    }
+
+    /// Stiffness matrix (N/m) of a tetrahedron by itself, without what acts on averages: 12 x 12, row-major and
+    /// vertex-major; `None` where it is flat.
     pub(crate) fn stiffness(&self, points: &[[f64; 3]], tet: &[u32; 4]) -> Option<[f64; 144]> {
         match *self {
-            Self::Continuum { lame: (lambda, mu) } => {
+            Self::Continuum { lame, element } => {
+                let (lambda, mu) = Self::of_tetrahedra(lame, element);
                 tetra::stiffness(&tetra::vertices(points, *tet), lambda, mu)
             }
             Self::Springs {
@@ -89,11 +133,13 @@ impl Material {
         }
     }
 
-    /// Stress (Pa) at a small strain, both in the order of [`crate::stress`]; `None` where the law has
-    /// none.
-    pub(crate) fn stress(&self, strain: &[f64; 6]) -> Option<[f64; 6]> {
+    /// Stress (Pa) at a small strain, in the order of [`crate::stress`]; `None` where the law has none.
+    pub(crate) fn stress(&self, strain: &SmoothedStrain) -> Option<[f64; 6]> {
+        let SmoothedStrain { shear, dilation } = strain;
         match *self {
-            Self::Continuum { lame: (lambda, mu) } => Some(stress::isotropic(strain, lambda, mu)),
+            Self::Continuum {
+                lame: (lambda, mu), ..
+            } => Some(stress::with_dilation(shear, *dilation, lambda, mu)),
             Self::Springs { .. } => None,
         }
     }

@@ -2,7 +2,7 @@
 
 use sinew_core::Ramp;
 
-use crate::{Law, On};
+use crate::{Element, Law, On};
 
 /// Materials, damping, supports, prescribed motions and loads of a body.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,6 +30,8 @@ pub struct Region {
     pub density: f64,
     /// Material law.
     pub law: Law,
+    /// Element; springs have none but [`Element::P1`].
+    pub element: Element,
 }
 
 /// Rayleigh damping, `D = alpha M + beta K`.

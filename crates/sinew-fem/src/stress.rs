@@ -28,7 +28,13 @@ pub fn strain(gradients: &[[f64; 3]; 4], displacements: &[[f64; 3]; 4]) -> [f64;
 #[must_use]
 pub fn isotropic(strain: &[f64; 6], lambda: f64, mu: f64) -> [f64; 6] {
     let [xx, yy, zz, ..] = *strain;
-    let pressure = lambda * (xx + yy + zz);
+    with_dilation(strain, xx + yy + zz, lambda, mu)
+}
+
+/// [`isotropic`] where the relative change of volume is not the trace of the strain that shear resists.
+#[must_use]
+pub(crate) fn with_dilation(strain: &[f64; 6], dilation: f64, lambda: f64, mu: f64) -> [f64; 6] {
+    let pressure = lambda * dilation;
     let mut stress = strain.map(|component| 2.0 * mu * component);
     for normal in &mut stress[..3] {
         *normal += pressure;

@@ -3,12 +3,12 @@
 use std::sync::OnceLock;
 
 use sinew_core::Ramp;
-use sinew_mesh::TetMesh;
 
 use crate::body::Body;
 use crate::border::Border;
 use crate::motion::Motions;
 use crate::network::Dashpot;
+use crate::parts::Parts;
 
 /// The part of a load that falls on held components: `ramp(t)` times `forces`.
 #[derive(Clone, Debug)]
@@ -52,14 +52,9 @@ impl Supports {
         }
     }
 
-    /// The rows of held nodes; `element` makes a tetrahedron's 12 x 12 matrix.
-    pub(crate) fn border(
-        &self,
-        mesh: &TetMesh,
-        body: &Body,
-        element: impl Fn(usize) -> [f64; 144],
-    ) -> &Border {
-        let rows = || Border::new(mesh, &body.cells.held_nodes, element, &self.dashpots);
+    /// The rows of the `held` nodes.
+    pub(crate) fn border(&self, parts: Parts<'_>, held: &[u32]) -> &Border {
+        let rows = || Border::new(parts, held, &self.dashpots);
         self.border.get_or_init(rows)
     }
 }

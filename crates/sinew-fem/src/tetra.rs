@@ -87,19 +87,33 @@ pub fn stiffness(vertices: &[[f64; 3]; 4], lambda: f64, mu: f64) -> Option<[f64;
     let gradients = gradients(vertices)?;
     let mut matrix = [0.0; 144];
     for (ga, rows) in gradients.iter().zip(matrix.as_chunks_mut::<36>().0) {
-        let (lambda_ga, mu_ga) = (ga.map(|g| lambda * g), ga.map(|g| mu * g));
-        for (b, gb) in gradients.iter().enumerate() {
-            let dot = ga[0] * gb[0] + ga[1] * gb[1] + ga[2] * gb[2];
-            for i in 0..3 {
-                for j in 0..3 {
-                    let isotropic = if i == j { mu * dot } else { 0.0 };
-                    rows[12 * i + 3 * b + j] =
-                        volume * (lambda_ga[i] * gb[j] + mu_ga[j] * gb[i] + isotropic);
-                }
+        stiffness_rows(volume, [lambda, mu], ga, &gradients, rows);
+    }
+    Some(matrix)
+}
+
+/// Writes the three rows of a stiffness matrix (N/m) at the node whose shape function has the gradient `ga`, all nodes of a
+/// volume (m^3) of constant strain having the `gradients` (1/m).
+#[inline(always)]
+pub(crate) fn stiffness_rows(
+    volume: f64,
+    [lambda, mu]: [f64; 2],
+    ga: &[f64; 3],
+    gradients: &[[f64; 3]],
+    rows: &mut [f64],
+) {
+    let columns = 3 * gradients.len();
+    let (lambda_ga, mu_ga) = (ga.map(|g| lambda * g), ga.map(|g| mu * g));
+    for (b, gb) in gradients.iter().enumerate() {
+        let dot = ga[0] * gb[0] + ga[1] * gb[1] + ga[2] * gb[2];
+        for i in 0..3 {
+            for j in 0..3 {
+                let isotropic = if i == j { mu * dot } else { 0.0 };
+                rows[columns * i + 3 * b + j] =
+                    volume * (lambda_ga[i] * gb[j] + mu_ga[j] * gb[i] + isotropic);
             }
         }
     }
-    Some(matrix)
 }
 
 #[cfg(test)]

@@ -7,7 +7,8 @@ mod common;
 use common::{DENSITY, add_node_group, body, held, held_along, linear, load, springs};
 use sinew_core::{Ramp, RampError};
 use sinew_fem::{
-    Cause, FemError, Fixed, Item, Law, LoadKind, LoadSpec, Model, On, Problem, Region, SpringRule,
+    Cause, Element, FemError, Fixed, Item, Law, LoadKind, LoadSpec, Model, On, Problem, Region,
+    SpringRule,
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -31,6 +32,7 @@ fn region(group: Option<&str>) -> Region {
         group: group.map(Into::into),
         density: DENSITY,
         law: linear(3500.0, 0.45),
+        element: Element::P1,
     }
 }
 

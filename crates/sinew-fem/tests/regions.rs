@@ -9,7 +9,7 @@ use common::{
     relative_difference,
 };
 use sinew_core::{BlockMatrix, LinearSystem, System};
-use sinew_fem::{Law, LoadKind, Model, Problem, Region, SpringRule};
+use sinew_fem::{Element, Law, LoadKind, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -40,6 +40,7 @@ fn in_two_regions(lower: Law, upper: Law) -> Problem {
         group: Some(group.into()),
         density: DENSITY,
         law,
+        element: Element::P1,
     };
     Problem {
         regions: vec![region("lower", lower), region("upper", upper)],

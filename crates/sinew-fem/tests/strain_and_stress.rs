@@ -11,7 +11,7 @@ use common::{
 use nalgebra::{Matrix3, Vector3};
 use sinew_core::System;
 use sinew_fem::stress::von_mises;
-use sinew_fem::{FieldError, LoadKind, Model, Problem, Region, SpringRule};
+use sinew_fem::{Element, FieldError, LoadKind, Model, Problem, Region, SpringRule};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -159,6 +159,7 @@ fn half_springs() -> (TetMesh, Model) {
         group: Some(group.into()),
         density: 1000.0,
         law,
+        element: Element::P1,
     };
     let problem = Problem {
         regions: vec![

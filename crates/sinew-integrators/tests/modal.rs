@@ -15,7 +15,9 @@ use sinew_core::{
     BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
     LoadTime, OptionValue, Options, Pattern, Ramp, State, System,
 };
-use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule};
+use sinew_fem::{
+    Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule,
+};
 use sinew_integrators::implicit::Modal;
 use sinew_integrators::{Frame, Method};
 use sinew_mesh::structured::{self, Split};
@@ -133,6 +135,7 @@ fn body(
             group: None,
             density: 1060.0,
             law,
+            element: Element::P1,
         }],
         damping,
         fixed: fixed.iter().map(held).collect(),

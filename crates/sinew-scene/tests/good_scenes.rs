@@ -12,7 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use sinew_core::{OptionValue, Options, Ramp};
-use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule};
 use sinew_scene::{
     Body, Initial, MeshChanges, MeshSource, Oscillator, ProbeAt, ProbePoint, Quantity, RunSettings,
     Scene, SceneSource, Subject, TimeStep,
@@ -135,6 +135,7 @@ fn the_papers_cube() {
                     calibrate: false,
                     damping_ratio: 0.0,
                 },
+                element: Element::P1,
             }],
             damping: Rayleigh {
                 mass: 80.0,

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{LinearSystem, Ramp, State};
 use sinew_fem::{
-    Fixed, Item, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule,
+    Element, Fixed, Item, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule,
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -285,6 +285,7 @@ fn regions(tets: usize) -> impl Strategy<Value = (Vec<Region>, Vec<Group>)> {
         group: group.map(Into::into),
         density,
         law,
+        element: Element::P1,
     };
     let one = (500.0..2000.0, laws())
         .prop_map(move |(density, law)| (vec![region(None, density, law)], vec![]));

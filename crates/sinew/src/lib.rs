@@ -13,6 +13,7 @@
 //!         group: None,
 //!         density: 1060.0,
 //!         law: Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.45 },
+//!         element: Element::P1,
 //!     }],
 //!     fixed: vec![Fixed { on: "bottom".into(), axes: [true; 3] }],
 //!     gravity: Some([0.0, 0.0, -9.81]),
@@ -44,8 +45,8 @@ pub mod prelude {
     };
     pub use sinew_fem::stress::von_mises;
     pub use sinew_fem::{
-        Course, Fixed, Law, LoadKind, LoadSpec, Model, Moving, NodalForces, On, Problem, Rayleigh,
-        Region, SpringRule,
+        Course, Element, Fixed, Law, LoadKind, LoadSpec, Model, Moving, NodalForces, On, Problem,
+        Rayleigh, Region, SpringRule,
     };
     pub use sinew_integrators::Stepper;
     pub use sinew_mesh::structured::{self, Split};

@@ -67,6 +67,7 @@ fn a_frame_loop_needs_no_other_import() {
                 youngs_modulus: 3500.0,
                 poissons_ratio: 0.4,
             },
+            element: Element::P1,
         }],
         damping: Rayleigh {
             mass: 5.0,

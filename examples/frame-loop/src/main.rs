@@ -23,7 +23,7 @@ use std::error::Error;
 use std::time::{Duration, Instant};
 
 use sinew_core::{Inputs, LoadTime, Options, State, System, worst_beyond};
-use sinew_fem::{Fixed, Law, Model, NodalForces, On, Problem, Rayleigh, Region, stress::von_mises};
+use sinew_fem::{Element, Fixed, Law, Model, NodalForces, On, Problem, Rayleigh, Region, stress::von_mises};
 use sinew_integrators::{Stepper, build};
 use sinew_mesh::structured::{Split, block};
 
@@ -51,6 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             group: None,
             density,
             law,
+            element: Element::P1,
         }],
         damping: Rayleigh {
             mass: 40.0,

@@ -28,19 +28,16 @@ impl Model {
         displacement: &'a [[f64; 3]],
     ) -> Result<impl Iterator<Item = DeformedTet> + 'a, FieldError> {
         self.require_nodes("the displacement", displacement)?;
-        let tets = self.mesh.tets.iter().zip(&self.region_of);
-        Ok(tets.map(move |(nodes, region)| {
-            let vertices = tetra::vertices(&self.mesh.points, *nodes);
-            let d = tetra::displacement_gradient(&vertices, &tetra::vertices(displacement, *nodes));
+        let gradient = move |tet: usize| {
+            let nodes = self.mesh.tets[tet];
+            let vertices = tetra::vertices(&self.mesh.points, nodes);
+            tetra::displacement_gradient(&vertices, &tetra::vertices(displacement, nodes))
+        };
+        let means = self.mean_strains(|tet| small_strain(&gradient(tet)));
+        Ok((0..self.mesh.tets.len()).map(move |tet| {
+            let d = gradient(tet);
+            let strain = small_strain(&d);
             let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = d;
-            let strain = [
-                xx,
-                yy,
-                zz,
-                (xy + yx) / 2.0,
-                (yz + zy) / 2.0,
-                (xz + zx) / 2.0,
-            ];
             let curl = [zy - yz, xz - zx, yx - xy];
             // The volume is that at rest, which is positive, times the determinant of 1 + d.
             let (xx, yy, zz) = (1.0 + xx, 1.0 + yy, 1.0 + zz);
@@ -48,10 +45,18 @@ impl Model {
                 xx * (yy * zz - yz * zy) - xy * (yx * zz - yz * zx) + xz * (yx * zy - yy * zx);
             DeformedTet {
                 strain,
-                stress: self.materials[*region as usize].stress(&strain),
+                stress: self
+                    .material_of(tet)
+                    .stress(&self.strain_among(&means, tet, strain)),
                 rotation: 0.5 * curl.iter().map(|c| c * c).sum::<f64>().sqrt(),
                 is_inverted: ratio.is_nan() || ratio <= 0.0,
             }
         }))
     }
+}
+
+/// The symmetric part of a displacement's gradient, in the order of [`crate::stress`].
+fn small_strain([[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]: &[[f64; 3]; 3]) -> [f64; 6] {
+    let shear = [(xy + yx) / 2.0, (yz + zy) / 2.0, (xz + zx) / 2.0];
+    [*xx, *yy, *zz, shear[0], shear[1], shear[2]]
 }

@@ -1,11 +1,11 @@
 //! Energies and loads over all nodes, held and moved ones included.
 
 use sinew_core::LoadTime;
-use sinew_core::vectors::dot;
 
 use super::Model;
 use super::field_error::{FieldError, require_inputs};
 use crate::error::Item;
+use crate::parts::WholePart;
 
 impl Model {
     /// The elastic energy (J) of the body with this displacement (m) of each node of the mesh, that of elements with
@@ -15,15 +15,12 @@ impl Model {
     /// [`FieldError::Length`] unless `displacement` has one entry for each node of the mesh.
     pub fn elastic_energy(&self, displacement: &[[f64; 3]]) -> Result<f64, FieldError> {
         self.require_nodes("the displacement", displacement)?;
-        let energy = |(tet, nodes): (usize, &[u32; 4])| {
-            let moved = nodes.map(|node| displacement[node as usize]);
-            let u = moved.as_flattened();
-            let rows = self.whole_stiffness(tet);
-            let rows = rows.as_chunks::<12>().0.iter().zip(u);
-            let twice: f64 = rows.map(|(row, u_i)| u_i * dot(row, u)).sum();
-            0.5 * twice
+        let (parts, mut whole) = (self.parts(), WholePart::default());
+        let energy = |part| {
+            parts.whole(part, &mut whole);
+            whole.energy(displacement)
         };
-        Ok(self.mesh.tets.iter().enumerate().map(energy).sum())
+        Ok((0..parts.count()).map(energy).sum())
     }
 
     /// Writes the forces (N) of loads and gravity at each node of the mesh at a time (s), held components included, without

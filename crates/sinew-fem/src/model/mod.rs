@@ -29,10 +29,11 @@ use crate::loads::LoadsOnBody;
 use crate::lumped::Lumped;
 use crate::material::Material;
 use crate::motion::{Motions, MovedPart};
+use crate::parts::Parts;
 use crate::regions::regions;
 use crate::report::{ModelReport, MoveFacts};
 use crate::supports::Supports;
-use crate::{Problem, check, volumes};
+use crate::{Element, Problem, check, volumes};
 
 /// A linear model of a body: M, D, K over its moving nodes, loads, and the geometry behind them.
 #[derive(Clone, Debug)]
@@ -77,14 +78,14 @@ impl Model {
         volumes::check(mesh)?;
         let region_of = regions(mesh, problem)?;
         let mut graph = Graph::of(mesh);
-        let body = Arc::new(Body::new(mesh, graph.pattern()?, problem)?);
+        let body = Arc::new(Body::new(mesh, graph.pattern()?, problem, &region_of)?);
         Self::on_body(mesh, graph, body, problem, region_of, kept)
     }
 
     /// Assembles another problem on the mesh of this model in which the same components move by themselves, for
-    /// sweeps over materials, damping, loads and prescribed motions. The two models share the mesh and the
-    /// pattern of the matrices, so that an analysis of the pattern serves both. The result is that of
-    /// [`Model::build`] to the last bit.
+    /// sweeps over materials, damping, loads and prescribed motions. The two models share the mesh and, where strain
+    /// is averaged over the same tetrahedra, the pattern of the matrices, so that an analysis of the pattern serves both. The
+    /// result is that of [`Model::build`] to the last bit.
     ///
     /// # Errors
     /// Same as [`Model::build`], and [`Cause::OtherSupports`] where the problem holds or moves other components.
@@ -95,7 +96,13 @@ impl Model {
             None => {
                 let region_of = regions(mesh, problem)?;
                 let kept = || Arc::clone(mesh);
-                Self::on_body(mesh, Graph::of(mesh), body, problem, region_of, kept)
+                let mut graph = Graph::of(mesh);
+                let body = if self.averages_as(problem, &region_of) {
+                    body
+                } else {
+                    Arc::new(Body::new(mesh, graph.pattern()?, problem, &region_of)?)
+                };
+                Self::on_body(mesh, graph, body, problem, region_of, kept)
             }
             Some(node) => {
                 let ordinal = u64::from(node) + 1;
@@ -108,6 +115,20 @@ impl Model {
                 Err(FemError::new(Item::Supports, cause))
             }
         }
+    }
+
+    /// Whether a problem averages strain over the same sets of tetrahedra as this model.
+    fn averages_as(&self, problem: &Problem, region_of: &[u32]) -> bool {
+        let sets = |element: Element| {
+            let by_edges = element.edge_share() > 0.0;
+            (element.has_patches(), element.patch(), by_edges)
+        };
+        let plain = |element: &Element| !element.has_patches();
+        let elements = || self.materials.iter().map(Material::element);
+        let wanted = || problem.regions.iter().map(|region| region.element);
+        let none =
+            elements().all(|element| plain(&element)) && wanted().all(|element| plain(&element));
+        none || self.region_of == region_of && elements().map(sets).eq(wanted().map(sets))
     }
 
     /// Assembles the materials and loads of a problem, whose numbers were checked. `kept` gives the mesh that the model is
@@ -216,14 +237,13 @@ impl Model {
         self.load_items.get(load).copied()
     }
 
-    /// Stiffness matrix (N/m) of a tetrahedron, held vertices included: 12 x 12, row-major and
-    /// vertex-major.
-    fn whole_stiffness(&self, tet: usize) -> [f64; 144] {
-        let mesh = &self.mesh;
-        let material = &self.materials[self.region_of[tet] as usize];
-        // Assembly refused flat tetrahedra.
-        material
-            .stiffness(&mesh.points, &mesh.tets[tet])
-            .unwrap_or([0.0; 144])
+    /// The parts that K is a sum of.
+    fn parts(&self) -> Parts<'_> {
+        Parts {
+            mesh: &self.mesh,
+            smoothing: &self.body.smoothing,
+            region_of: &self.region_of,
+            materials: &self.materials,
+        }
     }
 }

@@ -161,8 +161,7 @@ impl Model {
     }
 
     pub(super) fn border(&self) -> &Border {
-        self.supports
-            .border(&self.mesh, &self.body, |tet| self.whole_stiffness(tet))
+        self.supports.border(self.parts(), self.held_nodes())
     }
 
     /// M (a + alpha v) + K u + D v (N) at a held node, D being the damping other than alpha M.

@@ -4,6 +4,8 @@ use sinew_core::LoadTime;
 
 use super::Model;
 use super::field_error::{FieldError, require_length};
+use crate::material::Material;
+use crate::smoothing::{MeanStrains, SmoothedStrain};
 use crate::springs::Spring;
 use crate::{stress, tetra};
 
@@ -33,9 +35,10 @@ impl Model {
     }
 
     /// Writes the stress (Pa) of each tetrahedron at a time (s), in the order of
-    /// [`Model::strain`]: that of the elastic law alone, without damping. Allocates nothing.
+    /// [`Model::strain`]: that of the elastic law alone, without damping. Where regions average strain
+    /// ([`crate::Element`]) it follows from the averages, and room is allocated for them; otherwise nothing is.
     ///
-    /// The stress of linear tetrahedra is most accurate averaged over neighbours; in nearly
+    /// The stress of plain tetrahedra is most accurate averaged over neighbours; in nearly
     /// incompressible materials the pressure of a single one means little.
     ///
     /// # Errors
@@ -49,8 +52,10 @@ impl Model {
         out: &mut [[f64; 6]],
     ) -> Result<(), FieldError> {
         self.strain(when, u, out)?;
-        for (region, out) in self.region_of.iter().zip(out) {
-            *out = self.stress_at(*region, out)?;
+        let means = self.mean_strains(|tet| out[tet]);
+        for (tet, out) in out.iter_mut().enumerate() {
+            let strain = self.strain_among(&means, tet, *out);
+            *out = self.stress_at(tet, &strain)?;
         }
         Ok(())
     }
@@ -68,10 +73,17 @@ impl Model {
     ) -> Result<[f64; 6], FieldError> {
         self.require_dofs("the displacement", u)?;
         let tets = self.region_of.len();
-        let region = self.region_of.get(tet);
-        let region = region.ok_or(FieldError::TetOutOfRange { tet, tets })?;
+        if tet >= tets {
+            return Err(FieldError::TetOutOfRange { tet, tets });
+        }
         let at_node = self.at_nodes(when.into(), 0, Some(u))?;
-        self.stress_at(*region, &self.strain_of(at_node, tet))
+        let strain = |tet| self.strain_of(&at_node, tet);
+        let share = self.edge_share(tet);
+        let smoothed = self
+            .body
+            .smoothing
+            .strain_at(&self.mesh, tet, share, strain);
+        self.stress_at(tet, &smoothed)
     }
 
     /// The springs of a region (0-based place in the problem), one for each edge, calibration included;
@@ -95,9 +107,33 @@ impl Model {
         stress::strain(&gradients, &displacements)
     }
 
-    fn stress_at(&self, region: u32, strain: &[f64; 6]) -> Result<[f64; 6], FieldError> {
-        let region = region as usize;
-        let stress = self.materials[region].stress(strain);
+    fn stress_at(&self, tet: usize, strain: &SmoothedStrain) -> Result<[f64; 6], FieldError> {
+        let stress = self.material_of(tet).stress(strain);
+        let region = self.region_of[tet] as usize;
         stress.ok_or(FieldError::NoStress { region })
+    }
+
+    /// The mean strains of the sets over which regions average, with the strain of each tetrahedron.
+    pub(super) fn mean_strains(&self, strain: impl Fn(usize) -> [f64; 6]) -> MeanStrains {
+        self.body.smoothing.mean_strains(&self.mesh, strain)
+    }
+
+    /// The strain of a tetrahedron as its stress sees it.
+    pub(super) fn strain_among(
+        &self,
+        means: &MeanStrains,
+        tet: usize,
+        own: [f64; 6],
+    ) -> SmoothedStrain {
+        let share = self.edge_share(tet);
+        self.body.smoothing.strain_among(means, tet, share, own)
+    }
+
+    pub(super) fn material_of(&self, tet: usize) -> &Material {
+        &self.materials[self.region_of[tet] as usize]
+    }
+
+    fn edge_share(&self, tet: usize) -> f64 {
+        self.material_of(tet).element().edge_share()
     }
 }

@@ -6,8 +6,8 @@ use sinew_core::{
 };
 
 use super::Model;
-use crate::elements::moving_part;
 use crate::material::Material;
+use crate::parts::WholePart;
 use crate::tetra;
 
 impl System for Model {
@@ -100,18 +100,16 @@ impl LinearSystem for Model {
 
 impl Elements for Model {
     fn count(&self) -> usize {
-        self.mesh.tets.len()
+        self.parts().count()
     }
 
     fn name(&self, element: usize) -> String {
-        match self.mesh.tet_tags.get(element) {
-            Some(tag) => format!("tetrahedron {tag}"),
-            None => format!("tetrahedron number {element}"),
-        }
+        self.parts().name(element)
     }
 
     fn stiffness(&self, element: usize, out: &mut ElementStiffness) {
-        let (whole, tet) = (self.whole_stiffness(element), &self.mesh.tets[element]);
-        moving_part(&whole, tet, &self.body.cells, out);
+        let mut whole = WholePart::default();
+        self.parts().whole(element, &mut whole);
+        whole.moving(&self.body.cells, out);
     }
 }

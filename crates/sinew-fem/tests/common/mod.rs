@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "each test file uses some of these")]
 
 use sinew_core::{LinearSystem, LoadTime, Ramp, System};
-use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
 /// Density of soft tissue (kg/m^3).
@@ -51,6 +51,7 @@ pub(crate) fn body(law: Law) -> Problem {
             group: None,
             density: DENSITY,
             law,
+            element: Element::P1,
         }],
         ..Problem::default()
     }

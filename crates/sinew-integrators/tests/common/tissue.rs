@@ -1,6 +1,6 @@
 //! Bodies of one material.
 
-use sinew_fem::{Fixed, Law, Problem, Region};
+use sinew_fem::{Element, Fixed, Law, Problem, Region};
 
 /// Density of soft tissue (kg/m^3).
 pub(crate) const DENSITY: f64 = 1060.0;
@@ -19,6 +19,7 @@ pub(crate) fn body(law: Law) -> Problem {
             group: None,
             density: DENSITY,
             law,
+            element: Element::P1,
         }],
         ..Problem::default()
     }

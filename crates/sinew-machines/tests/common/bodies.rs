@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use sinew_cnn::{LoadAt, Loads, Machine, Physics, Program, Register};
 use sinew_core::{Batch, Inputs, LinearSystem, State, System, VelocityTime};
-use sinew_fem::{Fixed, Law, Model, Problem, Region};
+use sinew_fem::{Element, Fixed, Law, Model, Problem, Region};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
@@ -26,6 +26,7 @@ pub(crate) fn body(mesh: &TetMesh, held: &str) -> Model {
             group: None,
             density: 1060.0,
             law: TISSUE,
+            element: Element::P1,
         }],
         fixed: vec![Fixed {
             on: held.into(),

@@ -1,6 +1,6 @@
 //! A force that moves a body a little.
 
-use sinew_fem::{Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region};
 use sinew_mesh::TetMesh;
 
 use super::parts::Parts;
@@ -44,6 +44,7 @@ fn displacement(mesh: &TetMesh, parts: &Parts, force: f64) -> Option<f64> {
                 youngs_modulus: YOUNGS_MODULUS,
                 poissons_ratio: POISSONS_RATIO,
             },
+            element: Element::P1,
         }],
         fixed: vec![Fixed {
             on: On::Nodes(parts.held.nodes(mesh)),

@@ -2,7 +2,7 @@
 
 use std::ops::Bound;
 
-use sinew_fem::{Law, Region, SpringRule};
+use sinew_fem::{Element, Law, Region, SpringRule};
 
 use super::selected::{Members, NOT_WHERE, OPTIONAL_GROUP, Selections, WHERE_OF_TETRAHEDRA};
 use crate::decode::{
@@ -186,6 +186,7 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
         group,
         density,
         law,
+        element: Element::P1,
     })
 }
 
