@@ -49,6 +49,7 @@ pub(crate) fn assemble(
         facts.push(RegionFacts {
             tets: members.len(),
             volume: *volume,
+            patches: body.smoothing.patches_among(members),
             network: network.as_ref().map(|network| network.modulus),
         });
         materials.push(material);

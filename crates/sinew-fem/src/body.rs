@@ -5,11 +5,13 @@ use std::sync::Arc;
 use sinew_core::Pattern;
 use sinew_mesh::TetMesh;
 
-use crate::Problem;
 use crate::cells::Cells;
 use crate::error::{Cause, FemError, Item};
+use crate::graph::Graph;
+use crate::regions::regions;
 use crate::scales::cell_sizes;
 use crate::smoothing::{Smoothing, nodes_of};
+use crate::{Problem, Region};
 
 /// A mesh under its supports: the common part of models with other materials and loads.
 #[derive(Debug)]
@@ -54,6 +56,20 @@ impl Body {
             smoothing,
         })
     }
+}
+
+/// The blocks of the stiffness matrix that [`crate::Model::build`] makes where some region averages strain over its
+/// neighbourhoods; `None` where none does, or where the problem does not fit the mesh, as building says. For a forecast of memory: no matrix is made.
+#[must_use]
+pub fn smoothed_blocks(mesh: &TetMesh, problem: &Problem) -> Option<usize> {
+    let has_patches = |region: &Region| region.element.has_patches();
+    if !problem.regions.iter().any(has_patches) {
+        return None;
+    }
+    let region_of = regions(mesh, problem).ok()?;
+    let mut graph = Graph::of(mesh);
+    let body = Body::new(mesh, graph.pattern().ok()?, problem, &region_of).ok()?;
+    Some(body.pattern.blocks())
 }
 
 /// The nodes that are coupled through tetrahedra, and through the edges and patches over which they average.

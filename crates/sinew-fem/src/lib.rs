@@ -120,6 +120,7 @@ pub mod tetra;
 mod vector_error;
 mod volumes;
 
+pub use body::smoothed_blocks;
 pub use element::Element;
 pub use error::{Cause, FemError, Item};
 pub use law::{Law, SpringRule};

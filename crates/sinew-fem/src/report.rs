@@ -75,6 +75,8 @@ pub struct RegionFacts {
     pub tets: usize,
     /// Volume (m^3).
     pub volume: f64,
+    /// Number of patches over which it averages changes of volume.
+    pub patches: usize,
     /// Moduli of its springs as a material, calibration included; `None` for continua.
     pub network: Option<NetworkModulus>,
 }

@@ -67,6 +67,15 @@ impl Smoothing {
         (patch != NO_PATCH).then_some(patch as usize)
     }
 
+    /// Number of patches that some tetrahedra, with all others of their region, are in.
+    pub(crate) fn patches_among(&self, tets: &[u32]) -> usize {
+        let begins = |tet: &&u32| {
+            let patch = self.patch_of(**tet as usize);
+            patch.is_some_and(|patch| self.patches.of(patch).first() == Some(*tet))
+        };
+        tets.iter().filter(begins).count()
+    }
+
     /// The six edges of a tetrahedron; `None` where its region does not average over them.
     pub(crate) fn edges_of(&self, tet: usize) -> Option<&[u32; 6]> {
         let edges = self.edges.of_tet.get(tet)?;

@@ -18,8 +18,8 @@ pub(crate) enum Goes {
     With(&'static str),
     /// This key is not given.
     Without(&'static str),
-    /// This key is this word.
-    If(&'static str, &'static str),
+    /// This key is one of these words.
+    If(&'static str, &'static [&'static str]),
     /// Nothing can: the key is known here only to be refused with a reason.
     Never,
 }
@@ -43,13 +43,13 @@ impl Condition {
         Self::new(Goes::Without(other), reason)
     }
 
-    /// The other key must be this word.
+    /// The other key must be one of these words.
     pub(crate) const fn where_is(
         other: &'static str,
-        word: &'static str,
+        words: &'static [&'static str],
         reason: &'static str,
     ) -> Self {
-        Self::new(Goes::If(other, word), reason)
+        Self::new(Goes::If(other, words), reason)
     }
 
     /// The key is refused.

@@ -264,9 +264,10 @@ impl<'a> Table<'a> {
         match condition.goes {
             Goes::With(other) => self.has(other),
             Goes::Without(other) => !self.has(other),
-            Goes::If(other, word) => {
+            Goes::If(other, words) => {
                 let value = self.entries.get(other);
-                value.is_some_and(|value| value.get_ref().as_str() == Some(word))
+                let word = value.and_then(|value| value.get_ref().as_str());
+                word.is_some_and(|word| words.contains(&word))
             }
             Goes::Never => false,
         }

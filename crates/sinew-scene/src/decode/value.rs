@@ -1,5 +1,7 @@
 //! Readers of single values: numbers, texts, lists.
 
+use std::ops::RangeInclusive;
+
 use toml::de::{DeArray, DeValue};
 
 /// The way in which a value does not fit.
@@ -50,10 +52,12 @@ pub(crate) fn integer(value: &DeValue<'_>) -> Result<i64, Misfit> {
 }
 
 /// A whole number from 1 to `most`.
-pub(crate) fn count_up_to(most: usize) -> impl FnOnce(&DeValue<'_>) -> Result<usize, Misfit> {
+pub(crate) fn count_within(
+    range: RangeInclusive<usize>,
+) -> impl FnOnce(&DeValue<'_>) -> Result<usize, Misfit> {
     move |value| {
         let count = usize::try_from(integer(value)?).map_err(|_| Misfit::Value)?;
-        satisfying(count, |count| (1..=most).contains(count))
+        satisfying(count, |count| range.contains(count))
     }
 }
 
@@ -101,10 +105,10 @@ mod tests {
 
     #[test]
     fn counts_are_whole_and_bounded() {
-        assert_eq!(read("3", count_up_to(3)), Ok(3));
-        assert_eq!(read("4", count_up_to(3)), Err(Misfit::Value));
-        assert_eq!(read("0", count_up_to(3)), Err(Misfit::Value));
-        assert_eq!(read("-1", count_up_to(3)), Err(Misfit::Value));
-        assert_eq!(read("2.0", count_up_to(3)), Err(Misfit::Type));
+        assert_eq!(read("3", count_within(1..=3)), Ok(3));
+        assert_eq!(read("4", count_within(1..=3)), Err(Misfit::Value));
+        assert_eq!(read("0", count_within(1..=3)), Err(Misfit::Value));
+        assert_eq!(read("-1", count_within(1..=3)), Err(Misfit::Value));
+        assert_eq!(read("2.0", count_within(1..=3)), Err(Misfit::Type));
     }
 }

@@ -5,7 +5,7 @@ use std::ops::{Bound, RangeBounds};
 use toml::de::DeValue;
 
 use super::description::{Shape, TableDescription};
-use super::value::{Misfit, boolean, count_up_to, finite, list, satisfying, text};
+use super::value::{Misfit, boolean, count_within, finite, list, satisfying, text};
 
 /// A kind of values, in words and as data.
 pub(crate) trait Kind: Copy + Sync {
@@ -90,19 +90,20 @@ impl Written for Number {
     }
 }
 
-/// A whole number from 1 to a largest one.
+/// A whole number from a least to a largest one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Count {
+    pub(crate) least: usize,
     pub(crate) most: usize,
 }
 
 impl Kind for Count {
     fn expected(&self) -> String {
-        format!("a whole number from 1 to {}", self.most)
+        format!("a whole number from {} to {}", self.least, self.most)
     }
 
     fn shape(&self) -> Shape {
-        Shape::Whole(1, Some(self.most as u64))
+        Shape::Whole(self.least as u64, Some(self.most as u64))
     }
 }
 
@@ -110,7 +111,7 @@ impl Values for Count {
     type Read = usize;
 
     fn read(&self, value: &DeValue<'_>) -> Result<usize, Misfit> {
-        count_up_to(self.most)(value)
+        count_within(self.least..=self.most)(value)
     }
 }
 

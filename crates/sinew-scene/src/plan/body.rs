@@ -128,6 +128,12 @@ fn material(region: &Region, facts: &RegionFacts) -> Vec<String> {
         facts.tets, region.density
     );
     let mut lines = vec![format!("{head}, {}", region.law)];
+    if region.element.has_patches() {
+        lines.push(format!(
+            "element {}, in {} patches",
+            region.element, facts.patches
+        ));
+    }
     lines.extend(facts.network.map(|network| {
         let youngs_modulus = region.law.youngs_modulus();
         let share = |modulus: f64| short(modulus / youngs_modulus);

@@ -124,7 +124,13 @@ fn otherwise(key: &KeyDescription, table: &TableDescription) -> String {
         .filter_map(|condition| match condition.goes {
             Goes::With(other) => Some(format!("only with `{other}`")),
             Goes::Without(other) => Some(format!("not with `{other}`")),
-            Goes::If(other, word) => Some(format!("only with `{other} = \"{word}\"`")),
+            Goes::If(other, words) => {
+                let words: Vec<String> = words
+                    .iter()
+                    .map(|word| format!("`{other} = \"{word}\"`"))
+                    .collect();
+                Some(format!("only with {}", words.join(" or ")))
+            }
             Goes::Never => None,
         });
     let parts: Vec<String> = std::iter::once(stated).chain(goes).collect();

@@ -95,8 +95,11 @@ fn holds(condition: &Condition) -> Option<Value> {
     match condition.goes {
         Goes::With(other) => Some(json!({ "required": [other] })),
         Goes::Without(other) => Some(json!({ "not": { "required": [other] } })),
-        Goes::If(other, word) => {
+        Goes::If(other, [word]) => {
             Some(json!({ "properties": { other: { "const": word } }, "required": [other] }))
+        }
+        Goes::If(other, words) => {
+            Some(json!({ "properties": { other: { "enum": words } }, "required": [other] }))
         }
         Goes::Never => None,
     }

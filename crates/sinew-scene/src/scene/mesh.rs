@@ -136,7 +136,10 @@ const CUBES: TableDescription = TableDescription {
 const CELLS: Key<Count> = Key::required(
     "cells",
     "Cells along each edge. A cube of n cells has 6 n^3 tetrahedra.",
-    Count { most: MOST_CELLS },
+    Count {
+        least: 1,
+        most: MOST_CELLS,
+    },
 );
 
 const EDGE: Key<Number> = Key::required(
@@ -168,6 +171,7 @@ const CELLS_OF_BLOCK: Key<Vector<Count, usize>> = Key::required(
     Vector {
         expected: "three whole numbers above 0 with a product of at most 1000000",
         of: Count {
+            least: 1,
             most: MOST_CELLS_IN_ALL,
         },
         fits: are_not_too_many,

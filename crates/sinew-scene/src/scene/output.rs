@@ -162,7 +162,10 @@ const FRAMES: Key<Count> = Key::required(
     "frames",
     "Number of intervals into which the run is divided.",
     // A larger number of files would fill a folder that nobody opens.
-    Count { most: 100_000 },
+    Count {
+        least: 1,
+        most: 100_000,
+    },
 );
 
 impl OutputSettings {

@@ -93,7 +93,7 @@ const TO: Key<Vector, Optional> = Key::optional(
 const COUNT: Key<Count, Optional> = Key::optional(
     "count",
     "Number of probes on the line from `point` to `to`, both ends included where there are several.",
-    Count { most: 1000 },
+    Count { least: 1, most: 1000 },
     "one probe at `point`",
 )
 .only(&[Condition::with("to", "needs `to`, the end of the line")]);

@@ -45,8 +45,8 @@ const PULSE: &str = "pulse";
 const TABLE: &str = "table";
 
 /// A key that goes with one kind only.
-const fn with(kind: &'static str) -> Condition {
-    Condition::where_is(KIND.name, kind, "does not go with this kind of ramp")
+const fn with(kinds: &'static [&'static str]) -> Condition {
+    Condition::where_is(KIND.name, kinds, "does not go with this kind of ramp")
 }
 
 const RISE: Key<Number> = Key::required(
@@ -55,7 +55,7 @@ const RISE: Key<Number> = Key::required(
     Number::above_zero("a finite time above 0 s"),
 )
 .unit("s")
-.only(&[with(SIN2)]);
+.only(&[with(&[SIN2])]);
 
 const FROM: Key<Number> = Key::required(
     "from",
@@ -63,7 +63,7 @@ const FROM: Key<Number> = Key::required(
     Number::finite("a finite time in s"),
 )
 .unit("s")
-.only(&[with(PULSE)]);
+.only(&[with(&[PULSE])]);
 
 const TO: Key<Number> = Key::required(
     "to",
@@ -71,7 +71,7 @@ const TO: Key<Number> = Key::required(
     Number::finite("a finite time in s"),
 )
 .unit("s")
-.only(&[with(PULSE)]);
+.only(&[with(&[PULSE])]);
 
 const TIMES: Key<List<Number>> = Key::required(
     "times",
@@ -83,7 +83,7 @@ const TIMES: Key<List<Number>> = Key::required(
     },
 )
 .unit("s")
-.only(&[with(TABLE)]);
+.only(&[with(&[TABLE])]);
 
 const VALUES: Key<List<Number>> = Key::required(
     "values",
@@ -94,7 +94,7 @@ const VALUES: Key<List<Number>> = Key::required(
         least: 0,
     },
 )
-.only(&[with(TABLE)]);
+.only(&[with(&[TABLE])]);
 
 /// The ramp that a table states.
 pub(super) fn read(table: &Table<'_>) -> Result<Ramp, SceneError> {

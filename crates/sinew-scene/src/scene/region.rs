@@ -6,8 +6,8 @@ use sinew_fem::{Element, Law, Region, SpringRule};
 
 use super::selected::{Members, NOT_WHERE, OPTIONAL_GROUP, Selections, WHERE_OF_TETRAHEDRA};
 use crate::decode::{
-    Condition, Flag, Inner, Key, Needs, Number, Optional, Or, Place, Table, TableDescription, Text,
-    Words,
+    Condition, Count, Flag, Inner, Key, Needs, Number, Optional, Or, Place, Table,
+    TableDescription, Text, Words,
 };
 use crate::error::{Fault, SceneError};
 
@@ -22,12 +22,17 @@ pub(super) const REGION: TableDescription = TableDescription {
         &YOUNGS_MODULUS,
         &POISSONS_RATIO,
         &SPRINGS_OF_REGION,
+        &ELEMENT,
+        &EDGE_SHARE,
+        &PATCH,
     ],
     needs: Needs::Any,
     examples: &[
         "[[region]]\ngroup = \"tissue\"\ndensity = 1060.0\nmodel = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\n",
         "[[region]]\nwhere = { box = [[0.0, 0.0, 0.1], [0.2, 0.2, 0.2]] }\ndensity = 1060.0\nmodel = \"springs\"\n\
          youngs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n",
+        "[[region]]\ndensity = 1060.0\nmodel = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.49\n\
+         element = \"fbar-edge\"\nedge_share = 0.9\npatch = 12\n",
     ],
 };
 
@@ -68,8 +73,8 @@ const YOUNGS_MODULUS: Key<Number> = Key::required(
 
 const POISSONS_RATIO: Key<Number> = Key::required(
     "poissons_ratio",
-    "Poisson's ratio: the strain across over the strain along when a bar of the material is pulled. Tetrahedra of constant \
-     strain are too stiff from 0.45 on.",
+    "Poisson's ratio: the strain across over the strain along when a bar of the material is pulled. Plain tetrahedra are too \
+     stiff from 0.4 on; `element = \"fbar-edge\"` mends that.",
     Number::between(
         "a number above -1 and below 0.5",
         Bound::Excluded(-1.0),
@@ -78,7 +83,7 @@ const POISSONS_RATIO: Key<Number> = Key::required(
 )
 .only(&[Condition::where_is(
     MODEL.name,
-    LINEAR_MODEL,
+    &[LINEAR_MODEL],
     "does not go with springs: their Poisson's ratio is 1/4, whatever their stiffness",
 )
 .help("take the key out, or use model = \"linear\"")]);
@@ -90,8 +95,69 @@ const SPRINGS_OF_REGION: Key<Inner> = Key::required(
 )
 .only(&[Condition::where_is(
     MODEL.name,
-    SPRINGS_MODEL,
+    &[SPRINGS_MODEL],
     "does not go with model = \"linear\"",
+)]);
+
+/// Elements without the numbers that go with them.
+#[derive(Clone, Copy, PartialEq)]
+enum ElementName {
+    P1,
+    Fbar,
+    FbarEdge,
+}
+
+const ELEMENT: Key<Words<ElementName>, Or<ElementName>> = Key::or(
+    "element",
+    "The strain that tetrahedra resist. `\"p1\"`: their own, which is constant; they are too stiff in bending, and locked near \
+     incompressibility. `\"fbar\"`: changes of volume are averaged over patches of tetrahedra, which takes the locking away. \
+     `\"fbar-edge\"`: shear is averaged over edges as well, for bending; three to four times the blocks of the matrix, and the same error with far fewer tetrahedra.",
+    Words(&[
+        ("p1", ElementName::P1),
+        (FBAR, ElementName::Fbar),
+        (FBAR_EDGE, ElementName::FbarEdge),
+    ]),
+    ElementName::P1,
+)
+.only(&[Condition::where_is(
+    MODEL.name,
+    &[LINEAR_MODEL],
+    "does not go with springs, which are no elements",
+)]);
+
+const FBAR: &str = "fbar";
+const FBAR_EDGE: &str = "fbar-edge";
+
+const EDGE_SHARE: Key<Number, Or<f64>> = Key::or(
+    "edge_share",
+    "Share of the shear energy that is averaged over edges. The rest keeps single tetrahedra from folding.",
+    Number::between(
+        "a number from 0 to 1",
+        Bound::Included(0.0),
+        Bound::Included(1.0),
+    ),
+    Element::EDGE_SHARE,
+)
+.only(&[Condition::where_is(
+    ELEMENT.name,
+    &[FBAR_EDGE],
+    "goes with element = \"fbar-edge\" only",
+)]);
+
+const PATCH: Key<Count, Optional> = Key::optional(
+    "patch",
+    "Tetrahedra of a patch. Patches grow from the first tetrahedron that is in none, by the neighbour with most nodes in common; \
+     what is left over joins a neighbour. Small ones lock, and their pressures oscillate.",
+    Count {
+        least: Element::SMALLEST_PATCH as usize,
+        most: 1000,
+    },
+    "12, or on a grid the six of each hexahedron",
+)
+.only(&[Condition::where_is(
+    ELEMENT.name,
+    &[FBAR, FBAR_EDGE],
+    "goes with element = \"fbar\" or \"fbar-edge\" only",
 )]);
 
 const SPRINGS: TableDescription = TableDescription {
@@ -182,12 +248,28 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
         MaterialModel::Springs => springs(&table.table(&SPRINGS_OF_REGION)?, youngs_modulus)?,
         MaterialModel::Linear => linear(table, youngs_modulus)?,
     };
+    let element = match model {
+        MaterialModel::Springs => Element::P1,
+        MaterialModel::Linear => element(table)?,
+    };
     Ok(Region {
         group,
         density,
         law,
-        element: Element::P1,
+        element,
     })
+}
+
+fn element(table: &Table<'_>) -> Result<Element, SceneError> {
+    let patch = || Ok(table.read(&PATCH)?.map(|patch| patch as u32));
+    match table.read(&ELEMENT)? {
+        ElementName::P1 => Ok(Element::P1),
+        ElementName::Fbar => Ok(Element::Fbar { patch: patch()? }),
+        ElementName::FbarEdge => Ok(Element::FbarEdge {
+            edge_share: table.read(&EDGE_SHARE)?,
+            patch: patch()?,
+        }),
+    }
 }
 
 fn springs(table: &Table<'_>, youngs_modulus: f64) -> Result<Law, SceneError> {

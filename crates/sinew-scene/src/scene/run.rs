@@ -63,7 +63,10 @@ const DURATION: Key<Number> = Key::required(
 const SAMPLES: Key<Count, Or<usize>> = Key::or(
     "samples",
     "Number of intervals between the instants at which errors are measured by `sinew plan --tolerance` and the bench.",
-    Count { most: 1_000_000 },
+    Count {
+        least: 1,
+        most: 1_000_000,
+    },
     50,
 );
 

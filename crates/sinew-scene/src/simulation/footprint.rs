@@ -14,7 +14,8 @@ pub struct Footprint {
     pub nodes: usize,
     /// Tetrahedra.
     pub tets: usize,
-    /// Blocks of the stiffness matrix: one for each node that moves, and two for each edge between such nodes.
+    /// Blocks of the stiffness matrix: one for each node that moves, and two for each pair of such nodes that are coupled,
+    /// by an edge or because strain is averaged over their neighbourhood.
     pub blocks: usize,
     /// Memory (bytes) of the matrices.
     pub matrix_bytes: usize,
@@ -29,9 +30,10 @@ impl Footprint {
         let held = held(body, mesh);
         let moves = |node: u32| !held[node as usize];
         let cells = held.iter().filter(|held| !**held).count();
-        let edges = mesh.edges().into_iter();
-        let edges = edges.filter(|[a, b]| moves(*a) && moves(*b)).count();
-        let blocks = cells + 2 * edges;
+        let blocks = sinew_fem::smoothed_blocks(mesh, &body.problem).unwrap_or_else(|| {
+            let edges = mesh.edges().into_iter();
+            cells + 2 * edges.filter(|[a, b]| moves(*a) && moves(*b)).count()
+        });
         let dashpots = body.problem.regions.iter().any(|region| {
             matches!(region.law, Law::Springs { damping_ratio, .. } if damping_ratio > 0.0)
         });

@@ -84,7 +84,7 @@ fn misspelt_density() {
         refusal(BODY, "density = 1060.0", "densty = 1060.0"),
         @"
     scene.toml:5: [[region]] 1: unknown key `densty`; did you mean `density`?
-    help: the keys here are `group`, `where`, `density`, `model`, `youngs_modulus`, `poissons_ratio`, `springs`
+    help: the keys here are `group`, `where`, `density`, `model`, `youngs_modulus`, `poissons_ratio`, `springs`, `element`, `edge_share`, `patch`
     "
     );
 }
@@ -266,4 +266,41 @@ fn of_two_unknown_keys_the_first_in_the_file_is_named() {
         message.starts_with("scene.toml:5: [[region]] 1: unknown key `zeta`"),
         "{message}"
     );
+}
+
+/// The refusal of a linear region with these lines.
+fn refused_element(lines: &str) -> String {
+    let springs = "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n";
+    let linear = "model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\n";
+    refusal(BODY, springs, &format!("{linear}{lines}"))
+}
+
+#[test]
+fn element_on_springs() {
+    insta::assert_snapshot!(refusal(BODY, "springs = {", "element = \"fbar\"\nsprings = {"), @r#"scene.toml:8: [[region]] 1: `element` does not go with springs, which are no elements"#);
+}
+
+#[test]
+fn unknown_element() {
+    insta::assert_snapshot!(refused_element("element = \"f-bar\"\n"), @r#"scene.toml:9: [[region]] 1: element = "f-bar": expected "p1", "fbar" or "fbar-edge""#);
+}
+
+#[test]
+fn edge_share_without_edges() {
+    insta::assert_snapshot!(refused_element("element = \"fbar\"\nedge_share = 0.5\n"), @r#"scene.toml:10: [[region]] 1: `edge_share` goes with element = "fbar-edge" only"#);
+}
+
+#[test]
+fn edge_share_above_one() {
+    insta::assert_snapshot!(refused_element("element = \"fbar-edge\"\nedge_share = 1.5\n"), @r#"scene.toml:10: [[region]] 1: edge_share = 1.5: expected a number from 0 to 1"#);
+}
+
+#[test]
+fn patch_of_seven() {
+    insta::assert_snapshot!(refused_element("element = \"fbar\"\npatch = 7\n"), @r#"scene.toml:10: [[region]] 1: patch = 7: expected a whole number from 8 to 1000"#);
+}
+
+#[test]
+fn patch_of_plain_tetrahedra() {
+    insta::assert_snapshot!(refused_element("patch = 12\n"), @r#"scene.toml:9: [[region]] 1: `patch` goes with element = "fbar" or "fbar-edge" only"#);
 }

@@ -61,7 +61,10 @@ impl Spot {
         key.conditions.iter().all(|condition| match condition.goes {
             Goes::With(other) => entries.contains_key(other),
             Goes::Without(other) => !entries.contains_key(other),
-            Goes::If(other, word) => entries[other].as_str() == Some(word),
+            Goes::If(other, words) => {
+                let word = entries.get(other).and_then(Value::as_str);
+                word.is_some_and(|word| words.contains(&word))
+            }
             Goes::Never => false,
         })
     }

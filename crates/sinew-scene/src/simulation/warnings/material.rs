@@ -1,17 +1,18 @@
-//! Materials in which linear tetrahedra lock.
+//! Materials in which plain tetrahedra lock.
 
-use sinew_fem::Law;
+use sinew_fem::{Element, Law};
 
 use super::{Warning, WarningKind};
 use crate::scene::Body;
 
-/// Poisson's ratio beyond which linear tetrahedra are noticeably too stiff.
+/// Poisson's ratio beyond which plain tetrahedra are noticeably too stiff.
 const LOCKS: f64 = 0.4;
 
 /// A warning for each region in which they are.
 pub(super) fn locking(body: &Body) -> Vec<Warning> {
     let regions = body.problem.regions.iter().enumerate();
-    let locking = regions.filter_map(|(index, region)| match region.law {
+    let plain = regions.filter(|(_, region)| region.element == Element::P1);
+    let locking = plain.filter_map(|(index, region)| match region.law {
         Law::Linear { poissons_ratio, .. } if poissons_ratio > LOCKS => {
             Some((index, poissons_ratio))
         }
@@ -21,13 +22,13 @@ pub(super) fn locking(body: &Body) -> Vec<Warning> {
         .map(|(index, ratio)| {
             let (tried, share) = bending(ratio);
             let what = format!(
-                "[[region]] {} has poissons_ratio = {ratio}: near 0.5 linear tetrahedra are stiffer than their \
+                "[[region]] {} has poissons_ratio = {ratio}: near 0.5 plain tetrahedra are stiffer than their \
                  material; at {tried} a beam three to four of them thick bends by {share} % of what it should, at \
                  0.3 by 83 %",
                 index + 1
             );
             let numbers = [("poissons_ratio", ratio), ("bending_percent", share)];
-            let mend = "compare with a finer mesh";
+            let mend = "give the region element = \"fbar-edge\"";
             Warning::new(WarningKind::Locking, what, mend).with(&numbers)
         })
         .collect()
