@@ -97,6 +97,7 @@ mod element;
 mod elements;
 mod error;
 mod graph;
+pub mod hyperelastic;
 mod law;
 mod loads;
 mod lumped;

@@ -10,12 +10,14 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod lanes;
+mod number;
 mod portable;
 mod real;
 mod set;
 
 pub(crate) use at::At;
 pub(crate) use lanes::Lanes;
+pub use number::Number;
 pub(crate) use portable::Array;
 pub use real::Real;
 pub use set::InstructionSet;

@@ -10,7 +10,7 @@ pub(crate) struct Array<T, const N: usize>([T; N]);
 
 /// Whether the build itself has an instruction that multiplies and adds at once; without one the call
 /// would go to a library.
-const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+pub(super) const FUSES: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
 macro_rules! array {
     ($number:ty, $lanes:literal) => {

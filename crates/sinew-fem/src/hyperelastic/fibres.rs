@@ -1,0 +1,219 @@
+//! Fibres that stiffen a material in tension.
+
+use sinew_sparse::simd::Number;
+
+use super::deformation::Deformation;
+use super::parameters::{ParameterError, within};
+use super::tensor::{Tensor, dot};
+
+/// A family of fibres, added to any isotropic law: an energy of `X = kd (I1 - 3) + (1 - 3 kd) (I4 - 1)`, `I4 = |F a0|^2`, which acts where X > 0.
+///
+/// I4 is that of F itself. With the invariant freed of volume change, `J^-2/3 I4`, a sphere stays a sphere under hydrostatic load and the switch of
+/// tension is misplaced (Vergori, Destrade, McGarry and Ogden, Computational Mechanics 52, 2013; Nolan, Gower, Destrade, Ogden and McGarry, Journal of the Mechanical Behavior of
+/// Biomedical Materials 39, 2014); `split` has it, for comparison with programs that do.
+///
+/// Young's modulus and Poisson's ratio of the law are then those across the fibres. At small strain fibres in tension add `4 eta` or `4 k1` (dispersion 0) to the stiffness along them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fibres {
+    stiffening: Stiffening,
+    split: bool,
+}
+
+/// The energy of fibres by their stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stiffening {
+    /// `eta/2 X^2` without dispersion (Bonet and Burton, Computer Methods in Applied Mechanics and Engineering 162, 1998; Taylor, Comas, Cheng, Passenger, Hawkes, Atkinson and Ourselin, Medical Image Analysis 13, 2009).
+    Quadratic {
+        /// Modulus (Pa).
+        eta: f64,
+    },
+    /// `k1/(2 k2) (exp(k2 X^2) - 1)` (Gasser, Ogden and Holzapfel, Journal of the Royal Society Interface 3, 2006).
+    Exponential {
+        /// Modulus (Pa).
+        k1: f64,
+        /// How soon they stiffen.
+        k2: f64,
+        /// kd: 0 for parallel fibres, 1/3 for ones of all directions.
+        dispersion: f64,
+    },
+}
+
+/// Fibres at a deformation.
+#[derive(Clone, Copy, Debug)]
+pub struct FibrePoint<N> {
+    deformation: Deformation<N>,
+    direction: [N; 3],
+    /// X, and 0 in compression.
+    stretch: N,
+    /// First and second derivative of the energy by X.
+    derivatives: [N; 2],
+    /// Half of dX/dF.
+    slope: Tensor<N>,
+    /// `J^-2/3` and `kd I1 + (1 - 3 kd) I4` where X is freed of volume change.
+    split: Option<[N; 2]>,
+}
+
+impl Fibres {
+    /// Fibres that act on the deformation itself.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError`] where a number is outside its range.
+    pub fn new(stiffening: Stiffening) -> Result<Self, ParameterError> {
+        let modulus = "a finite modulus above 0 Pa";
+        match stiffening {
+            Stiffening::Quadratic { eta } => within("eta", eta, modulus, eta > 0.0)?,
+            Stiffening::Exponential { k1, k2, dispersion } => {
+                within("k1", k1, modulus, k1 > 0.0)?;
+                within("k2", k2, "a finite number above 0", k2 > 0.0)?;
+                let inside = (0.0..=1.0 / 3.0).contains(&dispersion);
+                within("dispersion", dispersion, "a number from 0 to 1/3", inside)?;
+            }
+        }
+        let split = false;
+        Ok(Self { stiffening, split })
+    }
+
+    /// The same with invariants freed of volume change, which need J > 0; for comparison.
+    #[must_use]
+    pub fn split(self) -> Self {
+        Self {
+            split: true,
+            ..self
+        }
+    }
+
+    /// kd.
+    #[inline(always)]
+    fn dispersion(&self) -> f64 {
+        match self.stiffening {
+            Stiffening::Quadratic { .. } => 0.0,
+            Stiffening::Exponential { dispersion, .. } => dispersion,
+        }
+    }
+
+    /// Fibres of this direction at rest, a unit vector, at a deformation.
+    #[inline(always)]
+    #[must_use]
+    pub fn at<N: Number>(&self, deformation: &Deformation<N>, direction: [N; 3]) -> FibrePoint<N> {
+        let strain = deformation.twice_green_strain();
+        let along = dot(direction, strain.on(direction));
+        let kd = self.dispersion();
+        let stretch = N::of(kd).mul_add(
+            deformation.first_invariant_change(),
+            N::of(1.0 - 3.0 * kd) * along,
+        );
+        let slope = self.half_slope(deformation.gradient, direction);
+        let one = N::of(1.0);
+        let (stretch, slope, split) = if self.split {
+            let root = deformation.volume_ratio.cbrt();
+            let scale = (root * root).recip();
+            let invariant = stretch + one;
+            let share = N::of(-1.0 / 3.0) * invariant / deformation.volume_ratio;
+            let slope = slope.plus(share, deformation.cofactor).scaled(scale);
+            (scale * invariant - one, slope, Some([scale, invariant]))
+        } else {
+            (stretch, slope, None)
+        };
+        let zero = N::of(0.0);
+        let pulled = stretch.max(zero);
+        let [first, second] = match self.stiffening {
+            Stiffening::Quadratic { eta } => [N::of(eta) * pulled, N::of(eta)],
+            Stiffening::Exponential { k1, k2, .. } => {
+                let square = N::of(k2) * pulled * pulled;
+                let grown = N::of(k1) * square.exp();
+                [grown * pulled, grown * N::of(2.0).mul_add(square, one)]
+            }
+        };
+        FibrePoint {
+            deformation: *deformation,
+            direction,
+            stretch: pulled,
+            derivatives: [first, N::select_le(stretch, zero, zero, second)],
+            slope,
+            split,
+        }
+    }
+
+    /// `kd T + (1 - 3 kd) T a0 (x) a0`: half the derivative of kd I1 + (1 - 3 kd) I4 at T = F, and its change where T is that of F.
+    #[inline(always)]
+    fn half_slope<N: Number>(&self, tensor: Tensor<N>, direction: [N; 3]) -> Tensor<N> {
+        let kd = self.dispersion();
+        let along = Tensor::outer(tensor.on(direction), direction);
+        tensor.scaled(N::of(kd)).plus(N::of(1.0 - 3.0 * kd), along)
+    }
+
+    /// The energy density (J/m^3).
+    #[inline(always)]
+    pub fn energy<N: Number>(&self, at: &FibrePoint<N>) -> N {
+        let square = at.stretch * at.stretch;
+        match self.stiffening {
+            Stiffening::Quadratic { eta } => N::of(0.5 * eta) * square,
+            Stiffening::Exponential { k1, k2, .. } => {
+                N::of(0.5 * k1 / k2) * (N::of(k2) * square).exp_m1()
+            }
+        }
+    }
+
+    /// The first Piola-Kirchhoff stress (Pa).
+    #[inline(always)]
+    pub fn stress<N: Number>(&self, at: &FibrePoint<N>) -> Tensor<N> {
+        at.slope.scaled(N::of(2.0) * at.derivatives[0])
+    }
+
+    /// The change of the stress by a change of F. Positive semidefinite unless the invariants are freed of volume change.
+    #[inline(always)]
+    pub fn tangent<N: Number>(&self, at: &FibrePoint<N>, change: Tensor<N>) -> Tensor<N> {
+        let turned = self.half_slope(change, at.direction);
+        let turned = match at.split {
+            None => turned,
+            Some([scale, invariant]) => {
+                let d = &at.deformation;
+                let third = N::of(1.0 / 3.0);
+                let over = d.volume_ratio.recip();
+                let relative = over * d.cofactor.contracted(change);
+                let half = self.half_slope(d.gradient, at.direction).contracted(change);
+                let of_cofactor = over * third * (invariant * relative - half - half);
+                turned
+                    .plus(of_cofactor, d.cofactor)
+                    .plus(-(third * invariant * over), d.cofactor_change(change))
+                    .scaled(scale)
+                    .plus(N::of(-2.0) * third * relative, at.slope)
+            }
+        };
+        let [first, second] = at.derivatives;
+        let along = N::of(4.0) * second * at.slope.contracted(change);
+        turned.scaled(N::of(2.0) * first).plus(along, at.slope)
+    }
+
+    /// A positive semidefinite tangent: the exact one, or where the invariants are freed of volume change only what the second derivative of the energy
+    /// brings.
+    #[inline(always)]
+    pub fn semidefinite_tangent<N: Number>(
+        &self,
+        at: &FibrePoint<N>,
+        change: Tensor<N>,
+    ) -> Tensor<N> {
+        if at.split.is_none() {
+            return self.tangent(at, change);
+        }
+        let along = N::of(4.0) * at.derivatives[1] * at.slope.contracted(change);
+        at.slope.scaled(along)
+    }
+
+    /// A node's own block of [`Self::semidefinite_tangent`], for each m^3.
+    #[inline(always)]
+    pub fn node_block<N: Number>(&self, at: &FibrePoint<N>, gradient: [N; 3]) -> Tensor<N> {
+        let [first, second] = at.derivatives;
+        let along = at.slope.on(gradient);
+        let block = Tensor::outer(along, along).scaled(N::of(4.0) * second);
+        if at.split.is_some() {
+            return block;
+        }
+        let kd = self.dispersion();
+        let across = dot(gradient, at.direction);
+        let length = N::of(1.0 - 3.0 * kd) * across * across;
+        let length = N::of(kd).mul_add(dot(gradient, gradient), length);
+        block + Tensor::diagonal(N::of(2.0) * first * length)
+    }
+}

@@ -1,0 +1,221 @@
+//! Laws of large deformation and what every one of them can tell.
+
+use std::fmt::Debug;
+use std::ops::Deref;
+
+use sinew_sparse::simd::Number;
+
+use super::deformation::Deformation;
+use super::tensor::{Tensor, dot};
+
+/// Volume ratio J below which a law that is not defined for inverted elements is refused.
+pub const SMALLEST_VOLUME_RATIO: f64 = 1e-6;
+
+/// A hyperelastic law of an isotropic material.
+///
+/// The energy density is `psi = psi_local(F) + lambda/2 theta(F)^2`: elements that do not lock average the dilation theta over
+/// patches of tetrahedra. So the local part has the whole shear modulus and the bulk modulus 2 mu/3 at small strain, which
+/// keeps it positive by itself, and `lambda` is Lame's first constant.
+///
+/// A law is written over any [`Number`]: the same text serves f64, f32 and vectors. Stresses are first Piola-Kirchhoff ones, `P = d psi/dF`
+/// (Pa), and the tangent is their change by a change of F.
+///
+/// [`super::conformance`] checks a law.
+pub trait HyperelasticLaw: Copy + Debug + Send + Sync + 'static {
+    /// Its name in scenes.
+    const ID: &'static str;
+    /// Whether it is defined where J <= 0.
+    const DEFINED_WHEN_INVERTED: bool;
+    /// The tangent that its node blocks belong to.
+    const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
+
+    /// What it computes once for a deformation.
+    type Own<N: Number>: Copy + Debug;
+
+    /// Lame's constants (lambda, mu) (Pa) at small strain.
+    fn lame(&self) -> (f64, f64);
+
+    /// What it computes once for a deformation.
+    fn own<N: Number>(&self, deformation: &Deformation<N>) -> Self::Own<N>;
+
+    /// The local energy density (J/m^3).
+    fn energy<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> N;
+
+    /// The local stress.
+    fn stress<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> Tensor<N>;
+
+    /// The change of the local stress by a change of F.
+    fn tangent<N: Number>(&self, at: &Point<N, Self::Own<N>>, change: Tensor<N>) -> Tensor<N>;
+
+    /// As [`Self::tangent`] with rotations held fast, which is positive semidefinite; for laws that have a rotation.
+    #[inline(always)]
+    fn frozen_tangent<N: Number>(
+        &self,
+        _at: &Point<N, Self::Own<N>>,
+        _change: Tensor<N>,
+    ) -> Option<Tensor<N>> {
+        None
+    }
+
+    /// theta, which is tr(eps) at small strain; `J - 1` unless the law has another.
+    #[inline(always)]
+    fn dilation<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> N {
+        at.volume_change
+    }
+
+    /// d theta/dF.
+    #[inline(always)]
+    fn dilation_gradient<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> Tensor<N> {
+        at.cofactor
+    }
+
+    /// The change of d theta/dF by a change of F.
+    #[inline(always)]
+    fn dilation_tangent<N: Number>(
+        &self,
+        at: &Point<N, Self::Own<N>>,
+        change: Tensor<N>,
+    ) -> Tensor<N> {
+        at.cofactor_change(change)
+    }
+
+    /// A node's own block by the gradient g of its shape function, for each m^3: `B_ik = g_J H_iJkL g_L`, of the local energy and `bulk`.
+    /// Symmetric and positive semidefinite in any state.
+    fn node_block<N: Number>(
+        &self,
+        at: &Point<N, Self::Own<N>>,
+        bulk: Bulk<N>,
+        gradient: [N; 3],
+    ) -> Tensor<N>;
+
+    /// The deformation with what the law computes once for it.
+    #[inline(always)]
+    fn at<N: Number>(&self, displacement_gradient: Tensor<N>) -> Point<N, Self::Own<N>> {
+        let deformation = Deformation::of(displacement_gradient);
+        let own = self.own(&deformation);
+        Point { deformation, own }
+    }
+
+    /// Whether the law is defined for a deformation, in all lanes.
+    #[inline(always)]
+    fn admits<N: Number>(&self, deformation: &Deformation<N>) -> bool {
+        let smallest = N::of(SMALLEST_VOLUME_RATIO);
+        Self::DEFINED_WHEN_INVERTED || N::all_le(smallest, deformation.volume_ratio)
+    }
+
+    /// The volumetric part of a tetrahedron that is averaged with no other.
+    #[inline(always)]
+    fn own_bulk<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> Bulk<N> {
+        let modulus = N::of(self.lame().0);
+        Bulk {
+            stress: modulus * self.dilation(at),
+            modulus,
+        }
+    }
+
+    /// The energy density of a tetrahedron that is averaged with no other (J/m^3).
+    #[inline(always)]
+    fn whole_energy<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> N {
+        let half = N::of(0.5) * self.dilation(at);
+        half.mul_add(self.own_bulk(at).stress, self.energy(at))
+    }
+
+    /// The local stress and that of the dilation.
+    #[inline(always)]
+    fn stress_with<N: Number>(&self, at: &Point<N, Self::Own<N>>, bulk: Bulk<N>) -> Tensor<N> {
+        self.stress(at)
+            .plus(bulk.stress, self.dilation_gradient(at))
+    }
+
+    /// The change of [`Self::stress_with`] by a change of F, the stress of the dilation changing with its modulus.
+    #[inline(always)]
+    fn tangent_with<N: Number>(
+        &self,
+        at: &Point<N, Self::Own<N>>,
+        bulk: Bulk<N>,
+        change: Tensor<N>,
+    ) -> Tensor<N> {
+        let gradient = self.dilation_gradient(at);
+        self.tangent(at, change)
+            .plus(bulk.stress, self.dilation_tangent(at, change))
+            .plus(bulk.modulus * gradient.contracted(change), gradient)
+    }
+
+    /// As [`Self::tangent_with`] with rotations held fast; for laws that have a rotation.
+    #[inline(always)]
+    fn frozen_tangent_with<N: Number>(
+        &self,
+        at: &Point<N, Self::Own<N>>,
+        bulk: Bulk<N>,
+        change: Tensor<N>,
+    ) -> Option<Tensor<N>> {
+        let gradient = self.dilation_gradient(at);
+        let volumetric = bulk.modulus * gradient.contracted(change);
+        let local = self.frozen_tangent(at, change)?;
+        Some(local.plus(volumetric, gradient))
+    }
+}
+
+/// A deformation with what a law computes once for it.
+#[derive(Clone, Copy, Debug)]
+pub struct Point<N, Own> {
+    /// The deformation.
+    pub deformation: Deformation<N>,
+    /// What the law computes.
+    pub own: Own,
+}
+
+impl<N, Own> Deref for Point<N, Own> {
+    type Target = Deformation<N>;
+
+    #[inline(always)]
+    fn deref(&self) -> &Deformation<N> {
+        &self.deformation
+    }
+}
+
+/// The energy of the dilation, by its derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct Bulk<N> {
+    /// First derivative by theta (Pa): `lambda theta`, where theta may be the mean over a patch.
+    pub stress: N,
+    /// Second derivative by theta of this very tetrahedron (Pa): lambda, or 0 where the mean's share is added elsewhere.
+    pub modulus: N,
+}
+
+impl<N: Number> Bulk<N> {
+    /// No dilational energy.
+    #[inline(always)]
+    #[must_use]
+    pub fn none() -> Self {
+        let zero = N::of(0.0);
+        Self {
+            stress: zero,
+            modulus: zero,
+        }
+    }
+}
+
+/// A tangent that node blocks belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NodeBlock {
+    /// The exact one, whose own blocks are positive semidefinite by themselves.
+    Exact,
+    /// The one with rotations held fast.
+    Frozen,
+    /// The exact one and something positive semidefinite, where that is needed.
+    Majorant,
+}
+
+/// `a |g|^2 I + b (c g)(c g)'`: the block of laws in I1 and J, since `g_J D_iJkL g_L = 0` for D = dc/dF, which is the only indefinite part.
+#[inline(always)]
+pub(super) fn block_of<N: Number>(
+    deformation: &Deformation<N>,
+    gradient: [N; 3],
+    a: N,
+    b: N,
+) -> Tensor<N> {
+    let normal = deformation.cofactor.on(gradient);
+    let identity = Tensor::diagonal(a * dot(gradient, gradient));
+    identity.plus(b, Tensor::outer(normal, normal))
+}

@@ -1,0 +1,52 @@
+//! Laws of large deformation: energies of the deformation gradient, their stresses and tangents.
+//!
+//! ```
+//! use sinew_fem::hyperelastic::{HyperelasticLaw, NeoHookean, Parameters, Tensor};
+//!
+//! let law = NeoHookean::new(&Parameters::new(3500.0, 0.45))?; // Pa
+//! // Held at the sides and pressed to .9 of its height.
+//! let at = law.at(Tensor::of([[0.0; 3], [0.0; 3], [0.0, 0.0, -0.1]]));
+//! let stress = law.stress_with(&at, law.own_bulk(&at));
+//! let (lambda, mu) = law.lame();
+//! let expected: f64 = mu * (0.9 - 1.0 / 0.9) - 0.1 * lambda;
+//! assert!((stress.0[2][2] - expected).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+#[cfg(any(test, feature = "conformance"))]
+pub mod closed_forms;
+#[cfg(any(test, feature = "conformance"))]
+pub mod conformance;
+mod corotational;
+mod decomposition;
+mod deformation;
+pub mod fibres;
+mod kinds;
+mod law;
+mod mooney_rivlin;
+mod neo_hookean;
+mod neo_hookean_iso;
+mod neo_hookean_log;
+mod parameters;
+mod projection;
+pub mod prony;
+mod stable_neo_hookean;
+mod stable_neo_hookean_log;
+mod stvk;
+mod tensor;
+
+pub use corotational::Corotational;
+pub use decomposition::SingularValues;
+pub use deformation::Deformation;
+pub use kinds::{Hyperelastic, LawError, LawVisitor};
+pub use law::{Bulk, HyperelasticLaw, NodeBlock, Point, SMALLEST_VOLUME_RATIO};
+pub use mooney_rivlin::MooneyRivlin;
+pub use neo_hookean::NeoHookean;
+pub use neo_hookean_iso::NeoHookeanIso;
+pub use neo_hookean_log::NeoHookeanLog;
+pub use parameters::{ParameterError, Parameters};
+pub use projection::{Linearised, Projection, TangentKind};
+pub use stable_neo_hookean::StableNeoHookean;
+pub use stable_neo_hookean_log::StableNeoHookeanLog;
+pub use stvk::Stvk;
+pub use tensor::Tensor;

@@ -1,0 +1,231 @@
+//! The law of Mooney and Rivlin.
+
+use sinew_sparse::simd::Number;
+
+use super::deformation::Deformation;
+use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point, block_of};
+use super::parameters::{ParameterError, Parameters};
+use super::tensor::Tensor;
+
+/// `psi = C1 (J^-2/3 I1 - 3) + C2 (J^-4/3 I2 - 3) + kappa/2 (J - 1)^2` with `mu = 2 (C1 + C2)` and `kappa = lambda + 2/3 mu`.
+///
+/// Mooney (Journal of Applied Physics 11, 1940) and Rivlin (Philosophical Transactions of the Royal Society A 241, 1948), the invariants
+/// without change of volume after Flory (Transactions of the Faraday Society 57, 1961).
+///
+/// For rubber-like material whose curve of a tension test bends more than the neo-Hookean one: gels and phantoms. Not where elements may invert: refused
+/// at J <= 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MooneyRivlin {
+    lambda: f64,
+    c1: f64,
+    c2: f64,
+}
+
+impl MooneyRivlin {
+    /// The law with these moduli at small strain.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError`] where a parameter is outside its range or missing.
+    pub fn new(parameters: &Parameters) -> Result<Self, ParameterError> {
+        let (lambda, mu, ratio) = parameters.moduli_and_ratio(Self::ID)?;
+        let c2 = 0.5 * mu / (1.0 + ratio);
+        Ok(Self::of(lambda, ratio * c2, c2))
+    }
+
+    /// The law by its own constants (Pa); C2 may be 0.
+    pub(super) fn of(lambda: f64, c1: f64, c2: f64) -> Self {
+        Self { lambda, c1, c2 }
+    }
+}
+
+/// What a law in the invariants without change of volume computes once.
+#[derive(Clone, Copy, Debug)]
+pub struct Isochoric<N> {
+    /// 1/J.
+    over: N,
+    /// `J^-2/3`.
+    scale: N,
+    /// `F'F - I`.
+    strain: Tensor<N>,
+    /// `I1 - 3`.
+    first: N,
+    /// `I2 - 3`.
+    second: N,
+}
+
+impl<N: Number> Isochoric<N> {
+    #[inline(always)]
+    fn at(deformation: &Deformation<N>) -> Self {
+        let strain = deformation.twice_green_strain();
+        let first = deformation.first_invariant_change();
+        let quadratic = first.mul_add(first, -strain.squared());
+        let cubic_root = deformation.volume_ratio.cbrt();
+        Self {
+            over: deformation.volume_ratio.recip(),
+            scale: (cubic_root * cubic_root).recip(),
+            strain,
+            first,
+            second: N::of(2.0).mul_add(first, N::of(0.5) * quadratic),
+        }
+    }
+
+    /// I1.
+    #[inline(always)]
+    fn i1(&self) -> N {
+        self.first + N::of(3.0)
+    }
+
+    /// I2.
+    #[inline(always)]
+    fn i2(&self) -> N {
+        self.second + N::of(3.0)
+    }
+
+    /// `I / J - 3` for an invariant I.
+    #[inline(always)]
+    fn beyond_rest(&self, invariant_change: N, volume_change: N) -> N {
+        N::of(-3.0).mul_add(volume_change, invariant_change) * self.over
+    }
+
+    /// `B = I1 F - F C`, half of dI2/dF.
+    #[inline(always)]
+    fn second_gradient(&self, gradient: Tensor<N>) -> Tensor<N> {
+        gradient.scaled(self.first + N::of(2.0)) - gradient * self.strain
+    }
+}
+
+impl HyperelasticLaw for MooneyRivlin {
+    const ID: &'static str = "mooney-rivlin";
+    const DEFINED_WHEN_INVERTED: bool = false;
+    const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
+
+    type Own<N: Number> = Isochoric<N>;
+
+    fn lame(&self) -> (f64, f64) {
+        (self.lambda, 2.0 * (self.c1 + self.c2))
+    }
+
+    #[inline(always)]
+    fn own<N: Number>(&self, deformation: &Deformation<N>) -> Isochoric<N> {
+        Isochoric::at(deformation)
+    }
+
+    #[inline(always)]
+    fn energy<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> N {
+        let own = &at.own;
+        let (three, volume) = (N::of(3.0), at.volume_change);
+        // `J^-2/3 - 1` without a difference of large numbers.
+        let shrink = (N::of(-2.0 / 3.0) * volume.ln_1p()).exp_m1();
+        let first = own.scale.mul_add(own.first, three * shrink);
+        let squared = shrink * (shrink + N::of(2.0));
+        let second = (own.scale * own.scale).mul_add(own.second, three * squared);
+        let bulk = N::of(2.0 / 3.0 * (self.c1 + self.c2));
+        (bulk * volume).mul_add(
+            volume,
+            N::of(self.c1).mul_add(first, N::of(self.c2) * second),
+        )
+    }
+
+    /// `2 C1 J^-2/3 (F - I1/(3J) c) + 2 C2 J^-4/3 (B - 2 I2/(3J) c) + 2/3 mu (J - 1) c`.
+    #[inline(always)]
+    fn stress<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> Tensor<N> {
+        let own = &at.own;
+        let (f, volume) = (at.gradient, at.volume_change);
+        let a1 = N::of(2.0 * self.c1) * own.scale;
+        let third = N::of(-1.0 / 3.0);
+        // F - I1/(3J) c, and B - 2 I2/(3J) c, by what is 0 at rest.
+        let first = own.beyond_rest(own.first, volume) * third;
+        let stress = at.distortion.plus(first, at.cofactor).scaled(a1);
+        let bulk = N::of(4.0 / 3.0 * (self.c1 + self.c2)) * volume;
+        let stress = stress.plus(bulk, at.cofactor);
+        if self.c2 == 0.0 {
+            return stress;
+        }
+        let a2 = N::of(2.0 * self.c2) * own.scale * own.scale;
+        let second = own.beyond_rest(own.second, volume) * third;
+        let rest = at.distortion.plus(second, at.cofactor);
+        let strained = f.scaled(own.first) - f * own.strain;
+        stress.plus(a2 + a2, rest).plus(a2, strained)
+    }
+
+    #[inline(always)]
+    fn tangent<N: Number>(&self, at: &Point<N, Isochoric<N>>, change: Tensor<N>) -> Tensor<N> {
+        let own = &at.own;
+        let (f, c) = (at.gradient, at.cofactor);
+        let a1 = N::of(2.0 * self.c1) * own.scale;
+        let volume = c.contracted(change);
+        // dJ/J.
+        let relative = volume * own.over;
+        let turned = at.cofactor_change(change);
+        let third = N::of(1.0 / 3.0);
+        let along = f.contracted(change);
+        let of_c = third * own.over * (N::of(5.0) * third * own.i1() * relative - (along + along));
+        let first = change
+            .plus(N::of(-2.0) * third * relative, f)
+            .plus(of_c, c)
+            .plus(-(third * own.i1() * own.over), turned);
+        let bulk = N::of(4.0 / 3.0 * (self.c1 + self.c2));
+        let tangent = first
+            .scaled(a1)
+            .plus(bulk * volume, c)
+            .plus(bulk * at.volume_change, turned);
+        if self.c2 == 0.0 {
+            return tangent;
+        }
+        let a2 = N::of(2.0 * self.c2) * own.scale * own.scale;
+        let b = own.second_gradient(f);
+        let one_side = f.transposed_times(change);
+        let strain = one_side + one_side.transposed();
+        let db = change.scaled(own.first + N::of(2.0)).plus(along + along, f)
+            - change * own.strain
+            - f * strain;
+        let along = b.contracted(change);
+        let two = N::of(2.0) * third;
+        let of_c = two * own.over * (N::of(7.0) * third * own.i2() * relative - (along + along));
+        let second = db
+            .plus(N::of(-4.0) * third * relative, b)
+            .plus(of_c, c)
+            .plus(-(two * own.i2() * own.over), turned);
+        tangent.plus(a2, second)
+    }
+
+    /// As the exact block, with the coefficient 16/9 in the place of 14/9 in what I2 adds along c g.
+    ///
+    /// The part of I1 is rank-one convex. In that of I2 a vector w meets `|D[w g']|^2 - 8/3 (B : w g') n + 14/9 I2 n^2`, n being `c : w g'/J`. As
+    /// `B : w g' = c : D[w g']` and `c : c = I2`, it is a square and so not below 0 with 16/9, which with 14/9 it may be
+    /// (Hartmann and Neff, International Journal of Solids and Structures 40, 2003).
+    #[inline(always)]
+    fn node_block<N: Number>(
+        &self,
+        at: &Point<N, Isochoric<N>>,
+        bulk: Bulk<N>,
+        gradient: [N; 3],
+    ) -> Tensor<N> {
+        let own = &at.own;
+        let (f, c) = (at.gradient, at.cofactor);
+        let a1 = N::of(2.0 * self.c1) * own.scale;
+        let squared = own.over * own.over;
+        let of_volume = N::of(4.0 / 3.0 * (self.c1 + self.c2)) + bulk.modulus;
+        let first = a1 * N::of(5.0 / 9.0) * own.i1() * squared;
+        let (along, normal) = (f.on(gradient), c.on(gradient));
+        let mixed = Tensor::outer(along, normal).symmetric();
+        let block = block_of(at, gradient, a1, first + of_volume)
+            .plus(N::of(-4.0 / 3.0) * a1 * own.over, mixed);
+        if self.c2 == 0.0 {
+            return block;
+        }
+        let a2 = N::of(2.0 * self.c2) * own.scale * own.scale;
+        // |D[w g']|^2 = w . (sum over k of D[e_k g']:D[e_l g']) w.
+        let unit = Tensor::<N>::identity().0;
+        let turned = unit.map(|axis| at.cofactor_change(Tensor::outer(axis, gradient)));
+        let turning = Tensor(turned.map(|a| turned.map(|b| a.contracted(b))));
+        let sloped = own.second_gradient(f).on(gradient);
+        let mixed = Tensor::outer(sloped, normal).symmetric();
+        let second = N::of(16.0 / 9.0) * own.i2() * squared;
+        block
+            .plus(a2, turning)
+            .plus(N::of(-8.0 / 3.0) * a2 * own.over, mixed)
+            .plus(a2 * second, Tensor::outer(normal, normal))
+    }
+}

@@ -1,0 +1,73 @@
+//! The neo-Hookean law in the invariant without change of volume.
+
+use sinew_sparse::simd::Number;
+
+use super::deformation::Deformation;
+use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
+use super::mooney_rivlin::{Isochoric, MooneyRivlin};
+use super::parameters::{ParameterError, Parameters};
+use super::tensor::Tensor;
+
+/// `psi = mu/2 (J^-2/3 I1 - 3) + kappa/2 (J - 1)^2`: [`MooneyRivlin`] with C2 = 0.
+///
+/// The form of NiftySim and FEBio (Taylor, Cheng and Ourselin, IEEE Transactions on Medical Imaging 27, 2008), for comparison with them, and where a deviatoric part is needed by itself.
+/// Otherwise [`super::NeoHookean`], which needs no cubic root.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NeoHookeanIso {
+    base: MooneyRivlin,
+}
+
+impl NeoHookeanIso {
+    /// The law with these moduli at small strain.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError`] where a parameter is outside its range or another law's.
+    pub fn new(parameters: &Parameters) -> Result<Self, ParameterError> {
+        let (lambda, mu) = parameters.moduli(Self::ID)?;
+        let base = MooneyRivlin::of(lambda, 0.5 * mu, 0.0);
+        Ok(Self { base })
+    }
+}
+
+impl HyperelasticLaw for NeoHookeanIso {
+    const ID: &'static str = "neo-hookean-iso";
+    const DEFINED_WHEN_INVERTED: bool = false;
+    const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
+
+    type Own<N: Number> = Isochoric<N>;
+
+    fn lame(&self) -> (f64, f64) {
+        self.base.lame()
+    }
+
+    #[inline(always)]
+    fn own<N: Number>(&self, deformation: &Deformation<N>) -> Isochoric<N> {
+        self.base.own(deformation)
+    }
+
+    #[inline(always)]
+    fn energy<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> N {
+        self.base.energy(at)
+    }
+
+    #[inline(always)]
+    fn stress<N: Number>(&self, at: &Point<N, Isochoric<N>>) -> Tensor<N> {
+        self.base.stress(at)
+    }
+
+    #[inline(always)]
+    fn tangent<N: Number>(&self, at: &Point<N, Isochoric<N>>, change: Tensor<N>) -> Tensor<N> {
+        self.base.tangent(at, change)
+    }
+
+    #[inline(always)]
+    fn node_block<N: Number>(
+        &self,
+        at: &Point<N, Isochoric<N>>,
+        bulk: Bulk<N>,
+        gradient: [N; 3],
+    ) -> Tensor<N> {
+        self.base.node_block(at, bulk, gradient)
+    }
+}

@@ -1,0 +1,142 @@
+//! Tangents by kind, and the projection that makes one positive semidefinite.
+
+use sinew_sparse::simd::Number;
+
+use super::decomposition::SingularValues;
+use super::law::{Bulk, HyperelasticLaw, Point};
+use super::tensor::Tensor;
+
+/// A kind of tangent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TangentKind {
+    /// The derivative of the stress, which may have negative eigenvalues.
+    Exact,
+    /// The positive semidefinite tensor nearest to it.
+    Projected,
+    /// The one with rotations held fast, for laws that have a rotation; else the projected one.
+    Frozen,
+}
+
+/// The tangent of a law at a deformation.
+#[derive(Clone, Copy, Debug)]
+pub struct Linearised<'a, N: Number, L: HyperelasticLaw> {
+    law: &'a L,
+    at: &'a Point<N, L::Own<N>>,
+    bulk: Bulk<N>,
+    /// `None` where the law's own form serves.
+    projection: Option<Projection<N>>,
+    is_exact: bool,
+}
+
+impl<'a, N: Number, L: HyperelasticLaw> Linearised<'a, N, L> {
+    /// The tangent of the local energy and of the dilation. A projection costs nine exact tangents and singular values, once.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(law: &'a L, at: &'a Point<N, L::Own<N>>, bulk: Bulk<N>, kind: TangentKind) -> Self {
+        let freezes = || law.frozen_tangent(at, Tensor::zero()).is_some();
+        let is_projected = match kind {
+            TangentKind::Exact => false,
+            TangentKind::Projected => true,
+            TangentKind::Frozen => !freezes(),
+        };
+        let exact = |change| law.tangent_with(at, bulk, change);
+        Self {
+            law,
+            at,
+            bulk,
+            projection: is_projected.then(|| Projection::of(at.gradient, exact)),
+            is_exact: kind == TangentKind::Exact,
+        }
+    }
+
+    /// The change of the stress by a change of F.
+    #[inline(always)]
+    #[must_use]
+    pub fn on(&self, change: Tensor<N>) -> Tensor<N> {
+        if let Some(projection) = &self.projection {
+            return projection.on(change);
+        }
+        let exact = || self.law.tangent_with(self.at, self.bulk, change);
+        if self.is_exact {
+            return exact();
+        }
+        let frozen = self.law.frozen_tangent_with(self.at, self.bulk, change);
+        frozen.unwrap_or_else(exact)
+    }
+}
+
+/// The positive semidefinite tensor nearest to the tangent of an isotropic energy.
+///
+/// In the axes of the singular values of F the nine directions fall into three stretches and, for each pair of axes, a twist and a flip
+/// that are eigenvectors for every isotropic energy (Smith, de Goes and Kim, Analytic eigensystems for isotropic distortion energies,
+/// ACM Transactions on Graphics 38(1), 2019). So what remains is a symmetric 3x3 tensor and six numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Projection<N> {
+    left: Tensor<N>,
+    right: Tensor<N>,
+    stretches: Tensor<N>,
+    /// Eigenvalues of the twist and the flip of the axes (0, 1), (0, 2) and (1, 2).
+    pairs: [[N; 2]; 3],
+}
+
+const PAIRS: [[usize; 2]; 3] = [[0, 1], [0, 2], [1, 2]];
+
+impl<N: Number> Projection<N> {
+    /// The projection of an isotropic energy's tangent at the deformation gradient, or of the sum of some.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(gradient: Tensor<N>, tangent: impl Fn(Tensor<N>) -> Tensor<N>) -> Self {
+        let SingularValues { left, right, .. } = SingularValues::of(gradient);
+        let basis = |i: usize, j: usize| Tensor::outer(left[i], right[j]);
+        let stretches = [0, 1, 2].map(|i| {
+            let changed = tangent(basis(i, i));
+            [0, 1, 2].map(|j| basis(j, j).contracted(changed))
+        });
+        let zero = N::of(0.0);
+        let pairs = PAIRS.map(|[i, j]| {
+            let changed = tangent(basis(i, j));
+            let own = basis(i, j).contracted(changed);
+            let other = basis(j, i).contracted(changed);
+            [(own - other).max(zero), (own + other).max(zero)]
+        });
+        Self {
+            left: Tensor::from_columns(left),
+            right: Tensor::from_columns(right),
+            stretches: semidefinite(Tensor(stretches).symmetric()),
+            pairs,
+        }
+    }
+
+    /// The change of the stress by a change of F.
+    #[inline(always)]
+    #[must_use]
+    pub fn on(&self, change: Tensor<N>) -> Tensor<N> {
+        let turned = self.left.transposed_times(change) * self.right;
+        let [[xx, ..], [_, yy, _], [.., zz]] = turned.0;
+        let [x, y, z] = self.stretches.on([xx, yy, zz]);
+        let mut result = Tensor::zero();
+        result.0[0][0] = x;
+        result.0[1][1] = y;
+        result.0[2][2] = z;
+        for ([i, j], [twist, flip]) in PAIRS.into_iter().zip(self.pairs) {
+            let (a, b) = (turned.0[i][j], turned.0[j][i]);
+            let half = N::of(0.5);
+            let (skew, symmetric) = (half * twist * (a - b), half * flip * (a + b));
+            result.0[i][j] = symmetric + skew;
+            result.0[j][i] = symmetric - skew;
+        }
+        (self.left * result).times_transposed(self.right)
+    }
+}
+
+/// A symmetric tensor without its negative eigenvalues: half the sum of the tensor and its positive square root's square, which is `V |s| V'`.
+#[inline(always)]
+fn semidefinite<N: Number>(tensor: Tensor<N>) -> Tensor<N> {
+    let SingularValues { values, right, .. } = SingularValues::of(tensor);
+    let half = N::of(0.5);
+    let mut sum = tensor.scaled(half);
+    for (value, axis) in values.into_iter().zip(right) {
+        sum = sum.plus(half * value.abs(), Tensor::outer(axis, axis));
+    }
+    sum
+}

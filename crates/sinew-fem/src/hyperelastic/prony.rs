@@ -1,0 +1,153 @@
+//! Linear viscoelasticity at large deformation, by a Prony series.
+
+use sinew_sparse::simd::Number;
+
+use super::deformation::Deformation;
+use super::parameters::{ParameterError, within};
+use super::tensor::Tensor;
+
+/// A symmetric tensor: xx, yy, zz, xy, yz, zx.
+pub type Symmetric<N> = [N; 6];
+
+/// A part of the stress that relaxes: `S = (1 - sum g) S0 + sum h_i`, S0 being the second Piola-Kirchhoff stress (Pa) of the elastic law and each h_i the memory of
+/// a term, `h_i' = g_i S0' - h_i/tau_i` (Simo, Computer Methods in Applied Mechanics and Engineering 60, 1987).
+///
+/// Its memory is S0 and h of the last step, six numbers each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Term {
+    /// g: the share of the instantaneous stress that relaxes.
+    pub share: f64,
+    /// tau: the time in which it falls to 1/e (s).
+    pub time: f64,
+}
+
+/// What a step makes of a term.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TermStep {
+    /// `e^-x`, x = dt/tau.
+    decay: f64,
+    /// `g (1 - e^-x)/x`.
+    gain: f64,
+}
+
+/// Refuses terms outside their ranges.
+///
+/// # Errors
+///
+/// [`ParameterError`] where a share or a time is not above 0, or where nothing of the stress would stay.
+pub fn check(terms: &[Term]) -> Result<(), ParameterError> {
+    for term in terms {
+        let expected = "a finite number above 0";
+        within("share", term.share, expected, term.share > 0.0)?;
+        within(
+            "time",
+            term.time,
+            "a finite time above 0 s",
+            term.time > 0.0,
+        )?;
+    }
+    let sum = relaxing(terms);
+    within("sum of shares", sum, "a sum below 1", sum < 1.0)
+}
+
+/// The share of the instantaneous stress that relaxes: sum g.
+#[must_use]
+pub fn relaxing(terms: &[Term]) -> f64 {
+    terms.iter().map(|term| term.share).sum()
+}
+
+/// The factor from long-term moduli to the instantaneous ones that laws have.
+#[must_use]
+pub fn instantaneous_over_longterm(terms: &[Term]) -> f64 {
+    1.0 / (1.0 - relaxing(terms))
+}
+
+impl Term {
+    /// What a step of dt (s), 0 or above, makes of the term.
+    #[must_use]
+    pub fn over(&self, dt: f64) -> TermStep {
+        let x = dt / self.time;
+        let lost = -(-x).exp_m1();
+        let mean = if x > 0.0 { lost / x } else { 1.0 };
+        TermStep {
+            decay: (-x).exp(),
+            gain: self.share * mean,
+        }
+    }
+
+    /// The memory after a change of S0 that takes no time. As a step it would lose a part of it.
+    #[inline(always)]
+    #[must_use]
+    pub fn jump<N: Number>(&self, memory: Symmetric<N>, change: Symmetric<N>) -> Symmetric<N> {
+        let share = N::of(self.share);
+        plus(memory, share, change)
+    }
+}
+
+impl TermStep {
+    /// The memory after the step, by that before it and the change of S0 over it: exact where S0 is linear in time over the step
+    /// (Taylor, Pister and Goudreau, International Journal for Numerical Methods in Engineering 2, 1970).
+    #[inline(always)]
+    #[must_use]
+    pub fn next<N: Number>(&self, memory: Symmetric<N>, change: Symmetric<N>) -> Symmetric<N> {
+        let decay = N::of(self.decay);
+        plus(memory.map(|entry| entry * decay), N::of(self.gain), change)
+    }
+}
+
+/// The stress: what stays of S0, and the memories of all terms.
+#[inline(always)]
+#[must_use]
+pub fn stress<N: Number>(
+    terms: &[Term],
+    instantaneous: Symmetric<N>,
+    memories: &[Symmetric<N>],
+) -> Symmetric<N> {
+    let stays = N::of(1.0 - relaxing(terms));
+    let mut stress = instantaneous.map(|entry| entry * stays);
+    for &memory in memories {
+        stress = plus(stress, N::of(1.0), memory);
+    }
+    stress
+}
+
+/// The derivative of the stress by S0 at the end of a step.
+#[must_use]
+pub fn tangent_factor(terms: &[Term], dt: f64) -> f64 {
+    let gains: f64 = terms.iter().map(|term| term.over(dt).gain).sum();
+    1.0 - relaxing(terms) + gains
+}
+
+/// The second Piola-Kirchhoff stress `F^-1 P` of a first one; J must not be 0.
+#[inline(always)]
+#[must_use]
+pub fn second_piola<N: Number>(deformation: &Deformation<N>, first: Tensor<N>) -> Symmetric<N> {
+    let over = deformation.volume_ratio.recip();
+    let second = deformation.cofactor.transposed_times(first).scaled(over);
+    let [[xx, xy, zx], [_, yy, yz], [.., zz]] = second.0;
+    [xx, yy, zz, xy, yz, zx]
+}
+
+/// The first Piola-Kirchhoff stress `F S` of a second one.
+#[inline(always)]
+#[must_use]
+pub fn first_piola<N: Number>(deformation: &Deformation<N>, second: Symmetric<N>) -> Tensor<N> {
+    let [xx, yy, zz, xy, yz, zx] = second;
+    deformation.gradient * Tensor([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
+}
+
+/// The deviatoric part `P - (P : F)/(3 J) c` of a first Piola-Kirchhoff stress, whose Cauchy stress has no pressure: that of the invariants without change of volume, for
+/// laws that have such a part. It relaxes alone where only the deviatoric part is viscous.
+#[inline(always)]
+#[must_use]
+pub fn deviatoric<N: Number>(deformation: &Deformation<N>, stress: Tensor<N>) -> Tensor<N> {
+    let work = stress.contracted(deformation.gradient);
+    let share = N::of(-1.0 / 3.0) * work / deformation.volume_ratio;
+    stress.plus(share, deformation.cofactor)
+}
+
+#[inline(always)]
+fn plus<N: Number>(a: Symmetric<N>, factor: N, b: Symmetric<N>) -> Symmetric<N> {
+    let entry = |i: usize| b[i].mul_add(factor, a[i]);
+    [entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)]
+}

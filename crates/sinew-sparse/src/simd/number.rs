@@ -1,0 +1,197 @@
+//! Numbers that formulas are written over.
+
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::portable::FUSES;
+
+/// A number, or a vector of them that one instruction works on: a formula is written once and compiled for each.
+///
+/// All arithmetic is lane by lane. Branches are choices between two values ([`Number::select_le`]); iterations ask whether
+/// all lanes are done ([`Number::all_le`]).
+pub trait Number:
+    Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// Numbers side by side.
+    const LANES: usize;
+    /// Distance from 1 to the next larger number of a lane.
+    const EPSILON: f64;
+
+    /// The number nearest to `value`, in every lane.
+    fn of(value: f64) -> Self;
+
+    /// The number of a lane.
+    fn lane(self, lane: usize) -> f64;
+
+    /// Numbers by their lanes, each rounded to the nearest.
+    fn from_lanes(of: impl FnMut(usize) -> f64) -> Self;
+
+    /// `self factor + other`, rounded once where the processor can.
+    #[must_use]
+    fn mul_add(self, factor: Self, other: Self) -> Self;
+
+    /// The square root.
+    #[must_use]
+    fn sqrt(self) -> Self;
+
+    /// The size.
+    #[must_use]
+    fn abs(self) -> Self;
+
+    /// The larger one.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+
+    /// The smaller one.
+    #[must_use]
+    fn min(self, other: Self) -> Self;
+
+    /// `then` where `a <= b`, elsewhere, and where one of them is not a number, `otherwise`.
+    #[must_use]
+    fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+
+    /// Whether `a <= b` in every lane; not so where one of them is not a number.
+    fn all_le(a: Self, b: Self) -> bool;
+
+    /// Whether `a <= b` in any lane.
+    fn any_le(a: Self, b: Self) -> bool;
+
+    /// A function of a number, lane by lane.
+    #[inline(always)]
+    #[must_use]
+    fn map(self, of: impl Fn(f64) -> f64) -> Self {
+        Self::from_lanes(|lane| of(self.lane(lane)))
+    }
+
+    /// `1 / self`.
+    #[inline(always)]
+    #[must_use]
+    fn recip(self) -> Self {
+        Self::of(1.0) / self
+    }
+
+    /// The natural logarithm of `1 + self`, exact for small numbers.
+    #[inline(always)]
+    #[must_use]
+    fn ln_1p(self) -> Self {
+        self.map(f64::ln_1p)
+    }
+
+    /// `e` to the power of the number.
+    #[inline(always)]
+    #[must_use]
+    fn exp(self) -> Self {
+        self.map(f64::exp)
+    }
+
+    /// `exp(self) - 1`, exact for small numbers.
+    #[inline(always)]
+    #[must_use]
+    fn exp_m1(self) -> Self {
+        self.map(f64::exp_m1)
+    }
+
+    /// The cubic root.
+    #[inline(always)]
+    #[must_use]
+    fn cbrt(self) -> Self {
+        self.map(f64::cbrt)
+    }
+}
+
+macro_rules! scalar {
+    ($number:ident) => {
+        impl Number for $number {
+            const LANES: usize = 1;
+            const EPSILON: f64 = $number::EPSILON as f64;
+
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                value as Self
+            }
+
+            #[inline(always)]
+            fn lane(self, _lane: usize) -> f64 {
+                self.into()
+            }
+
+            #[inline(always)]
+            fn from_lanes(mut of: impl FnMut(usize) -> f64) -> Self {
+                of(0) as Self
+            }
+
+            #[inline(always)]
+            fn mul_add(self, factor: Self, other: Self) -> Self {
+                if FUSES {
+                    $number::mul_add(self, factor, other)
+                } else {
+                    self * factor + other
+                }
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                $number::sqrt(self)
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $number::abs(self)
+            }
+
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                if self > other { self } else { other }
+            }
+
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                if self < other { self } else { other }
+            }
+
+            #[inline(always)]
+            fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+                if a <= b { then } else { otherwise }
+            }
+
+            #[inline(always)]
+            fn all_le(a: Self, b: Self) -> bool {
+                a <= b
+            }
+
+            #[inline(always)]
+            fn any_le(a: Self, b: Self) -> bool {
+                a <= b
+            }
+        }
+    };
+}
+
+scalar!(f64);
+scalar!(f32);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_a_number_is_never_at_most_another() {
+        let nan = f64::NAN;
+        assert!(!f64::all_le(nan, 1.0) && !f64::any_le(1.0, nan));
+        assert_eq!(f64::select_le(nan, 1.0, 2.0, 3.0), 3.0);
+        assert_eq!(f64::select_le(1.0, 1.0, 2.0, 3.0), 2.0);
+    }
+
+    #[test]
+    fn functions_of_single_precision_are_rounded_from_double() {
+        let x: f32 = 1e-6;
+        assert_eq!(Number::ln_1p(x), f64::from(x).ln_1p() as f32);
+        assert_eq!(Number::cbrt(27.0_f32), 3.0);
+    }
+}
