@@ -29,6 +29,7 @@ pub mod closed_form;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 mod derived;
+mod elastic_law;
 mod elements;
 mod energy;
 mod evaluation_error;
@@ -68,6 +69,7 @@ pub use batch::{Batch, Step, Stepped, worst_beyond};
 pub use bytes::BytesError;
 pub use channel_record::{Between, InputError};
 pub use clock::Clock;
+pub use elastic_law::{Deformed, ElasticLaw, TangentKind};
 pub use elements::{ElementStiffness, Elements, element_omegas_squared};
 pub use energy::Energy;
 pub use evaluation_error::EvaluationError;

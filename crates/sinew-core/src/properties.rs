@@ -201,6 +201,8 @@ pub enum Needs {
     Forces,
     /// The matrices M, D and K.
     Matrices,
+    /// An elastic law with its energy and tangent, which linear systems are too.
+    Tangents,
 }
 
 impl Needs {
@@ -210,6 +212,7 @@ impl Needs {
         match self {
             Self::Forces => "forces",
             Self::Matrices => "the matrices M, D and K of a linear system",
+            Self::Tangents => "matrices, or an elastic law with its energy and tangent",
         }
     }
 
@@ -218,9 +221,15 @@ impl Needs {
     /// # Errors
     /// [`SetupError::Lacks`] where it does not.
     pub fn check(self, integrator: &'static str, system: &dyn System) -> Result<(), SetupError> {
-        match self {
-            Self::Matrices if system.as_linear().is_none() => Err(self.lacking(integrator)),
-            Self::Matrices | Self::Forces => Ok(()),
+        let has = match self {
+            Self::Forces => true,
+            Self::Matrices => system.as_linear().is_some(),
+            Self::Tangents => system.as_elastic().is_some(),
+        };
+        if has {
+            Ok(())
+        } else {
+            Err(self.lacking(integrator))
         }
     }
 

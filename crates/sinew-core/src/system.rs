@@ -2,6 +2,7 @@
 
 use sinew_sparse::Layers;
 
+use crate::elastic_law::ElasticLaw;
 use crate::elements::Elements;
 use crate::energy::Energy;
 use crate::evaluation_error::EvaluationError;
@@ -147,6 +148,11 @@ pub trait ForceLaw: Send + Sync {
         0.0
     }
 
+    /// The energy behind the forces and its tangent, where the law has one.
+    fn elastic(&self) -> Option<&dyn ElasticLaw> {
+        None
+    }
+
     /// Bounds of the fastest motions about a state, or about rest, from which stable steps follow;
     /// `None` where they are unknown.
     fn spectrum(&self, _about: Option<&State>) -> Option<Spectrum> {
@@ -161,6 +167,15 @@ impl<'s> dyn System + 's {
         match self.equations() {
             Equations::Linear(linear) => Some(linear),
             Equations::Forces(_) => None,
+        }
+    }
+
+    /// The elastic law, where the system has one; matrices are one.
+    #[must_use]
+    pub fn as_elastic(&self) -> Option<&dyn ElasticLaw> {
+        match self.equations() {
+            Equations::Linear(linear) => Some(linear.operators()),
+            Equations::Forces(law) => law.elastic(),
         }
     }
 

@@ -67,7 +67,7 @@ pub fn forces_are_enough_where_declared(make: &dyn Fn() -> Boxed) {
             let dark = hidden(&problem.system, false);
             let hidden = hidden(&problem.system, true);
             match make().properties().needs {
-                Needs::Matrices => {
+                Needs::Matrices | Needs::Tangents => {
                     for system in [&dark, &hidden] {
                         let (mut integrator, dt) = (make(), 0.01);
                         let answer = integrator.prepare(system, dt);
