@@ -9,6 +9,7 @@ use crate::body::Body;
 use crate::elements::moving_part;
 use crate::error::{Cause, FemError, Item};
 use crate::graph::Graph;
+use crate::large::LargeDeformation;
 use crate::lumped::Lumped;
 use crate::material::Material;
 use crate::network::{Dashpot, Network, dashpots};
@@ -26,6 +27,8 @@ pub(crate) struct Assembled {
     pub(crate) dashpots: Vec<Dashpot>,
     /// The material of each region.
     pub(crate) materials: Vec<Material>,
+    /// The hyperelastic regions.
+    pub(crate) large: Option<LargeDeformation>,
     /// Facts of each region.
     pub(crate) facts: Vec<RegionFacts>,
 }
@@ -66,8 +69,13 @@ pub(crate) fn assemble(
     };
     add_averages(&mut stiffness, body, parts)?;
     clear_held(&mut stiffness, body);
+    let hyperelastic = materials.iter().zip(&members);
+    let hyperelastic = hyperelastic
+        .filter_map(|(material, members)| Some((material.hyperelastic()?, members.as_slice())));
+    let large = LargeDeformation::new(mesh, &body.smoothing, hyperelastic);
     Ok(Assembled {
         stiffness,
+        large,
         damping: damping(mesh, body, &dashpots)?,
         dashpots,
         materials,
@@ -97,7 +105,7 @@ fn stiffness(
     materials: &[Material],
     networks: Vec<Option<Network>>,
 ) -> Result<BlockMatrix, FemError> {
-    let mut stiffness = BlockMatrix::zeros(Arc::clone(&body.pattern), Layers::Three);
+    let mut stiffness = BlockMatrix::zeros(Arc::clone(&body.linear_pattern), Layers::Three);
     for ((members, material), network) in members.iter().zip(materials).zip(networks) {
         match network {
             Some(network) => {
@@ -105,6 +113,7 @@ fn stiffness(
                     add_edge(&mut stiffness, mesh, body, spring.nodes, spring.stiffness)?;
                 }
             }
+            None if material.is_hyperelastic() => {}
             None => add_tetrahedra(&mut stiffness, mesh, body, members, material)?,
         }
     }
@@ -120,7 +129,7 @@ fn damping(
     if dashpots.is_empty() {
         return Ok(None);
     }
-    let mut damping = BlockMatrix::zeros(Arc::clone(&body.pattern), Layers::Three);
+    let mut damping = BlockMatrix::zeros(Arc::clone(&body.linear_pattern), Layers::Three);
     for Dashpot { nodes, rate } in dashpots {
         add_edge(&mut damping, mesh, body, *nodes, *rate)?;
     }
@@ -167,7 +176,10 @@ fn add_averages(
     parts: Parts<'_>,
 ) -> Result<(), FemError> {
     let (mut whole, mut moving) = (WholePart::default(), ElementStiffness::default());
-    for part in parts.averages() {
+    for part in parts
+        .averages()
+        .filter(|part| !parts.is_hyperelastic(*part))
+    {
         parts.whole(part, &mut whole);
         whole.moving(&body.cells, &mut moving);
         let added = stiffness.add_element(&moving.cells, &moving.matrix);

@@ -20,7 +20,10 @@ pub(crate) struct Body {
     /// Longest edge of the bounding box (m).
     pub(crate) extent: f64,
     pub(crate) cells: Cells,
+    /// The cells that are coupled.
     pub(crate) pattern: Arc<Pattern>,
+    /// The cells that are coupled through regions that are not hyperelastic.
+    pub(crate) linear_pattern: Arc<Pattern>,
     /// Shortest edge at each cell (m).
     pub(crate) cell_size: Vec<f64>,
     pub(crate) smoothing: Smoothing,
@@ -37,20 +40,33 @@ impl Body {
         let cells = Cells::new(mesh, problem)?;
         let smoothing = Smoothing::new(mesh, problem, region_of);
         let (low, high) = mesh.bounding_box();
-        let coupled = if smoothing.is_empty() {
+        let all = if smoothing.is_empty() {
             Arc::clone(graph)
         } else {
-            Arc::new(coupled(mesh, &smoothing)?)
+            Arc::new(coupled(mesh, &smoothing, |_| true)?)
         };
-        let pattern = if cells.nodes.len() == coupled.cells() {
-            coupled
+        let between_cells = |nodes: &Arc<Pattern>| {
+            if cells.nodes.len() == nodes.cells() {
+                Arc::clone(nodes)
+            } else {
+                Arc::new(nodes.restricted(|node| cells.of_node(node).is_some()))
+            }
+        };
+        let pattern = between_cells(&all);
+        drop(all);
+        let is_large = |region: &Region| region.law.is_hyperelastic();
+        let linear_pattern = if problem.regions.iter().any(is_large) {
+            let is_linear =
+                |tet: u32| !is_large(&problem.regions[region_of[tet as usize] as usize]);
+            between_cells(&Arc::new(coupled(mesh, &smoothing, is_linear)?))
         } else {
-            Arc::new(coupled.restricted(|node| cells.of_node(node).is_some()))
+            Arc::clone(&pattern)
         };
         Ok(Self {
             edges: (graph.blocks() - graph.cells()) / 2,
             extent: (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max),
             pattern,
+            linear_pattern,
             cell_size: cell_sizes(mesh, graph, &cells),
             cells,
             smoothing,
@@ -72,14 +88,21 @@ pub fn smoothed_blocks(mesh: &TetMesh, problem: &Problem) -> Option<usize> {
     Some(body.pattern.blocks())
 }
 
-/// The nodes that are coupled through tetrahedra, and through the edges and patches over which they average.
-fn coupled(mesh: &TetMesh, smoothing: &Smoothing) -> Result<Pattern, FemError> {
-    let sets = smoothing.sets().map(|tets| {
+/// The nodes that are coupled through some tetrahedra, and through the edges and patches over which these average.
+fn coupled(
+    mesh: &TetMesh,
+    smoothing: &Smoothing,
+    counts: impl Fn(u32) -> bool,
+) -> Result<Pattern, FemError> {
+    let sets = smoothing.sets();
+    let sets = sets.filter(|tets| tets.first().is_some_and(|tet| counts(*tet)));
+    let sets = sets.map(|tets| {
         let mut nodes = Vec::new();
         nodes_of(mesh, tets, &mut nodes);
         nodes
     });
-    let elements = mesh.tets.iter().map(|tet| tet.to_vec()).chain(sets);
+    let tets = (0..).zip(&mesh.tets).filter(|(tet, _)| counts(*tet));
+    let elements = tets.map(|(_, nodes)| nodes.to_vec()).chain(sets);
     Pattern::from_elements(mesh.points.len(), elements)
         .map_err(|error| FemError::new(Item::Mesh, Cause::Operators(error.into())))
 }

@@ -86,6 +86,9 @@ pub enum Cause {
     /// An element on a network of springs.
     #[error("a network of springs has no element: expected none but p1")]
     ElementOnSprings,
+    /// A law of large deformation that does not exist, or cannot have its parameters.
+    #[error(transparent)]
+    Law(#[from] crate::hyperelastic::LawError),
     /// A group the mesh does not have.
     #[error(transparent)]
     UnknownGroup(#[from] sinew_mesh::UnknownGroup),

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::error::{FemError, Item};
+use crate::hyperelastic::{Hyperelastic, Parameters};
 use crate::number::require;
 
 /// A material law: the way a material resists deformation.
@@ -14,6 +15,13 @@ pub enum Law {
         youngs_modulus: f64,
         /// Poisson's ratio, in (-1, 1/2).
         poissons_ratio: f64,
+    },
+    /// An isotropic solid under large deformation, see [`crate::hyperelastic`].
+    Hyperelastic {
+        /// The law, one of [`Hyperelastic::IDS`].
+        id: &'static str,
+        /// Its parameters; Young's modulus and Poisson's ratio are those at small strain.
+        parameters: Parameters,
     },
     /// A network of springs along the edges. Its Poisson's ratio is 1/4 for any springs.
     Springs {
@@ -46,6 +54,7 @@ impl Law {
             Self::Linear { youngs_modulus, .. } | Self::Springs { youngs_modulus, .. } => {
                 youngs_modulus
             }
+            Self::Hyperelastic { parameters, .. } => parameters.youngs_modulus,
         }
     }
 
@@ -55,7 +64,14 @@ impl Law {
             Self::Linear { youngs_modulus, .. } | Self::Springs { youngs_modulus, .. } => {
                 youngs_modulus
             }
+            Self::Hyperelastic { parameters, .. } => &mut parameters.youngs_modulus,
         }
+    }
+
+    /// Whether it is a law of large deformation.
+    #[must_use]
+    pub fn is_hyperelastic(&self) -> bool {
+        matches!(self, Self::Hyperelastic { .. })
     }
 
     /// Refuses a law with a number outside its range.
@@ -73,6 +89,10 @@ impl Law {
                 let inside = nu > -1.0 && nu < 0.5;
                 let expected = "a number above -1 and below 0.5";
                 require(item, "poissons_ratio", nu, expected, inside)
+            }
+            Self::Hyperelastic { id, parameters } => {
+                Hyperelastic::new(id, &parameters).map_err(FemError::at(item))?;
+                Ok(())
             }
             Self::Springs {
                 youngs_modulus,
@@ -98,6 +118,18 @@ impl fmt::Display for Law {
                 f,
                 "linear elastic, E = {youngs_modulus} Pa, nu = {poissons_ratio}"
             ),
+            Self::Hyperelastic { id, parameters } => {
+                let Parameters {
+                    youngs_modulus,
+                    poissons_ratio,
+                    c1_over_c2,
+                } = parameters;
+                write!(
+                    f,
+                    "{id}, E = {youngs_modulus} Pa, nu = {poissons_ratio} at small strain"
+                )?;
+                c1_over_c2.map_or(Ok(()), |ratio| write!(f, ", C1/C2 = {ratio}"))
+            }
             Self::Springs {
                 youngs_modulus,
                 rule,

@@ -98,6 +98,7 @@ mod elements;
 mod error;
 mod graph;
 pub mod hyperelastic;
+mod large;
 mod law;
 mod loads;
 mod lumped;

@@ -4,6 +4,7 @@ use sinew_mesh::TetMesh;
 
 use crate::error::{Cause, FemError, Item};
 use crate::graph::Graph;
+use crate::hyperelastic::Hyperelastic;
 use crate::network::Network;
 use crate::smoothing::SmoothedStrain;
 use crate::springs::Spring;
@@ -15,6 +16,10 @@ pub(crate) enum Material {
     Continuum {
         /// Lame's constants (Pa).
         lame: (f64, f64),
+        element: Element,
+    },
+    Hyperelastic {
+        law: Hyperelastic,
         element: Element,
     },
     Springs {
@@ -41,6 +46,12 @@ impl Material {
                 let lame = tetra::lame(youngs_modulus, poissons_ratio);
                 let element = region.element;
                 Ok((Self::Continuum { lame, element }, None))
+            }
+            Law::Hyperelastic { id, parameters } => {
+                let law = Hyperelastic::new(id, &parameters);
+                let law = law.map_err(|error| FemError::new(Item::Mesh, error.into()))?;
+                let element = region.element;
+                Ok((Self::Hyperelastic { law, element }, None))
             }
             Law::Springs {
                 youngs_modulus,
@@ -74,6 +85,10 @@ impl Material {
                 lame: (first, shear),
                 ..
             } => (first + 2.0 * shear, shear),
+            Self::Hyperelastic { law, .. } => {
+                let (first, shear) = law.lame();
+                (first + 2.0 * shear, shear)
+            }
             // nu = 1/4 and thus lambda = mu for any springs (Cauchy's relations).
             Self::Springs { youngs_modulus, .. } => (1.2 * youngs_modulus, 0.4 * youngs_modulus),
         }
@@ -82,8 +97,21 @@ impl Material {
     /// The element that it is on.
     pub(crate) fn element(&self) -> Element {
         match *self {
-            Self::Continuum { element, .. } => element,
+            Self::Continuum { element, .. } | Self::Hyperelastic { element, .. } => element,
             Self::Springs { .. } => Element::P1,
+        }
+    }
+
+    /// Whether it is of large deformation.
+    pub(crate) fn is_hyperelastic(&self) -> bool {
+        matches!(self, Self::Hyperelastic { .. })
+    }
+
+    /// Its law of large deformation, with the share of shear that is averaged over edges.
+    pub(crate) fn hyperelastic(&self) -> Option<(Hyperelastic, f64)> {
+        match self {
+            Self::Hyperelastic { law, element } => Some((*law, element.edge_share())),
+            Self::Continuum { .. } | Self::Springs { .. } => None,
         }
     }
 
@@ -103,7 +131,7 @@ impl Material {
                 lame: (_, mu),
                 element,
             } => [0.0, element.edge_share() * mu],
-            Self::Springs { .. } => [0.0; 2],
+            Self::Hyperelastic { .. } | Self::Springs { .. } => [0.0; 2],
         }
     }
 
@@ -114,11 +142,11 @@ impl Material {
                 lame: (lambda, _),
                 element,
             } if element.has_patches() => [lambda, 0.0],
-            Self::Continuum { .. } | Self::Springs { .. } => [0.0; 2],
+            Self::Continuum { .. } | Self::Hyperelastic { .. } | Self::Springs { .. } => [0.0; 2],
         }
     }
 
-    /// Stiffness matrix (N/m) of a tetrahedron by itself, without what acts on averages: 12 x 12, row-major and
+    /// Stiffness matrix (N/m) of a tetrahedron by itself, without what acts on averages, and 0 where it has no matrix: 12 x 12, row-major and
     /// vertex-major; `None` where it is flat.
     pub(crate) fn stiffness(&self, points: &[[f64; 3]], tet: &[u32; 4]) -> Option<[f64; 144]> {
         match *self {
@@ -126,6 +154,7 @@ impl Material {
                 let (lambda, mu) = Self::of_tetrahedra(lame, element);
                 tetra::stiffness(&tetra::vertices(points, *tet), lambda, mu)
             }
+            Self::Hyperelastic { .. } => Some([0.0; 144]),
             Self::Springs {
                 youngs_modulus,
                 rule,
@@ -140,7 +169,7 @@ impl Material {
             Self::Continuum {
                 lame: (lambda, mu), ..
             } => Some(stress::with_dilation(shear, *dilation, lambda, mu)),
-            Self::Springs { .. } => None,
+            Self::Hyperelastic { .. } | Self::Springs { .. } => None,
         }
     }
 
@@ -151,7 +180,7 @@ impl Material {
         tets: impl Iterator<Item = &'a [u32; 4]>,
     ) -> Option<Vec<Spring>> {
         match *self {
-            Self::Continuum { .. } => None,
+            Self::Continuum { .. } | Self::Hyperelastic { .. } => None,
             Self::Springs {
                 youngs_modulus,
                 rule,

@@ -85,6 +85,16 @@ impl<'a> Parts<'a> {
         }
     }
 
+    /// Whether a part belongs to a hyperelastic region, which has no stiffness matrix.
+    pub(crate) fn is_hyperelastic(&self, number: usize) -> bool {
+        let part = self.part(number);
+        let tet = match part {
+            Part::Tet(tet) => Some(tet),
+            Part::Edge(_) | Part::Patch(_) => self.members(part).first().map(|tet| *tet as usize),
+        };
+        tet.is_some_and(|tet| self.materials[self.region_of[tet] as usize].is_hyperelastic())
+    }
+
     /// Writes the mesh nodes of a part.
     pub(crate) fn nodes(&self, number: usize, out: &mut Vec<u32>) {
         match self.part(number) {

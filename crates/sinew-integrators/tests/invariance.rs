@@ -7,7 +7,7 @@
 use proptest::prelude::*;
 use sinew_cnn::{Saturation, Templates};
 use sinew_core::{Integrator, State};
-use sinew_fem::{Law, LoadKind, Model};
+use sinew_fem::{LoadKind, Model};
 use sinew_integrators::Frame;
 use sinew_integrators::cnn::Cnn;
 use sinew_testkit::body::{Body, bodies, fastest_time, orders, turned, turns};
@@ -61,9 +61,7 @@ fn distance(a: &Dense, b: &Dense) -> f64 {
 
 fn scale_moduli(body: &mut Body, factor: f64) {
     for region in &mut body.problem.regions {
-        let (Law::Linear { youngs_modulus, .. } | Law::Springs { youngs_modulus, .. }) =
-            &mut region.law;
-        *youngs_modulus *= factor;
+        *region.law.youngs_modulus_mut() *= factor;
     }
 }
 

@@ -150,6 +150,25 @@ impl BlockMatrix {
         Ok(())
     }
 
+    /// Takes the entries of a matrix of the same layers whose pattern is a part of this one's, and 0 elsewhere.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NotNeighbours`] where it has a block that this one has no room for, and
+    /// [`AssemblyError::CellOutOfRange`] where it has more cells. The entries are unspecified then.
+    pub fn set_to(&mut self, other: &Self) -> Result<(), AssemblyError> {
+        if Arc::ptr_eq(&self.pattern, &other.pattern) && self.layers == other.layers {
+            self.values.copy_from_slice(&other.values);
+            return Ok(());
+        }
+        self.values.fill(0.0);
+        for row in 0..other.pattern.cells() {
+            for (column, block) in other.row_blocks(row) {
+                self.add_block(row as u32, column as u32, block)?;
+            }
+        }
+        Ok(())
+    }
+
     fn position(&self, row: u32, column: u32) -> Result<usize, AssemblyError> {
         let cells = self.pattern.cells();
         for cell in [row, column] {

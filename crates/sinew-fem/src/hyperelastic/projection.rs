@@ -1,21 +1,11 @@
 //! Tangents by kind, and the projection that makes one positive semidefinite.
 
+pub use sinew_core::TangentKind;
 use sinew_sparse::simd::Number;
 
 use super::decomposition::SingularValues;
 use super::law::{Bulk, HyperelasticLaw, Point};
 use super::tensor::Tensor;
-
-/// A kind of tangent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TangentKind {
-    /// The derivative of the stress, which may have negative eigenvalues.
-    Exact,
-    /// The positive semidefinite tensor nearest to it.
-    Projected,
-    /// The one with rotations held fast, for laws that have a rotation; else the projected one.
-    Frozen,
-}
 
 /// The tangent of a law at a deformation.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,9 @@
-//! The linear model of a body.
+//! The model of a body.
 
 mod deformed;
 mod energy;
 mod field_error;
+mod force_law;
 mod forces;
 mod motion;
 mod nodes;
@@ -25,6 +26,7 @@ use crate::assembly::{Assembled, assemble};
 use crate::body::Body;
 use crate::error::{Cause, FemError, Item};
 use crate::graph::Graph;
+use crate::large::LargeDeformation;
 use crate::loads::LoadsOnBody;
 use crate::lumped::Lumped;
 use crate::material::Material;
@@ -35,12 +37,18 @@ use crate::report::{ModelReport, MoveFacts};
 use crate::supports::Supports;
 use crate::{Element, Problem, check, volumes};
 
-/// A linear model of a body: M, D, K over its moving nodes, loads, and the geometry behind them.
+/// A model of a body: M, D, K over its moving nodes, loads, and the geometry behind them.
+///
+/// With hyperelastic regions it is a force law ([`sinew_core::ForceLaw`], [`sinew_core::ElasticLaw`]): K is that of the other regions then,
+/// and the hyperelastic ones are evaluated element by element.
 #[derive(Clone, Debug)]
 pub struct Model {
     mesh: Arc<TetMesh>,
     body: Arc<Body>,
+    /// Mass, damping and loads, and the stiffness of all regions that are not hyperelastic.
     operators: LinearOperators,
+    /// The hyperelastic regions; `None` where the model is linear.
+    large: Option<Arc<LargeDeformation>>,
     region_of: Vec<u32>,
     materials: Vec<Material>,
     /// Lumped mass of each node (kg).
@@ -97,7 +105,7 @@ impl Model {
                 let region_of = regions(mesh, problem)?;
                 let kept = || Arc::clone(mesh);
                 let mut graph = Graph::of(mesh);
-                let body = if self.averages_as(problem, &region_of) {
+                let body = if self.couples_as(problem, &region_of) {
                     body
                 } else {
                     Arc::new(Body::new(mesh, graph.pattern()?, problem, &region_of)?)
@@ -117,18 +125,27 @@ impl Model {
         }
     }
 
-    /// Whether a problem averages strain over the same sets of tetrahedra as this model.
-    fn averages_as(&self, problem: &Problem, region_of: &[u32]) -> bool {
-        let sets = |element: Element| {
+    /// Whether a problem couples nodes as this model: linear regions by matrices, others without, averages over the
+    /// same sets of tetrahedra.
+    fn couples_as(&self, problem: &Problem, region_of: &[u32]) -> bool {
+        let kind = |(is_large, element): (bool, Element)| {
             let by_edges = element.edge_share() > 0.0;
-            (element.has_patches(), element.patch(), by_edges)
+            (is_large, element.has_patches(), element.patch(), by_edges)
         };
-        let plain = |element: &Element| !element.has_patches();
-        let elements = || self.materials.iter().map(Material::element);
-        let wanted = || problem.regions.iter().map(|region| region.element);
-        let none =
-            elements().all(|element| plain(&element)) && wanted().all(|element| plain(&element));
-        none || self.region_of == region_of && elements().map(sets).eq(wanted().map(sets))
+        let own = self.materials.iter();
+        let own = || {
+            own.clone()
+                .map(|material| (material.is_hyperelastic(), material.element()))
+        };
+        let wanted = problem.regions.iter();
+        let wanted = || {
+            wanted
+                .clone()
+                .map(|region| (region.law.is_hyperelastic(), region.element))
+        };
+        let plain = |(is_large, element): (bool, Element)| !is_large && !element.has_patches();
+        own().all(plain) && wanted().all(plain)
+            || self.region_of == region_of && own().map(kind).eq(wanted().map(kind))
     }
 
     /// Assembles the materials and loads of a problem, whose numbers were checked. `kept` gives the mesh that the model is
@@ -147,6 +164,7 @@ impl Model {
             damping,
             dashpots,
             materials,
+            large,
             facts,
         } = assemble(mesh, &body, problem, graph, &region_of, &lumped)?;
         let Lumped { masses, volume, .. } = lumped;
@@ -183,6 +201,7 @@ impl Model {
             mesh: kept(),
             body,
             operators,
+            large: large.map(Arc::new),
             region_of,
             materials,
             masses,

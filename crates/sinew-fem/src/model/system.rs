@@ -28,7 +28,10 @@ impl System for Model {
     }
 
     fn equations(&self) -> Equations<'_> {
-        Equations::Linear(self)
+        match &self.large {
+            None => Equations::Linear(self),
+            Some(_) => Equations::Forces(self),
+        }
     }
 
     fn looks_at_steps(&self) -> bool {

@@ -16,16 +16,26 @@ pub(crate) struct Average {
 }
 
 impl Average {
-    /// Takes the mean over some tetrahedra by volume.
+    /// Takes the mean over some tetrahedra of a mesh by volume.
     pub(crate) fn over(&mut self, mesh: &TetMesh, tets: &[u32]) {
-        self.nodes.clear();
-        self.gradients.clear();
-        self.volume = 0.0;
-        for tet in tets {
+        self.of(tets.iter().map(|tet| {
             let (nodes, volume) = (mesh.tets[*tet as usize], mesh.volume(*tet as usize));
             // A model has no flat tetrahedra.
             let vertices = tetra::vertices(&mesh.points, nodes);
-            let gradients = tetra::gradients(&vertices).unwrap_or_default();
+            (
+                nodes,
+                volume,
+                tetra::gradients(&vertices).unwrap_or_default(),
+            )
+        }));
+    }
+
+    /// Takes the mean by volume over tetrahedra, given by nodes, volume (m^3) and gradients (1/m).
+    pub(crate) fn of(&mut self, tets: impl Iterator<Item = ([u32; 4], f64, [[f64; 3]; 4])>) {
+        self.nodes.clear();
+        self.gradients.clear();
+        self.volume = 0.0;
+        for (nodes, volume, gradients) in tets {
             for (node, gradient) in nodes.into_iter().zip(gradients) {
                 let place = self.place_of(node);
                 for (sum, g) in self.gradients[place].iter_mut().zip(gradient) {

@@ -22,7 +22,7 @@ impl Default for Sets {
 
 impl Sets {
     /// `count` sets from pairs (set, tetrahedron) with increasing tetrahedra.
-    pub(super) fn from_pairs(
+    pub(crate) fn from_pairs(
         count: usize,
         pairs: impl Iterator<Item = (u32, u32)> + Clone,
     ) -> Self {

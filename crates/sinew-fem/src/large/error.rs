@@ -1,0 +1,23 @@
+//! The refusal of a deformation.
+
+use sinew_core::EvaluationError;
+
+use crate::hyperelastic::HyperelasticLaw;
+
+/// The error for a tetrahedron, or the mean of some, that a law is not defined for.
+#[cold]
+pub(super) fn refused<L: HyperelasticLaw>(tag: u64, volume_ratio: f64) -> EvaluationError {
+    let reason = if volume_ratio.is_finite() {
+        format!(
+            "its volume is {volume_ratio:.3} of that at rest, and the law `{}` has no meaning from 0 down: take a shorter step, \
+             or a law for elements that invert, such as `stable-neo-hookean`",
+            L::ID
+        )
+    } else {
+        "its displacement is not finite".to_owned()
+    };
+    EvaluationError {
+        element: tag,
+        reason,
+    }
+}

@@ -1,0 +1,147 @@
+//! The tangent as a matrix.
+
+use sinew_core::{BlockMatrix, ElementStiffness, EvaluationError, TangentKind};
+
+use super::force::{at_edge, check, means};
+use super::product::OwnTangent;
+use super::region::HyperelasticRegion;
+use super::scratch::Scratch;
+use crate::cells::Cells;
+use crate::elements::moving_part;
+use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Linearised, Tensor};
+use crate::smoothing::Average;
+
+/// Adds the tangent of a region, on a pattern that has its couplings.
+pub(super) fn add(
+    region: &HyperelasticRegion,
+    scratch: &mut Scratch,
+    kind: TangentKind,
+    cells: &Cells,
+    out: &mut BlockMatrix,
+) -> Result<(), EvaluationError> {
+    let mut sum = Sum {
+        cells,
+        out,
+        average: Average::default(),
+        whole: Vec::new(),
+        moving: ElementStiffness::default(),
+    };
+    region.law.with_law(Tangents {
+        region,
+        scratch,
+        kind,
+        sum: &mut sum,
+    })
+}
+
+struct Tangents<'a, 'o> {
+    region: &'a HyperelasticRegion,
+    scratch: &'a mut Scratch,
+    kind: TangentKind,
+    sum: &'a mut Sum<'o>,
+}
+
+/// The matrix, and room for one part of it.
+struct Sum<'o> {
+    cells: &'o Cells,
+    out: &'o mut BlockMatrix,
+    average: Average,
+    /// Entries (N/m) of a part between all its nodes, row-major and node-major.
+    whole: Vec<f64>,
+    moving: ElementStiffness,
+}
+
+impl LawVisitor for Tangents<'_, '_> {
+    type Output = Result<(), EvaluationError>;
+
+    fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+        let Self {
+            region,
+            scratch,
+            kind,
+            sum,
+        } = self;
+        let (rest, lambda) = (&region.rest, law.lame().0);
+        if !region.is_smoothed() {
+            for tet in 0..rest.count() {
+                let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
+                check(&law, &at, rest.tag(tet))?;
+                let tangent = Linearised::of(&law, &at, law.own_bulk(&at), kind);
+                sum.average.of(std::iter::once(at_rest(region, tet)));
+                sum.add(1.0, |change| tangent.on(change));
+            }
+            return Ok(());
+        }
+        means(region, scratch, &law)?;
+        for tet in 0..rest.count() {
+            let at = law.at(scratch.gradients[tet]);
+            let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
+            let own = OwnTangent::of(&law, &at, region, lambda * dilation, kind);
+            sum.average.of(std::iter::once(at_rest(region, tet)));
+            sum.add(1.0, |change| own.on(change));
+        }
+        for edge in 0..region.edges.count() {
+            let tets = region.edges.of(edge);
+            let at = at_edge(region, &law, tets, scratch)?;
+            let tangent = Linearised::of(&law, &at, Bulk::none(), kind);
+            sum.average
+                .of(tets.iter().map(|tet| at_rest(region, *tet as usize)));
+            sum.add(region.edge_share / 6.0, |change| tangent.on(change));
+        }
+        for patch in 0..region.patches.count() {
+            let tets = region.patches.of(patch).iter();
+            sum.average.of(tets.map(|tet| {
+                let tet = *tet as usize;
+                let normal = law.dilation_gradient(&law.at(scratch.gradients[tet]));
+                let (nodes, volume, gradients) = at_rest(region, tet);
+                (nodes, volume, gradients.map(|gradient| normal.on(gradient)))
+            }));
+            sum.average.stiffness(1.0, [lambda, 0.0], &mut sum.whole);
+            sum.add_whole();
+        }
+        Ok(())
+    }
+}
+
+/// Nodes, volume (m^3) and gradients (1/m) of a tetrahedron.
+pub(super) fn at_rest(region: &HyperelasticRegion, tet: usize) -> ([u32; 4], f64, [[f64; 3]; 4]) {
+    let rest = &region.rest;
+    (rest.nodes(tet), rest.volume(tet), rest.all_gradients(tet))
+}
+
+impl Sum<'_> {
+    /// Adds `V g_aJ H_iJkL g_bL` between the nodes of the average, for a share of its volume V.
+    fn add(&mut self, share: f64, tangent: impl Fn(Tensor<f64>) -> Tensor<f64>) {
+        let average = &self.average;
+        let volume = share * average.volume;
+        let columns = 3 * average.nodes.len();
+        self.whole.clear();
+        self.whole.resize(columns * columns, 0.0);
+        for (b, gradient) in average.gradients.iter().enumerate() {
+            for k in 0..3 {
+                let mut moved = [0.0; 3];
+                moved[k] = volume;
+                let stress = tangent(Tensor::outer(moved, *gradient));
+                for (a, gradient) in average.gradients.iter().enumerate() {
+                    for (i, force) in stress.on(*gradient).into_iter().enumerate() {
+                        self.whole[(3 * a + i) * columns + 3 * b + k] = force;
+                    }
+                }
+            }
+        }
+        self.add_whole();
+    }
+
+    fn add_whole(&mut self) {
+        moving_part(
+            &self.whole,
+            &self.average.nodes,
+            self.cells,
+            &mut self.moving,
+        );
+        let added = self
+            .out
+            .add_element(&self.moving.cells, &self.moving.matrix);
+        debug_assert!(added.is_ok(), "the pattern was made of the same sets");
+    }
+}

@@ -1,0 +1,90 @@
+//! Own blocks of the tangent, positive semidefinite in any state.
+
+use sinew_core::EvaluationError;
+
+use super::force::{at_edge, bulk_of_patch, check, means};
+use super::matrix::at_rest;
+use super::region::HyperelasticRegion;
+use super::scratch::Scratch;
+use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Tensor};
+use crate::smoothing::Average;
+
+/// Calls `add` with each node and parts of its block (N/m).
+pub(super) fn add(
+    region: &HyperelasticRegion,
+    scratch: &mut Scratch,
+    add: &mut impl FnMut(u32, [[f64; 3]; 3]),
+) -> Result<(), EvaluationError> {
+    region.law.with_law(Blocks {
+        region,
+        scratch,
+        add,
+    })
+}
+
+struct Blocks<'a, F> {
+    region: &'a HyperelasticRegion,
+    scratch: &'a mut Scratch,
+    add: &'a mut F,
+}
+
+impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
+    type Output = Result<(), EvaluationError>;
+
+    fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+        let Self {
+            region,
+            scratch,
+            add,
+        } = self;
+        let (rest, lambda) = (&region.rest, law.lame().0);
+        if !region.is_smoothed() {
+            for tet in 0..rest.count() {
+                let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
+                check(&law, &at, rest.tag(tet))?;
+                let bulk = law.own_bulk(&at);
+                for (node, gradient) in rest.nodes(tet).into_iter().zip(rest.all_gradients(tet)) {
+                    let block = law.node_block(&at, bulk, gradient);
+                    add(node, block.scaled(rest.volume(tet)).0);
+                }
+            }
+            return Ok(());
+        }
+        means(region, scratch, &law)?;
+        let share = 1.0 - region.edge_share;
+        for tet in (0..rest.count()).filter(|_| share > 0.0) {
+            let at = law.at(scratch.gradients[tet]);
+            let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
+            let bulk = bulk_of_patch(lambda, dilation / share);
+            for (node, gradient) in rest.nodes(tet).into_iter().zip(rest.all_gradients(tet)) {
+                let block = law.node_block(&at, bulk, gradient);
+                add(node, block.scaled(share * rest.volume(tet)).0);
+            }
+        }
+        let mut average = Average::default();
+        for edge in 0..region.edges.count() {
+            let tets = region.edges.of(edge);
+            let at = at_edge(region, &law, tets, scratch)?;
+            average.of(tets.iter().map(|tet| at_rest(region, *tet as usize)));
+            let volume = region.edge_share / 6.0 * average.volume;
+            for (node, gradient) in average.nodes.iter().zip(&average.gradients) {
+                let block = law.node_block(&at, Bulk::none(), *gradient);
+                add(*node, block.scaled(volume).0);
+            }
+        }
+        for patch in 0..region.patches.count() {
+            let tets = region.patches.of(patch).iter();
+            average.of(tets.map(|tet| {
+                let tet = *tet as usize;
+                let normal = law.dilation_gradient(&law.at(scratch.gradients[tet]));
+                let (nodes, volume, gradients) = at_rest(region, tet);
+                (nodes, volume, gradients.map(|gradient| normal.on(gradient)))
+            }));
+            for (node, gradient) in average.nodes.iter().zip(&average.gradients) {
+                let block = Tensor::outer(*gradient, *gradient);
+                add(*node, block.scaled(lambda * average.volume).0);
+            }
+        }
+        Ok(())
+    }
+}

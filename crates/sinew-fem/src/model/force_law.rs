@@ -1,0 +1,227 @@
+//! The traits by which integrators see a model with hyperelastic regions.
+
+use std::sync::Arc;
+
+use sinew_core::spectrum::{Spectrum, largest_eigenvalue};
+use sinew_core::{
+    BlockMatrix, Damping, Deformed, ElasticLaw, EvaluationError, ForceLaw, LoadTime, Pattern,
+    State, TangentKind, Trial,
+};
+
+use super::Model;
+use crate::large::{LargeDeformation, Scratch};
+
+/// A hyperelastic body at a trial point. Evaluations of models without such regions leave everything to the matrices.
+impl Model {
+    /// Does something with the hyperelastic regions and the displacement of all nodes at a trial point; nothing where
+    /// there are none.
+    fn at_trial<T: Default>(
+        &self,
+        (when, u): (LoadTime<'_>, &[f64]),
+        with: impl FnOnce(&LargeDeformation, &mut Scratch) -> Result<T, EvaluationError>,
+    ) -> Result<T, EvaluationError> {
+        let Some(large) = &self.large else {
+            return Ok(T::default());
+        };
+        large.with_scratch(|scratch| {
+            self.fill(when, 0, u, &mut scratch.displacement)?;
+            with(large, scratch)
+        })
+    }
+
+    /// Writes a field over the degrees of freedom to all nodes, prescribed motions included.
+    fn fill(
+        &self,
+        when: LoadTime<'_>,
+        order: usize,
+        values: &[f64],
+        out: &mut [[f64; 3]],
+    ) -> Result<(), EvaluationError> {
+        let field = self.at_nodes(when, order, Some(values));
+        let field = field.map_err(|error| EvaluationError {
+            element: 0,
+            reason: error.to_string(),
+        })?;
+        for (node, out) in (0..).zip(out) {
+            *out = field(node);
+        }
+        Ok(())
+    }
+
+    /// `out += factor f` at the degrees of freedom, f being what the scratch has at the corners.
+    fn add_at_corners(
+        &self,
+        large: &LargeDeformation,
+        scratch: &Scratch,
+        factor: f64,
+        out: &mut [f64],
+    ) {
+        let cells = &self.body.cells;
+        large.sum(scratch, |node, force| {
+            let Some(cell) = cells.of_node(node) else {
+                return;
+            };
+            let first = 3 * cell as usize;
+            for (axis, force) in force.into_iter().enumerate() {
+                if !cells.pinned[first + axis] {
+                    out[first + axis] += factor * force;
+                }
+            }
+        });
+    }
+
+    /// The kind of tangent that stiffness damping multiplies: rotations must not be damped, so that laws with a rotation hold it fast.
+    const DAMPED: TangentKind = TangentKind::Exact;
+}
+
+impl ForceLaw for Model {
+    fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
+        self.operators.net_force(trial.load, trial.u, trial.v, out);
+        let beta = self.operators.damping().stiffness;
+        self.at_trial((trial.load, trial.u), |large, scratch| {
+            large.evaluate(scratch, false)?;
+            self.add_at_corners(large, scratch, -1.0, out);
+            if beta != 0.0 {
+                self.fill(trial.load, 1, trial.v, &mut scratch.change)?;
+                large.product(scratch, Self::DAMPED)?;
+                self.add_at_corners(large, scratch, -beta, out);
+            }
+            Ok(())
+        })
+    }
+
+    fn external_force(&self, when: LoadTime<'_>, out: &mut [f64]) {
+        self.operators.external_force(when, out);
+    }
+
+    fn mass_damping(&self) -> f64 {
+        self.operators.damping().mass
+    }
+
+    fn elastic(&self) -> Option<&dyn ElasticLaw> {
+        Some(self)
+    }
+
+    /// From the tangent at the state, or at rest.
+    fn spectrum(&self, about: Option<&State>) -> Option<Spectrum> {
+        let rest;
+        let (when, u) = match about {
+            Some(state) => (LoadTime::at(state.t()), state.u.as_slice()),
+            None => {
+                rest = vec![0.0; self.operators.dofs()];
+                (LoadTime::at(0.0), rest.as_slice())
+            }
+        };
+        let damping = self.operators.damping();
+        let (mass, zero) = (self.operators.mass(), vec![0.0; u.len()]);
+        let trial = Trial {
+            load: when,
+            dt: 0.0,
+            u,
+            v: &zero,
+            internal: &[],
+        };
+        let mut failed = false;
+        let mut product = |x: &[f64], out: &mut [f64]| {
+            let product = self.tangent_product(&trial, TangentKind::Exact, x, out);
+            failed |= product.is_err();
+        };
+        let eigenvalue = largest_eigenvalue(mass, &mut product).max(0.0);
+        let damping_max = match &damping.extra {
+            None => damping.stiffness * eigenvalue,
+            Some(extra) => largest_eigenvalue(mass, |x, out| {
+                product(x, out);
+                out.iter_mut()
+                    .for_each(|value| *value *= -damping.stiffness);
+                extra.subtract_product(x, out);
+                out.iter_mut().for_each(|value| *value = -*value);
+            }),
+        };
+        (!failed).then_some(Spectrum {
+            omega_max: eigenvalue.sqrt(),
+            damping_max,
+            mass_damping: damping.mass,
+            stiffness_damping: damping.stiffness,
+            proportional: damping.extra.is_none(),
+        })
+    }
+}
+
+impl ElasticLaw for Model {
+    fn elastic_force(
+        &self,
+        trial: &Trial<'_>,
+        out: &mut [f64],
+    ) -> Result<Deformed, EvaluationError> {
+        let linear = self.operators.elastic_force(trial, out)?;
+        let found = self.at_trial((trial.load, trial.u), |large, scratch| {
+            let found = large.evaluate(scratch, true)?;
+            self.add_at_corners(large, scratch, 1.0, out);
+            Ok(found)
+        })?;
+        Ok(Deformed {
+            energy: linear.energy + found.energy,
+            ..found
+        })
+    }
+
+    fn pattern(&self) -> &Arc<Pattern> {
+        &self.body.pattern
+    }
+
+    fn tangent(
+        &self,
+        trial: &Trial<'_>,
+        kind: TangentKind,
+        out: &mut BlockMatrix,
+    ) -> Result<(), EvaluationError> {
+        let set = out.set_to(self.operators.stiffness());
+        debug_assert!(set.is_ok(), "linear regions couple no others");
+        self.at_trial((trial.load, trial.u), |large, scratch| {
+            large.add_tangent(scratch, kind, &self.body.cells, out)
+        })
+    }
+
+    fn tangent_product(
+        &self,
+        trial: &Trial<'_>,
+        kind: TangentKind,
+        w: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        self.operators.stiffness().multiply(w, out);
+        self.at_trial((trial.load, trial.u), |large, scratch| {
+            for (node, change) in (0..).zip(&mut scratch.change) {
+                *change = self.body.cells.at_node(w, node);
+            }
+            large.product(scratch, kind)?;
+            self.add_at_corners(large, scratch, 1.0, out);
+            Ok(())
+        })
+    }
+
+    fn node_blocks(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
+        self.operators.node_blocks(trial, out)?;
+        let cells = &self.body.cells;
+        self.at_trial((trial.load, trial.u), |large, scratch| {
+            large.node_blocks(scratch, |node, block| {
+                let Some(cell) = cells.of_node(node) else {
+                    return;
+                };
+                let first = 3 * cell as usize;
+                for (k, out) in out[9 * cell as usize..9 * cell as usize + 9]
+                    .iter_mut()
+                    .enumerate()
+                {
+                    if !cells.pinned[first + k / 3] && !cells.pinned[first + k % 3] {
+                        *out += block[k / 3][k % 3];
+                    }
+                }
+            })
+        })
+    }
+
+    fn damping(&self) -> &Damping {
+        self.operators.damping()
+    }
+}
