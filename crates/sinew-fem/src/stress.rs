@@ -23,6 +23,23 @@ pub fn strain(gradients: &[[f64; 3]; 4], displacements: &[[f64; 3]; 4]) -> [f64;
     ]
 }
 
+/// Green's strain `(F'F - I)/2` by the gradient of the displacement, row i and column j being `du_i/dx_j`.
+#[must_use]
+pub fn green_strain(h: &[[f64; 3]; 3]) -> [f64; 6] {
+    let entry = |i: usize, j: usize| -> f64 {
+        let squares: f64 = h.iter().map(|row| row[i] * row[j]).sum();
+        (h[i][j] + h[j][i] + squares) / 2.0
+    };
+    [
+        entry(0, 0),
+        entry(1, 1),
+        entry(2, 2),
+        entry(0, 1),
+        entry(1, 2),
+        entry(2, 0),
+    ]
+}
+
 /// The stress (Pa) `lambda tr(strain) I + 2 mu strain` of isotropic linear elasticity with Lame's
 /// constants (Pa).
 #[must_use]

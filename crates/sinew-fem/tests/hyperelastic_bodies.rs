@@ -414,3 +414,93 @@ fn regions_of_different_laws_and_elements_add_up() {
     at_most("energy", (energy / energies - 1.0).abs(), 1e-13);
     at_most("force", relative_difference(&force, &sum), 1e-13);
 }
+
+/// A block that is stretched, sheared and turned as one has the stress `P F'/J` of its law, Green's strain and the reactions that hold it so.
+#[test]
+fn a_uniform_deformation_has_its_stress_strain_and_reactions() {
+    use nalgebra::{Matrix3, Vector3};
+    use sinew_fem::hyperelastic::{HyperelasticLaw, LawVisitor, Tensor};
+
+    struct Stress(Tensor<f64>);
+    impl LawVisitor for Stress {
+        type Output = [[f64; 3]; 3];
+        fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+            let at = law.at(self.0);
+            law.stress_with(&at, law.own_bulk(&at)).0
+        }
+    }
+
+    let mesh = uneven_cube();
+    let gradient = Matrix3::new(0.2, -0.4, 0.1, 0.5, -0.15, 0.0, -0.1, 0.2, 0.1);
+    let f = Matrix3::identity() + gradient;
+    let rows: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| gradient[(i, j)]));
+    for (id, element) in all() {
+        let mut problem = of(id, element);
+        problem.fixed = vec![held("bottom")];
+        let model = build(&mesh, &problem);
+        let field: Vec<[f64; 3]> = mesh
+            .points
+            .iter()
+            .map(|point| (gradient * Vector3::from(*point)).into())
+            .collect();
+        let Law::Hyperelastic { id, parameters } = law(id) else {
+            panic!("a hyperelastic law");
+        };
+        let p = Hyperelastic::new(id, &parameters)
+            .unwrap()
+            .with_law(Stress(Tensor::of(rows)));
+        let p = Matrix3::from_fn(|i, j| p[i][j]);
+        let cauchy = p * f.transpose() / f.determinant();
+        let green = (f.transpose() * f - Matrix3::identity()) / 2.0;
+        let places = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
+        for tet in model.deformed_tets(&field).unwrap() {
+            let stress = tet.stress.unwrap();
+            for (k, place) in places.into_iter().enumerate() {
+                assert!(
+                    (stress[k] - cauchy[place]).abs() < 1e-10 * cauchy.norm(),
+                    "{id}, {element}"
+                );
+                assert!((tet.strain[k] - green[place]).abs() < 1e-14);
+            }
+            assert!(tet.is_hyperelastic && !tet.is_inverted);
+        }
+    }
+}
+
+/// The supports hold what the loads bring, with stiffness damping of a motion too.
+#[test]
+fn reactions_are_the_forces_that_are_missing() {
+    let mesh = uneven_cube();
+    for element in ELEMENTS {
+        for beta in [0.0, 0.01] {
+            let mut free = of("neo-hookean", element);
+            free.damping.stiffness = beta;
+            let mut held_below = free.clone();
+            held_below.fixed = vec![held("bottom")];
+            let (free, model) = (build(&mesh, &free), build(&mesh, &held_below));
+            let u = bent(&mesh, &model, 0.5);
+            let v = waves(u.len(), 1.1);
+            let reaction = model.reaction(0.0, &u, &v, &"bottom".into()).unwrap();
+            let (mut all_u, mut all_v) = (
+                vec![[0.0; 3]; mesh.points.len()],
+                vec![[0.0; 3]; mesh.points.len()],
+            );
+            model.to_nodes(&u, &mut all_u).unwrap();
+            model.to_nodes(&v, &mut all_v).unwrap();
+            let mut net = vec![0.0; free.dofs()];
+            free.net_force(&at(all_u.as_flattened(), all_v.as_flattened()), &mut net)
+                .unwrap();
+            for (axis, reaction) in reaction.into_iter().enumerate() {
+                let missing: f64 = model
+                    .held_nodes()
+                    .iter()
+                    .map(|node| -net[3 * *node as usize + axis])
+                    .sum();
+                assert!(
+                    (reaction / missing - 1.0).abs() < 1e-11,
+                    "{element}: {reaction} {missing}"
+                );
+            }
+        }
+    }
+}

@@ -130,7 +130,7 @@ pub(super) fn at_edge<L: HyperelasticLaw>(
     tets: &[u32],
     scratch: &Scratch,
 ) -> Result<Point<f64, L::Own<f64>>, EvaluationError> {
-    let at = law.at(region.mean_tensor(tets, &scratch.gradients));
+    let at = law.at(region.mean_tensor(tets, |tet| scratch.gradients[tet]));
     let first = tets.first().map_or(0, |tet| region.rest.tag(*tet as usize));
     check(law, &at, first)?;
     Ok(at)

@@ -24,8 +24,8 @@ use crate::hyperelastic::Hyperelastic;
 use crate::smoothing::Smoothing;
 use gather::Gather;
 
-/// The displacement (m) or velocity (m/s) of all mesh nodes.
-pub(crate) type Field = [[f64; 3]];
+/// Marks a tetrahedron that is in no hyperelastic region.
+const NO_PLACE: u32 = u32::MAX;
 
 /// All hyperelastic regions of a body.
 #[derive(Debug)]
@@ -34,6 +34,8 @@ pub(crate) struct LargeDeformation {
     gather: Gather,
     nodes: usize,
     tets: usize,
+    /// Place of each tetrahedron of the mesh among those of the regions.
+    place_of_tet: Vec<u32>,
     /// Room for evaluations, one for each that goes on at the same time.
     pool: Mutex<Vec<Scratch>>,
 }
@@ -46,7 +48,11 @@ impl LargeDeformation {
         regions: impl Iterator<Item = ((Hyperelastic, f64), &'a [u32])>,
     ) -> Option<Self> {
         let (mut made, mut tets) = (Vec::new(), 0);
+        let mut place_of_tet = vec![NO_PLACE; mesh.tets.len()];
         for (law, members) in regions {
+            for (place, tet) in (tets as u32..).zip(members) {
+                place_of_tet[*tet as usize] = place;
+            }
             made.push(HyperelasticRegion::new(mesh, smoothing, law, members, tets));
             tets += members.len();
         }
@@ -63,6 +69,7 @@ impl LargeDeformation {
             regions: made,
             nodes: mesh.points.len(),
             tets,
+            place_of_tet,
             pool: Mutex::default(),
         })
     }
@@ -103,7 +110,14 @@ impl LargeDeformation {
         kind: TangentKind,
     ) -> Result<(), EvaluationError> {
         let mut regions = self.regions.iter();
-        regions.try_for_each(|region| product::product(region, scratch, kind))
+        regions.try_for_each(|region| product::product(region, scratch, Some(kind)))
+    }
+
+    /// [`LargeDeformation::product`] with the tangent that stiffness damping multiplies: the exact one, so that the rate of a stress is damped,
+    /// but with rotations held fast where a law has one, which is semidefinite.
+    pub(crate) fn damped_product(&self, scratch: &mut Scratch) -> Result<(), EvaluationError> {
+        let mut regions = self.regions.iter();
+        regions.try_for_each(|region| product::product(region, scratch, None))
     }
 
     /// Sums what was computed at the corners: calls `add` with each node and its force (N).
@@ -133,10 +147,20 @@ impl LargeDeformation {
         regions.try_for_each(|region| node_blocks::add(region, scratch, &mut add))
     }
 
-    /// Calls `tell` with the place of each tetrahedron and its Cauchy stress (Pa) at the displacement in the scratch.
-    pub(crate) fn stresses(&self, scratch: &mut Scratch, mut tell: impl FnMut(usize, [f64; 6])) {
-        for region in &self.regions {
-            stress::stresses(region, scratch, &mut tell);
-        }
+    /// The Cauchy stress (Pa) of a tetrahedron of the mesh, in the order of [`crate::stress`], with the displacement (m) of each node; `None`
+    /// where it is in no hyperelastic region, not a number where its law has no meaning.
+    pub(crate) fn stress(
+        &self,
+        tet: usize,
+        displacement: impl Fn(u32) -> [f64; 3],
+    ) -> Option<[f64; 6]> {
+        let place = *self.place_of_tet.get(tet)?;
+        let place = (place != NO_PLACE).then_some(place as usize)?;
+        let region = self
+            .regions
+            .iter()
+            .rev()
+            .find(|region| region.first <= place)?;
+        Some(stress::cauchy(region, place - region.first, displacement))
     }
 }

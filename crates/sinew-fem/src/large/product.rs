@@ -7,11 +7,12 @@ use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
 use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Linearised, Point, Tensor};
 
-/// Writes the change of the forces at the corners of a region's tetrahedra.
+/// Writes the change of the forces at the corners of a region's tetrahedra; without a kind, frozen where the law has a rotation and
+/// exact elsewhere.
 pub(super) fn product(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
-    kind: TangentKind,
+    kind: Option<TangentKind>,
 ) -> Result<(), EvaluationError> {
     region.law.with_law(Products {
         region,
@@ -23,40 +24,49 @@ pub(super) fn product(
 struct Products<'a> {
     region: &'a HyperelasticRegion,
     scratch: &'a mut Scratch,
-    kind: TangentKind,
+    kind: Option<TangentKind>,
 }
 
 impl LawVisitor for Products<'_> {
     type Output = Result<(), EvaluationError>;
 
     fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+        let kind = self.kind.unwrap_or_else(|| {
+            let at = law.at(Tensor::<f64>::zero());
+            match law.frozen_tangent(&at, Tensor::zero()) {
+                Some(_) => TangentKind::Frozen,
+                None => TangentKind::Exact,
+            }
+        });
         if self.region.is_smoothed() {
-            self.smoothed(law)
+            self.smoothed(law, kind)
         } else {
-            self.plain(law)
+            self.plain(law, kind)
         }
     }
 }
 
 impl Products<'_> {
-    fn plain<L: HyperelasticLaw>(self, law: L) -> Result<(), EvaluationError> {
+    fn plain<L: HyperelasticLaw>(self, law: L, kind: TangentKind) -> Result<(), EvaluationError> {
         let rest = &self.region.rest;
         let corners = self.scratch.corners[self.region.first..].iter_mut();
         for (tet, corners) in (0..rest.count()).zip(corners) {
             let at = law.at(rest.gradient_of::<f64>(tet, &self.scratch.displacement));
             check(&law, &at, rest.tag(tet))?;
             let change = rest.gradient_of::<f64>(tet, &self.scratch.change);
-            let tangent = Linearised::of(&law, &at, law.own_bulk(&at), self.kind);
+            let tangent = Linearised::of(&law, &at, law.own_bulk(&at), kind);
             rest.forces(tet, tangent.on(change), corners);
         }
         Ok(())
     }
 
-    fn smoothed<L: HyperelasticLaw>(self, law: L) -> Result<(), EvaluationError> {
+    fn smoothed<L: HyperelasticLaw>(
+        self,
+        law: L,
+        kind: TangentKind,
+    ) -> Result<(), EvaluationError> {
         let Self {
-            region,
-            scratch,
-            kind,
+            region, scratch, ..
         } = self;
         let (rest, lambda) = (&region.rest, law.lame().0);
         means(region, scratch, &law)?;
@@ -75,7 +85,7 @@ impl Products<'_> {
         for edge in 0..region.edges.count() {
             let tets = region.edges.of(edge);
             let at = at_edge(region, &law, tets, scratch)?;
-            let change = region.mean_tensor(tets, &scratch.changes);
+            let change = region.mean_tensor(tets, |tet| scratch.changes[tet]);
             let tangent = Linearised::of(&law, &at, Bulk::none(), kind);
             scratch.at_edges[edge] = tangent.on(change);
         }

@@ -81,11 +81,15 @@ impl HyperelasticRegion {
 
     /// The mean of tensors over a set by volume.
     #[inline(always)]
-    pub(super) fn mean_tensor(&self, tets: &[u32], of: &[Tensor<f64>]) -> Tensor<f64> {
+    pub(super) fn mean_tensor(
+        &self,
+        tets: &[u32],
+        of: impl Fn(usize) -> Tensor<f64>,
+    ) -> Tensor<f64> {
         let (mut sum, mut volumes) = (Tensor::zero(), 0.0);
         for tet in tets {
             let volume = self.rest.volume(*tet as usize);
-            sum = sum.plus(volume, of[*tet as usize]);
+            sum = sum.plus(volume, of(*tet as usize));
             volumes += volume;
         }
         sum.scaled(volumes.recip())

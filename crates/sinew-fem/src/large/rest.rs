@@ -86,7 +86,17 @@ impl Rest {
     /// The gradient of a field (m) that is given at all mesh nodes: row i, column j is the derivative of component i along j.
     #[inline(always)]
     pub(super) fn gradient_of<N: Number>(&self, tet: usize, field: &[[f64; 3]]) -> Tensor<N> {
-        let [a, b, c, d] = self.nodes(tet).map(|node| field[node as usize]);
+        self.gradient_by(tet, |node| field[node as usize])
+    }
+
+    /// [`Rest::gradient_of`] for a function of the node.
+    #[inline(always)]
+    pub(super) fn gradient_by<N: Number>(
+        &self,
+        tet: usize,
+        field: impl Fn(u32) -> [f64; 3],
+    ) -> Tensor<N> {
+        let [a, b, c, d] = self.nodes(tet).map(field);
         let gradients = self.gradients::<N>(tet);
         let edges = [b, c, d].map(|end| {
             let along = |axis: usize| N::of(end[axis] - a[axis]);

@@ -1,68 +1,63 @@
 //! Stresses of deformed tetrahedra.
 
-use super::force::means;
 use super::region::HyperelasticRegion;
-use super::scratch::Scratch;
-use crate::hyperelastic::{HyperelasticLaw, LawVisitor, Tensor};
+use crate::hyperelastic::{HyperelasticLaw, LawVisitor};
 
-/// Calls `tell` with the place of each tetrahedron of a region and its Cauchy stress (Pa), `P F'/J`; not a number where
-/// the law has no meaning.
-pub(super) fn stresses(
+/// The Cauchy stress (Pa), `P F'/J`, of a tetrahedron, with the displacement (m) of each mesh node; not a number where the law has no
+/// meaning.
+pub(super) fn cauchy(
     region: &HyperelasticRegion,
-    scratch: &mut Scratch,
-    tell: &mut impl FnMut(usize, [f64; 6]),
-) {
-    region.law.with_law(Stresses {
+    tet: usize,
+    displacement: impl Fn(u32) -> [f64; 3],
+) -> [f64; 6] {
+    region.law.with_law(Cauchy {
         region,
-        scratch,
-        tell,
-    });
+        tet,
+        displacement,
+    })
 }
 
-struct Stresses<'a, F> {
+struct Cauchy<'a, U> {
     region: &'a HyperelasticRegion,
-    scratch: &'a mut Scratch,
-    tell: &'a mut F,
+    tet: usize,
+    displacement: U,
 }
 
-impl<F: FnMut(usize, [f64; 6])> LawVisitor for Stresses<'_, F> {
-    type Output = ();
+impl<U: Fn(u32) -> [f64; 3]> LawVisitor for Cauchy<'_, U> {
+    type Output = [f64; 6];
 
-    fn visit<L: HyperelasticLaw>(self, law: L) {
+    fn visit<L: HyperelasticLaw>(self, law: L) -> [f64; 6] {
         let Self {
             region,
-            scratch,
-            tell,
+            tet,
+            displacement,
         } = self;
-        let (rest, lambda) = (&region.rest, law.lame().0);
-        let is_defined = !region.is_smoothed() || means(region, scratch, &law).is_ok();
-        for tet in 0..rest.count() {
-            let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
-            let stress = if !is_defined || !law.admits(&at.deformation) {
-                Tensor::diagonal(f64::NAN)
-            } else if region.is_smoothed() {
-                let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
-                let mut stress = law.stress(&at).scaled(1.0 - region.edge_share);
-                stress = stress.plus(lambda * dilation, law.dilation_gradient(&at));
-                for edge in region.edges_of.get(tet).into_iter().flatten() {
-                    let tets = region.edges.of(*edge as usize);
-                    let at_edge = law.at(region.mean_tensor(tets, &scratch.gradients));
-                    stress = stress.plus(region.edge_share / 6.0, law.stress(&at_edge));
-                }
-                stress
-            } else {
-                law.stress_with(&at, law.own_bulk(&at))
-            };
-            let cauchy = stress
-                .times_transposed(at.gradient)
-                .scaled(at.volume_ratio.recip());
-            let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = cauchy.0;
-            // A mean stress is symmetric only in the sum over tetrahedra.
-            let shear = [(xy + yx) / 2.0, (yz + zy) / 2.0, (xz + zx) / 2.0];
-            tell(
-                region.first + tet,
-                [xx, yy, zz, shear[0], shear[1], shear[2]],
-            );
+        let rest = &region.rest;
+        let gradient = |tet: usize| rest.gradient_by::<f64>(tet, &displacement);
+        let at = law.at(gradient(tet));
+        let mut is_defined = law.admits(&at.deformation);
+        let mut stress = if let Some(patch) = region.patch_of.get(tet) {
+            let [dilation] = region.mean(region.patches.of(*patch as usize), |tet| {
+                [law.dilation(&law.at(gradient(tet)))]
+            });
+            let own = law.stress(&at).scaled(1.0 - region.edge_share);
+            own.plus(law.lame().0 * dilation, law.dilation_gradient(&at))
+        } else {
+            law.stress_with(&at, law.own_bulk(&at))
+        };
+        for edge in region.edges_of.get(tet).into_iter().flatten() {
+            let tets = region.edges.of(*edge as usize);
+            let at = law.at(region.mean_tensor(tets, gradient));
+            is_defined &= law.admits(&at.deformation);
+            stress = stress.plus(region.edge_share / 6.0, law.stress(&at));
         }
+        if !is_defined {
+            return [f64::NAN; 6];
+        }
+        let cauchy = stress.times_transposed(at.gradient);
+        let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = cauchy.scaled(at.volume_ratio.recip()).0;
+        // With averages the stress of one tetrahedron need not be symmetric; its antisymmetric part does no work over all.
+        let shear = [(xy + yx) / 2.0, (yz + zy) / 2.0, (xz + zx) / 2.0];
+        [xx, yy, zz, shear[0], shear[1], shear[2]]
     }
 }

@@ -2,17 +2,20 @@
 
 use super::Model;
 use super::field_error::FieldError;
-use crate::tetra;
+use crate::hyperelastic::{SingularValues, Tensor};
+use crate::{stress, tetra};
 
 /// A tetrahedron as a motion deforms it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeformedTet {
-    /// The small strain, in the order of [`Model::strain`].
+    /// The strain, see [`Model::strain`].
     pub strain: [f64; 6],
     /// The stress (Pa) in the same order, see [`Model::stress`]; `None` where it is made of springs.
     pub stress: Option<[f64; 6]>,
-    /// The rotation (rad), as far as it is small: half of the curl of the displacement.
+    /// The angle of its rotation (rad); where it is linear as far as that is small, half of the curl of the displacement.
     pub rotation: f64,
+    /// Whether its law is one of large deformation.
+    pub is_hyperelastic: bool,
     /// Whether its volume is 0 or below, or not a number.
     pub is_inverted: bool,
 }
@@ -36,7 +39,8 @@ impl Model {
         let means = self.mean_strains(|tet| small_strain(&gradient(tet)));
         Ok((0..self.mesh.tets.len()).map(move |tet| {
             let d = gradient(tet);
-            let strain = small_strain(&d);
+            let small = small_strain(&d);
+            let is_hyperelastic = self.material_of(tet).is_hyperelastic();
             let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = d;
             let curl = [zy - yz, xz - zx, yx - xy];
             // The volume is that at rest, which is positive, times the determinant of 1 + d.
@@ -44,11 +48,23 @@ impl Model {
             let ratio =
                 xx * (yy * zz - yz * zy) - xy * (yx * zz - yz * zx) + xz * (yx * zy - yy * zx);
             DeformedTet {
-                strain,
-                stress: self
-                    .material_of(tet)
-                    .stress(&self.strain_among(&means, tet, strain)),
-                rotation: 0.5 * curl.iter().map(|c| c * c).sum::<f64>().sqrt(),
+                strain: if is_hyperelastic {
+                    stress::green_strain(&d)
+                } else {
+                    small
+                },
+                stress: if is_hyperelastic {
+                    self.large_stress(tet, |node| displacement[node as usize])
+                } else {
+                    let strain = self.strain_among(&means, tet, small);
+                    self.material_of(tet).stress(&strain)
+                },
+                rotation: if is_hyperelastic {
+                    angle(&d)
+                } else {
+                    0.5 * curl.iter().map(|c| c * c).sum::<f64>().sqrt()
+                },
+                is_hyperelastic,
                 is_inverted: ratio.is_nan() || ratio <= 0.0,
             }
         }))
@@ -59,4 +75,16 @@ impl Model {
 fn small_strain([[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]: &[[f64; 3]; 3]) -> [f64; 6] {
     let shear = [(xy + yx) / 2.0, (yz + zy) / 2.0, (xz + zx) / 2.0];
     [*xx, *yy, *zz, shear[0], shear[1], shear[2]]
+}
+
+/// The angle (rad) of the rotation R in F = R S, by the gradient of the displacement.
+fn angle(displacement_gradient: &[[f64; 3]; 3]) -> f64 {
+    let gradient = Tensor(*displacement_gradient) + Tensor::identity();
+    let SingularValues { left, right, .. } = SingularValues::of(gradient);
+    let rotation = Tensor::from_columns(left).times_transposed(Tensor::from_columns(right));
+    // Twice the sine and twice the cosine.
+    let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = rotation.0;
+    let axis = [zy - yz, xz - zx, yx - xy];
+    let sine = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
+    sine.atan2(xx + yy + zz - 1.0)
 }

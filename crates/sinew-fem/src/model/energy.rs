@@ -8,6 +8,17 @@ use crate::error::Item;
 use crate::parts::WholePart;
 
 impl Model {
+    /// The energy (J) of the hyperelastic regions; not a number where a law has no meaning.
+    pub(super) fn large_energy(&self, displacement: &[[f64; 3]]) -> f64 {
+        self.large.as_ref().map_or(0.0, |large| {
+            large.with_scratch(|scratch| {
+                scratch.displacement.copy_from_slice(displacement);
+                let found = large.evaluate(scratch, true);
+                found.map_or(f64::NAN, |found| found.energy)
+            })
+        })
+    }
+
     /// The elastic energy (J) of the body with this displacement (m) of each node of the mesh, that of elements with
     /// held or moved nodes included; summed up element by element.
     ///
@@ -20,7 +31,8 @@ impl Model {
             parts.whole(part, &mut whole);
             whole.energy(displacement)
         };
-        Ok((0..parts.count()).map(energy).sum())
+        let linear: f64 = (0..parts.count()).map(energy).sum();
+        Ok(linear + self.large_energy(displacement))
     }
 
     /// Writes the forces (N) of loads and gravity at each node of the mesh at a time (s), held components included, without

@@ -69,9 +69,6 @@ impl Model {
             }
         });
     }
-
-    /// The kind of tangent that stiffness damping multiplies: rotations must not be damped, so that laws with a rotation hold it fast.
-    const DAMPED: TangentKind = TangentKind::Exact;
 }
 
 impl ForceLaw for Model {
@@ -83,7 +80,7 @@ impl ForceLaw for Model {
             self.add_at_corners(large, scratch, -1.0, out);
             if beta != 0.0 {
                 self.fill(trial.load, 1, trial.v, &mut scratch.change)?;
-                large.product(scratch, Self::DAMPED)?;
+                large.damped_product(scratch)?;
                 self.add_at_corners(large, scratch, -beta, out);
             }
             Ok(())

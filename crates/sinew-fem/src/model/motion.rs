@@ -22,7 +22,9 @@ impl Model {
                 let SupportMotion { stiffness, damping } = self
                     .support_motion(&part.pattern(course))
                     .map_err(FemError::at(item))?;
-                if let (Some(instant), false) = (course.ramp.first_jump(), damping.is_empty()) {
+                let damps_large = self.large.is_some() && self.operators.damping().stiffness > 0.0;
+                let is_damped = damps_large || !damping.is_empty();
+                if let (Some(instant), true) = (course.ramp.first_jump(), is_damped) {
                     return Err(FemError::new(item, Cause::PositionJumps { instant }));
                 }
                 let mut pull = |ramp: Ramp, mut entries: Vec<(u32, f64)>| {

@@ -31,7 +31,7 @@ impl Model {
     /// included; add those of [`NodalForces::dropped`](super::NodalForces) by hand.
     ///
     /// The first call sums up the rows of the held nodes; later ones allocate nothing but a few numbers for each
-    /// prescribed motion beyond the eighth.
+    /// prescribed motion beyond the eighth, and with hyperelastic regions one vector over the nodes.
     ///
     /// # Errors
     /// [`FieldError::Length`] unless `u` and `v` have one entry for each degree of freedom and `out` one
@@ -173,13 +173,52 @@ impl Model {
     ) -> impl Fn(u32) -> [f64; 3] {
         let damping = self.operators.damping();
         let (alpha, beta, border) = (damping.mass, damping.stiffness, self.border());
+        let large = self.large_forces(beta, &u, &v);
         move |node| {
             let mut force = border.internal_force(node, beta, &u, &v);
+            if let Some(large) = &large {
+                subtract(&mut force, -1.0, &large[node as usize]);
+            }
             let mass = self.masses[node as usize];
             subtract(&mut force, -mass, &a(node));
             subtract(&mut force, -mass * alpha, &v(node));
             force
         }
+    }
+
+    /// The forces (N) of hyperelastic regions at all nodes, the part of their stiffness damping included; not numbers where a law has no
+    /// meaning, and `None` without such regions.
+    fn large_forces(
+        &self,
+        beta: f64,
+        u: impl Fn(u32) -> [f64; 3],
+        v: impl Fn(u32) -> [f64; 3],
+    ) -> Option<Vec<[f64; 3]>> {
+        let large = self.large.as_ref()?;
+        let mut forces = vec![[0.0; 3]; self.mesh.points.len()];
+        let evaluated = large.with_scratch(|scratch| {
+            for (node, out) in (0..).zip(&mut scratch.displacement) {
+                *out = u(node);
+            }
+            large.evaluate(scratch, false)?;
+            large.sum(scratch, |node, force| {
+                subtract(&mut forces[node as usize], -1.0, &force);
+            });
+            if beta != 0.0 {
+                for (node, out) in (0..).zip(&mut scratch.change) {
+                    *out = v(node);
+                }
+                large.damped_product(scratch)?;
+                large.sum(scratch, |node, force| {
+                    subtract(&mut forces[node as usize], -beta, &force);
+                });
+            }
+            Ok::<(), sinew_core::EvaluationError>(())
+        });
+        if evaluated.is_err() {
+            forces.fill([f64::NAN; 3]);
+        }
+        Some(forces)
     }
 
     fn held_forces(

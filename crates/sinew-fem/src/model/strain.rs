@@ -10,8 +10,8 @@ use crate::springs::Spring;
 use crate::{stress, tetra};
 
 impl Model {
-    /// Writes the small strain of each tetrahedron at a time (s), with the displacement `u` (m) of the
-    /// degrees of freedom then, for any law:
+    /// Writes the strain of each tetrahedron at a time (s), with the displacement `u` (m) of the
+    /// degrees of freedom then: Green's, `(F'F - I)/2`, in hyperelastic regions and the small strain elsewhere.
     /// xx, yy, zz, xy, yz, zx, the shear entries being the tensor's, half of the engineering shear
     /// (see [`crate::stress`]). Prescribed motions are taken at the time, and nothing else depends on
     /// it. Allocates nothing but a few numbers for each prescribed motion beyond the eighth.
@@ -35,7 +35,7 @@ impl Model {
     }
 
     /// Writes the stress (Pa) of each tetrahedron at a time (s), in the order of
-    /// [`Model::strain`]: that of the elastic law alone, without damping. Where regions average strain
+    /// [`Model::strain`]: that of the elastic law alone, without damping; Cauchy's in hyperelastic regions. Where regions average strain
     /// ([`crate::Element`]) it follows from the averages, and room is allocated for them; otherwise nothing is.
     ///
     /// The stress of plain tetrahedra is most accurate averaged over neighbours; in nearly
@@ -51,11 +51,15 @@ impl Model {
         u: &[f64],
         out: &mut [[f64; 6]],
     ) -> Result<(), FieldError> {
+        let when = when.into();
         self.strain(when, u, out)?;
         let means = self.mean_strains(|tet| out[tet]);
+        let at_node = self.at_nodes(when, 0, Some(u))?;
         for (tet, out) in out.iter_mut().enumerate() {
-            let strain = self.strain_among(&means, tet, *out);
-            *out = self.stress_at(tet, &strain)?;
+            *out = match self.large_stress(tet, &at_node) {
+                Some(stress) => stress,
+                None => self.stress_at(tet, &self.strain_among(&means, tet, *out))?,
+            };
         }
         Ok(())
     }
@@ -77,6 +81,9 @@ impl Model {
             return Err(FieldError::TetOutOfRange { tet, tets });
         }
         let at_node = self.at_nodes(when.into(), 0, Some(u))?;
+        if let Some(stress) = self.large_stress(tet, &at_node) {
+            return Ok(stress);
+        }
         let strain = |tet| self.strain_of(&at_node, tet);
         let share = self.edge_share(tet);
         let smoothed = self
@@ -102,9 +109,22 @@ impl Model {
         let nodes = self.mesh.tets[tet];
         let vertices = nodes.map(|node| self.mesh.points[node as usize]);
         let displacements = nodes.map(displacement);
+        if self.material_of(tet).is_hyperelastic() {
+            let gradient = tetra::displacement_gradient(&vertices, &displacements);
+            return stress::green_strain(&gradient);
+        }
         // A model has no flat tetrahedra.
         let gradients = tetra::gradients(&vertices).unwrap_or_default();
         stress::strain(&gradients, &displacements)
+    }
+
+    /// The stress (Pa) of a tetrahedron in a hyperelastic region; `None` elsewhere.
+    pub(super) fn large_stress(
+        &self,
+        tet: usize,
+        displacement: impl Fn(u32) -> [f64; 3],
+    ) -> Option<[f64; 6]> {
+        self.large.as_ref()?.stress(tet, displacement)
     }
 
     fn stress_at(&self, tet: usize, strain: &SmoothedStrain) -> Result<[f64; 6], FieldError> {

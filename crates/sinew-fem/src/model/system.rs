@@ -50,9 +50,20 @@ impl System for Model {
         Some(stiffest.reduce(f64::max)? / softest.reduce(f64::min)?)
     }
 
-    /// The energy of the degrees of freedom, without the energy that supports in motion hold and store.
+    /// The energy of the degrees of freedom, without the energy that supports in motion hold and store; `None` for
+    /// hyperelastic regions with such supports, where the two cannot be told apart, and outside a law's domain.
     fn energy(&self, u: &[f64], v: &[f64]) -> Option<Energy> {
-        Some(self.operators.energy(u, v))
+        let linear = self.operators.energy(u, v);
+        if self.large.is_none() {
+            return Some(linear);
+        }
+        if !self.motions.is_empty() {
+            return None;
+        }
+        let mut nodes = vec![[0.0; 3]; self.mesh.points.len()];
+        self.to_nodes(u, &mut nodes).ok()?;
+        let elastic = linear.elastic + self.large_energy(&nodes);
+        elastic.is_finite().then_some(Energy { elastic, ..linear })
     }
 
     fn inverted_elements(&self, when: LoadTime<'_>, u: &[f64]) -> Option<usize> {
