@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use crate::error::{FemError, Item};
-use crate::hyperelastic::{Hyperelastic, Parameters};
+use crate::error::{Cause, FemError, Item};
+use crate::hyperelastic::{Hyperelastic, LawError, ParameterError, Parameters};
 use crate::number::require;
 
 /// A material law: the way a material resists deformation.
@@ -91,8 +91,21 @@ impl Law {
                 require(item, "poissons_ratio", nu, expected, inside)
             }
             Self::Hyperelastic { id, parameters } => {
-                Hyperelastic::new(id, &parameters).map_err(FemError::at(item))?;
-                Ok(())
+                let made = Hyperelastic::new(id, &parameters);
+                let refused = |error| match error {
+                    LawError::Parameter(ParameterError::Value {
+                        quantity,
+                        found,
+                        expected,
+                    }) => Cause::Value {
+                        quantity,
+                        found,
+                        expected,
+                    },
+                    other => Cause::Law(other),
+                };
+                made.map(drop)
+                    .map_err(|error| FemError::new(item, refused(error)))
             }
             Self::Springs {
                 youngs_modulus,

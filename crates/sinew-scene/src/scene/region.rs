@@ -2,6 +2,7 @@
 
 use std::ops::Bound;
 
+use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{Element, Law, Region, SpringRule};
 
 use super::selected::{Members, NOT_WHERE, OPTIONAL_GROUP, Selections, WHERE_OF_TETRAHEDRA};
@@ -22,6 +23,7 @@ pub(super) const REGION: TableDescription = TableDescription {
         &YOUNGS_MODULUS,
         &POISSONS_RATIO,
         &SPRINGS_OF_REGION,
+        &C1_OVER_C2,
         &ELEMENT,
         &EDGE_SHARE,
         &PATCH,
@@ -33,6 +35,8 @@ pub(super) const REGION: TableDescription = TableDescription {
          youngs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n",
         "[[region]]\ndensity = 1060.0\nmodel = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.49\n\
          element = \"fbar-edge\"\nedge_share = 0.9\npatch = 12\n",
+        "[[region]]\ndensity = 1060.0\nmodel = \"mooney-rivlin\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\n\
+         c1_over_c2 = 4.0\n",
     ],
 };
 
@@ -40,6 +44,8 @@ pub(super) const REGION: TableDescription = TableDescription {
 enum MaterialModel {
     Springs,
     Linear,
+    /// A law of large deformation, by its id.
+    Hyperelastic(&'static str),
 }
 
 const GROUP: Key<Text, Optional> = OPTIONAL_GROUP.only(&[NOT_WHERE]);
@@ -53,16 +59,53 @@ const DENSITY: Key<Number> = Key::required(
 
 const MODEL: Key<Words<MaterialModel>> = Key::required(
     "model",
-    "`\"linear\"`: an isotropic elastic solid on tetrahedra of constant strain. `\"springs\"`: springs along the edges of \
-     the mesh.",
+    "`\"linear\"`: an isotropic elastic solid at small strain and rotation. `\"springs\"`: springs along the edges of the mesh. \
+     All others are isotropic solids at any strain and rotation: `\"neo-hookean\"` is the one to begin with; \
+     `\"stable-neo-hookean\"` also has a meaning where tetrahedra turn inside out; `\"corotational\"` is linear but for rotations; \
+     `\"stvk\"` (Saint Venant and Kirchhoff) collapses under strong compression; `\"mooney-rivlin\"` fits rubber-like tissue better \
+     in shear; `\"neo-hookean-log\"`, `\"neo-hookean-iso\"` and `\"stable-neo-hookean-log\"` are there for comparison with other programs.",
     Words(&[
         (SPRINGS_MODEL, MaterialModel::Springs),
         (LINEAR_MODEL, MaterialModel::Linear),
+        ("neo-hookean", MaterialModel::Hyperelastic("neo-hookean")),
+        (
+            "stable-neo-hookean",
+            MaterialModel::Hyperelastic("stable-neo-hookean"),
+        ),
+        ("corotational", MaterialModel::Hyperelastic("corotational")),
+        ("stvk", MaterialModel::Hyperelastic("stvk")),
+        (MOONEY_RIVLIN, MaterialModel::Hyperelastic(MOONEY_RIVLIN)),
+        (
+            "neo-hookean-log",
+            MaterialModel::Hyperelastic("neo-hookean-log"),
+        ),
+        (
+            "neo-hookean-iso",
+            MaterialModel::Hyperelastic("neo-hookean-iso"),
+        ),
+        (
+            "stable-neo-hookean-log",
+            MaterialModel::Hyperelastic("stable-neo-hookean-log"),
+        ),
     ]),
 );
 
 const SPRINGS_MODEL: &str = "springs";
 const LINEAR_MODEL: &str = "linear";
+const MOONEY_RIVLIN: &str = "mooney-rivlin";
+
+/// The models that are solids.
+const SOLIDS: &[&str] = &[
+    LINEAR_MODEL,
+    "neo-hookean",
+    "stable-neo-hookean",
+    "corotational",
+    "stvk",
+    MOONEY_RIVLIN,
+    "neo-hookean-log",
+    "neo-hookean-iso",
+    "stable-neo-hookean-log",
+];
 
 const YOUNGS_MODULUS: Key<Number> = Key::required(
     "youngs_modulus",
@@ -83,7 +126,7 @@ const POISSONS_RATIO: Key<Number> = Key::required(
 )
 .only(&[Condition::where_is(
     MODEL.name,
-    &[LINEAR_MODEL],
+    SOLIDS,
     "does not go with springs: their Poisson's ratio is 1/4, whatever their stiffness",
 )
 .help("take the key out, or use model = \"linear\"")]);
@@ -96,7 +139,18 @@ const SPRINGS_OF_REGION: Key<Inner> = Key::required(
 .only(&[Condition::where_is(
     MODEL.name,
     &[SPRINGS_MODEL],
-    "does not go with model = \"linear\"",
+    "goes with model = \"springs\" only",
+)]);
+
+const C1_OVER_C2: Key<Number> = Key::required(
+    "c1_over_c2",
+    "The ratio of Mooney and Rivlin's two shear constants, of which Young's modulus and Poisson's ratio leave it open.",
+    Number::above_zero("a finite ratio above 0"),
+)
+.only(&[Condition::where_is(
+    MODEL.name,
+    &[MOONEY_RIVLIN],
+    "goes with model = \"mooney-rivlin\" only",
 )]);
 
 /// Elements without the numbers that go with them.
@@ -121,7 +175,7 @@ const ELEMENT: Key<Words<ElementName>, Or<ElementName>> = Key::or(
 )
 .only(&[Condition::where_is(
     MODEL.name,
-    &[LINEAR_MODEL],
+    SOLIDS,
     "does not go with springs, which are no elements",
 )]);
 
@@ -196,8 +250,7 @@ const DAMPING_RATIO: Key<Number, Or<f64>> = Key::or(
 );
 
 const NEARLY_INCOMPRESSIBLE: &str = "0.5 is incompressible, which a displacement alone cannot \
-    describe; soft tissue is usually given 0.45 to 0.49, where 4-node tetrahedra are already \
-    stiffer than the material";
+    describe; soft tissue is usually given 0.45 to 0.499, with element = \"fbar-edge\"";
 
 pub(super) fn read_all(
     tables: Vec<Table<'_>>,
@@ -246,11 +299,25 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
     let youngs_modulus = table.read(&YOUNGS_MODULUS)?;
     let law = match model {
         MaterialModel::Springs => springs(&table.table(&SPRINGS_OF_REGION)?, youngs_modulus)?,
-        MaterialModel::Linear => linear(table, youngs_modulus)?,
+        MaterialModel::Linear => Law::Linear {
+            youngs_modulus,
+            poissons_ratio: poissons_ratio(table)?,
+        },
+        MaterialModel::Hyperelastic(id) => Law::Hyperelastic {
+            id,
+            parameters: Parameters {
+                youngs_modulus,
+                poissons_ratio: poissons_ratio(table)?,
+                c1_over_c2: match id {
+                    MOONEY_RIVLIN => Some(table.read(&C1_OVER_C2)?),
+                    _ => None,
+                },
+            },
+        },
     };
     let element = match model {
         MaterialModel::Springs => Element::P1,
-        MaterialModel::Linear => element(table)?,
+        MaterialModel::Linear | MaterialModel::Hyperelastic(_) => element(table)?,
     };
     Ok(Region {
         group,
@@ -281,17 +348,32 @@ fn springs(table: &Table<'_>, youngs_modulus: f64) -> Result<Law, SceneError> {
     })
 }
 
-fn linear(table: &Table<'_>, youngs_modulus: f64) -> Result<Law, SceneError> {
-    let poissons_ratio = table
-        .read(&POISSONS_RATIO)
-        .map_err(|error| match error.fault() {
-            Fault::Value { found, .. } if found.parse().is_ok_and(|nu: f64| nu >= 0.5) => {
-                error.with_help(NEARLY_INCOMPRESSIBLE)
-            }
-            _ => error,
-        })?;
-    Ok(Law::Linear {
-        youngs_modulus,
-        poissons_ratio,
+fn poissons_ratio(table: &Table<'_>) -> Result<f64, SceneError> {
+    let read = table.read(&POISSONS_RATIO);
+    read.map_err(|error| match error.fault() {
+        Fault::Value { found, .. } if found.parse().is_ok_and(|nu: f64| nu >= 0.5) => {
+            error.with_help(NEARLY_INCOMPRESSIBLE)
+        }
+        _ => error,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use sinew_fem::hyperelastic::Hyperelastic;
+
+    use super::*;
+
+    #[test]
+    fn every_law_of_large_deformation_is_a_model() {
+        let Words(words) = MODEL.values;
+        let ids = words.iter().filter_map(|(word, model)| match model {
+            MaterialModel::Hyperelastic(id) => Some((*word, *id)),
+            MaterialModel::Springs | MaterialModel::Linear => None,
+        });
+        let ids: Vec<_> = ids.collect();
+        let laws: Vec<_> = Hyperelastic::IDS.iter().map(|id| (*id, *id)).collect();
+        assert_eq!(ids, laws);
+        assert_eq!(SOLIDS[1..], *Hyperelastic::IDS);
+    }
 }

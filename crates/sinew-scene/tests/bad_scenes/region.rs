@@ -84,7 +84,7 @@ fn misspelt_density() {
         refusal(BODY, "density = 1060.0", "densty = 1060.0"),
         @"
     scene.toml:5: [[region]] 1: unknown key `densty`; did you mean `density`?
-    help: the keys here are `group`, `where`, `density`, `model`, `youngs_modulus`, `poissons_ratio`, `springs`, `element`, `edge_share`, `patch`
+    help: the keys here are `group`, `where`, `density`, `model`, `youngs_modulus`, `poissons_ratio`, `springs`, `c1_over_c2`, `element`, `edge_share`, `patch`
     "
     );
 }
@@ -116,8 +116,8 @@ fn infinite_modulus() {
 #[test]
 fn unknown_model() {
     insta::assert_snapshot!(
-        refusal(BODY, "model = \"springs\"", "model = \"neo-hookean\""),
-        @r#"scene.toml:6: [[region]] 1: model = "neo-hookean": expected "springs" or "linear""#
+        refusal(BODY, "model = \"springs\"", "model = \"ogden\""),
+        @r#"scene.toml:6: [[region]] 1: model = "ogden": expected "springs", "linear", "neo-hookean", "stable-neo-hookean", "corotational", "stvk", "mooney-rivlin", "neo-hookean-log", "neo-hookean-iso" or "stable-neo-hookean-log""#
     );
 }
 
@@ -125,7 +125,7 @@ fn unknown_model() {
 fn no_model() {
     insta::assert_snapshot!(
         refusal(BODY, "model = \"springs\"\n", ""),
-        @r#"scene.toml:4: [[region]] 1: `model` is missing: expected "springs" or "linear""#
+        @r#"scene.toml:4: [[region]] 1: `model` is missing: expected "springs", "linear", "neo-hookean", "stable-neo-hookean", "corotational", "stvk", "mooney-rivlin", "neo-hookean-log", "neo-hookean-iso" or "stable-neo-hookean-log""#
     );
 }
 
@@ -176,7 +176,7 @@ fn calibration_in_words() {
 fn springs_of_a_continuum() {
     insta::assert_snapshot!(
         refusal(BODY, "model = \"springs\"", "model = \"linear\"\npoissons_ratio = 0.45"),
-        @r#"scene.toml:9: [[region]] 1: `springs` does not go with model = "linear""#
+        @r#"scene.toml:9: [[region]] 1: `springs` goes with model = "springs" only"#
     );
 }
 
@@ -184,10 +184,10 @@ fn springs_of_a_continuum() {
 fn incompressible() {
     insta::assert_snapshot!(
         refusal(BODY, SPRINGS, "model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.5"),
-        @"
+        @r#"
     scene.toml:8: [[region]] 1: poissons_ratio = 0.5: expected a number above -1 and below 0.5
-    help: 0.5 is incompressible, which a displacement alone cannot describe; soft tissue is usually given 0.45 to 0.49, where 4-node tetrahedra are already stiffer than the material
-    "
+    help: 0.5 is incompressible, which a displacement alone cannot describe; soft tissue is usually given 0.45 to 0.499, with element = "fbar-edge"
+    "#
     );
 }
 
@@ -303,4 +303,30 @@ fn patch_of_seven() {
 #[test]
 fn patch_of_plain_tetrahedra() {
     insta::assert_snapshot!(refused_element("patch = 12\n"), @r#"scene.toml:9: [[region]] 1: `patch` goes with element = "fbar" or "fbar-edge" only"#);
+}
+
+#[test]
+fn constants_of_mooney_and_rivlin_with_another_law() {
+    let lines = "c1_over_c2 = 4.0\n";
+    insta::assert_snapshot!(refused_element(lines), @r#"scene.toml:9: [[region]] 1: `c1_over_c2` goes with model = "mooney-rivlin" only"#);
+}
+
+/// The refusal of a region of this law with these lines.
+fn refused_law(law: &str, lines: &str) -> String {
+    let springs = "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }\n";
+    refusal(
+        BODY,
+        springs,
+        &format!("model = \"{law}\"\nyoungs_modulus = 3500.0\n{lines}"),
+    )
+}
+
+#[test]
+fn mooney_and_rivlin_without_their_constants() {
+    insta::assert_snapshot!(refused_law("mooney-rivlin", "poissons_ratio = 0.45\n"), @r#"scene.toml:4: [[region]] 1: `c1_over_c2` is missing: expected a finite ratio above 0"#);
+}
+
+#[test]
+fn a_law_of_large_deformation_that_widens_when_pulled() {
+    insta::assert_snapshot!(refused_law("neo-hookean", "poissons_ratio = -0.1\n"), @r#"scene.toml:4: [[region]] 1: poissons_ratio = -0.1: expected a number of 0 or above, and below 0.5"#);
 }
