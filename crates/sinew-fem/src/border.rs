@@ -138,7 +138,7 @@ impl Border {
     }
 }
 
-/// The numbers of the parts that have some of the nodes.
+/// The numbers of the parts with a matrix that have some of the nodes.
 fn parts_at(parts: Parts<'_>, nodes: &[u32]) -> Vec<usize> {
     let mut wanted = vec![false; parts.mesh.points.len()];
     for &node in nodes {
@@ -149,7 +149,8 @@ fn parts_at(parts: Parts<'_>, nodes: &[u32]) -> Vec<usize> {
         parts.nodes(*part, &mut of_part);
         of_part.iter().any(|node| wanted[*node as usize])
     };
-    (0..parts.count()).filter(has_some).collect()
+    let linear = (0..parts.count()).filter(|part| !parts.is_hyperelastic(*part));
+    linear.filter(has_some).collect()
 }
 
 fn add(sum: &mut [f64; 9], block: [f64; 9]) {

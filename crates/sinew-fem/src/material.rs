@@ -81,14 +81,8 @@ impl Material {
     /// Its stiffness (Pa) against compression, `lambda + 2 mu`, and against shear, mu.
     pub(crate) fn compression_and_shear(&self) -> (f64, f64) {
         match *self {
-            Self::Continuum {
-                lame: (first, shear),
-                ..
-            } => (first + 2.0 * shear, shear),
-            Self::Hyperelastic { law, .. } => {
-                let (first, shear) = law.lame();
-                (first + 2.0 * shear, shear)
-            }
+            Self::Continuum { lame, .. } => p_wave_and_shear(lame),
+            Self::Hyperelastic { law, .. } => p_wave_and_shear(law.lame()),
             // nu = 1/4 and thus lambda = mu for any springs (Cauchy's relations).
             Self::Springs { youngs_modulus, .. } => (1.2 * youngs_modulus, 0.4 * youngs_modulus),
         }
@@ -115,46 +109,43 @@ impl Material {
         }
     }
 
-    /// Lame's constants (Pa) that act on the strain of a tetrahedron by itself.
-    fn of_tetrahedra((lambda, mu): (f64, f64), element: Element) -> (f64, f64) {
-        match element {
-            Element::P1 => (lambda, mu),
-            Element::Fbar { .. } => (0.0, mu),
-            Element::FbarEdge { edge_share, .. } => (0.0, (1.0 - edge_share) * mu),
+    /// Lame's constants (Pa) at small strain; `None` where it is a network of springs.
+    fn lame(&self) -> Option<(f64, f64)> {
+        match self {
+            Self::Continuum { lame, .. } => Some(*lame),
+            Self::Hyperelastic { law, .. } => Some(law.lame()),
+            Self::Springs { .. } => None,
         }
     }
 
     /// Lame's constants (Pa) that act on the mean strain at an edge.
     pub(crate) fn averaged_over_edges(&self) -> [f64; 2] {
-        match *self {
-            Self::Continuum {
-                lame: (_, mu),
-                element,
-            } => [0.0, element.edge_share() * mu],
-            Self::Hyperelastic { .. } | Self::Springs { .. } => [0.0; 2],
-        }
+        let (_, mu) = self.lame().unwrap_or_default();
+        [0.0, self.element().edge_share() * mu]
     }
 
     /// Lame's constants (Pa) that act on the mean strain of a patch.
     pub(crate) fn averaged_over_patches(&self) -> [f64; 2] {
-        match *self {
-            Self::Continuum {
-                lame: (lambda, _),
-                element,
-            } if element.has_patches() => [lambda, 0.0],
-            Self::Continuum { .. } | Self::Hyperelastic { .. } | Self::Springs { .. } => [0.0; 2],
-        }
+        let (lambda, _) = self.lame().unwrap_or_default();
+        let share = if self.element().has_patches() {
+            1.0
+        } else {
+            0.0
+        };
+        [share * lambda, 0.0]
     }
 
-    /// Stiffness matrix (N/m) of a tetrahedron by itself, without what acts on averages, and 0 where it has no matrix: 12 x 12, row-major and
+    /// Stiffness matrix (N/m) of a tetrahedron by itself, without what acts on averages, at small strain: 12 x 12, row-major and
     /// vertex-major; `None` where it is flat.
     pub(crate) fn stiffness(&self, points: &[[f64; 3]], tet: &[u32; 4]) -> Option<[f64; 144]> {
         match *self {
-            Self::Continuum { lame, element } => {
-                let (lambda, mu) = Self::of_tetrahedra(lame, element);
-                tetra::stiffness(&tetra::vertices(points, *tet), lambda, mu)
+            Self::Continuum { .. } | Self::Hyperelastic { .. } => {
+                let (lambda, mu) = self.lame().unwrap_or_default();
+                let element = self.element();
+                let own_lambda = if element.has_patches() { 0.0 } else { lambda };
+                let own_mu = (1.0 - element.edge_share()) * mu;
+                tetra::stiffness(&tetra::vertices(points, *tet), own_lambda, own_mu)
             }
-            Self::Hyperelastic { .. } => Some([0.0; 144]),
             Self::Springs {
                 youngs_modulus,
                 rule,
@@ -187,4 +178,9 @@ impl Material {
             } => Some(springs::springs(points, tets, youngs_modulus, rule)),
         }
     }
+}
+
+/// `lambda + 2 mu` and mu (Pa) of Lame's constants.
+fn p_wave_and_shear((lambda, mu): (f64, f64)) -> (f64, f64) {
+    (lambda + 2.0 * mu, mu)
 }

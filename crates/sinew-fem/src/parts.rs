@@ -85,7 +85,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Whether a part belongs to a hyperelastic region, which has no stiffness matrix.
+    /// Whether a part belongs to a hyperelastic region, whose matrix is that at rest and stands in no sum.
     pub(crate) fn is_hyperelastic(&self, number: usize) -> bool {
         let part = self.part(number);
         let tet = match part {

@@ -1,6 +1,6 @@
 //! Fields over the body at an instant.
 
-use sinew_core::{Moment, System, element_omegas_squared};
+use sinew_core::Moment;
 use sinew_fem::{Model, stress};
 use sinew_mesh::CellType;
 use sinew_mesh::vtu::{Array, Grid, VtuEncoding};
@@ -196,11 +196,14 @@ impl<'a> Fields<'a> {
             let [xx, yy, zz, xy, yz, zx] = tet.strain;
             // No principal strain is larger than this norm.
             let norm = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx);
-            if norm > seen.strain.value.powi(2) {
-                seen.strain
-                    .see(stress::largest_principal(&tet.strain), t, tag);
+            // Only the linear theory has limits here.
+            if !tet.is_hyperelastic {
+                if norm > seen.strain.value.powi(2) {
+                    seen.strain
+                        .see(stress::largest_principal(&tet.strain), t, tag);
+                }
+                seen.rotation.see(tet.rotation, t, tag);
             }
-            seen.rotation.see(tet.rotation, t, tag);
             inverted += usize::from(tet.is_inverted);
             tets.inverted.push(u8::from(tet.is_inverted));
             tets.strain.extend(tet.strain.map(|strain| strain as f32));
@@ -214,10 +217,11 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// The largest step (s) at which each tetrahedron alone, with the masses of its nodes, would be stable under central
-/// difference: 2/omega with its largest frequency. That of the body is below all of them (Rayleigh's principle).
+/// The largest step (s) at which each tetrahedron alone, or with those over which its strain is averaged, with the masses of its nodes would
+/// be stable under central difference: 2/omega with its largest frequency. That of the body is below all of them (Rayleigh's
+/// principle); at small strain.
 fn step_limits(model: &Model) -> Vec<f32> {
-    let omegas = element_omegas_squared(model, model.mass());
+    let omegas = model.tet_omegas_squared();
     let limits = omegas
         .iter()
         .map(|omega_squared| 2.0 / omega_squared.sqrt());

@@ -31,7 +31,8 @@ impl Model {
             parts.whole(part, &mut whole);
             whole.energy(displacement)
         };
-        let linear: f64 = (0..parts.count()).map(energy).sum();
+        let linear = (0..parts.count()).filter(|part| !parts.is_hyperelastic(*part));
+        let linear: f64 = linear.map(energy).sum();
         Ok(linear + self.large_energy(displacement))
     }
 

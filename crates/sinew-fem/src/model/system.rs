@@ -2,7 +2,7 @@
 
 use sinew_core::{
     ElementStiffness, Elements, Energy, Equations, Layers, LinearOperators, LinearSystem, LoadTime,
-    Revision, Scales, System,
+    Revision, Scales, System, element_omegas_squared,
 };
 
 use super::Model;
@@ -112,6 +112,25 @@ impl LinearSystem for Model {
     }
 }
 
+impl Model {
+    /// The square (1/s^2) of the largest frequency at which each tetrahedron would swing the masses of its nodes: alone, or with those
+    /// over which its strain is averaged. At small strain, and never above that of the body.
+    #[must_use]
+    pub fn tet_omegas_squared(&self) -> Vec<f64> {
+        let omegas = element_omegas_squared(self, self.mass());
+        let (own, averages) = omegas.split_at(self.mesh.tets.len());
+        let mut of_tets = own.to_vec();
+        for (tets, omega_squared) in self.body.smoothing.sets().zip(averages) {
+            for tet in tets {
+                let of_tet = &mut of_tets[*tet as usize];
+                *of_tet = of_tet.max(*omega_squared);
+            }
+        }
+        of_tets
+    }
+}
+
+/// The parts of K; those of hyperelastic regions are at small strain, and in no matrix of the model.
 impl Elements for Model {
     fn count(&self) -> usize {
         self.parts().count()

@@ -1,0 +1,211 @@
+//! Large motions of neo-hookean blocks: a released stretch, a twist and a push. Digits and errors by step are those of a
+//! computation by another program, extrapolated from finer steps.
+
+#![cfg(test)]
+
+mod common;
+
+use common::{build, plain, relative_error};
+use sinew_core::{Ramp, State, StepError, System};
+use sinew_fem::hyperelastic::Parameters;
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region};
+use sinew_mesh::TetMesh;
+use sinew_mesh::structured::{self, Split};
+
+/// A block with its bottom held, and a start.
+struct Scene {
+    mesh: TetMesh,
+    model: Model,
+    start: State,
+    duration: f64,
+}
+
+impl Scene {
+    fn new(
+        (cells, size): ([usize; 3], [f64; 3]),
+        duration: f64,
+        change: impl FnOnce(&TetMesh, &mut Problem),
+    ) -> Self {
+        let mesh = structured::block(cells, size, Split::Mirrored).unwrap();
+        let parameters = Parameters::new(3500.0, 0.45);
+        let mut problem = Problem {
+            regions: vec![Region {
+                group: None,
+                density: 1060.0,
+                law: Law::Hyperelastic {
+                    id: "neo-hookean",
+                    parameters,
+                },
+                element: Element::P1,
+            }],
+            fixed: vec![Fixed {
+                on: "bottom".into(),
+                axes: [true; 3],
+            }],
+            ..Problem::default()
+        };
+        change(&mesh, &mut problem);
+        let model = Model::build(&mesh, &problem).unwrap();
+        Self {
+            start: State::at_rest(model.dofs()),
+            mesh,
+            model,
+            duration,
+        }
+    }
+
+    /// A cube stretched by half along z at the volume of rest, and let go.
+    fn release() -> Self {
+        let mut scene = Self::new(([6; 3], [0.1; 3]), 0.5, |_, _| {});
+        scene.start.u = scene.field(|[x, y, z]| {
+            let s = 1.0 + (1.5_f64.powf(-0.5) - 1.0) * z / 0.1;
+            [(s - 1.0) * (x - 0.05), (s - 1.0) * (y - 0.05), 0.5 * z]
+        });
+        scene
+    }
+
+    /// A column that is spun about its axis.
+    fn twist() -> Self {
+        let mut scene = Self::new(([3, 3, 18], [0.02, 0.02, 0.12]), 0.5, |_, _| {});
+        scene.start.v = scene.field(|[x, y, z]| {
+            let speed = 75.0 * (std::f64::consts::PI * z / 0.24).sin();
+            [speed * (y - 0.01), -speed * (x - 0.01), 0.0]
+        });
+        scene
+    }
+
+    /// A cube under 12 N down, spread over its top by the trapezoidal rule.
+    fn push() -> Self {
+        Self::new(([6; 3], [0.1; 3]), 0.5, |mesh, problem| {
+            problem.damping = Rayleigh {
+                mass: 10.0,
+                stiffness: 0.0,
+            };
+            let rims = |x: f64| x < 1e-9 || x > 0.1 - 1e-9;
+            for rim in 0..3 {
+                let nodes = (0u32..).zip(&mesh.points).filter(|(_, [x, y, z])| {
+                    *z > 0.1 - 1e-9 && usize::from(rims(*x)) + usize::from(rims(*y)) == rim
+                });
+                let nodes: Vec<u32> = nodes.map(|(node, _)| node).collect();
+                let weight = nodes.len() as f64 * 0.5_f64.powi(rim as i32);
+                problem.loads.push(LoadSpec {
+                    on: On::Nodes(nodes),
+                    kind: LoadKind::Force([0.0, 0.0, -12.0 * weight / 36.0]),
+                    ramp: Ramp::Sin2 { rise: 0.2 },
+                });
+            }
+        })
+    }
+
+    fn field(&self, of: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
+        let nodes = self.model.nodes().iter();
+        nodes
+            .flat_map(|node| of(self.mesh.points[*node as usize]))
+            .collect()
+    }
+
+    /// The displacements at `instants` instants, so many steps a second.
+    fn run(&self, rate: usize, instants: usize) -> Result<Vec<Vec<f64>>, StepError> {
+        let mut integrator = build("central-difference", &plain());
+        let (mut state, dt) = (self.start.clone(), 1.0 / rate as f64);
+        let steps = (self.duration * rate as f64 / instants as f64).round() as usize;
+        let mut seen = Vec::new();
+        for _ in 0..instants {
+            for _ in 0..steps {
+                integrator.step(&self.model, &mut state, dt)?;
+            }
+            seen.push(state.u.clone());
+        }
+        Ok(seen)
+    }
+
+    /// [`Scene::run`] extrapolated to steps of no length.
+    fn reference(&self, rate: usize, instants: usize) -> Vec<Vec<f64>> {
+        let [coarse, fine] = [rate / 2, rate].map(|rate| self.run(rate, instants).unwrap());
+        let pairs = coarse.into_iter().zip(fine);
+        pairs
+            .map(|(coarse, fine)| {
+                let pairs = coarse.iter().zip(fine);
+                pairs
+                    .map(|(coarse, fine)| (4.0 * fine - coarse) / 3.0)
+                    .collect()
+            })
+            .collect()
+    }
+
+    /// The vertical displacement of the middle of the top.
+    fn top(&self, u: &[f64]) -> f64 {
+        let (_, high) = self.mesh.bounding_box();
+        let place = [high[0] / 2.0, high[1] / 2.0, high[2]];
+        let is_there =
+            |point: &[f64; 3]| (0..3).all(|axis| (point[axis] - place[axis]).abs() < 1e-9);
+        let node = self.mesh.points.iter().position(is_there).unwrap();
+        u[3 * self.model.cell_of_node(node as u32).unwrap() as usize + 2]
+    }
+}
+
+/// Each figure within so much of the one expected.
+#[track_caller]
+fn assert_near(found: impl IntoIterator<Item = f64>, expected: &[f64], tolerance: f64) {
+    let found: Vec<f64> = found.into_iter().collect();
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        println!("{found:.6}, expected {expected}");
+        assert!(
+            (found - expected).abs() <= tolerance,
+            "{found}, expected {expected}"
+        );
+    }
+}
+
+#[test]
+fn a_released_stretch_swings_as_published() {
+    let scene = Scene::release();
+    let energy = scene.model.energy(&scene.start.u, &scene.start.v).unwrap();
+    assert!((energy.elastic - 0.730_783_744).abs() < 1e-9, "{energy:?}");
+    let reference = scene.reference(16_000, 50);
+    let tops = [5, 10, 20, 30].map(|instant| scene.top(&reference[instant - 1]));
+    assert_near(tops, &[0.007_115, -0.046_017, 0.044_194, -0.036_658], 2e-5);
+    for (rate, error) in [
+        (8000, 1.36e-3),
+        (4000, 5.4e-3),
+        (2000, 0.0215),
+        (1000, 0.0758),
+    ] {
+        let found = relative_error(&scene.run(rate, 50).unwrap(), &reference);
+        assert_near([found], &[error], 0.05 * error);
+    }
+}
+
+#[test]
+fn a_push_presses_as_published() {
+    let scene = Scene::push();
+    let reference = scene.reference(8000, 50);
+    let tops = [10, 20, 30, 50].map(|instant| scene.top(&reference[instant - 1]));
+    assert_near(
+        tops,
+        &[-0.008_181, -0.026_137, -0.020_415, -0.022_173],
+        1e-6,
+    );
+    for (rate, error) in [(2000, 6.3e-6), (1000, 2.5e-5), (500, 1.0e-4)] {
+        let found = relative_error(&scene.run(rate, 50).unwrap(), &reference);
+        assert_near([found], &[error], 0.06 * error);
+    }
+}
+
+#[test]
+fn a_twist_unwinds_as_published() {
+    let scene = Scene::twist();
+    let energy = scene.model.energy(&scene.start.u, &scene.start.v).unwrap();
+    assert!((energy.kinetic - 5.83e-3).abs() < 5e-6, "{energy:?}");
+    let reference = scene.reference(16_000, 50);
+    for (rate, error) in [
+        (8000, 2.6e-4),
+        (4000, 9.8e-4),
+        (2000, 3.1e-3),
+        (1000, 5.9e-3),
+    ] {
+        let found = relative_error(&scene.run(rate, 50).unwrap(), &reference);
+        assert_near([found], &[error], 0.06 * error);
+    }
+}
