@@ -1,1 +1,582 @@
-//! .
+//! The checks that every hyperelastic law stands, as a suite that any crate can run on its own law. It comes with the feature
+//! `conformance`, which a crate switches on among its dev-dependencies.
+//!
+//! ```
+//! use sinew_fem::hyperelastic::{NeoHookean, Parameters, conformance};
+//!
+//! conformance::check(NeoHookean::new(&Parameters::new(3500.0, 0.45))?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A law of one's own:
+//!
+//! ```
+//! use sinew_fem::hyperelastic::{Bulk, Deformation, HyperelasticLaw, Point, Tensor, conformance};
+//! use sinew_sparse::simd::Number;
+//!
+//! /// `mu/2 (I1 - 3) - mu ln J + lambda/2 (J - 1)^2`.
+//! #[derive(Clone, Copy, Debug)]
+//! struct Mine {
+//!     lambda: f64,
+//!     mu: f64,
+//! }
+//!
+//! impl HyperelasticLaw for Mine {
+//!     const ID: &'static str = "mine";
+//!     const DEFINED_WHEN_INVERTED: bool = false;
+//!     type Own<N: Number> = ();
+//!
+//!     fn lame(&self) -> (f64, f64) {
+//!         (self.lambda, self.mu)
+//!     }
+//!     fn own<N: Number>(&self, _: &Deformation<N>) {}
+//!     fn energy<N: Number>(&self, at: &Point<N, ()>) -> N {
+//!         let half = N::of(0.5) * at.first_invariant_change();
+//!         N::of(self.mu) * (half - at.volume_change.ln_1p())
+//!     }
+//!     fn stress<N: Number>(&self, at: &Point<N, ()>) -> Tensor<N> {
+//!         let f = at.gradient.scaled(N::of(self.mu));
+//!         f.plus(N::of(-self.mu) / at.volume_ratio, at.cofactor)
+//!     }
+//!     fn tangent<N: Number>(&self, at: &Point<N, ()>, change: Tensor<N>) -> Tensor<N> {
+//!         let over = at.volume_ratio.recip();
+//!         let volume = over * over * at.cofactor.contracted(change);
+//!         let changed = change.plus(-over, at.cofactor_change(change));
+//!         changed.plus(volume, at.cofactor).scaled(N::of(self.mu))
+//!     }
+//!     fn node_block<N: Number>(
+//!         &self,
+//!         at: &Point<N, ()>,
+//!         bulk: Bulk<N>,
+//!         g: [N; 3],
+//!     ) -> Tensor<N> {
+//!         let [x, y, z] = g;
+//!         let mu = N::of(self.mu);
+//!         let normal = at.cofactor.on(g);
+//!         let b = mu / (at.volume_ratio * at.volume_ratio) + bulk.modulus;
+//!         let along = Tensor::outer(normal, normal).scaled(b);
+//!         along + Tensor::diagonal(mu * (x * x + y * y + z * z))
+//!     }
+//! }
+//!
+//! conformance::check(Mine { lambda: 10.0, mu: 1.0 });
+//! ```
+
+#![allow(clippy::panic, reason = "a check that fails is a failed test")]
+
+use nalgebra::{SMatrix, Vector3};
+
+use super::decomposition::SingularValues;
+use super::law::{Bulk, HyperelasticLaw, NodeBlock, Point};
+use super::projection::{Linearised, Projection, TangentKind};
+use super::tensor::Tensor;
+
+/// All checks of a law.
+///
+/// # Panics
+///
+/// Where one fails, with what was expected.
+pub fn check<L: HyperelasticLaw>(law: L) {
+    at_rest_there_is_no_stress_and_no_energy(law);
+    small_strain_is_linear_elasticity(law);
+    stress_is_the_slope_of_the_energy(law);
+    tangent_is_the_slope_of_the_stress(law);
+    tangent_is_symmetric(law);
+    turning_the_body_turns_the_stress(law);
+    turning_the_material_changes_nothing(law);
+    projected_and_frozen_tangents_are_semidefinite(law);
+    projection_changes_nothing_that_is_semidefinite(law);
+    node_blocks_are_semidefinite(law);
+    node_blocks_belong_to_their_tangent(law);
+    single_precision_is_double_precision_rounded(law);
+    what_is_refused_is_where_the_law_is_not_defined(law);
+}
+
+/// Deformations in each check.
+const CASES: u64 = 200;
+
+/// Random numbers by Steele, Lea and Flood's SplitMix64.
+struct Random(u64);
+
+impl Random {
+    /// A number between -1 and 1.
+    fn number(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut bits = self.0;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        bits ^= bits >> 31;
+        (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn tensor(&mut self) -> Tensor<f64> {
+        Tensor([[(); 3]; 3].map(|row| row.map(|()| self.number())))
+    }
+
+    fn vector(&mut self) -> [f64; 3] {
+        [self.number(), self.number(), self.number()]
+    }
+
+    /// A rotation, by the singular values of a random tensor.
+    fn rotation(&mut self) -> Tensor<f64> {
+        SingularValues::of(self.tensor()).rotation()
+    }
+}
+
+/// Displacement gradients with J from .2 to 3, and where the law is defined there every second one with J from -3 to -.2.
+fn deformations<L: HyperelasticLaw>() -> impl Iterator<Item = (Random, Tensor<f64>)> {
+    let tried = (0..).map(|seed| {
+        let mut random = Random(seed);
+        let inverted = L::DEFINED_WHEN_INVERTED && seed % 2 == 1;
+        let mut h = random.tensor();
+        if inverted {
+            h.0[0] = h.0[0].map(|entry| -entry);
+            h.0[0][0] -= 2.0;
+        }
+        (random, h, inverted)
+    });
+    tried
+        .filter(|(_, h, inverted)| {
+            let f = *h + Tensor::identity();
+            let j = f.cofactor().contracted(f) / 3.0;
+            let sided = if *inverted { -j } else { j };
+            // Where two singular values nearly add up to 0 laws with a rotation jump.
+            let [_, middle, last] = SingularValues::of(f).values;
+            (0.2..3.0).contains(&sided) && middle + last > 0.2
+        })
+        .map(|(random, h, _)| (random, h))
+        .take(CASES as usize)
+}
+
+type At<L> = Point<f64, <L as HyperelasticLaw>::Own<f64>>;
+
+/// An energy, a stress and a tangent that belong together.
+#[derive(Clone, Copy, Debug)]
+enum Part {
+    Local,
+    Dilation,
+    Whole,
+}
+
+const PARTS: [Part; 3] = [Part::Local, Part::Dilation, Part::Whole];
+
+impl Part {
+    fn energy<L: HyperelasticLaw>(self, law: L, at: &At<L>) -> f64 {
+        match self {
+            Self::Local => law.energy(at),
+            Self::Dilation => law.dilation(at) * law.lame().1,
+            Self::Whole => law.whole_energy(at),
+        }
+    }
+
+    fn stress<L: HyperelasticLaw>(self, law: L, at: &At<L>) -> Tensor<f64> {
+        match self {
+            Self::Local => law.stress(at),
+            Self::Dilation => law.dilation_gradient(at).scaled(law.lame().1),
+            Self::Whole => law.stress_with(at, law.own_bulk(at)),
+        }
+    }
+
+    fn tangent<L: HyperelasticLaw>(self, law: L, at: &At<L>, change: Tensor<f64>) -> Tensor<f64> {
+        match self {
+            Self::Local => law.tangent(at, change),
+            Self::Dilation => law.dilation_tangent(at, change).scaled(law.lame().1),
+            Self::Whole => law.tangent_with(at, law.own_bulk(at), change),
+        }
+    }
+}
+
+/// The derivative of a function at 0, by differences of fourth order.
+fn slope<T>(of: impl Fn(f64) -> T, step: f64, combine: impl Fn([T; 4], [f64; 4]) -> T) -> T {
+    let points = [-2.0, -1.0, 1.0, 2.0].map(|x| of(x * step));
+    let weights = [1.0, -8.0, 8.0, -1.0].map(|weight| weight / (12.0 * step));
+    combine(points, weights)
+}
+
+fn unit(row: usize, column: usize) -> Tensor<f64> {
+    let mut tensor = Tensor::zero();
+    tensor.0[row][column] = 1.0;
+    tensor
+}
+
+fn scale_of<L: HyperelasticLaw>(law: L) -> f64 {
+    let (lambda, mu) = law.lame();
+    lambda + 2.0 * mu
+}
+
+#[track_caller]
+fn require(holds: bool, said: impl FnOnce() -> String) {
+    if !holds {
+        panic!("{}", said());
+    }
+}
+
+#[track_caller]
+fn near(found: Tensor<f64>, expected: Tensor<f64>, tolerance: f64, said: impl FnOnce() -> String) {
+    let error = (found - expected).largest();
+    require(error <= tolerance, || {
+        let said = said();
+        format!(
+            "{said}: {found:?}, but {expected:?} is expected; the error is {error:e}, {tolerance:e} is allowed"
+        )
+    });
+}
+
+/// Energy, stress and dilation are 0 at rest, to the last bit.
+pub fn at_rest_there_is_no_stress_and_no_energy<L: HyperelasticLaw>(law: L) {
+    let at = law.at(Tensor::<f64>::zero());
+    for part in PARTS {
+        require(part.energy(law, &at) == 0.0, || {
+            let energy = part.energy(law, &at);
+            format!("{}: {part:?} energy at rest is {energy}", L::ID)
+        });
+    }
+    let scale = scale_of(law);
+    for part in [Part::Local, Part::Whole] {
+        let said = || format!("{}: {part:?} stress at rest", L::ID);
+        near(part.stress(law, &at), Tensor::zero(), 1e-15 * scale, said);
+    }
+}
+
+/// The tangent at rest is `2 mu sym + lambda tr I` of [`HyperelasticLaw::lame`], its local part that with a bulk modulus of 2 mu/3 and so
+/// lambda = 0, and theta is the trace.
+pub fn small_strain_is_linear_elasticity<L: HyperelasticLaw>(law: L) {
+    let at = law.at(Tensor::<f64>::zero());
+    let (lambda, mu) = law.lame();
+    for entry in 0..9 {
+        let change = unit(entry / 3, entry % 3);
+        let local = change.symmetric().scaled(2.0 * mu);
+        let whole = local + Tensor::diagonal(lambda * change.trace());
+        let tolerance = 1e-10 * scale_of(law);
+        let said = |what: &'static str| move || format!("{}: {what} at rest", L::ID);
+        near(
+            Part::Whole.tangent(law, &at, change),
+            whole,
+            tolerance,
+            said("tangent"),
+        );
+        near(
+            law.tangent(&at, change),
+            local,
+            tolerance,
+            said("local tangent"),
+        );
+        let frozen = law.frozen_tangent_with(&at, law.own_bulk(&at), change);
+        near(
+            frozen.unwrap_or(whole),
+            whole,
+            tolerance,
+            said("frozen tangent"),
+        );
+    }
+    let gradient = law.dilation_gradient(&at);
+    let said = || format!("{}: slope of the dilation at rest", L::ID);
+    near(gradient, Tensor::identity(), 1e-12, said);
+}
+
+/// P is d psi/dF, for the local energy, the dilation and the whole; so they sum up.
+pub fn stress_is_the_slope_of_the_energy<L: HyperelasticLaw>(law: L) {
+    for (_, h) in deformations::<L>() {
+        let at = law.at(h);
+        for part in PARTS {
+            let stress = part.stress(law, &at);
+            let mut found = Tensor::zero();
+            for entry in 0..9 {
+                let (i, j) = (entry / 3, entry % 3);
+                let energy = |x| part.energy(law, &law.at(h.plus(x, unit(i, j))));
+                found.0[i][j] = slope(energy, 3e-4, |points, weights| {
+                    points.into_iter().zip(weights).map(|(p, w)| p * w).sum()
+                });
+            }
+            let tolerance = 1e-8 * (stress.largest() + scale_of(law));
+            let said = || format!("{}: slope of the {part:?} energy at H = {h:?}", L::ID);
+            near(stress, found, tolerance, said);
+        }
+    }
+}
+
+/// The tangent is dP/dF, for the local energy, the dilation and the whole.
+pub fn tangent_is_the_slope_of_the_stress<L: HyperelasticLaw>(law: L) {
+    for (mut random, h) in deformations::<L>() {
+        let at = law.at(h);
+        let change = random.tensor();
+        for part in PARTS {
+            let tangent = part.tangent(law, &at, change);
+            let stress = |x| part.stress(law, &law.at(h.plus(x, change)));
+            let found = slope(stress, 1e-4, |points, weights| {
+                let terms = points.into_iter().zip(weights);
+                terms.fold(Tensor::zero(), |sum, (p, w)| sum.plus(w, p))
+            });
+            let tolerance = 1e-7 * (tangent.largest() + scale_of(law));
+            let said = || format!("{}: slope of the {part:?} stress at H = {h:?}", L::ID);
+            near(tangent, found, tolerance, said);
+        }
+    }
+}
+
+/// `a : H[b] = b : H[a]`.
+pub fn tangent_is_symmetric<L: HyperelasticLaw>(law: L) {
+    for (mut random, h) in deformations::<L>() {
+        let at = law.at(h);
+        let (a, b) = (random.tensor(), random.tensor());
+        for part in PARTS {
+            let (of_a, of_b) = (part.tangent(law, &at, a), part.tangent(law, &at, b));
+            let (one, other) = (of_b.contracted(a), of_a.contracted(b));
+            let size = of_a.largest() + of_b.largest() + scale_of(law);
+            require((one - other).abs() <= 1e-12 * size, || {
+                format!(
+                    "{}: {part:?} tangent at H = {h:?}: {one} and {other}",
+                    L::ID
+                )
+            });
+        }
+    }
+}
+
+/// `P(Q F) = Q P(F)`: objectivity.
+pub fn turning_the_body_turns_the_stress<L: HyperelasticLaw>(law: L) {
+    for (mut random, h) in deformations::<L>() {
+        let q = random.rotation();
+        let turned = q * h + (q - Tensor::identity());
+        let expected = q * whole_stress(law, h);
+        let tolerance = 1e-13 * size_of_stress(law, h);
+        let said = || format!("{}: stress of H = {h:?}, turned by {q:?}", L::ID);
+        near(whole_stress(law, turned), expected, tolerance, said);
+    }
+}
+
+/// `P(F Q) = P(F) Q`: isotropy.
+pub fn turning_the_material_changes_nothing<L: HyperelasticLaw>(law: L) {
+    for (mut random, h) in deformations::<L>() {
+        let q = random.rotation();
+        let turned = h * q + (q - Tensor::identity());
+        let expected = whole_stress(law, h) * q;
+        let tolerance = 1e-13 * size_of_stress(law, h);
+        let said = || {
+            format!(
+                "{}: stress of H = {h:?}, the material turned by {q:?}",
+                L::ID
+            )
+        };
+        near(whole_stress(law, turned), expected, tolerance, said);
+    }
+}
+
+fn whole_stress<L: HyperelasticLaw>(law: L, h: Tensor<f64>) -> Tensor<f64> {
+    Part::Whole.stress(law, &law.at(h))
+}
+
+/// The change of the stress by roundings of F, over their size.
+fn size_of_stress<L: HyperelasticLaw>(law: L, h: Tensor<f64>) -> f64 {
+    let at = law.at(h);
+    let size = at.gradient.squared().sqrt();
+    let changes = (0..9).map(|entry| {
+        let change = unit(entry / 3, entry % 3);
+        Part::Whole.tangent(law, &at, change).largest()
+    });
+    let steepest = changes.fold(0.0, f64::max);
+    whole_stress(law, h).largest() + size * steepest + scale_of(law)
+}
+
+/// Kinds of tangents that promise to be positive semidefinite.
+const SEMIDEFINITE: [TangentKind; 2] = [TangentKind::Projected, TangentKind::Frozen];
+
+/// No eigenvalue of a projected or frozen tangent is below 0, with the dilation's own stress and with one that a patch of tetrahedra may have.
+pub fn projected_and_frozen_tangents_are_semidefinite<L: HyperelasticLaw>(law: L) {
+    for (mut random, h) in deformations::<L>() {
+        let at = law.at(h);
+        for bulk in bulks(law, &at, &mut random) {
+            for kind in SEMIDEFINITE {
+                let matrix = matrix(|change| Linearised::of(&law, &at, bulk, kind).on(change));
+                let asymmetry = (matrix - matrix.transpose()).amax();
+                let values = matrix.symmetric_eigenvalues();
+                let size = values.amax() + scale_of(law);
+                let least = values.min();
+                require(least >= -1e-12 * size && asymmetry <= 1e-12 * size, || {
+                    format!(
+                        "{}: {kind:?} tangent at H = {h:?} with {bulk:?}: smallest eigenvalue {least}, \
+                         asymmetry {asymmetry}",
+                        L::ID
+                    )
+                });
+            }
+        }
+    }
+}
+
+/// The projected tangent is the exact one with its negative eigenvalues put to 0.
+pub fn projection_changes_nothing_that_is_semidefinite<L: HyperelasticLaw>(law: L) {
+    for (_, h) in deformations::<L>() {
+        let at = law.at(h);
+        let bulk = law.own_bulk(&at);
+        let exact = matrix(|change| law.tangent_with(&at, bulk, change));
+        let projection = Projection::of(at.gradient, |change| law.tangent_with(&at, bulk, change));
+        let found = matrix(|change| projection.on(change));
+        let mut eigen = exact.symmetric_eigen();
+        eigen.eigenvalues.apply(|value| *value = value.max(0.0));
+        let error = (found - eigen.recompose()).amax();
+        require(error <= 1e-11 * (exact.amax() + scale_of(law)), || {
+            format!("{}: the projection at H = {h:?} is off by {error}", L::ID)
+        });
+    }
+}
+
+/// The dilation's own energy, none, and those of patches in tension and under pressure.
+fn bulks<L: HyperelasticLaw>(law: L, at: &At<L>, random: &mut Random) -> [Bulk<f64>; 4] {
+    let stress = law.lame().0 * random.number();
+    let of = |stress| Bulk {
+        stress,
+        modulus: 0.0,
+    };
+    [law.own_bulk(at), Bulk::none(), of(stress), of(-stress)]
+}
+
+/// Node blocks are symmetric and have no eigenvalue below 0.
+pub fn node_blocks_are_semidefinite<L: HyperelasticLaw>(law: L) {
+    for (mut random, h) in deformations::<L>() {
+        let at = law.at(h);
+        let gradient = random.vector();
+        for bulk in bulks(law, &at, &mut random) {
+            let block = law.node_block(&at, bulk, gradient);
+            let least = least_eigenvalue(block);
+            let asymmetry = (block - block.transposed()).largest();
+            let allowed = 1e-13 * block.largest();
+            require(least >= -allowed && asymmetry <= allowed, || {
+                format!(
+                    "{}: node block at H = {h:?} with {bulk:?}: smallest eigenvalue {least}, asymmetry {asymmetry}",
+                    L::ID
+                )
+            });
+        }
+    }
+}
+
+/// Node blocks are those of the tangent that the law says, to 1e-13 of what cancels.
+pub fn node_blocks_belong_to_their_tangent<L: HyperelasticLaw>(law: L) {
+    for (mut random, h) in deformations::<L>() {
+        let at = law.at(h);
+        let gradient = random.vector();
+        for bulk in bulks(law, &at, &mut random) {
+            let tangent = |change| match L::NODE_BLOCK {
+                NodeBlock::Frozen => law
+                    .frozen_tangent_with(&at, bulk, change)
+                    .unwrap_or_else(|| panic!("{}: no frozen tangent for its node blocks", L::ID)),
+                NodeBlock::Exact | NodeBlock::Majorant => law.tangent_with(&at, bulk, change),
+            };
+            let columns = [0, 1, 2].map(|axis| {
+                let mut direction = [0.0; 3];
+                direction[axis] = 1.0;
+                tangent(Tensor::outer(direction, gradient)).on(gradient)
+            });
+            let expected = Tensor::from_columns(columns);
+            let block = law.node_block(&at, bulk, gradient);
+            let length = Vector3::from(gradient).norm_squared();
+            let size = length * matrix(tangent).amax() + block.largest();
+            if L::NODE_BLOCK == NodeBlock::Majorant {
+                let least = least_eigenvalue(block - expected);
+                require(least >= -1e-13 * size, || {
+                    format!(
+                        "{}: node block at H = {h:?} with {bulk:?} is below the tangent's by {least}",
+                        L::ID
+                    )
+                });
+            } else {
+                let said = || format!("{}: node block at H = {h:?} with {bulk:?}", L::ID);
+                near(block, expected, 1e-13 * size, said);
+            }
+        }
+    }
+}
+
+fn least_eigenvalue(tensor: Tensor<f64>) -> f64 {
+    let matrix = nalgebra::Matrix3::from_fn(|i, j| tensor.symmetric().0[i][j]);
+    matrix.symmetric_eigenvalues().min()
+}
+
+fn matrix(tangent: impl Fn(Tensor<f64>) -> Tensor<f64>) -> SMatrix<f64, 9, 9> {
+    let mut matrix = SMatrix::zeros();
+    for column in 0..9 {
+        let changed = tangent(unit(column / 3, column % 3));
+        for row in 0..9 {
+            matrix[(row, column)] = changed.0[row / 3][row % 3];
+        }
+    }
+    matrix
+}
+
+/// Stress and dilation in f32 are those in f64 up to roundings, those of the dilation relative to the strain and not to 1.
+pub fn single_precision_is_double_precision_rounded<L: HyperelasticLaw>(law: L) {
+    for (_, h) in deformations::<L>() {
+        for strain in [1.0, 1e-3] {
+            // What both precisions read is the same.
+            let rows = h.scaled(strain).0;
+            let rows = rows.map(|row| row.map(|entry| f64::from(entry as f32)));
+            let single = law.at(Tensor::<f32>::of(rows));
+            let double: At<L> = law.at(Tensor(rows));
+            let found = law.stress_with(&single, law.own_bulk(&single)).0;
+            let found = Tensor(found.map(|row| row.map(f64::from)));
+            let expected = Part::Whole.stress(law, &double);
+            let tolerance = 3e-6 * size_of_stress(law, Tensor(rows));
+            let said = || format!("{}: stress in f32 at H = {rows:?}", L::ID);
+            near(found, expected, tolerance, said);
+            let (found, expected) = (law.dilation(&single), law.dilation(&double));
+            let error = f64::abs(f64::from(found) - expected);
+            let size = Tensor(rows).largest();
+            require(error <= 3e-6 * size * (1.0 + size * size), || {
+                format!(
+                    "{}: dilation in f32 at H = {rows:?}: {found}, not {expected}",
+                    L::ID
+                )
+            });
+        }
+    }
+}
+
+/// A law that is not defined for inverted elements refuses them, flat ones, and what is not a number; another has finite stresses there.
+pub fn what_is_refused_is_where_the_law_is_not_defined<L: HyperelasticLaw>(law: L) {
+    let flat = |x: f64| law.at(Tensor([[x - 1.0, 0.0, 0.0], [0.0; 3], [0.0; 3]]));
+    for stretch in [-0.5, -1e-9, 0.0, 1e-9, f64::NAN] {
+        let at = flat(stretch);
+        if L::DEFINED_WHEN_INVERTED {
+            let stress = whole_stress(law, at.displacement_gradient);
+            let finite = stress.0.iter().flatten().all(|entry| entry.is_finite());
+            require(finite || stretch.is_nan(), || {
+                format!("{}: stress at diag({stretch}, 1, 1) is {stress:?}", L::ID)
+            });
+        } else {
+            require(!law.admits(&at.deformation), || {
+                format!("{}: diag({stretch}, 1, 1) is not refused", L::ID)
+            });
+        }
+    }
+    require(law.admits(&flat(0.5).deformation), || {
+        format!("{}: diag(.5, 1, 1) is refused", L::ID)
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hyperelastic::{Hyperelastic, LawVisitor, Parameters};
+
+    struct Check;
+
+    impl LawVisitor for Check {
+        type Output = ();
+
+        fn visit<L: HyperelasticLaw>(self, law: L) {
+            check(law);
+        }
+    }
+
+    #[test]
+    fn every_law_stands_the_suite() {
+        for &id in Hyperelastic::IDS {
+            for poissons_ratio in [0.0, 0.3, 0.45] {
+                let mut parameters = Parameters::new(3500.0, poissons_ratio);
+                parameters.c1_over_c2 = (id == "mooney-rivlin").then_some(4.0);
+                Hyperelastic::new(id, &parameters).unwrap().with_law(Check);
+            }
+        }
+    }
+}

@@ -1,0 +1,148 @@
+"""Energies of hyperelastic laws in arithmetic of 50 digits, written from the literature and from nothing else.
+
+Each law is one energy of the deformation gradient; stresses and tangents are its differences. No digits are lost by
+that: a difference over 1e-15 is wrong by 1e-30.
+"""
+
+from mpmath import mp, mpf
+
+mp.dps = 50
+
+STEP = mpf(10) ** -15
+
+
+def lame(youngs_modulus, poissons_ratio):
+    e, nu = mpf(youngs_modulus), mpf(poissons_ratio)
+    return e * nu / ((1 + nu) * (1 - 2 * nu)), e / (2 * (1 + nu))
+
+
+def determinant(f):
+    (a, b, c), (d, e, g), (h, i, k) = f
+    return a * (e * k - g * i) - b * (d * k - g * h) + c * (d * i - e * h)
+
+
+def right_cauchy_green(f):
+    return [[sum(f[k][i] * f[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
+
+
+def first_invariant(f):
+    return sum(entry * entry for row in f for entry in row)
+
+
+def second_invariant(f):
+    c = right_cauchy_green(f)
+    return (first_invariant(f) ** 2 - first_invariant(c)) / 2
+
+
+def singular_values(f):
+    """Of F'F by mpmath; the smallest has the sign of det F."""
+    squares = mp.eigsy(mp.matrix(right_cauchy_green(f)), eigvals_only=True)
+    values = sorted(mp.sqrt(abs(square)) for square in squares)
+    if determinant(f) < 0:
+        values[0] = -values[0]
+    return values
+
+
+def neo_hookean(f, la, mu):
+    j = determinant(f)
+    return mu / 2 * (first_invariant(f) - 3) - mu * mp.log(j) + la / 2 * (j - 1) ** 2
+
+
+def neo_hookean_log(f, la, mu):
+    log = mp.log(determinant(f))
+    return mu / 2 * (first_invariant(f) - 3) - mu * log + la / 2 * log**2
+
+
+def mooney_rivlin(f, la, mu, ratio=4):
+    j = determinant(f)
+    c2 = mu / 2 / (1 + mpf(ratio))
+    first = mp.cbrt(j) ** -2 * first_invariant(f) - 3
+    second = mp.cbrt(j) ** -4 * second_invariant(f) - 3
+    return ratio * c2 * first + c2 * second + (la + 2 * mu / 3) / 2 * (j - 1) ** 2
+
+
+def neo_hookean_iso(f, la, mu):
+    j = determinant(f)
+    first = mp.cbrt(j) ** -2 * first_invariant(f) - 3
+    return mu / 2 * first + (la + 2 * mu / 3) / 2 * (j - 1) ** 2
+
+
+def stable_neo_hookean(f, la, mu):
+    j = determinant(f)
+    return mu / 2 * (first_invariant(f) - 3) - mu * (j - 1) + (la + mu) / 2 * (j - 1) ** 2
+
+
+def stable_neo_hookean_log(f, la, mu):
+    mu_own, la_own = 4 * mu / 3, la + 5 * mu / 6
+    alpha = 1 + 3 * mu_own / (4 * la_own)
+    j, i1 = determinant(f), first_invariant(f)
+    at_rest = la_own / 2 * (1 - alpha) ** 2 - mu_own / 2 * mp.log(4)
+    psi = mu_own / 2 * (i1 - 3) + la_own / 2 * (j - alpha) ** 2 - mu_own / 2 * mp.log(i1 + 1)
+    return psi - at_rest
+
+
+def corotational(f, la, mu):
+    values = singular_values(f)
+    return mu * sum((s - 1) ** 2 for s in values) + la / 2 * (sum(values) - 3) ** 2
+
+
+def stvk(f, la, mu):
+    c = right_cauchy_green(f)
+    e = [[(c[i][j] - (i == j)) / 2 for j in range(3)] for i in range(3)]
+    return mu * first_invariant(e) + la / 2 * (e[0][0] + e[1][1] + e[2][2]) ** 2
+
+
+LAWS = {
+    "neo-hookean": neo_hookean,
+    "stable-neo-hookean": stable_neo_hookean,
+    "corotational": corotational,
+    "stvk": stvk,
+    "mooney-rivlin": mooney_rivlin,
+    "neo-hookean-log": neo_hookean_log,
+    "neo-hookean-iso": neo_hookean_iso,
+    "stable-neo-hookean-log": stable_neo_hookean_log,
+}
+
+INVERTIBLE = ["stable-neo-hookean", "corotational", "stvk", "stable-neo-hookean-log"]
+
+
+def quadratic_fibres(f, direction, eta):
+    along = [sum(f[i][j] * direction[j] for j in range(3)) for i in range(3)]
+    stretch = sum(x * x for x in along) - 1
+    return mpf(eta) / 2 * stretch**2 if stretch > 0 else mpf(0)
+
+
+def exponential_fibres(f, direction, k1, k2, dispersion):
+    k1, k2, kd = mpf(k1), mpf(k2), mpf(dispersion)
+    along = [sum(f[i][j] * direction[j] for j in range(3)) for i in range(3)]
+    stretch = kd * (first_invariant(f) - 3) + (1 - 3 * kd) * (sum(x * x for x in along) - 1)
+    return k1 / (2 * k2) * (mp.exp(k2 * stretch**2) - 1) if stretch > 0 else mpf(0)
+
+
+def moved(f, direction, by):
+    return [[f[i][j] + by * direction[i][j] for j in range(3)] for i in range(3)]
+
+
+def unit(i, j):
+    return [[mpf((a, b) == (i, j)) for b in range(3)] for a in range(3)]
+
+
+def slope(psi, f, direction):
+    return (psi(moved(f, direction, STEP)) - psi(moved(f, direction, -STEP))) / (2 * STEP)
+
+
+def stress(psi, f):
+    return [[slope(psi, f, unit(i, j)) for j in range(3)] for i in range(3)]
+
+
+def tangent(psi, f, change):
+    """The change of the stress by a change of F."""
+
+    def change_of(i, j):
+        return slope(lambda at: slope(psi, at, unit(i, j)), f, change)
+
+    return [[change_of(i, j) for j in range(3)] for i in range(3)]
+
+
+def diagonal(a, b, c):
+    return [[mpf(a), mpf(0), mpf(0)], [mpf(0), mpf(b), mpf(0)], [mpf(0), mpf(0), mpf(c)]]
