@@ -106,16 +106,22 @@ LAWS = {
 INVERTIBLE = ["stable-neo-hookean", "corotational", "stvk", "stable-neo-hookean-log"]
 
 
-def quadratic_fibres(f, direction, eta):
+def fibre_stretch(f, direction, dispersion, split=False):
+    kd = mpf(dispersion)
     along = [sum(f[i][j] * direction[j] for j in range(3)) for i in range(3)]
-    stretch = sum(x * x for x in along) - 1
+    free = mp.cbrt(determinant(f)) ** -2 if split else 1
+    i1, i4 = free * first_invariant(f), free * sum(x * x for x in along)
+    return kd * (i1 - 3) + (1 - 3 * kd) * (i4 - 1)
+
+
+def quadratic_fibres(f, direction, eta):
+    stretch = fibre_stretch(f, direction, 0)
     return mpf(eta) / 2 * stretch**2 if stretch > 0 else mpf(0)
 
 
-def exponential_fibres(f, direction, k1, k2, dispersion):
-    k1, k2, kd = mpf(k1), mpf(k2), mpf(dispersion)
-    along = [sum(f[i][j] * direction[j] for j in range(3)) for i in range(3)]
-    stretch = kd * (first_invariant(f) - 3) + (1 - 3 * kd) * (sum(x * x for x in along) - 1)
+def exponential_fibres(f, direction, k1, k2, dispersion, split=False):
+    stretch = fibre_stretch(f, direction, dispersion, split)
+    k1, k2 = mpf(k1), mpf(k2)
     return k1 / (2 * k2) * (mp.exp(k2 * stretch**2) - 1) if stretch > 0 else mpf(0)
 
 

@@ -1,5 +1,5 @@
 //! Repository chores:
-//! `cargo xtask bench | native | memory | reproduce | meshes | compare | docs | reference | readme | dist | rules | ci`.
+//! `cargo xtask bench | native | memory | reproduce | meshes | compare | laws | docs | reference | readme | dist | rules | ci`.
 
 mod bench;
 mod beside;
@@ -9,6 +9,7 @@ mod dist;
 mod docs;
 mod failure;
 mod generated;
+mod laws;
 mod memory;
 mod meshes;
 mod native;
@@ -51,6 +52,8 @@ enum Chore {
     Meshes,
     /// Let meshio and pyvista read what sinew-mesh writes; pip installs both into target/.
     Compare,
+    /// Compare stresses and tangents of all laws with energies in 50 digits; pip installs mpmath into target/.
+    Laws,
     /// Bring the README's table and pictures up to the last bench and the last hard bench.
     Docs,
     /// Write the reference and the JSON schema of scenes into docs.
@@ -73,6 +76,7 @@ fn main() -> ExitCode {
         Chore::Reproduce(arguments) => reproduce::run(&arguments),
         Chore::Meshes => meshes::run(),
         Chore::Compare => compare::run(),
+        Chore::Laws => laws::run(),
         Chore::Docs => docs::run(),
         Chore::Reference => reference::run(),
         Chore::Readme => readme::run(),

@@ -76,6 +76,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
         "xtask",
         &[
             "sinew-bench",
+            "sinew-fem",
             "sinew-measure",
             "sinew-mesh",
             "sinew-record",

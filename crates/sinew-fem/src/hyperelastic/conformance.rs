@@ -148,6 +148,11 @@ fn deformations<L: HyperelasticLaw>() -> impl Iterator<Item = (Random, Tensor<f6
         .take(CASES as usize)
 }
 
+/// Displacement gradients and changes of F at which a law can be compared with others.
+pub fn samples<L: HyperelasticLaw>() -> impl Iterator<Item = [Tensor<f64>; 2]> {
+    deformations::<L>().map(|(mut random, h)| [h, random.tensor()])
+}
+
 type At<L> = Point<f64, <L as HyperelasticLaw>::Own<f64>>;
 
 /// An energy, a stress and a tangent that belong together.

@@ -1,0 +1,135 @@
+//! `cargo xtask laws`: energies in arithmetic of 50 digits, written by mpmath and from the literature, against the laws here.
+
+use std::process::Stdio;
+
+use serde_json::{Value, json};
+use sinew_bench::output::{OutputFolder, say};
+use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
+use sinew_fem::hyperelastic::{
+    Deformation, Hyperelastic, HyperelasticLaw, LawVisitor, NeoHookean, Parameters, Tensor,
+    conformance,
+};
+
+use crate::failure::Failure;
+use crate::python::{Packages, Python, last_line};
+use crate::repository::root;
+
+const PACKAGES: Packages = Packages {
+    needed_by: "laws",
+    folder: "laws",
+    names: &["mpmath==1.4.1"],
+    beside_libraries: false,
+};
+
+/// Deformations of each law.
+const SAMPLES: usize = 40;
+
+const FILE: &str = "laws.json";
+
+pub(crate) fn run() -> Result<(), Failure> {
+    let python = Python::with(&PACKAGES, &root().join("target"))?;
+    let mut cases = Vec::new();
+    for &id in Hyperelastic::IDS {
+        cases.push(of_law(id)?);
+    }
+    cases.extend(of_fibres()?);
+    let folder = OutputFolder::new(root().join("target/laws"), &[]);
+    folder.check(&[FILE.to_owned()])?;
+    let written = folder.write(FILE, Value::from(cases).to_string().as_bytes())?;
+    let output = python
+        .command()
+        .arg(root().join("xtask/python/compare_laws.py"))
+        .arg(&written)
+        .stdin(Stdio::null())
+        .output()
+        .map_err(Failure::chore)?;
+    let said = String::from_utf8_lossy(&output.stdout);
+    say(said.trim_end())?;
+    match (output.status.success(), said.is_empty()) {
+        (true, _) => Ok(()),
+        (false, false) => Err(Failure::Chore(
+            "laws differ from their energies in 50 digits".to_owned(),
+        )),
+        (false, true) => Err(Failure::Chore(last_line(&output))),
+    }
+}
+
+fn flat(tensor: Tensor<f64>) -> Value {
+    tensor.0.concat().into()
+}
+
+/// A law's energies, stresses and tangents.
+fn of_law(id: &str) -> Result<Value, Failure> {
+    let parameters = Parameters {
+        c1_over_c2: (id == "mooney-rivlin").then_some(4.0),
+        ..Parameters::new(3500.0, 0.45)
+    };
+    let law = Hyperelastic::new(id, &parameters).map_err(Failure::chore)?;
+    Ok(json!({
+        "law": id,
+        "youngs_modulus": parameters.youngs_modulus,
+        "poissons_ratio": parameters.poissons_ratio.to_string(),
+        "c1_over_c2": parameters.c1_over_c2,
+        "scale": parameters.youngs_modulus,
+        "samples": law.with_law(Samples),
+    }))
+}
+
+struct Samples;
+
+impl LawVisitor for Samples {
+    type Output = Vec<Value>;
+
+    fn visit<L: HyperelasticLaw>(self, law: L) -> Vec<Value> {
+        let samples = conformance::samples::<L>().take(SAMPLES);
+        let samples = samples.map(|[h, change]| {
+            let at = law.at(h);
+            let bulk = law.own_bulk(&at);
+            json!({
+                "h": flat(h),
+                "change": flat(change),
+                "energy": law.whole_energy(&at),
+                "stress": flat(law.stress_with(&at, bulk)),
+                "tangent": flat(law.tangent_with(&at, bulk, change)),
+            })
+        });
+        samples.collect()
+    }
+}
+
+/// The same of fibres by themselves.
+fn of_fibres() -> Result<Vec<Value>, Failure> {
+    let direction = [0.6, 0.0, -0.8];
+    let eta = 2000.0;
+    let (k1, k2, dispersion) = (1000.0, 0.3, 0.1);
+    let exponential = Fibres::new(Stiffening::Exponential { k1, k2, dispersion });
+    let exponential = exponential.map_err(Failure::chore)?;
+    let quadratic = Fibres::new(Stiffening::Quadratic { eta }).map_err(Failure::chore)?;
+    let exponents = |name: &str, split: bool| json!({ "law": name, "k1": k1, "k2": k2, "dispersion": dispersion, "split": split });
+    let families = [
+        (quadratic, json!({ "law": "quadratic fibres", "eta": eta })),
+        (exponential, exponents("exponential fibres", false)),
+        (
+            exponential.split(),
+            exponents("exponential fibres, split", true),
+        ),
+    ];
+    let cases = families.map(|(fibres, mut case)| {
+        let samples = conformance::samples::<NeoHookean>().take(SAMPLES);
+        let samples = samples.map(|[h, change]| {
+            let at = fibres.at(&Deformation::of(h), direction);
+            json!({
+                "h": flat(h),
+                "change": flat(change),
+                "energy": fibres.energy(&at),
+                "stress": flat(fibres.stress(&at)),
+                "tangent": flat(fibres.tangent(&at, change)),
+            })
+        });
+        case["direction"] = direction.to_vec().into();
+        case["scale"] = eta.into();
+        case["samples"] = samples.collect::<Vec<_>>().into();
+        case
+    });
+    Ok(cases.into())
+}
