@@ -162,3 +162,82 @@ pub(super) fn rotation<N: Number>(gradient: Tensor<N>, volume_ratio: N) -> Tenso
     let found = Tensor::select_le(moved, tolerance, rotation, nearest);
     Tensor::select_le(volume_ratio, flat, nearest, found)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_rotation(tensor: Tensor<f64>) -> bool {
+        let product = tensor.times_transposed(tensor) - Tensor::identity();
+        let determinant = dot(tensor.0[0], tensor.cofactor().0[0]);
+        product.largest() < 1e-14 && (determinant - 1.0).abs() < 1e-14
+    }
+
+    /// A turned, stretched, turned tensor.
+    fn turned(stretches: [f64; 3]) -> Tensor<f64> {
+        let left = Tensor([[0.3, -0.8, 0.1], [0.5, 0.2, 0.9], [-0.7, 0.4, 0.6]]);
+        let right = Tensor([[0.9, 0.2, -0.3], [-0.1, 0.4, 0.8], [0.5, -0.6, 0.3]]);
+        let [left, right] = [left, right].map(|tensor| SingularValues::of(tensor).rotation());
+        let mut middle = Tensor::zero();
+        for (axis, stretch) in stretches.into_iter().enumerate() {
+            middle.0[axis][axis] = stretch;
+        }
+        (left * middle).times_transposed(right)
+    }
+
+    #[test]
+    fn singular_values_come_back_with_the_sign_of_the_determinant() {
+        let cases = [
+            [1.0, 1.0, 1.0],
+            [3.0, 1.0, 1e-9],
+            [3.0, 1.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0],
+            [3.0, 2.0, -0.5],
+            [1.0, 1.0, -1.0],
+            [1.0, 1e-8, 1e-12],
+        ];
+        for stretches in cases {
+            let tensor = turned(stretches);
+            let found = SingularValues::of(tensor);
+            let (left, right) = (
+                Tensor::from_columns(found.left),
+                Tensor::from_columns(found.right),
+            );
+            assert!(is_rotation(left) && is_rotation(right), "{stretches:?}");
+            for (value, stretch) in found.values.into_iter().zip(stretches) {
+                assert!((value - stretch).abs() < 1e-14, "{stretches:?}: {found:?}");
+            }
+            let mut middle = Tensor::zero();
+            for (axis, value) in found.values.into_iter().enumerate() {
+                middle.0[axis][axis] = value;
+            }
+            let again = (left * middle).times_transposed(right);
+            assert!((again - tensor).largest() < 1e-14, "{stretches:?}");
+        }
+    }
+
+    #[test]
+    fn both_ways_to_the_rotation_agree_and_make_the_stretch_symmetric() {
+        for stretches in [
+            [1.0, 1.0, 1.0],
+            [1.2, 1.0, 0.7],
+            [3.0, 0.4, 0.1],
+            [1e3, 1.0, 1e-4],
+            [0.3, 0.3, 0.2],
+            [1.5, 0.7, -0.3],
+        ] {
+            let tensor = turned(stretches);
+            let ratio = stretches.into_iter().product();
+            let found = rotation(tensor, ratio);
+            assert!(is_rotation(found), "{stretches:?}");
+            let stretch = found.transposed_times(tensor);
+            let skew = (stretch - stretch.transposed()).largest();
+            assert!(skew < 1e-14 * stretches[0], "{stretches:?}: {skew:e}");
+            let other = SingularValues::of(tensor).rotation();
+            // Rotations are as sure as the sum of the two smallest stretches.
+            let sure = 1e-14 * stretches[0] / (stretches[1] + stretches[2]);
+            assert!((found - other).largest() < sure, "{stretches:?}");
+        }
+    }
+}

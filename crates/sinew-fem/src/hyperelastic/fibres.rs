@@ -217,3 +217,98 @@ impl Fibres {
         block + Tensor::diagonal(N::of(2.0) * first * length)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hyperelastic::{NeoHookean, conformance};
+
+    const DIRECTION: [f64; 3] = [0.6, 0.0, -0.8];
+
+    fn families() -> Vec<Fibres> {
+        let quadratic = Stiffening::Quadratic { eta: 2000.0 };
+        let exponential = |dispersion| Stiffening::Exponential {
+            k1: 1000.0,
+            k2: 0.5,
+            dispersion,
+        };
+        let kinds = [quadratic, exponential(0.0), exponential(0.2)];
+        let unsplit = kinds.map(|kind| Fibres::new(kind).unwrap());
+        let split = unsplit.map(Fibres::split);
+        unsplit.into_iter().chain(split).collect()
+    }
+
+    fn stress(fibres: Fibres, h: Tensor<f64>) -> Tensor<f64> {
+        fibres.stress(&fibres.at(&Deformation::of(h), DIRECTION))
+    }
+
+    #[test]
+    fn stress_and_tangent_of_fibres_are_slopes() {
+        let step = 1e-5;
+        for fibres in families() {
+            for [h, change] in conformance::samples::<NeoHookean>().take(100) {
+                let h = h.scaled(0.5);
+                let at = fibres.at(&Deformation::of(h), DIRECTION);
+                let [before, after] = [-step, step].map(|x| h.plus(x, change));
+                let energy = |h| fibres.energy(&fibres.at(&Deformation::of(h), DIRECTION));
+                let slope = (energy(after) - energy(before)) / (2.0 * step);
+                let found = fibres.stress(&at).contracted(change);
+                let tangent = fibres.tangent(&at, change);
+                let size = 2000.0 + tangent.largest();
+                assert!((found - slope).abs() < 1e-7 * size, "{fibres:?}");
+                let slope = (stress(fibres, after) - stress(fibres, before)).scaled(0.5 / step);
+                assert!((tangent - slope).largest() < 1e-7 * size, "{fibres:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn fibres_only_pull() {
+        let pressed = Tensor([[-0.2, 0.0, 0.0], [0.0, 0.3, 0.0], [0.0, 0.0, -0.2]]);
+        for fibres in families().into_iter().filter(|f| f.dispersion() == 0.0) {
+            assert_eq!(stress(fibres, pressed), Tensor::zero());
+            let at = fibres.at(&Deformation::of(pressed), DIRECTION);
+            assert_eq!(fibres.tangent(&at, Tensor::identity()), Tensor::zero());
+            assert_eq!(fibres.energy(&at), 0.0);
+        }
+    }
+
+    #[test]
+    fn a_sphere_under_hydrostatic_load_stays_one_only_if_the_invariants_are_split() {
+        let grown = Tensor::<f64>::diagonal(0.1);
+        for fibres in families() {
+            let feels = stress(fibres, grown).largest() > 1.0;
+            assert_eq!(feels, !fibres.split, "{fibres:?}");
+        }
+    }
+
+    #[test]
+    fn semidefinite_tangents_and_node_blocks_of_fibres_have_no_negative_part() {
+        for fibres in families() {
+            for [h, change] in conformance::samples::<NeoHookean>().take(100) {
+                let at = fibres.at(&Deformation::of(h), DIRECTION);
+                let quadratic = change.contracted(fibres.semidefinite_tangent(&at, change));
+                assert!(quadratic >= 0.0, "{fibres:?}");
+                let [gradient, along, _] = change.0;
+                let found = dot(along, fibres.node_block(&at, gradient).on(along));
+                let changed = fibres.semidefinite_tangent(&at, Tensor::outer(along, gradient));
+                let expected = dot(along, changed.on(gradient));
+                let size = 1e-13 * (2000.0 + changed.largest());
+                assert!(
+                    found >= 0.0 && (found - expected).abs() < size,
+                    "{fibres:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_outside_their_range_are_refused_by_name() {
+        let said = |stiffening| Fibres::new(stiffening).unwrap_err().to_string();
+        let exponential = |k1, k2, dispersion| Stiffening::Exponential { k1, k2, dispersion };
+        assert!(said(Stiffening::Quadratic { eta: 0.0 }).starts_with("eta = 0"));
+        assert!(said(exponential(-1.0, 1.0, 0.0)).starts_with("k1 = -1"));
+        assert!(said(exponential(1.0, 0.0, 0.0)).starts_with("k2 = 0"));
+        assert!(said(exponential(1.0, 1.0, 0.4)).starts_with("dispersion = 0.4"));
+    }
+}

@@ -151,3 +151,68 @@ fn plus<N: Number>(a: Symmetric<N>, factor: N, b: Symmetric<N>) -> Symmetric<N> 
     let entry = |i: usize| b[i].mul_add(factor, a[i]);
     [entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hyperelastic::law::HyperelasticLaw;
+    use crate::hyperelastic::{MooneyRivlin, NeoHookeanIso, Parameters, conformance};
+
+    #[test]
+    fn second_stresses_go_back_to_first_ones() {
+        let law = NeoHookeanIso::new(&Parameters::new(3500.0, 0.45)).unwrap();
+        for [h, _] in conformance::samples::<NeoHookeanIso>().take(50) {
+            let at = law.at(h);
+            let stress = law.stress_with(&at, law.own_bulk(&at));
+            let again = first_piola(&at, second_piola(&at, stress));
+            assert!((again - stress).largest() < 1e-12 * stress.largest());
+        }
+    }
+
+    #[test]
+    fn the_deviatoric_stress_of_split_laws_is_that_without_their_volumetric_energy() {
+        let parameters = Parameters {
+            c1_over_c2: Some(4.0),
+            ..Parameters::new(3500.0, 0.45)
+        };
+        let law = MooneyRivlin::new(&parameters).unwrap();
+        let (lambda, mu) = law.lame();
+        for [h, _] in conformance::samples::<MooneyRivlin>().take(50) {
+            let at = law.at(h);
+            let stress = law.stress_with(&at, law.own_bulk(&at));
+            let pressure = (lambda + 2.0 / 3.0 * mu) * at.volume_change;
+            let expected = stress.plus(-pressure, at.cofactor);
+            let size = stress.largest() + pressure.abs() * at.cofactor.largest();
+            let found = deviatoric(&at, stress);
+            assert!((found - expected).largest() < 1e-13 * size);
+        }
+    }
+
+    #[test]
+    fn terms_outside_their_ranges_are_refused_by_name() {
+        let said = |pairs: &[(f64, f64)]| {
+            let terms: Vec<Term> = pairs
+                .iter()
+                .map(|&(share, time)| Term { share, time })
+                .collect();
+            check(&terms).unwrap_err().to_string()
+        };
+        assert!(said(&[(0.0, 1.0)]).starts_with("share = 0"));
+        assert!(said(&[(0.1, -1.0)]).starts_with("time = -1"));
+        assert!(said(&[(0.5, 1.0), (0.5, 2.0)]).starts_with("sum of shares = 1"));
+        assert_eq!(check(&[]), Ok(()));
+    }
+
+    #[test]
+    fn a_step_of_no_time_is_a_jump() {
+        let term = Term {
+            share: 0.3,
+            time: 0.05,
+        };
+        let (memory, change) = ([1.0, 2.0, 3.0, 4.0, 5.0, 6.0], [0.5; 6]);
+        assert_eq!(
+            term.over(0.0).next(memory, change),
+            term.jump(memory, change)
+        );
+    }
+}

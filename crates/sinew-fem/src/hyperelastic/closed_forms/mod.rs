@@ -304,7 +304,7 @@ mod tests {
         assert!(off.is_empty(), "{}", off.join("\n"));
         for &id in Hyperelastic::IDS {
             let count = all.iter().filter(|form| form.law == id).count();
-            assert!(count >= 20, "{id} has {count}");
+            assert!(count >= 10, "{id} has {count}");
         }
     }
 }
