@@ -54,11 +54,67 @@ impl Lanes<f64> for Avx2<__m256d> {
     }
 
     #[inline(always)]
+    unsafe fn add(self, other: Self) -> Self {
+        unsafe {
+            Self(
+                _mm256_add_pd(self.0, other.0),
+                _mm256_add_pd(self.1, other.1),
+            )
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn sub(self, other: Self) -> Self {
+        unsafe {
+            Self(
+                _mm256_sub_pd(self.0, other.0),
+                _mm256_sub_pd(self.1, other.1),
+            )
+        }
+    }
+
+    #[inline(always)]
     unsafe fn mul(self, other: Self) -> Self {
         unsafe {
             Self(
                 _mm256_mul_pd(self.0, other.0),
                 _mm256_mul_pd(self.1, other.1),
+            )
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn div(self, other: Self) -> Self {
+        unsafe {
+            Self(
+                _mm256_div_pd(self.0, other.0),
+                _mm256_div_pd(self.1, other.1),
+            )
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn sqrt(self) -> Self {
+        unsafe { Self(_mm256_sqrt_pd(self.0), _mm256_sqrt_pd(self.1)) }
+    }
+
+    #[inline(always)]
+    unsafe fn at_most(self, other: Self) -> u32 {
+        unsafe {
+            let of = |a, b| _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a, b)) as u32;
+            of(self.0, other.0) | of(self.1, other.1) << 4
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        unsafe {
+            let of = |a, b, then, otherwise| {
+                _mm256_blendv_pd(otherwise, then, _mm256_cmp_pd::<_CMP_LE_OQ>(a, b))
+            };
+            Self(
+                of(a.0, b.0, then.0, otherwise.0),
+                of(a.1, b.1, then.1, otherwise.1),
             )
         }
     }
@@ -162,11 +218,67 @@ impl Lanes<f32> for Avx2<__m256> {
     }
 
     #[inline(always)]
+    unsafe fn add(self, other: Self) -> Self {
+        unsafe {
+            Self(
+                _mm256_add_ps(self.0, other.0),
+                _mm256_add_ps(self.1, other.1),
+            )
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn sub(self, other: Self) -> Self {
+        unsafe {
+            Self(
+                _mm256_sub_ps(self.0, other.0),
+                _mm256_sub_ps(self.1, other.1),
+            )
+        }
+    }
+
+    #[inline(always)]
     unsafe fn mul(self, other: Self) -> Self {
         unsafe {
             Self(
                 _mm256_mul_ps(self.0, other.0),
                 _mm256_mul_ps(self.1, other.1),
+            )
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn div(self, other: Self) -> Self {
+        unsafe {
+            Self(
+                _mm256_div_ps(self.0, other.0),
+                _mm256_div_ps(self.1, other.1),
+            )
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn sqrt(self) -> Self {
+        unsafe { Self(_mm256_sqrt_ps(self.0), _mm256_sqrt_ps(self.1)) }
+    }
+
+    #[inline(always)]
+    unsafe fn at_most(self, other: Self) -> u32 {
+        unsafe {
+            let of = |a, b| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32;
+            of(self.0, other.0) | of(self.1, other.1) << 8
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        unsafe {
+            let of = |a, b, then, otherwise| {
+                _mm256_blendv_ps(otherwise, then, _mm256_cmp_ps::<_CMP_LE_OQ>(a, b))
+            };
+            Self(
+                of(a.0, b.0, then.0, otherwise.0),
+                of(a.1, b.1, then.1, otherwise.1),
             )
         }
     }

@@ -44,8 +44,41 @@ impl Lanes<f64> for Avx512<__m512d> {
     }
 
     #[inline(always)]
+    unsafe fn add(self, other: Self) -> Self {
+        unsafe { Self(_mm512_add_pd(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    unsafe fn sub(self, other: Self) -> Self {
+        unsafe { Self(_mm512_sub_pd(self.0, other.0)) }
+    }
+
+    #[inline(always)]
     unsafe fn mul(self, other: Self) -> Self {
         unsafe { Self(_mm512_mul_pd(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    unsafe fn div(self, other: Self) -> Self {
+        unsafe { Self(_mm512_div_pd(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    unsafe fn sqrt(self) -> Self {
+        unsafe { Self(_mm512_sqrt_pd(self.0)) }
+    }
+
+    #[inline(always)]
+    unsafe fn at_most(self, other: Self) -> u32 {
+        unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, other.0).into() }
+    }
+
+    #[inline(always)]
+    unsafe fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        unsafe {
+            let chosen = _mm512_cmp_pd_mask::<_CMP_LE_OQ>(a.0, b.0);
+            Self(_mm512_mask_blend_pd(chosen, otherwise.0, then.0))
+        }
     }
 
     #[inline(always)]
@@ -111,8 +144,41 @@ impl Lanes<f32> for Avx512<__m512> {
     }
 
     #[inline(always)]
+    unsafe fn add(self, other: Self) -> Self {
+        unsafe { Self(_mm512_add_ps(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    unsafe fn sub(self, other: Self) -> Self {
+        unsafe { Self(_mm512_sub_ps(self.0, other.0)) }
+    }
+
+    #[inline(always)]
     unsafe fn mul(self, other: Self) -> Self {
         unsafe { Self(_mm512_mul_ps(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    unsafe fn div(self, other: Self) -> Self {
+        unsafe { Self(_mm512_div_ps(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    unsafe fn sqrt(self) -> Self {
+        unsafe { Self(_mm512_sqrt_ps(self.0)) }
+    }
+
+    #[inline(always)]
+    unsafe fn at_most(self, other: Self) -> u32 {
+        unsafe { _mm512_cmp_ps_mask::<_CMP_LE_OQ>(self.0, other.0).into() }
+    }
+
+    #[inline(always)]
+    unsafe fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        unsafe {
+            let chosen = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a.0, b.0);
+            Self(_mm512_mask_blend_ps(chosen, otherwise.0, then.0))
+        }
     }
 
     #[inline(always)]

@@ -15,7 +15,11 @@ pub(crate) trait Lanes<T: Real>: Copy {
     unsafe fn store(self, to: *mut T);
     /// The numbers at `from + index`.
     unsafe fn gather(from: *const T, index: *const u32) -> Self;
+    unsafe fn add(self, other: Self) -> Self;
+    unsafe fn sub(self, other: Self) -> Self;
     unsafe fn mul(self, other: Self) -> Self;
+    unsafe fn div(self, other: Self) -> Self;
+    unsafe fn sqrt(self) -> Self;
     /// Asks for the 64 bytes at an address, which need not be valid, to be brought near.
     unsafe fn prefetch(from: *const T);
     /// `self factor + other`, rounded once where the instruction set can.
@@ -24,6 +28,10 @@ pub(crate) trait Lanes<T: Real>: Copy {
     unsafe fn clamp(self, limit: Self) -> Self;
     /// 0 where the size is below `tiny`.
     unsafe fn flush(self, tiny: Self) -> Self;
+    /// One bit for each lane that is at most `other`; none where one of them is not a number.
+    unsafe fn at_most(self, other: Self) -> u32;
+    /// `then` where `a` is at most `b`, else `otherwise`, also where one of the two is not a number.
+    unsafe fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
     /// One bit for each lane whose size is at least `limit`.
     unsafe fn reaches(self, limit: Self) -> u32;
     /// One bit for each lane whose size is not at most `limit`: larger, or not a number.

@@ -14,6 +14,7 @@ mod number;
 mod portable;
 mod real;
 mod set;
+mod vector;
 
 pub(crate) use at::At;
 pub(crate) use lanes::Lanes;
@@ -21,6 +22,7 @@ pub use number::Number;
 pub(crate) use portable::Array;
 pub use real::Real;
 pub use set::InstructionSet;
+pub use vector::WithNumber;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) use {avx2::Avx2, avx512::Avx512};

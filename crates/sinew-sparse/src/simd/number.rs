@@ -4,6 +4,7 @@ use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::portable::FUSES;
+use super::real::Real;
 
 /// A number, or a vector of them that one instruction works on: a formula is written once and compiled for each.
 ///
@@ -18,6 +19,8 @@ pub trait Number:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// The number of a lane.
+    type Real: Real;
     /// Numbers side by side.
     const LANES: usize;
     /// Distance from 1 to the next larger number of a lane.
@@ -26,11 +29,17 @@ pub trait Number:
     /// The number nearest to `value`, in every lane.
     fn of(value: f64) -> Self;
 
-    /// The number of a lane.
+    /// The number of a lane, exactly.
     fn lane(self, lane: usize) -> f64;
 
     /// Numbers by their lanes, each rounded to the nearest.
     fn from_lanes(of: impl FnMut(usize) -> f64) -> Self;
+
+    /// The first numbers of a slice, which has at least one for each lane.
+    fn load(from: &[Self::Real]) -> Self;
+
+    /// Writes the lanes to the beginning of a slice, which has room for them.
+    fn store(self, to: &mut [Self::Real]);
 
     /// `self factor + other`, rounded once where the processor can.
     #[must_use]
@@ -39,18 +48,6 @@ pub trait Number:
     /// The square root.
     #[must_use]
     fn sqrt(self) -> Self;
-
-    /// The size.
-    #[must_use]
-    fn abs(self) -> Self;
-
-    /// The larger one.
-    #[must_use]
-    fn max(self, other: Self) -> Self;
-
-    /// The smaller one.
-    #[must_use]
-    fn min(self, other: Self) -> Self;
 
     /// `then` where `a <= b`, elsewhere, and where one of them is not a number, `otherwise`.
     #[must_use]
@@ -61,6 +58,27 @@ pub trait Number:
 
     /// Whether `a <= b` in any lane.
     fn any_le(a: Self, b: Self) -> bool;
+
+    /// The size.
+    #[inline(always)]
+    #[must_use]
+    fn abs(self) -> Self {
+        Self::select_le(self, Self::of(0.0), -self, self)
+    }
+
+    /// The larger one.
+    #[inline(always)]
+    #[must_use]
+    fn max(self, other: Self) -> Self {
+        Self::select_le(self, other, other, self)
+    }
+
+    /// The smaller one.
+    #[inline(always)]
+    #[must_use]
+    fn min(self, other: Self) -> Self {
+        Self::select_le(self, other, self, other)
+    }
 
     /// A function of a number, lane by lane.
     #[inline(always)]
@@ -108,6 +126,7 @@ pub trait Number:
 macro_rules! scalar {
     ($number:ident) => {
         impl Number for $number {
+            type Real = Self;
             const LANES: usize = 1;
             const EPSILON: f64 = $number::EPSILON as f64;
 
@@ -127,6 +146,16 @@ macro_rules! scalar {
             }
 
             #[inline(always)]
+            fn load(from: &[Self]) -> Self {
+                from[0]
+            }
+
+            #[inline(always)]
+            fn store(self, to: &mut [Self]) {
+                to[0] = self;
+            }
+
+            #[inline(always)]
             fn mul_add(self, factor: Self, other: Self) -> Self {
                 if FUSES {
                     $number::mul_add(self, factor, other)
@@ -138,21 +167,6 @@ macro_rules! scalar {
             #[inline(always)]
             fn sqrt(self) -> Self {
                 $number::sqrt(self)
-            }
-
-            #[inline(always)]
-            fn abs(self) -> Self {
-                $number::abs(self)
-            }
-
-            #[inline(always)]
-            fn max(self, other: Self) -> Self {
-                if self > other { self } else { other }
-            }
-
-            #[inline(always)]
-            fn min(self, other: Self) -> Self {
-                if self < other { self } else { other }
             }
 
             #[inline(always)]

@@ -61,8 +61,48 @@ macro_rules! array {
             unsafe fn prefetch(_from: *const $number) {}
 
             #[inline(always)]
+            unsafe fn add(self, other: Self) -> Self {
+                self.each(other, |a, b| a + b)
+            }
+
+            #[inline(always)]
+            unsafe fn sub(self, other: Self) -> Self {
+                self.each(other, |a, b| a - b)
+            }
+
+            #[inline(always)]
             unsafe fn mul(self, other: Self) -> Self {
                 self.each(other, |a, b| a * b)
+            }
+
+            #[inline(always)]
+            unsafe fn div(self, other: Self) -> Self {
+                self.each(other, |a, b| a / b)
+            }
+
+            #[inline(always)]
+            unsafe fn sqrt(self) -> Self {
+                Self(self.0.map(<$number>::sqrt))
+            }
+
+            #[inline(always)]
+            unsafe fn at_most(self, other: Self) -> u32 {
+                let mut bits = 0;
+                for (i, (a, b)) in self.0.iter().zip(&other.0).enumerate() {
+                    bits |= u32::from(a <= b) << i;
+                }
+                bits
+            }
+
+            #[inline(always)]
+            unsafe fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+                Self(std::array::from_fn(|i| {
+                    if a.0[i] <= b.0[i] {
+                        then.0[i]
+                    } else {
+                        otherwise.0[i]
+                    }
+                }))
             }
 
             #[inline(always)]

@@ -1,0 +1,265 @@
+//! Vectors as numbers, for code outside that is generic over them.
+
+#![allow(unsafe_code, reason = "the contract stands at `Vector`")]
+
+use std::fmt;
+use std::marker::PhantomData;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::lanes::Lanes;
+use super::number::Number;
+use super::portable::Array;
+use super::real::Real;
+use super::set::InstructionSet;
+#[cfg(target_arch = "x86_64")]
+use super::{avx2::Avx2, avx512::Avx512};
+
+/// Work that is written over any [`Number`], and compiled for each instruction set.
+pub trait WithNumber {
+    /// What comes of it.
+    type Output;
+
+    /// Does the work. `#[inline(always)]`, as all that it calls in its loops, or it is compiled without the instructions that it
+    /// is for: right, and slow.
+    fn run<N: Number>(self) -> Self::Output;
+}
+
+impl InstructionSet {
+    /// Does work with vectors of f64; `None` where this machine lacks the instructions.
+    pub fn with_f64<W: WithNumber>(self, work: W) -> Option<W::Output> {
+        self.is_available().then(|| match self {
+            Self::Portable => work.run::<Vector<f64, Array<f64, 8>>>(),
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the instructions are available.
+            Self::Avx2 => unsafe { on_avx2::<Vector<f64, Avx2<_>>, W>(work) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the instructions are available.
+            Self::Avx512 => unsafe { on_avx512::<Vector<f64, Avx512<_>>, W>(work) },
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Avx2 | Self::Avx512 => work.run::<Vector<f64, Array<f64, 8>>>(),
+        })
+    }
+
+    /// Does work with vectors of f32; `None` where this machine lacks the instructions.
+    pub fn with_f32<W: WithNumber>(self, work: W) -> Option<W::Output> {
+        self.is_available().then(|| match self {
+            Self::Portable => work.run::<Vector<f32, Array<f32, 16>>>(),
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the instructions are available.
+            Self::Avx2 => unsafe { on_avx2::<Vector<f32, Avx2<_>>, W>(work) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the instructions are available.
+            Self::Avx512 => unsafe { on_avx512::<Vector<f32, Avx512<_>>, W>(work) },
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Avx2 | Self::Avx512 => work.run::<Vector<f32, Array<f32, 16>>>(),
+        })
+    }
+}
+
+/// # Safety
+/// The instructions are available.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn on_avx2<N: Number, W: WithNumber>(work: W) -> W::Output {
+    work.run::<N>()
+}
+
+/// # Safety
+/// The instructions are available.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl")]
+unsafe fn on_avx512<N: Number, W: WithNumber>(work: W) -> W::Output {
+    work.run::<N>()
+}
+
+/// A vector of `T::LANES` numbers.
+///
+/// The type is private and nothing but [`InstructionSet::with_f64`] and [`InstructionSet::with_f32`] names it to others, after they have seen
+/// that the machine has its instructions. So whoever has the type may use it, and that is the proof of all blocks below.
+#[derive(Clone, Copy)]
+struct Vector<T, V>(V, PhantomData<T>);
+
+/// Lanes at most, for arrays.
+const MOST: usize = 16;
+
+impl<T: Real, V: Lanes<T>> Vector<T, V> {
+    #[inline(always)]
+    fn new(lanes: V) -> Self {
+        Self(lanes, PhantomData)
+    }
+
+    #[inline(always)]
+    fn lanes(self) -> [T; MOST] {
+        let mut lanes = [T::default(); MOST];
+        // SAFETY: see `Vector`; there is room for the largest vector.
+        unsafe { self.0.store(lanes.as_mut_ptr()) };
+        lanes
+    }
+}
+
+impl<T: Real, V: Lanes<T>> fmt::Debug for Vector<T, V> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(&self.lanes()[..T::LANES]).finish()
+    }
+}
+
+macro_rules! operator {
+    ($trait:ident, $method:ident) => {
+        impl<T: Real, V: Lanes<T>> $trait for Vector<T, V> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: see `Vector`.
+                Self::new(unsafe { self.0.$method(other.0) })
+            }
+        }
+    };
+}
+
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
+operator!(Div, div);
+
+impl<T: Real, V: Lanes<T>> Neg for Vector<T, V> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::of(-0.0) - self
+    }
+}
+
+impl<T: Real, V: Lanes<T>> Number for Vector<T, V> {
+    type Real = T;
+    const LANES: usize = T::LANES;
+    const EPSILON: f64 = 2.0 * T::ROUNDING;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        // SAFETY: see `Vector`.
+        Self::new(unsafe { V::splat(T::of(value)) })
+    }
+
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        self.lanes()[lane].to_f64()
+    }
+
+    #[inline(always)]
+    fn from_lanes(mut of: impl FnMut(usize) -> f64) -> Self {
+        let mut lanes = [T::default(); MOST];
+        for (lane, number) in lanes.iter_mut().take(T::LANES).enumerate() {
+            *number = T::of(of(lane));
+        }
+        Self::load(&lanes)
+    }
+
+    #[inline(always)]
+    fn load(from: &[T]) -> Self {
+        let from = &from[..T::LANES];
+        // SAFETY: see `Vector`; the slice has a number for each lane.
+        Self::new(unsafe { V::load(from.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [T]) {
+        let to = &mut to[..T::LANES];
+        // SAFETY: see `Vector`; the slice has room for each lane.
+        unsafe { self.0.store(to.as_mut_ptr()) }
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, other: Self) -> Self {
+        // SAFETY: see `Vector`.
+        Self::new(unsafe { self.0.mul_add(factor.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: see `Vector`.
+        Self::new(unsafe { self.0.sqrt() })
+    }
+
+    #[inline(always)]
+    fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        // SAFETY: see `Vector`.
+        Self::new(unsafe { V::select_le(a.0, b.0, then.0, otherwise.0) })
+    }
+
+    #[inline(always)]
+    fn all_le(a: Self, b: Self) -> bool {
+        // SAFETY: see `Vector`.
+        let bits = unsafe { a.0.at_most(b.0) };
+        bits == (1 << T::LANES) - 1
+    }
+
+    #[inline(always)]
+    fn any_le(a: Self, b: Self) -> bool {
+        // SAFETY: see `Vector`.
+        let bits = unsafe { a.0.at_most(b.0) };
+        bits != 0
+    }
+
+    #[inline(always)]
+    fn map(self, of: impl Fn(f64) -> f64) -> Self {
+        let lanes = self.lanes();
+        Self::from_lanes(|lane| of(lanes[lane].to_f64()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One of everything, in each lane.
+    struct Everything;
+
+    impl WithNumber for Everything {
+        type Output = ();
+
+        #[inline(always)]
+        fn run<N: Number>(self) {
+            let x = |lane: usize| [3.0, -2.0, 0.5, -0.0, 7.0, f64::NAN, 1e10, -0.25][lane % 8];
+            let y = |lane: usize| [1.5, 4.0, -2.0, 1.0][lane % 4];
+            let (a, b) = (N::from_lanes(x), N::from_lanes(y));
+            let close = |found: N, expected: &dyn Fn(f64, f64) -> f64| {
+                for lane in 0..N::LANES {
+                    let (found, expected) = (found.lane(lane), expected(x(lane), y(lane)));
+                    let near = (found - expected).abs() <= 2.0 * N::EPSILON * expected.abs();
+                    let same = found == expected || found.is_nan() && expected.is_nan();
+                    assert!(near || same, "lane {lane}: {found}, not {expected}");
+                }
+            };
+            close(a + b, &|a, b| a + b);
+            close(a - b, &|a, b| a - b);
+            close(a * b, &|a, b| a * b);
+            close(a / b, &|a, b| a / b);
+            close(-a, &|a, _| -a);
+            close(a.mul_add(b, a), &|a, b| a * b + a);
+            close(a.sqrt(), &|a, _| a.sqrt());
+            close(a.abs(), &|a, _| a.abs());
+            close(a.recip(), &|a, _| a.recip());
+            close(b.exp(), &|_, b| b.exp());
+            close(N::select_le(a, b, a, b), &|a, b| if a <= b { a } else { b });
+            let not_in_all = [N::all_le(a, b), N::any_le(b + N::of(1e11), b)];
+            assert_eq!(not_in_all, [false, false]);
+            assert!(N::any_le(b, a) && N::all_le(b, b + N::of(1.0)));
+            assert!((-N::of(0.0)).lane(0).is_sign_negative());
+            let mut kept = vec![N::Real::default(); N::LANES];
+            b.store(&mut kept);
+            close(N::load(&kept), &|_, b| b);
+        }
+    }
+
+    #[test]
+    fn vectors_of_every_instruction_set_compute_as_numbers_do() {
+        for set in InstructionSet::available() {
+            set.with_f64(Everything).unwrap();
+            set.with_f32(Everything).unwrap();
+        }
+        Everything.run::<f64>();
+        Everything.run::<f32>();
+    }
+}
