@@ -154,13 +154,39 @@ pub(super) fn rotation<N: Number>(gradient: Tensor<N>, volume_ratio: N) -> Tenso
             break;
         }
     }
-    let flat = N::of(FLAT);
-    if N::all_le(moved, tolerance) && !N::any_le(volume_ratio, flat) {
+    if N::all_le(moved, tolerance) && !N::any_le(volume_ratio, N::of(FLAT)) {
         return rotation;
     }
-    let nearest = SingularValues::of(gradient).rotation();
-    let found = Tensor::select_le(moved, tolerance, rotation, nearest);
-    Tensor::select_le(volume_ratio, flat, nearest, found)
+    // A lane that still moves is one to be mended.
+    let volume_ratio = N::select_le(moved, tolerance, volume_ratio, N::of(0.0));
+    mended(gradient, rotation, volume_ratio)
+}
+
+/// Lanes at most of any number.
+const LANES: usize = 16;
+
+/// The rotations where the volume ratio is above [`FLAT`], and elsewhere those by singular values, lane by lane: rare, and long
+/// where it is inlined.
+#[cold]
+#[inline(never)]
+fn mended<N: Number>(gradient: Tensor<N>, rotation: Tensor<N>, volume_ratio: N) -> Tensor<N> {
+    const { assert!(N::LANES <= LANES) };
+    let mut lanes = [[[0.0; 3]; 3]; LANES];
+    for (lane, found) in lanes.iter_mut().enumerate().take(N::LANES) {
+        let of = |tensor: Tensor<N>| Tensor(tensor.0.map(|row| row.map(|entry| entry.lane(lane))));
+        *found = if volume_ratio.lane(lane) > FLAT {
+            of(rotation).0
+        } else {
+            nearest(of(gradient)).0
+        };
+    }
+    let indices = [0, 1, 2].map(|i| [0, 1, 2].map(|j| (i, j)));
+    Tensor(indices.map(|row| row.map(|(i, j)| N::from_lanes(|lane| lanes[lane][i][j]))))
+}
+
+#[inline(never)]
+fn nearest(gradient: Tensor<f64>) -> Tensor<f64> {
+    SingularValues::of(gradient).rotation()
 }
 
 #[cfg(test)]
