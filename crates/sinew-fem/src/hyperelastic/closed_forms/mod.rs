@@ -175,7 +175,7 @@ fn confined(list: &mut Vec<ClosedForm>) -> Result<(), ClosedFormError> {
     }
     let change = material.tangent(Tensor::zero(), along_x());
     let case = "confined compression at rest: modulus (Pa)".to_owned();
-    table.add(id, case, 13_275.862_068_965_518, change.0[0][0]);
+    table.add(id, case, 13275.862068965518, change.0[0][0]);
     Ok(())
 }
 
