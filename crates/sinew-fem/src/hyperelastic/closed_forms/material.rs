@@ -53,7 +53,7 @@ impl Material {
         let guess = stretch.powf(-0.45);
         let mut sides = Vector2::new(guess, guess);
         for _ in 0..50 {
-            let h = super::stretched([stretch, sides[0], sides[1]]);
+            let h = stretched([stretch, sides[0], sides[1]]);
             let side = |p: Tensor<f64>| Vector2::new(p.0[1][1], p.0[2][2]);
             let y = Tensor([[0.0; 3], [0.0, 1.0, 0.0], [0.0; 3]]);
             let z = Tensor([[0.0; 3], [0.0; 3], [0.0, 0.0, 1.0]]);
@@ -67,7 +67,7 @@ impl Material {
                 break;
             }
         }
-        let h = super::stretched([stretch, sides[0], sides[1]]);
+        let h = stretched([stretch, sides[0], sides[1]]);
         [sides[0], sides[1], self.stress(h).0[0][0]]
     }
 
@@ -116,4 +116,13 @@ impl LawVisitor for Tangent {
         let at = law.at(self.0);
         law.tangent_with(&at, law.own_bulk(&at), self.1)
     }
+}
+
+/// The displacement gradient of stretches along the axes.
+pub(super) fn stretched([a, b, c]: [f64; 3]) -> Tensor<f64> {
+    Tensor([
+        [a - 1.0, 0.0, 0.0],
+        [0.0, b - 1.0, 0.0],
+        [0.0, 0.0, c - 1.0],
+    ])
 }

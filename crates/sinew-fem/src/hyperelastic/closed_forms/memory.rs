@@ -1,6 +1,6 @@
 //! Relaxation in one dimension.
 
-use super::{ClosedForm, ClosedFormError, YOUNGS_MODULUS, table};
+use super::form::{ClosedForm, ClosedFormError, YOUNGS_MODULUS, table};
 use crate::hyperelastic::prony::{Symmetric, Term, check, stress, tangent_factor};
 
 const TERMS: [Term; 2] = [

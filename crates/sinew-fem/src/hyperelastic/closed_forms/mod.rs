@@ -3,6 +3,7 @@
 //! E = 3500 Pa and nu = .45 throughout, C1 : C2 = 4 : 1. It comes with the feature `conformance`.
 
 mod figures;
+mod form;
 mod material;
 mod memory;
 
@@ -10,58 +11,16 @@ use figures::{
     ACROSS, ALONG, CONFINED, DILATION, EIGENVALUES, INCOMPRESSIBLE, INVERSION, OBLIQUE, SHEAR,
     TWIST, UNIAXIAL,
 };
-use material::Material;
+use form::{YOUNGS_MODULUS, table};
+use material::{Material, stretched};
+
+pub use form::{ClosedForm, ClosedFormError};
 
 use super::fibres::Fibres;
-use super::kinds::{Hyperelastic, LawError};
-use super::parameters::{ParameterError, Parameters};
+use super::kinds::Hyperelastic;
+use super::parameters::Parameters;
 use super::tensor::Tensor;
 
-/// A figure that is known from elsewhere.
-#[derive(Clone, Debug)]
-pub struct ClosedForm {
-    /// The deformation and the quantity, with its unit.
-    pub case: String,
-    /// The law's id, or what else it is about.
-    pub law: &'static str,
-    /// What is asked.
-    pub asked: f64,
-    /// What the code gives.
-    pub got: f64,
-    /// The error that is allowed, relative to `scale`.
-    pub tolerance: f64,
-    /// The size of what is asked, or what it is small against where that is 0.
-    pub scale: f64,
-    /// Where what is asked comes from.
-    pub source: &'static str,
-}
-
-/// Why a figure could not be computed.
-#[derive(Clone, Debug, thiserror::Error)]
-pub enum ClosedFormError {
-    /// A law that the tables name is not there.
-    #[error(transparent)]
-    Law(#[from] LawError),
-    /// Fibres or terms of the tables are refused.
-    #[error(transparent)]
-    Parameter(#[from] ParameterError),
-}
-
-impl ClosedForm {
-    /// The error relative to `scale`.
-    #[must_use]
-    pub fn error(&self) -> f64 {
-        (self.got - self.asked).abs() / self.scale
-    }
-
-    /// Whether the error is within its tolerance.
-    #[must_use]
-    pub fn holds(&self) -> bool {
-        self.error() <= self.tolerance
-    }
-}
-
-const YOUNGS_MODULUS: f64 = 3500.0;
 const POISSONS_RATIO: f64 = 0.45;
 
 const ENERGY: &str = "differences of the energy in 50 digits (xtask/python/law_figures.py)";
@@ -89,40 +48,6 @@ fn law(id: &str) -> Result<Material, ClosedFormError> {
     let mut parameters = Parameters::new(YOUNGS_MODULUS, POISSONS_RATIO);
     parameters.c1_over_c2 = (id == "mooney-rivlin").then_some(4.0);
     Ok(Material::new(Hyperelastic::new(id, &parameters)?))
-}
-
-/// A law's figures of a table, with one tolerance and source.
-struct Table<'a> {
-    list: &'a mut Vec<ClosedForm>,
-    tolerance: f64,
-    source: &'static str,
-}
-
-impl Table<'_> {
-    fn add(&mut self, law: &'static str, case: String, asked: f64, got: f64) {
-        let scale = if asked == 0.0 {
-            YOUNGS_MODULUS
-        } else {
-            asked.abs()
-        };
-        self.list.push(ClosedForm {
-            case,
-            law,
-            asked,
-            got,
-            tolerance: self.tolerance,
-            scale,
-            source: self.source,
-        });
-    }
-}
-
-fn table<'a>(list: &'a mut Vec<ClosedForm>, tolerance: f64, source: &'static str) -> Table<'a> {
-    Table {
-        list,
-        tolerance,
-        source,
-    }
 }
 
 fn uniaxial(list: &mut Vec<ClosedForm>) -> Result<(), ClosedFormError> {
@@ -270,15 +195,6 @@ fn fibres(list: &mut Vec<ClosedForm>) -> Result<(), ClosedFormError> {
         table.add(name, case("P22"), p22, p[1][1]);
     }
     Ok(())
-}
-
-/// The displacement gradient of stretches along the axes.
-fn stretched([a, b, c]: [f64; 3]) -> Tensor<f64> {
-    Tensor([
-        [a - 1.0, 0.0, 0.0],
-        [0.0, b - 1.0, 0.0],
-        [0.0, 0.0, c - 1.0],
-    ])
 }
 
 fn along_x() -> Tensor<f64> {
