@@ -5,7 +5,7 @@
 //!
 //! let law = NeoHookean::new(&Parameters::new(3500.0, 0.45))?; // Pa
 //! // Held at the sides and pressed to .9 of its height.
-//! let at = law.at(Tensor::of([[0.0; 3], [0.0; 3], [0.0, 0.0, -0.1]]));
+//! let at = law.at(Tensor::<f64>::of([[0.0; 3], [0.0; 3], [0.0, 0.0, -0.1]]));
 //! let stress = law.stress_with(&at, law.own_bulk(&at));
 //! let (lambda, mu) = law.lame();
 //! let expected: f64 = mu * (0.9 - 1.0 / 0.9) - 0.1 * lambda;
