@@ -6,7 +6,7 @@ use sinew_sparse::{BlockMatrix, Pattern};
 
 use crate::evaluation_error::EvaluationError;
 use crate::operators::{Damping, LinearOperators};
-use crate::system::Trial;
+use crate::trial::Trial;
 use crate::vectors::dot;
 
 /// The elastic part of a force law: forces that are the gradient of an energy, and their derivative.

@@ -63,6 +63,7 @@ mod step_error;
 mod step_report;
 mod synchronise;
 mod system;
+mod trial;
 mod watch;
 
 pub use batch::{Batch, Step, Stepped, worst_beyond};
@@ -100,5 +101,6 @@ pub use state_bytes::StateBytesError;
 pub use step_error::{SetupError, StepError};
 pub use step_report::StepReport;
 pub use synchronise::SynchroniseError;
-pub use system::{Equations, ForceLaw, LinearSystem, Scales, System, Trial};
+pub use system::{Equations, ForceLaw, LinearSystem, Scales, System};
+pub use trial::Trial;
 pub use watch::Watch;

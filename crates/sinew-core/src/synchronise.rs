@@ -4,7 +4,8 @@ use crate::evaluation_error::EvaluationError;
 use crate::input::Inputs;
 use crate::load_time::LoadTime;
 use crate::state::{Acceleration, State, VelocityTime};
-use crate::system::{System, Trial};
+use crate::system::System;
+use crate::trial::Trial;
 
 /// Reasons for which a velocity cannot be brought to the displacement's time.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -11,21 +11,7 @@ use crate::operators::LinearOperators;
 use crate::revision::Revision;
 use crate::spectrum::Spectrum;
 use crate::state::State;
-
-/// A point at which a system is evaluated without being changed.
-#[derive(Clone, Copy, Debug)]
-pub struct Trial<'a> {
-    /// The time of the loads, and inputs from outside.
-    pub load: LoadTime<'a>,
-    /// Time from the last accepted state to this point (s); laws with memory need it.
-    pub dt: f64,
-    /// Displacement (m).
-    pub u: &'a [f64],
-    /// Velocity (m/s).
-    pub v: &'a [f64],
-    /// Internal variables of the last accepted state, [`System::internal_variables`] of them.
-    pub internal: &'a [f64],
-}
+use crate::trial::Trial;
 
 /// Sizes by which a guard cuts steps where a method knows no stable one.
 #[derive(Clone, Copy, Debug, PartialEq)]

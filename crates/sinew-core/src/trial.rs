@@ -1,0 +1,18 @@
+//! Points at which a system is evaluated.
+
+use crate::load_time::LoadTime;
+
+/// A point at which a system is evaluated without being changed.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial<'a> {
+    /// The time of the loads, and inputs from outside.
+    pub load: LoadTime<'a>,
+    /// Time from the last accepted state to this point (s); laws with memory need it.
+    pub dt: f64,
+    /// Displacement (m).
+    pub u: &'a [f64],
+    /// Velocity (m/s).
+    pub v: &'a [f64],
+    /// Internal variables of the last accepted state, [`crate::System::internal_variables`] of them.
+    pub internal: &'a [f64],
+}
