@@ -413,6 +413,41 @@ impl<'a> Batch<'a> {
         result
     }
 
+    /// Runs `body` on the next step, or part of one, alone, cut into equal parts of its own: their number may be another for the next one.
+    pub fn next_in_parts<R>(&mut self, parts: u32, body: impl FnOnce(&mut Self) -> R) -> R {
+        let whole = (
+            self.dt,
+            self.steps,
+            self.taken,
+            self.parts,
+            self.parts_taken,
+        );
+        let ends_step = self.parts_taken + 1 == self.parts;
+        let watch = if ends_step { None } else { self.watch.take() };
+        self.dt /= f64::from(parts);
+        (self.steps, self.taken, self.parts, self.parts_taken) = (1, 0, parts, 0);
+        let result = body(self);
+        let is_taken = self.taken == 1;
+        (
+            self.dt,
+            self.steps,
+            self.taken,
+            self.parts,
+            self.parts_taken,
+        ) = whole;
+        if watch.is_some() {
+            self.watch = watch;
+        }
+        if is_taken {
+            self.parts_taken += 1;
+            if ends_step {
+                self.parts_taken = 0;
+                self.taken += 1;
+            }
+        }
+        result
+    }
+
     /// Runs `body` on steps that are each clamped; the guard is given back.
     pub fn guarded<R>(
         &mut self,

@@ -4,11 +4,11 @@ use sinew_sparse::BlockMatrix;
 
 use crate::hash::Hash;
 use crate::operators::LinearOperators;
-use crate::system::System;
+use crate::system::{Equations, System};
 
 impl<'s> dyn System + 's {
     /// Fingerprint by which another process recognises a body: of its masses and layers, the number
-    /// of its internal variables and, where it is linear, its matrices. Loads do not change it. A body
+    /// of its internal variables and its matrices or its law. Loads do not change it. A body
     /// built in the same way has the same fingerprint; that of matrices is computed once.
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
@@ -26,7 +26,12 @@ impl<'s> dyn System + 's {
                 let of_matrices = linear.operators().derived(OfMatrices::new);
                 hash.add(&of_matrices.0.to_le_bytes());
             }
-            None => add_numbers(&mut hash, self.mass()),
+            None => {
+                add_numbers(&mut hash, self.mass());
+                if let Equations::Forces(law) = self.equations() {
+                    hash.add(&law.fingerprint().to_le_bytes());
+                }
+            }
         }
         hash.value()
     }

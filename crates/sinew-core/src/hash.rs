@@ -3,24 +3,30 @@
 /// FNV-1a with 64 bits (Fowler, Noll, Vo and Eastlake, The FNV non-cryptographic hash algorithm): it tells
 /// any two texts apart that differ in one byte.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Hash(u64);
+pub struct Hash(u64);
 
 impl Hash {
-    pub(crate) const fn new() -> Self {
+    /// The hash of nothing.
+    #[must_use]
+    pub const fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }
 
-    pub(crate) fn add(&mut self, bytes: &[u8]) {
+    /// Adds bytes.
+    pub fn add(&mut self, bytes: &[u8]) {
         for byte in bytes {
             self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3);
         }
     }
 
-    pub(crate) fn value(self) -> u64 {
+    /// The value.
+    #[must_use]
+    pub fn value(self) -> u64 {
         self.0
     }
 
     /// The hash of some bytes.
+    #[must_use]
     pub(crate) fn of(bytes: &[u8]) -> u64 {
         let mut hash = Self::new();
         hash.add(bytes);

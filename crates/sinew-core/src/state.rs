@@ -32,6 +32,21 @@ pub struct State {
     /// Start of the motion, where a guarded method bounds velocities by its energy; `None` until
     /// then. Set it to `None` after changing `u` or `v` by hand.
     pub start: Option<Start>,
+    /// The parts into which steps are cut by the current stiffness, where a method does so.
+    pub cut: Option<StepCut>,
+}
+
+/// The cut of steps into parts that the current stiffness of a system allows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepCut {
+    /// Parts of a step.
+    pub parts: u32,
+    /// Parts taken since the stable step was found.
+    pub taken: u32,
+    /// The stable step (s) that was found.
+    pub stable_step: f64,
+    /// The largest trace of a cell's own block over its mass (1/s^2) then; 0 where the law has no such blocks.
+    pub stiffest_cell: f64,
 }
 
 impl PartialEq for State {
@@ -46,13 +61,15 @@ impl PartialEq for State {
             internal,
             loads: _,
             start,
+            cut,
         } = self;
-        (clock, velocity, acceleration, start)
+        (clock, velocity, acceleration, start, cut)
             == (
                 &other.clock,
                 &other.velocity,
                 &other.acceleration,
                 &other.start,
+                &other.cut,
             )
             && (u, v, a, internal) == (&other.u, &other.v, &other.a, &other.internal)
     }
@@ -110,6 +127,7 @@ impl State {
             internal: Vec::new(),
             loads: None,
             start: None,
+            cut: None,
         }
     }
 

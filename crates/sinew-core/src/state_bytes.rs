@@ -2,10 +2,10 @@
 
 use crate::bytes::{BytesError, Kind, Reader, Writer};
 use crate::system::loads_revision;
-use crate::{Acceleration, Clock, Start, State, System, VelocityTime};
+use crate::{Acceleration, Clock, Start, State, StepCut, System, VelocityTime};
 
 const KIND: Kind = Kind {
-    name: b"sinew state v2\r\n",
+    name: b"sinew state v3\r\n",
     words: "state",
 };
 
@@ -60,6 +60,11 @@ impl State {
         out.number(dt);
         out.count(steps);
         out.number(self.start.map_or(0.0, |start| start.energy));
+        // No parts stand for no cut.
+        out.count(self.cut.map_or(0, |cut| cut.parts.into()));
+        out.count(self.cut.map_or(0, |cut| cut.taken.into()));
+        out.number(self.cut.map_or(0.0, |cut| cut.stable_step));
+        out.number(self.cut.map_or(0.0, |cut| cut.stiffest_cell));
         for vector in [&self.u, &self.v, &self.a, &self.internal] {
             out.count(vector.len() as u64);
             vector.iter().for_each(|value| out.number(*value));
@@ -67,8 +72,8 @@ impl State {
         out.finish()
     }
 
-    /// The state that [`State::to_bytes`] wrote, of a system built in the same way. Loads, and the law
-    /// of a system without matrices, are not compared.
+    /// The state that [`State::to_bytes`] wrote, of a system built in the same way. Loads are not
+    /// compared, and the law of a system without matrices by what it tells of itself ([`crate::ForceLaw::fingerprint`]).
     ///
     /// # Errors
     /// [`StateBytesError`] for other bytes and for other systems.
@@ -94,6 +99,18 @@ impl State {
         let fingerprint = rest.count()?;
         let (base, dt, steps) = (rest.number()?, rest.number()?, rest.count()?);
         let energy = rest.number()?;
+        let (parts, taken) = (rest.count()?, rest.count()?);
+        let (stable_step, stiffest_cell) = (rest.number()?, rest.number()?);
+        let cut = match (u32::try_from(parts), u32::try_from(taken)) {
+            (Ok(0), Ok(_)) => None,
+            (Ok(parts), Ok(taken)) => Some(StepCut {
+                parts,
+                taken,
+                stable_step,
+                stiffest_cell,
+            }),
+            _ => return Err(rest.impossible("cut of steps").into()),
+        };
         let mut vector = || -> Result<Vec<f64>, BytesError> {
             (0..rest.count_of(8)?).map(|_| rest.number()).collect()
         };
@@ -132,6 +149,7 @@ impl State {
                 energy,
             }),
             loads: loads_revision(system).filter(|_| has_loads),
+            cut,
         })
     }
 }

@@ -134,13 +134,19 @@ pub trait ForceLaw: Send + Sync {
         0.0
     }
 
+    /// What tells this law from others on the same masses, such as a hash of its parameters: the same in every process.
+    fn fingerprint(&self) -> u64 {
+        0
+    }
+
     /// The energy behind the forces and its tangent, where the law has one.
     fn elastic(&self) -> Option<&dyn ElasticLaw> {
         None
     }
 
     /// Bounds of the fastest motions about a state, or about rest, from which stable steps follow;
-    /// `None` where they are unknown.
+    /// `None` where they are unknown. About rest to some digits; about a state, which is asked for during runs, an estimate to a few
+    /// per cent will do.
     fn spectrum(&self, _about: Option<&State>) -> Option<Spectrum> {
         None
     }

@@ -6,7 +6,10 @@
 mod common;
 
 use common::{build, plain, relative_error};
-use sinew_core::{Ramp, State, StepError, System};
+use sinew_core::spectrum::largest_eigenvalue;
+use sinew_core::{
+    ElasticLaw, LoadTime, Ramp, StableStep, State, StepError, System, TangentKind, Trial,
+};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region};
 use sinew_mesh::TetMesh;
@@ -133,6 +136,25 @@ impl Scene {
             .collect()
     }
 
+    /// The stable step (s) of undamped leapfrog about a state, by the largest eigenvalue of the tangent to many digits.
+    fn limit(&self, state: &State) -> f64 {
+        let zero = vec![0.0; state.u.len()];
+        let trial = Trial {
+            load: LoadTime::at(state.t()),
+            dt: 0.0,
+            u: &state.u,
+            v: &zero,
+            internal: &[],
+        };
+        let omega_squared = largest_eigenvalue(self.model.mass(), |x, out| {
+            let product = self
+                .model
+                .tangent_product(&trial, TangentKind::Exact, x, out);
+            product.unwrap();
+        });
+        2.0 / omega_squared.sqrt()
+    }
+
     /// The vertical displacement of the middle of the top.
     fn top(&self, u: &[f64]) -> f64 {
         let (_, high) = self.mesh.bounding_box();
@@ -208,4 +230,60 @@ fn a_twist_unwinds_as_published() {
         let found = relative_error(&scene.run(rate, 50).unwrap(), &reference);
         assert_near([found], &[error], 0.06 * error);
     }
+}
+
+/// Steps cut by the current stiffness go through a release that steps of the stable length at rest do not survive, and go on from a saved
+/// state with the same bits.
+#[test]
+fn steps_follow_the_current_stiffness() {
+    let scene = Scene::release();
+    let by_stiffness = || build("central-difference", &plain().with_text("substeps", "auto"));
+    let rest = match build("central-difference", &plain())
+        .stable_step(&scene.model)
+        .unwrap()
+    {
+        StableStep::UpTo(limit) => limit,
+        other => panic!("{other:?}"),
+    };
+    assert_near([rest], &[3.539e-3], 1e-6);
+    // At nine tenths of the stable step at rest the motion ends in a refusal or runs away.
+    let plain_end = scene.run((1.0 / (0.9 * rest)) as usize, 50);
+    assert!(plain_end.is_err(), "the stretch stiffens");
+
+    let (dt, steps) = (0.01, 50);
+    let mut state = scene.start.clone();
+    let mut integrator = by_stiffness();
+    let reference = scene.reference(16_000, 50);
+    let (mut seen, mut parts, mut saved) = (Vec::new(), Vec::new(), None);
+    for step in 0..steps {
+        integrator.step(&scene.model, &mut state, dt).unwrap();
+        seen.push(state.u.clone());
+        let cut = state.cut.unwrap();
+        parts.push(cut.parts);
+        let true_limit = scene.limit(&state);
+        let part = state.clock.last_step().unwrap();
+        println!(
+            "{step}: {part} s, {:.3} of the stable step",
+            part / true_limit
+        );
+        // A few per cent beyond for a few steps leave the motion as it is.
+        assert!(
+            part <= 1.05 * true_limit,
+            "step {step}: {part} s of {true_limit} s"
+        );
+        if step == 17 {
+            saved = Some(state.to_bytes(&scene.model));
+        }
+    }
+    assert!(parts.iter().min() < parts.iter().max(), "{parts:?}");
+    let error = relative_error(&seen, &reference);
+    // Steps of 1/600 s have an error of 0.127.
+    assert!(error < 0.15, "{error}");
+
+    let mut resumed = State::from_bytes(&saved.unwrap(), &scene.model).unwrap();
+    let mut fresh = by_stiffness();
+    for _ in 18..steps {
+        fresh.step(&scene.model, &mut resumed, dt).unwrap();
+    }
+    assert_eq!(resumed, state);
 }

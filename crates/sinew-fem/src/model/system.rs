@@ -67,19 +67,10 @@ impl System for Model {
     }
 
     fn inverted_elements(&self, when: LoadTime<'_>, u: &[f64]) -> Option<usize> {
-        if u.len() != self.dofs() {
-            return None;
-        }
-        let displacement = self.at_nodes(when, 0, Some(u)).ok()?;
-        let moved = |node: u32| {
-            let [x, y, z] = self.mesh.points[node as usize];
-            let [ux, uy, uz] = displacement(node);
-            [x + ux, y + uy, z + uz]
-        };
         // Elements have positive volume at rest; one that is not a number counts as inverted.
-        let upright = |tet: &&[u32; 4]| tetra::signed_volume(&tet.map(moved)) > 0.0;
-        let tets = &self.mesh.tets;
-        Some(tets.len() - tets.iter().filter(upright).count())
+        let upright = |volume: &f64| *volume > 0.0;
+        let volumes = self.volumes(when, u)?;
+        Some(self.mesh.tets.len() - volumes.filter(upright).count())
     }
 
     fn extent(&self) -> Option<f64> {
@@ -113,6 +104,25 @@ impl LinearSystem for Model {
 }
 
 impl Model {
+    /// The volume (m^3) of each tetrahedron at a time, with the displacement `u` then.
+    fn volumes<'a>(
+        &'a self,
+        when: LoadTime<'_>,
+        u: &'a [f64],
+    ) -> Option<impl Iterator<Item = f64> + 'a> {
+        if u.len() != self.dofs() {
+            return None;
+        }
+        let displacement = self.at_nodes(when, 0, Some(u)).ok()?;
+        let moved = move |node: u32| {
+            let [x, y, z] = self.mesh.points[node as usize];
+            let [ux, uy, uz] = displacement(node);
+            [x + ux, y + uy, z + uz]
+        };
+        let tets = self.mesh.tets.iter();
+        Some(tets.map(move |tet| tetra::signed_volume(&tet.map(&moved))))
+    }
+
     /// The square (1/s^2) of the largest frequency at which each tetrahedron would swing the masses of its nodes: alone, or with those
     /// over which its strain is averaged. At small strain, and never above that of the body.
     #[must_use]

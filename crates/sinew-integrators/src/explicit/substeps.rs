@@ -2,8 +2,8 @@
 
 use sinew_cnn::Program;
 use sinew_core::{
-    Batch, Fact, Integrator, OptionError, Options, Prepared, Properties, SetupError, StableStep,
-    State, StepError, StepReport, System,
+    Batch, Fact, Integrator, LoadTime, OptionError, Options, Prepared, Properties, SetupError,
+    StableStep, State, StepCut, StepError, StepReport, System, Trial,
 };
 
 use crate::{OptionDefault, OptionHelp, OptionKind, Stepper};
@@ -16,7 +16,8 @@ const MARGIN: f64 = 0.9;
 pub enum Substeps {
     /// This many parts, always.
     Fixed(u32),
-    /// The fewest parts that are no longer than nine tenths of the stable step.
+    /// The fewest parts that are no longer than nine tenths of the stable step: that of the matrices, or of a law's current stiffness,
+    /// which is looked at again and again.
     Auto,
 }
 
@@ -27,7 +28,7 @@ impl Substeps {
     /// The option.
     pub(crate) const HELP: OptionHelp = OptionHelp {
         key: Self::KEY,
-        help: "equal parts into which each step is cut; \"auto\" for as many as keep them stable",
+        help: "equal parts into which each step is cut; \"auto\" for as many as keep them stable, by the current stiffness where that changes",
         expected: "a whole number from 1 on, or \"auto\"",
         kind: OptionKind::Either(&[OptionKind::Count(u32::MAX), OptionKind::Words(&["auto"])]),
         default: OptionDefault::Value("1"),
@@ -96,11 +97,26 @@ pub(super) fn whole(parts: f64) -> u32 {
     parts.ceil().clamp(1.0, f64::from(u32::MAX)) as u32
 }
 
+/// Parts after which the stable step of a law's current stiffness is found anew.
+const PARTS_BETWEEN_LOOKS: u32 = 40;
+
+/// Parts after which the cells' own stiffness tells at the latest whether the stable step has shrunk.
+const PARTS_BETWEEN_GLANCES: u32 = 4;
+
+/// Growth of the stiffest cell beyond which its stiffness no longer tells the stable step well enough.
+const MUCH_STIFFER: f64 = 4.0;
+
+/// Largest number of parts into which the current stiffness may cut what was stable at rest: where it takes more, something is wrong, and a
+/// run would not end.
+const MOST_PARTS: u32 = 1000;
+
 /// An integrator that takes several equal steps for each one asked of it.
 pub struct Substepped {
     inner: Box<dyn Stepper>,
     substeps: Substeps,
     parts: Option<(sinew_core::Revision, f64, u32)>,
+    /// Own blocks of all cells (N/m).
+    blocks: Vec<f64>,
 }
 
 impl Substepped {
@@ -111,6 +127,7 @@ impl Substepped {
             inner,
             substeps,
             parts: None,
+            blocks: Vec::new(),
         }
     }
 
@@ -134,6 +151,113 @@ impl Substepped {
                 }),
             },
         }
+    }
+}
+
+/// Parts by the current stiffness of a law, of the parts that would be stable at rest. They are a function of the state alone, in which they
+/// stand: the stable step is found from a fixed vector, after fixed numbers of parts. In between it is taken to shrink as the stiffest cell's own stiffness grows, of which a step has
+/// the square root: what is left is room until the next look. That costs about a force.
+impl Substepped {
+    fn run_by_current_stiffness(
+        &mut self,
+        batch: &mut Batch<'_>,
+        state: &mut State,
+    ) -> Result<(), StepError> {
+        while batch.goes_on() {
+            let cut = self.current_cut(batch, state)?;
+            let (system, part) = (batch.system(), batch.dt() / f64::from(cut.parts));
+            self.inner.prepare(system, part)?;
+            state.cut = Some(StepCut {
+                taken: cut.taken.saturating_add(cut.parts),
+                ..cut
+            });
+            batch.next_in_parts(cut.parts, |batch| self.inner.run(batch, state))?;
+        }
+        Ok(())
+    }
+
+    /// The cut of the next step.
+    fn current_cut(&mut self, batch: &Batch<'_>, state: &State) -> Result<StepCut, StepError> {
+        let (system, dt) = (batch.system(), batch.dt());
+        let before = state.cut.filter(|cut| cut.taken < PARTS_BETWEEN_LOOKS);
+        if let Some(cut) = before {
+            if cut.parts < PARTS_BETWEEN_GLANCES && cut.taken % PARTS_BETWEEN_GLANCES != 0 {
+                return Ok(cut);
+            }
+            let growth = self.stiffest_cell(batch, state)? / cut.stiffest_cell;
+            // Not a number where the law has no such blocks.
+            if growth.is_nan() || growth <= 1.0 {
+                return Ok(cut);
+            }
+            if growth <= MUCH_STIFFER {
+                let parts = self.parts_by(dt, cut.stable_step / growth, state)?;
+                return Ok(StepCut {
+                    parts: parts.max(cut.parts),
+                    ..cut
+                });
+            }
+        }
+        let stable_step = match self.inner.stable_step_about(system, Some(state))? {
+            StableStep::Any => f64::INFINITY,
+            StableStep::UpTo(limit) => limit,
+            StableStep::Unknown => 0.0,
+        };
+        let parts = self.parts_by(dt, stable_step, state)?;
+        // Parts that are a little shorter than they have to be stay: a change costs a force and an order of the error.
+        let is_near = |known: &u32| *known >= parts && f64::from(*known) <= 1.1 * f64::from(parts);
+        let known = state.cut.map(|cut| cut.parts).filter(is_near);
+        Ok(StepCut {
+            parts: known.unwrap_or(parts),
+            taken: 0,
+            stable_step,
+            stiffest_cell: self.stiffest_cell(batch, state)?,
+        })
+    }
+
+    fn parts_by(&self, dt: f64, stable_step: f64, state: &State) -> Result<u32, StepError> {
+        let parts = Substeps::parts(dt, stable_step);
+        if parts <= f64::from(MOST_PARTS) {
+            return Ok(parts as u32);
+        }
+        Err(StepError::Inaccurate {
+            integrator: self.id(),
+            t: state.t(),
+            reason: format!(
+                "the current stiffness takes more than {MOST_PARTS} parts of {dt} s, which is stable at rest: elements are squeezed flat, or the \
+                 displacement is not finite"
+            ),
+        })
+    }
+
+    /// The largest trace of a cell's own block over its mass (1/s^2); 0 where the law has no such blocks.
+    fn stiffest_cell(&mut self, batch: &Batch<'_>, state: &State) -> Result<f64, StepError> {
+        let system = batch.system();
+        let Some(elastic) = system.as_elastic() else {
+            return Ok(0.0);
+        };
+        let layers = system.layers().count();
+        self.blocks.resize(layers * system.dofs(), 0.0);
+        let trial = Trial {
+            load: LoadTime::at(state.t()).under(batch.inputs()),
+            dt: 0.0,
+            u: &state.u,
+            v: &state.v,
+            internal: &state.internal,
+        };
+        let refused = |source| StepError::Refused {
+            t: state.t(),
+            source,
+        };
+        elastic
+            .node_blocks(&trial, &mut self.blocks)
+            .map_err(refused)?;
+        let blocks = self.blocks.chunks_exact(layers * layers);
+        let cells = blocks.zip(system.mass().chunks_exact(layers));
+        let stiffness = cells.map(|(block, mass)| {
+            let trace: f64 = block.iter().step_by(layers + 1).sum();
+            trace / mass[0]
+        });
+        Ok(stiffness.fold(0.0, f64::max))
     }
 }
 
@@ -188,7 +312,13 @@ impl Integrator for Substepped {
 
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
         let parts = self.parts(batch.system(), batch.dt())?;
-        batch.in_parts(parts, |batch| self.inner.run(batch, state))
+        batch.in_parts(parts, |batch| {
+            if self.substeps == Substeps::Auto && batch.system().as_linear().is_none() {
+                self.run_by_current_stiffness(batch, state)
+            } else {
+                self.inner.run(batch, state)
+            }
+        })
     }
 
     fn kernel(&self) -> Option<String> {

@@ -40,6 +40,15 @@ pub(super) fn section(simulation: &Simulation) -> PlanSection {
     if let Ok(stable_step) = simulation.stable_step() {
         lines.push(match stable_step {
             StableStep::Any => format!("`{id}` is stable at any step"),
+            StableStep::UpTo(limit) if limit > 0.0 && simulation.system().as_linear().is_none() => {
+                let rest = format!("`{id}` is stable up to {} s at rest; ", short(limit));
+                let mend = if simulation.follows_stiffness() {
+                    "steps are cut into parts of nine tenths of the stable step as the stiffness changes"
+                } else {
+                    "that shrinks as tissue is squeezed or stretched, which dt = \"auto\" follows and this dt does not"
+                };
+                rest + mend
+            }
             StableStep::UpTo(limit) if limit > 0.0 => {
                 format!("`{id}` is stable up to dt = {} s", short(limit))
             }

@@ -113,7 +113,14 @@ impl Simulation {
     /// [`OptionError`] for an option that the integrator refuses. Reading the scene has checked them.
     pub fn integrator(&self) -> Result<Box<dyn Stepper>, OptionError> {
         let settings = self.settings();
-        sinew_integrators::build(&settings.integrator, &settings.options)
+        let options = step::options(settings, self.system());
+        sinew_integrators::build(&settings.integrator, &options)
+    }
+
+    /// Whether steps are cut by the current stiffness: dt = "auto" on a body that is not linear.
+    #[must_use]
+    pub fn follows_stiffness(&self) -> bool {
+        step::follows_stiffness(self.settings(), self.system())
     }
 
     /// The largest stable step of the scene's integrator. The first call solves for it, later ones

@@ -1,6 +1,6 @@
 //! The step of a scene, and the largest stable one of its integrator.
 
-use sinew_core::{StableStep, System};
+use sinew_core::{Options, StableStep, System};
 use sinew_integrators::explicit::Substeps;
 
 use crate::error::{NoStableStep, StableStepError};
@@ -13,6 +13,21 @@ pub(super) fn stable(
 ) -> Result<StableStep, StableStepError> {
     let integrator = sinew_integrators::build(&settings.integrator, &settings.options)?;
     Ok(integrator.stable_step(system)?)
+}
+
+/// Whether steps are cut by the current stiffness: dt = "auto" on a system that is not linear.
+pub(super) fn follows_stiffness(settings: &RunSettings, system: &dyn System) -> bool {
+    settings.dt == TimeStep::Auto && system.as_linear().is_none()
+}
+
+/// The options of a scene's integrator.
+pub(super) fn options(settings: &RunSettings, system: &dyn System) -> Options {
+    let options = settings.options.clone();
+    let cuts = sinew_integrators::entry(&settings.integrator).is_some_and(|entry| entry.substeps);
+    if cuts && follows_stiffness(settings, system) && options.get(Substeps::KEY).is_none() {
+        return options.with_text(Substeps::KEY, "auto");
+    }
+    options
 }
 
 /// The step (s) that a scene asks for; `stable` is called only where it leaves it to the integrator.

@@ -15,6 +15,9 @@ pub(super) fn unstable(simulation: &Simulation) -> Vec<Warning> {
         Ok(stable_step) => stable_step,
         Err(error) => return vec![Warning::new(kind, error.to_string(), "")],
     };
+    if simulation.follows_stiffness() {
+        return Vec::new();
+    }
     match (stable_step, stable_step.allows(dt)) {
         (_, Some(true)) => Vec::new(),
         (StableStep::UpTo(limit), _) if limit > 0.0 => {
