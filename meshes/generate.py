@@ -261,6 +261,51 @@ def beam():
     mesh_evenly(2.5)
 
 
+def cantilever(edge):
+    """A beam of 1 x 0.1 x 0.1 m along x."""
+    [[tissue]] = joined(box((0, 0, 0), (1000, 100, 100)))
+    surface = boundary([tissue])
+    clamped, tip = flat(surface, 0, 0), flat(surface, 0, 1000)
+    group("tissue", [tissue])
+    group("clamped", clamped)
+    group("tip", tip)
+    group("sides", without(surface, clamped + tip))
+    mesh_evenly(edge)
+
+
+@in_collection("cantilever-2", "verification: a beam of 1 x 0.1 x 0.1 m, two edges over the thickness", 1e4)
+def cantilever_2():
+    cantilever(50)
+
+
+@in_collection("cantilever-4", "verification: the same with four edges over the thickness", 1e4)
+def cantilever_4():
+    cantilever(25)
+
+
+def even_cube(edge):
+    """A cube of 1 m."""
+    [[tissue]] = joined(box((0, 0, 0), (1000, 1000, 1000)))
+    group("tissue", [tissue])
+    group("surface", boundary([tissue]))
+    mesh_evenly(edge)
+
+
+@in_collection("cube-4", "verification: a cube of 1 m, edges of 250 mm", 1e6)
+def cube_4():
+    even_cube(250)
+
+
+@in_collection("cube-8", "verification: a cube of 1 m, edges of 125 mm", 1e6)
+def cube_8():
+    even_cube(125)
+
+
+@in_collection("cube-12", "verification: a cube of 1 m, edges of 85 mm", 1e6)
+def cube_12():
+    even_cube(85)
+
+
 @in_collection("vessel", "a thin wall under pressure: a tube 60 mm long, inner radius 10 mm, wall 1.5 mm", 6.08)
 def vessel():
     def quarter_rod(radius):

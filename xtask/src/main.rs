@@ -1,5 +1,5 @@
 //! Repository chores:
-//! `cargo xtask bench | native | memory | reproduce | meshes | compare | laws | docs | reference | readme | dist | rules | ci`.
+//! `cargo xtask bench | verify | native | memory | reproduce | meshes | compare | laws | docs | reference | readme | dist | rules | ci`.
 
 mod bench;
 mod beside;
@@ -20,6 +20,7 @@ mod reference;
 mod repository;
 mod reproduce;
 mod rules;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -42,6 +43,8 @@ struct Arguments {
 enum Chore {
     /// Measure error, cost and stability of integrators on scenes.
     Bench(bench::Arguments),
+    /// Compute every figure that the library is held to and compare it: closed forms, published digits and tables.
+    Verify(verify::Arguments),
     /// Compare the kernels' speed in a portable build with one for this very processor.
     Native,
     /// Run the kernels' tests under a program that watches memory: Miri or valgrind.
@@ -71,6 +74,7 @@ enum Chore {
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().chore {
         Chore::Bench(arguments) => bench::run(&arguments),
+        Chore::Verify(arguments) => verify::run(&arguments),
         Chore::Native => native::run(),
         Chore::Memory => memory::run(),
         Chore::Reproduce(arguments) => reproduce::run(&arguments),

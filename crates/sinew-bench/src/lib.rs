@@ -15,6 +15,7 @@ pub mod report;
 pub mod reproduce;
 pub mod results;
 pub mod scale;
+pub mod verify;
 
 pub use sinew_scene::output;
 

@@ -1,0 +1,74 @@
+//! Reasons for which a figure cannot be computed.
+
+use sinew_core::{OperatorError, OptionError, StepError};
+use sinew_fem::{FemError, FieldError};
+use sinew_integrators::{FactorError, StaticError};
+use sinew_measure::{CaseError, MeasureError};
+use sinew_mesh::structured::StructuredError;
+use sinew_mesh::{MshFileError, TetMeshError, UnknownGroup};
+use sinew_sparse::AssemblyError;
+
+/// Reasons for which a figure cannot be computed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum VerifyError {
+    /// A mesh file.
+    #[error(transparent)]
+    File(#[from] MshFileError),
+    /// A file without the tetrahedra that are needed.
+    #[error(transparent)]
+    Mesh(#[from] TetMeshError),
+    /// A structured mesh.
+    #[error(transparent)]
+    Structured(#[from] StructuredError),
+    /// A group that a mesh lacks.
+    #[error(transparent)]
+    Group(#[from] UnknownGroup),
+    /// A model.
+    #[error(transparent)]
+    Model(#[from] FemError),
+    /// A field on a model.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+    /// Matrices.
+    #[error(transparent)]
+    Operators(#[from] OperatorError),
+    /// The assembly of a matrix.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    /// An equilibrium.
+    #[error(transparent)]
+    Static(#[from] StaticError),
+    /// A sparse factor.
+    #[error(transparent)]
+    Factor(#[from] FactorError),
+    /// A method or an option that does not exist.
+    #[error(transparent)]
+    Options(#[from] OptionError),
+    /// A step of a method.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// A scene of the repository.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// A run.
+    #[error(transparent)]
+    Run(#[from] MeasureError),
+    /// A scene without tetrahedra.
+    #[error("the scene has no body")]
+    NoBody,
+    /// A node that a mesh lacks.
+    #[error("the mesh has no node at ({}, {}, {})", .place[0], .place[1], .place[2])]
+    NoNode {
+        /// Where it was looked for (m).
+        place: [f64; 3],
+    },
+    /// A computation that gives another number of figures than it has names for.
+    #[error("{computed} figures were computed, {asked} are asked for")]
+    Count {
+        /// Figures that were computed.
+        computed: usize,
+        /// Figures that are asked for.
+        asked: usize,
+    },
+}

@@ -1,0 +1,31 @@
+//! Every figure that the library is held to: closed forms, figures in print, independent computations. Each is asked for with
+//! a tolerance and a source, computed anew, and passes or fails.
+//!
+//! A subject is a file under `subjects` with a list of checks, each a function that computes one or more figures.
+
+mod bodies;
+mod check;
+mod error;
+mod inputs;
+mod kinds;
+mod modes;
+mod motion;
+mod page;
+mod places;
+mod quadrature;
+mod reference;
+mod results;
+mod run;
+mod sources;
+mod subject;
+mod subjects;
+mod text;
+mod vector;
+mod write;
+
+pub use check::{Asked, Source};
+pub use error::VerifyError;
+pub use results::{SCHEMA, Verification, VerifiedRow, VerifiedSubject};
+pub use run::{UnknownSubject, VerifyPlan};
+pub use subject::Quoted;
+pub use write::{WriteVerificationError, WrittenVerification};
