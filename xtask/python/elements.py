@@ -136,6 +136,28 @@ def steps(name, size):
         print(f"{name}, patches of {size}, nu {nu}, stable step over p1's: {ratios}")
 
 
+def cantilever(name, size):
+    """Work of a shear traction on the tip of a beam of 1 x 0.1 x 0.1 m along x, over that of Timoshenko's."""
+    body, young, thickness = Body(name), 3500, 0.1
+    free = np.repeat(body.points[:, 0] > 1e-9, 3)
+    force = np.zeros(body.points.shape)
+    corners = [list(face) for nodes in body.tets for face in combinations(nodes, 3)]
+    for face in corners:
+        places = body.points[face]
+        if np.isclose(places[:, 0], 1).all():
+            force[face, 2] += np.linalg.norm(np.cross(places[1] - places[0], places[2] - places[0])) / 6
+    total, patches = force.sum(), body.patches(size)
+    for nu in (0.3, 0.45, 0.49, 0.499):
+        bending, shear = young * thickness**4 / 4, 5 / 6 * lame(young, nu)[1] * thickness**2
+        ratios = []
+        for element in ELEMENTS:
+            matrix = body.matrix(element, patches, young, nu)[free][:, free]
+            u = linalg.splu(matrix.tocsc()).solve(force.ravel()[free])
+            ratio = u @ force.ravel()[free] / total**2 / (1 / bending + 1 / shear)
+            ratios.append(f"{element[0]} {ratio:.4f}")
+        print(f"{name}, patches of {size}, nu {nu}, deflection over Timoshenko's: {', '.join(ratios)}")
+
+
 # Barycentric points and weights of degree 5 (Walkington, Quadrature on simplices of arbitrary dimension, 2000).
 A, B, C = 0.31088591926330060980, 0.092735250310891226402, 0.045503704125649649492
 POINTS = [np.insert([a] * 3, k, 1 - 3 * a) for a in (A, B) for k in range(4)]
@@ -191,6 +213,8 @@ def manufactured(name, size):
 
 
 if __name__ == "__main__":
+    for mesh in ("cantilever-2", "cantilever-4"):
+        cantilever(mesh, 8)
     for patch in (8, 12):
         blocks("cube-8", patch)
     for patch in (8, 12):

@@ -76,6 +76,10 @@ fn steps(root: &Path) -> std::io::Result<Vec<Step>> {
         )
     });
     steps.push(Step::new(
+        "verification",
+        "xtask verify --long --out target/ci-verify",
+    ));
+    steps.push(Step::new(
         "quick bench",
         "xtask bench --quick --out target/ci-bench",
     ));

@@ -11,8 +11,9 @@ use crate::repository::root;
 
 /// Commands that take too long, or need what not every computer has, with the reason. With `--help` behind it, which reads
 /// all options before it and then ends, each still fails where an option is gone.
-const NOT_RUN: [(&str, &str); 8] = [
+const NOT_RUN: [(&str, &str); 9] = [
     ("cargo xtask bench", "minutes; `ci` has the quick bench"),
+    ("cargo xtask verify", "a step of `ci`"),
     ("cargo test --workspace", "minutes; a step of `ci`"),
     (
         "cargo xtask bench --beside scipy",

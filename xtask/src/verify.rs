@@ -70,3 +70,61 @@ fn conclude(verification: &Verification, folder: &OutputFolder, all: bool) -> Re
         Some(_) => Err(Failure::Chore(verification.summary())),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::process::ExitCode;
+
+    use sinew_bench::results::MarkVerdict;
+    use sinew_bench::verify::{Asked, Source, VerifiedRow, VerifiedSubject};
+
+    use super::*;
+
+    /// What a verification of one row leaves in a folder, and how the command ends.
+    fn concluded(got: f64, verdict: MarkVerdict) -> (Result<(), Failure>, String) {
+        let row = VerifiedRow {
+            case: "a beam".into(),
+            figure: "deflection".into(),
+            asked: Asked::value(1.0, 0.01),
+            got: Some(got),
+            missing: None,
+            source: Source::ClosedForm("Timoshenko"),
+            verdict,
+            note: "",
+            seconds: 0.0,
+        };
+        let verification = Verification {
+            schema: 1,
+            revision: "r".into(),
+            machine: machine(),
+            subjects: vec![VerifiedSubject {
+                id: "beams",
+                title: "Beams",
+                says: "",
+                rows: vec![row],
+                quoted: &[],
+            }],
+            left_out: 0,
+        };
+        let directory = tempfile::tempdir().unwrap();
+        let folder = OutputFolder::new(directory.path(), &[]);
+        let outcome = conclude(&verification, &folder, false);
+        let page = std::fs::read_to_string(directory.path().join("verification.html")).unwrap();
+        assert!(directory.path().join("verification.json").exists());
+        (outcome, page)
+    }
+
+    #[test]
+    fn a_wrong_figure_is_written_and_then_exits_with_1() {
+        let (outcome, page) = concluded(1.3, MarkVerdict::Fail);
+        assert!(page.contains("FAIL") && page.contains("1.3"));
+        let code = outcome.unwrap_err().report();
+        assert_eq!(format!("{code:?}"), format!("{:?}", ExitCode::from(1)));
+    }
+
+    #[test]
+    fn figures_that_pass_are_no_failure() {
+        let (outcome, page) = concluded(1.003, MarkVerdict::Pass);
+        assert!(outcome.is_ok() && !page.contains("FAIL"));
+    }
+}

@@ -191,3 +191,101 @@ fn verified(check: &Check, inputs: &Inputs) -> Vec<VerifiedRow> {
     };
     check.figures.iter().enumerate().map(row).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::*;
+    use crate::verify::check::{Asked, Source};
+
+    const SOURCE: Source = Source::ClosedForm("two and two");
+
+    fn checks() -> Vec<Check> {
+        let four = |asked| Check::one("2 + 2", "sum", asked, SOURCE, |_| Ok(4.0));
+        let two = [("a", Asked::value(1.0, 0.0)), ("b", Asked::value(1.0, 0.0))];
+        vec![
+            four(Asked::value(4.0, 0.0)),
+            four(Asked::value(4.1, 0.05)),
+            four(Asked::at_most(3.9)),
+            four(Asked::at_least(4.0)),
+            Check::one(
+                "0/0",
+                "ratio",
+                Asked::value(1.0, f64::INFINITY),
+                SOURCE,
+                |_| Ok(f64::NAN),
+            ),
+            Check::one("a file", "size", Asked::at_least(0.0), SOURCE, |inputs| {
+                Ok(inputs.mesh("no-such-mesh")?.tets.len() as f64)
+            }),
+            Check::several("two figures", two, SOURCE, |_| Ok(vec![1.0])),
+            four(Asked::at_most(0.0)).long(true),
+        ]
+    }
+
+    fn verified_with(long: bool, threads: usize) -> Verification {
+        let subject = Subject {
+            id: "sums",
+            title: "Sums",
+            says: "",
+            checks,
+            quoted: &[],
+        };
+        let plan = VerifyPlan {
+            root: PathBuf::from("no-such-folder"),
+            only: Vec::new(),
+            long,
+            threads,
+        };
+        plan.run_on(&[subject], "r".into(), Machine::default(), |_| {})
+            .unwrap()
+    }
+
+    #[test]
+    fn wrong_figures_and_those_that_cannot_be_computed_fail_with_what_was_asked() {
+        let verification = verified_with(false, 3);
+        let verdicts: Vec<bool> = verification
+            .rows()
+            .map(|(_, row)| row.verdict == MarkVerdict::Pass)
+            .collect();
+        assert_eq!(
+            verdicts,
+            [true, false, false, true, false, false, false, false]
+        );
+        assert_eq!(verification.left_out, 1);
+        let text = verification.brief();
+        for told in [
+            "FAIL sums: 2 + 2: sum: asked 4.1 +- 0.05, got 4",
+            "asked at most 3.9, got 4",
+            "got NaN: it is not a finite number",
+            "no-such-mesh.msh",
+            "got 1 figures were computed, 2 are asked for",
+            "6 of 8 rows fail; 1 that take long are left out (--long)",
+        ] {
+            assert!(text.contains(told), "{told} is not in\n{text}");
+        }
+        assert!(verification.html().contains("id=\"failures\""));
+    }
+
+    #[test]
+    fn long_rows_run_on_demand() {
+        let verification = verified_with(true, 1);
+        assert_eq!((verification.rows().count(), verification.left_out), (9, 0));
+    }
+
+    #[test]
+    fn no_two_rows_have_the_same_name_and_none_asks_for_nothing() {
+        let (mut ids, mut names) = (HashSet::new(), HashSet::new());
+        for subject in SUBJECTS {
+            assert!(ids.insert(subject.id), "{}", subject.id);
+            for check in (subject.checks)() {
+                for (figure, asked) in &check.figures {
+                    let name = format!("{}: {}: {figure}, {asked:?}", subject.id, check.case);
+                    assert!(!asked.passes(f64::NAN), "{name}");
+                    assert!(names.insert(name.clone()), "{name}");
+                }
+            }
+        }
+    }
+}

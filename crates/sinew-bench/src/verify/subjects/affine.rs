@@ -81,7 +81,8 @@ fn forces(mesh: &TetMesh, kind: Kind) -> Result<Vec<f64>, VerifyError> {
     let turned = under([[0.0, 0.3, -0.7], [-0.3, 0.0, 0.5], [0.7, -0.5, 0.0]])?;
     let surface = on_surface(mesh);
     let within = strained.chunks_exact(3).zip(&surface);
-    let within = within.filter_map(|(force, outer)| (!outer).then(|| largest(force)));
+    let within = within.filter(|(_, outer)| !**outer);
+    let within = within.map(|(force, _)| largest(force));
     let largest_of_all = largest(&strained);
     Ok(vec![
         within.fold(0.0, f64::max) / largest_of_all,
