@@ -20,7 +20,8 @@ pub(super) const SUBJECT: Subject = Subject {
     id: "free-cube",
     title: "Free cube: softest strain, stable step, size of templates",
     says: "Coercivity: the smallest eigenvalue of K beside that of plain tetrahedra with the same mu and lambda = 0, without rigid motions. \
-           It falls neither with the mesh nor with nu, so that averaging leaves no motion without energy. Stable steps are \
+           It hardly falls with the mesh or with nu, so that averaging leaves no motion without energy; on meshes of gmsh, where the worst \
+           tetrahedron decides, finer ones have .16 (edge_share 1) and .24 (.9). Stable steps are \
            beside those of plain tetrahedra on the same mesh. Templates: blocks in the row of a node, mean over nodes none of whose \
            tetrahedra is at the surface.",
     checks,
