@@ -153,6 +153,23 @@ pub enum StepError {
         /// The reason, and the remedy.
         reason: String,
     },
+    /// The nonlinear equations of a step were not solved.
+    #[error(
+        "`{integrator}` at t = {t} s: {iterations} Newton iterations left {residual:.1e} of the forces unbalanced: \
+         {reason}; take a shorter step"
+    )]
+    NotConverged {
+        /// Integrator id.
+        integrator: &'static str,
+        /// Time of the state (s), which is that before the step.
+        t: f64,
+        /// Iterations of the step.
+        iterations: u64,
+        /// What is left unbalanced, over the largest of the forces.
+        residual: f64,
+        /// Reason why the iteration ended.
+        reason: &'static str,
+    },
     /// The system refused a trial state.
     #[error("at t = {t} s: {source}")]
     Refused {

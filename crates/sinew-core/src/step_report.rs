@@ -15,6 +15,10 @@ pub struct StepReport {
     pub factorizations: u64,
     /// Newton iterations.
     pub newton_iterations: u64,
+    /// Trials of a line search that were refused or led too little down.
+    pub backtracks: u64,
+    /// Solutions with a tangent whose negative eigenvalues were removed.
+    pub projected_solves: u64,
     /// Cells whose rows set-up read: all of a new system, those that changed afterwards.
     pub cells_set_up: u64,
     /// Degrees of freedom whose velocity was saturated; for a step taken in parts, in the part with
@@ -30,6 +34,8 @@ impl StepReport {
         solves: 0,
         factorizations: 0,
         newton_iterations: 0,
+        backtracks: 0,
+        projected_solves: 0,
         cells_set_up: 0,
         saturated: 0,
     };
@@ -49,6 +55,8 @@ impl AddAssign for StepReport {
         self.solves += other.solves;
         self.factorizations += other.factorizations;
         self.newton_iterations += other.newton_iterations;
+        self.backtracks += other.backtracks;
+        self.projected_solves += other.projected_solves;
         self.cells_set_up += other.cells_set_up;
         self.saturated += other.saturated;
     }

@@ -220,7 +220,11 @@ impl<M: Scheme> Integrator for Frame<M> {
     }
 
     fn remarks(&self) -> Vec<String> {
-        self.scheme.remarks()
+        let mut remarks = self.scheme.remarks();
+        if let Ready::ByHand(steps) = &self.ready {
+            remarks.extend(steps.remarks());
+        }
+        remarks
     }
 
     fn kernel(&self) -> Option<String> {

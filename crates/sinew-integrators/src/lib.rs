@@ -35,7 +35,9 @@ mod stepper;
 pub use explicit_method::Explicit;
 pub use frame::Frame;
 #[cfg(feature = "implicit")]
-pub use implicit::{Combination, Factor, FactorError, StaticError, static_solution};
+pub use implicit::{
+    Combination, Factor, FactorError, Matrices, NewtonSettings, StaticError, static_solution,
+};
 pub use machine_options::MACHINE_OPTIONS;
 pub use method::{ConservedEnergy, Method};
 pub use numerical_dissipation::{NumericalDissipation, StepEnd};

@@ -142,6 +142,11 @@ pub trait StepByHand: Send {
     fn facts(&self) -> Vec<Fact> {
         Vec::new()
     }
+
+    /// Remarks on the steps taken that a user should read, one sentence each.
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 impl StepByHand for Infallible {

@@ -1,28 +1,33 @@
-//! Common part of one-step implicit methods: an acceleration from a factor of M + d D + k K.
+//! Common part of one-step implicit methods: the acceleration at the end of a step.
 
+use sinew_core::vectors::add_scaled;
 use sinew_core::{
-    Acceleration, LoadTime, SetupError, State, Step, StepError, StepReport, Stepped, System,
+    Acceleration, Equations, Fact, LinearSystem, LoadTime, SetupError, State, Step, StepError, StepReport,
+    Stepped, System,
 };
 
 use super::factor::{Combination, Factor};
-use super::factor_error::FactorError;
-use crate::scheme::{Scheme, SetUp, StepByHand, linear};
+use super::newton::{NewtonSettings, NewtonSteps, Unknown};
+use crate::scheme::{Scheme, SetUp, StepByHand};
 
 /// One force and one solution.
-pub(super) const ONE_SOLVE: StepReport = StepReport {
+const ONE_SOLVE: StepReport = StepReport {
     solves: 1,
     ..StepReport::ONE_FORCE
 };
 
-/// A method whose steps solve one linear system each.
-pub trait OneSolve: Scheme + Clone {
+/// A method whose steps seek one acceleration each: by one solution on linear systems, by Newton's method on others.
+pub trait OneAcceleration: Scheme + Clone {
     /// d and k of the matrix `M + d D + k K` in steps of `dt` (s).
     fn coefficients(&self, dt: f64) -> [f64; 2];
+
+    /// How far and how long Newton's method goes.
+    fn newton(&self) -> NewtonSettings;
 
     /// Takes one step.
     ///
     /// # Errors
-    /// [`StepError`] when the system refuses a trial state.
+    /// [`StepError`] when the system refuses a trial state or the step's equations are not solved.
     fn step(
         &self,
         effective: &mut EffectiveMass,
@@ -31,41 +36,41 @@ pub trait OneSolve: Scheme + Clone {
     ) -> Result<Stepped, StepError>;
 }
 
-/// Steps with one solution each.
+/// Steps with one acceleration each.
 pub struct ImplicitSteps<M> {
     method: M,
     effective: EffectiveMass,
 }
 
-impl<M: OneSolve> ImplicitSteps<M> {
-    /// Factorises for a system and steps of `dt` (s); the analysis of the last factor is reused
-    /// on the same pattern.
+impl<M: OneAcceleration> ImplicitSteps<M> {
+    /// Factorises for a linear system and steps of `dt` (s), or makes room for Newton's method; the analysis of the
+    /// last factor is reused on the same pattern.
     pub(super) fn set_up(
         method: &M,
         system: &dyn System,
         dt: f64,
         before: Option<Self>,
     ) -> Result<SetUp<Self>, SetupError> {
-        let operators = linear(system, M::ID)?.operators();
-        let failed = |error: FactorError| error.at_set_up(M::ID);
-        let known = before.map(|steps| steps.effective.factor);
-        let mut factor = match known.filter(|factor| factor.fits(operators)) {
-            Some(factor) => factor,
-            None => Factor::analyse(operators).map_err(failed)?,
+        let known = before.map(|steps| steps.effective.solver.into_factor());
+        let (solver, factorizations) = match system.as_linear() {
+            Some(linear) => {
+                let [d, k] = method.coefficients(dt);
+                (Solver::once(M::ID, linear, [d, k], known)?, 1)
+            }
+            None => {
+                let steps = NewtonSteps::set_up(M::ID, system, method.newton(), known)?;
+                (Solver::Newton(Box::new(steps)), 0)
+            }
         };
-        let [d, k] = method.coefficients(dt);
-        factor
-            .factorise(operators, Combination::of_step(operators, d, k))
-            .map_err(failed)?;
         let zeros = || vec![0.0; system.dofs()];
         let effective = EffectiveMass {
-            factor,
+            solver,
             u: zeros(),
             v: zeros(),
             a: zeros(),
         };
         let work = StepReport {
-            factorizations: 1,
+            factorizations,
             ..StepReport::default()
         };
         let method = method.clone();
@@ -73,19 +78,70 @@ impl<M: OneSolve> ImplicitSteps<M> {
     }
 }
 
-impl<M: OneSolve> StepByHand for ImplicitSteps<M> {
+impl<M: OneAcceleration> StepByHand for ImplicitSteps<M> {
     fn without_program(&self) -> &'static str {
-        "each step solves linear equations in all cells at once, which no fixed number of sweeps over neighbours does"
+        "each step solves equations in all cells at once, which no fixed number of sweeps over neighbours does"
     }
 
     fn step(&mut self, step: &Step<'_>, state: &mut State) -> Result<Stepped, StepError> {
         self.method.step(&mut self.effective, step, state)
     }
+
+    fn facts(&self) -> Vec<Fact> {
+        match &self.effective.solver {
+            Solver::Once(_) => Vec::new(),
+            Solver::Newton(newton) => newton.facts(),
+        }
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        match &self.effective.solver {
+            Solver::Once(_) => Vec::new(),
+            Solver::Newton(newton) => newton.remarks(),
+        }
+    }
 }
 
-/// The effective mass `M + d D + k K` as a factor, with the vectors of `(M + d D + k K) a = F(t) - K u* - D v*`.
+/// The way to the acceleration.
+enum Solver {
+    /// The factor of `M + d D + k K`, kept.
+    Once(Factor),
+    /// Newton's method with a factor for each iteration.
+    Newton(Box<NewtonSteps>),
+}
+
+impl Solver {
+    fn once(
+        integrator: &'static str,
+        system: &dyn LinearSystem,
+        [d, k]: [f64; 2],
+        known: Option<Factor>,
+    ) -> Result<Self, SetupError> {
+        let operators = system.operators();
+        let combination = Combination::of_step(operators.damping(), d, k);
+        let factor = match known.filter(|factor| factor.fits(operators)) {
+            Some(factor) => Ok(factor),
+            None => Factor::analyse(operators),
+        };
+        let factorised = factor.and_then(|mut factor| {
+            factor.factorise(operators, combination)?;
+            Ok(Self::Once(factor))
+        });
+        factorised.map_err(|error| error.at_set_up(integrator))
+    }
+
+    fn into_factor(self) -> Factor {
+        match self {
+            Self::Once(factor) => factor,
+            Self::Newton(steps) => steps.into_factor(),
+        }
+    }
+}
+
+/// The effective mass `M + d D + k K` as a factor or by Newton's method, with the vectors of
+/// `(M + d D + k K) a = F(t) - K u* - D v*` or its nonlinear form.
 pub struct EffectiveMass {
-    factor: Factor,
+    solver: Solver,
     /// Predicted displacement u*.
     pub(super) u: Vec<f64>,
     /// Predicted velocity v*.
@@ -94,19 +150,66 @@ pub struct EffectiveMass {
     pub(super) a: Vec<f64>,
 }
 
+/// The acceleration a that a step seeks: `M a + m M a_before = c net(u* + k a/c, v* + d a/c)`.
+#[derive(Clone, Copy)]
+pub(super) struct Sought {
+    /// d and k of `M + d D + k K`.
+    pub(super) coefficients: [f64; 2],
+    /// c.
+    pub(super) of_forces: f64,
+    /// m.
+    pub(super) of_last_inertia: f64,
+    /// Time of the loads at the point where forces balance, and the time from the state to it (s).
+    pub(super) load: LoadTime<'static>,
+    pub(super) after: f64,
+    /// Time of the loads in the net force of a linear system, before it is shaped.
+    pub(super) load_before_shaping: LoadTime<'static>,
+}
+
+impl Sought {
+    /// The acceleration for which forces and inertia balance at the end of a step of `dt` (s).
+    pub(super) fn at_end(coefficients: [f64; 2], load: LoadTime<'static>, dt: f64) -> Self {
+        Self {
+            coefficients,
+            of_forces: 1.0,
+            of_last_inertia: 0.0,
+            load,
+            after: dt,
+            load_before_shaping: load,
+        }
+    }
+}
+
 impl EffectiveMass {
-    /// The right-hand side, in `a`: the net force at the prediction.
-    pub(super) fn evaluate(
+    /// Solves for the acceleration. On a linear system `shape` makes `(M + d D + k K) a` from the net force at the
+    /// prediction, and may use up the predicted velocity.
+    pub(super) fn solve(
         &mut self,
         step: &Step<'_>,
-        load: LoadTime<'_>,
-    ) -> Result<(), StepError> {
-        step.net_force(load, step.dt, [&self.u, &self.v, &[]], &mut self.a)
-    }
-
-    /// Replaces the right-hand side in `a` by the acceleration.
-    pub(super) fn solve(&mut self) {
-        self.factor.solve(&mut self.a);
+        state: &State,
+        sought: Sought,
+        shape: impl FnOnce(&mut [f64], &mut [f64]),
+    ) -> Result<StepReport, StepError> {
+        match &mut self.solver {
+            Solver::Once(factor) => {
+                let point = [&self.u[..], &self.v, &[]];
+                step.net_force(sought.load_before_shaping, step.dt, point, &mut self.a)?;
+                shape(&mut self.a, &mut self.v);
+                factor.solve(&mut self.a);
+                Ok(ONE_SOLVE)
+            }
+            Solver::Newton(newton) => {
+                let unknown = Unknown {
+                    predicted: [&self.u, &self.v],
+                    coefficients: sought.coefficients,
+                    of_forces: sought.of_forces,
+                    of_last_inertia: sought.of_last_inertia,
+                    load: sought.load,
+                    after: sought.after,
+                };
+                newton.solve(step, state, unknown, &mut self.a)
+            }
+        }
     }
 
     /// Gives the state the acceleration at the beginning of a step of `dt` (s): `M^-1` of the net
@@ -127,11 +230,24 @@ impl EffectiveMass {
             state.acceleration = Acceleration::Same;
             return Ok(StepReport::ONE_FORCE);
         }
-        if let (Some(last), Some(linear)) = (state.clock.last_step(), step.system.as_linear()) {
+        if let Some(last) = state.clock.last_step() {
             let [_, before] = ends(t - last, last);
-            self.a.fill(0.0);
-            let operators = linear.operators();
-            if operators.add_load_change([before, load], [t - last, t + dt], &mut self.a) {
+            let jumped = match step.system.equations() {
+                Equations::Linear(linear) => {
+                    self.a.fill(0.0);
+                    let (loads, within) = ([before, load], [t - last, t + dt]);
+                    linear
+                        .operators()
+                        .add_load_change(loads, within, &mut self.a)
+                }
+                Equations::Forces(law) => {
+                    law.external_force(load, &mut self.a);
+                    law.external_force(before, &mut self.v);
+                    add_scaled(-1.0, &self.v, &mut self.a);
+                    true
+                }
+            };
+            if jumped {
                 for ((a, force), mass) in state.a.iter_mut().zip(&self.a).zip(step.system.mass()) {
                     *a += force / mass;
                 }

@@ -2,6 +2,7 @@
 //! faer, with its own files beside it.
 
 mod cell_order;
+mod matrices;
 mod panels;
 mod structure;
 #[cfg(test)]
@@ -17,43 +18,13 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{MatRef, Par, Side, Spec};
-use sinew_core::{Layers, LinearOperators, Pattern};
+use sinew_core::{Layers, Pattern};
 
 use self::cell_order::cell_order;
+pub use self::matrices::{Combination, Matrices};
 use self::panels::Panels;
 use self::structure::{buffer, lower_triangle, of_faer};
 use super::factor_error::FactorError;
-
-/// `mass M + stiffness K + extra D_extra`, where D_extra is the damping that is not proportional.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Combination {
-    /// Factor of M.
-    pub mass: f64,
-    /// Factor of K.
-    pub stiffness: f64,
-    /// Factor of `D_extra`.
-    pub extra: f64,
-}
-
-impl Combination {
-    /// `M + d D + k K` with D = alpha M + beta K + extra.
-    #[must_use]
-    pub fn of_step(operators: &LinearOperators, d: f64, k: f64) -> Self {
-        let damping = operators.damping();
-        Self {
-            mass: 1.0 + d * damping.mass,
-            stiffness: k + d * damping.stiffness,
-            extra: d,
-        }
-    }
-
-    /// K alone.
-    pub const STATIC: Self = Self {
-        mass: 0.0,
-        stiffness: 1.0,
-        extra: 0.0,
-    };
-}
 
 /// The sparse Cholesky factor of a [`Combination`], with its analysis and buffers kept for the next one on the same pattern.
 ///
@@ -86,12 +57,12 @@ impl std::fmt::Debug for Factor {
 }
 
 impl Factor {
-    /// Orders and analyses the pattern of `operators`.
+    /// Orders and analyses the pattern of the matrices.
     ///
     /// # Errors
     /// [`FactorError`] when there is no memory for it.
-    pub fn analyse(operators: &LinearOperators) -> Result<Self, FactorError> {
-        let stiffness = operators.stiffness();
+    pub fn analyse<'m>(matrices: impl Into<Matrices<'m>>) -> Result<Self, FactorError> {
+        let stiffness = matrices.into().stiffness;
         let (pattern, layers) = (Arc::clone(stiffness.pattern()), stiffness.layers());
         let (forward, inverse) = dof_order(&cell_order(&pattern)?, layers);
         let (column_start, row_index) = lower_triangle(&pattern, layers);
@@ -124,9 +95,9 @@ impl Factor {
 
     /// Whether the analysis holds for these matrices.
     #[must_use]
-    pub fn fits(&self, operators: &LinearOperators) -> bool {
-        let stiffness = operators.stiffness();
-        Arc::ptr_eq(&self.pattern, stiffness.pattern()) && self.layers == stiffness.layers()
+    pub fn fits<'m>(&self, matrices: impl Into<Matrices<'m>>) -> bool {
+        let (pattern, layers) = matrices.into().shape();
+        Arc::ptr_eq(&self.pattern, pattern) && self.layers == layers
     }
 
     /// Numbers that the factor holds, zeros inside its panels included.
@@ -139,12 +110,12 @@ impl Factor {
     ///
     /// # Errors
     /// [`FactorError::NotPositiveDefinite`].
-    pub fn factorise(
+    pub fn factorise<'m>(
         &mut self,
-        operators: &LinearOperators,
+        matrices: impl Into<Matrices<'m>>,
         combination: Combination,
     ) -> Result<(), FactorError> {
-        self.fill(operators, combination);
+        self.fill(matrices.into(), combination);
         let n = self.column_start.len() - 1;
         let matrix = SparseColMatRef::new(
             SymbolicSparseColMatRef::new_checked(n, n, &self.column_start, None, &self.row_index),
@@ -165,15 +136,14 @@ impl Factor {
     }
 
     /// Entries of the lower triangle, column by column: by symmetry, column j is row j.
-    fn fill(&mut self, operators: &LinearOperators, combination: Combination) {
+    fn fill(&mut self, matrices: Matrices<'_>, combination: Combination) {
         let layers = self.layers.count();
-        let extra = operators.damping().extra.as_deref();
         let mut entries = self.entries.iter_mut();
         for cell in 0..self.pattern.cells() {
             for layer in 0..layers {
                 let diagonal = cell * layers + layer;
-                let mut extra_row = extra.map(|extra| extra.row_blocks(cell));
-                for (other, block) in operators.stiffness().row_blocks(cell) {
+                let mut extra_row = matrices.extra.map(|extra| extra.row_blocks(cell));
+                for (other, block) in matrices.stiffness.row_blocks(cell) {
                     let extra_block = extra_row.as_mut().and_then(Iterator::next);
                     for other_layer in 0..layers {
                         let dof = other * layers + other_layer;
@@ -186,7 +156,7 @@ impl Factor {
                             value += combination.extra * extra_block[at];
                         }
                         if dof == diagonal {
-                            value += combination.mass * operators.mass()[dof];
+                            value += combination.mass * matrices.mass[dof];
                             if value == 0.0 {
                                 // A held component: no force, no displacement.
                                 value = 1.0;

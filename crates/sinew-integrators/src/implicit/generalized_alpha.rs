@@ -7,7 +7,8 @@ use sinew_core::{
     State, Step, StepError, Stepped, System,
 };
 
-use super::effective_mass::{EffectiveMass, ImplicitSteps, ONE_SOLVE, OneSolve};
+use super::effective_mass::{EffectiveMass, ImplicitSteps, OneAcceleration, Sought};
+use super::newton::{ITERATIONS, NewtonSettings, TOLERANCE};
 use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp};
 
 /// The generalised-alpha method (Chung and Hulbert, J. Appl. Mech. 60, 1993): the equation of motion
@@ -22,6 +23,7 @@ use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind,
 pub struct GeneralizedAlpha {
     of_mass: f64,
     of_forces: f64,
+    newton: NewtonSettings,
 }
 
 impl GeneralizedAlpha {
@@ -38,7 +40,17 @@ impl GeneralizedAlpha {
     }
 
     fn new(of_mass: f64, of_forces: f64) -> Self {
-        Self { of_mass, of_forces }
+        Self {
+            of_mass,
+            of_forces,
+            newton: NewtonSettings::default(),
+        }
+    }
+
+    /// The method with these settings of Newton's method, for nonlinear laws.
+    #[must_use]
+    pub fn with_newton(self, newton: NewtonSettings) -> Self {
+        Self { newton, ..self }
     }
 
     fn gamma(&self) -> f64 {
@@ -73,18 +85,19 @@ const HHT: OptionHelp = OptionHelp {
 impl Method for GeneralizedAlpha {
     const SUMMARY: &'static str =
         "implicit, order 2, one sparse solve a step, damps what the step does not resolve";
-    const OPTIONS: &'static [OptionHelp] = &[RHO, HHT];
+    const OPTIONS: &'static [OptionHelp] = &[RHO, HHT, TOLERANCE, ITERATIONS];
 
     const FACTORISES: bool = true;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
+        let newton = NewtonSettings::from_options(options, Self::ID)?;
         let Some(alpha) = HHT.number(options, Self::ID)? else {
             let rho = RHO.number(options, Self::ID)?;
-            return Ok(Self::with_spectral_radius(rho.unwrap_or(0.8)));
+            return Ok(Self::with_spectral_radius(rho.unwrap_or(0.8)).with_newton(newton));
         };
         let expected = "nothing beside hht: one of the two says all";
         options.read(Self::ID, RHO.key, expected, |_| None::<()>)?;
-        Ok(Self::hht(alpha))
+        Ok(Self::hht(alpha).with_newton(newton))
     }
 }
 
@@ -99,7 +112,7 @@ impl Scheme for GeneralizedAlpha {
         } else {
             EnergyBehaviour::Falls
         };
-        Properties::of_order(2, Needs::Matrices, energy)
+        Properties::of_order(2, Needs::Tangents, energy)
     }
 
     fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
@@ -122,10 +135,14 @@ impl Scheme for GeneralizedAlpha {
     }
 }
 
-impl OneSolve for GeneralizedAlpha {
+impl OneAcceleration for GeneralizedAlpha {
     fn coefficients(&self, dt: f64) -> [f64; 2] {
         let share = (1.0 - self.of_forces) / (1.0 - self.of_mass);
         [share * self.gamma() * dt, share * self.beta() * dt * dt]
+    }
+
+    fn newton(&self) -> NewtonSettings {
+        self.newton
     }
 
     fn step(
@@ -135,11 +152,10 @@ impl OneSolve for GeneralizedAlpha {
         state: &mut State,
     ) -> Result<Stepped, StepError> {
         let (system, dt) = (step.system, step.dt);
-        let mut work = ONE_SOLVE;
         let (beta, gamma) = (self.beta(), self.gamma());
         let (old, new) = (self.of_forces, 1.0 - self.of_forces);
         let ends = |t, dt| LoadTime::at_both_ends(t, dt, 0.5);
-        work += effective.keep_acceleration(step, state, ends)?;
+        let mut work = effective.keep_acceleration(step, state, ends)?;
         for i in 0..state.u.len() {
             let (u, v, a) = (state.u[i], state.v[i], state.a[i]);
             let predicted = u + dt * v + dt * dt * (0.5 - beta) * a;
@@ -147,23 +163,30 @@ impl OneSolve for GeneralizedAlpha {
             effective.v[i] = new * (v + dt * (1.0 - gamma) * a) + old * v;
         }
         let [start, end] = ends(state.t(), dt);
-        effective.evaluate(step, end)?;
-        if old != 0.0 {
-            // The load was taken at t + dt whole; a share of it belongs to t. The prediction has been
-            // used.
-            for (when, sign) in [(start, old), (end, -old)] {
-                let when = when.under(step.inputs);
-                system.external_force(when, &mut effective.v);
-                for (force, load) in effective.a.iter_mut().zip(&effective.v) {
-                    *force += sign * load;
+        let divide = 1.0 / (1.0 - self.of_mass);
+        let sought = Sought {
+            coefficients: self.coefficients(dt),
+            of_forces: divide,
+            of_last_inertia: divide * self.of_mass,
+            load: LoadTime::within(state.t(), dt, new),
+            after: new * dt,
+            load_before_shaping: end,
+        };
+        work += effective.solve(step, state, sought, |forces, spare| {
+            if old != 0.0 {
+                // The load was taken at t + dt whole; a share of it belongs to t.
+                for (when, sign) in [(start, old), (end, -old)] {
+                    let when = when.under(step.inputs);
+                    system.external_force(when, spare);
+                    for (force, load) in forces.iter_mut().zip(&*spare) {
+                        *force += sign * load;
+                    }
                 }
             }
-        }
-        let divide = 1.0 / (1.0 - self.of_mass);
-        for (i, force) in effective.a.iter_mut().enumerate() {
-            *force = divide * (*force - self.of_mass * system.mass()[i] * state.a[i]);
-        }
-        effective.solve();
+            for (i, force) in forces.iter_mut().enumerate() {
+                *force = divide * (*force - self.of_mass * system.mass()[i] * state.a[i]);
+            }
+        })?;
         for (i, a) in effective.a.iter().enumerate() {
             let (v, before) = (state.v[i], state.a[i]);
             state.u[i] += dt * v + dt * dt * ((0.5 - beta) * before + beta * a);

@@ -5,21 +5,35 @@ use sinew_core::{
     StepError, Stepped, System,
 };
 
-use super::effective_mass::{EffectiveMass, ImplicitSteps, ONE_SOLVE, OneSolve};
-use crate::{Method, NumericalDissipation, Scheme, SetUp};
+use super::effective_mass::{EffectiveMass, ImplicitSteps, OneAcceleration, Sought};
+use super::newton::{ITERATIONS, NewtonSettings, TOLERANCE};
+use crate::{Method, NumericalDissipation, OptionHelp, Scheme, SetUp};
 
 /// `v+ = v + dt a+`, `u+ = u + dt v+` with `(M + dt D + dt^2 K) a+ = F(t + dt) - K (u + dt v) - D v`
 /// (Baraff and Witkin, Large steps in cloth simulation, 1998, for a linear system). Stable at any
 /// step and strongly damped by it.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct ImplicitEuler;
+pub struct ImplicitEuler {
+    newton: NewtonSettings,
+}
+
+impl ImplicitEuler {
+    /// The method with these settings of Newton's method, for nonlinear laws.
+    #[must_use]
+    pub fn with_newton(newton: NewtonSettings) -> Self {
+        Self { newton }
+    }
+}
 
 impl Method for ImplicitEuler {
     const SUMMARY: &'static str = "implicit, order 1, one sparse solve a step; damps what it moves";
+    const OPTIONS: &'static [OptionHelp] = &[TOLERANCE, ITERATIONS];
+
     const FACTORISES: bool = true;
 
-    fn from_options(_options: &Options) -> Result<Self, OptionError> {
-        Ok(Self)
+    fn from_options(options: &Options) -> Result<Self, OptionError> {
+        let newton = NewtonSettings::from_options(options, Self::ID)?;
+        Ok(Self::with_newton(newton))
     }
 }
 
@@ -29,7 +43,7 @@ impl Scheme for ImplicitEuler {
     type ByHand = ImplicitSteps<Self>;
 
     fn properties(&self) -> Properties {
-        Properties::of_order(1, Needs::Matrices, EnergyBehaviour::Falls)
+        Properties::of_order(1, Needs::Tangents, EnergyBehaviour::Falls)
     }
 
     fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
@@ -46,9 +60,13 @@ impl Scheme for ImplicitEuler {
     }
 }
 
-impl OneSolve for ImplicitEuler {
+impl OneAcceleration for ImplicitEuler {
     fn coefficients(&self, dt: f64) -> [f64; 2] {
         [dt, dt * dt]
+    }
+
+    fn newton(&self) -> NewtonSettings {
+        self.newton
     }
 
     fn step(
@@ -62,12 +80,13 @@ impl OneSolve for ImplicitEuler {
             *predicted = u + dt * v;
         }
         effective.v.copy_from_slice(&state.v);
-        effective.evaluate(step, LoadTime::end_of(state.t(), dt))?;
-        effective.solve();
+        let end = LoadTime::end_of(state.t(), dt);
+        let sought = Sought::at_end(self.coefficients(dt), end, dt);
+        let work = effective.solve(step, state, sought, |_, _| ())?;
         for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&effective.a) {
             *v += dt * a;
             *u += dt * *v;
         }
-        Ok(Stepped::at_same_time(ONE_SOLVE))
+        Ok(Stepped::at_same_time(work))
     }
 }

@@ -1,4 +1,4 @@
-//! Methods that solve a linear system in each step, by a sparse factor that is kept.
+//! Methods that solve linear systems by sparse factors: one kept for all steps, or one for each iteration of Newton's method.
 
 mod effective_mass;
 pub(crate) mod factor;
@@ -7,12 +7,14 @@ mod generalized_alpha;
 mod implicit_euler;
 mod modal;
 mod newmark;
+mod newton;
 mod static_solution;
 
-pub use factor::{Combination, Factor};
+pub use factor::{Combination, Factor, Matrices};
 pub use factor_error::FactorError;
 pub use generalized_alpha::GeneralizedAlpha;
 pub use implicit_euler::ImplicitEuler;
 pub use modal::{Modal, ModalSteps, Vectors};
 pub use newmark::Newmark;
+pub use newton::NewtonSettings;
 pub use static_solution::{StaticError, static_solution};

@@ -5,7 +5,8 @@ use sinew_core::{
     StableStep, State, Step, StepError, Stepped, System,
 };
 
-use super::effective_mass::{EffectiveMass, ImplicitSteps, ONE_SOLVE, OneSolve};
+use super::effective_mass::{EffectiveMass, ImplicitSteps, OneAcceleration, Sought};
+use super::newton::{ITERATIONS, NewtonSettings, TOLERANCE};
 use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp};
 
 /// Newmark's method (J. Eng. Mech. Div. ASCE 85, 1959) in its acceleration form (Hughes, The
@@ -19,13 +20,24 @@ use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind,
 pub struct Newmark {
     beta: f64,
     gamma: f64,
+    newton: NewtonSettings,
 }
 
 impl Newmark {
     /// Newmark's method with these parameters.
     #[must_use]
     pub fn new(beta: f64, gamma: f64) -> Self {
-        Self { beta, gamma }
+        Self {
+            beta,
+            gamma,
+            newton: NewtonSettings::default(),
+        }
+    }
+
+    /// The method with these settings of Newton's method, for nonlinear laws.
+    #[must_use]
+    pub fn with_newton(self, newton: NewtonSettings) -> Self {
+        Self { newton, ..self }
     }
 }
 
@@ -57,16 +69,17 @@ const GAMMA: OptionHelp = OptionHelp {
 
 impl Method for Newmark {
     const SUMMARY: &'static str = "implicit, order 2, one sparse solve a step, stable at any step";
-    const OPTIONS: &'static [OptionHelp] = &[BETA, GAMMA];
+    const OPTIONS: &'static [OptionHelp] = &[BETA, GAMMA, TOLERANCE, ITERATIONS];
 
     const FACTORISES: bool = true;
 
     fn from_options(options: &Options) -> Result<Self, OptionError> {
-        let Self { beta, gamma } = Self::default();
-        Ok(Self::new(
+        let Self { beta, gamma, .. } = Self::default();
+        let method = Self::new(
             BETA.number(options, Self::ID)?.unwrap_or(beta),
             GAMMA.number(options, Self::ID)?.unwrap_or(gamma),
-        ))
+        );
+        Ok(method.with_newton(NewtonSettings::from_options(options, Self::ID)?))
     }
 }
 
@@ -83,7 +96,7 @@ impl Scheme for Newmark {
             (_, gamma) if gamma > 0.5 => EnergyBehaviour::Falls,
             _ => EnergyBehaviour::Grows,
         };
-        Properties::of_order(order, Needs::Matrices, energy)
+        Properties::of_order(order, Needs::Tangents, energy)
     }
 
     fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
@@ -130,9 +143,13 @@ impl Scheme for Newmark {
     }
 }
 
-impl OneSolve for Newmark {
+impl OneAcceleration for Newmark {
     fn coefficients(&self, dt: f64) -> [f64; 2] {
         [self.gamma * dt, self.beta * dt * dt]
+    }
+
+    fn newton(&self) -> NewtonSettings {
+        self.newton
     }
 
     fn step(
@@ -141,18 +158,18 @@ impl OneSolve for Newmark {
         step: &Step<'_>,
         state: &mut State,
     ) -> Result<Stepped, StepError> {
-        let (dt, mut work) = (step.dt, ONE_SOLVE);
+        let dt = step.dt;
         let (beta, gamma) = (self.beta, self.gamma);
         let ends = |t, dt| LoadTime::at_both_ends(t, dt, gamma);
-        work += effective.keep_acceleration(step, state, ends)?;
+        let mut work = effective.keep_acceleration(step, state, ends)?;
         for i in 0..state.u.len() {
             let (u, v, a) = (state.u[i], state.v[i], state.a[i]);
             effective.u[i] = u + dt * v + dt * dt * (0.5 - beta) * a;
             effective.v[i] = v + dt * (1.0 - gamma) * a;
         }
         let [_, end] = ends(state.t(), dt);
-        effective.evaluate(step, end)?;
-        effective.solve();
+        let sought = Sought::at_end(self.coefficients(dt), end, dt);
+        work += effective.solve(step, state, sought, |_, _| ())?;
         for (i, a) in effective.a.iter().enumerate() {
             state.u[i] = effective.u[i] + beta * dt * dt * a;
             state.v[i] = effective.v[i] + gamma * dt * a;

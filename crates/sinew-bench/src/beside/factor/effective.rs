@@ -66,7 +66,7 @@ impl EffectiveMatrix {
     }
 
     pub(super) fn combination(&self) -> Combination {
-        Combination::of_step(self.model.operators(), DT / 2.0, DT * DT / 4.0)
+        Combination::of_step(self.model.operators().damping(), DT / 2.0, DT * DT / 4.0)
     }
 
     /// Column j is row j by symmetry; zeros inside blocks are left out.

@@ -1,0 +1,137 @@
+//! Watches whether the energy grows by more than loads and supports bring in.
+
+use sinew_core::vectors::{dot, weighted_dot};
+use sinew_core::{ElasticLaw, LoadTime, State, Step, StepReport, Trial};
+
+/// Growth over all the energy that start, loads and supports moved, from which on it is told.
+const TOLD: f64 = 0.05;
+
+/// Sums up the energy that a motion may have: that of its start, and the work of loads and supports. Damping, which takes
+/// energy away, is left out, so that growth is found late where there is much of it. It begins anew with each motion: results
+/// depend on it by a remark only.
+pub(super) struct EnergyWatch {
+    integrator: &'static str,
+    /// Displacement (m) at the beginning of the last step, and the mean load (N) over that step.
+    before: Vec<f64>,
+    load: Vec<f64>,
+    buffer: Vec<f64>,
+    /// Time at which the last step ends (s).
+    expected: Option<f64>,
+    start: f64,
+    work: f64,
+    /// Sum of the sizes of all work (J).
+    turnover: f64,
+    /// Elastic energy (J) at the beginning of the step.
+    elastic: f64,
+    worst: Option<Growth>,
+}
+
+/// Energy beyond what a motion may have.
+#[derive(Clone, Copy, Debug)]
+struct Growth {
+    t: f64,
+    energy: f64,
+    allowed: f64,
+    share: f64,
+}
+
+impl EnergyWatch {
+    pub(super) fn new(integrator: &'static str, dofs: usize) -> Self {
+        let zeros = || vec![0.0; dofs];
+        Self {
+            integrator,
+            before: zeros(),
+            load: zeros(),
+            buffer: zeros(),
+            expected: None,
+            start: 0.0,
+            work: 0.0,
+            turnover: 0.0,
+            elastic: 0.0,
+            worst: None,
+        }
+    }
+
+    /// Looks at the state before a step.
+    pub(super) fn look(
+        &mut self,
+        step: &Step<'_>,
+        state: &State,
+        law: &dyn ElasticLaw,
+        force: &mut [f64],
+        report: &mut StepReport,
+    ) {
+        let t = state.t();
+        let ends = LoadTime::at_both_ends(t, step.dt, 0.5).map(|when| when.under(step.inputs));
+        let trial = Trial {
+            load: ends[0],
+            dt: 0.0,
+            u: &state.u,
+            v: &state.v,
+            internal: &state.internal,
+        };
+        report.sweeps += 1;
+        let Ok(deformed) = law.elastic_force(&trial, force) else {
+            self.expected = None;
+            return;
+        };
+        self.elastic = deformed.energy;
+        let kinetic = 0.5 * weighted_dot(step.system.mass(), &state.v, &state.v);
+        let energy = kinetic + deformed.energy;
+        if self.expected == Some(t) {
+            for (before, u) in self.before.iter_mut().zip(&state.u) {
+                *before = u - *before;
+            }
+            self.take_up(dot(&self.load, &self.before));
+            self.judge(t, energy);
+        } else {
+            (self.start, self.work, self.turnover) = (energy, 0.0, energy.abs());
+        }
+        step.system.external_force(ends[0], &mut self.load);
+        step.system.external_force(ends[1], &mut self.buffer);
+        for (load, end) in self.load.iter_mut().zip(&self.buffer) {
+            *load = 0.5 * (*load + end);
+        }
+        self.before.copy_from_slice(&state.u);
+        let mut end = state.clock;
+        end.advance(step.dt);
+        self.expected = Some(end.time());
+    }
+
+    /// Takes up the work of supports that move in the step: the elastic energy (J) of the displacement before it with
+    /// the supports of a later instant. The step is `share` times as long as the way to that instant.
+    pub(super) fn supports(&mut self, elastic: f64, share: f64) {
+        let work = share * (elastic - self.elastic);
+        self.take_up(work);
+    }
+
+    fn take_up(&mut self, work: f64) {
+        self.work += work;
+        self.turnover += work.abs();
+    }
+
+    fn judge(&mut self, t: f64, energy: f64) {
+        let allowed = self.start + self.work;
+        let share = (energy - allowed) / self.turnover;
+        if share > self.worst.map_or(TOLD, |worst| worst.share) {
+            self.worst = Some(Growth {
+                t,
+                energy,
+                allowed,
+                share,
+            });
+        }
+    }
+
+    /// Growth of the energy in words, where there was any.
+    pub(super) fn remark(&self) -> Option<String> {
+        self.worst.map(|worst| {
+            format!(
+                "the energy grew by itself: {:.3e} J at t = {:.6} s, where start, loads and supports account for {:.3e} J; \
+                 `{}` does not keep the energy of nonlinear laws in long steps; `generalized-alpha` with rho_inf = 0.8 or \
+                 less, `cnn-energy` and shorter steps do better",
+                worst.energy, worst.t, worst.allowed, self.integrator
+            )
+        })
+    }
+}

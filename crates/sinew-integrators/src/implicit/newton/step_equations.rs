@@ -1,0 +1,324 @@
+//! The equations of a step, and the acceleration that solves them.
+
+use sinew_core::vectors::{dot, largest, weighted_dot};
+use sinew_core::{
+    BlockMatrix, ElasticLaw, EvaluationError, Fact, LoadTime, Needs, SetupError, State, Step,
+    StepError, StepReport, System, TangentKind, Trial,
+};
+
+use super::energy_watch::EnergyWatch;
+use super::{Equations, Failure, Newton, NewtonSettings, Point};
+use crate::implicit::factor::{Combination, Factor, Matrices};
+
+/// Share of the size of body and motion by which rounding moves positions.
+const ROUNDING: f64 = 1e-14;
+
+/// The acceleration x that a step seeks: `M x + m M a = c net(u* + c_u x, v* + c_v x)`, with the state's a.
+#[derive(Clone, Copy)]
+pub(in crate::implicit) struct Unknown<'e> {
+    /// u* (m) and v* (m/s).
+    pub(in crate::implicit) predicted: [&'e [f64]; 2],
+    /// d and k of the matrix `M + d D + k K`, which are `c c_v` and `c c_u`.
+    pub(in crate::implicit) coefficients: [f64; 2],
+    /// c.
+    pub(in crate::implicit) of_forces: f64,
+    /// m; where it is not 0 the state keeps an acceleration.
+    pub(in crate::implicit) of_last_inertia: f64,
+    /// Time of the loads at that point.
+    pub(in crate::implicit) load: LoadTime<'e>,
+    /// Time from the state to that point (s).
+    pub(in crate::implicit) after: f64,
+}
+
+impl Unknown<'_> {
+    /// `c_u`.
+    fn reach(&self) -> f64 {
+        self.coefficients[1] / self.of_forces
+    }
+}
+
+struct StepEquations<'s> {
+    step: &'s Step<'s>,
+    law: &'s dyn ElasticLaw,
+    state: &'s State,
+    unknown: Unknown<'s>,
+    /// Displacement and velocity of the point evaluated.
+    u: &'s mut [f64],
+    v: &'s mut [f64],
+    /// Change of positions (m) that is lost in rounding.
+    rounding: f64,
+}
+
+impl StepEquations<'_> {
+    fn place(&mut self, x: &[f64]) {
+        let [of_v, of_u] = self.unknown.coefficients.map(|c| c / self.unknown.of_forces);
+        let [u, v] = self.unknown.predicted;
+        for (i, x) in x.iter().enumerate() {
+            self.u[i] = u[i] + of_u * x;
+            self.v[i] = v[i] + of_v * x;
+        }
+    }
+
+    fn trial(&self) -> Trial<'_> {
+        Trial {
+            load: self.unknown.load,
+            dt: self.unknown.after,
+            u: self.u,
+            v: self.v,
+            internal: &self.state.internal,
+        }
+    }
+
+    /// Sets x so that the displacement of the point is `u_n + after v_n` share, as far as x moves it.
+    fn begin_at(&self, share: f64, x: &mut [f64]) {
+        let (reach, after) = (self.unknown.reach(), share * self.unknown.after);
+        let [predicted, _] = self.unknown.predicted;
+        for (i, x) in x.iter_mut().enumerate() {
+            let wanted = self.state.u[i] + after * self.state.v[i];
+            *x = match reach {
+                0.0 => 0.0,
+                _ => (wanted - predicted[i]) / reach,
+            };
+        }
+    }
+}
+
+impl Equations for StepEquations<'_> {
+    fn evaluate(
+        &mut self,
+        point: &mut Point,
+        work: &mut StepReport,
+    ) -> Result<(), EvaluationError> {
+        self.place(&point.x);
+        work.sweeps += 1;
+        let deformed = self.law.elastic_force(&self.trial(), &mut point.elastic)?;
+        *work += StepReport::ONE_FORCE;
+        let trial = self.trial();
+        self.step.system.net_force(&trial, &mut point.residual)?;
+        let Unknown {
+            of_forces: c,
+            of_last_inertia: m,
+            ..
+        } = self.unknown;
+        let mass = self.step.system.mass();
+        for (i, residual) in point.residual.iter_mut().enumerate() {
+            let before = if m == 0.0 { 0.0 } else { m * self.state.a[i] };
+            *residual = mass[i] * (point.x[i] + before) - c * *residual;
+            point.elastic[i] *= c;
+        }
+        point.energy = match self.unknown.reach() {
+            0.0 => dot(&point.elastic, &point.x),
+            reach => c * deformed.energy / reach,
+        };
+        Ok(())
+    }
+
+    fn tangent(
+        &mut self,
+        x: &[f64],
+        kind: TangentKind,
+        out: &mut BlockMatrix,
+    ) -> Result<(), EvaluationError> {
+        self.place(x);
+        self.law.tangent(&self.trial(), kind, out)
+    }
+
+    fn derivative<'m>(&'m self, tangent: &'m BlockMatrix) -> (Matrices<'m>, Combination) {
+        let [d, k] = self.unknown.coefficients;
+        let damping = self.law.damping();
+        let matrices = Matrices {
+            mass: self.step.system.mass(),
+            stiffness: tangent,
+            extra: damping.extra.as_deref(),
+        };
+        (matrices, Combination::of_step(damping, d, k))
+    }
+
+    fn forces(&self, point: &Point, weights: &[f64]) -> f64 {
+        let inertia = weighted_dot(self.step.system.mass(), &point.x, &point.x);
+        let elastic = weighted_dot(weights, &point.elastic, &point.elastic);
+        inertia.max(elastic).sqrt()
+    }
+
+    fn is_rounding(&self, change: &[f64]) -> bool {
+        let reach = self.unknown.reach();
+        reach > 0.0 && reach * largest(change) <= self.rounding
+    }
+}
+
+/// Newton's method in steps, with all its memory.
+pub(in crate::implicit) struct NewtonSteps {
+    integrator: &'static str,
+    newton: Newton,
+    u: Vec<f64>,
+    v: Vec<f64>,
+    /// Size of the body (m), 0 where it has none.
+    extent: f64,
+    watch: EnergyWatch,
+    steps: u64,
+    work: StepReport,
+    most: u64,
+}
+
+impl NewtonSteps {
+    /// Analyses the pattern of a system's elastic law, or takes that of a factor that fits.
+    pub(in crate::implicit) fn set_up(
+        integrator: &'static str,
+        system: &dyn System,
+        settings: NewtonSettings,
+        known: Option<Factor>,
+    ) -> Result<Self, SetupError> {
+        let law = system
+            .as_elastic()
+            .ok_or_else(|| Needs::Tangents.lacking(integrator))?;
+        let per_mass = system.mass().iter().map(|mass| mass.recip()).collect();
+        let newton = Newton::set_up(law, system.layers(), per_mass, settings, known)
+            .map_err(|error| error.at_set_up(integrator))?;
+        let zeros = || vec![0.0; system.dofs()];
+        Ok(Self {
+            integrator,
+            newton,
+            u: zeros(),
+            v: zeros(),
+            extent: system.extent().unwrap_or(0.0),
+            watch: EnergyWatch::new(integrator, system.dofs()),
+            steps: 0,
+            work: StepReport::default(),
+            most: 0,
+        })
+    }
+
+    pub(in crate::implicit) fn into_factor(self) -> Factor {
+        self.newton.into_factor()
+    }
+
+    /// Solves the equations of a step for the acceleration.
+    pub(in crate::implicit) fn solve(
+        &mut self,
+        step: &Step<'_>,
+        state: &State,
+        unknown: Unknown<'_>,
+        acceleration: &mut [f64],
+    ) -> Result<StepReport, StepError> {
+        let law = step
+            .system
+            .as_elastic()
+            .ok_or_else(|| Needs::Tangents.lacking(self.integrator))?;
+        let mut work = StepReport::default();
+        let Newton { point, trial, .. } = &mut self.newton;
+        self.watch
+            .look(step, state, law, &mut trial.elastic, &mut work);
+        let size = self.extent.max(largest(&state.u));
+        let mut equations = StepEquations {
+            step,
+            law,
+            state,
+            unknown: Unknown {
+                load: unknown.load.under(step.inputs),
+                ..unknown
+            },
+            u: &mut self.u,
+            v: &mut self.v,
+            rounding: ROUNDING * size,
+        };
+        equations.begin_at(0.0, &mut point.x);
+        equations.begin_at(1.0, &mut trial.x);
+        let stayed = equations.evaluate(point, &mut work);
+        let moved = equations.evaluate(trial, &mut work);
+        let refused = |source| StepError::Refused {
+            t: unknown.load.t(),
+            source,
+        };
+        match (stayed, moved) {
+            (Ok(()), moved) => {
+                if unknown.reach() > 0.0 {
+                    let energy = point.energy * unknown.reach() / unknown.of_forces;
+                    self.watch.supports(energy, step.dt / unknown.after);
+                }
+                if moved.is_ok() {
+                    self.newton.take_lower();
+                }
+            }
+            (Err(_), Ok(())) => self.newton.take_trial(),
+            (Err(refusal), Err(_)) => return Err(refused(refusal)),
+        }
+        let before = work.newton_iterations;
+        let solved = self.newton.solve(&mut equations, &mut work);
+        solved.map_err(|failure| match failure {
+            Failure::Refused(refusal) => refused(refusal),
+            Failure::Unbalanced {
+                iterations,
+                residual,
+                reason,
+            } => self.not_converged(state, iterations, residual, reason),
+            Failure::Singular(_) => self.not_converged(
+                state,
+                work.newton_iterations - before,
+                f64::INFINITY,
+                "not even the projected tangent is positive definite",
+            ),
+        })?;
+        acceleration.copy_from_slice(&self.newton.point.x);
+        self.steps += 1;
+        self.work += work;
+        self.most = self.most.max(work.newton_iterations);
+        Ok(work)
+    }
+
+    fn not_converged(
+        &self,
+        state: &State,
+        iterations: u64,
+        residual: f64,
+        reason: &'static str,
+    ) -> StepError {
+        StepError::NotConverged {
+            integrator: self.integrator,
+            t: state.t(),
+            iterations,
+            residual,
+            reason,
+        }
+    }
+
+    /// Iterations of a step, in the mean.
+    fn mean(&self) -> f64 {
+        self.work.newton_iterations as f64 / self.steps as f64
+    }
+
+    /// Iterations a step, once a step was taken.
+    pub(in crate::implicit) fn facts(&self) -> Vec<Fact> {
+        if self.steps == 0 {
+            return Vec::new();
+        }
+        vec![
+            Fact {
+                name: "newton_iterations_a_step",
+                value: self.mean(),
+            },
+            Fact {
+                name: "most_newton_iterations",
+                value: self.most as f64,
+            },
+        ]
+    }
+
+    /// Iterations a step, and growth of the energy.
+    pub(in crate::implicit) fn remarks(&self) -> Vec<String> {
+        if self.steps == 0 {
+            return Vec::new();
+        }
+        let projected = match self.work.projected_solves {
+            0 => String::new(),
+            solves => format!("; {solves} solutions with a projected tangent"),
+        };
+        let iterations = format!(
+            "Newton's method took {:.2} iterations a step, {} at most{projected}",
+            self.mean(),
+            self.most
+        );
+        std::iter::once(iterations)
+            .chain(self.watch.remark())
+            .collect()
+    }
+}
