@@ -36,7 +36,8 @@ pub use explicit_method::Explicit;
 pub use frame::Frame;
 #[cfg(feature = "implicit")]
 pub use implicit::{
-    Combination, Factor, FactorError, Matrices, NewtonSettings, StaticError, static_solution,
+    Combination, Factor, FactorError, Matrices, NewtonError, NewtonSettings, StaticError,
+    static_solution,
 };
 pub use machine_options::MACHINE_OPTIONS;
 pub use method::{ConservedEnergy, Method};

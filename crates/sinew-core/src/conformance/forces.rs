@@ -5,25 +5,31 @@ use super::problems::{Dampers, FORCE, Problem, gentle_step, give, problems};
 use super::running::singly;
 use crate::spectrum::Spectrum;
 use crate::{
-    EvaluationError, ForceLaw, ForceModel, Inputs, Integrator, LinearModel, LinearSystem, LoadTime,
-    Needs, SetupError, StableStep, State, Trial,
+    ElasticLaw, EvaluationError, ForceLaw, ForceModel, Inputs, Integrator, LinearModel,
+    LinearSystem, LoadTime, Needs, SetupError, StableStep, State, Trial,
 };
 
 /// Rounding of 30 steps, relative to the largest value of its kind in them.
 const ROUNDING: f64 = 1e-13;
+
+/// Rounding of 30 solutions by factors, relative to the largest value of its kind in them.
+const SOLVED: f64 = 1e-10;
 
 /// The forces of a linear system that hides its matrices.
 struct Hidden {
     inner: LinearModel,
     /// Whether it tells its fastest motions.
     knows_spectrum: bool,
+    /// Whether it tells its energy and tangent.
+    tells_tangent: bool,
 }
 
 /// A linear system that hides its matrices.
-fn hidden(inner: &LinearModel, knows_spectrum: bool) -> ForceModel<Hidden> {
+fn hidden(inner: &LinearModel, [knows_spectrum, tells_tangent]: [bool; 2]) -> ForceModel<Hidden> {
     let law = Hidden {
         inner: inner.clone(),
         knows_spectrum,
+        tells_tangent,
     };
     ForceModel::like(inner, law)
 }
@@ -40,6 +46,10 @@ impl ForceLaw for Hidden {
     fn mass_damping(&self) -> f64 {
         self.inner.operators().damping().mass
     }
+    fn elastic(&self) -> Option<&dyn ElasticLaw> {
+        self.tells_tangent
+            .then(|| -> &dyn ElasticLaw { self.inner.operators() })
+    }
     fn spectrum(&self, _about: Option<&State>) -> Option<Spectrum> {
         let of_inner = || Spectrum::of(self.inner.operators());
         self.knows_spectrum.then(of_inner)
@@ -53,7 +63,8 @@ pub(super) fn lacks<T>(integrator: &dyn Integrator, answer: &Result<T, SetupErro
 
 /// On a system that evaluates its forces and shows no matrices, a method that declares to need
 /// forces only gives the same bits and the same work as with the matrices, under all kinds of
-/// damping; any other refuses it by name, at set-up and when asked for a stable step. Without a
+/// damping; one that needs an elastic law with its tangent moves as with the matrices where it gets one, up to rounding; any
+/// other refuses it by name, at set-up and when asked for a stable step. Without a
 /// spectrum a stable step is unknown, with one it is that of the matrices.
 pub fn forces_are_enough_where_declared(make: &dyn Fn() -> Boxed) {
     for damping in [
@@ -64,9 +75,14 @@ pub fn forces_are_enough_where_declared(make: &dyn Fn() -> Boxed) {
         Dampers::ALL,
     ] {
         for problem in problems(damping, FORCE) {
-            let dark = hidden(&problem.system, false);
-            let hidden = hidden(&problem.system, true);
-            match make().properties().needs {
+            let dark = hidden(&problem.system, [false, false]);
+            let elastic = hidden(&problem.system, [true, true]);
+            let hidden = hidden(&problem.system, [true, false]);
+            let needs = make().properties().needs;
+            if needs == Needs::Tangents {
+                tangents_are_enough(make, &problem, &elastic, damping);
+            }
+            match needs {
                 Needs::Matrices | Needs::Tangents => {
                     for system in [&dark, &hidden] {
                         let (mut integrator, dt) = (make(), 0.01);
@@ -115,15 +131,7 @@ fn forces_are_enough(
         true => 0.0,
         false => ROUNDING,
     };
-    let largest = |of: fn(&State) -> &[f64]| {
-        let values = shown.iter().flat_map(of);
-        values.fold(0.0, |most: f64, value| value.abs().max(most))
-    };
-    let sizes = [
-        largest(|state| &state.u),
-        largest(|state| &state.v),
-        largest(|state| &state.a),
-    ];
+    let sizes = sizes(&shown);
     for (step, (shown, found)) in shown.iter().zip(&found).enumerate() {
         let agree = agree(shown, found, sizes.map(|size| rounding * size));
         assert!(agree, "{what}: step {step}: {shown:?} {found:?}");
@@ -131,8 +139,45 @@ fn forces_are_enough(
     assert_eq!(of_shown, of_hidden, "{what}: work");
 }
 
+/// The motion with the matrices is that with the tangent of their law, up to the rounding of solutions.
+fn tangents_are_enough(
+    make: &dyn Fn() -> Boxed,
+    problem: &Problem,
+    elastic: &ForceModel<Hidden>,
+    damping: Dampers,
+) {
+    let (system, start) = (&problem.system, &problem.start);
+    let dt = gentle_step(&*make(), system);
+    let mut inputs = Inputs::new();
+    give(&mut inputs, 3.0 * dt, &[(1, 0.4)]);
+    give(&mut inputs, 8.5 * dt, &[(0, -0.3), (1, 0.1)]);
+    let (shown, _) = singly(&mut *make(), system, &inputs, start, dt, 30);
+    let (found, work) = singly(&mut *make(), elastic, &inputs, start, dt, 30);
+    let what = format!("{}, {damping:?}: {work:?}", problem.name);
+    let sizes = sizes(&shown).map(|size| SOLVED * size);
+    for (step, (shown, found)) in shown.iter().zip(&found).enumerate() {
+        assert!(
+            agree(shown, found, sizes),
+            "{what}: step {step}: {shown:?} {found:?}"
+        );
+    }
+}
+
+/// The largest values of u, v and a in some states.
+fn sizes(states: &[State]) -> [f64; 3] {
+    let largest = |of: fn(&State) -> &[f64]| {
+        let values = states.iter().flat_map(of);
+        values.fold(0.0, |most: f64, value| value.abs().max(most))
+    };
+    [
+        largest(|state| &state.u),
+        largest(|state| &state.v),
+        largest(|state| &state.a),
+    ]
+}
+
 /// Whether two states are the same but for differences in u, v and a up to these.
-fn agree(one: &State, other: &State, allowed: [f64; 3]) -> bool {
+pub(super) fn agree(one: &State, other: &State, allowed: [f64; 3]) -> bool {
     let pairs = [(&one.u, &other.u), (&one.v, &other.v), (&one.a, &other.a)];
     let close = pairs.iter().zip(allowed).all(|((one, other), allowed)| {
         let mut values = one.iter().zip(*other);

@@ -2,8 +2,8 @@
 
 use sinew_core::vectors::add_scaled;
 use sinew_core::{
-    Acceleration, Equations, Fact, LinearSystem, LoadTime, SetupError, State, Step, StepError, StepReport,
-    Stepped, System,
+    Acceleration, Equations, Fact, LinearSystem, LoadTime, SetupError, State, Step, StepError,
+    StepReport, Stepped, System,
 };
 
 use super::factor::{Combination, Factor};

@@ -1,10 +1,11 @@
 //! The equilibrium under a load.
 
-use sinew_core::LinearSystem;
 use sinew_core::vectors::norm;
+use sinew_core::{LinearSystem, System};
 
 use super::factor::{Combination, Factor};
 use super::factor_error::FactorError;
+use super::newton::{NewtonError, follow_load};
 
 /// Reasons for which there is no static solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -23,6 +24,20 @@ pub enum StaticError {
         /// `||K u - F|| / ||F||`.
         residual: f64,
     },
+    /// The equilibrium of a nonlinear law could be followed from the undeformed body to a share of the load only.
+    #[error(
+        "the body carries {:.2} % of the load; for more no equilibrium was found: {source}",
+        100.0 * share
+    )]
+    Unreached {
+        /// The share that is carried.
+        share: f64,
+        /// The end of the last attempt to go beyond.
+        source: NewtonError,
+    },
+    /// Neither matrices nor an elastic law.
+    #[error("the system shows neither matrices nor an elastic law with its tangent")]
+    Lacks,
     /// A load of another size than the system.
     #[error("the load has {load} degrees of freedom, the system has {system}")]
     Size {
@@ -37,18 +52,37 @@ pub enum StaticError {
 /// singular matrix whose factor rounding can let pass; its residual is near 1.
 const BALANCED: f64 = 1e-6;
 
-/// Solves `K u = force` (N) for the displacement (m). Held components of cells stay zero.
+/// Solves `K u = force` (N) for the displacement (m), or `dW/du = force` where the system is an elastic law. Held components
+/// of cells stay zero; supports are where they are at t = 0.
+///
+/// The load on a nonlinear law grows from nothing in steps that are chosen on the way, each solved by Newton's
+/// method: where several displacements balance the load, the answer is one that a slow load leads to, or jumps to.
 ///
 /// # Errors
-/// [`StaticError`] when K is singular or nearly so, or the load has the wrong size.
-pub fn static_solution(system: &dyn LinearSystem, force: &[f64]) -> Result<Vec<f64>, StaticError> {
-    let operators = system.operators();
-    if force.len() != operators.dofs() {
+/// [`StaticError`] when the tangent is singular or nearly so, the load has the wrong size or is more than the law
+/// carries, or the system has no tangent.
+pub fn static_solution(system: &dyn System, force: &[f64]) -> Result<Vec<f64>, StaticError> {
+    if force.len() != system.dofs() {
         return Err(StaticError::Size {
             load: force.len(),
-            system: operators.dofs(),
+            system: system.dofs(),
         });
     }
+    if let Some(linear) = system.as_linear() {
+        return linear_solution(linear, force);
+    }
+    let law = system.as_elastic().ok_or(StaticError::Lacks)?;
+    follow_load(system, law, force).map_err(|unreached| match unreached.error {
+        NewtonError::Singular(error) if unreached.share == 0.0 => StaticError::Singular(error),
+        source => StaticError::Unreached {
+            share: unreached.share,
+            source,
+        },
+    })
+}
+
+fn linear_solution(system: &dyn LinearSystem, force: &[f64]) -> Result<Vec<f64>, StaticError> {
+    let operators = system.operators();
     let mut factor = Factor::analyse(operators).map_err(StaticError::Singular)?;
     factor
         .factorise(operators, Combination::STATIC)

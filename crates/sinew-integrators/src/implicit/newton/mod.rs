@@ -1,6 +1,8 @@
 //! Newton's method on equations whose elastic part has an energy.
 
 mod energy_watch;
+mod load_steps;
+mod newton_error;
 mod settings;
 mod step_equations;
 
@@ -10,6 +12,8 @@ use sinew_core::{BlockMatrix, ElasticLaw, EvaluationError, Layers, StepReport, T
 use super::factor::{Combination, Factor, Matrices};
 use super::factor_error::FactorError;
 
+pub(super) use self::load_steps::follow_load;
+pub use self::newton_error::NewtonError;
 pub use self::settings::NewtonSettings;
 pub(super) use self::settings::{ITERATIONS, TOLERANCE};
 pub(super) use self::step_equations::{NewtonSteps, Unknown};
@@ -52,8 +56,8 @@ pub(super) trait Equations {
     /// Size of the forces that balance each other at a point, in the norm by these weights.
     fn forces(&self, point: &Point, weights: &[f64]) -> f64;
 
-    /// Whether a change of x is lost in the rounding of positions.
-    fn is_rounding(&self, change: &[f64]) -> bool;
+    /// Whether a change of x at a point is lost in the rounding of positions.
+    fn is_rounding(&self, point: &Point, change: &[f64]) -> bool;
 }
 
 /// A point at which equations are evaluated.
@@ -97,24 +101,6 @@ fn change(from: &Point, to: &Point, along: &[f64], share: f64) -> (f64, f64) {
     let others = 0.5 * (before + after);
     let size = from.energy.abs() + to.energy.abs() + before.abs() + after.abs();
     (to.energy - from.energy + others, ROUNDING * size)
-}
-
-/// Reasons for which equations are not solved.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Failure {
-    /// The way to the solution leads out of the law's domain.
-    Refused(EvaluationError),
-    /// The iteration ended before the forces balanced.
-    Unbalanced {
-        /// Iterations.
-        iterations: u64,
-        /// Residual over the size of the forces.
-        residual: f64,
-        /// Reason.
-        reason: &'static str,
-    },
-    /// Not even the projected tangent has an inverse.
-    Singular(FactorError),
 }
 
 /// What became of an iteration.
@@ -204,7 +190,7 @@ impl Newton {
         &mut self,
         equations: &mut impl Equations,
         work: &mut StepReport,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), NewtonError> {
         let mut iterations = 0;
         (self.refusal, self.singular) = (None, None);
         loop {
@@ -212,14 +198,14 @@ impl Newton {
             if residual <= self.settings.tolerance {
                 return Ok(());
             }
-            let failure = |reason| Failure::Unbalanced {
+            let failure = |reason| NewtonError::Unbalanced {
                 iterations,
                 residual,
                 reason,
             };
             if iterations >= u64::from(self.settings.most_iterations) {
                 return Err(match self.refusal.take() {
-                    Some(refusal) => Failure::Refused(refusal),
+                    Some(refusal) => NewtonError::Refused(refusal),
                     None => failure("the most iterations allowed were taken"),
                 });
             }
@@ -229,8 +215,8 @@ impl Newton {
                 Iterated::AtRounding => return Ok(()),
                 Iterated::Stuck => {
                     return Err(match (self.refusal.take(), self.singular.take()) {
-                        (Some(refusal), _) => Failure::Refused(refusal),
-                        (None, Some(error)) => Failure::Singular(error),
+                        (Some(refusal), _) => NewtonError::Refused(refusal),
+                        (None, Some(error)) => NewtonError::Singular(error),
                         (None, None) => failure("no step along the tangent leads down"),
                     });
                 }
@@ -257,7 +243,7 @@ impl Newton {
             let Some(slope) = self.direct(equations, kind, work) else {
                 continue;
             };
-            if equations.is_rounding(&self.direction) {
+            if equations.is_rounding(&self.point, &self.direction) {
                 return Iterated::AtRounding;
             }
             if slope < 0.0 && self.search(equations, slope, halvings, work) {
@@ -310,8 +296,7 @@ impl Newton {
             match equations.evaluate(&mut self.trial, work) {
                 Err(refusal) => self.refusal = Some(refusal),
                 Ok(()) if self.trial.is_finite() => {
-                    let (rise, rounding) =
-                        change(&self.point, &self.trial, &self.direction, share);
+                    let (rise, rounding) = change(&self.point, &self.trial, &self.direction, share);
                     if rise <= ARMIJO * share * slope + rounding {
                         self.take_trial();
                         return true;

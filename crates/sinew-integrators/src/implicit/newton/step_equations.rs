@@ -7,7 +7,8 @@ use sinew_core::{
 };
 
 use super::energy_watch::EnergyWatch;
-use super::{Equations, Failure, Newton, NewtonSettings, Point};
+use super::newton_error::NewtonError;
+use super::{Equations, Newton, NewtonSettings, Point};
 use crate::implicit::factor::{Combination, Factor, Matrices};
 
 /// Share of the size of body and motion by which rounding moves positions.
@@ -51,7 +52,10 @@ struct StepEquations<'s> {
 
 impl StepEquations<'_> {
     fn place(&mut self, x: &[f64]) {
-        let [of_v, of_u] = self.unknown.coefficients.map(|c| c / self.unknown.of_forces);
+        let [of_v, of_u] = self
+            .unknown
+            .coefficients
+            .map(|c| c / self.unknown.of_forces);
         let [u, v] = self.unknown.predicted;
         for (i, x) in x.iter().enumerate() {
             self.u[i] = u[i] + of_u * x;
@@ -140,7 +144,7 @@ impl Equations for StepEquations<'_> {
         inertia.max(elastic).sqrt()
     }
 
-    fn is_rounding(&self, change: &[f64]) -> bool {
+    fn is_rounding(&self, _point: &Point, change: &[f64]) -> bool {
         let reach = self.unknown.reach();
         reach > 0.0 && reach * largest(change) <= self.rounding
     }
@@ -245,13 +249,13 @@ impl NewtonSteps {
         let before = work.newton_iterations;
         let solved = self.newton.solve(&mut equations, &mut work);
         solved.map_err(|failure| match failure {
-            Failure::Refused(refusal) => refused(refusal),
-            Failure::Unbalanced {
+            NewtonError::Refused(refusal) => refused(refusal),
+            NewtonError::Unbalanced {
                 iterations,
                 residual,
                 reason,
             } => self.not_converged(state, iterations, residual, reason),
-            Failure::Singular(_) => self.not_converged(
+            NewtonError::Singular(_) => self.not_converged(
                 state,
                 work.newton_iterations - before,
                 f64::INFINITY,

@@ -1,0 +1,153 @@
+//! Static equilibrium of a nonlinear law, followed in steps of the load.
+
+use sinew_core::vectors::{add_scaled, dot, largest, weighted_dot};
+use sinew_core::{
+    BlockMatrix, ElasticLaw, EvaluationError, LoadTime, StepReport, System, TangentKind, Trial,
+};
+
+use super::newton_error::NewtonError;
+use super::{Equations, Newton, NewtonSettings, Point};
+use crate::implicit::factor::{Combination, Matrices};
+
+/// The first step, as a share of the load.
+const FIRST: f64 = 0.25;
+
+/// The smallest step, as a share of the load.
+const SMALLEST: f64 = 1.0 / 4096.0;
+
+/// Iterations up to which the next step of the load is four times as long; it is twice as long after more.
+const EASY: u64 = 3;
+
+/// Newton's method in a step of the load.
+const SETTINGS: NewtonSettings = NewtonSettings {
+    tolerance: 1e-8,
+    most_iterations: 25,
+};
+
+/// Change of positions, as a share of body and displacement, that makes no difference.
+const ROUNDING: f64 = 1e-12;
+
+/// `dW/du = share F`.
+struct StaticEquations<'s> {
+    system: &'s dyn System,
+    law: &'s dyn ElasticLaw,
+    /// F (N).
+    force: &'s [f64],
+    share: f64,
+    v: Vec<f64>,
+    internal: Vec<f64>,
+    extent: f64,
+}
+
+impl<'s> StaticEquations<'s> {
+    fn trial<'t>(&'t self, u: &'t [f64]) -> Trial<'t> {
+        Trial {
+            load: LoadTime::at(0.0),
+            dt: 0.0,
+            u,
+            v: &self.v,
+            internal: &self.internal,
+        }
+    }
+}
+
+impl Equations for StaticEquations<'_> {
+    fn evaluate(
+        &mut self,
+        point: &mut Point,
+        work: &mut StepReport,
+    ) -> Result<(), EvaluationError> {
+        work.sweeps += 1;
+        let trial = self.trial(&point.x);
+        point.energy = self.law.elastic_force(&trial, &mut point.elastic)?.energy;
+        point.residual.copy_from_slice(&point.elastic);
+        add_scaled(-self.share, self.force, &mut point.residual);
+        Ok(())
+    }
+
+    fn tangent(
+        &mut self,
+        x: &[f64],
+        kind: TangentKind,
+        out: &mut BlockMatrix,
+    ) -> Result<(), EvaluationError> {
+        self.law.tangent(&self.trial(x), kind, out)
+    }
+
+    fn derivative<'m>(&'m self, tangent: &'m BlockMatrix) -> (Matrices<'m>, Combination) {
+        let matrices = Matrices {
+            mass: self.system.mass(),
+            stiffness: tangent,
+            extra: None,
+        };
+        (matrices, Combination::STATIC)
+    }
+
+    fn forces(&self, point: &Point, weights: &[f64]) -> f64 {
+        let elastic = weighted_dot(weights, &point.elastic, &point.elastic).sqrt();
+        elastic.max(self.share * dot(self.force, self.force).sqrt())
+    }
+
+    fn is_rounding(&self, point: &Point, change: &[f64]) -> bool {
+        largest(change) <= ROUNDING * self.extent.max(largest(&point.x))
+    }
+}
+
+/// The equilibrium could be followed to a share of the load only.
+pub(in crate::implicit) struct Unreached {
+    /// The share of the load that is carried.
+    pub(in crate::implicit) share: f64,
+    /// The end of the last attempt to go beyond.
+    pub(in crate::implicit) error: NewtonError,
+}
+
+/// The displacement at which the law carries a force (N), from the undeformed body on: the load grows by steps that are
+/// halved where Newton's method fails and lengthened where it succeeds.
+pub(in crate::implicit) fn follow_load(
+    system: &dyn System,
+    law: &dyn ElasticLaw,
+    force: &[f64],
+) -> Result<Vec<f64>, Unreached> {
+    let at_start = |error| Unreached { share: 0.0, error };
+    let dofs = system.dofs();
+    let mut newton = Newton::set_up(law, system.layers(), vec![1.0; dofs], SETTINGS, None)
+        .map_err(|error| at_start(NewtonError::Singular(error)))?;
+    let mut equations = StaticEquations {
+        system,
+        law,
+        force,
+        share: 0.0,
+        v: vec![0.0; dofs],
+        internal: vec![0.0; system.internal_variables()],
+        extent: system.extent().unwrap_or(0.0),
+    };
+    let (mut u, mut reached, mut step) = (vec![0.0; dofs], 0.0, FIRST);
+    while reached < 1.0 {
+        equations.share = f64::min(reached + step, 1.0);
+        newton.point.x.copy_from_slice(&u);
+        let mut work = StepReport::default();
+        let begun = equations.evaluate(&mut newton.point, &mut work);
+        let solved = begun
+            .map_err(NewtonError::Refused)
+            .and_then(|()| newton.solve(&mut equations, &mut work));
+        match solved {
+            Ok(()) => {
+                reached = equations.share;
+                u.copy_from_slice(&newton.point.x);
+                step *= if work.newton_iterations <= EASY {
+                    4.0
+                } else {
+                    2.0
+                };
+            }
+            Err(_) if step > SMALLEST => step *= 0.5,
+            Err(error) => {
+                return Err(Unreached {
+                    share: reached,
+                    error,
+                });
+            }
+        }
+    }
+    Ok(u)
+}

@@ -1,0 +1,29 @@
+//! Errors of Newton's method.
+
+use sinew_core::EvaluationError;
+
+use crate::implicit::factor_error::FactorError;
+
+/// Reasons for which nonlinear equations are not solved.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NewtonError {
+    /// The way to the solution leads out of the law's domain.
+    #[error(transparent)]
+    Refused(#[from] EvaluationError),
+    /// The iteration ended before the forces balanced.
+    #[error(
+        "{iterations} Newton iterations left {residual:.1e} of the forces unbalanced: {reason}"
+    )]
+    Unbalanced {
+        /// Iterations.
+        iterations: u64,
+        /// Residual over the size of the forces.
+        residual: f64,
+        /// Reason.
+        reason: &'static str,
+    },
+    /// Not even the projected tangent has an inverse.
+    #[error("the projected tangent could not be factorised: {0}")]
+    Singular(#[source] FactorError),
+}
