@@ -296,6 +296,12 @@ fn growth_of_the_energy_is_told_with_its_numbers_and_only_where_it_grows() {
         }
         (most / 2.0, integrator.remarks().join("; "))
     };
+    for dt in [
+        0.02, 0.04, 0.08, 0.12, 0.16, 0.2, 0.25, 0.3, 0.4, 0.5, 0.7, 1.0,
+    ] {
+        let (grown, remarks) = said("newmark", dt);
+        println!("{dt} {grown} {remarks}");
+    }
     let (grown, remarks) = said("newmark", 0.08);
     assert!(grown > 1.5, "{grown}: {remarks}");
     assert!(

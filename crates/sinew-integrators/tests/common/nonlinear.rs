@@ -8,7 +8,7 @@ use sinew_core::{
 };
 
 /// A stored energy with its first two derivatives.
-pub trait Potential: Send + Sync {
+pub(crate) trait Potential: Send + Sync {
     /// The energy (J); `out` is its gradient (N).
     fn energy(&self, u: &[f64], out: &mut [f64]) -> Result<f64, EvaluationError>;
 
@@ -17,15 +17,15 @@ pub trait Potential: Send + Sync {
 }
 
 /// The law of a potential under a dead load.
-pub struct Law<P> {
-    pub potential: P,
+pub(crate) struct Law<P> {
+    pub(crate) potential: P,
     load: Vec<f64>,
     pattern: Arc<Pattern>,
     damping: Damping,
 }
 
 /// Neighbours in a row, with these masses (kg).
-pub fn model<P: Potential>(
+pub(crate) fn model<P: Potential>(
     potential: P,
     masses: &[f64],
     layers: Layers,
@@ -34,7 +34,7 @@ pub fn model<P: Potential>(
     damped(potential, masses, layers, load, Damping::default())
 }
 
-pub fn damped<P: Potential>(
+pub(crate) fn damped<P: Potential>(
     potential: P,
     masses: &[f64],
     layers: Layers,
@@ -139,7 +139,7 @@ impl<P: Potential> ElasticLaw for Law<P> {
 }
 
 /// A potential in one degree of freedom: its value and its first two derivatives.
-pub struct Scalar<F>(pub F);
+pub(crate) struct Scalar<F>(pub(crate) F);
 
 impl<F: Fn(f64) -> [f64; 3] + Send + Sync> Potential for Scalar<F> {
     fn energy(&self, u: &[f64], out: &mut [f64]) -> Result<f64, EvaluationError> {
@@ -160,10 +160,10 @@ impl<F: Fn(f64) -> [f64; 3] + Send + Sync> Potential for Scalar<F> {
 
 /// wall - mass - mass - .. - mass, with links that pull with `k e + c e^3` when they are longer by e, and refuse to be so by
 /// more than a limit.
-pub struct Chain {
-    pub stiffness: f64,
-    pub cubic: f64,
-    pub longest: f64,
+pub(crate) struct Chain {
+    pub(crate) stiffness: f64,
+    pub(crate) cubic: f64,
+    pub(crate) longest: f64,
 }
 
 impl Chain {
@@ -207,9 +207,9 @@ impl Potential for Chain {
 }
 
 /// A mass on a spring of this stiffness (N/m) and length (m) from the origin; u = 0 is at (length, 0, 0).
-pub struct Sling {
-    pub stiffness: f64,
-    pub length: f64,
+pub(crate) struct Sling {
+    pub(crate) stiffness: f64,
+    pub(crate) length: f64,
 }
 
 impl Sling {
