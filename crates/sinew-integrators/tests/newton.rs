@@ -296,27 +296,24 @@ fn growth_of_the_energy_is_told_with_its_numbers_and_only_where_it_grows() {
         }
         (most / 2.0, integrator.remarks().join("; "))
     };
-    for dt in [
-        0.02, 0.04, 0.08, 0.12, 0.16, 0.2, 0.25, 0.3, 0.4, 0.5, 0.7, 1.0,
-    ] {
-        let (grown, remarks) = said("newmark", dt);
-        println!("{dt} {grown} {remarks}");
-    }
-    let (grown, remarks) = said("newmark", 0.08);
-    assert!(grown > 1.5, "{grown}: {remarks}");
+    let (grown, remarks) = said("newmark", 0.16);
+    assert!(grown > 100.0, "{grown}: {remarks}");
+    let numbers = "start, loads and supports account for 2.000e0 J";
     assert!(
-        remarks.contains("energy grew by itself") && remarks.contains("account for 2.000e0 J"),
+        remarks.contains("grew by itself") && remarks.contains(numbers),
         "{remarks}"
     );
     for (id, dt) in [
-        ("newmark", 0.002),
-        ("implicit-euler", 0.08),
-        ("generalized-alpha", 0.08),
+        ("newmark", 0.01),
+        ("newmark", 0.12),
+        ("implicit-euler", 0.16),
+        ("generalized-alpha", 0.12),
+        ("generalized-alpha", 0.16),
     ] {
         let (grown, remarks) = said(id, dt);
         assert!(
             grown < 1.02 && !remarks.contains("grew"),
-            "`{id}`: {grown}: {remarks}"
+            "`{id}` {dt}: {grown}: {remarks}"
         );
     }
 }
