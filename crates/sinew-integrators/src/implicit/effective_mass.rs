@@ -150,7 +150,7 @@ pub struct EffectiveMass {
     pub(super) a: Vec<f64>,
 }
 
-/// The acceleration a that a step seeks: `M a + m M a_before = c net(u* + k a/c, v* + d a/c)`.
+/// The acceleration a that a step seeks: `M a + m M a_before = c net(u* + k a/c, v* + d a/c) + c_old net(u, v)`.
 #[derive(Clone, Copy)]
 pub(super) struct Sought {
     /// d and k of `M + d D + k K`.
@@ -159,30 +159,33 @@ pub(super) struct Sought {
     pub(super) of_forces: f64,
     /// m.
     pub(super) of_last_inertia: f64,
-    /// Time of the loads at the point where forces balance, and the time from the state to it (s).
-    pub(super) load: LoadTime<'static>,
-    pub(super) after: f64,
-    /// Time of the loads in the net force of a linear system, before it is shaped.
-    pub(super) load_before_shaping: LoadTime<'static>,
+    /// `c_old`.
+    pub(super) of_old_forces: f64,
+    /// Times of the loads at both ends of the step.
+    pub(super) loads: [LoadTime<'static>; 2],
 }
 
 impl Sought {
-    /// The acceleration for which forces and inertia balance at the end of a step of `dt` (s).
-    pub(super) fn at_end(coefficients: [f64; 2], load: LoadTime<'static>, dt: f64) -> Self {
+    /// The acceleration for which forces and inertia balance at the end of a step.
+    pub(super) fn at_end(coefficients: [f64; 2], loads: [LoadTime<'static>; 2]) -> Self {
         Self {
             coefficients,
             of_forces: 1.0,
             of_last_inertia: 0.0,
-            load,
-            after: dt,
-            load_before_shaping: load,
+            of_old_forces: 0.0,
+            loads,
         }
     }
 }
 
 impl EffectiveMass {
+    /// Whether the system is linear.
+    pub(super) fn is_linear(&self) -> bool {
+        matches!(self.solver, Solver::Once(_))
+    }
+
     /// Solves for the acceleration. On a linear system `shape` makes `(M + d D + k K) a` from the net force at the
-    /// prediction, and may use up the predicted velocity.
+    /// prediction, with the loads at the end, and may use up the predicted velocity.
     pub(super) fn solve(
         &mut self,
         step: &Step<'_>,
@@ -193,7 +196,7 @@ impl EffectiveMass {
         match &mut self.solver {
             Solver::Once(factor) => {
                 let point = [&self.u[..], &self.v, &[]];
-                step.net_force(sought.load_before_shaping, step.dt, point, &mut self.a)?;
+                step.net_force(sought.loads[1], step.dt, point, &mut self.a)?;
                 shape(&mut self.a, &mut self.v);
                 factor.solve(&mut self.a);
                 Ok(ONE_SOLVE)
@@ -204,8 +207,8 @@ impl EffectiveMass {
                     coefficients: sought.coefficients,
                     of_forces: sought.of_forces,
                     of_last_inertia: sought.of_last_inertia,
-                    load: sought.load,
-                    after: sought.after,
+                    of_old_forces: sought.of_old_forces,
+                    loads: sought.loads,
                 };
                 newton.solve(step, state, unknown, &mut self.a)
             }

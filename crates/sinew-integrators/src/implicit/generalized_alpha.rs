@@ -156,21 +156,26 @@ impl OneAcceleration for GeneralizedAlpha {
         let (old, new) = (self.of_forces, 1.0 - self.of_forces);
         let ends = |t, dt| LoadTime::at_both_ends(t, dt, 0.5);
         let mut work = effective.keep_acceleration(step, state, ends)?;
+        // Matrices are applied once, to the mixture of both ends; laws at each end.
+        let [of_old, of_new] = if effective.is_linear() {
+            [old, new]
+        } else {
+            [0.0, 1.0]
+        };
         for i in 0..state.u.len() {
             let (u, v, a) = (state.u[i], state.v[i], state.a[i]);
             let predicted = u + dt * v + dt * dt * (0.5 - beta) * a;
-            effective.u[i] = new * predicted + old * u;
-            effective.v[i] = new * (v + dt * (1.0 - gamma) * a) + old * v;
+            effective.u[i] = of_new * predicted + of_old * u;
+            effective.v[i] = of_new * (v + dt * (1.0 - gamma) * a) + of_old * v;
         }
         let [start, end] = ends(state.t(), dt);
         let divide = 1.0 / (1.0 - self.of_mass);
         let sought = Sought {
             coefficients: self.coefficients(dt),
-            of_forces: divide,
+            of_forces: divide * new,
             of_last_inertia: divide * self.of_mass,
-            load: LoadTime::within(state.t(), dt, new),
-            after: new * dt,
-            load_before_shaping: end,
+            of_old_forces: divide * old,
+            loads: [start, end],
         };
         work += effective.solve(step, state, sought, |forces, spare| {
             if old != 0.0 {

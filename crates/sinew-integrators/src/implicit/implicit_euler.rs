@@ -80,8 +80,9 @@ impl OneAcceleration for ImplicitEuler {
             *predicted = u + dt * v;
         }
         effective.v.copy_from_slice(&state.v);
-        let end = LoadTime::end_of(state.t(), dt);
-        let sought = Sought::at_end(self.coefficients(dt), end, dt);
+        let t = state.t();
+        let loads = [LoadTime::start_of(t, dt), LoadTime::end_of(t, dt)];
+        let sought = Sought::at_end(self.coefficients(dt), loads);
         let work = effective.solve(step, state, sought, |_, _| ())?;
         for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&effective.a) {
             *v += dt * a;

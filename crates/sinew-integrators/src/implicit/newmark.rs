@@ -167,8 +167,7 @@ impl OneAcceleration for Newmark {
             effective.u[i] = u + dt * v + dt * dt * (0.5 - beta) * a;
             effective.v[i] = v + dt * (1.0 - gamma) * a;
         }
-        let [_, end] = ends(state.t(), dt);
-        let sought = Sought::at_end(self.coefficients(dt), end, dt);
+        let sought = Sought::at_end(self.coefficients(dt), ends(state.t(), dt));
         work += effective.solve(step, state, sought, |_, _| ())?;
         for (i, a) in effective.a.iter().enumerate() {
             state.u[i] = effective.u[i] + beta * dt * dt * a;

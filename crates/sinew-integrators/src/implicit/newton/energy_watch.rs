@@ -99,10 +99,9 @@ impl EnergyWatch {
     }
 
     /// Takes up the work of supports that move in the step: the elastic energy (J) of the displacement before it with
-    /// the supports of a later instant. The step is `share` times as long as the way to that instant.
-    pub(super) fn supports(&mut self, elastic: f64, share: f64) {
-        let work = share * (elastic - self.elastic);
-        self.take_up(work);
+    /// the supports after it.
+    pub(super) fn supports(&mut self, elastic: f64) {
+        self.take_up(elastic - self.elastic);
     }
 
     fn take_up(&mut self, work: f64) {

@@ -1,6 +1,6 @@
 //! The equations of a step, and the acceleration that solves them.
 
-use sinew_core::vectors::{dot, largest, weighted_dot};
+use sinew_core::vectors::{add_scaled, dot, largest, scale, weighted_dot};
 use sinew_core::{
     BlockMatrix, ElasticLaw, EvaluationError, Fact, LoadTime, Needs, SetupError, State, Step,
     StepError, StepReport, System, TangentKind, Trial,
@@ -14,7 +14,8 @@ use crate::implicit::factor::{Combination, Factor, Matrices};
 /// Share of the size of body and motion by which rounding moves positions.
 const ROUNDING: f64 = 1e-14;
 
-/// The acceleration x that a step seeks: `M x + m M a = c net(u* + c_u x, v* + c_v x)`, with the state's a.
+/// The acceleration x that a step seeks: `M x + m M a = c net(u* + c_u x, v* + c_v x) + c_old net(u, v)`, with the state's
+/// u, v and a.
 #[derive(Clone, Copy)]
 pub(in crate::implicit) struct Unknown<'e> {
     /// u* (m) and v* (m/s).
@@ -25,10 +26,10 @@ pub(in crate::implicit) struct Unknown<'e> {
     pub(in crate::implicit) of_forces: f64,
     /// m; where it is not 0 the state keeps an acceleration.
     pub(in crate::implicit) of_last_inertia: f64,
-    /// Time of the loads at that point.
-    pub(in crate::implicit) load: LoadTime<'e>,
-    /// Time from the state to that point (s).
-    pub(in crate::implicit) after: f64,
+    /// `c_old`.
+    pub(in crate::implicit) of_old_forces: f64,
+    /// Times of the loads at both ends of the step.
+    pub(in crate::implicit) loads: [LoadTime<'e>; 2],
 }
 
 impl Unknown<'_> {
@@ -43,6 +44,8 @@ struct StepEquations<'s> {
     law: &'s dyn ElasticLaw,
     state: &'s State,
     unknown: Unknown<'s>,
+    /// `c_old net(u, v)` (N), where `c_old` is not 0.
+    old_forces: &'s [f64],
     /// Displacement and velocity of the point evaluated.
     u: &'s mut [f64],
     v: &'s mut [f64],
@@ -65,17 +68,17 @@ impl StepEquations<'_> {
 
     fn trial(&self) -> Trial<'_> {
         Trial {
-            load: self.unknown.load,
-            dt: self.unknown.after,
+            load: self.unknown.loads[1],
+            dt: self.step.dt,
             u: self.u,
             v: self.v,
             internal: &self.state.internal,
         }
     }
 
-    /// Sets x so that the displacement of the point is `u_n + after v_n` share, as far as x moves it.
-    fn begin_at(&self, share: f64, x: &mut [f64]) {
-        let (reach, after) = (self.unknown.reach(), share * self.unknown.after);
+    /// Sets x so that the displacement is the state's moved on by its velocity for a time (s), as far as x moves it.
+    fn begin_at(&self, after: f64, x: &mut [f64]) {
+        let reach = self.unknown.reach();
         let [predicted, _] = self.unknown.predicted;
         for (i, x) in x.iter_mut().enumerate() {
             let wanted = self.state.u[i] + after * self.state.v[i];
@@ -102,6 +105,7 @@ impl Equations for StepEquations<'_> {
         let Unknown {
             of_forces: c,
             of_last_inertia: m,
+            of_old_forces,
             ..
         } = self.unknown;
         let mass = self.step.system.mass();
@@ -109,6 +113,9 @@ impl Equations for StepEquations<'_> {
             let before = if m == 0.0 { 0.0 } else { m * self.state.a[i] };
             *residual = mass[i] * (point.x[i] + before) - c * *residual;
             point.elastic[i] *= c;
+        }
+        if of_old_forces != 0.0 {
+            add_scaled(-1.0, self.old_forces, &mut point.residual);
         }
         point.energy = match self.unknown.reach() {
             0.0 => dot(&point.elastic, &point.x),
@@ -156,6 +163,7 @@ pub(in crate::implicit) struct NewtonSteps {
     newton: Newton,
     u: Vec<f64>,
     v: Vec<f64>,
+    old_forces: Vec<f64>,
     /// Size of the body (m), 0 where it has none.
     extent: f64,
     watch: EnergyWatch,
@@ -184,6 +192,7 @@ impl NewtonSteps {
             newton,
             u: zeros(),
             v: zeros(),
+            old_forces: zeros(),
             extent: system.extent().unwrap_or(0.0),
             watch: EnergyWatch::new(integrator, system.dofs()),
             steps: 0,
@@ -213,31 +222,38 @@ impl NewtonSteps {
         self.watch
             .look(step, state, law, &mut trial.elastic, &mut work);
         let size = self.extent.max(largest(&state.u));
+        if unknown.of_old_forces != 0.0 {
+            let point = [&state.u[..], &state.v, &state.internal];
+            step.net_force(unknown.loads[0], 0.0, point, &mut self.old_forces)?;
+            work += StepReport::ONE_FORCE;
+            scale(&mut self.old_forces, unknown.of_old_forces);
+        }
         let mut equations = StepEquations {
             step,
             law,
             state,
             unknown: Unknown {
-                load: unknown.load.under(step.inputs),
+                loads: unknown.loads.map(|load| load.under(step.inputs)),
                 ..unknown
             },
+            old_forces: &self.old_forces,
             u: &mut self.u,
             v: &mut self.v,
             rounding: ROUNDING * size,
         };
         equations.begin_at(0.0, &mut point.x);
-        equations.begin_at(1.0, &mut trial.x);
+        equations.begin_at(step.dt, &mut trial.x);
         let stayed = equations.evaluate(point, &mut work);
         let moved = equations.evaluate(trial, &mut work);
         let refused = |source| StepError::Refused {
-            t: unknown.load.t(),
+            t: unknown.loads[1].t(),
             source,
         };
         match (stayed, moved) {
             (Ok(()), moved) => {
                 if unknown.reach() > 0.0 {
                     let energy = point.energy * unknown.reach() / unknown.of_forces;
-                    self.watch.supports(energy, step.dt / unknown.after);
+                    self.watch.supports(energy);
                 }
                 if moved.is_ok() {
                     self.newton.take_lower();
