@@ -15,8 +15,8 @@ pub enum FactorError {
     /// The factor has more entries than can be counted.
     #[error("it is too large")]
     TooLarge,
-    /// The damping matrix is on another pattern than the tangent.
-    #[error("the extra damping has another pattern than the tangent")]
+    /// Cells that are coupled by damping and not by stiffness.
+    #[error("its damping couples cells that its stiffness does not")]
     Pattern,
     /// The iteration for the eigenvalues of a dense matrix did not converge.
     #[error("a dense eigenproblem did not converge")]

@@ -7,7 +7,7 @@ use sinew_core::{
 
 use super::newton_error::NewtonError;
 use super::{Equations, Newton, NewtonSettings, Point};
-use crate::implicit::factor::{Combination, Matrices};
+use crate::implicit::factor::Combination;
 
 /// The first step, as a share of the load.
 const FIRST: f64 = 0.25;
@@ -74,13 +74,8 @@ impl Equations for StaticEquations<'_> {
         self.law.tangent(&self.trial(x), kind, out)
     }
 
-    fn derivative<'m>(&'m self, tangent: &'m BlockMatrix) -> (Matrices<'m>, Combination) {
-        let matrices = Matrices {
-            mass: self.system.mass(),
-            stiffness: tangent,
-            extra: None,
-        };
-        (matrices, Combination::STATIC)
+    fn derivative(&self) -> (&[f64], Combination) {
+        (self.system.mass(), Combination::STATIC)
     }
 
     fn forces(&self, point: &Point, weights: &[f64]) -> f64 {

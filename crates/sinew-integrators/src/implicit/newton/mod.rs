@@ -57,8 +57,8 @@ pub(super) trait Equations {
         out: &mut BlockMatrix,
     ) -> Result<(), EvaluationError>;
 
-    /// The derivative of g with a tangent.
-    fn derivative<'m>(&'m self, tangent: &'m BlockMatrix) -> (Matrices<'m>, Combination);
+    /// The masses (kg), and the derivative of g as a combination of them, the tangent and the other damping.
+    fn derivative(&self) -> (&[f64], Combination);
 
     /// Size of the forces that balance each other at a point, in the norm by these weights.
     fn forces(&self, point: &Point, weights: &[f64]) -> f64;
@@ -124,6 +124,8 @@ pub(super) struct Newton {
     settings: NewtonSettings,
     factor: Factor,
     tangent: BlockMatrix,
+    /// Damping that is proportional to neither masses nor tangent, on the tangent's pattern.
+    extra: Option<BlockMatrix>,
     /// Weights of squares in the norm of forces.
     weights: Vec<f64>,
     direction: Vec<f64>,
@@ -145,15 +147,17 @@ impl Newton {
         settings: NewtonSettings,
         known: Option<Factor>,
     ) -> Result<Self, FactorError> {
-        let tangent = BlockMatrix::zeros(law.pattern().clone(), layers);
-        let extra = law.damping().extra.as_deref();
-        if extra.is_some_and(|extra| extra.pattern() != tangent.pattern()) {
-            return Err(FactorError::Pattern);
-        }
+        let zeros = || BlockMatrix::zeros(law.pattern().clone(), layers);
+        let tangent = zeros();
+        let extra = law.damping().extra.as_deref().map(|extra| {
+            let mut own = zeros();
+            own.set_to(extra).map(|()| own)
+        });
+        let extra = extra.transpose().map_err(|_| FactorError::Pattern)?;
         let matrices = Matrices {
             mass: &[],
             stiffness: &tangent,
-            extra,
+            extra: None,
         };
         let factor = match known.filter(|factor| factor.fits(matrices)) {
             Some(factor) => factor,
@@ -164,6 +168,7 @@ impl Newton {
             settings,
             factor,
             tangent,
+            extra,
             weights,
             direction: vec![0.0; dofs],
             point: Point::new(dofs),
@@ -278,7 +283,12 @@ impl Newton {
         }
         work.sweeps += 1;
         work.factorizations += 1;
-        let (matrices, combination) = equations.derivative(&self.tangent);
+        let (mass, combination) = equations.derivative();
+        let matrices = Matrices {
+            mass,
+            stiffness: &self.tangent,
+            extra: self.extra.as_ref(),
+        };
         if let Err(error) = self.factor.factorise(matrices, combination) {
             self.singular = Some(error);
             return None;

@@ -9,7 +9,7 @@ use sinew_core::{
 use super::energy_watch::EnergyWatch;
 use super::newton_error::NewtonError;
 use super::{Equations, Newton, NewtonSettings, Point};
-use crate::implicit::factor::{Combination, Factor, Matrices};
+use crate::implicit::factor::{Combination, Factor};
 
 /// Share of the size of body and motion by which rounding moves positions.
 const ROUNDING: f64 = 1e-14;
@@ -134,15 +134,12 @@ impl Equations for StepEquations<'_> {
         self.law.tangent(&self.trial(), kind, out)
     }
 
-    fn derivative<'m>(&'m self, tangent: &'m BlockMatrix) -> (Matrices<'m>, Combination) {
+    fn derivative(&self) -> (&[f64], Combination) {
         let [d, k] = self.unknown.coefficients;
-        let damping = self.law.damping();
-        let matrices = Matrices {
-            mass: self.step.system.mass(),
-            stiffness: tangent,
-            extra: damping.extra.as_deref(),
-        };
-        (matrices, Combination::of_step(damping, d, k))
+        (
+            self.step.system.mass(),
+            Combination::of_step(self.law.damping(), d, k),
+        )
     }
 
     fn forces(&self, point: &Point, weights: &[f64]) -> f64 {
