@@ -7,12 +7,13 @@ mod common;
 use std::hint::black_box;
 
 use common::cube::{altered, cube, mass_damping, scene, springs};
+use common::nonlinear::{Chain, model as chain_of};
 use common::tissue::{body, held, linear};
 use common::{build, inner, plain};
 use sinew_cnn::conformance::CountingAllocator;
 use sinew_core::{
-    Between, Fact, Inputs, LinearSystem, Load, LoadTime, OptionValue, Options, Ramp, State, System,
-    worst_beyond,
+    Between, Fact, Inputs, Layers, LinearSystem, Load, LoadTime, OptionValue, Options, Ramp, State,
+    System, worst_beyond,
 };
 use sinew_fem::{Course, LoadKind, LoadSpec, Model, Moving, NodalForces, On};
 use sinew_integrators::explicit::{GuardOption, Guarded};
@@ -116,6 +117,22 @@ fn neither_do_loads_that_change_nor_other_damping() {
     let system = altered(&model, damping, loads.collect());
     for id in sinew_integrators::ids() {
         let count = allocations_of_steps(&system, id, &plain(), 1e-3);
+        assert_eq!(count, 0, "`{id}`");
+    }
+}
+
+/// Newton's method factorises in each iteration, by the workspace of set-up.
+#[cfg(feature = "implicit")]
+#[test]
+fn neither_does_newtons_method() {
+    let links = Chain {
+        stiffness: 10.0,
+        cubic: 4000.0,
+        longest: f64::INFINITY,
+    };
+    let model = chain_of(links, &[0.1; 40], Layers::One, vec![1.0; 40]);
+    for id in ["newmark", "generalized-alpha", "implicit-euler"] {
+        let count = allocations_of_steps(&model, id, &plain(), 0.01);
         assert_eq!(count, 0, "`{id}`");
     }
 }
