@@ -105,7 +105,7 @@ impl<M: OneAcceleration> StepByHand for ImplicitSteps<M> {
 /// The way to the acceleration.
 enum Solver {
     /// The factor of `M + d D + k K`, kept.
-    Once(Factor),
+    Once(Box<Factor>),
     /// Newton's method with a factor for each iteration.
     Newton(Box<NewtonSteps>),
 }
@@ -125,14 +125,14 @@ impl Solver {
         };
         let factorised = factor.and_then(|mut factor| {
             factor.factorise(operators, combination)?;
-            Ok(Self::Once(factor))
+            Ok(Self::Once(Box::new(factor)))
         });
         factorised.map_err(|error| error.at_set_up(integrator))
     }
 
     fn into_factor(self) -> Factor {
         match self {
-            Self::Once(factor) => factor,
+            Self::Once(factor) => *factor,
             Self::Newton(steps) => steps.into_factor(),
         }
     }

@@ -14,7 +14,8 @@ use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind,
 /// The generalised-alpha method (Chung and Hulbert, J. Appl. Mech. 60, 1993): the equation of motion
 /// holds for `(1 - a_m) a+ + a_m a` and `(1 - a_f)` of everything else at t + dt with `a_f` of it at t,
 /// on Newmark's displacements and velocities with `gamma = 1/2 - a_m + a_f` and
-/// `beta = (1 - a_m + a_f)^2/4`. Order 2, stable at any step.
+/// `beta = (1 - a_m + a_f)^2/4`. Order 2, stable at any step on linear systems. Nonlinear laws are applied at both ends, and
+/// a+ is found by Newton's method.
 ///
 /// `rho_inf` is the share that is left of a motion far too fast for the step after one of them:
 /// `a_m = (2 rho - 1)/(rho + 1)`, `a_f = rho/(rho + 1)`; 1 keeps it, 0 removes it. `hht = alpha` gives
@@ -83,8 +84,7 @@ const HHT: OptionHelp = OptionHelp {
 };
 
 impl Method for GeneralizedAlpha {
-    const SUMMARY: &'static str =
-        "implicit, order 2, one sparse solve a step, damps what the step does not resolve";
+    const SUMMARY: &'static str = "implicit, order 2, one sparse solve a step or Newton iteration, damps what the step does not resolve";
     const OPTIONS: &'static [OptionHelp] = &[RHO, HHT, TOLERANCE, ITERATIONS];
 
     const FACTORISES: bool = true;

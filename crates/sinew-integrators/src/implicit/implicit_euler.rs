@@ -11,7 +11,7 @@ use crate::{Method, NumericalDissipation, OptionHelp, Scheme, SetUp};
 
 /// `v+ = v + dt a+`, `u+ = u + dt v+` with `(M + dt D + dt^2 K) a+ = F(t + dt) - K (u + dt v) - D v`
 /// (Baraff and Witkin, Large steps in cloth simulation, 1998, for a linear system). Stable at any
-/// step and strongly damped by it.
+/// step and strongly damped by it. On nonlinear laws a+ solves `M a+ = net(u+, v+)` by Newton's method.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ImplicitEuler {
     newton: NewtonSettings,
@@ -26,7 +26,8 @@ impl ImplicitEuler {
 }
 
 impl Method for ImplicitEuler {
-    const SUMMARY: &'static str = "implicit, order 1, one sparse solve a step; damps what it moves";
+    const SUMMARY: &'static str =
+        "implicit, order 1, one sparse solve a step or Newton iteration; damps what it moves";
     const OPTIONS: &'static [OptionHelp] = &[TOLERANCE, ITERATIONS];
 
     const FACTORISES: bool = true;

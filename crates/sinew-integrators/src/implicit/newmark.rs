@@ -15,7 +15,10 @@ use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind,
 /// `(M + gamma dt D + beta dt^2 K) a+ = F(t + dt) - K u* - D v*`, `u+ = u* + beta dt^2 a+`,
 /// `v+ = v* + gamma dt a+`. The first acceleration is the consistent one.
 ///
-/// The default, beta = 1/4 and gamma = 1/2, is stable at any step and conserves energy.
+/// On nonlinear laws the same equations are solved for a+ by Newton's method.
+///
+/// The default, beta = 1/4 and gamma = 1/2, is stable at any step and conserves energy on linear systems; on nonlinear
+/// ones the energy may grow in long steps, which is told.
 #[derive(Clone, Copy, Debug)]
 pub struct Newmark {
     beta: f64,
@@ -68,7 +71,8 @@ const GAMMA: OptionHelp = OptionHelp {
 };
 
 impl Method for Newmark {
-    const SUMMARY: &'static str = "implicit, order 2, one sparse solve a step, stable at any step";
+    const SUMMARY: &'static str =
+        "implicit, order 2, one sparse solve a step or Newton iteration, stable at any step";
     const OPTIONS: &'static [OptionHelp] = &[BETA, GAMMA, TOLERANCE, ITERATIONS];
 
     const FACTORISES: bool = true;

@@ -6,7 +6,8 @@ use sinew_core::{
 };
 
 use super::newton_error::NewtonError;
-use super::{Equations, Newton, NewtonSettings, Point};
+use super::settings::NewtonSettings;
+use super::solver::{Equations, Newton, Point};
 use crate::implicit::factor::Combination;
 
 /// The first step, as a share of the load.

@@ -8,7 +8,8 @@ use sinew_core::{
 
 use super::energy_watch::EnergyWatch;
 use super::newton_error::NewtonError;
-use super::{Equations, Newton, NewtonSettings, Point};
+use super::settings::NewtonSettings;
+use super::solver::{Equations, Newton, Point};
 use crate::implicit::factor::{Combination, Factor};
 
 /// Share of the size of body and motion by which rounding moves positions.

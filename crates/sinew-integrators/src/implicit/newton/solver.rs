@@ -1,0 +1,347 @@
+//! Newton's method with a line search, and projection on demand.
+
+use sinew_core::vectors::{add_scaled, dot, weighted_dot};
+use sinew_core::{BlockMatrix, ElasticLaw, EvaluationError, Layers, StepReport, TangentKind};
+
+use super::newton_error::NewtonError;
+use super::settings::NewtonSettings;
+use crate::implicit::factor::{Combination, Factor, Matrices};
+use crate::implicit::factor_error::FactorError;
+
+/// Halvings of a step along the exact tangent's direction before the projected one is tried.
+const HALVINGS_OF_EXACT: u32 = 4;
+
+/// Halvings of a step along the projected tangent's direction before the search is given up.
+const MOST_HALVINGS: u32 = 30;
+
+/// Doublings of a step along the projected tangent's direction.
+const MOST_DOUBLINGS: u32 = 30;
+
+/// The share of the descent that the slope promises which a step must bring (Armijo).
+const ARMIJO: f64 = 1e-4;
+
+/// Share of the energies below which their change is not trusted, and slopes decide (Hager and Zhang, SIAM J. Optim. 16,
+/// 2005): in a body strained by 1e-6 the rounding of positions spoils ten digits of the energy, and four of the forces.
+const DOUBTFUL: f64 = 1e-6;
+
+/// The share of a slope that may be left, upwards, where slopes decide.
+const OVERSHOT: f64 = 0.5;
+
+/// Equations `g(x) = 0`, the elastic part of which is the gradient of an energy.
+pub(super) trait Equations {
+    /// Evaluates the point at its `x`.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] when the law is outside its domain there.
+    fn evaluate(&mut self, point: &mut Point, work: &mut StepReport)
+    -> Result<(), EvaluationError>;
+
+    /// `out = dg_elastic/du` of a kind at `x`, before it is combined.
+    ///
+    /// # Errors
+    /// As [`Equations::evaluate`].
+    fn tangent(
+        &mut self,
+        x: &[f64],
+        kind: TangentKind,
+        out: &mut BlockMatrix,
+    ) -> Result<(), EvaluationError>;
+
+    /// The masses (kg), and the derivative of g as a combination of them, the tangent and the other damping.
+    fn derivative(&self) -> (&[f64], Combination);
+
+    /// Size of the forces that balance each other at a point, in the norm by these weights.
+    fn forces(&self, point: &Point, weights: &[f64]) -> f64;
+
+    /// Whether a change of x at a point is lost in the rounding of positions.
+    fn is_rounding(&self, point: &Point, change: &[f64]) -> bool;
+}
+
+/// A point at which equations are evaluated.
+#[derive(Debug, Default)]
+pub(super) struct Point {
+    /// The unknown.
+    pub(super) x: Vec<f64>,
+    /// g(x).
+    pub(super) residual: Vec<f64>,
+    /// The elastic part of g(x).
+    pub(super) elastic: Vec<f64>,
+    /// The energy whose gradient in x is the elastic part.
+    pub(super) energy: f64,
+}
+
+impl Point {
+    fn new(dofs: usize) -> Self {
+        let zeros = || vec![0.0; dofs];
+        Self {
+            x: zeros(),
+            residual: zeros(),
+            elastic: zeros(),
+            energy: 0.0,
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        self.energy.is_finite() && dot(&self.residual, &self.residual).is_finite()
+    }
+
+    /// The rate at which all forces but the elastic ones take up work along a direction.
+    fn other_slope(&self, along: &[f64]) -> f64 {
+        dot(&self.residual, along) - dot(&self.elastic, along)
+    }
+}
+
+/// Change of the potential from one point to another, a share of `along` apart, and the size of its parts. The forces that have
+/// no energy count with the mean of both ends, which is exact where they are linear, as inertia, loads and viscous damping are.
+fn change(from: &Point, to: &Point, along: &[f64], share: f64) -> (f64, f64) {
+    let [before, after] = [from, to].map(|point| share * point.other_slope(along));
+    let others = 0.5 * (before + after);
+    let size = from.energy.abs() + to.energy.abs() + before.abs() + after.abs();
+    (to.energy - from.energy + others, size)
+}
+
+/// What became of an iteration.
+enum Iterated {
+    Moved,
+    /// The next change is lost in rounding.
+    AtRounding,
+    Stuck,
+}
+
+/// Newton's method with a line search, and projection where the exact tangent leads nowhere (Longva et al.,
+/// arXiv 2311.14526, 2023). The tangent is factorised in each iteration, so that a solution is a function of where it began.
+pub(super) struct Newton {
+    settings: NewtonSettings,
+    factor: Factor,
+    tangent: BlockMatrix,
+    /// Damping that is proportional to neither masses nor tangent, on the tangent's pattern.
+    extra: Option<BlockMatrix>,
+    /// Weights of squares in the norm of forces.
+    weights: Vec<f64>,
+    direction: Vec<f64>,
+    /// The best point so far, at which the iteration begins.
+    pub(super) point: Point,
+    /// The next trial.
+    pub(super) trial: Point,
+    /// The last refusal of the present iteration.
+    refusal: Option<EvaluationError>,
+    singular: Option<FactorError>,
+}
+
+impl Newton {
+    /// Analyses the pattern of a law, or takes the analysis of a factor that fits; allocates all that iterations need.
+    pub(super) fn set_up(
+        law: &dyn ElasticLaw,
+        layers: Layers,
+        weights: Vec<f64>,
+        settings: NewtonSettings,
+        known: Option<Factor>,
+    ) -> Result<Self, FactorError> {
+        let zeros = || BlockMatrix::zeros(law.pattern().clone(), layers);
+        let tangent = zeros();
+        let extra = law.damping().extra.as_deref().map(|extra| {
+            let mut own = zeros();
+            own.set_to(extra).map(|()| own)
+        });
+        let extra = extra.transpose().map_err(|_| FactorError::Pattern)?;
+        let matrices = Matrices {
+            mass: &[],
+            stiffness: &tangent,
+            extra: None,
+        };
+        let factor = match known.filter(|factor| factor.fits(matrices)) {
+            Some(factor) => factor,
+            None => Factor::analyse(matrices)?,
+        };
+        let dofs = weights.len();
+        Ok(Self {
+            settings,
+            factor,
+            tangent,
+            extra,
+            weights,
+            direction: vec![0.0; dofs],
+            point: Point::new(dofs),
+            trial: Point::new(dofs),
+            refusal: None,
+            singular: None,
+        })
+    }
+
+    pub(super) fn into_factor(self) -> Factor {
+        self.factor
+    }
+
+    /// Takes the trial for the point if its potential is the lower one.
+    pub(super) fn take_lower(&mut self) {
+        self.direction.copy_from_slice(&self.trial.x);
+        add_scaled(-1.0, &self.point.x, &mut self.direction);
+        let (change, _) = change(&self.point, &self.trial, &self.direction, 1.0);
+        if change < 0.0 {
+            self.take_trial();
+        }
+    }
+
+    /// Takes the trial for the point.
+    pub(super) fn take_trial(&mut self) {
+        std::mem::swap(&mut self.point, &mut self.trial);
+    }
+
+    /// Moves the point, which is evaluated, until its forces balance.
+    pub(super) fn solve(
+        &mut self,
+        equations: &mut impl Equations,
+        work: &mut StepReport,
+    ) -> Result<(), NewtonError> {
+        let mut iterations = 0;
+        (self.refusal, self.singular) = (None, None);
+        loop {
+            let residual = self.residual(equations);
+            if residual <= self.settings.tolerance {
+                return Ok(());
+            }
+            let failure = |reason| NewtonError::Unbalanced {
+                iterations,
+                residual,
+                reason,
+            };
+            if iterations >= u64::from(self.settings.most_iterations) {
+                return Err(match self.refusal.take() {
+                    Some(refusal) => NewtonError::Refused(refusal),
+                    None => failure("the most iterations allowed were taken"),
+                });
+            }
+            work.newton_iterations += 1;
+            match self.iterate(equations, work) {
+                Iterated::Moved => iterations += 1,
+                Iterated::AtRounding => return Ok(()),
+                Iterated::Stuck => {
+                    return Err(match (self.refusal.take(), self.singular.take()) {
+                        (Some(refusal), _) => NewtonError::Refused(refusal),
+                        (None, Some(error)) => NewtonError::Singular(error),
+                        (None, None) => failure("no step along the tangent leads down"),
+                    });
+                }
+            }
+        }
+    }
+
+    /// Residual over the size of the forces.
+    fn residual(&self, equations: &impl Equations) -> f64 {
+        let residual = &self.point.residual;
+        let residual = weighted_dot(&self.weights, residual, residual).sqrt();
+        if residual == 0.0 {
+            return 0.0;
+        }
+        residual / equations.forces(&self.point, &self.weights)
+    }
+
+    fn iterate(&mut self, equations: &mut impl Equations, work: &mut StepReport) -> Iterated {
+        (self.refusal, self.singular) = (None, None);
+        for (kind, halvings) in [
+            (TangentKind::Exact, HALVINGS_OF_EXACT),
+            (TangentKind::Frozen, MOST_HALVINGS),
+        ] {
+            let Some(slope) = self.direct(equations, kind, work) else {
+                continue;
+            };
+            if equations.is_rounding(&self.point, &self.direction) {
+                return Iterated::AtRounding;
+            }
+            if slope < 0.0
+                && let Some(share) = self.search(equations, slope, halvings, work)
+            {
+                if kind != TangentKind::Exact && share == 1.0 {
+                    self.lengthen(equations, slope, work);
+                }
+                return Iterated::Moved;
+            }
+        }
+        Iterated::Stuck
+    }
+
+    /// Sets the direction by a kind of tangent; the slope along it, where there is a factor.
+    fn direct(
+        &mut self,
+        equations: &mut impl Equations,
+        kind: TangentKind,
+        work: &mut StepReport,
+    ) -> Option<f64> {
+        if let Err(refusal) = equations.tangent(&self.point.x, kind, &mut self.tangent) {
+            self.refusal = Some(refusal);
+            return None;
+        }
+        work.sweeps += 1;
+        work.factorizations += 1;
+        let (mass, combination) = equations.derivative();
+        let matrices = Matrices {
+            mass,
+            stiffness: &self.tangent,
+            extra: self.extra.as_ref(),
+        };
+        if let Err(error) = self.factor.factorise(matrices, combination) {
+            self.singular = Some(error);
+            return None;
+        }
+        self.singular = None;
+        for (direction, residual) in self.direction.iter_mut().zip(&self.point.residual) {
+            *direction = -residual;
+        }
+        self.factor.solve(&mut self.direction);
+        work.solves += 1;
+        work.projected_solves += u64::from(kind != TangentKind::Exact);
+        Some(dot(&self.point.residual, &self.direction))
+    }
+
+    /// Halves the step until it leads down as far as its slope promises; the share of it that was taken.
+    fn search(
+        &mut self,
+        equations: &mut impl Equations,
+        slope: f64,
+        halvings: u32,
+        work: &mut StepReport,
+    ) -> Option<f64> {
+        let mut share = 1.0;
+        for _ in 0..=halvings {
+            self.trial.x.copy_from_slice(&self.point.x);
+            add_scaled(share, &self.direction, &mut self.trial.x);
+            match equations.evaluate(&mut self.trial, work) {
+                Err(refusal) => self.refusal = Some(refusal),
+                Ok(()) if self.trial.is_finite() => {
+                    let (rise, size) = change(&self.point, &self.trial, &self.direction, share);
+                    let left = dot(&self.trial.residual, &self.direction);
+                    let by_slopes = rise <= DOUBTFUL * size && left <= OVERSHOT * -slope;
+                    if rise <= ARMIJO * share * slope || by_slopes {
+                        self.take_trial();
+                        return Some(share);
+                    }
+                }
+                Ok(()) => {}
+            }
+            work.backtracks += 1;
+            share *= 0.5;
+        }
+        None
+    }
+
+    /// Goes on along the direction, each time as far again, while that leads down: a projected tangent, stiffer than the law
+    /// or without any stiffness at all, says little about lengths.
+    fn lengthen(&mut self, equations: &mut impl Equations, slope: f64, work: &mut StepReport) {
+        let mut share = 1.0;
+        for _ in 0..MOST_DOUBLINGS {
+            self.trial.x.copy_from_slice(&self.point.x);
+            add_scaled(share, &self.direction, &mut self.trial.x);
+            if equations.evaluate(&mut self.trial, work).is_err() || !self.trial.is_finite() {
+                return;
+            }
+            let (rise, _) = change(&self.point, &self.trial, &self.direction, share);
+            // A comparison that is false for NaN too.
+            if rise <= ARMIJO * share * slope {
+                self.take_trial();
+                share *= 2.0;
+            } else {
+                return;
+            }
+        }
+    }
+}
