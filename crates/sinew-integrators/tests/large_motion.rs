@@ -8,7 +8,7 @@ mod common;
 use common::{build, plain, relative_error};
 use sinew_core::spectrum::largest_eigenvalue;
 use sinew_core::{
-    ElasticLaw, LoadTime, Ramp, StableStep, State, StepError, System, TangentKind, Trial,
+    ElasticLaw, LoadTime, Options, Ramp, StableStep, State, StepError, System, TangentKind, Trial,
 };
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region};
@@ -19,6 +19,7 @@ use sinew_mesh::structured::{self, Split};
 struct Scene {
     mesh: TetMesh,
     model: Model,
+    problem: Problem,
     start: State,
     duration: f64,
 }
@@ -53,8 +54,15 @@ impl Scene {
             start: State::at_rest(model.dofs()),
             mesh,
             model,
+            problem,
             duration,
         }
+    }
+
+    /// Gives it another mass damping (1/s).
+    fn damp(&mut self, rate: f64) {
+        self.problem.damping.mass = rate;
+        self.model = self.model.with_problem(&self.problem).unwrap();
     }
 
     /// A cube stretched by half along z at the volume of rest, and let go.
@@ -107,9 +115,19 @@ impl Scene {
             .collect()
     }
 
-    /// The displacements at `instants` instants, so many steps a second.
+    /// The displacements by central difference at `instants` instants, so many steps a second.
     fn run(&self, rate: usize, instants: usize) -> Result<Vec<Vec<f64>>, StepError> {
-        let mut integrator = build("central-difference", &plain());
+        self.run_by("central-difference", &plain(), rate, instants)
+    }
+
+    fn run_by(
+        &self,
+        id: &str,
+        options: &Options,
+        rate: usize,
+        instants: usize,
+    ) -> Result<Vec<Vec<f64>>, StepError> {
+        let mut integrator = build(id, options);
         let (mut state, dt) = (self.start.clone(), 1.0 / rate as f64);
         let steps = (self.duration * rate as f64 / instants as f64).round() as usize;
         let mut seen = Vec::new();
@@ -286,4 +304,24 @@ fn steps_follow_the_current_stiffness() {
         fresh.step(&scene.model, &mut resumed, dt).unwrap();
     }
     assert_eq!(resumed, state);
+}
+
+/// The paper's network takes the force of a law as any other: exact below forward Euler's stable step, which damping gives it, and refused by
+/// name where longer steps turn an element inside out.
+#[test]
+fn the_papers_network_presses_tissue_below_its_stable_step_and_is_refused_beyond() {
+    let mut scene = Scene::push();
+    scene.damp(80.0);
+    let reference = scene.reference(8000, 50);
+    let network = |rate| scene.run_by("cnn", &plain(), rate, 50);
+    let found = relative_error(&network(4000).unwrap(), &reference);
+    assert_near([found], &[3e-4], 5e-5);
+    let refused = network(2000).unwrap_err().to_string();
+    assert!(
+        refused.contains("element") && refused.contains("neo-hookean"),
+        "{refused}"
+    );
+    let limited =
+        build("cnn", &plain().with_text("saturation", "auto")).prepare(&scene.model, 1e-4);
+    assert!(limited.is_err(), "a guard's limits follow from matrices");
 }

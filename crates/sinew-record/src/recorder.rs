@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use sinew_core::{Moment, RecordError, Recorder, Verdict};
+use sinew_core::{Moment, RecordError, Recorder, StepReport, Verdict};
 use sinew_scene::output::{GrowingFile, OwnedFolder};
 use sinew_scene::{Instants, ProbeRows, Simulation};
 
@@ -124,6 +124,8 @@ pub(crate) struct RunRecorder<'a> {
     pub(crate) line: String,
     /// Velocity (m/s) of the moment that is being written.
     pub(crate) v: Vec<f64>,
+    /// Work up to the last moment that was recorded.
+    pub(crate) work: StepReport,
 }
 
 impl RunRecorder<'_> {
@@ -244,6 +246,7 @@ impl Recorder for RunRecorder<'_> {
     }
 
     fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        self.work = moment.work;
         self.write(self.before + moment.step, moment)
             .map_err(|error| failed(moment.state.t(), error))
     }

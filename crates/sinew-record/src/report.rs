@@ -120,6 +120,7 @@ fn facts(summary: &Summary<'_>) -> Vec<(&'static str, String)> {
     let outcome = match summary.ended {
         Ended::Finished => "finished".to_owned(),
         Ended::Diverged { t, place } => format!("diverged at t = {t:.6} s, first at {place}"),
+        Ended::Refused { t, reason } => format!("refused at t = {t:.6} s: {reason}"),
         Ended::Interrupted { t } => format!("interrupted at t = {t:.6} s"),
     };
     let work = progress.work;

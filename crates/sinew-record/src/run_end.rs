@@ -33,6 +33,13 @@ pub enum Ended {
         /// The degree of freedom that went farthest, in the system's words.
         place: String,
     },
+    /// A law refused a state, or a step found no equilibrium.
+    Refused {
+        /// Time (s).
+        t: f64,
+        /// The element and the reason.
+        reason: String,
+    },
     /// Stopped before its end, with a checkpoint.
     Interrupted {
         /// Time (s).

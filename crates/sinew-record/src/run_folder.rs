@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::thread;
 use std::time::Instant;
 
-use sinew_core::{Outcome, simulate};
+use sinew_core::{Outcome, RecordError, SimulateError, StepError, StepReport, simulate};
 use sinew_integrators::Stepper;
 use sinew_scene::output::{OutputError, OwnedFolder, Tenant};
 use sinew_scene::{ProbeRows, Scene, Simulation};
@@ -159,7 +159,7 @@ impl RunFolder {
         let before = progress.steps;
         let mut run = simulation.run();
         run.steps -= before.min(run.steps);
-        let (report, (mut progress, largest)) = thread::scope(|scope| {
+        let (steps, work, ended, (mut progress, largest)) = thread::scope(|scope| {
             let frames = body.zip(surface.as_ref()).map(|(body, surface)| {
                 let job = FrameJob {
                     folder: &self.folder,
@@ -188,19 +188,32 @@ impl RunFolder {
                 saved: Instant::now(),
                 line: String::new(),
                 v: Vec::new(),
+                work: StepReport::default(),
             };
-            let report = simulate(system, integrator, &mut state, &run, &mut recorder)?;
-            Ok::<_, RecordRunError>((report, recorder.settle()?))
+            let simulated = simulate(system, integrator, &mut state, &run, &mut recorder);
+            let (steps, work, ended) = match simulated {
+                Ok(report) => {
+                    let ended = match report.outcome {
+                        Outcome::Finished => Ended::Finished,
+                        Outcome::Diverged { t, dof } => Ended::Diverged {
+                            t,
+                            place: system.cell_name(dof),
+                        },
+                        Outcome::Stopped => Ended::Interrupted { t: state.t() },
+                    };
+                    (report.steps, report.work, ended)
+                }
+                Err(error) => {
+                    // Steps are known by the time they reached; work since the last record is not.
+                    let steps = (state.t() / simulation.dt()).floor() as usize;
+                    let (t, reason) = refusal(error)?;
+                    let ended = Ended::Refused { t, reason };
+                    (steps.saturating_sub(before), recorder.work, ended)
+                }
+            };
+            Ok::<_, RecordRunError>((steps, work, ended, recorder.settle()?))
         })?;
-        progress.work.add(report.work);
-        let ended = match report.outcome {
-            Outcome::Finished => Ended::Finished,
-            Outcome::Diverged { t, dof } => Ended::Diverged {
-                t,
-                place: system.cell_name(dof),
-            },
-            Outcome::Stopped => Ended::Interrupted { t: state.t() },
-        };
+        progress.work.add(work);
         if let (Some(surface), Some(body)) = (&surface, body) {
             surface.write(&self.folder, &body.mesh)?;
             let times = frame_times(&schedules, progress.frames, simulation.dt());
@@ -212,7 +225,7 @@ impl RunFolder {
             simulation,
             record: &self.record,
             ended: &ended,
-            steps: before + report.steps,
+            steps: before + steps,
             t: state.t(),
             progress: &progress,
             schedules: &schedules,
@@ -230,21 +243,43 @@ impl RunFolder {
         if !matches!(ended, Ended::Interrupted { .. }) {
             self.folder.remove(checkpoint::NAME)?;
         }
-        let (steps, seen, work) = (
-            before + report.steps,
+        let (own, steps, seen, work) = (
+            steps,
+            before + steps,
             progress.seen.displacement,
             progress.work,
         );
         Ok(RunEnd {
             ended,
             steps,
-            own: (report.steps, wall),
+            own: (own, wall),
             frames: progress.frames,
             work: (work.sweeps, work.solves),
             saturated: work.saturated_share(steps, system.dofs()),
             largest: (seen.value, seen.t, seen.at),
             warnings,
         })
+    }
+}
+
+/// Time (s) and reason of a refusal, by a law or by a method that found no equilibrium.
+///
+/// # Errors
+/// Any other error, as it is.
+fn refusal(error: SimulateError) -> Result<(f64, String), RecordRunError> {
+    match error {
+        SimulateError::Step(StepError::Refused { t, source }) => Ok((t, source.to_string())),
+        SimulateError::Step(StepError::NotConverged { t, .. }) => Ok((t, error.to_string())),
+        SimulateError::Record(RecordError { t, source }) => {
+            match source.downcast::<RecordRunError>() {
+                Ok(cause) => match *cause {
+                    RecordRunError::State(refused) => Ok((t, refused.to_string())),
+                    other => Err(other),
+                },
+                Err(source) => Err(SimulateError::Record(RecordError { t, source }).into()),
+            }
+        }
+        other => Err(other.into()),
     }
 }
 

@@ -88,6 +88,7 @@ impl Summary<'_> {
         let (outcome, diverged) = match self.ended {
             Ended::Finished => ("finished", Value::Null),
             Ended::Diverged { t, place } => ("diverged", json!({ "t_s": t, "at": place })),
+            Ended::Refused { .. } => ("refused", Value::Null),
             Ended::Interrupted { .. } => ("interrupted", Value::Null),
         };
         let [most, last] = progress.kinetic;
@@ -117,6 +118,10 @@ impl Summary<'_> {
             "title": simulation.scene().title(),
             "outcome": outcome,
             "diverged": diverged,
+            "refused": match self.ended {
+                Ended::Refused { t, reason } => json!({ "t_s": t, "reason": reason }),
+                _ => Value::Null,
+            },
             "bounded": !matches!(self.ended, Ended::Diverged { .. }),
             "guarded": work.saturated > 0,
             "saturated_share_of_velocities": work.saturated_share(self.steps, simulation.system().dofs()),

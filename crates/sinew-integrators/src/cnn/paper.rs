@@ -31,7 +31,7 @@ impl Explicit for Cnn {
     }
 
     fn properties(&self) -> Properties {
-        Properties::of_order(1, Needs::Matrices, EnergyBehaviour::Grows)
+        Properties::of_order(1, Needs::Forces, EnergyBehaviour::Grows)
     }
 
     /// Forward Euler's stable step: the clamp bounds the motion beyond it without making it right.

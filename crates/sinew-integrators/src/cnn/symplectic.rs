@@ -27,7 +27,7 @@ impl Explicit for CnnSymplectic {
     }
 
     fn properties(&self) -> Properties {
-        Properties::of_order(1, Needs::Matrices, EnergyBehaviour::Bounded)
+        Properties::of_order(1, Needs::Forces, EnergyBehaviour::Bounded)
     }
 
     fn stable_step(&self, spectrum: &Spectrum) -> StableStep {

@@ -180,6 +180,14 @@ pub(crate) enum Failure {
         /// The degree of freedom in the system's words.
         place: String,
     },
+    /// A run that ended because a law refused a state, or a step found no equilibrium.
+    #[error("the run ended at t = {t:.6} s: {reason}")]
+    Refused {
+        /// Time (s).
+        t: f64,
+        /// The element and the reason.
+        reason: String,
+    },
     /// A run that someone ended before its time.
     #[error("interrupted at t = {t:.6} s{remedy}")]
     Interrupted {
@@ -296,6 +304,7 @@ impl Failure {
             | Self::Run(_)
             | Self::Reactions(_)
             | Self::Diverged { .. }
+            | Self::Refused { .. }
             | Self::Gaps { .. }
             | Self::Print(_) => FAILED,
         }

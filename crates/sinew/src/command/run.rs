@@ -132,6 +132,7 @@ pub(crate) fn in_folder(
     match end.ended {
         Ended::Finished => Ok(()),
         Ended::Diverged { t, place } => Err(Failure::Diverged { t, place }),
+        Ended::Refused { t, reason } => Err(Failure::Refused { t, reason }),
         Ended::Interrupted { t } => Err(Failure::Interrupted {
             t,
             remedy: format!("; `sinew resume {}` goes on", path.display()),
@@ -163,6 +164,7 @@ pub(crate) fn run_for_comparison(
     match end?.ended {
         Ended::Finished => Ok(()),
         Ended::Diverged { t, place } => Err(Failure::Diverged { t, place }),
+        Ended::Refused { t, reason } => Err(Failure::Refused { t, reason }),
         Ended::Interrupted { t } => Err(Failure::Interrupted {
             t,
             remedy: String::new(),
