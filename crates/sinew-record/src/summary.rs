@@ -50,7 +50,7 @@ pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
     if strain.value > LARGEST_STRAIN {
         warnings.push(format!(
             "a principal strain of {:.0} % in tetrahedron {} at t = {} s: the linear theory is off by about as much of the \
-             stress; it is made for less than {:.0} %",
+             stress; it is made for less than {:.0} %, and model = \"neo-hookean\" for more",
             100.0 * strain.value,
             strain.at,
             strain.t,
@@ -61,7 +61,7 @@ pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
         let angle = seen.rotation.value.min(std::f64::consts::PI);
         warnings.push(format!(
             "a rotation of about {rotation:.0} degrees of tetrahedron {} at t = {} s: the linear theory takes it for a strain \
-             of {:.0} %; it is made for less than {LARGEST_ROTATION} degrees",
+             of {:.0} %; it is made for less than {LARGEST_ROTATION} degrees, and model = \"neo-hookean\" for any",
             seen.rotation.at,
             seen.rotation.t,
             100.0 * (1.0 - angle.cos())

@@ -177,6 +177,22 @@ fn a_material_in_which_linear_tetrahedra_lock_is_named() {
     let springs = "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }";
     let law = "model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.4";
     assert_eq!(warned(law, springs), []);
+    // So does a law of large deformation, and neither where it averages.
+    let law = "model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.4";
+    let large = |element: &str| {
+        format!(
+            "model = \"neo-hookean\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.49\n{element}"
+        )
+    };
+    assert_eq!(one(law, &large("")).kind, WarningKind::Locking);
+    assert_eq!(warned(law, &large("element = \"fbar-edge\"")), []);
+}
+
+#[test]
+fn a_law_that_gives_way_under_pressure_is_named() {
+    let law = "model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.4";
+    let weak = "model = \"stvk\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.4";
+    assert_eq!(one(law, weak).kind, WarningKind::WeakLaw);
 }
 
 #[test]
@@ -292,6 +308,7 @@ fn every_kind_has_a_name_of_its_own() {
         WarningKind::EmptyRegion,
         WarningKind::FreePart,
         WarningKind::Locking,
+        WarningKind::WeakLaw,
         WarningKind::HeldInitial,
         WarningKind::MotionJumps,
         WarningKind::LoadOnMoved,

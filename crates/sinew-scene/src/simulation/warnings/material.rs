@@ -1,5 +1,6 @@
 //! Materials in which plain tetrahedra lock.
 
+use sinew_fem::hyperelastic::{HyperelasticLaw, Parameters, Stvk};
 use sinew_fem::{Element, Law};
 
 use super::{Warning, WarningKind};
@@ -13,9 +14,11 @@ pub(super) fn locking(body: &Body) -> Vec<Warning> {
     let regions = body.problem.regions.iter().enumerate();
     let plain = regions.filter(|(_, region)| region.element == Element::P1);
     let locking = plain.filter_map(|(index, region)| match region.law {
-        Law::Linear { poissons_ratio, .. } if poissons_ratio > LOCKS => {
-            Some((index, poissons_ratio))
-        }
+        Law::Linear { poissons_ratio, .. }
+        | Law::Hyperelastic {
+            parameters: Parameters { poissons_ratio, .. },
+            ..
+        } if poissons_ratio > LOCKS => Some((index, poissons_ratio)),
         _ => None,
     });
     locking
@@ -32,6 +35,24 @@ pub(super) fn locking(body: &Body) -> Vec<Warning> {
             Warning::new(WarningKind::Locking, what, mend).with(&numbers)
         })
         .collect()
+}
+
+/// A warning for each region of Saint Venant and Kirchhoff's law: pulled or pressed along one axis it resists with `E/2 (l^3 - l)`, l being the
+/// stretch, which is least at `l = 1/sqrt 3`.
+pub(super) fn weak_laws(body: &Body) -> Vec<Warning> {
+    let regions = (1..).zip(&body.problem.regions);
+    let weak = regions
+        .filter(|(_, region)| matches!(region.law, Law::Hyperelastic { id, .. } if id == Stvk::ID));
+    weak.map(|(number, _)| {
+        let what = format!(
+            "[[region]] {number} has model = \"{}\": pressed to less than 58 % of its length it gives way, and turns inside out \
+             without resistance",
+            Stvk::ID
+        );
+        let mend = "model = \"neo-hookean\" resists the more the farther it is pressed";
+        Warning::new(WarningKind::WeakLaw, what, mend)
+    })
+    .collect()
 }
 
 /// Poisson's ratios, and the static deflection of meshes/beam.msh under a force at its tip with each of them, in percent

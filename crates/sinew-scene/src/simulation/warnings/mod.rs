@@ -29,6 +29,7 @@ impl Simulation {
                 warnings.extend(parts::free(built));
             }
             warnings.extend(material::locking(body));
+            warnings.extend(material::weak_laws(body));
             warnings.extend(initial::held(body, built));
             warnings.extend(motions::warnings(body, built));
         }

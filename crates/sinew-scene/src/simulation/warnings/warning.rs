@@ -83,6 +83,8 @@ pub enum WarningKind {
     FreePart,
     /// A material in which plain linear tetrahedra are too stiff.
     Locking,
+    /// A law that fails in motions that tissue undergoes.
+    WeakLaw,
     /// An initial displacement of held components, which stay where they are.
     HeldInitial,
     /// A prescribed position that jumps.
@@ -123,6 +125,7 @@ impl WarningKind {
             Self::EmptyRegion => "empty-region",
             Self::FreePart => "free-part",
             Self::Locking => "locking",
+            Self::WeakLaw => "weak-law",
             Self::HeldInitial => "held-initial",
             Self::MotionJumps => "motion-jumps",
             Self::LoadOnMoved => "load-on-moved",
