@@ -24,6 +24,10 @@ pub struct StepReport {
     /// Degrees of freedom whose velocity was saturated; for a step taken in parts, in the part with
     /// the most.
     pub saturated: u64,
+    /// Steps whose velocity was reduced, because the energy would have risen by more than rounding.
+    pub limiter_hits: u64,
+    /// Steps taken again by another formula, because the first one's end has more energy than there was.
+    pub fallbacks: u64,
 }
 
 impl StepReport {
@@ -38,6 +42,8 @@ impl StepReport {
         projected_solves: 0,
         cells_set_up: 0,
         saturated: 0,
+        limiter_hits: 0,
+        fallbacks: 0,
     };
 
     /// Adds the work of a part of the same step.
@@ -59,5 +65,7 @@ impl AddAssign for StepReport {
         self.projected_solves += other.projected_solves;
         self.cells_set_up += other.cells_set_up;
         self.saturated += other.saturated;
+        self.limiter_hits += other.limiter_hits;
+        self.fallbacks += other.fallbacks;
     }
 }

@@ -237,7 +237,10 @@ impl<M: Scheme> Integrator for Frame<M> {
 
 impl<M: Scheme> Frame<M> {
     fn check_needs(&self, system: &dyn System) -> Result<(), SetupError> {
-        self.scheme.properties().needs.check(M::ID, system)
+        let needs = self.scheme.properties().needs;
+        needs
+            .check(M::ID, system)
+            .map_err(|_| self.scheme.lacking())
     }
 
     /// Refuses settings of machines for steps that no machine runs.

@@ -33,6 +33,7 @@ macro_rules! for_each_integrator {
             cnn: $crate::cnn::Cnn,
             cnn_symplectic: $crate::cnn::CnnSymplectic,
             cnn_stabilised: $crate::cnn::CnnStabilised,
+            cnn_energy: $crate::cnn::CnnEnergy,
         }
     };
 }

@@ -33,6 +33,11 @@ pub trait Scheme: Send + Sized + 'static {
         None
     }
 
+    /// The error for a system that lacks what it needs.
+    fn lacking(&self) -> SetupError {
+        self.properties().needs.lacking(Self::ID)
+    }
+
     /// Whether its steps are others under other loads, so that set-up has to look at them again.
     fn depends_on_loads(&self) -> bool {
         false

@@ -41,6 +41,24 @@ pub fn weighted_dot(weights: &[f64], a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
+/// `sum_i (a_i - b_i) x_i` over the shortest length: to the rounding of the differences, where two products would leave their own.
+#[must_use]
+pub fn dot_of_difference(a: &[f64], b: &[f64], x: &[f64]) -> f64 {
+    let n = a.len().min(b.len()).min(x.len());
+    let (a, a_rest) = a[..n].as_chunks::<LANES>();
+    let (b, b_rest) = b[..n].as_chunks::<LANES>();
+    let (x, x_rest) = x[..n].as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for ((a, b), x) in a.iter().zip(b).zip(x) {
+        for (((sum, a), b), x) in sums.iter_mut().zip(a).zip(b).zip(x) {
+            *sum += (a - b) * x;
+        }
+    }
+    let rest = a_rest.iter().zip(b_rest).zip(x_rest);
+    let rest: f64 = rest.map(|((a, b), x)| (a - b) * x).sum();
+    sums.iter().sum::<f64>() + rest
+}
+
 /// `sqrt(sum_i a_i^2)`.
 #[must_use]
 pub fn norm(a: &[f64]) -> f64 {

@@ -54,6 +54,11 @@ pub fn energy_behaves_as_declared(make: &dyn Fn() -> Boxed) {
                 assert!(late < 0.999 * early, "{summary}");
                 assert!(high < 1.0 + 1e-3, "{summary}");
             }
+            EnergyBehaviour::NeverRises => {
+                let rises = |pair: &[f64]| pair[1] > pair[0] + 1e-14;
+                let at = energies.windows(2).position(rises);
+                assert!(at.is_none() && high <= 1.0 + 1e-12, "{summary}, {at:?}");
+            }
             EnergyBehaviour::Grows => assert!(late > 1.5 * early, "{summary}"),
         }
     }

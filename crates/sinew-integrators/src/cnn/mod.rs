@@ -1,12 +1,14 @@
 //! The cellular network as an integrator: one sweep of its templates a step, and a saturated
-//! output.
+//! output; and sweeps over nonlinear tissue that never raise its energy.
 
+mod energy;
 mod network;
 mod ordered;
 mod paper;
 mod stabilised;
 mod symplectic;
 
+pub use energy::{CnnEnergy, Kind as EnergyKind};
 pub use paper::Cnn;
 pub use stabilised::CnnStabilised;
 pub use symplectic::CnnSymplectic;

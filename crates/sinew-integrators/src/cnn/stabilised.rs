@@ -200,6 +200,14 @@ impl Scheme for CnnStabilised {
         })
     }
 
+    fn lacking(&self) -> SetupError {
+        SetupError::Lacks {
+            integrator: Self::ID,
+            needs: "the matrices of a linear system (with a tangent that moves nothing proves that its energy stays bounded, and with \
+                    one of a few steps ago it diverges; `cnn-energy` takes elastic laws at any step)",
+        }
+    }
+
     fn set_up(
         &mut self,
         system: &dyn System,

@@ -1,0 +1,156 @@
+//! `cnn-energy`: sweeps of cells that never raise the energy.
+
+mod cell_factors;
+mod certificate;
+mod descent;
+mod kind;
+mod point;
+mod steps;
+
+use sinew_core::{
+    EnergyBehaviour, Needs, OptionError, OptionValue, Options, Properties, SetupError, StepReport,
+    System,
+};
+
+use self::steps::EnergySteps;
+use crate::{Method, OptionDefault, OptionHelp, OptionKind, OptionLabel, Scheme, SetUp};
+
+pub use self::kind::Kind;
+
+/// A step as the minimum of a potential, approached by a few sweeps of the cells, and a limiter: the energy never rises by more than the work
+/// of the loads, for any step, any number of sweeps and any elastic law.
+///
+/// With W the elastic energy, F the loads and y the displacement over the step, the potential is
+/// `m/2 y'M y + d/2 y'D y - b'y + W(u + y)` and its minimum is
+///
+/// * [`Kind::ImplicitEuler`], with `m = 1/dt^2`, `d = 1/dt` and `b = M v/dt + F` (Ortiz and Stainier, Comput. Methods Appl. Mech. Eng.
+///   171, 1999; for tissue Kane et al., Int. J. Numer. Meth. Eng. 49, 2000), or
+/// * [`Kind::Trapezoidal`], with `m = 4/dt^2`, `d = 2/dt` and `b = M (4 v/dt + a) + D v + F`: Newmark's method with beta = 1/4 and gamma = 1/2.
+///
+/// From y = 0 on it is lowered by so many sweeps of nonlinear conjugate gradients; each solves with every cell's own block of the
+/// potential's second derivative, as a network does, and is halved until the law takes the point and the potential has fallen.
+/// The step's length along a direction takes one tangent product.
+///
+/// # Why the energy does not rise
+///
+/// Let `E = v'M v/2 + W(u)` before the step and P be the mean load over it. A displacement y may be taken where `W(u + y) - P'y <= E`; then
+/// the velocity is reduced, if it must be, until `E+ <= E + P'y`. Implicit Euler's potential under the load P is E at y = 0, up to the
+/// constant `v'M v/2`, and never less than `W(u + y) - P'y`, as M and D have no negative eigenvalues; the sweeps only lower it. So its y
+/// may be taken, however few the sweeps. Where the trapezoidal rule's y may not, the step is taken again by implicit Euler.
+/// Where rounding spoils even that, or no sweep finds a lower point, the body stays where it is, with no velocity. Energies are
+/// compared by their difference along the step, so that rounding of a large energy that does not change spoils nothing.
+///
+/// Damping enters the potential whole: the mass-proportional part, dashpots, and the stiffness-proportional part by the tangent at
+/// the start of the step without negative eigenvalues.
+///
+/// # Order
+///
+/// Sweeps begin with y = 0, an error of `dt v`, and each leaves a share of it that falls as `dt^2`, or as `dt` with stiffness damping or
+/// dashpots, which weigh `dt` times more. So the order is that of the formula from two sweeps on (from one for implicit Euler), with
+/// such damping from three (two).
+#[derive(Clone, Copy, Debug)]
+pub struct CnnEnergy {
+    kind: Kind,
+    sweeps: u32,
+}
+
+impl CnnEnergy {
+    /// The method with this formula and so many sweeps, at least one.
+    #[must_use]
+    pub fn new(kind: Kind, sweeps: u32) -> Self {
+        Self {
+            kind,
+            sweeps: sweeps.max(1),
+        }
+    }
+}
+
+impl Default for CnnEnergy {
+    fn default() -> Self {
+        Self::new(Kind::default(), 4)
+    }
+}
+
+/// Most sweeps: far more than any can use.
+const MOST_SWEEPS: u32 = 10_000;
+
+const KIND: OptionHelp = OptionHelp {
+    key: "kind",
+    help: "formula of the step: \"trap\", the trapezoidal rule, of order 2, or \"ie\", implicit Euler, of order 1, which damps what it moves",
+    expected: "\"trap\" or \"ie\"",
+    kind: OptionKind::Words(&["trap", "ie"]),
+    default: OptionDefault::Value("\"trap\""),
+    example: "kind = \"ie\"",
+    shown_default: None,
+};
+
+const SWEEPS: OptionHelp = OptionHelp {
+    key: "sweeps",
+    help: "sweeps of the cells a step, each of a force and a tangent product; more of them come nearer to the formula, and the energy never rises with any number",
+    expected: "a whole number from 1 on",
+    kind: OptionKind::Count(MOST_SWEEPS),
+    default: OptionDefault::Value("4"),
+    example: "sweeps = 16",
+    shown_default: None,
+};
+
+impl Method for CnnEnergy {
+    const SUMMARY: &'static str =
+        "cellular sweeps that lower a step's energy: stable at any step, for every elastic tissue";
+    const OPTIONS: &'static [OptionHelp] = &[KIND, SWEEPS];
+
+    const LABELS: &'static [(&'static str, OptionLabel)] = &[(KIND.key, OptionLabel::Value)];
+
+    fn from_options(options: &Options) -> Result<Self, OptionError> {
+        let plain = Self::default();
+        let kind = KIND.read(options, Self::ID, |value| match value.word()? {
+            "trap" => Some(Kind::Trapezoidal),
+            "ie" => Some(Kind::ImplicitEuler),
+            _ => None,
+        })?;
+        let sweeps = SWEEPS.read(options, Self::ID, |value| value.count(MOST_SWEEPS))?;
+        Ok(Self::new(
+            kind.unwrap_or(plain.kind),
+            sweeps.unwrap_or(plain.sweeps),
+        ))
+    }
+
+    fn options_for_error(_error: f64) -> Vec<Options> {
+        let more = Options::new().with(SWEEPS.key, OptionValue::Number(16.0));
+        vec![Options::new(), more]
+    }
+}
+
+impl Scheme for CnnEnergy {
+    const ID: &'static str = "cnn-energy";
+
+    type ByHand = EnergySteps;
+
+    fn properties(&self) -> Properties {
+        let of_formula = match self.kind {
+            Kind::ImplicitEuler => 1,
+            Kind::Trapezoidal => 2,
+        };
+        // y is off by dt^(2 sweeps + 1) a step, with other damping by dt^(sweeps + 1), and v by that over dt.
+        let sweeps = self.sweeps.min(8) as u8;
+        let order = of_formula.min(2 * sweeps - 1);
+        Properties::of_order(order, Needs::Tangents, EnergyBehaviour::NeverRises)
+            .with_other_damping(of_formula.min(sweeps - 1))
+    }
+
+    fn set_up(
+        &mut self,
+        system: &dyn System,
+        _dt: f64,
+        _before: Option<EnergySteps>,
+    ) -> Result<SetUp<EnergySteps>, SetupError> {
+        if system.as_linear().is_none() && system.internal_variables() > 0 {
+            return Err(SetupError::Lacks {
+                integrator: Self::ID,
+                needs: "forces without memory, which follow from an energy of the displacement alone",
+            });
+        }
+        let steps = EnergySteps::new(Self::ID, system, self.kind, self.sweeps);
+        Ok(SetUp::by_hand(steps, StepReport::default()))
+    }
+}

@@ -1,0 +1,311 @@
+//! Steps whose energy never rises.
+
+use sinew_core::vectors::{dot, dot_of_difference, scale, weighted_dot};
+use sinew_core::{
+    Acceleration, ElasticLaw, EvaluationError, Fact, LoadTime, Needs, State, Step, StepError,
+    StepReport, Stepped, System,
+};
+
+use super::certificate::Certificate;
+use super::descent::{Descent, Found, Quadratic};
+use super::kind::Kind;
+use super::point::{Law, Point};
+use crate::StepByHand;
+
+/// Relative excess of the kinetic energy that counts as rounding where the limiter takes it.
+const ROUNDING: f64 = 1e-12;
+
+/// The steps of [`super::CnnEnergy`].
+pub struct EnergySteps {
+    id: &'static str,
+    kind: Kind,
+    sweeps: u32,
+    descent: Descent,
+    start: Point,
+    /// Loads at the start and the end of the step, and their mean, by which work is counted (N).
+    load_before: Vec<f64>,
+    load: Vec<f64>,
+    mean_load: Vec<f64>,
+    /// The linear part of the step's potential (N), and D v.
+    pull: Vec<f64>,
+    damped: Vec<f64>,
+    v: Vec<f64>,
+    certificate: Certificate,
+}
+
+/// Result of an attempt.
+struct Attempt {
+    /// Energy (J) that is left for the velocity; below 0 where the displacement alone takes more than there is.
+    room: f64,
+    found: Found,
+}
+
+impl EnergySteps {
+    pub(super) fn new(id: &'static str, system: &dyn System, kind: Kind, sweeps: u32) -> Self {
+        let zeros = || vec![0.0; system.dofs()];
+        Self {
+            id,
+            kind,
+            sweeps,
+            descent: Descent::new(system.layers().count(), system.dofs()),
+            start: Point::new(system.dofs()),
+            load_before: zeros(),
+            load: zeros(),
+            mean_load: zeros(),
+            pull: zeros(),
+            damped: zeros(),
+            v: zeros(),
+            certificate: Certificate::default(),
+        }
+    }
+
+    /// The loads of a step that the formula takes at both ends, and the mean of both.
+    fn take_loads(&mut self, step: &Step<'_>, t: f64) -> LoadTime<'static> {
+        let under = |when: LoadTime<'_>, out: &mut [f64]| {
+            step.system.external_force(when.under(step.inputs), out);
+        };
+        match self.kind {
+            Kind::ImplicitEuler => {
+                let end = LoadTime::end_of(t, step.dt);
+                under(end, &mut self.load);
+                self.mean_load.copy_from_slice(&self.load);
+                end
+            }
+            Kind::Trapezoidal => {
+                let [start, end] = ends(t, step.dt);
+                under(start, &mut self.load_before);
+                under(end, &mut self.load);
+                let values = self.load_before.iter().zip(&self.load);
+                for (mean, (before, after)) in self.mean_load.iter_mut().zip(values) {
+                    *mean = 0.5 * (before + after);
+                }
+                end
+            }
+        }
+    }
+
+    /// Gives the state the acceleration at the beginning of a step: from the force, or that of the end of the last step and what
+    /// the loads changed by between the two.
+    fn keep_acceleration(
+        &mut self,
+        step: &Step<'_>,
+        law: &dyn ElasticLaw,
+        state: &mut State,
+    ) -> Result<StepReport, StepError> {
+        let t = state.t();
+        let masses = step.system.mass();
+        if state.acceleration == Acceleration::Same
+            && let Some(last) = state.clock.last_step()
+        {
+            let [_, before] = ends(t - last, last);
+            let before = before.under(step.inputs);
+            step.system.external_force(before, &mut self.pull);
+            let change = self.load_before.iter().zip(&self.pull).zip(masses);
+            for (a, ((after, before), mass)) in state.a.iter_mut().zip(change) {
+                *a += (after - before) / mass;
+            }
+            return Ok(StepReport::default());
+        }
+        let [load, _] = ends(t, step.dt);
+        let law = law_at(law, step, load, 0.0, state);
+        self.start.u.copy_from_slice(&state.u);
+        let evaluated = self.start.evaluate(&law);
+        evaluated.map_err(|source| refused(load, source))?;
+        let damped = law.damping_product(&state.u, &state.v, &mut self.damped);
+        damped.map_err(|source| refused(load, source))?;
+        let mut work = StepReport::ONE_FORCE;
+        work.sweeps += u64::from(law.has_tangent_damping());
+        let rate = law.law.damping().mass;
+        state.a.resize(state.u.len(), 0.0);
+        for (dof, a) in state.a.iter_mut().enumerate() {
+            let force = self.load_before[dof] - self.start.force[dof] - self.damped[dof];
+            *a = force / masses[dof] - rate * state.v[dof];
+        }
+        Ok(work)
+    }
+
+    /// Lowers the potential of a formula from the start of the step on.
+    fn attempt(
+        &mut self,
+        kind: Kind,
+        law: &Law<'_>,
+        state: &State,
+        masses: &[f64],
+        work: &mut StepReport,
+    ) -> Result<Attempt, EvaluationError> {
+        let dt = law.dt;
+        let rate = law.law.damping().mass;
+        let [of_mass, of_damping] = kind.weights(dt);
+        match kind {
+            Kind::ImplicitEuler => {
+                let values = self.pull.iter_mut().zip(masses).zip(&state.v);
+                for (((pull, mass), v), load) in values.zip(&self.mean_load) {
+                    *pull = mass * v / dt + load;
+                }
+            }
+            Kind::Trapezoidal => {
+                if law.is_damped() {
+                    law.damping_product(&state.u, &state.v, &mut self.damped)?;
+                    work.sweeps += u64::from(law.has_tangent_damping());
+                }
+                for (dof, pull) in self.pull.iter_mut().enumerate() {
+                    let (v, a) = (state.v[dof], state.a[dof]);
+                    let inertia = masses[dof] * (4.0 * v / dt + a + rate * v);
+                    *pull = inertia + self.damped[dof] + self.load[dof];
+                }
+            }
+        }
+        let quadratic = Quadratic {
+            masses,
+            mass_weight: of_mass + of_damping * rate,
+            damping_weight: of_damping,
+            pull: &self.pull,
+        };
+        let found = self
+            .descent
+            .lower(law, &quadratic, &self.start, self.sweeps, work)?;
+        let kinetic = 0.5 * weighted_dot(masses, &state.v, &state.v);
+        Ok(Attempt {
+            room: kinetic - self.potential_change(),
+            found,
+        })
+    }
+
+    /// Change of the elastic energy without the work of the loads (J) since the start of the step.
+    fn potential_change(&self) -> f64 {
+        let moved = &self.descent.moved;
+        let beyond = self
+            .start
+            .energy_beyond_slope(&self.descent.reached, moved, 1.0);
+        dot_of_difference(&self.start.force, &self.mean_load, moved) + beyond
+    }
+}
+
+/// The loads that the trapezoidal rule takes at both ends of a step.
+fn ends(t: f64, dt: f64) -> [LoadTime<'static>; 2] {
+    LoadTime::at_both_ends(t, dt, 0.5)
+}
+
+fn law_at<'a>(
+    law: &'a dyn ElasticLaw,
+    step: &Step<'a>,
+    load: LoadTime<'_>,
+    dt: f64,
+    state: &'a State,
+) -> Law<'a> {
+    Law {
+        law,
+        load: load.under(step.inputs),
+        dt,
+        v: &state.v,
+        internal: &state.internal,
+    }
+}
+
+fn refused(load: LoadTime<'_>, source: EvaluationError) -> StepError {
+    StepError::Refused {
+        t: load.t(),
+        source,
+    }
+}
+
+impl StepByHand for EnergySteps {
+    fn without_program(&self) -> &'static str {
+        "the length of each sweep's step follows from sums over all cells"
+    }
+
+    fn step(&mut self, step: &Step<'_>, state: &mut State) -> Result<Stepped, StepError> {
+        let law = step.system.as_elastic();
+        let elastic = law.ok_or_else(|| Needs::Tangents.lacking(self.id))?;
+        let (t, dt, masses) = (state.t(), step.dt, step.system.mass());
+        let end = self.take_loads(step, t);
+        let mut work = StepReport::default();
+        if self.kind == Kind::Trapezoidal {
+            work += self.keep_acceleration(step, elastic, state)?;
+        }
+        let inaccurate = |id, reason: &str| StepError::Inaccurate {
+            integrator: id,
+            t,
+            reason: reason.to_owned(),
+        };
+        let kinetic = 0.5 * weighted_dot(masses, &state.v, &state.v);
+        if !kinetic.is_finite() {
+            return Err(inaccurate(self.id, "the kinetic energy is not finite"));
+        }
+
+        let law = law_at(elastic, step, end, dt, state);
+        let refused = |source| refused(end, source);
+        self.start.u.copy_from_slice(&state.u);
+        self.start.evaluate(&law).map_err(refused)?;
+        work += StepReport::ONE_FORCE;
+        if !self.start.is_finite() {
+            return Err(inaccurate(self.id, "the elastic energy is not finite"));
+        }
+        let mut kind = self.kind;
+        let mut attempt = self
+            .attempt(kind, &law, state, masses, &mut work)
+            .map_err(refused)?;
+        let fails = |attempt: &Attempt| {
+            attempt.found != Found::Lower || attempt.room.is_nan() || attempt.room < 0.0
+        };
+        if kind == Kind::Trapezoidal && fails(&attempt) {
+            work.fallbacks += 1;
+            kind = Kind::ImplicitEuler;
+            attempt = self
+                .attempt(kind, &law, state, masses, &mut work)
+                .map_err(refused)?;
+        }
+        if attempt.found == Found::NotFinite {
+            return Err(inaccurate(self.id, "the forces are not finite"));
+        }
+        if !(attempt.room >= 0.0) {
+            // Rounding alone can do that: the potential is not higher than it was. To stay costs no energy.
+            self.descent.restart(&self.start);
+            attempt.room = kinetic;
+        }
+
+        for ((new, v), moved) in self.v.iter_mut().zip(&state.v).zip(&self.descent.moved) {
+            *new = kind.velocity(*v, *moved, dt);
+        }
+        let mut after = 0.5 * weighted_dot(masses, &self.v, &self.v);
+        if after > attempt.room {
+            work.limiter_hits += u64::from(after - attempt.room > ROUNDING * kinetic.max(after));
+            scale(&mut self.v, (attempt.room / after).sqrt());
+            after = 0.5 * weighted_dot(masses, &self.v, &self.v);
+        }
+        let gained = (after - kinetic) + (self.descent.reached.energy - self.start.energy)
+            - dot(&self.mean_load, &self.descent.moved);
+        let energy = kinetic + self.start.energy.abs();
+        self.certificate.count(gained, energy, &work);
+
+        if self.kind == Kind::Trapezoidal {
+            let reached = &self.descent.reached;
+            law.damping_product(&reached.u, &self.v, &mut self.damped)
+                .map_err(refused)?;
+            work.sweeps += u64::from(law.has_tangent_damping());
+            let rate = elastic.damping().mass;
+            for (dof, a) in state.a.iter_mut().enumerate() {
+                let force = self.load[dof] - reached.force[dof] - self.damped[dof];
+                *a = force / masses[dof] - rate * self.v[dof];
+            }
+        }
+        state.u.copy_from_slice(&self.descent.reached.u);
+        state.v.copy_from_slice(&self.v);
+        let acceleration = match self.kind {
+            Kind::ImplicitEuler => Acceleration::None,
+            Kind::Trapezoidal => Acceleration::Same,
+        };
+        Ok(Stepped {
+            acceleration,
+            ..Stepped::at_same_time(work)
+        })
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        self.certificate.facts()
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        vec![self.certificate.in_words()]
+    }
+}
