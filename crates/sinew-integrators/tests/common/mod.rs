@@ -12,6 +12,7 @@ pub(crate) mod dense_methods;
 pub(crate) mod exponential;
 pub(crate) mod nonlinear;
 pub(crate) mod sliver;
+pub(crate) mod springs;
 pub(crate) mod taylor;
 pub(crate) mod tissue;
 
