@@ -5,14 +5,21 @@
 
 mod common;
 
+use common::dense_methods::{Dense, STEPS};
 use common::springs::{Chain, Pendulum, Spring};
-use common::{build, plain};
+use common::tissue::{body, held};
+use common::{advance, build, largest, plain};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use sinew_core::vectors::{dot, weighted_dot};
+use sinew_core::vectors::{dot, norm, weighted_dot};
 use sinew_core::{
-    Inputs, Integrator, LoadTime, OptionValue, Options, State, StepError, StepReport, System, Trial,
+    Equations, ForceModel, Integrator, Layers, LoadTime, OptionValue, Options, Revision, State,
+    StepError, StepReport, System, Trial,
 };
+use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
+use sinew_fem::{Element, Law, Model};
+use sinew_mesh::structured::{self, Split};
+use sinew_testkit::body::{bodies_up_to, fastest_time};
 
 fn options(kind: &str, sweeps: u32) -> Options {
     let kind = OptionValue::Text(kind.into());
@@ -24,8 +31,8 @@ fn energy_method(kind: &str, sweeps: u32) -> Box<dyn Integrator> {
     build("cnn-energy", &options(kind, sweeps))
 }
 
-/// Kinetic and elastic energy of a state (J), and the size of both.
-fn energy(system: &dyn System, state: &State) -> f64 {
+/// Kinetic and elastic energy of a state (J), and the size of what is rounded in it.
+fn energy(system: &dyn System, state: &State) -> [f64; 2] {
     let trial = Trial {
         load: LoadTime::at(state.t()),
         dt: 0.0,
@@ -36,22 +43,24 @@ fn energy(system: &dyn System, state: &State) -> f64 {
     let mut force = vec![0.0; state.u.len()];
     let law = system.as_elastic().unwrap();
     let elastic = law.elastic_force(&trial, &mut force).unwrap().energy;
-    elastic + 0.5 * weighted_dot(system.mass(), &state.v, &state.v)
+    let total = elastic + 0.5 * weighted_dot(system.mass(), &state.v, &state.v);
+    [total, total.abs() + norm(&force) * norm(&state.u)]
 }
 
-/// Work of the loads in a step (J): their mean over the step, times the way.
-fn work(system: &dyn System, kind: &str, before: &State, after: &State, dt: f64) -> f64 {
+/// Work of the loads in a step (J), their mean over the step times the way; and the size of what that is the difference of.
+fn work(system: &dyn System, kind: &str, before: &State, after: &State, dt: f64) -> [f64; 2] {
     let moved: Vec<f64> = after.u.iter().zip(&before.u).map(|(b, a)| b - a).collect();
     let of = |when: LoadTime<'_>| {
         let mut force = vec![0.0; moved.len()];
         system.external_force(when, &mut force);
-        dot(&force, &moved)
+        let size = norm(&force) * (norm(&after.u) + norm(&before.u));
+        [dot(&force, &moved), size]
     };
     match kind {
         "ie" => of(LoadTime::end_of(before.t(), dt)),
         _ => {
-            let [start, end] = LoadTime::at_both_ends(before.t(), dt, 0.5);
-            0.5 * (of(start) + of(end))
+            let [start, end] = LoadTime::at_both_ends(before.t(), dt, 0.5).map(of);
+            [0, 1].map(|at| 0.5 * (start[at] + end[at]))
         }
     }
 }
@@ -66,21 +75,24 @@ fn never_rises(
 ) -> Result<StepReport, TestCaseError> {
     let mut integrator = energy_method(kind, sweeps);
     let mut state = start;
-    let first = energy(system, &state);
-    let (mut brought, mut size, mut before_step) = (0.0, first.abs(), first);
+    let [first, mut size] = energy(system, &state);
+    let (mut brought, mut before_step) = (0.0, first);
     let mut counted = StepReport::default();
     for step in 0..steps {
         let before = state.clone();
         counted += integrator.step(system, &mut state, dt).unwrap();
-        let found = energy(system, &state);
-        let work = work(system, kind, &before, &state, dt);
+        let [found, of_energy] = energy(system, &state);
+        let [work, of_loads] = work(system, kind, &before, &state, dt);
         brought += work;
-        size = size.max(found.abs()).max(brought.abs()).max(work.abs());
+        size = size.max(of_energy).max(brought.abs()).max(of_loads);
         prop_assert!(found.is_finite(), "step {step}: {found}");
         let rise = found - before_step - work;
         prop_assert!(rise <= 1e-13 * size, "step {step}: by {rise:e} of {size:e}");
         let excess = found - first - brought;
-        prop_assert!(excess <= 1e-12 * size, "step {step}: {excess:e} of {size:e}");
+        prop_assert!(
+            excess <= 1e-12 * size,
+            "step {step}: {excess:e} of {size:e}"
+        );
         before_step = found;
     }
     Ok(counted)
@@ -130,14 +142,25 @@ fn chains() -> impl Strategy<Value = Drawn> {
             let u = vec(-0.045..0.045, n);
             let v = (vec(-1.0..1.0, n), power(-3.0, 2.0));
             (Just(springs), masses, damping, force, u, v).prop_map(
-                move |(springs, masses, damping, force, u, (v, fast)): (_, Vec<f64>, Vec<f64>, f64, _, (Vec<f64>, f64))| {
+                move |(springs, masses, damping, force, u, (v, fast)): (
+                    _,
+                    Vec<f64>,
+                    Vec<f64>,
+                    f64,
+                    _,
+                    (Vec<f64>, f64),
+                )| {
                     let rate = (k / mass).sqrt();
                     let masses: Vec<f64> = masses.iter().map(|share| share * mass).collect();
                     let v = v.iter().map(|v| 0.1 * fast * rate * v).collect();
                     Drawn {
                         springs,
                         masses,
-                        damping: [damping[0] * rate, damping[1] / rate, damping[2] * rate * mass],
+                        damping: [
+                            damping[0] * rate,
+                            damping[1] / rate,
+                            damping[2] * rate * mass,
+                        ],
                         force: force * k,
                         start: State::new(u, v),
                     }
@@ -187,4 +210,228 @@ proptest! {
         let start = State::new(vec![0.0; 3], v.to_vec());
         never_rises(&pendulum, (kind, sweeps), start, dt, 60)?;
     }
+
+    #[test]
+    fn converged_steps_are_those_of_dense_methods(body in bodies_up_to(2), power in -1.0..0.7) {
+        let model = body.model();
+        let dt = (10.0_f64.powf(power) * fastest_time(&model)).min(0.2);
+        let dense = Dense::of(&model);
+        let start = body.state(&model, 1e-3, 1e-3 / dt);
+        let pairs = [("ie", dense.implicit_euler(&start, dt)), ("trap", dense.newmark(&start, dt))];
+        for (kind, expected) in pairs {
+            let mut integrator = energy_method(kind, 300);
+            let (mut state, mut work) = (start.clone(), StepReport::default());
+            let mut off = [0.0_f64; 2];
+            for expected in &expected {
+                work += integrator.step(&model, &mut state, dt).unwrap();
+                let distance = |a: &[f64], b: &[f64]| {
+                    a.iter().zip(b).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
+                };
+                off[0] = off[0].max(distance(&state.u, &expected.u));
+                off[1] = off[1].max(distance(&state.v, &expected.v));
+            }
+            let sizes = [|state: &State| largest(&state.u), |state: &State| largest(&state.v)]
+                .map(|of| expected.iter().map(of).fold(0.0, f64::max));
+            prop_assert_eq!((work.limiter_hits, work.fallbacks), (0, 0));
+            prop_assert!(expected.len() == STEPS as usize);
+            prop_assert!(off[0] <= 1e-10 * sizes[0] && off[1] <= 1e-10 * sizes[1], "{kind}: {off:?} of {sizes:?}");
+        }
+    }
+}
+
+/// A cube of tissue that is held at the bottom.
+fn tissue(id: &'static str, element: Element) -> Model {
+    let mesh = structured::cube(2, 0.1, Split::Kuhn).unwrap();
+    let parameters = Parameters {
+        c1_over_c2: (id == "mooney-rivlin").then_some(4.0),
+        ..Parameters::new(3500.0, 0.45)
+    };
+    let mut problem = body(Law::Hyperelastic { id, parameters });
+    problem.regions[0].element = element;
+    problem.fixed = vec![held("bottom", [true; 3])];
+    Model::build(&mesh, &problem).unwrap()
+}
+
+#[test]
+fn energy_never_rises_in_any_tissue() {
+    let edges = Element::FbarEdge {
+        edge_share: 0.9,
+        patch: None,
+    };
+    for id in Hyperelastic::IDS {
+        for element in [Element::P1, Element::Fbar { patch: None }, edges] {
+            let model = tissue(id, element);
+            // Thrown sideways and upwards at about the speed of its shear waves.
+            let v: Vec<f64> = (0..model.dofs())
+                .map(|dof| [1.0, -0.6, 0.8][dof % 3])
+                .collect();
+            for (kind, sweeps) in [("trap", 1), ("ie", 2), ("trap", 8)] {
+                for dt in [0.02, 0.5] {
+                    let start = State::new(vec![0.0; model.dofs()], v.clone());
+                    let kept = never_rises(&model, (kind, sweeps), start, dt, 8);
+                    assert!(
+                        kept.is_ok(),
+                        "{id}, {element}, {kind} {sweeps}, {dt} s: {kept:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Two masses on hardening springs, and a start at which the cubic part rules.
+fn hardening() -> (ForceModel<Chain>, State) {
+    let spring = Spring::Hardening { k: 200.0, c: 2e5 };
+    let chain = Chain::model(vec![spring; 2], &[0.5; 2], [0.0; 3], 0.0, |_| 0.0);
+    (chain, State::new(vec![0.02, -0.01], vec![1.0, -0.5]))
+}
+
+#[test]
+fn energy_does_not_creep_up_in_a_long_run() {
+    let (chain, start) = hardening();
+    for dt in [1e-4, 0.01] {
+        never_rises(&chain, ("trap", 4), start.clone(), dt, 20_000).unwrap();
+    }
+}
+
+/// Far beyond what the trapezoidal rule bears on a nonlinear law, the limiter works, and a restart by a fresh integrator goes on
+/// with the same bits.
+#[test]
+fn what_the_limiter_took_is_counted_and_restarts_go_on_with_the_same_bits() {
+    let (chain, start) = hardening();
+    let (mut integrator, mut state) = (energy_method("trap", 2), start);
+    let mut work = StepReport::default();
+    for _ in 0..50 {
+        work += integrator.step(&chain, &mut state, 0.1).unwrap();
+    }
+    assert!(work.limiter_hits > 5 && work.fallbacks > 0, "{work:?}");
+    let mut checkpoint = state.clone();
+    advance(&mut *integrator, &chain, &mut state, 50, 0.1);
+    advance(
+        &mut *energy_method("trap", 2),
+        &chain,
+        &mut checkpoint,
+        50,
+        0.1,
+    );
+    assert_eq!(state, checkpoint);
+    let said = integrator.remarks().join("; ");
+    assert!(
+        said.starts_with("certificate: the energy never rises"),
+        "{said}"
+    );
+    assert!(said.contains("in 100 steps it rose by"), "{said}");
+    let rise = integrator
+        .facts()
+        .iter()
+        .find(|fact| fact.name == "energy_rise")
+        .unwrap()
+        .value;
+    assert!((0.0..=1e-15).contains(&rise), "{rise:e}");
+}
+
+/// A step takes a force at its start, the cells' blocks, and a tangent product and a force a sweep; the first one finds its acceleration.
+#[test]
+fn work_is_as_declared() {
+    let model = common::cube::cube(3);
+    let mut state = State::at_rest(model.dofs());
+    for (kind, first) in [("ie", 0), ("trap", 1)] {
+        let mut integrator = energy_method(kind, 5);
+        integrator.prepare(&model, 1e-3).unwrap();
+        for extra in [first, 0] {
+            let work = integrator.step(&model, &mut state, 1e-3).unwrap();
+            assert_eq!(work.force_evaluations, 1 + 5 + extra, "{kind}");
+            assert_eq!(work.sweeps, 2 + 2 * 5 + extra, "{kind}");
+            assert_eq!(work.backtracks, 0, "{kind}");
+        }
+        state.acceleration = sinew_core::Acceleration::None;
+    }
+}
+
+/// Points that a law refuses shorten a sweep; a state that it refuses ends the run.
+#[test]
+fn a_barrier_is_never_passed_and_a_start_beyond_it_is_refused() {
+    let barrier = Spring::Barrier { k: 100.0, l: 0.1 };
+    let chain = Chain::model(vec![barrier; 3], &[0.1; 3], [0.0; 3], -50.0, |_| 1.0);
+    for kind in ["ie", "trap"] {
+        let mut integrator = energy_method(kind, 4);
+        let mut state = State::new(vec![0.0; 3], vec![0.0, 0.0, -20.0]);
+        let mut backtracks = 0;
+        for _ in 0..200 {
+            backtracks += integrator.step(&chain, &mut state, 0.5).unwrap().backtracks;
+        }
+        assert!(backtracks > 0, "{kind}");
+        let mut state = State::new(vec![0.0, -0.2, -0.2], vec![0.0; 3]);
+        let refusal = integrator.step(&chain, &mut state, 0.5);
+        assert!(
+            matches!(&refusal, Err(StepError::Refused { source, .. }) if source.element == 1),
+            "{refusal:?}"
+        );
+    }
+}
+
+/// A body at rest in its equilibrium under a load stays there to rounding, and one beside it comes to rest there.
+#[test]
+fn damped_motion_ends_in_the_equilibrium_of_a_nonlinear_law() {
+    let spring = Spring::Hardening { k: 100.0, c: 1e4 };
+    // 100 s + 1e4 s^3 = 20 at s = .1.
+    let chain = Chain::model(vec![spring; 2], &[1.0; 2], [5.0, 0.0, 0.0], 20.0, |_| 1.0);
+    for (kind, dt) in [("trap", 0.01), ("ie", 0.05), ("trap", 1.0)] {
+        let mut state = State::at_rest(2);
+        advance(&mut *energy_method(kind, 8), &chain, &mut state, 4000, dt);
+        for (u, expected) in state.u.iter().zip([0.1, 0.2]) {
+            assert!((u - expected).abs() < 1e-12, "{kind}, {dt} s: {u}");
+        }
+    }
+}
+
+/// A chain that has internal variables.
+struct Remembering(ForceModel<Chain>);
+
+impl System for Remembering {
+    fn dofs(&self) -> usize {
+        self.0.dofs()
+    }
+    fn layers(&self) -> Layers {
+        self.0.layers()
+    }
+    fn mass(&self) -> &[f64] {
+        self.0.mass()
+    }
+    fn revision(&self) -> Revision {
+        self.0.revision()
+    }
+    fn equations(&self) -> Equations<'_> {
+        self.0.equations()
+    }
+    fn internal_variables(&self) -> usize {
+        1
+    }
+}
+
+#[test]
+fn what_it_cannot_promise_is_refused_by_name() {
+    let system = Remembering(hardening().0);
+    let refusal = energy_method("trap", 4).prepare(&system, 0.01).unwrap_err();
+    assert_eq!(
+        refusal.to_string(),
+        "`cnn-energy` needs forces that follow from an energy of the displacement alone, without memory, which this system does not offer"
+    );
+    let refusal = build("cnn-stabilised", &plain())
+        .prepare(&system.0, 0.01)
+        .unwrap_err();
+    let message = refusal.to_string();
+    assert!(
+        message.starts_with("`cnn-stabilised` needs the matrices of a linear system"),
+        "{message}"
+    );
+    assert!(
+        message.contains("diverges") && message.contains("`cnn-energy`"),
+        "{message}"
+    );
+    let mut state = State::new(vec![0.0; 2], vec![f64::NAN, 0.0]);
+    let refusal = energy_method("trap", 4)
+        .step(&system.0, &mut state, 0.01)
+        .unwrap_err();
+    assert!(matches!(refusal, StepError::Inaccurate { .. }), "{refusal}");
 }

@@ -201,7 +201,11 @@ impl ElasticLaw for Chain {
         out: &mut [f64],
     ) -> Result<(), EvaluationError> {
         let each = self.stiffnesses(trial.u, kind)?;
-        let pulls: Vec<f64> = each.iter().zip(Self::stretches(w)).map(|(k, s)| k * s).collect();
+        let pulls: Vec<f64> = each
+            .iter()
+            .zip(Self::stretches(w))
+            .map(|(k, s)| k * s)
+            .collect();
         for at in 0..out.len() {
             out[at] = pulls[at] - pulls.get(at + 1).unwrap_or(&0.0);
         }

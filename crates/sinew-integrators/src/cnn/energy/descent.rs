@@ -40,6 +40,7 @@ pub(super) struct Descent {
     /// The law at the end of the step.
     pub(super) reached: Point,
     trial: Point,
+    layers: usize,
     blocks: CellFactors,
     gradient: Vec<f64>,
     gradient_before: Vec<f64>,
@@ -47,6 +48,8 @@ pub(super) struct Descent {
     direction: Vec<f64>,
     /// d2W/du2 times the direction.
     curved: Vec<f64>,
+    /// The sum of squares, rooted, of what springs as stiff as each cell's own block would hold at the start of the step (J).
+    pub(super) stiff: f64,
     /// D times `moved`, and times the direction, without alpha M.
     damped: Vec<f64>,
     damped_direction: Vec<f64>,
@@ -84,12 +87,14 @@ impl Descent {
             moved: zeros(),
             reached: Point::new(dofs),
             trial: Point::new(dofs),
+            layers,
             blocks: CellFactors::new(layers, dofs),
             gradient: zeros(),
             gradient_before: zeros(),
             preconditioned: zeros(),
             direction: zeros(),
             curved: zeros(),
+            stiff: 0.0,
             damped: zeros(),
             damped_direction: zeros(),
         }
@@ -145,6 +150,12 @@ impl Descent {
     ) -> Result<(), EvaluationError> {
         let entries = self.blocks.entries_mut();
         law.law.node_blocks(&law.at(&start.u), entries)?;
+        let layers = self.layers;
+        let terms = self.preconditioned.iter_mut().zip(&start.u).enumerate();
+        for (dof, (term, u)) in terms {
+            *term = entries[dof * layers + dof % layers] * u * u;
+        }
+        self.stiff = norm(&self.preconditioned);
         let damping = law.law.damping();
         let weight = quadratic.damping_weight;
         for entry in &mut *entries {
@@ -244,9 +255,11 @@ impl Descent {
             *work += StepReport::ONE_FORCE;
             // A point that the law refuses is one that is too far.
             if self.trial.evaluate(law).is_ok() && self.trial.is_finite() {
-                let beyond = self
-                    .reached
-                    .energy_beyond_slope(&self.trial, direction, length);
+                let beyond = self.reached.energy_beyond_slope(
+                    &self.trial,
+                    (direction, length),
+                    (law, self.stiff),
+                );
                 let change = length * slope + 0.5 * length * length * curvature + beyond;
                 let forces = norm(&self.reached.force) + norm(&self.trial.force);
                 let rounding = ROUNDING * length * norm(direction) * forces;

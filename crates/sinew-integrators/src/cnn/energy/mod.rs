@@ -147,7 +147,7 @@ impl Scheme for CnnEnergy {
         if system.as_linear().is_none() && system.internal_variables() > 0 {
             return Err(SetupError::Lacks {
                 integrator: Self::ID,
-                needs: "forces without memory, which follow from an energy of the displacement alone",
+                needs: "forces that follow from an energy of the displacement alone, without memory",
             });
         }
         let steps = EnergySteps::new(Self::ID, system, self.kind, self.sweeps);

@@ -4,7 +4,7 @@ use sinew_core::vectors::{dot, dot_of_difference, scale};
 use sinew_core::{ElasticLaw, EvaluationError, LoadTime, TangentKind, Trial};
 
 /// Multiples of the rounding of two energies within which their difference says nothing.
-const ROUNDING: f64 = 32.0 * f64::EPSILON;
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A displacement with the law's energy and force there.
 #[derive(Clone, Debug)]
@@ -39,13 +39,24 @@ impl Point {
 
     /// `W(other) - W(self) - (dW/du)' step` (J), the step to `other` being `length` times `direction`.
     ///
-    /// Where the energies are too close for their rounding, half the change of the force along the step: off by the third
-    /// power of the step only, which is then less than that rounding.
-    pub(super) fn energy_beyond_slope(&self, other: &Self, direction: &[f64], length: f64) -> f64 {
+    /// Half the change of the force along the step, where W is quadratic, and where the energies are too close for their rounding: there the two
+    /// are off by the third power of the step only, which is less than that rounding. `stiff` (J) is what springs as
+    /// stiff as each cell's own block would hold if all others stayed: the energy is a sum of elements' forces times displacements, and rounded
+    /// as these are.
+    pub(super) fn energy_beyond_slope(
+        &self,
+        other: &Self,
+        (direction, length): (&[f64], f64),
+        (law, stiff): (&Law<'_>, f64),
+    ) -> f64 {
+        let by_forces = 0.5 * length * dot_of_difference(&other.force, &self.force, direction);
+        if law.is_quadratic {
+            return by_forces;
+        }
         let slope = length * dot(&self.force, direction);
         let direct = (other.energy - self.energy) - slope;
-        let by_forces = 0.5 * length * dot_of_difference(&other.force, &self.force, direction);
-        let size = self.energy.abs() + other.energy.abs() + slope.abs();
+        let [before, after] = [self.energy.abs(), other.energy.abs()];
+        let size = before + after + slope.abs() + (before.max(after) * stiff).sqrt();
         if (direct - by_forces).abs() <= ROUNDING * size {
             by_forces
         } else {
@@ -58,6 +69,8 @@ impl Point {
 #[derive(Clone, Copy)]
 pub(super) struct Law<'a> {
     pub(super) law: &'a dyn ElasticLaw,
+    /// Whether it is that of matrices.
+    pub(super) is_quadratic: bool,
     pub(super) load: LoadTime<'a>,
     /// Time since the last accepted state (s).
     pub(super) dt: f64,

@@ -166,17 +166,19 @@ impl EnergySteps {
             .lower(law, &quadratic, &self.start, self.sweeps, work)?;
         let kinetic = 0.5 * weighted_dot(masses, &state.v, &state.v);
         Ok(Attempt {
-            room: kinetic - self.potential_change(),
+            room: kinetic - self.potential_change(law),
             found,
         })
     }
 
     /// Change of the elastic energy without the work of the loads (J) since the start of the step.
-    fn potential_change(&self) -> f64 {
+    fn potential_change(&self, law: &Law<'_>) -> f64 {
         let moved = &self.descent.moved;
-        let beyond = self
-            .start
-            .energy_beyond_slope(&self.descent.reached, moved, 1.0);
+        let beyond = self.start.energy_beyond_slope(
+            &self.descent.reached,
+            (moved, 1.0),
+            (law, self.descent.stiff),
+        );
         dot_of_difference(&self.start.force, &self.mean_load, moved) + beyond
     }
 }
@@ -195,6 +197,7 @@ fn law_at<'a>(
 ) -> Law<'a> {
     Law {
         law,
+        is_quadratic: step.system.as_linear().is_some(),
         load: load.under(step.inputs),
         dt,
         v: &state.v,
