@@ -187,7 +187,7 @@ fn cube_rows(case: &str, harder: f64) -> Vec<Row> {
                     force_evaluations: (method.work.0 * steps) as u64,
                     solves: (method.work.1 * steps) as u64,
                     factorizations: method.work.1 as u64,
-                    newton_iterations: 0,
+                    ..Work::default()
                 },
                 cpu_s_per_s: per_step / dt,
                 us_per_step: 1e6 * per_step,

@@ -64,6 +64,9 @@ fn no_integrator_allocates_after_its_second_step() {
                 variants.push(plain().with("kind", OptionValue::Text(kind.into())));
             }
         }
+        if entry.id == "cnn-energy" {
+            variants.push(plain().with("kind", OptionValue::Text("ie".into())));
+        }
         if entry.options.iter().any(|option| option.key == "inner") {
             // Stabilised at the step below, which it would leave as it is by itself.
             let full = plain().with_number("s", 1.0);

@@ -161,6 +161,9 @@ fn work(report: &RunReport, setup_factorizations: u64) -> Work {
         solves: report.work.solves,
         factorizations: report.work.factorizations + setup_factorizations,
         newton_iterations: report.work.newton_iterations,
+        backtracks: report.work.backtracks,
+        limiter_hits: report.work.limiter_hits,
+        fallbacks: report.work.fallbacks,
     }
 }
 

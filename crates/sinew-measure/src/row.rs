@@ -172,6 +172,15 @@ pub struct Work {
     /// Newton iterations.
     #[serde(default)]
     pub newton_iterations: u64,
+    /// Trials of a line search that were refused or led too little down.
+    #[serde(default)]
+    pub backtracks: u64,
+    /// Steps whose velocity was reduced, because the energy would have risen.
+    #[serde(default)]
+    pub limiter_hits: u64,
+    /// Steps taken again by another formula.
+    #[serde(default)]
+    pub fallbacks: u64,
 }
 
 /// The verdict on a run in one word. Stability and accuracy are separate questions; see the

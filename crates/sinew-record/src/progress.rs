@@ -66,6 +66,12 @@ pub(crate) struct Work {
     pub(crate) solves: u64,
     pub(crate) factorizations: u64,
     pub(crate) saturated: u64,
+    #[serde(default)]
+    pub(crate) backtracks: u64,
+    #[serde(default)]
+    pub(crate) limiter_hits: u64,
+    #[serde(default)]
+    pub(crate) fallbacks: u64,
 }
 
 impl Work {
@@ -80,5 +86,8 @@ impl Work {
         self.solves += of.solves;
         self.factorizations += of.factorizations;
         self.saturated += of.saturated;
+        self.backtracks += of.backtracks;
+        self.limiter_hits += of.limiter_hits;
+        self.fallbacks += of.fallbacks;
     }
 }

@@ -174,5 +174,14 @@ fn facts(summary: &Summary<'_>) -> Vec<(&'static str, String)> {
             "velocities were saturated: the motion is bounded, not accurate".to_owned(),
         ));
     }
+    if work.limiter_hits + work.fallbacks > 0 {
+        facts.push((
+            "energy limiter",
+            format!(
+                "velocities were reduced in {} steps, {} were taken again by another formula",
+                work.limiter_hits, work.fallbacks
+            ),
+        ));
+    }
     facts
 }

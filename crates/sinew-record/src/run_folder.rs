@@ -257,6 +257,7 @@ impl RunFolder {
             work: (work.sweeps, work.solves),
             saturated: work.saturated_share(steps, system.dofs()),
             largest: (seen.value, seen.t, seen.at),
+            remarks: integrator.remarks(),
             warnings,
         })
     }

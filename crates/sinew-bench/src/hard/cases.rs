@@ -2,7 +2,7 @@
 
 use sinew_measure::MethodChoice;
 
-use super::methods::{block, chebyshev, cnn, cut, gauss_seidel, guarded, patched};
+use super::methods::{block, chebyshev, cnn, cut, energy, gauss_seidel, guarded, patched};
 
 /// A scene with its runs.
 pub(crate) struct HardCase {
@@ -51,6 +51,7 @@ fn conservative() -> Vec<MethodChoice> {
         block(),
         chebyshev(4),
         chebyshev(8),
+        energy(4),
         MethodChoice::new("central-difference"),
         MethodChoice::new("newmark"),
         MethodChoice::new("implicit-euler"),

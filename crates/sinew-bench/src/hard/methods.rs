@@ -37,6 +37,13 @@ fn inner(kind: &str, sweeps: Option<u32>) -> MethodChoice {
     method
 }
 
+/// Sweeps that lower a step's energy, at this many a step.
+pub(crate) fn energy(sweeps: u32) -> MethodChoice {
+    let mut method = MethodChoice::new("cnn-energy");
+    method.options = method.options.with_number("sweeps", f64::from(sweeps));
+    method
+}
+
 /// A method that cuts its step into stable parts.
 pub(crate) fn cut(integrator: &str) -> MethodChoice {
     automatic(integrator, "substeps")

@@ -9,6 +9,7 @@
 
 pub(crate) mod cube;
 pub(crate) mod dense_methods;
+pub(crate) mod energy_method;
 pub(crate) mod exponential;
 pub(crate) mod nonlinear;
 pub(crate) mod sliver;

@@ -12,6 +12,7 @@ Which one do I take?
   stiff tissue, long steps            newmark: stable at any step, one solution with a factor a step
   an error of any number of digits    propagator with kind = \"two-step\": exact in time for linear tissue
   a network, bounded at any step      cnn-stabilised; cnn is the published one, for comparison
+  large deformation, any step         cnn-energy: its energy never rises, whatever the tissue
   not sure                            sinew plan SCENE --tolerance 1e-2 measures it on the scene itself
 ";
 

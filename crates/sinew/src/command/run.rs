@@ -203,6 +203,7 @@ fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> Vec<String>
             100.0 * end.saturated
         ));
     }
+    lines.extend(end.remarks.iter().cloned());
     let warnings = end.warnings.iter();
     lines.extend(warnings.map(|warning| format!("warning: {warning}")));
     lines.push(ERROR_NOT_KNOWN.to_owned());

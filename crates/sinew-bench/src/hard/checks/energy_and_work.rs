@@ -6,7 +6,7 @@ use super::at;
 use crate::hard::error::HardError;
 use crate::hard::hard_run::run_with_energies;
 use crate::hard::mark::{Asked, Worst};
-use crate::hard::methods::{block, chebyshev, cnn, gauss_seidel};
+use crate::hard::methods::{block, chebyshev, cnn, energy, gauss_seidel};
 use crate::report::three;
 use crate::results::Mark;
 
@@ -20,6 +20,8 @@ pub(crate) fn check(asked: Asked, case: &Case) -> Result<Mark, HardError> {
         (chebyshev(4), dt),
         (chebyshev(8), dt),
         (gauss_seidel(4), dt),
+        (energy(1), dt),
+        (energy(4), dt),
         (MethodChoice::new("newmark"), dt),
         (MethodChoice::new("central-difference"), 0.9 * critical),
     ];

@@ -39,6 +39,7 @@ pub use self::kind::Kind;
 /// may be taken, however few the sweeps. Where the trapezoidal rule's y may not, the step is taken again by implicit Euler.
 /// Where rounding spoils even that, or no sweep finds a lower point, the body stays where it is, with no velocity. Energies are
 /// compared by their difference along the step, so that rounding of a large energy that does not change spoils nothing.
+/// Both are those with supports where they are at the end of the step: the work of moving ones is counted apart.
 ///
 /// Damping enters the potential whole: the mass-proportional part, dashpots, and the stiffness-proportional part by the tangent at
 /// the start of the step without negative eigenvalues.
@@ -47,7 +48,7 @@ pub use self::kind::Kind;
 ///
 /// Sweeps begin with y = 0, an error of `dt v`, and each leaves a share of it that falls as `dt^2`, or as `dt` with stiffness damping or
 /// dashpots, which weigh `dt` times more. So the order is that of the formula from two sweeps on (from one for implicit Euler), with
-/// such damping from three (two).
+/// such damping from three (two). On a law whose tangent moves, stiffness damping by that at the start of the step is of order 1.
 #[derive(Clone, Copy, Debug)]
 pub struct CnnEnergy {
     kind: Kind,
