@@ -57,38 +57,42 @@ fn chains() -> impl Strategy<Value = Drawn> {
         springs(k).prop_flat_map(move |springs| {
             let n = springs.len();
             let masses = vec(power(-1.0, 1.0), n);
-            let damping = vec(prop_oneof![Just(0.0), power(-3.0, 2.0)], 3);
+            let damping = proptest::array::uniform3(prop_oneof![Just(0.0), power(-3.0, 2.0)]);
             let force = prop_oneof![Just(0.0), -2.0..2.0];
             // Within every barrier.
             let u = vec(-0.045..0.045, n);
             let v = (vec(-1.0..1.0, n), power(-3.0, 2.0));
-            (Just(springs), masses, damping, force, u, v).prop_map(
-                move |(springs, masses, damping, force, u, (v, fast)): (
-                    _,
-                    Vec<f64>,
-                    Vec<f64>,
-                    f64,
-                    _,
-                    (Vec<f64>, f64),
-                )| {
-                    let rate = (k / mass).sqrt();
-                    let masses: Vec<f64> = masses.iter().map(|share| share * mass).collect();
-                    let v = v.iter().map(|v| 0.1 * fast * rate * v).collect();
-                    Drawn {
-                        springs,
-                        masses,
-                        damping: [
-                            damping[0] * rate,
-                            damping[1] / rate,
-                            damping[2] * rate * mass,
-                        ],
-                        force: force * k,
-                        start: State::new(u, v),
-                    }
-                },
-            )
+            let parts = (Just(springs), masses, damping, force, u, v);
+            parts.prop_map(move |(springs, masses, damping, force, u, (v, fast))| {
+                let v = v.iter().map(|v| 0.1 * fast * v).collect();
+                Drawn {
+                    springs,
+                    masses,
+                    damping,
+                    force,
+                    start: State::new(u, v),
+                }
+                .scaled(mass, k)
+            })
         })
     })
+}
+
+impl Drawn {
+    /// Of this mass (kg) and stiffness (N/m), where everything is drawn as a share.
+    fn scaled(mut self, mass: f64, k: f64) -> Self {
+        let rate = (k / mass).sqrt();
+        self.masses.iter_mut().for_each(|share| *share *= mass);
+        self.start.v.iter_mut().for_each(|v| *v *= rate);
+        let [of_mass, of_stiffness, of_dashpots] = self.damping;
+        self.damping = [
+            of_mass * rate,
+            of_stiffness / rate,
+            of_dashpots * rate * mass,
+        ];
+        self.force *= k;
+        self
+    }
 }
 
 proptest! {

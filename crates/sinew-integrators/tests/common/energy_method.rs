@@ -70,8 +70,9 @@ pub(crate) fn never_rises(
         size = size.max(of_energy).max(brought.abs()).max(of_loads);
         let rise = found - before_step - work;
         let excess = found - first - brought;
-        // What is not a number is no less.
-        if !(rise <= 1e-13 * size && excess <= 1e-12 * size) {
+        // Not so where it is not a number.
+        let kept = rise <= 1e-13 * size && excess <= 1e-12 * size;
+        if !kept {
             return Err(format!(
                 "step {step}: by {rise:e}, {excess:e} in all, of {size:e}"
             ));

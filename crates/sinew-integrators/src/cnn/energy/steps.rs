@@ -29,7 +29,9 @@ pub struct EnergySteps {
     /// The linear part of the step's potential (N), and D v.
     pull: Vec<f64>,
     damped: Vec<f64>,
+    /// Velocity at the end of the step (m/s), and acceleration at its start (m/s^2).
     v: Vec<f64>,
+    a: Vec<f64>,
     certificate: Certificate,
 }
 
@@ -38,6 +40,13 @@ struct Attempt {
     /// Energy (J) that is left for the velocity; below 0 where the displacement alone takes more than there is.
     room: f64,
     found: Found,
+}
+
+impl Attempt {
+    /// Whether its displacement may be taken; not so where what is left is not a number.
+    fn has_room(&self) -> bool {
+        self.room >= 0.0
+    }
 }
 
 impl EnergySteps {
@@ -55,6 +64,7 @@ impl EnergySteps {
             pull: zeros(),
             damped: zeros(),
             v: zeros(),
+            a: zeros(),
             certificate: Certificate::default(),
         }
     }
@@ -84,13 +94,13 @@ impl EnergySteps {
         }
     }
 
-    /// Gives the state the acceleration at the beginning of a step: from the force, or that of the end of the last step and what
+    /// Finds the acceleration at the beginning of a step: from the force, or that of the end of the last step and what
     /// the loads changed by between the two.
-    fn keep_acceleration(
+    fn find_acceleration(
         &mut self,
         step: &Step<'_>,
         law: &dyn ElasticLaw,
-        state: &mut State,
+        state: &State,
     ) -> Result<StepReport, StepError> {
         let t = state.t();
         let masses = step.system.mass();
@@ -101,8 +111,9 @@ impl EnergySteps {
             let before = before.under(step.inputs);
             step.system.external_force(before, &mut self.pull);
             let change = self.load_before.iter().zip(&self.pull).zip(masses);
-            for (a, ((after, before), mass)) in state.a.iter_mut().zip(change) {
-                *a += (after - before) / mass;
+            let values = self.a.iter_mut().zip(&state.a).zip(change);
+            for ((a, kept), ((after, before), mass)) in values {
+                *a = kept + (after - before) / mass;
             }
             return Ok(StepReport::default());
         }
@@ -116,8 +127,7 @@ impl EnergySteps {
         let mut work = StepReport::ONE_FORCE;
         work.sweeps += u64::from(law.has_tangent_damping());
         let rate = law.law.damping().mass;
-        state.a.resize(state.u.len(), 0.0);
-        for (dof, a) in state.a.iter_mut().enumerate() {
+        for (dof, a) in self.a.iter_mut().enumerate() {
             let force = self.load_before[dof] - self.start.force[dof] - self.damped[dof];
             *a = force / masses[dof] - rate * state.v[dof];
         }
@@ -149,7 +159,7 @@ impl EnergySteps {
                     work.sweeps += u64::from(law.has_tangent_damping());
                 }
                 for (dof, pull) in self.pull.iter_mut().enumerate() {
-                    let (v, a) = (state.v[dof], state.a[dof]);
+                    let (v, a) = (state.v[dof], self.a[dof]);
                     let inertia = masses[dof] * (4.0 * v / dt + a + rate * v);
                     *pull = inertia + self.damped[dof] + self.load[dof];
                 }
@@ -224,7 +234,7 @@ impl StepByHand for EnergySteps {
         let end = self.take_loads(step, t);
         let mut work = StepReport::default();
         if self.kind == Kind::Trapezoidal {
-            work += self.keep_acceleration(step, elastic, state)?;
+            work += self.find_acceleration(step, elastic, state)?;
         }
         let inaccurate = |id, reason: &str| StepError::Inaccurate {
             integrator: id,
@@ -248,10 +258,8 @@ impl StepByHand for EnergySteps {
         let mut attempt = self
             .attempt(kind, &law, state, masses, &mut work)
             .map_err(refused)?;
-        let fails = |attempt: &Attempt| {
-            attempt.found != Found::Lower || attempt.room.is_nan() || attempt.room < 0.0
-        };
-        if kind == Kind::Trapezoidal && fails(&attempt) {
+        let sound = attempt.has_room() && attempt.found == Found::Lower;
+        if kind == Kind::Trapezoidal && !sound {
             work.fallbacks += 1;
             kind = Kind::ImplicitEuler;
             attempt = self
@@ -261,7 +269,7 @@ impl StepByHand for EnergySteps {
         if attempt.found == Found::NotFinite {
             return Err(inaccurate(self.id, "the forces are not finite"));
         }
-        if !(attempt.room >= 0.0) {
+        if !attempt.has_room() {
             // Rounding alone can do that: the potential is not higher than it was. To stay costs no energy.
             self.descent.restart(&self.start);
             attempt.room = kinetic;
@@ -287,6 +295,7 @@ impl StepByHand for EnergySteps {
                 .map_err(refused)?;
             work.sweeps += u64::from(law.has_tangent_damping());
             let rate = elastic.damping().mass;
+            state.a.resize(self.v.len(), 0.0);
             for (dof, a) in state.a.iter_mut().enumerate() {
                 let force = self.load[dof] - reached.force[dof] - self.damped[dof];
                 *a = force / masses[dof] - rate * self.v[dof];
