@@ -117,6 +117,8 @@ mod tests {
             assert_eq!(dot(&a, &b), plain);
             let weighted: f64 = a.iter().zip(&b).map(|(a, b)| a * a * b).sum();
             assert_eq!(weighted_dot(&a, &a, &b), weighted);
+            let differences: f64 = a.iter().zip(&b).map(|(a, b)| (b - a) * a).sum();
+            assert_eq!(dot_of_difference(&b, &a, &a), differences);
         }
         assert_eq!(norm(&[3.0, -4.0]), 5.0);
         assert_eq!(dot(&[1.0, 2.0], &[3.0]), 3.0);
