@@ -9,9 +9,9 @@ use super::problems::{Dampers, MASS, SPRING, gentle_step};
 use super::running::{Keeper, in_every_way, singly};
 use crate::spectrum::Spectrum;
 use crate::{
-    BlockMatrix, Damping, Deformed, ElasticLaw, EnergyBehaviour, EvaluationError, ForceLaw, ForceModel, Inputs,
-    Layers, LinearModel, LinearOperators, LoadTime, Needs, Pattern, Run, SimulateError, StableStep,
-    State, StepError, TangentKind, Trial, simulate,
+    BlockMatrix, Damping, Deformed, ElasticLaw, EnergyBehaviour, EvaluationError, ForceLaw,
+    ForceModel, Inputs, Layers, LinearModel, LinearOperators, LoadTime, Needs, Pattern, Run,
+    SimulateError, StableStep, State, StepError, TangentKind, Trial, simulate,
 };
 
 /// Coefficient of the cube of the stretch (N/m^3).
