@@ -5,6 +5,12 @@
 #[derive(Clone, Copy, Debug)]
 pub struct Hash(u64);
 
+impl Default for Hash {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Hash {
     /// The hash of nothing.
     #[must_use]

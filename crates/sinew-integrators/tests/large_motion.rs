@@ -92,7 +92,7 @@ impl Scene {
                 mass: 10.0,
                 stiffness: 0.0,
             };
-            let rims = |x: f64| x < 1e-9 || x > 0.1 - 1e-9;
+            let rims = |x: f64| !(1e-9..0.1 - 1e-9).contains(&x);
             for rim in 0..3 {
                 let nodes = (0u32..).zip(&mesh.points).filter(|(_, [x, y, z])| {
                     *z > 0.1 - 1e-9 && usize::from(rims(*x)) + usize::from(rims(*y)) == rim

@@ -187,6 +187,8 @@ pub(super) fn agree(one: &State, other: &State, allowed: [f64; 3]) -> bool {
         u: one.u.clone(),
         v: one.v.clone(),
         a: one.a.clone(),
+        // Matrices have one stiffness, by which steps are cut once and for all.
+        cut: one.cut,
         ..other.clone()
     };
     close && same_vectors == *one
