@@ -1,7 +1,8 @@
 //! Extreme eigenvalues, from which stable steps follow, and what loads excite between them.
 
 pub use crate::lanczos::{
-    estimated_largest_eigenvalue, largest_eigenvalue, largest_eigenvalue_of_pencil,
+    PRODUCTS_OF_ESTIMATE, estimated_largest_eigenvalue, largest_eigenvalue,
+    largest_eigenvalue_of_pencil,
 };
 pub use crate::spectral_measure::{SpectralWeight, spectral_measure};
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use sinew_core::vectors::dot;
-use sinew_core::{Acceleration, LinearOperators, LoadTime, Moment};
+use sinew_core::{Acceleration, ElasticLaw, LinearOperators, LoadTime, Moment, Trial};
 use sinew_fem::Model;
 use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
 use sinew_scene::{SceneModel, Simulation};
@@ -273,11 +273,10 @@ impl<'a> Balance<'a> {
         here: &LastRow,
         nodes: Option<[&[f64]; 2]>,
     ) -> Result<f64, RecordRunError> {
-        let span = here.t - last.t;
-        let Some(operators) = self.operators() else {
+        let (span, system) = (here.t - last.t, self.simulation.system());
+        let Some(damping) = system.as_elastic().map(ElasticLaw::damping) else {
             return Ok(0.0);
         };
-        let damping = operators.damping();
         if span <= 0.0
             || (damping.mass == 0.0 && damping.stiffness == 0.0 && damping.extra.is_none())
         {
@@ -289,13 +288,16 @@ impl<'a> Balance<'a> {
                 .collect()
         };
         let own = mean(&here.u, &last.u);
-        let power = |product: &dyn Fn(&mut [f64])| -> f64 {
-            let mut force = vec![0.0; own.len()];
-            product(&mut force);
-            -dot(&force, &own)
+        let free = match self.operators() {
+            Some(operators) => {
+                let mut force = vec![0.0; own.len()];
+                operators.subtract_damping(&own, &mut force);
+                -dot(&force, &own)
+            }
+            None => self.power_of_damping(last, here, &own)?,
         };
         let (Some(model), Some([u_before, u_after])) = (self.moved_body(), nodes) else {
-            return Ok(span * power(&|out| operators.subtract_damping(&own, out)));
+            return Ok(span * free);
         };
         let w = mean(u_after, u_before);
         let w = w.as_chunks::<3>().0;
@@ -323,8 +325,33 @@ impl<'a> Balance<'a> {
                 at_held += w[axis] * (2.0 * all[axis] - own[axis] - load[axis]);
             }
         }
-        let free = power(&|out| operators.subtract_damping(&own, out));
         Ok(span * (free + at_held))
+    }
+
+    /// The power (W) of a force law's damping at a velocity half way between two rows: what the velocity changes in the net force there.
+    fn power_of_damping(
+        &self,
+        last: &LastRow,
+        here: &LastRow,
+        velocity: &[f64],
+    ) -> Result<f64, RecordRunError> {
+        let system = self.simulation.system();
+        let ends = last.u.iter().zip(&here.u);
+        let u: Vec<f64> = ends.map(|(a, b)| 0.5 * (a + b)).collect();
+        let force = |v: &[f64]| -> Result<Vec<f64>, RecordRunError> {
+            let mut force = vec![0.0; u.len()];
+            let trial = Trial {
+                load: LoadTime::at(0.5 * (last.t + here.t)),
+                dt: 0.0,
+                u: &u,
+                v,
+                internal: &[],
+            };
+            system.net_force(&trial, &mut force)?;
+            Ok(force)
+        };
+        let (still, moving) = (force(&vec![0.0; u.len()])?, force(velocity)?);
+        Ok(dot(&still, velocity) - dot(&moving, velocity))
     }
 }
 

@@ -136,7 +136,12 @@ fn forces_are_enough(
         let agree = agree(shown, found, sizes.map(|size| rounding * size));
         assert!(agree, "{what}: step {step}: {shown:?} {found:?}");
     }
-    assert_eq!(of_shown, of_hidden, "{what}: work");
+    // Steps by a law's current stiffness cost looks at it.
+    let follows = found.iter().any(|state| state.cut.is_some());
+    assert!(
+        follows || of_shown == of_hidden,
+        "{what}: {of_shown:?} {of_hidden:?}"
+    );
 }
 
 /// The motion with the matrices is that with the tangent of their law, up to the rounding of solutions.

@@ -48,9 +48,6 @@ impl Model {
         Ok(())
     }
 
-    /// Products with the tangent for an estimate of the fastest motion about a state: to 3 % in the tests of large motions.
-    const PRODUCTS: usize = 12;
-
     /// `out += factor f` at the degrees of freedom, f being what the scratch has at the corners.
     fn add_at_corners(
         &self,
@@ -140,7 +137,7 @@ impl ForceLaw for Model {
             failed |= product.is_err();
         };
         let largest = |product: &mut dyn FnMut(&[f64], &mut [f64])| match about {
-            Some(_) => estimated_largest_eigenvalue(mass, Self::PRODUCTS, product),
+            Some(_) => estimated_largest_eigenvalue(mass, product),
             None => largest_eigenvalue(mass, product),
         };
         let eigenvalue = largest(&mut product).max(0.0);

@@ -1,6 +1,7 @@
 //! `substeps`: a step cut into equal parts.
 
 use sinew_cnn::Program;
+use sinew_core::spectrum::PRODUCTS_OF_ESTIMATE;
 use sinew_core::{
     Batch, Fact, Integrator, LoadTime, OptionError, Options, Prepared, Properties, SetupError,
     StableStep, State, StepCut, StepError, StepReport, System, Trial,
@@ -164,7 +165,11 @@ impl Substepped {
         state: &mut State,
     ) -> Result<(), StepError> {
         while batch.goes_on() {
-            let cut = self.current_cut(batch, state)?;
+            let (cut, sweeps) = self.current_cut(batch, state)?;
+            batch.count(StepReport {
+                sweeps,
+                ..StepReport::default()
+            });
             let (system, part) = (batch.system(), batch.dt() / f64::from(cut.parts));
             self.inner.prepare(system, part)?;
             state.cut = Some(StepCut {
@@ -176,25 +181,27 @@ impl Substepped {
         Ok(())
     }
 
-    /// The cut of the next step.
-    fn current_cut(&mut self, batch: &Batch<'_>, state: &State) -> Result<StepCut, StepError> {
+    /// The cut of the next step, and the sweeps that it took to find it.
+    fn current_cut(
+        &mut self,
+        batch: &Batch<'_>,
+        state: &State,
+    ) -> Result<(StepCut, u64), StepError> {
         let (system, dt) = (batch.system(), batch.dt());
         let before = state.cut.filter(|cut| cut.taken < PARTS_BETWEEN_LOOKS);
         if let Some(cut) = before {
             if cut.parts < PARTS_BETWEEN_GLANCES && cut.taken % PARTS_BETWEEN_GLANCES != 0 {
-                return Ok(cut);
+                return Ok((cut, 0));
             }
             let growth = self.stiffest_cell(batch, state)? / cut.stiffest_cell;
             // Not a number where the law has no such blocks.
             if growth.is_nan() || growth <= 1.0 {
-                return Ok(cut);
+                return Ok((cut, 1));
             }
             if growth <= MUCH_STIFFER {
                 let parts = self.parts_by(dt, cut.stable_step / growth, state)?;
-                return Ok(StepCut {
-                    parts: parts.max(cut.parts),
-                    ..cut
-                });
+                let parts = parts.max(cut.parts);
+                return Ok((StepCut { parts, ..cut }, 1));
             }
         }
         let stable_step = match self.inner.stable_step_about(system, Some(state))? {
@@ -206,12 +213,13 @@ impl Substepped {
         // Parts that are a little shorter than they have to be stay: a change costs a force and an order of the error.
         let is_near = |known: &u32| *known >= parts && f64::from(*known) <= 1.1 * f64::from(parts);
         let known = state.cut.map(|cut| cut.parts).filter(is_near);
-        Ok(StepCut {
+        let cut = StepCut {
             parts: known.unwrap_or(parts),
             taken: 0,
             stable_step,
             stiffest_cell: self.stiffest_cell(batch, state)?,
-        })
+        };
+        Ok((cut, PRODUCTS_OF_ESTIMATE + 1))
     }
 
     fn parts_by(&self, dt: f64, stable_step: f64, state: &State) -> Result<u32, StepError> {
