@@ -41,7 +41,7 @@ impl MethodChoice {
         let mut method = Self::new(integrator);
         let settings = simulation.settings();
         if settings.integrator == integrator {
-            method.options = settings.options.clone();
+            method.options = simulation.options();
         }
         method.showing_defaults()
     }

@@ -131,7 +131,7 @@ impl Summary<'_> {
             "dt_s": simulation.dt(),
             "steps": self.steps,
             "integrator": settings.integrator,
-            "options": options_json(&settings.options),
+            "options": options_json(&simulation.options()),
             "error": "not known: `sinew plan --tolerance` measures it",
             "extremes": extremes,
             "work": work,

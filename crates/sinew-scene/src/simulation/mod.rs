@@ -18,7 +18,7 @@ mod warnings;
 
 use std::sync::OnceLock;
 
-use sinew_core::{OptionError, Run, StableStep, State, System};
+use sinew_core::{OptionError, Options, Run, StableStep, State, System};
 use sinew_integrators::Stepper;
 
 pub use footprint::Footprint;
@@ -112,9 +112,13 @@ impl Simulation {
     /// # Errors
     /// [`OptionError`] for an option that the integrator refuses. Reading the scene has checked them.
     pub fn integrator(&self) -> Result<Box<dyn Stepper>, OptionError> {
-        let settings = self.settings();
-        let options = step::options(settings, self.system());
-        sinew_integrators::build(&settings.integrator, &options)
+        sinew_integrators::build(&self.settings().integrator, &self.options())
+    }
+
+    /// The options of the integrator: those of the scene, and where [`Simulation::follows_stiffness`] the cut of its steps.
+    #[must_use]
+    pub fn options(&self) -> Options {
+        step::options(self.settings(), self.system())
     }
 
     /// Whether steps are cut by the current stiffness: dt = "auto" on a body that is not linear.

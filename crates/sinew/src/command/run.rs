@@ -288,7 +288,7 @@ pub(crate) fn integrator(
 ) -> Result<Box<dyn Stepper>, OptionError> {
     const KEY: &str = "threads";
     let settings = simulation.settings();
-    let mut options = settings.options.clone();
+    let mut options = simulation.options();
     let programs =
         sinew_integrators::entry(&settings.integrator).is_some_and(|entry| entry.programs);
     match threads {
