@@ -8,11 +8,61 @@
 
 use std::arch::x86_64::*;
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, MOST};
 
 /// Two 256-bit vectors.
 #[derive(Clone, Copy)]
 pub(crate) struct Avx2<V>(V, V);
+
+/// The first three columns of four rows.
+///
+/// # Safety
+/// As for the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn columns(
+    a: *const [f64; 4],
+    b: *const [f64; 4],
+    c: *const [f64; 4],
+    d: *const [f64; 4],
+) -> [__m256d; 3] {
+    unsafe {
+        let (a, b) = (_mm256_loadu_pd(a.cast()), _mm256_loadu_pd(b.cast()));
+        let (c, d) = (_mm256_loadu_pd(c.cast()), _mm256_loadu_pd(d.cast()));
+        let (xz_ab, xz_cd) = (_mm256_unpacklo_pd(a, b), _mm256_unpacklo_pd(c, d));
+        let (yw_ab, yw_cd) = (_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d));
+        [
+            _mm256_permute2f128_pd::<0x20>(xz_ab, xz_cd),
+            _mm256_permute2f128_pd::<0x20>(yw_ab, yw_cd),
+            _mm256_permute2f128_pd::<0x31>(xz_ab, xz_cd),
+        ]
+    }
+}
+
+/// Writes three columns and one of zeros as four rows.
+///
+/// # Safety
+/// As for the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn rows([x, y, z]: [__m256d; 3], to: *mut [f64; 4], stride: usize) {
+    unsafe {
+        let zero = _mm256_setzero_pd();
+        let (xy_even, xy_odd) = (_mm256_unpacklo_pd(x, y), _mm256_unpackhi_pd(x, y));
+        let (z_even, z_odd) = (_mm256_unpacklo_pd(z, zero), _mm256_unpackhi_pd(z, zero));
+        _mm256_storeu_pd(to.cast(), _mm256_permute2f128_pd::<0x20>(xy_even, z_even));
+        _mm256_storeu_pd(
+            to.add(stride).cast(),
+            _mm256_permute2f128_pd::<0x20>(xy_odd, z_odd),
+        );
+        _mm256_storeu_pd(
+            to.add(2 * stride).cast(),
+            _mm256_permute2f128_pd::<0x31>(xy_even, z_even),
+        );
+        _mm256_storeu_pd(
+            to.add(3 * stride).cast(),
+            _mm256_permute2f128_pd::<0x31>(xy_odd, z_odd),
+        );
+    }
+}
 
 impl Lanes<f64> for Avx2<__m256d> {
     #[inline(always)]
@@ -45,6 +95,23 @@ impl Lanes<f64> for Avx2<__m256d> {
                 _mm256_i32gather_pd::<8>(from, first),
                 _mm256_i32gather_pd::<8>(from, second),
             )
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn from_rows(rows: [*const [f64; 4]; MOST]) -> [Self; 3] {
+        unsafe {
+            let [x0, y0, z0] = columns(rows[0], rows[1], rows[2], rows[3]);
+            let [x1, y1, z1] = columns(rows[4], rows[5], rows[6], rows[7]);
+            [Self(x0, x1), Self(y0, y1), Self(z0, z1)]
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn to_rows([x, y, z]: [Self; 3], to: *mut [f64; 4], stride: usize) {
+        unsafe {
+            rows([x.0, y.0, z.0], to, stride);
+            rows([x.1, y.1, z.1], to.add(4 * stride), stride);
         }
     }
 

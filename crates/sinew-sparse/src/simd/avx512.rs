@@ -8,11 +8,35 @@
 
 use std::arch::x86_64::*;
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, MOST};
 
 /// A 512-bit vector.
 #[derive(Clone, Copy)]
 pub(crate) struct Avx512<V>(V);
+
+/// Two rows side by side.
+///
+/// # Safety
+/// As for the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn pair(low: *const [f64; 4], high: *const [f64; 4]) -> __m512d {
+    unsafe {
+        let low = _mm512_castpd256_pd512(_mm256_loadu_pd(low.cast()));
+        _mm512_insertf64x4::<1>(low, _mm256_loadu_pd(high.cast()))
+    }
+}
+
+/// Writes two rows that stand side by side.
+///
+/// # Safety
+/// As for the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn store_pair(rows: __m512d, low: *mut [f64; 4], high: *mut [f64; 4]) {
+    unsafe {
+        _mm256_storeu_pd(low.cast(), _mm512_castpd512_pd256(rows));
+        _mm256_storeu_pd(high.cast(), _mm512_extractf64x4_pd::<1>(rows));
+    }
+}
 
 impl Lanes<f64> for Avx512<__m512d> {
     #[inline(always)]
@@ -35,6 +59,46 @@ impl Lanes<f64> for Avx512<__m512d> {
         unsafe {
             let index = _mm256_loadu_si256(index.cast());
             Self(_mm512_i32gather_pd::<8>(index, from))
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn from_rows(rows: [*const [f64; 4]; MOST]) -> [Self; 3] {
+        unsafe {
+            let (a, b) = (pair(rows[0], rows[4]), pair(rows[1], rows[5]));
+            let (c, d) = (pair(rows[2], rows[6]), pair(rows[3], rows[7]));
+            let (xz_ab, xz_cd) = (_mm512_unpacklo_pd(a, b), _mm512_unpacklo_pd(c, d));
+            let (yw_ab, yw_cd) = (_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d));
+            let first = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+            let second = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+            [
+                Self(_mm512_permutex2var_pd(xz_ab, first, xz_cd)),
+                Self(_mm512_permutex2var_pd(yw_ab, first, yw_cd)),
+                Self(_mm512_permutex2var_pd(xz_ab, second, xz_cd)),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn to_rows([x, y, z]: [Self; 3], to: *mut [f64; 4], stride: usize) {
+        unsafe {
+            let zero = _mm512_setzero_pd();
+            let (xy_even, xy_odd) = (_mm512_unpacklo_pd(x.0, y.0), _mm512_unpackhi_pd(x.0, y.0));
+            let (z_even, z_odd) = (_mm512_unpacklo_pd(z.0, zero), _mm512_unpackhi_pd(z.0, zero));
+            let first = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+            let second = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+            let (even, odd) = (
+                _mm512_permutex2var_pd(xy_even, first, z_even),
+                _mm512_permutex2var_pd(xy_odd, first, z_odd),
+            );
+            store_pair(even, to, to.add(2 * stride));
+            store_pair(odd, to.add(stride), to.add(3 * stride));
+            let (even, odd) = (
+                _mm512_permutex2var_pd(xy_even, second, z_even),
+                _mm512_permutex2var_pd(xy_odd, second, z_odd),
+            );
+            store_pair(even, to.add(4 * stride), to.add(6 * stride));
+            store_pair(odd, to.add(5 * stride), to.add(7 * stride));
         }
     }
 

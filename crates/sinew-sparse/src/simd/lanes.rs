@@ -2,12 +2,15 @@
 
 use super::real::Real;
 
+/// Lanes at most, for arrays.
+pub(crate) const MOST: usize = 16;
+
 /// A vector of `T::LANES` numbers: 64 bytes, whatever the instruction set, so that layouts in memory do
 /// not depend on it.
 ///
 /// # Safety
 /// Every method may be called only where the instruction set of the implementation is available. Pointers
-/// have to be valid for `T::LANES` numbers (indices included) and need no alignment.
+/// have to be valid for `T::LANES` numbers (indices included), or for the rows that a method names, and need no alignment beyond that of a number.
 #[allow(unsafe_code, reason = "one contract for all methods stands above")]
 pub(crate) trait Lanes<T: Real>: Copy {
     unsafe fn splat(value: T) -> Self;
@@ -34,6 +37,42 @@ pub(crate) trait Lanes<T: Real>: Copy {
     unsafe fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
     /// One bit for each lane whose size is at least `limit`.
     unsafe fn reaches(self, limit: Self) -> u32;
+    /// The first three columns of the rows of four numbers at these addresses, of which the first `T::LANES` are used.
+    #[inline(always)]
+    unsafe fn from_rows(rows: [*const [T; 4]; MOST]) -> [Self; 3] {
+        let mut columns = [[T::default(); MOST]; 3];
+        for (lane, row) in rows.into_iter().enumerate().take(T::LANES) {
+            for (axis, column) in columns.iter_mut().enumerate() {
+                // SAFETY: the address of a row.
+                column[lane] = unsafe { (*row)[axis] };
+            }
+        }
+        // SAFETY: each column has room for the largest vector.
+        unsafe {
+            [
+                Self::load(columns[0].as_ptr()),
+                Self::load(columns[1].as_ptr()),
+                Self::load(columns[2].as_ptr()),
+            ]
+        }
+    }
+    /// Writes three columns and one of zeros as rows of four numbers, `stride` rows apart.
+    #[inline(always)]
+    unsafe fn to_rows([x, y, z]: [Self; 3], to: *mut [T; 4], stride: usize) {
+        let mut columns = [[T::default(); MOST]; 3];
+        // SAFETY: each column has room for the largest vector, and `to` for all rows.
+        unsafe {
+            x.store(columns[0].as_mut_ptr());
+            y.store(columns[1].as_mut_ptr());
+            z.store(columns[2].as_mut_ptr());
+        }
+        let [x, y, z] = columns;
+        let rows = x.into_iter().zip(y).zip(z).take(T::LANES);
+        for (lane, ((x, y), z)) in rows.enumerate() {
+            // SAFETY: `to` has room for all rows.
+            unsafe { *to.add(lane * stride) = [x, y, z, T::default()] }
+        }
+    }
     /// One bit for each lane whose size is not at most `limit`: larger, or not a number.
     unsafe fn exceeds(self, limit: Self) -> u32;
 }

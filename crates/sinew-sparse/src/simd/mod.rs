@@ -22,7 +22,7 @@ pub use number::Number;
 pub(crate) use portable::Array;
 pub use real::Real;
 pub use set::InstructionSet;
-pub use vector::WithNumber;
+pub use vector::{WithDouble, WithNumber};
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) use {avx2::Avx2, avx512::Avx512};

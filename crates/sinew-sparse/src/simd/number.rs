@@ -41,6 +41,15 @@ pub trait Number:
     /// Writes the lanes to the beginning of a slice, which has room for them.
     fn store(self, to: &mut [Self::Real]);
 
+    /// The first three numbers of each of some rows: lane by lane those at `places`, of which there is one for each lane.
+    fn gather_rows(from: &[[Self::Real; 4]], places: &[u32]) -> [Self; 3];
+
+    /// The first three numbers of each of some rows, `stride` rows apart from the first.
+    fn load_rows(from: &[[Self::Real; 4]], stride: usize) -> [Self; 3];
+
+    /// Writes three numbers and 0 to a row for each lane, `stride` rows apart from the first.
+    fn store_rows(columns: [Self; 3], to: &mut [[Self::Real; 4]], stride: usize);
+
     /// `self factor + other`, rounded once where the processor can.
     #[must_use]
     fn mul_add(self, factor: Self, other: Self) -> Self;
@@ -153,6 +162,22 @@ macro_rules! scalar {
             #[inline(always)]
             fn store(self, to: &mut [Self]) {
                 to[0] = self;
+            }
+
+            #[inline(always)]
+            fn gather_rows(from: &[[Self; 4]], places: &[u32]) -> [Self; 3] {
+                Self::load_rows(&from[places[0] as usize..], 1)
+            }
+
+            #[inline(always)]
+            fn load_rows(from: &[[Self; 4]], _stride: usize) -> [Self; 3] {
+                let [x, y, z, _] = from[0];
+                [x, y, z]
+            }
+
+            #[inline(always)]
+            fn store_rows([x, y, z]: [Self; 3], to: &mut [[Self; 4]], _stride: usize) {
+                to[0] = [x, y, z, 0.0];
             }
 
             #[inline(always)]

@@ -6,7 +6,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, MOST};
 use super::number::Number;
 use super::portable::Array;
 use super::real::Real;
@@ -24,7 +24,33 @@ pub trait WithNumber {
     fn run<N: Number>(self) -> Self::Output;
 }
 
+/// Work in double precision that is written over any [`Number`] of it.
+pub trait WithDouble {
+    /// What comes of it.
+    type Output;
+
+    /// Does the work, as [`WithNumber::run`] does.
+    fn run<N: Number<Real = f64>>(self) -> Self::Output;
+}
+
 impl InstructionSet {
+    /// Does work with vectors of f64, or with plain numbers where there are only the instructions of the build.
+    pub fn with_vectors_or_numbers<W: WithDouble>(self, work: W) -> W::Output {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the instructions are available.
+            Self::Avx2 if self.is_available() => unsafe {
+                doubles_on_avx2::<Vector<f64, Avx2<_>>, W>(work)
+            },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the instructions are available.
+            Self::Avx512 if self.is_available() => unsafe {
+                doubles_on_avx512::<Vector<f64, Avx512<_>>, W>(work)
+            },
+            _ => work.run::<f64>(),
+        }
+    }
+
     /// Does work with vectors of f64; `None` where this machine lacks the instructions.
     pub fn with_f64<W: WithNumber>(self, work: W) -> Option<W::Output> {
         self.is_available().then(|| match self {
@@ -72,15 +98,28 @@ unsafe fn on_avx512<N: Number, W: WithNumber>(work: W) -> W::Output {
     work.run::<N>()
 }
 
+/// # Safety
+/// The instructions are available.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn doubles_on_avx2<N: Number<Real = f64>, W: WithDouble>(work: W) -> W::Output {
+    work.run::<N>()
+}
+
+/// # Safety
+/// The instructions are available.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl")]
+unsafe fn doubles_on_avx512<N: Number<Real = f64>, W: WithDouble>(work: W) -> W::Output {
+    work.run::<N>()
+}
+
 /// A vector of `T::LANES` numbers.
 ///
-/// The type is private and nothing but [`InstructionSet::with_f64`] and [`InstructionSet::with_f32`] names it to others, after they have seen
+/// The type is private and nothing but the methods of [`InstructionSet`] above names it to others, after they have seen
 /// that the machine has its instructions. So whoever has the type may use it, and that is the proof of all blocks below.
 #[derive(Clone, Copy)]
 struct Vector<T, V>(V, PhantomData<T>);
-
-/// Lanes at most, for arrays.
-const MOST: usize = 16;
 
 impl<T: Real, V: Lanes<T>> Vector<T, V> {
     #[inline(always)]
@@ -171,6 +210,37 @@ impl<T: Real, V: Lanes<T>> Number for Vector<T, V> {
     }
 
     #[inline(always)]
+    fn gather_rows(from: &[[T; 4]], places: &[u32]) -> [Self; 3] {
+        let places = &places[..T::LANES];
+        let mut rows = [std::ptr::null(); MOST];
+        for (row, place) in rows.iter_mut().zip(places) {
+            *row = &raw const from[*place as usize];
+        }
+        // SAFETY: see `Vector`; each row is one of the slice.
+        let [x, y, z] = unsafe { V::from_rows(rows) };
+        [Self::new(x), Self::new(y), Self::new(z)]
+    }
+
+    #[inline(always)]
+    fn load_rows(from: &[[T; 4]], stride: usize) -> [Self; 3] {
+        let from = &from[..(T::LANES - 1) * stride + 1];
+        let mut rows = [std::ptr::null(); MOST];
+        for (lane, row) in rows.iter_mut().enumerate().take(T::LANES) {
+            *row = from.as_ptr().wrapping_add(lane * stride);
+        }
+        // SAFETY: see `Vector`; the slice reaches to the last row.
+        let [x, y, z] = unsafe { V::from_rows(rows) };
+        [Self::new(x), Self::new(y), Self::new(z)]
+    }
+
+    #[inline(always)]
+    fn store_rows([x, y, z]: [Self; 3], to: &mut [[T; 4]], stride: usize) {
+        let to = &mut to[..(T::LANES - 1) * stride + 1];
+        // SAFETY: see `Vector`; the slice reaches to the last row.
+        unsafe { V::to_rows([x.0, y.0, z.0], to.as_mut_ptr(), stride) }
+    }
+
+    #[inline(always)]
     fn mul_add(self, factor: Self, other: Self) -> Self {
         // SAFETY: see `Vector`.
         Self::new(unsafe { self.0.mul_add(factor.0, other.0) })
@@ -250,6 +320,24 @@ mod tests {
             let mut kept = vec![N::Real::default(); N::LANES];
             b.store(&mut kept);
             close(N::load(&kept), &|_, b| b);
+            let mut rows = vec![[N::Real::of(9.0); 4]; 2 * N::LANES];
+            N::store_rows([a, b, a], &mut rows, 2);
+            for (lane, rows) in rows.chunks(2).enumerate() {
+                let expected = [x(lane), y(lane), x(lane), 0.0];
+                for (found, expected) in rows[0].into_iter().zip(expected) {
+                    let found = found.to_f64();
+                    assert!(found == expected || found.is_nan() && expected.is_nan());
+                }
+                assert_eq!(rows[1], [N::Real::of(9.0); 4]);
+            }
+            let backwards: Vec<u32> = (0..N::LANES as u32).rev().map(|lane| 2 * lane).collect();
+            let [again, other, _] = N::load_rows(&rows, 2);
+            close(again, &|a, _| a);
+            close(other, &|_, b| b);
+            let [_, other, _] = N::gather_rows(&rows, &backwards);
+            for lane in 0..N::LANES {
+                assert_eq!(other.lane(lane), y(N::LANES - 1 - lane));
+            }
         }
     }
 
