@@ -196,8 +196,8 @@ impl<N: Number> Tensor<N> {
     #[inline(always)]
     #[must_use]
     pub fn largest(self) -> N {
-        let size = |row: [N; 3]| row[0].abs().max(row[1].abs()).max(row[2].abs());
-        size(self.0[0]).max(size(self.0[1])).max(size(self.0[2]))
+        let [x, y, z] = self.0;
+        largest(x).max(largest(y)).max(largest(z))
     }
 }
 
@@ -232,6 +232,11 @@ impl<N: Number> Mul for Tensor<N> {
             a[i][0].mul_add(b[0][j], a[i][1].mul_add(b[1][j], last))
         })
     }
+}
+
+#[inline(always)]
+fn largest<N: Number>(row: [N; 3]) -> N {
+    row[0].abs().max(row[1].abs()).max(row[2].abs())
 }
 
 /// The scalar product.

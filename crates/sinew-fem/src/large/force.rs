@@ -1,170 +1,326 @@
 //! Internal forces and the energy behind them.
 
 use sinew_core::{Deformed, EvaluationError};
+use sinew_sparse::simd::{InstructionSet, Number, WithDouble};
 
+use super::chunks::Chunk;
 use super::error::refused;
+use super::found::Found;
+use super::gather::{Gather, row_sum};
 use super::region::HyperelasticRegion;
-use super::scratch::Scratch;
-use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Point};
+use super::scratch::{Kept, Rows, Scratch};
+use crate::hyperelastic::{
+    Deformation, HyperelasticLaw, LawVisitor, SMALLEST_VOLUME_RATIO, Tensor,
+};
 
-/// Writes the forces at the corners of a region's tetrahedra and adds to what is found.
-pub(super) fn evaluate<const ENERGY: bool>(
-    region: &HyperelasticRegion,
+/// Writes the forces at the corners of a region's tetrahedra and their sums at the nodes that are complete with them, and tells what is found; without the energy unless it is asked for.
+pub(super) fn evaluate(
+    (region, gather): (&HyperelasticRegion, &Gather),
     scratch: &mut Scratch,
-    found: &mut Deformed,
-) -> Result<(), EvaluationError> {
-    region.law.with_law(Forces::<ENERGY> {
+    set: InstructionSet,
+    with_energy: bool,
+) -> Result<Deformed, EvaluationError> {
+    region.law.with_law(Forces {
         region,
+        gather,
         scratch,
-        found,
+        set,
+        with_energy,
     })
 }
 
-struct Forces<'a, const ENERGY: bool> {
+struct Forces<'a> {
     region: &'a HyperelasticRegion,
+    gather: &'a Gather,
     scratch: &'a mut Scratch,
-    found: &'a mut Deformed,
+    set: InstructionSet,
+    with_energy: bool,
 }
 
-impl<const ENERGY: bool> LawVisitor for Forces<'_, ENERGY> {
-    type Output = Result<(), EvaluationError>;
+impl LawVisitor for Forces<'_> {
+    type Output = Result<Deformed, EvaluationError>;
 
     fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
-        if self.region.is_smoothed() {
-            self.smoothed(law)
-        } else {
-            self.plain(law)
-        }
+        let Scratch {
+            displacement,
+            corners,
+            sums,
+            kept,
+            ..
+        } = self.scratch;
+        self.set.with_vectors_or_numbers(Sweep {
+            region: self.region,
+            gather: self.gather,
+            law,
+            with_energy: self.with_energy,
+            displacement,
+            corners,
+            sums,
+            kept,
+        })
     }
 }
 
-impl<const ENERGY: bool> Forces<'_, ENERGY> {
-    fn plain<L: HyperelasticLaw>(self, law: L) -> Result<(), EvaluationError> {
-        let rest = &self.region.rest;
-        let corners = self.scratch.corners[self.region.first..].iter_mut();
-        for (tet, corners) in (0..rest.count()).zip(corners) {
-            let at = law.at(rest.gradient_of::<f64>(tet, &self.scratch.displacement));
-            note(self.found, at.volume_ratio, rest.tag(tet));
-            check(&law, &at, rest.tag(tet))?;
-            if ENERGY {
-                self.found.energy += rest.volume(tet) * law.whole_energy(&at);
+/// All loops over a region, for one law.
+struct Sweep<'a, L> {
+    region: &'a HyperelasticRegion,
+    gather: &'a Gather,
+    law: L,
+    with_energy: bool,
+    displacement: &'a [[f64; 4]],
+    corners: &'a mut [[f64; 4]],
+    sums: &'a mut [[f64; 4]],
+    kept: &'a mut Kept,
+}
+
+impl<L: HyperelasticLaw> WithDouble for Sweep<'_, L> {
+    type Output = Result<Deformed, EvaluationError>;
+
+    #[inline(always)]
+    fn run<N: Number<Real = f64>>(mut self) -> Self::Output {
+        let region = self.region;
+        let mut found = Found::<N>::none();
+        for chunk in &region.chunks {
+            if region.is_smoothed() {
+                self.means(chunk, &mut found)?;
             }
-            let stress = law.stress_with(&at, law.own_bulk(&at));
-            rest.forces(tet, stress, corners);
+            self.edges(chunk, &mut found)?;
+            for chunk in &region.chunks[chunk.forces.clone()] {
+                self.forces(chunk, &mut found)?;
+                self.gather
+                    .sum(chunk.nodes.clone(), self.corners, self.sums);
+            }
+        }
+        Ok(found.over(&region.rest))
+    }
+}
+
+impl<L: HyperelasticLaw> Sweep<'_, L> {
+    /// Takes the mean dilation of each patch of a chunk, and keeps the gradients.
+    #[inline(always)]
+    fn means<N: Number<Real = f64>>(
+        &mut self,
+        chunk: &Chunk,
+        found: &mut Found<N>,
+    ) -> Result<(), EvaluationError> {
+        let (region, rest) = (self.region, &self.region.rest);
+        let keeps_rows = !region.edges_of.is_empty();
+        for first in chunk.slots.clone().step_by(N::LANES) {
+            let gradient = rest.gradient_of::<N>(first, self.displacement);
+            let at = self.law.at(gradient);
+            if !admits::<L, N>(&at.deformation) {
+                return Err(refused_among::<L>(&lanes(at.volume_ratio), |lane| {
+                    rest.tag(first + lane)
+                }));
+            }
+            let volume = rest.volumes::<N>(first);
+            let dilation = volume * self.law.dilation(&at);
+            dilation.store(&mut self.kept.dilations[first..]);
+            if keeps_rows {
+                store(gradient.scaled(volume), &mut self.kept.gradients[first..]);
+            } else {
+                let to = &mut self.kept.chunk[9 * (first - chunk.slots.start)..];
+                for (entry, to) in gradient
+                    .0
+                    .as_flattened()
+                    .iter()
+                    .zip(to.chunks_exact_mut(N::LANES))
+                {
+                    entry.store(to);
+                }
+            }
+        }
+        let lambda = self.law.lame().0;
+        for patch in chunk.patches.clone() {
+            let tets = region.patches.of(patch);
+            let volume = region.patch_volumes[patch];
+            // The tetrahedra of a patch are neighbours in memory.
+            let first = tets.first().map_or(0, |tet| *tet as usize);
+            let dilations = &mut self.kept.dilations[first..first + tets.len()];
+            let mean = dilations.iter().sum::<f64>() / volume;
+            dilations.fill(mean);
+            found.energy_of_patches += 0.5 * volume * lambda * mean * mean;
         }
         Ok(())
     }
 
-    fn smoothed<L: HyperelasticLaw>(self, law: L) -> Result<(), EvaluationError> {
-        let Self {
-            region,
-            scratch,
-            found,
-        } = self;
-        let (rest, lambda) = (&region.rest, law.lame().0);
-        means(region, scratch, &law)?;
-        if ENERGY {
-            for (patch, [dilation, _]) in (0..region.patches.count()).zip(&scratch.dilations) {
-                let volume = region.volume_of(region.patches.of(patch));
-                found.energy += 0.5 * volume * lambda * dilation * dilation;
+    /// Computes the stress at each edge that a chunk completes.
+    #[inline(always)]
+    fn edges<N: Number<Real = f64>>(
+        &mut self,
+        chunk: &Chunk,
+        found: &mut Found<N>,
+    ) -> Result<(), EvaluationError> {
+        let (region, rest) = (self.region, &self.region.rest);
+        let last = region.edges.count().saturating_sub(1);
+        for first in chunk.edges.clone().step_by(N::LANES) {
+            let mut sums = [[[0.0; 4]; 3]; LANES];
+            for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
+                // Room behind the last edge repeats it.
+                *sum = rows_of(
+                    &self.kept.gradients,
+                    region.edges.of((first + lane).min(last)),
+                );
+            }
+            let volume = N::load(&region.edge_volumes[first..]);
+            let over = N::select_le(volume, N::of(0.0), N::of(0.0), volume.recip());
+            let at = self.law.at(load::<N>(&sums).scaled(over));
+            if !admits::<L, N>(&at.deformation) {
+                return Err(refused_among::<L>(&lanes(at.volume_ratio), |lane| {
+                    let tets = region.edges.of((first + lane).min(last));
+                    tets.first().map_or(0, |tet| rest.tag(*tet as usize))
+                }));
+            }
+            store(self.law.stress(&at), &mut self.kept.at_edges[first..]);
+            if self.with_energy {
+                let share = volume * N::of(region.edge_share / 6.0);
+                found.energy = share.mul_add(self.law.energy(&at), found.energy);
             }
         }
-        for edge in 0..region.edges.count() {
-            let tets = region.edges.of(edge);
-            let at = at_edge(region, &law, tets, scratch)?;
-            scratch.at_edges[edge] = law.stress(&at);
-            if ENERGY {
-                let volume = region.volume_of(tets) / 6.0;
-                found.energy += region.edge_share * volume * law.energy(&at);
+        Ok(())
+    }
+
+    /// Computes the forces at the corners of the tetrahedra of a chunk.
+    #[inline(always)]
+    fn forces<N: Number<Real = f64>>(
+        &mut self,
+        chunk: &Chunk,
+        found: &mut Found<N>,
+    ) -> Result<(), EvaluationError> {
+        let (region, rest) = (self.region, &self.region.rest);
+        let (is_smoothed, has_edges) = (region.is_smoothed(), !region.edges_of.is_empty());
+        let (lambda, own_share) = (self.law.lame().0, 1.0 - region.edge_share);
+        for first in chunk.slots.clone().step_by(N::LANES) {
+            let gradient = if is_smoothed && !has_edges {
+                let from = &self.kept.chunk[9 * (first - chunk.slots.start)..];
+                load_entries(from)
+            } else {
+                rest.gradient_of::<N>(first, self.displacement)
+            };
+            let at = self.law.at(gradient);
+            if !admits::<L, N>(&at.deformation) {
+                return Err(refused_among::<L>(&lanes(at.volume_ratio), |lane| {
+                    rest.tag(first + lane)
+                }));
             }
-        }
-        let own_share = 1.0 - region.edge_share;
-        let corners = scratch.corners[region.first..].iter_mut();
-        for (tet, corners) in (0..rest.count()).zip(corners) {
-            let at = law.at(scratch.gradients[tet]);
-            note(found, at.volume_ratio, rest.tag(tet));
-            if ENERGY {
-                found.energy += own_share * rest.volume(tet) * law.energy(&at);
+            let dilation = if is_smoothed {
+                N::load(&self.kept.dilations[first..])
+            } else {
+                self.law.dilation(&at)
+            };
+            let bulk = N::of(lambda) * dilation;
+            if self.with_energy {
+                found.note(first, at.volume_ratio, rest);
+                let mut density = N::of(own_share) * self.law.energy(&at);
+                if !is_smoothed {
+                    density = (N::of(0.5) * dilation).mul_add(bulk, density);
+                }
+                found.energy = rest.volumes::<N>(first).mul_add(density, found.energy);
             }
-            let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
-            let mut stress = law.stress(&at).scaled(own_share);
-            stress = stress.plus(lambda * dilation, law.dilation_gradient(&at));
-            for edge in region.edges_of.get(tet).into_iter().flatten() {
-                stress = stress.plus(region.edge_share / 6.0, scratch.at_edges[*edge as usize]);
+            let mut stress = self.law.stress(&at);
+            if has_edges {
+                let mut sums = [[[0.0; 4]; 3]; LANES];
+                for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
+                    *sum = rows_of(&self.kept.at_edges, &region.edges_of[first + lane]);
+                }
+                stress = stress.scaled(N::of(own_share));
+                stress = stress.plus(N::of(region.edge_share / 6.0), load(&sums));
             }
-            rest.forces(tet, stress, corners);
+            stress = stress.plus(bulk, self.law.dilation_gradient(&at));
+            rest.forces(
+                first,
+                stress,
+                &mut self.corners[4 * (region.first + first)..],
+            );
         }
         Ok(())
     }
 }
 
-/// Takes the gradient of the displacement in each tetrahedron and the mean dilation of each patch.
-pub(super) fn means<L: HyperelasticLaw>(
-    region: &HyperelasticRegion,
-    scratch: &mut Scratch,
-    law: &L,
-) -> Result<(), EvaluationError> {
-    for patch in 0..region.patches.count() {
-        let tets = region.patches.of(patch);
-        let (mut sum, mut volumes) = (0.0, 0.0);
-        for tet in tets {
-            let tet = *tet as usize;
-            let gradient = region.rest.gradient_of::<f64>(tet, &scratch.displacement);
-            scratch.gradients[tet] = gradient;
-            let at = law.at(gradient);
-            check(law, &at, region.rest.tag(tet))?;
-            let volume = region.rest.volume(tet);
-            sum += volume * law.dilation(&at);
-            volumes += volume;
-        }
-        scratch.dilations[patch] = [sum / volumes, 0.0];
-    }
-    Ok(())
+/// Lanes at most.
+const LANES: usize = 8;
+
+/// Whether a law is defined for a deformation, which is finite, in all lanes.
+#[inline(always)]
+fn admits<L: HyperelasticLaw, N: Number>(deformation: &Deformation<N>) -> bool {
+    let ratio = deformation.volume_ratio;
+    N::all_le(N::of(least::<L>()), ratio) && N::all_le(ratio, N::of(f64::MAX))
 }
 
-/// The mean deformation at an edge with these tetrahedra.
-#[inline(always)]
-pub(super) fn at_edge<L: HyperelasticLaw>(
-    region: &HyperelasticRegion,
-    law: &L,
-    tets: &[u32],
-    scratch: &Scratch,
-) -> Result<Point<f64, L::Own<f64>>, EvaluationError> {
-    let at = law.at(region.mean_tensor(tets, |tet| scratch.gradients[tet]));
-    let first = tets.first().map_or(0, |tet| region.rest.tag(*tet as usize));
-    check(law, &at, first)?;
-    Ok(at)
-}
-
-/// The dilational energy of a tetrahedron by the mean of its patch, whose own modulus is added elsewhere.
-#[inline(always)]
-pub(super) fn bulk_of_patch(lambda: f64, dilation: f64) -> Bulk<f64> {
-    Bulk {
-        stress: lambda * dilation,
-        modulus: 0.0,
-    }
-}
-
-#[inline(always)]
-pub(super) fn check<L: HyperelasticLaw>(
-    law: &L,
-    at: &Point<f64, L::Own<f64>>,
-    tag: u64,
-) -> Result<(), EvaluationError> {
-    if law.admits(&at.deformation) && at.volume_ratio.is_finite() {
-        Ok(())
+/// The smallest volume ratio that a law is defined for.
+const fn least<L: HyperelasticLaw>() -> f64 {
+    if L::DEFINED_WHEN_INVERTED {
+        f64::MIN
     } else {
-        Err(refused::<L>(tag, at.volume_ratio))
+        SMALLEST_VOLUME_RATIO
     }
 }
 
 #[inline(always)]
-fn note(found: &mut Deformed, volume_ratio: f64, tag: u64) {
-    if volume_ratio <= 0.0 {
-        found.inverted += 1;
+fn lanes<N: Number<Real = f64>>(number: N) -> [f64; LANES] {
+    let mut lanes = [1.0; LANES];
+    number.store(&mut lanes);
+    lanes
+}
+
+/// The error for the first lane that a law is not defined for.
+#[cold]
+#[inline(never)]
+fn refused_among<L: HyperelasticLaw>(
+    ratios: &[f64; LANES],
+    tag: impl Fn(usize) -> u64,
+) -> EvaluationError {
+    let is_refused = |ratio: &f64| !(least::<L>()..=f64::MAX).contains(ratio);
+    let lane = ratios.iter().position(is_refused).unwrap_or(0);
+    refused::<L>(tag(lane), ratios[lane])
+}
+
+/// The sum of some tensors.
+#[inline(always)]
+fn rows_of(all: &[Rows], places: &[u32]) -> Rows {
+    let [mut x, mut y, mut z] = [[0.0; 4]; 3];
+    for place in places {
+        let [other_x, other_y, other_z] = &all[*place as usize];
+        x = row_sum(x, other_x);
+        y = row_sum(y, other_y);
+        z = row_sum(z, other_z);
     }
-    if volume_ratio < found.smallest_volume_ratio {
-        found.smallest_volume_ratio = volume_ratio;
-        found.worst_element = Some(tag);
-    }
+    [x, y, z]
+}
+
+#[inline(always)]
+fn load<N: Number<Real = f64>>(from: &[Rows]) -> Tensor<N> {
+    let rows = from.as_flattened();
+    Tensor([
+        N::load_rows(rows, 3),
+        N::load_rows(&rows[1..], 3),
+        N::load_rows(&rows[2..], 3),
+    ])
+}
+
+#[inline(always)]
+fn store<N: Number<Real = f64>>(tensor: Tensor<N>, to: &mut [Rows]) {
+    let rows = to.as_flattened_mut();
+    let [x, y, z] = tensor.0;
+    N::store_rows(x, rows, 3);
+    N::store_rows(y, &mut rows[1..], 3);
+    N::store_rows(z, &mut rows[2..], 3);
+}
+
+/// The tensor whose entries stand one vector behind the other.
+#[inline(always)]
+fn load_entries<N: Number<Real = f64>>(from: &[f64]) -> Tensor<N> {
+    let from = &from[..9 * N::LANES];
+    let (first, rest) = from.split_at(3 * N::LANES);
+    let (second, third) = rest.split_at(3 * N::LANES);
+    Tensor([load_row(first), load_row(second), load_row(third)])
+}
+
+#[inline(always)]
+fn load_row<N: Number<Real = f64>>(from: &[f64]) -> [N; 3] {
+    [
+        N::load(from),
+        N::load(&from[N::LANES..]),
+        N::load(&from[2 * N::LANES..]),
+    ]
 }

@@ -2,7 +2,7 @@
 
 use sinew_core::{BlockMatrix, ElementStiffness, EvaluationError, TangentKind};
 
-use super::force::{at_edge, check, means};
+use super::means::{at_edge, check, means};
 use super::product::OwnTangent;
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
@@ -63,7 +63,7 @@ impl LawVisitor for Tangents<'_, '_> {
         } = self;
         let (rest, lambda) = (&region.rest, law.lame().0);
         if !region.is_smoothed() {
-            for tet in 0..rest.count() {
+            for tet in rest.tets() {
                 let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
                 check(&law, &at, rest.tag(tet))?;
                 let tangent = Linearised::of(&law, &at, law.own_bulk(&at), kind);
@@ -73,7 +73,7 @@ impl LawVisitor for Tangents<'_, '_> {
             return Ok(());
         }
         means(region, scratch, &law)?;
-        for tet in 0..rest.count() {
+        for tet in rest.tets() {
             let at = law.at(scratch.gradients[tet]);
             let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
             let own = OwnTangent::of(&law, &at, region, lambda * dilation, kind);

@@ -1,9 +1,12 @@
 //! Regions of hyperelastic tetrahedra: their forces, energy and tangent at any displacement.
 
+mod chunks;
 mod error;
 mod force;
+mod found;
 mod gather;
 mod matrix;
+mod means;
 mod node_blocks;
 mod product;
 mod region;
@@ -12,16 +15,18 @@ mod scratch;
 mod stress;
 
 pub(crate) use region::HyperelasticRegion;
-pub(crate) use scratch::Scratch;
+pub(crate) use scratch::{Scratch, fill};
 
 use std::sync::{Mutex, PoisonError};
 
 use sinew_core::{BlockMatrix, Deformed, EvaluationError, TangentKind};
 use sinew_mesh::TetMesh;
+use sinew_sparse::simd::InstructionSet;
 
 use crate::cells::Cells;
 use crate::hyperelastic::Hyperelastic;
 use crate::smoothing::Smoothing;
+use chunks::chunks;
 use gather::Gather;
 
 /// Marks a tetrahedron that is in no hyperelastic region.
@@ -33,7 +38,10 @@ pub(crate) struct LargeDeformation {
     regions: Vec<HyperelasticRegion>,
     gather: Gather,
     nodes: usize,
-    tets: usize,
+    /// Places of tetrahedra, padding included.
+    slots: usize,
+    /// The instructions that force loops are run with.
+    set: InstructionSet,
     /// Place of each tetrahedron of the mesh among those of the regions.
     place_of_tet: Vec<u32>,
     /// Room for evaluations, one for each that goes on at the same time.
@@ -47,28 +55,42 @@ impl LargeDeformation {
         smoothing: &Smoothing,
         regions: impl Iterator<Item = ((Hyperelastic, f64), &'a [u32])>,
     ) -> Option<Self> {
-        let (mut made, mut tets) = (Vec::new(), 0);
+        let (mut made, mut count) = (Vec::new(), 0);
         let mut place_of_tet = vec![NO_PLACE; mesh.tets.len()];
         for (law, members) in regions {
-            for (place, tet) in (tets as u32..).zip(members) {
-                place_of_tet[*tet as usize] = place;
+            let (slots, chunks) = chunks(members, |tet| smoothing.patch_of(tet as usize));
+            for (place, slot) in (count as u32..).zip(&slots) {
+                if !slot.is_padding {
+                    place_of_tet[slot.tet as usize] = place;
+                }
             }
-            made.push(HyperelasticRegion::new(mesh, smoothing, law, members, tets));
-            tets += members.len();
+            let region = HyperelasticRegion::new(mesh, smoothing, law, (&slots, chunks), count);
+            made.push(region);
+            count += slots.len();
         }
         if made.is_empty() {
             return None;
         }
         let nodes = made.iter().flat_map(|region| {
             let rest = &region.rest;
-            (0..rest.count()).map(|tet| rest.nodes(tet))
+            (0..rest.count()).map(|tet| rest.is_taken(tet).then(|| rest.nodes(tet)))
         });
-        let nodes: Vec<[u32; 4]> = nodes.collect();
+        let nodes: Vec<_> = nodes.collect();
+        let gather = Gather::new(mesh.points.len(), nodes.iter().copied());
+        let mut known = 0;
+        for region in &mut made {
+            for chunk in &mut region.chunks {
+                let complete = gather.complete(region.first + chunk.slots.end);
+                chunk.nodes = known..complete;
+                known = complete;
+            }
+        }
         Some(Self {
-            gather: Gather::new(mesh.points.len(), nodes.iter().copied()),
+            gather,
             regions: made,
             nodes: mesh.points.len(),
-            tets,
+            slots: count,
+            set: InstructionSet::best(),
             place_of_tet,
             pool: Mutex::default(),
         })
@@ -79,28 +101,30 @@ impl LargeDeformation {
         let pool = || self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         let known = pool().pop();
         let mut scratch =
-            known.unwrap_or_else(|| Scratch::new(self.nodes, self.tets, &self.regions));
+            known.unwrap_or_else(|| Scratch::new(self.nodes, self.slots, &self.regions));
         let result = with(&mut scratch);
         pool().push(scratch);
         result
     }
 
-    /// Computes the internal forces (N) at the corners for the displacement in the scratch, and what is found on the way;
-    /// without the energy unless it is asked for.
+    /// Computes the internal forces (N) at the corners for the displacement in the scratch, and, where it is asked for, the energy
+    /// and what else is found on the way.
     pub(crate) fn evaluate(
         &self,
         scratch: &mut Scratch,
         with_energy: bool,
     ) -> Result<Deformed, EvaluationError> {
-        let mut found = Deformed::default();
+        let mut all = Deformed::default();
         for region in &self.regions {
-            if with_energy {
-                force::evaluate::<true>(region, scratch, &mut found)?;
-            } else {
-                force::evaluate::<false>(region, scratch, &mut found)?;
+            let found = force::evaluate((region, &self.gather), scratch, self.set, with_energy)?;
+            all.energy += found.energy;
+            all.inverted += found.inverted;
+            if found.smallest_volume_ratio < all.smallest_volume_ratio {
+                all.smallest_volume_ratio = found.smallest_volume_ratio;
+                all.worst_element = found.worst_element;
             }
         }
-        Ok(found)
+        Ok(all)
     }
 
     /// Computes the tangent at the displacement in the scratch times the change in it, as forces (N) at the corners.
@@ -109,20 +133,34 @@ impl LargeDeformation {
         scratch: &mut Scratch,
         kind: TangentKind,
     ) -> Result<(), EvaluationError> {
-        let mut regions = self.regions.iter();
-        regions.try_for_each(|region| product::product(region, scratch, Some(kind)))
+        self.products(scratch, Some(kind))
     }
 
     /// [`LargeDeformation::product`] with the tangent that stiffness damping multiplies: the exact one, so that the rate of a stress is damped,
     /// but with rotations held fast where a law has one, which is semidefinite.
     pub(crate) fn damped_product(&self, scratch: &mut Scratch) -> Result<(), EvaluationError> {
-        let mut regions = self.regions.iter();
-        regions.try_for_each(|region| product::product(region, scratch, None))
+        self.products(scratch, None)
     }
 
-    /// Sums what was computed at the corners: calls `add` with each node and its force (N).
-    pub(crate) fn sum(&self, scratch: &Scratch, add: impl FnMut(u32, [f64; 3])) {
-        self.gather.sum(&scratch.corners, add);
+    fn products(
+        &self,
+        scratch: &mut Scratch,
+        kind: Option<TangentKind>,
+    ) -> Result<(), EvaluationError> {
+        for region in &self.regions {
+            product::product(region, scratch, kind)?;
+        }
+        let all = 0..self.gather.nodes().len();
+        self.gather.sum(all, &scratch.corners, &mut scratch.sums);
+        Ok(())
+    }
+
+    /// Calls `add` with each node of a region and the force (N) that was computed last.
+    pub(crate) fn at_nodes(&self, scratch: &Scratch, mut add: impl FnMut(u32, [f64; 3])) {
+        for node in self.gather.nodes() {
+            let [x, y, z, _] = scratch.sums[*node as usize];
+            add(*node, [x, y, z]);
+        }
     }
 
     /// Adds the tangent at the displacement in the scratch.
@@ -162,5 +200,130 @@ impl LargeDeformation {
             .rev()
             .find(|region| region.first <= place)?;
         Some(stress::cauchy(region, place - region.first, displacement))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hyperelastic::Parameters;
+    use crate::{Element, Law, Problem, Region};
+    use sinew_mesh::structured::{Split, cube};
+
+    const ELEMENTS: [Element; 5] = [
+        Element::P1,
+        Element::Fbar { patch: None },
+        Element::Fbar { patch: Some(300) },
+        Element::FbarEdge {
+            edge_share: 0.9,
+            patch: None,
+        },
+        Element::FbarEdge {
+            edge_share: 1.0,
+            patch: Some(12),
+        },
+    ];
+
+    fn region(mesh: &TetMesh, id: &'static str, element: Element) -> LargeDeformation {
+        let mut parameters = Parameters::new(3500.0, 0.45);
+        parameters.c1_over_c2 = (id == "mooney-rivlin").then_some(4.0);
+        let problem = Problem {
+            regions: vec![Region {
+                group: None,
+                density: 1060.0,
+                law: Law::Hyperelastic { id, parameters },
+                element,
+            }],
+            ..Problem::default()
+        };
+        let smoothing = Smoothing::new(mesh, &problem, &vec![0; mesh.tets.len()]);
+        let law = Hyperelastic::new(id, &parameters).unwrap();
+        let tets: Vec<u32> = (0..mesh.tets.len() as u32).collect();
+        let regions = std::iter::once(((law, element.edge_share()), tets.as_slice()));
+        LargeDeformation::new(mesh, &smoothing, regions).unwrap()
+    }
+
+    /// What is found, and the forces at the nodes.
+    fn evaluated(
+        large: &LargeDeformation,
+        field: impl Fn(u32) -> [f64; 3],
+    ) -> Result<(Deformed, Vec<[f64; 3]>), EvaluationError> {
+        large.with_scratch(|scratch| {
+            fill(&mut scratch.displacement, field);
+            let found = large.evaluate(scratch, true)?;
+            let mut forces = vec![[0.0; 3]; large.nodes];
+            large.at_nodes(scratch, |node, force| forces[node as usize] = force);
+            Ok((found, forces))
+        })
+    }
+
+    /// Where a node goes: bent, with strains of some 30 %, or besides with one corner pushed through the body.
+    fn displacement(mesh: &TetMesh, is_pushed: bool, node: u32) -> [f64; 3] {
+        if is_pushed && node == 0 {
+            return [0.12; 3];
+        }
+        let [x, y, z] = mesh.points[node as usize];
+        [
+            0.01 * (25.0 * z).sin() - 0.2 * x + 2.0 * y * z,
+            0.005 * (31.0 * x + 8.0 * y).cos() - 0.3 * z,
+            -0.25 * z + 0.15 * y + 3.0 * x * x + 5.0 * x * y * z,
+        ]
+    }
+
+    /// Sizes that leave room at the end of vectors, chunks and edges.
+    #[test]
+    fn every_instruction_set_gives_what_plain_numbers_give() {
+        for cells in [1, 3, 5] {
+            let mesh = cube(cells, 0.1, Split::Kuhn).unwrap();
+            for (id, element) in Hyperelastic::IDS
+                .iter()
+                .flat_map(|id| ELEMENTS.map(|element| (*id, element)))
+            {
+                let mut large = region(&mesh, id, element);
+                for is_pushed in [false, true] {
+                    let field = |node| displacement(&mesh, is_pushed, node);
+                    large.set = InstructionSet::Portable;
+                    let expected = evaluated(&large, field);
+                    for set in InstructionSet::available() {
+                        large.set = set;
+                        let name = format!("{id}, {element}, {cells}, {is_pushed}, {set:?}");
+                        match (evaluated(&large, field), &expected) {
+                            (Ok(found), Ok(expected)) => are_near(&name, &found, expected),
+                            (Err(found), Err(expected)) => {
+                                assert_eq!(found.element, expected.element, "{name}");
+                            }
+                            (found, _) => panic!("{name}: {found:?}, not {expected:?}"),
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn are_near(
+        name: &str,
+        (found, forces): &(Deformed, Vec<[f64; 3]>),
+        (expected, expected_forces): &(Deformed, Vec<[f64; 3]>),
+    ) {
+        let size = expected_forces.as_flattened().iter();
+        let size = size.fold(0.0, |size: f64, force| size.max(force.abs()));
+        for (found, expected) in forces
+            .as_flattened()
+            .iter()
+            .zip(expected_forces.as_flattened())
+        {
+            assert!((found - expected).abs() < 1e-11 * size, "{name}");
+        }
+        assert!(
+            (found.energy / expected.energy - 1.0).abs() < 1e-11,
+            "{name}"
+        );
+        let ratio = expected.smallest_volume_ratio;
+        assert!(
+            (found.smallest_volume_ratio - ratio).abs() < 1e-12,
+            "{name}"
+        );
+        let facts = |found: &Deformed| (found.inverted, found.worst_element);
+        assert_eq!(facts(found), facts(expected), "{name}");
     }
 }

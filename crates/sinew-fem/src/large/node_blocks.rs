@@ -2,8 +2,8 @@
 
 use sinew_core::EvaluationError;
 
-use super::force::{at_edge, bulk_of_patch, check, means};
 use super::matrix::at_rest;
+use super::means::{at_edge, bulk_of_patch, check, means};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
 use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Tensor};
@@ -39,7 +39,7 @@ impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
         } = self;
         let (rest, lambda) = (&region.rest, law.lame().0);
         if !region.is_smoothed() {
-            for tet in 0..rest.count() {
+            for tet in rest.tets() {
                 let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
                 check(&law, &at, rest.tag(tet))?;
                 let bulk = law.own_bulk(&at);
@@ -52,7 +52,7 @@ impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
         }
         means(region, scratch, &law)?;
         let share = 1.0 - region.edge_share;
-        for tet in (0..rest.count()).filter(|_| share > 0.0) {
+        for tet in rest.tets().filter(|_| share > 0.0) {
             let at = law.at(scratch.gradients[tet]);
             let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
             let bulk = bulk_of_patch(lambda, dilation / share);

@@ -2,7 +2,7 @@
 
 use sinew_core::{EvaluationError, TangentKind};
 
-use super::force::{at_edge, bulk_of_patch, check, means};
+use super::means::{at_edge, bulk_of_patch, check, means};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
 use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Linearised, Point, Tensor};
@@ -49,13 +49,13 @@ impl LawVisitor for Products<'_> {
 impl Products<'_> {
     fn plain<L: HyperelasticLaw>(self, law: L, kind: TangentKind) -> Result<(), EvaluationError> {
         let rest = &self.region.rest;
-        let corners = self.scratch.corners[self.region.first..].iter_mut();
-        for (tet, corners) in (0..rest.count()).zip(corners) {
+        let corners = &mut self.scratch.corners[4 * self.region.first..];
+        for tet in rest.tets() {
             let at = law.at(rest.gradient_of::<f64>(tet, &self.scratch.displacement));
             check(&law, &at, rest.tag(tet))?;
             let change = rest.gradient_of::<f64>(tet, &self.scratch.change);
             let tangent = Linearised::of(&law, &at, law.own_bulk(&at), kind);
-            rest.forces(tet, tangent.on(change), corners);
+            rest.forces(tet, tangent.on(change), &mut corners[4 * tet..]);
         }
         Ok(())
     }
@@ -89,8 +89,8 @@ impl Products<'_> {
             let tangent = Linearised::of(&law, &at, Bulk::none(), kind);
             scratch.at_edges[edge] = tangent.on(change);
         }
-        let corners = scratch.corners[region.first..].iter_mut();
-        for (tet, corners) in (0..rest.count()).zip(corners) {
+        let corners = &mut scratch.corners[4 * region.first..];
+        for tet in rest.tets() {
             let at = law.at(scratch.gradients[tet]);
             let [dilation, change] = scratch.dilations[region.patch_of[tet] as usize];
             let own = OwnTangent::of(&law, &at, region, lambda * dilation, kind);
@@ -99,7 +99,7 @@ impl Products<'_> {
             for edge in region.edges_of.get(tet).into_iter().flatten() {
                 stress = stress.plus(region.edge_share / 6.0, scratch.at_edges[*edge as usize]);
             }
-            rest.forces(tet, stress, corners);
+            rest.forces(tet, stress, &mut corners[4 * tet..]);
         }
         Ok(())
     }

@@ -1,7 +1,9 @@
 //! A region of hyperelastic tetrahedra.
 
 use sinew_mesh::TetMesh;
+use sinew_sparse::simd::Real;
 
+use super::chunks::{Chunk, Slot, follow};
 use super::rest::Rest;
 use crate::hyperelastic::{Hyperelastic, Tensor};
 use crate::smoothing::{Sets, Smoothing};
@@ -13,44 +15,73 @@ pub(crate) struct HyperelasticRegion {
     pub(super) rest: Rest,
     /// Place of its first tetrahedron among those of all such regions.
     pub(super) first: usize,
+    /// Its tetrahedra in the order in which they are worked on.
+    pub(super) chunks: Vec<Chunk>,
     /// Share of the local energy that is averaged over edges.
     pub(super) edge_share: f64,
     /// The tetrahedra at each edge; none where `edge_share` is 0.
     pub(super) edges: Sets,
+    /// The volume (m^3) of the tetrahedra at each edge, then zeros to fill a vector.
+    pub(super) edge_volumes: Vec<f64>,
     /// The six edges of each tetrahedron.
     pub(super) edges_of: Vec<[u32; 6]>,
     /// The tetrahedra of each patch; none where the dilation of each tetrahedron is its own.
     pub(super) patches: Sets,
+    /// The volume (m^3) of each patch.
+    pub(super) patch_volumes: Vec<f64>,
     /// The patch of each tetrahedron.
     pub(super) patch_of: Vec<u32>,
 }
 
 impl HyperelasticRegion {
-    /// The region of some tetrahedra, whose sets are among those of the body.
+    /// The region of the tetrahedra at these places, whose sets are among those of the body.
     pub(super) fn new(
         mesh: &TetMesh,
         smoothing: &Smoothing,
         (law, edge_share): (Hyperelastic, f64),
-        members: &[u32],
+        (slots, mut chunks): (&[Slot], Vec<Chunk>),
         first: usize,
     ) -> Self {
         let mut edges_of: Vec<[u32; 6]> = Vec::new();
         let mut patch_of = Vec::new();
-        for tet in members {
-            edges_of.extend(smoothing.edges_of(*tet as usize));
-            patch_of.extend(smoothing.patch_of(*tet as usize).map(|patch| patch as u32));
+        for slot in slots {
+            let tet = slot.tet as usize;
+            edges_of.extend(smoothing.edges_of(tet));
+            patch_of.extend(smoothing.patch_of(tet).map(|patch| patch as u32));
         }
-        let edges = numbered_anew(edges_of.as_flattened_mut());
-        let patches = numbered_anew(&mut patch_of);
-        let of_edge = (0u32..).zip(&edges_of);
-        let of_edge = of_edge.flat_map(|(tet, edges)| edges.iter().map(move |edge| (*edge, tet)));
+        // By the last tetrahedron of each.
+        let edges = numbered_anew(edges_of.as_flattened_mut().iter_mut().rev());
+        for edge in edges_of.as_flattened_mut() {
+            *edge = edges as u32 - 1 - *edge;
+        }
+        follow(&mut chunks, &edges_of, edges);
+        let patches = numbered_anew(patch_of.iter_mut());
+        let taken = (0u32..).zip(slots).filter(|(_, slot)| !slot.is_padding);
+        let taken = taken.map(|(place, _)| place);
+        let of_edge = taken.clone().flat_map(|tet| {
+            let edges = edges_of.get(tet as usize).into_iter().flatten();
+            edges.map(move |edge| (*edge, tet))
+        });
+        let of_patch = taken.filter_map(|tet| Some((*patch_of.get(tet as usize)?, tet)));
+        let edges = Sets::from_pairs(edges, of_edge);
+        let patches = Sets::from_pairs(patches, of_patch);
+        let rest = Rest::of(mesh, slots);
+        let volumes = |sets: &Sets| -> Vec<f64> {
+            let volume = |set| sets.of(set).iter().map(|tet| rest.volume(*tet as usize));
+            (0..sets.count()).map(|set| volume(set).sum()).collect()
+        };
+        let mut edge_volumes = volumes(&edges);
+        edge_volumes.resize(edges.count().next_multiple_of(f64::LANES), 0.0);
         Self {
             law,
-            rest: Rest::of(mesh, members),
             first,
+            chunks,
             edge_share,
-            edges: Sets::from_pairs(edges, of_edge),
-            patches: Sets::from_pairs(patches, patch_of.iter().copied().zip(0..)),
+            edge_volumes,
+            patch_volumes: volumes(&patches),
+            edges,
+            patches,
+            rest,
             edges_of,
             patch_of,
         }
@@ -94,15 +125,10 @@ impl HyperelasticRegion {
         }
         sum.scaled(volumes.recip())
     }
-
-    /// The volume (m^3) of some tetrahedra.
-    pub(super) fn volume_of(&self, tets: &[u32]) -> f64 {
-        tets.iter().map(|tet| self.rest.volume(*tet as usize)).sum()
-    }
 }
 
 /// Replaces numbers by 0, 1, .. in the order in which they first appear; returns how many there are.
-fn numbered_anew(numbers: &mut [u32]) -> usize {
+fn numbered_anew<'a>(numbers: impl Iterator<Item = &'a mut u32>) -> usize {
     let mut known = std::collections::HashMap::new();
     for number in numbers {
         let next = known.len() as u32;

@@ -3,10 +3,12 @@
 use sinew_mesh::TetMesh;
 use sinew_sparse::simd::Number;
 
+use super::chunks::Slot;
 use crate::hyperelastic::Tensor;
 use crate::tetra;
 
-/// The tetrahedra of a region at rest, each quantity in an array of its own so that neighbours in memory fill a vector.
+/// The tetrahedra of a region at rest, each quantity in an array of its own so that neighbours in memory fill a vector;
+/// "side by side" are as many as the number has lanes.
 #[derive(Clone, Debug)]
 pub(crate) struct Rest {
     /// The four mesh nodes.
@@ -20,17 +22,17 @@ pub(crate) struct Rest {
 }
 
 impl Rest {
-    /// Some tetrahedra of a mesh, none of which is flat.
-    pub(super) fn of(mesh: &TetMesh, tets: &[u32]) -> Self {
-        let with_room = || Vec::with_capacity(tets.len());
+    /// The tetrahedra of a mesh at these places, none of which is flat.
+    pub(super) fn of(mesh: &TetMesh, slots: &[Slot]) -> Self {
+        let with_room = || Vec::with_capacity(slots.len());
         let mut rest = Self {
-            nodes: std::array::from_fn(|_| Vec::with_capacity(tets.len())),
+            nodes: std::array::from_fn(|_| Vec::with_capacity(slots.len())),
             gradients: std::array::from_fn(|_| std::array::from_fn(|_| with_room())),
             volumes: with_room(),
-            tags: Vec::with_capacity(tets.len()),
+            tags: Vec::with_capacity(slots.len()),
         };
-        for tet in tets {
-            let tet = *tet as usize;
+        for slot in slots {
+            let tet = slot.tet as usize;
             let nodes = mesh.tets[tet];
             let vertices = tetra::vertices(&mesh.points, nodes);
             let [_, others @ ..] = tetra::gradients(&vertices).unwrap_or_default();
@@ -42,15 +44,30 @@ impl Rest {
                     all.push(component);
                 }
             }
-            rest.volumes.push(mesh.volume(tet));
+            let volume = if slot.is_padding {
+                0.0
+            } else {
+                mesh.volume(tet)
+            };
+            rest.volumes.push(volume);
             rest.tags.push(mesh.tet_tags[tet]);
         }
         rest
     }
 
-    /// Number of tetrahedra.
+    /// Number of places.
     pub(super) fn count(&self) -> usize {
         self.volumes.len()
+    }
+
+    /// Whether a place is taken by a tetrahedron, not by padding.
+    pub(super) fn is_taken(&self, tet: usize) -> bool {
+        self.volumes[tet] > 0.0
+    }
+
+    /// The places of tetrahedra.
+    pub(super) fn tets(&self) -> impl Iterator<Item = usize> {
+        (0..self.count()).filter(|tet| self.is_taken(*tet))
     }
 
     /// The four nodes of a tetrahedron.
@@ -62,18 +79,26 @@ impl Rest {
         self.tags[tet]
     }
 
-    /// The volume (m^3).
-    #[inline(always)]
+    /// The volume (m^3); 0 for padding.
     pub(super) fn volume(&self, tet: usize) -> f64 {
         self.volumes[tet]
     }
 
-    /// The gradients (1/m) of the shape functions of the last three vertices.
+    /// The volumes (m^3) of tetrahedra side by side.
     #[inline(always)]
-    pub(super) fn gradients<N: Number>(&self, tet: usize) -> [[N; 3]; 3] {
-        std::array::from_fn(|vertex| {
-            std::array::from_fn(|axis| N::of(self.gradients[vertex][axis][tet]))
-        })
+    pub(super) fn volumes<N: Number<Real = f64>>(&self, first: usize) -> N {
+        N::load(&self.volumes[first..])
+    }
+
+    /// The gradients (1/m) of the shape functions of the last three vertices, of tetrahedra side by side.
+    #[inline(always)]
+    fn gradients<N: Number<Real = f64>>(&self, first: usize) -> [[N; 3]; 3] {
+        let [b, c, d] = &self.gradients;
+        [
+            side_by_side(b, first),
+            side_by_side(c, first),
+            side_by_side(d, first),
+        ]
     }
 
     /// The gradients (1/m) of all four shape functions.
@@ -83,44 +108,62 @@ impl Rest {
         [first, b, c, d]
     }
 
-    /// The gradient of a field (m) that is given at all mesh nodes: row i, column j is the derivative of component i along j.
+    /// The gradient, in tetrahedra side by side, of a field (m) that is given at all mesh nodes: row i, column j is the derivative of component
+    /// i along j.
     #[inline(always)]
-    pub(super) fn gradient_of<N: Number>(&self, tet: usize, field: &[[f64; 3]]) -> Tensor<N> {
-        self.gradient_by(tet, |node| field[node as usize])
-    }
-
-    /// [`Rest::gradient_of`] for a function of the node.
-    #[inline(always)]
-    pub(super) fn gradient_by<N: Number>(
+    pub(super) fn gradient_of<N: Number<Real = f64>>(
         &self,
-        tet: usize,
-        field: impl Fn(u32) -> [f64; 3],
+        first: usize,
+        field: &[[f64; 4]],
     ) -> Tensor<N> {
-        let [a, b, c, d] = self.nodes(tet).map(field);
-        let gradients = self.gradients::<N>(tet);
-        let edges = [b, c, d].map(|end| {
-            let along = |axis: usize| N::of(end[axis] - a[axis]);
-            [along(0), along(1), along(2)]
-        });
-        let mut sum = Tensor::zero();
-        for (edge, gradient) in edges.into_iter().zip(gradients) {
-            sum = sum + Tensor::outer(edge, gradient);
-        }
-        sum
+        let [a, b, c, d] = &self.nodes;
+        let a = N::gather_rows(field, &a[first..]);
+        let b = N::gather_rows(field, &b[first..]);
+        let c = N::gather_rows(field, &c[first..]);
+        let d = N::gather_rows(field, &d[first..]);
+        let edges = [difference(b, a), difference(c, a), difference(d, a)];
+        Tensor::from_columns(edges) * Tensor(self.gradients(first))
     }
 
-    /// Writes the forces (N) of a stress (Pa) on the four vertices.
-    #[inline(always)]
-    pub(super) fn forces<N: Number>(&self, tet: usize, stress: Tensor<N>, out: &mut [f64; 12]) {
-        let stress = stress.scaled(N::of(self.volumes[tet]));
-        let mut first = [0.0; 3];
-        for (vertex, gradient) in (1..).zip(self.gradients::<N>(tet)) {
-            for (axis, force) in stress.on(gradient).into_iter().enumerate() {
-                let force = force.lane(0);
-                out[3 * vertex + axis] = force;
-                first[axis] -= force;
-            }
-        }
-        out[..3].copy_from_slice(&first);
+    /// [`Rest::gradient_of`] for a function of the node, in one tetrahedron.
+    pub(super) fn gradient_by(&self, tet: usize, field: impl Fn(u32) -> [f64; 3]) -> Tensor<f64> {
+        let [a, b, c, d] = self.nodes(tet).map(field);
+        let edges = [b, c, d].map(|end| difference(end, a));
+        Tensor::from_columns(edges) * Tensor(self.gradients(tet))
     }
+
+    /// Writes the forces (N) of a stress (Pa) on the four vertices of tetrahedra side by side, four rows for each.
+    #[inline(always)]
+    pub(super) fn forces<N: Number<Real = f64>>(
+        &self,
+        first: usize,
+        stress: Tensor<N>,
+        out: &mut [[f64; 4]],
+    ) {
+        let stress = stress.scaled(self.volumes(first));
+        let [b, c, d] = self.gradients(first);
+        let (b, c, d) = (stress.on(b), stress.on(c), stress.on(d));
+        let none = [N::of(0.0); 3];
+        let a = difference(difference(difference(none, b), c), d);
+        N::store_rows(a, out, 4);
+        N::store_rows(b, &mut out[1..], 4);
+        N::store_rows(c, &mut out[2..], 4);
+        N::store_rows(d, &mut out[3..], 4);
+    }
+}
+
+// Functions, since a closure is not always inlined where vectors need it.
+
+#[inline(always)]
+fn side_by_side<N: Number<Real = f64>>([x, y, z]: &[Vec<f64>; 3], first: usize) -> [N; 3] {
+    [
+        N::load(&x[first..]),
+        N::load(&y[first..]),
+        N::load(&z[first..]),
+    ]
+}
+
+#[inline(always)]
+fn difference<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }

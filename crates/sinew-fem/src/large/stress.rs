@@ -33,7 +33,7 @@ impl<U: Fn(u32) -> [f64; 3]> LawVisitor for Cauchy<'_, U> {
             displacement,
         } = self;
         let rest = &region.rest;
-        let gradient = |tet: usize| rest.gradient_by::<f64>(tet, &displacement);
+        let gradient = |tet: usize| rest.gradient_by(tet, &displacement);
         let at = law.at(gradient(tet));
         let mut is_defined = law.admits(&at.deformation);
         let mut stress = if let Some(patch) = region.patch_of.get(tet) {

@@ -5,6 +5,7 @@ use sinew_core::LoadTime;
 use super::Model;
 use super::field_error::{FieldError, require_inputs};
 use crate::error::Item;
+use crate::large::fill;
 use crate::parts::WholePart;
 
 impl Model {
@@ -12,7 +13,9 @@ impl Model {
     pub(super) fn large_energy(&self, displacement: &[[f64; 3]]) -> f64 {
         self.large.as_ref().map_or(0.0, |large| {
             large.with_scratch(|scratch| {
-                scratch.displacement.copy_from_slice(displacement);
+                fill(&mut scratch.displacement, |node| {
+                    displacement[node as usize]
+                });
                 let found = large.evaluate(scratch, true);
                 found.map_or(f64::NAN, |found| found.energy)
             })

@@ -9,7 +9,7 @@ use sinew_core::{
 };
 
 use super::Model;
-use crate::large::{LargeDeformation, Scratch};
+use crate::large::{LargeDeformation, Scratch, fill};
 
 /// A hyperelastic body at a trial point. Evaluations of models without such regions leave everything to the matrices.
 impl Model {
@@ -35,21 +35,19 @@ impl Model {
         when: LoadTime<'_>,
         order: usize,
         values: &[f64],
-        out: &mut [[f64; 3]],
+        out: &mut [[f64; 4]],
     ) -> Result<(), EvaluationError> {
         let field = self.at_nodes(when, order, Some(values));
         let field = field.map_err(|error| EvaluationError {
             element: 0,
             reason: error.to_string(),
         })?;
-        for (node, out) in (0..).zip(out) {
-            *out = field(node);
-        }
+        fill(out, field);
         Ok(())
     }
 
-    /// `out += factor f` at the degrees of freedom, f being what the scratch has at the corners.
-    fn add_at_corners(
+    /// `out += factor f` at the degrees of freedom, f being the force that was computed last.
+    fn add_at_nodes(
         &self,
         large: &LargeDeformation,
         scratch: &Scratch,
@@ -57,7 +55,7 @@ impl Model {
         out: &mut [f64],
     ) {
         let cells = &self.body.cells;
-        large.sum(scratch, |node, force| {
+        large.at_nodes(scratch, |node, force| {
             let Some(cell) = cells.of_node(node) else {
                 return;
             };
@@ -77,11 +75,11 @@ impl ForceLaw for Model {
         let beta = self.operators.damping().stiffness;
         self.at_trial((trial.load, trial.u), |large, scratch| {
             large.evaluate(scratch, false)?;
-            self.add_at_corners(large, scratch, -1.0, out);
+            self.add_at_nodes(large, scratch, -1.0, out);
             if beta != 0.0 {
                 self.fill(trial.load, 1, trial.v, &mut scratch.change)?;
                 large.damped_product(scratch)?;
-                self.add_at_corners(large, scratch, -beta, out);
+                self.add_at_nodes(large, scratch, -beta, out);
             }
             Ok(())
         })
@@ -170,7 +168,7 @@ impl ElasticLaw for Model {
         let linear = self.operators.elastic_force(trial, out)?;
         let found = self.at_trial((trial.load, trial.u), |large, scratch| {
             let found = large.evaluate(scratch, true)?;
-            self.add_at_corners(large, scratch, 1.0, out);
+            self.add_at_nodes(large, scratch, 1.0, out);
             Ok(found)
         })?;
         Ok(Deformed {
@@ -205,11 +203,9 @@ impl ElasticLaw for Model {
     ) -> Result<(), EvaluationError> {
         self.operators.stiffness().multiply(w, out);
         self.at_trial((trial.load, trial.u), |large, scratch| {
-            for (node, change) in (0..).zip(&mut scratch.change) {
-                *change = self.body.cells.at_node(w, node);
-            }
+            fill(&mut scratch.change, |node| self.body.cells.at_node(w, node));
             large.product(scratch, kind)?;
-            self.add_at_corners(large, scratch, 1.0, out);
+            self.add_at_nodes(large, scratch, 1.0, out);
             Ok(())
         })
     }

@@ -6,6 +6,7 @@ use super::Model;
 use super::field_error::{FieldError, require_inputs};
 use crate::On;
 use crate::border::Border;
+use crate::large::fill;
 
 impl Model {
     /// Nodes (0-based) that are held or moved in some direction, increasing.
@@ -197,19 +198,15 @@ impl Model {
         let large = self.large.as_ref()?;
         let mut forces = vec![[0.0; 3]; self.mesh.points.len()];
         let evaluated = large.with_scratch(|scratch| {
-            for (node, out) in (0..).zip(&mut scratch.displacement) {
-                *out = u(node);
-            }
+            fill(&mut scratch.displacement, &u);
             large.evaluate(scratch, false)?;
-            large.sum(scratch, |node, force| {
+            large.at_nodes(scratch, |node, force| {
                 subtract(&mut forces[node as usize], -1.0, &force);
             });
             if beta != 0.0 {
-                for (node, out) in (0..).zip(&mut scratch.change) {
-                    *out = v(node);
-                }
+                fill(&mut scratch.change, &v);
                 large.damped_product(scratch)?;
-                large.sum(scratch, |node, force| {
+                large.at_nodes(scratch, |node, force| {
                     subtract(&mut forces[node as usize], -beta, &force);
                 });
             }

@@ -1,0 +1,70 @@
+//! What force loops find on their way.
+
+use sinew_core::Deformed;
+use sinew_sparse::simd::Number;
+
+use super::rest::Rest;
+
+/// What is found, lane by lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found<N> {
+    /// Energy (J) of tetrahedra and edges.
+    pub(super) energy: N,
+    /// Energy (J) of the dilation of patches.
+    pub(super) energy_of_patches: f64,
+    /// The smallest volume ratio.
+    smallest: N,
+    /// The place of the first lane beside it.
+    place: N,
+    inverted: usize,
+}
+
+impl<N: Number<Real = f64>> Found<N> {
+    #[inline(always)]
+    pub(super) fn none() -> Self {
+        Self {
+            energy: N::of(0.0),
+            energy_of_patches: 0.0,
+            smallest: N::of(f64::INFINITY),
+            place: N::of(0.0),
+            inverted: 0,
+        }
+    }
+
+    /// Takes note of the volume ratios of tetrahedra side by side.
+    #[inline(always)]
+    pub(super) fn note(&mut self, first: usize, ratio: N, rest: &Rest) {
+        self.place = N::select_le(self.smallest, ratio, self.place, N::of(first as f64));
+        self.smallest = self.smallest.min(ratio);
+        if N::any_le(ratio, N::of(0.0)) {
+            for lane in 0..N::LANES {
+                let is_inverted = ratio.lane(lane) <= 0.0 && rest.is_taken(first + lane);
+                self.inverted += usize::from(is_inverted);
+            }
+        }
+    }
+
+    /// All lanes together.
+    #[inline(always)]
+    pub(super) fn over(self, rest: &Rest) -> Deformed {
+        let mut found = Deformed {
+            energy: self.energy_of_patches,
+            inverted: self.inverted,
+            ..Deformed::default()
+        };
+        let mut worst = usize::MAX;
+        for lane in 0..N::LANES {
+            found.energy += self.energy.lane(lane);
+            let ratio = self.smallest.lane(lane);
+            let place = self.place.lane(lane) as usize + lane;
+            let is_worse = ratio < found.smallest_volume_ratio;
+            if is_worse || ratio == found.smallest_volume_ratio && place < worst {
+                found.smallest_volume_ratio = ratio;
+                worst = place;
+            }
+        }
+        found.worst_element =
+            (found.smallest_volume_ratio < f64::INFINITY).then(|| rest.tag(worst));
+        found
+    }
+}
