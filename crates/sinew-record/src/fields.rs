@@ -196,13 +196,17 @@ impl<'a> Fields<'a> {
             let [xx, yy, zz, xy, yz, zx] = tet.strain;
             // No principal strain is larger than this norm.
             let norm = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx);
-            // Only the linear theory has limits here.
+            if norm > seen.strain.value.powi(2) {
+                let strain = stress::largest_principal(&tet.strain);
+                seen.strain.see(strain, t, tag);
+            }
+            seen.rotation.see(tet.rotation, t, tag);
             if !tet.is_hyperelastic {
-                if norm > seen.strain.value.powi(2) {
-                    seen.strain
-                        .see(stress::largest_principal(&tet.strain), t, tag);
+                if norm > seen.linear_strain.value.powi(2) {
+                    let strain = stress::largest_principal(&tet.strain);
+                    seen.linear_strain.see(strain, t, tag);
                 }
-                seen.rotation.see(tet.rotation, t, tag);
+                seen.linear_rotation.see(tet.rotation, t, tag);
             }
             inverted += usize::from(tet.is_inverted);
             tets.inverted.push(u8::from(tet.is_inverted));

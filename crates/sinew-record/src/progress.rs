@@ -35,6 +35,10 @@ pub(crate) struct Seen {
     pub(crate) strain: Largest,
     /// In rad.
     pub(crate) rotation: Largest,
+    /// The strain in linear regions, whose theory has limits.
+    pub(crate) linear_strain: Largest,
+    /// The rotation (rad) in linear regions.
+    pub(crate) linear_rotation: Largest,
     /// Tetrahedra with a volume of 0 or below, the most at an instant.
     pub(crate) inverted: usize,
 }

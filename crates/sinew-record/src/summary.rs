@@ -46,7 +46,7 @@ pub(crate) struct Summary<'a> {
 /// 10 % the quadratic terms that it leaves out are about as large as 10 % of those that it keeps.
 pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
     let mut warnings = Vec::new();
-    let (strain, rotation) = (seen.strain, seen.rotation.value.to_degrees());
+    let (strain, rotation) = (seen.linear_strain, seen.linear_rotation.value.to_degrees());
     if strain.value > LARGEST_STRAIN {
         warnings.push(format!(
             "a principal strain of {:.0} % in tetrahedron {} at t = {} s: the linear theory is off by about as much of the \
@@ -58,12 +58,12 @@ pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
         ));
     }
     if rotation > LARGEST_ROTATION {
-        let angle = seen.rotation.value.min(std::f64::consts::PI);
+        let angle = seen.linear_rotation.value.min(std::f64::consts::PI);
         warnings.push(format!(
             "a rotation of about {rotation:.0} degrees of tetrahedron {} at t = {} s: the linear theory takes it for a strain \
              of {:.0} %; it is made for less than {LARGEST_ROTATION} degrees, and model = \"neo-hookean\" for any",
-            seen.rotation.at,
-            seen.rotation.t,
+            seen.linear_rotation.at,
+            seen.linear_rotation.t,
             100.0 * (1.0 - angle.cos())
         ));
     }

@@ -107,7 +107,7 @@ const PARTS_BETWEEN_GLANCES: u32 = 4;
 /// Growth of the stiffest cell beyond which its stiffness no longer tells the stable step well enough.
 const MUCH_STIFFER: f64 = 4.0;
 
-/// Largest number of parts into which the current stiffness may cut what was stable at rest: where it takes more, something is wrong, and a
+/// Largest number of parts into which the current stiffness may cut what takes two parts at rest: where it takes more, something is wrong, and a
 /// run would not end.
 const MOST_PARTS: u32 = 1000;
 
@@ -132,6 +132,9 @@ impl Substepped {
         }
     }
 
+    /// Parts, at rest, of what is cut by a law's current stiffness: with one, tissue that is a little stiffer would take twice as many.
+    pub const PARTS_AT_REST: f64 = 2.0;
+
     fn parts(&self, system: &dyn System, dt: f64) -> Result<u32, SetupError> {
         if let Some((revision, step, parts)) = self.parts
             && revision == system.revision()
@@ -144,7 +147,12 @@ impl Substepped {
             Substeps::Auto => match self.inner.stable_step(system)? {
                 StableStep::Any => Ok(1),
                 StableStep::UpTo(limit) if limit > 0.0 && dt.is_finite() => {
-                    Substeps::stable_parts_of(self.inner.id(), dt, limit, "substeps")
+                    // By a law's current stiffness each of them is cut again.
+                    let parts = match system.as_linear() {
+                        Some(_) => 1.0,
+                        None => Self::PARTS_AT_REST,
+                    };
+                    Substeps::stable_parts_of(self.inner.id(), dt, parts * limit, "substeps")
                 }
                 StableStep::UpTo(_) | StableStep::Unknown => Err(SetupError::Lacks {
                     integrator: self.inner.id(),
@@ -155,7 +163,7 @@ impl Substepped {
     }
 }
 
-/// Parts by the current stiffness of a law, of the parts that would be stable at rest. They are a function of the state alone, in which they
+/// Parts by the current stiffness of a law, of what would take two at rest. They are a function of the state alone, in which they
 /// stand: the stable step is found from a fixed vector, after fixed numbers of parts. In between it is taken to shrink as the stiffest cell's own stiffness grows, of which a step has
 /// the square root: what is left is room until the next look. That costs about a force.
 impl Substepped {
@@ -190,7 +198,8 @@ impl Substepped {
         let (system, dt) = (batch.system(), batch.dt());
         let before = state.cut.filter(|cut| cut.taken < PARTS_BETWEEN_LOOKS);
         if let Some(cut) = before {
-            if cut.parts < PARTS_BETWEEN_GLANCES && cut.taken % PARTS_BETWEEN_GLANCES != 0 {
+            // Whether the last step passed a multiple of them.
+            if cut.taken % PARTS_BETWEEN_GLANCES >= cut.parts {
                 return Ok((cut, 0));
             }
             let growth = self.stiffest_cell(batch, state)? / cut.stiffest_cell;
@@ -231,7 +240,7 @@ impl Substepped {
             integrator: self.id(),
             t: state.t(),
             reason: format!(
-                "the current stiffness takes more than {MOST_PARTS} parts of {dt} s, which is stable at rest: elements are squeezed flat, or the \
+                "the current stiffness takes more than {MOST_PARTS} parts of {dt} s, which takes two at rest: elements are squeezed flat, or the \
                  displacement is not finite"
             ),
         })

@@ -62,7 +62,7 @@ impl Scene {
             let found = stable_step.get_or_init(|| step::stable(self.settings(), model.system()));
             found.clone()
         };
-        let dt = step::seconds(self.settings(), stable)
+        let dt = step::seconds(self.settings(), model.system(), stable)
             .map_err(|fault| self.places().run.value_fault("dt", fault.into()))?;
         let duration = self.settings().duration;
         if duration / dt > MOST_STEPS {

@@ -1,7 +1,7 @@
 //! The step of a scene, and the largest stable one of its integrator.
 
 use sinew_core::{Options, StableStep, System};
-use sinew_integrators::explicit::Substeps;
+use sinew_integrators::explicit::{Substepped, Substeps};
 
 use crate::error::{NoStableStep, StableStepError};
 use crate::scene::{RunSettings, TimeStep};
@@ -33,6 +33,7 @@ pub(super) fn options(settings: &RunSettings, system: &dyn System) -> Options {
 /// The step (s) that a scene asks for; `stable` is called only where it leaves it to the integrator.
 pub(super) fn seconds(
     settings: &RunSettings,
+    system: &dyn System,
     stable: impl FnOnce() -> Result<StableStep, StableStepError>,
 ) -> Result<f64, NoStableStep> {
     if let TimeStep::Given(dt) = settings.dt {
@@ -42,7 +43,12 @@ pub(super) fn seconds(
     match stable()? {
         StableStep::UpTo(limit) if limit > 0.0 && limit.is_finite() => {
             let between = settings.duration / settings.samples as f64;
-            Ok(Substeps::longest_part(between, limit))
+            let parts = if follows_stiffness(settings, system) {
+                Substepped::PARTS_AT_REST
+            } else {
+                1.0
+            };
+            Ok(Substeps::longest_part(between, parts * limit))
         }
         StableStep::UpTo(limit) if limit > 0.0 => Err(NoStableStep::Unlimited { integrator }),
         StableStep::UpTo(_) => Err(NoStableStep::Never { integrator }),
