@@ -67,7 +67,7 @@ impl LawVisitor for Tangents<'_, '_> {
                 let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
                 check(&law, &at, rest.tag(tet))?;
                 let tangent = Linearised::of(&law, &at, law.own_bulk(&at), kind);
-                sum.average.of(std::iter::once(at_rest(region, tet)));
+                sum.average.of(std::iter::once(region.tet(tet)));
                 sum.add(1.0, |change| tangent.on(change));
             }
             return Ok(());
@@ -77,15 +77,13 @@ impl LawVisitor for Tangents<'_, '_> {
             let at = law.at(scratch.gradients[tet]);
             let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
             let own = OwnTangent::of(&law, &at, region, lambda * dilation, kind);
-            sum.average.of(std::iter::once(at_rest(region, tet)));
+            sum.average.of(std::iter::once(region.tet(tet)));
             sum.add(1.0, |change| own.on(change));
         }
-        for edge in 0..region.edges.count() {
-            let tets = region.edges.of(edge);
-            let at = at_edge(region, &law, tets, scratch)?;
+        for (edge, average) in region.edge_averages().iter().enumerate() {
+            let at = at_edge(region, &law, region.edges.of(edge), scratch)?;
             let tangent = Linearised::of(&law, &at, Bulk::none(), kind);
-            sum.average
-                .of(tets.iter().map(|tet| at_rest(region, *tet as usize)));
+            sum.average.clone_from(average);
             sum.add(region.edge_share / 6.0, |change| tangent.on(change));
         }
         for patch in 0..region.patches.count() {
@@ -93,7 +91,7 @@ impl LawVisitor for Tangents<'_, '_> {
             sum.average.of(tets.map(|tet| {
                 let tet = *tet as usize;
                 let normal = law.dilation_gradient(&law.at(scratch.gradients[tet]));
-                let (nodes, volume, gradients) = at_rest(region, tet);
+                let (nodes, volume, gradients) = region.tet(tet);
                 (nodes, volume, gradients.map(|gradient| normal.on(gradient)))
             }));
             sum.average.stiffness(1.0, [lambda, 0.0], &mut sum.whole);
@@ -101,12 +99,6 @@ impl LawVisitor for Tangents<'_, '_> {
         }
         Ok(())
     }
-}
-
-/// Nodes, volume (m^3) and gradients (1/m) of a tetrahedron.
-pub(super) fn at_rest(region: &HyperelasticRegion, tet: usize) -> ([u32; 4], f64, [[f64; 3]; 4]) {
-    let rest = &region.rest;
-    (rest.nodes(tet), rest.volume(tet), rest.all_gradients(tet))
 }
 
 impl Sum<'_> {

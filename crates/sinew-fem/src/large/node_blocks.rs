@@ -2,7 +2,6 @@
 
 use sinew_core::EvaluationError;
 
-use super::matrix::at_rest;
 use super::means::{at_edge, bulk_of_patch, check, means};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
@@ -61,23 +60,21 @@ impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
                 add(node, block.scaled(share * rest.volume(tet)).0);
             }
         }
-        let mut average = Average::default();
-        for edge in 0..region.edges.count() {
-            let tets = region.edges.of(edge);
-            let at = at_edge(region, &law, tets, scratch)?;
-            average.of(tets.iter().map(|tet| at_rest(region, *tet as usize)));
+        for (edge, average) in region.edge_averages().iter().enumerate() {
+            let at = at_edge(region, &law, region.edges.of(edge), scratch)?;
             let volume = region.edge_share / 6.0 * average.volume;
             for (node, gradient) in average.nodes.iter().zip(&average.gradients) {
                 let block = law.node_block(&at, Bulk::none(), *gradient);
                 add(*node, block.scaled(volume).0);
             }
         }
+        let mut average = Average::default();
         for patch in 0..region.patches.count() {
             let tets = region.patches.of(patch).iter();
             average.of(tets.map(|tet| {
                 let tet = *tet as usize;
                 let normal = law.dilation_gradient(&law.at(scratch.gradients[tet]));
-                let (nodes, volume, gradients) = at_rest(region, tet);
+                let (nodes, volume, gradients) = region.tet(tet);
                 (nodes, volume, gradients.map(|gradient| normal.on(gradient)))
             }));
             for (node, gradient) in average.nodes.iter().zip(&average.gradients) {

@@ -1,12 +1,14 @@
 //! A region of hyperelastic tetrahedra.
 
+use std::sync::OnceLock;
+
 use sinew_mesh::TetMesh;
 use sinew_sparse::simd::Real;
 
 use super::chunks::{Chunk, Slot, follow};
 use super::rest::Rest;
 use crate::hyperelastic::{Hyperelastic, Tensor};
-use crate::smoothing::{Sets, Smoothing};
+use crate::smoothing::{Average, Sets, Smoothing};
 
 /// A region of hyperelastic tetrahedra, numbered by itself.
 #[derive(Clone, Debug)]
@@ -31,6 +33,8 @@ pub(crate) struct HyperelasticRegion {
     pub(super) patch_volumes: Vec<f64>,
     /// The patch of each tetrahedron.
     pub(super) patch_of: Vec<u32>,
+    /// The mean gradients at each edge, made for the first tangent or own blocks: explicit runs need none.
+    edge_averages: OnceLock<Vec<Average>>,
 }
 
 impl HyperelasticRegion {
@@ -84,7 +88,30 @@ impl HyperelasticRegion {
             rest,
             edges_of,
             patch_of,
+            edge_averages: OnceLock::new(),
         }
+    }
+
+    /// Nodes, volume (m^3) and gradients (1/m) of a tetrahedron.
+    pub(super) fn tet(&self, tet: usize) -> ([u32; 4], f64, [[f64; 3]; 4]) {
+        let rest = &self.rest;
+        (rest.nodes(tet), rest.volume(tet), rest.all_gradients(tet))
+    }
+
+    /// The mean gradients at each edge.
+    pub(super) fn edge_averages(&self) -> &[Average] {
+        self.edge_averages.get_or_init(|| {
+            let average = |edge| {
+                let mut average = Average::default();
+                average.of(self
+                    .edges
+                    .of(edge)
+                    .iter()
+                    .map(|tet| self.tet(*tet as usize)));
+                average
+            };
+            (0..self.edges.count()).map(average).collect()
+        })
     }
 
     /// Whether tetrahedra take any mean with others.
