@@ -18,6 +18,8 @@ pub(crate) struct Progress {
     pub(crate) seen: Seen,
     /// Kinetic energy (J), the largest and the last.
     pub(crate) kinetic: [f64; 2],
+    /// The largest sum of kinetic and elastic energy (J), and the largest remainder of the balance.
+    pub(crate) balance: [f64; 2],
 }
 
 /// Bytes of the files that grow.

@@ -145,6 +145,9 @@ impl RunRecorder<'_> {
             let row = self.balance.row(moment, &self.v)?;
             let kinetic = &mut self.progress.kinetic;
             *kinetic = [kinetic[0].max(row.kinetic), row.kinetic];
+            let [most, made] = self.progress.balance;
+            let energy = row.kinetic + row.elastic;
+            self.progress.balance = [most.max(energy), made.max(row.remainder)];
             tables::energy_row(&mut self.line, &row);
             self.tables.energy.push(&self.line)?;
             if let (Some(reactions), Some(file)) = (&mut self.reactions, &mut self.tables.reactions)

@@ -35,9 +35,10 @@ pub(crate) fn page(
         page.warning(warning);
     }
     page.facts(facts(summary));
-    page.paragraph(
-        "The error of this run is not known: `sinew plan --tolerance` measures it for the scene.",
-    );
+    let how = summary.simulation.how_to_know_the_error();
+    page.paragraph(&format!(
+        "The error of this run is not known: {how} for the scene."
+    ));
     if let Some(surface) = surface {
         body::section(&mut page, summary, surface, largest);
     }

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::thread;
 use std::time::Instant;
 
-use sinew_core::{Outcome, RecordError, SimulateError, StepError, StepReport, simulate};
+use sinew_core::{Outcome, RecordError, SimulateError, StepError, StepReport, System, simulate};
 use sinew_integrators::Stepper;
 use sinew_scene::output::{OutputError, OwnedFolder, Tenant};
 use sinew_scene::{ProbeRows, Scene, Simulation};
@@ -206,7 +206,7 @@ impl RunFolder {
                 Err(error) => {
                     // Steps are known by the time they reached; work since the last record is not.
                     let steps = (state.t() / simulation.dt()).floor() as usize;
-                    let (t, reason) = refusal(error)?;
+                    let (t, reason) = refusal(error, system)?;
                     let ended = Ended::Refused { t, reason };
                     (steps.saturating_sub(before), recorder.work, ended)
                 }
@@ -219,7 +219,8 @@ impl RunFolder {
             let times = frame_times(&schedules, progress.frames, simulation.dt());
             frames::write_series(&self.folder, &times)?;
         }
-        let warnings = summary::warnings(&progress.seen);
+        let mut warnings = summary::warnings(&progress.seen);
+        warnings.extend(summary::made_energy(simulation, &progress));
         let wall = begun.elapsed().as_secs_f64();
         let summary = Summary {
             simulation,
@@ -267,8 +268,11 @@ impl RunFolder {
 ///
 /// # Errors
 /// Any other error, as it is.
-fn refusal(error: SimulateError) -> Result<(f64, String), RecordRunError> {
+fn refusal(error: SimulateError, system: &dyn System) -> Result<(f64, String), RecordRunError> {
     match error {
+        SimulateError::Step(StepError::Inaccurate { t, .. }) if system.as_linear().is_none() => {
+            Ok((t, error.to_string()))
+        }
         SimulateError::Step(StepError::Refused { t, source }) => Ok((t, source.to_string())),
         SimulateError::Step(StepError::NotConverged { t, .. }) => Ok((t, error.to_string())),
         SimulateError::Record(RecordError { t, source }) => {

@@ -76,6 +76,20 @@ pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
     warnings
 }
 
+/// Share of the largest energy beyond which a motion is wrong whose balance has so much too much.
+const MADE_ENERGY: f64 = 0.1;
+
+/// A warning where a motion of large deformation has more energy than it was given. What a method takes is no such sign.
+pub(crate) fn made_energy(simulation: &Simulation, progress: &Progress) -> Option<String> {
+    let [most, made] = progress.balance;
+    let is_large = simulation.system().as_linear().is_none();
+    (is_large && made > MADE_ENERGY * most).then(|| {
+        format!(
+            "the motion has {made:.3e} J more than it was given, of {most:.3e} J at most: it is wrong; take a shorter step"
+        )
+    })
+}
+
 impl Summary<'_> {
     pub(crate) fn to_json(&self) -> String {
         let Self {
@@ -132,7 +146,7 @@ impl Summary<'_> {
             "steps": self.steps,
             "integrator": settings.integrator,
             "options": options_json(&simulation.options()),
-            "error": "not known: `sinew plan --tolerance` measures it",
+            "error": format!("not known: {}", simulation.how_to_know_the_error()),
             "extremes": extremes,
             "work": work,
             "warnings": record.warnings.iter().chain(self.warnings).collect::<Vec<_>>(),

@@ -219,11 +219,10 @@ impl Substepped {
             StableStep::Unknown => 0.0,
         };
         let parts = self.parts_by(dt, stable_step, state)?;
-        // Parts that are a little shorter than they have to be stay: a change costs a force and an order of the error.
-        let is_near = |known: &u32| *known >= parts && f64::from(*known) <= 1.1 * f64::from(parts);
-        let known = state.cut.map(|cut| cut.parts).filter(is_near);
+        // Never fewer than before: a leapfrog that changes to and fro between two lengths, each of them stable, may swing up.
+        let parts = parts.max(state.cut.map_or(1, |cut| cut.parts));
         let cut = StepCut {
-            parts: known.unwrap_or(parts),
+            parts,
             taken: 0,
             stable_step,
             stiffest_cell: self.stiffest_cell(batch, state)?,

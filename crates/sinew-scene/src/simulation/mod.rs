@@ -121,6 +121,15 @@ impl Simulation {
         step::options(self.settings(), self.system())
     }
 
+    /// What measures the error of a run of this scene, as a sentence goes on after "not known: ".
+    #[must_use]
+    pub fn how_to_know_the_error(&self) -> &'static str {
+        match self.system().as_linear() {
+            Some(_) => "`sinew plan --tolerance` measures it",
+            None => "`sinew converge` estimates it",
+        }
+    }
+
     /// Whether steps are cut by the current stiffness: dt = "auto" on a body that is not linear.
     #[must_use]
     pub fn follows_stiffness(&self) -> bool {

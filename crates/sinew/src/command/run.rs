@@ -20,8 +20,10 @@ use super::scene_with::Values;
 pub(crate) const LONG: f64 = 60.0;
 
 /// What no run knows of itself.
-const ERROR_NOT_KNOWN: &str =
-    "the error of this run is not known: `sinew plan --tolerance` measures it";
+fn error_not_known(simulation: &Simulation) -> String {
+    let how = simulation.how_to_know_the_error();
+    format!("the error of this run is not known: {how}")
+}
 
 /// A scene and the destination of what the run gives.
 #[derive(clap::Args)]
@@ -206,7 +208,7 @@ fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> Vec<String>
     lines.extend(end.remarks.iter().cloned());
     let warnings = end.warnings.iter();
     lines.extend(warnings.map(|warning| format!("warning: {warning}")));
-    lines.push(ERROR_NOT_KNOWN.to_owned());
+    lines.push(error_not_known(simulation));
     lines.push(format!(
         "{}: report.html, fields.pvd for ParaView, tables, summary.json",
         path.display()
@@ -341,6 +343,6 @@ fn summary(simulation: &Simulation, report: &RunReport) -> String {
         ));
     }
     text.push('\n');
-    text.push_str(ERROR_NOT_KNOWN);
+    text.push_str(&error_not_known(simulation));
     text
 }
