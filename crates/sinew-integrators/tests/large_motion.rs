@@ -173,6 +173,12 @@ impl Scene {
         2.0 / omega_squared.sqrt()
     }
 
+    /// The vertical displacement of the last node, a corner of the top.
+    fn top_corner(&self, u: &[f64]) -> f64 {
+        let last = self.mesh.points.len() as u32 - 1;
+        u[3 * self.model.cell_of_node(last).unwrap() as usize + 2]
+    }
+
     /// The vertical displacement of the middle of the top.
     fn top(&self, u: &[f64]) -> f64 {
         let (_, high) = self.mesh.bounding_box();
@@ -324,4 +330,28 @@ fn the_papers_network_presses_tissue_below_its_stable_step_and_is_refused_beyond
     let limited =
         build("cnn", &plain().with_text("saturation", "auto")).prepare(&scene.model, 1e-4);
     assert!(limited.is_err(), "a guard's limits follow from matrices");
+}
+
+/// An undamped cube that sags under its weight, at nine tenths of the stable step: parts that became fewer again would swing it up.
+#[test]
+fn steps_by_the_current_stiffness_make_no_energy() {
+    let mut scene = Scene::new(([3; 3], [0.1; 3]), 5.0, |_, problem| {
+        problem.gravity = Some([0.0, 0.0, -9.81]);
+    });
+    scene.problem.regions[0].law = Law::Hyperelastic {
+        id: "neo-hookean",
+        parameters: Parameters::new(6000.0, 0.45),
+    };
+    scene.model = scene.model.with_problem(&scene.problem).unwrap();
+    let options = plain().with_text("substeps", "auto");
+    let heights = |rate, options: &Options| -> Vec<f64> {
+        let motion = scene
+            .run_by("central-difference", options, rate, 100)
+            .unwrap();
+        motion.iter().map(|u| scene.top_corner(u)).collect()
+    };
+    let (found, fine) = (heights(120, &options), heights(2000, &plain()));
+    let largest = |heights: &[f64]| heights.iter().fold(0.0_f64, |most, h| h.abs().max(most));
+    let (found, fine) = (largest(&found[80..]), largest(&fine[80..]));
+    assert!((found / fine - 1.0).abs() < 0.05, "{found} {fine}");
 }

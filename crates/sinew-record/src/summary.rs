@@ -85,7 +85,7 @@ pub(crate) fn made_energy(simulation: &Simulation, progress: &Progress) -> Optio
     let is_large = simulation.system().as_linear().is_none();
     (is_large && made > MADE_ENERGY * most).then(|| {
         format!(
-            "the motion has {made:.3e} J more than it was given, of {most:.3e} J at most: it is wrong; take a shorter step"
+            "the motion has {made:.3e} J more than it was given, of {most:.3e} J at most: its fastest part is wrong; take a shorter step"
         )
     })
 }
