@@ -41,6 +41,11 @@ const READY: &[Ready] = &[
         mesh: Some(("organ.msh", mesh!("organ.msh"))),
     },
     Ready {
+        name: "organ-pressed",
+        scene: scene!("organ-pressed.toml"),
+        mesh: Some(("organ.msh", mesh!("organ.msh"))),
+    },
+    Ready {
         name: "beam",
         scene: scene!("beam.toml"),
         mesh: Some(("beam.msh", mesh!("beam.msh"))),
