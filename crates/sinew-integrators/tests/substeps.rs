@@ -160,6 +160,8 @@ fn methods_without_a_largest_step_take_no_parts() {
     let refusal = sinew_integrators::build("newmark", &auto()).err();
     assert_eq!(
         refusal.map(|error| error.to_string()).as_deref(),
-        Some("`newmark` has no option `substeps`; it takes `beta`, `gamma`")
+        Some(
+            "`newmark` has no option `substeps`; it takes `beta`, `gamma`, `newton_tolerance`, `newton_iterations`"
+        )
     );
 }

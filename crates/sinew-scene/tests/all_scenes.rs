@@ -38,9 +38,12 @@ fn plans_fit_a_terminal_and_memory_is_foretold_from_the_mesh() {
             (footprint.nodes, footprint.tets),
             (body.mesh.points.len(), body.mesh.tets.len())
         );
-        let operators = simulation.system().as_linear().unwrap().operators();
-        let built = operators.stiffness().pattern().blocks();
+        // Of a body that is not linear these are the blocks of its tangent, which only some methods make.
+        let built = simulation.system().as_elastic().unwrap().pattern().blocks();
         assert_eq!(footprint.blocks, built, "{}", path.display());
+        if simulation.system().as_linear().is_none() {
+            continue;
+        }
         let bytes = plan.matrix_bytes;
         assert_eq!(footprint.matrix_bytes, bytes, "{}", path.display());
         assert!((bytes..10 * bytes).contains(&footprint.bytes));

@@ -105,7 +105,7 @@ fn an_option_of_another_integrator() {
     insta::assert_snapshot!(
         refusal(BODY, "dt = 0.02", "dt = 0.02\npatches = \"auto\""),
         @r"
-    scene.toml:24: [run]: `newmark` has no option `patches`; it takes `beta`, `gamma`
+    scene.toml:24: [run]: `newmark` has no option `patches`; it takes `beta`, `gamma`, `newton_tolerance`, `newton_iterations`
     help: `patches` is an option of `central-difference`
     "
     );
@@ -115,7 +115,7 @@ fn an_option_of_another_integrator() {
 fn a_misspelt_step_is_not_called_missing() {
     insta::assert_snapshot!(
         refusal(BODY, "dt = 0.02", "dtt = 0.02"),
-        @r#"scene.toml:23: [run]: `newmark` has no option `dtt`; it takes `beta`, `gamma`"#
+        @r#"scene.toml:23: [run]: `newmark` has no option `dtt`; it takes `beta`, `gamma`, `newton_tolerance`, `newton_iterations`"#
     );
 }
 
