@@ -1,4 +1,4 @@
-//! Linear systems from a tetrahedral mesh, materials, supports and loads.
+//! Systems from a tetrahedral mesh, materials of small or large deformation, supports and loads.
 //!
 //! ```
 //! use sinew_core::{Ramp, System};

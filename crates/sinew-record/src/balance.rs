@@ -1,8 +1,8 @@
 //! The balance of energy of a run.
 
 use serde::{Deserialize, Serialize};
-use sinew_core::vectors::dot;
-use sinew_core::{Acceleration, ElasticLaw, LinearOperators, LoadTime, Moment, Trial};
+use sinew_core::vectors::{dot, weighted_dot};
+use sinew_core::{Acceleration, Damping, ElasticLaw, LinearOperators, LoadTime, Moment, Trial};
 use sinew_fem::Model;
 use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
 use sinew_scene::{SceneModel, Simulation};
@@ -294,7 +294,7 @@ impl<'a> Balance<'a> {
                 operators.subtract_damping(&own, &mut force);
                 -dot(&force, &own)
             }
-            None => self.power_of_damping(last, here, &own)?,
+            None => self.power_of_damping(damping, [last, here], &own)?,
         };
         let (Some(model), Some([u_before, u_after])) = (self.moved_body(), nodes) else {
             return Ok(span * free);
@@ -328,14 +328,23 @@ impl<'a> Balance<'a> {
         Ok(span * (free + at_held))
     }
 
-    /// The power (W) of a force law's damping at a velocity half way between two rows: what the velocity changes in the net force there.
+    /// The power (W) of a force law's damping at a velocity half way between two rows: that of constant matrices or, where the tangent
+    /// damps, what the velocity changes in the net force there.
     fn power_of_damping(
         &self,
-        last: &LastRow,
-        here: &LastRow,
+        damping: &Damping,
+        [last, here]: [&LastRow; 2],
         velocity: &[f64],
     ) -> Result<f64, RecordRunError> {
         let system = self.simulation.system();
+        if damping.stiffness == 0.0 {
+            let mut force = vec![0.0; velocity.len()];
+            if let Some(extra) = &damping.extra {
+                extra.multiply(velocity, &mut force);
+            }
+            let of_mass = weighted_dot(system.mass(), velocity, velocity);
+            return Ok(damping.mass * of_mass + dot(&force, velocity));
+        }
         let ends = last.u.iter().zip(&here.u);
         let u: Vec<f64> = ends.map(|(a, b)| 0.5 * (a + b)).collect();
         let force = |v: &[f64]| -> Result<Vec<f64>, RecordRunError> {

@@ -2,7 +2,7 @@
 
 use sinew_core::{BlockMatrix, ElementStiffness, EvaluationError, TangentKind};
 
-use super::means::{at_edge, check, means};
+use super::means::{at_edge, check, means, take_dilation};
 use super::product::OwnTangent;
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
@@ -87,13 +87,7 @@ impl LawVisitor for Tangents<'_, '_> {
             sum.add(region.edge_share / 6.0, |change| tangent.on(change));
         }
         for patch in 0..region.patches.count() {
-            let tets = region.patches.of(patch).iter();
-            sum.average.of(tets.map(|tet| {
-                let tet = *tet as usize;
-                let normal = law.dilation_gradient(&law.at(scratch.gradients[tet]));
-                let (nodes, volume, gradients) = region.tet(tet);
-                (nodes, volume, gradients.map(|gradient| normal.on(gradient)))
-            }));
+            take_dilation(region, &law, patch, scratch, &mut sum.average);
             sum.average.stiffness(1.0, [lambda, 0.0], &mut sum.whole);
             sum.add_whole();
         }

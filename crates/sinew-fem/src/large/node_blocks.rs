@@ -2,7 +2,7 @@
 
 use sinew_core::EvaluationError;
 
-use super::means::{at_edge, bulk_of_patch, check, means};
+use super::means::{at_edge, bulk_of_patch, check, means, take_dilation};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
 use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Tensor};
@@ -70,13 +70,7 @@ impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
         }
         let mut average = Average::default();
         for patch in 0..region.patches.count() {
-            let tets = region.patches.of(patch).iter();
-            average.of(tets.map(|tet| {
-                let tet = *tet as usize;
-                let normal = law.dilation_gradient(&law.at(scratch.gradients[tet]));
-                let (nodes, volume, gradients) = region.tet(tet);
-                (nodes, volume, gradients.map(|gradient| normal.on(gradient)))
-            }));
+            take_dilation(region, &law, patch, scratch, &mut average);
             for (node, gradient) in average.nodes.iter().zip(&average.gradients) {
                 let block = Tensor::outer(*gradient, *gradient);
                 add(*node, block.scaled(lambda * average.volume).0);

@@ -78,7 +78,8 @@ pub(crate) const INTEGRATOR: Key<Text> = Key::required(
 
 const DT: Key<Step> = Key::required(
     "dt",
-    "Step, or `\"auto\"` for the longest one up to nine tenths of the stable step of the method.",
+    "Step, or `\"auto\"` for the longest one up to nine tenths of the stable step of the method. On tissue of large deformation \
+     `\"auto\"` takes twice that, and explicit methods cut each step into parts by the stiffness of the moment.",
     Step,
 )
 .unit("s");
