@@ -11,7 +11,7 @@ use crate::vectors::dot;
 
 /// The elastic part of a force law: forces that are the gradient of an energy, and their derivative.
 ///
-/// With `W(u)` the energy, the law's net force is `f_ext - dW/du - D v`, D being [`ElasticLaw::damping`]. Methods that
+/// With `W(u)` the energy, the law's net force is `f_ext(u) - dW/du - D v`, D being [`ElasticLaw::damping`]. Methods that
 /// solve equations or watch the energy need it ([`crate::Needs::Tangents`]). Points are those of [`crate::ForceLaw::net_force`];
 /// evaluation changes nothing.
 pub trait ElasticLaw: Send + Sync {
@@ -57,6 +57,10 @@ pub trait ElasticLaw: Send + Sync {
     /// # Errors
     /// As [`ElasticLaw::elastic_force`].
     fn node_blocks(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError>;
+
+    /// `out -= factor dF/du` (N/m), the symmetric part, with the loads F as far as they depend on the displacement: what Newton's method
+    /// adds to the exact tangent.
+    fn add_load_stiffness(&self, _trial: &Trial<'_>, _factor: f64, _out: &mut BlockMatrix) {}
 
     /// `D`: the mass-proportional rate, the factor of the tangent, and a constant matrix.
     fn damping(&self) -> &Damping;

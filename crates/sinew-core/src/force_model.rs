@@ -18,7 +18,7 @@ use crate::system::{Equations, ForceLaw, System};
 ///         out[0] = -9.81 * trial.u[0].sin();
 ///         Ok(())
 ///     }
-///     fn external_force(&self, _: LoadTime<'_>, out: &mut [f64]) {
+///     fn external_force(&self, _: LoadTime<'_>, _: &[f64], out: &mut [f64]) {
 ///         out.fill(0.0);
 ///     }
 /// }

@@ -59,6 +59,7 @@ mod spectral_measure;
 pub mod spectrum;
 mod state;
 mod state_bytes;
+mod static_load;
 mod step_error;
 mod step_report;
 mod synchronise;
@@ -99,6 +100,7 @@ pub use simulate::{Outcome, Run, RunReport, SimulateError, simulate, simulate_un
 pub use sinew_sparse::{BlockMatrix, Layers, Pattern, clamp_vector, vectors};
 pub use state::{Acceleration, Start, State, StepCut, VelocityTime};
 pub use state_bytes::StateBytesError;
+pub use static_load::StaticLoad;
 pub use step_error::{SetupError, StepError};
 pub use step_report::StepReport;
 pub use synchronise::SynchroniseError;

@@ -125,8 +125,8 @@ pub trait ForceLaw: Send + Sync {
     /// [`EvaluationError`] when the law is outside its domain; `out` is then unspecified.
     fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError>;
 
-    /// `out = f_ext` (N) as a step takes it.
-    fn external_force(&self, when: LoadTime<'_>, out: &mut [f64]);
+    /// `out = f_ext` (N) as a step takes it, with the displacement `u` (m): loads may follow the surface.
+    fn external_force(&self, when: LoadTime<'_>, u: &[f64], out: &mut [f64]);
 
     /// The rate alpha (1/s) of that part of `f_int` which is `alpha M v`; central difference
     /// treats it implicitly at no cost.
@@ -187,11 +187,11 @@ impl<'s> dyn System + 's {
         }
     }
 
-    /// `out = f_ext` (N) as a step takes it.
-    pub fn external_force(&self, when: LoadTime<'_>, out: &mut [f64]) {
+    /// `out = f_ext` (N) as a step takes it, with the displacement `u` (m), on which those of linear systems do not depend.
+    pub fn external_force(&self, when: LoadTime<'_>, u: &[f64], out: &mut [f64]) {
         match self.equations() {
             Equations::Linear(linear) => linear.operators().external_force(when, out),
-            Equations::Forces(law) => law.external_force(when, out),
+            Equations::Forces(law) => law.external_force(when, u, out),
         }
     }
 

@@ -35,7 +35,7 @@ impl ForceLaw for Springs {
         }
         Ok(())
     }
-    fn external_force(&self, _when: LoadTime<'_>, out: &mut [f64]) {
+    fn external_force(&self, _when: LoadTime<'_>, _u: &[f64], out: &mut [f64]) {
         out.fill(0.0);
     }
 }

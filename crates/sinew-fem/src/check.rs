@@ -39,7 +39,9 @@ pub(crate) fn numbers(problem: &Problem) -> Result<(), FemError> {
         let item = Item::Load(index);
         match load.kind {
             LoadKind::Traction(value) => require_finite(item, "traction", &value)?,
-            LoadKind::Pressure(value) => require_finite(item, "pressure", &[value])?,
+            LoadKind::Pressure(value) | LoadKind::FollowingPressure(value) => {
+                require_finite(item, "pressure", &[value])?;
+            }
             LoadKind::Force(value) => require_finite(item, "force", &value)?,
         }
         load.ramp.check().map_err(FemError::at(item))?;

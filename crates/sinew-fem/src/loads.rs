@@ -9,6 +9,7 @@ use sinew_mesh::TetMesh;
 use crate::body::Body;
 use crate::cells::Cells;
 use crate::error::{Cause, FemError, Item};
+use crate::following::FollowingPressure;
 use crate::motion::Motions;
 use crate::report::LoadFacts;
 use crate::supports::HeldLoad;
@@ -22,6 +23,8 @@ pub(crate) struct LoadsOnBody {
     pub(crate) items: Vec<Item>,
     /// Parts of the loads on held components; loads without one are left out.
     pub(crate) held: Vec<HeldLoad>,
+    /// What pressures that follow the surface do beyond that.
+    pub(crate) following: Vec<FollowingPressure>,
     /// Resultants of the loads.
     pub(crate) facts: Vec<LoadFacts>,
     /// Resultant of gravity.
@@ -34,16 +37,22 @@ impl LoadsOnBody {
     pub(crate) fn new(
         mesh: &TetMesh,
         body: &Body,
-        problem: &Problem,
+        (problem, region_of): (&Problem, &[u32]),
         masses: &[f64],
         motions: &Motions,
         moves: &mut [MoveFacts],
     ) -> Result<Self, FemError> {
         let (mut moving, mut held, mut facts) = (Vec::new(), Vec::new(), Vec::new());
-        let mut items = Vec::new();
+        let (mut items, mut following) = (Vec::new(), Vec::new());
+        let is_large = |tet: usize| {
+            problem.regions[region_of[tet] as usize]
+                .law
+                .is_hyperelastic()
+        };
         for (index, spec) in problem.loads.iter().enumerate() {
             let item = Item::Load(index);
-            let parts = assemble(mesh, body, motions, spec, item)?;
+            let parts = assemble((mesh, &is_large), body, motions, spec, index)?;
+            following.extend(parts.following);
             let mut on_moved = false;
             for part in parts.held.iter().flat_map(|held| held.moved_by(motions)) {
                 on_moved = true;
@@ -73,6 +82,7 @@ impl LoadsOnBody {
             moving,
             items,
             held,
+            following,
             facts,
             gravity,
         })
@@ -83,18 +93,20 @@ impl LoadsOnBody {
 struct Parts {
     moving: Load,
     held: Option<HeldLoad>,
+    following: Option<FollowingPressure>,
     facts: LoadFacts,
 }
 
 /// A load shared out to nodes.
 fn assemble(
-    mesh: &TetMesh,
+    (mesh, is_large): (&TetMesh, &dyn Fn(usize) -> bool),
     body: &Body,
     motions: &Motions,
     load: &LoadSpec,
-    item: Item,
+    index: usize,
 ) -> Result<Parts, FemError> {
-    let (cells, on) = (&body.cells, &load.on);
+    let (cells, on, item) = (&body.cells, &load.on, Item::Load(index));
+    let mut following = None;
     let mut nodal: Vec<(u32, Vector3<f64>)> = Vec::new();
     match load.kind {
         LoadKind::Traction(traction) => {
@@ -103,13 +115,18 @@ fn assemble(
                 nodal.extend(triangle.map(|node| (node, share)));
             }
         }
-        LoadKind::Pressure(pressure) => {
+        LoadKind::Pressure(pressure) | LoadKind::FollowingPressure(pressure) => {
             let outward = mesh
-                .outward_triangles(&on.triangles(mesh).map_err(FemError::at(item))?)
+                .outward_faces(&on.triangles(mesh).map_err(FemError::at(item))?)
                 .map_err(FemError::at(item))?;
-            for triangle in &outward {
+            for (triangle, _) in &outward {
                 let share = area_vector(mesh, triangle) * (-pressure / 3.0);
                 nodal.extend(triangle.map(|node| (node, share)));
+            }
+            if matches!(load.kind, LoadKind::FollowingPressure(_)) {
+                let large = outward.into_iter().filter(|(_, tet)| is_large(*tet));
+                let large = large.map(|(triangle, _)| triangle);
+                following = FollowingPressure::new(mesh, (index, &load.ramp, pressure), large);
             }
         }
         LoadKind::Force(force) => {
@@ -123,7 +140,10 @@ fn assemble(
             nodal.extend(free.into_iter().map(|node| (node, share)));
         }
     }
-    Ok(gather(cells, &nodal, load.ramp.clone()))
+    Ok(Parts {
+        following,
+        ..gather(cells, &nodal, load.ramp.clone())
+    })
 }
 
 /// The weight of every node.
@@ -180,6 +200,7 @@ fn gather(cells: &Cells, nodal: &[(u32, Vector3<f64>)], ramp: Ramp) -> Parts {
     Parts {
         moving: Load { ramp, entries },
         held,
+        following: None,
         facts,
     }
 }

@@ -93,6 +93,9 @@ pub enum LoadKind {
     Traction([f64; 3]),
     /// Pressure (Pa) on triangles of the body's surface, against the outward normal before deformation.
     Pressure(f64),
+    /// [`LoadKind::Pressure`] that follows the surface of hyperelastic regions as it deforms: against the outward normal then, on the
+    /// area then. On other regions, whose shape is that at rest, it is the same as that.
+    FollowingPressure(f64),
     /// A total force (N) in equal parts on the nodes that are not held in x, y and z.
     Force([f64; 3]),
 }

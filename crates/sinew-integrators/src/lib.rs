@@ -37,7 +37,7 @@ pub use frame::Frame;
 #[cfg(feature = "implicit")]
 pub use implicit::{
     Combination, Factor, FactorError, Matrices, NewtonError, NewtonSettings, StaticError,
-    static_solution,
+    static_solution, static_solution_under,
 };
 pub use machine_options::MACHINE_OPTIONS;
 pub use method::{ConservedEnergy, Method};

@@ -44,7 +44,7 @@ impl ForceLaw for Pendulum {
         out[0] = -9.81 * self.mass[0] * trial.u[0].sin();
         Ok(())
     }
-    fn external_force(&self, _when: LoadTime<'_>, out: &mut [f64]) {
+    fn external_force(&self, _when: LoadTime<'_>, _u: &[f64], out: &mut [f64]) {
         out[0] = 0.0;
     }
 }

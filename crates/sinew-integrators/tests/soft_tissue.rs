@@ -170,7 +170,7 @@ fn a_cantilever_bends_far() {
     let model = Model::build(&mesh, &problem).unwrap();
     let mut load = vec![0.0; model.dofs()];
     let system: &dyn System = &model;
-    system.external_force(LoadTime::at(1.0), &mut load);
+    system.external_force(LoadTime::at(1.0), &[], &mut load);
     let u = static_solution(&model, &load).unwrap();
     let mut nodal = vec![[0.0; 3]; mesh.points.len()];
     model.to_nodes(&u, &mut nodal).unwrap();

@@ -137,7 +137,7 @@ impl<'a> Balance<'a> {
                 self.sums.supports += work([&before.supports, &after.supports], ends);
                 self.sums.damped += self.damped(last, &here, Some(ends))?;
             } else {
-                let (before, after) = self.loads_at_ends(last.t, here.t);
+                let (before, after) = self.loads_at_ends(last, &here);
                 self.sums.loads += work([&before, &after], [&last.u, &here.u]);
                 self.sums.damped += self.damped(last, &here, None)?;
                 self.sums.method += self.taken_by_method(last, &here);
@@ -187,14 +187,14 @@ impl<'a> Balance<'a> {
         let dt = here.t - last.t;
         let [before, after] = form
             .loads_at_ends(last.t, dt)
-            .map(|when| self.loads_at(when));
+            .map(|when| self.loads_at(when, &here.u));
         // The step begins with the acceleration of the last one and what the loads are other than at the end of that.
         let known = match last.before < last.t {
             true => {
                 let [_, end] = form.loads_at_ends(last.before, last.t - last.before);
-                self.loads_at(end)
+                self.loads_at(end, &last.u)
             }
-            false => self.loads_at(last.t.into()),
+            false => self.loads_at(last.t.into(), &last.u),
         };
         let change = before.iter().zip(&known).zip(operators.mass());
         let change = change.map(|((load, known), mass)| (load - known) / mass);
@@ -215,15 +215,15 @@ impl<'a> Balance<'a> {
     }
 
     /// Loads (N) of the degrees of freedom at two rows, whose mean has the impulse of the loads between them, jumps included.
-    fn loads_at_ends(&self, from: f64, to: f64) -> (Vec<f64>, Vec<f64>) {
-        let [from, to] = LoadTime::at_both_ends(from, to - from, 0.5);
-        (self.loads_at(from), self.loads_at(to))
+    fn loads_at_ends(&self, last: &LastRow, here: &LastRow) -> (Vec<f64>, Vec<f64>) {
+        let [from, to] = LoadTime::at_both_ends(last.t, here.t - last.t, 0.5);
+        (self.loads_at(from, &last.u), self.loads_at(to, &here.u))
     }
 
-    fn loads_at(&self, when: LoadTime<'_>) -> Vec<f64> {
+    fn loads_at(&self, when: LoadTime<'_>, u: &[f64]) -> Vec<f64> {
         let system = self.simulation.system();
         let mut loads = vec![0.0; system.dofs()];
-        system.external_force(when, &mut loads);
+        system.external_force(when, u, &mut loads);
         loads
     }
 
@@ -235,7 +235,7 @@ impl<'a> Balance<'a> {
         let mut u = vec![[0.0; 3]; model.mesh().points.len()];
         let (mut loads, mut supports) = (u.clone(), u.clone());
         model.displacements_at(row.t, &row.u, &mut u)?;
-        model.load_forces(row.t, &mut loads)?;
+        model.load_forces(row.t, &u, &mut loads)?;
         model.reactions(row.t, &row.u, &row.v, &mut supports)?;
         Ok(Some(Nodes {
             u: u.into_flattened(),

@@ -70,7 +70,7 @@ pub(crate) fn turned(simulation: &Simulation, turn: QuarterTurn) -> Result<Twin,
         load.kind = match load.kind {
             LoadKind::Traction(traction) => LoadKind::Traction(turn.of(traction)),
             LoadKind::Force(force) => LoadKind::Force(turn.of(force)),
-            pressure @ LoadKind::Pressure(_) => pressure,
+            pressure @ (LoadKind::Pressure(_) | LoadKind::FollowingPressure(_)) => pressure,
         };
     }
     problem.gravity = problem.gravity.map(|gravity| turn.of(gravity));
@@ -110,6 +110,9 @@ pub(crate) fn in_units(simulation: &Simulation, per_metre: f64) -> Result<Twin, 
         load.kind = match load.kind {
             LoadKind::Traction(traction) => LoadKind::Traction(times(traction, 1.0 / per_metre)),
             LoadKind::Pressure(pressure) => LoadKind::Pressure(pressure / per_metre),
+            LoadKind::FollowingPressure(pressure) => {
+                LoadKind::FollowingPressure(pressure / per_metre)
+            }
             LoadKind::Force(force) => LoadKind::Force(times(force, per_metre)),
         };
     }

@@ -95,7 +95,7 @@ impl ForceLaw for Refusing {
         Ok(())
     }
 
-    fn external_force(&self, when: LoadTime<'_>, out: &mut [f64]) {
+    fn external_force(&self, when: LoadTime<'_>, _u: &[f64], out: &mut [f64]) {
         self.inner.operators().external_force(when, out);
     }
 

@@ -168,8 +168,8 @@ impl Method {
             Fault::TakesInputsAStepLate => {
                 let late = LoadTime::start_of(state.t() - step.dt, step.dt);
                 for (sign, inputs) in [(1.0, step.inputs), (-1.0, Inputs::none())] {
-                    step.system
-                        .external_force(late.under(inputs), &mut self.other);
+                    let late = late.under(inputs);
+                    step.system.external_force(late, &state.u, &mut self.other);
                     for (a, other) in self.a.iter_mut().zip(&self.other) {
                         *a += sign * other;
                     }

@@ -40,7 +40,7 @@ impl ForceLaw for Hidden {
         operators.net_force(trial.load, trial.u, trial.v, out);
         Ok(())
     }
-    fn external_force(&self, when: LoadTime<'_>, out: &mut [f64]) {
+    fn external_force(&self, when: LoadTime<'_>, _u: &[f64], out: &mut [f64]) {
         self.inner.operators().external_force(when, out);
     }
     fn mass_damping(&self) -> f64 {

@@ -97,11 +97,11 @@ impl ForceLaw for Maxwell {
     fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
         let (u, v) = (trial.u[0], trial.v[0]);
         let z = Self::elongation(trial.internal[0], u, v, trial.dt);
-        self.external_force(trial.load, out);
+        self.external_force(trial.load, trial.u, out);
         out[0] -= SPRING * u + SERIES * (u - z);
         Ok(())
     }
-    fn external_force(&self, when: LoadTime<'_>, out: &mut [f64]) {
+    fn external_force(&self, when: LoadTime<'_>, _u: &[f64], out: &mut [f64]) {
         out[0] = FORCE * crate::Ramp::Step.factor(when);
     }
     fn spectrum(&self, _about: Option<&State>) -> Option<Spectrum> {
@@ -230,7 +230,7 @@ impl ForceLaw for Counting {
         operators.net_force(trial.load, trial.u, trial.v, out);
         Ok(())
     }
-    fn external_force(&self, when: LoadTime<'_>, out: &mut [f64]) {
+    fn external_force(&self, when: LoadTime<'_>, _u: &[f64], out: &mut [f64]) {
         self.inner.operators().external_force(when, out);
     }
     fn mass_damping(&self) -> f64 {

@@ -39,17 +39,19 @@ impl Model {
         Ok(linear + self.large_energy(displacement))
     }
 
-    /// Writes the forces (N) of loads and gravity at each node of the mesh at a time (s), held components included, without
-    /// those by which prescribed motions act on their neighbours.
+    /// Writes the forces (N) of loads and gravity at each node of the mesh at a time (s), with these displacements (m) of the nodes
+    /// then, held components included, without those by which prescribed motions act on their neighbours.
     ///
     /// # Errors
-    /// [`FieldError::Length`] unless `out` has one entry for each node of the mesh, and [`FieldError::NoInput`] where a
+    /// [`FieldError::Length`] unless `displacement` and `out` have one entry for each node of the mesh, and [`FieldError::NoInput`] where a
     /// load follows an input that the time does not bring.
     pub fn load_forces<'a>(
         &self,
         when: impl Into<LoadTime<'a>>,
+        displacement: &[[f64; 3]],
         out: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
+        self.require_nodes("the displacement", displacement)?;
         self.require_nodes("the output", out)?;
         let when = when.into();
         let loads = self.operators.loads().iter().zip(&self.load_items);
@@ -72,6 +74,14 @@ impl Model {
                     *out += factor * force;
                 }
             }
+        }
+        for pressure in &*self.following {
+            let displacement = |node: u32| displacement[node as usize];
+            pressure.forces(pressure.factor(when), displacement, |node, force| {
+                for (out, force) in out[node as usize].iter_mut().zip(force) {
+                    *out += force;
+                }
+            });
         }
         Ok(())
     }

@@ -29,6 +29,19 @@ impl Model {
         })
     }
 
+    /// What [`ElasticLaw::add_load_stiffness`] adds, times a change of the displacement.
+    fn add_load_product(&self, trial: &Trial<'_>, change: &[f64], out: &mut [f64]) {
+        let cells = &self.body.cells;
+        for pressure in &*self.following {
+            pressure.stiffness_product(
+                pressure.factor(trial.load),
+                self.displacement_of(trial.load, trial.u),
+                |node| cells.at_node(change, node),
+                |node, force| self.add_at_node((node, force), 1.0, out),
+            );
+        }
+    }
+
     /// Writes a field over the degrees of freedom to all nodes, prescribed motions included.
     fn fill(
         &self,
@@ -54,18 +67,49 @@ impl Model {
         factor: f64,
         out: &mut [f64],
     ) {
-        let cells = &self.body.cells;
         large.at_nodes(scratch, |node, force| {
-            let Some(cell) = cells.of_node(node) else {
-                return;
-            };
-            let first = 3 * cell as usize;
-            for (axis, force) in force.into_iter().enumerate() {
-                if !cells.pinned[first + axis] {
-                    out[first + axis] += factor * force;
-                }
-            }
+            self.add_at_node((node, force), factor, out);
         });
+    }
+
+    pub(super) fn add_at_node(&self, (node, force): (u32, [f64; 3]), factor: f64, out: &mut [f64]) {
+        let cells = &self.body.cells;
+        let Some(cell) = cells.of_node(node) else {
+            return;
+        };
+        let first = 3 * cell as usize;
+        for (axis, force) in force.into_iter().enumerate() {
+            if !cells.pinned[first + axis] {
+                out[first + axis] += factor * force;
+            }
+        }
+    }
+
+    /// Adds what pressures that follow the surface do beyond those on the surface at rest.
+    fn add_following(
+        &self,
+        when: LoadTime<'_>,
+        displacement: impl Fn(u32) -> [f64; 3],
+        out: &mut [f64],
+    ) {
+        for pressure in &*self.following {
+            pressure.forces(pressure.factor(when), &displacement, |node, force| {
+                self.add_at_node((node, force), 1.0, out);
+            });
+        }
+    }
+
+    /// Displacement of nodes at a time, with moved nodes where they are then; where their inputs are not known, at rest.
+    pub(super) fn displacement_of<'a>(
+        &'a self,
+        when: LoadTime<'_>,
+        u: &'a [f64],
+    ) -> impl Fn(u32) -> [f64; 3] + 'a {
+        let known = self.at_nodes(when, 0, Some(u)).ok();
+        move |node| match &known {
+            Some(known) => known(node),
+            None => self.body.cells.at_node(u, node),
+        }
     }
 }
 
@@ -76,6 +120,7 @@ impl ForceLaw for Model {
         self.at_trial((trial.load, trial.u), |large, scratch| {
             large.evaluate(scratch, false)?;
             self.add_at_nodes(large, scratch, -1.0, out);
+            self.add_following(trial.load, |node| at(&scratch.displacement, node), out);
             if beta != 0.0 {
                 self.fill(trial.load, 1, trial.v, &mut scratch.change)?;
                 large.damped_product(scratch)?;
@@ -85,8 +130,11 @@ impl ForceLaw for Model {
         })
     }
 
-    fn external_force(&self, when: LoadTime<'_>, out: &mut [f64]) {
+    fn external_force(&self, when: LoadTime<'_>, u: &[f64], out: &mut [f64]) {
         self.operators.external_force(when, out);
+        if !self.following.is_empty() {
+            self.add_following(when, self.displacement_of(when, u), out);
+        }
     }
 
     fn mass_damping(&self) -> f64 {
@@ -133,6 +181,7 @@ impl ForceLaw for Model {
         let mut product = |x: &[f64], out: &mut [f64]| {
             let product = self.tangent_product(&trial, TangentKind::Exact, x, out);
             failed |= product.is_err();
+            self.add_load_product(&trial, x, out);
         };
         let largest = |product: &mut dyn FnMut(&[f64], &mut [f64])| match about {
             Some(_) => estimated_largest_eigenvalue(mass, product),
@@ -231,7 +280,21 @@ impl ElasticLaw for Model {
         })
     }
 
+    fn add_load_stiffness(&self, trial: &Trial<'_>, factor: f64, out: &mut BlockMatrix) {
+        for pressure in &*self.following {
+            let displacement = self.displacement_of(trial.load, trial.u);
+            let factor = factor * pressure.factor(trial.load);
+            pressure.add_stiffness(factor, &self.body.cells, displacement, out);
+        }
+    }
+
     fn damping(&self) -> &Damping {
         self.operators.damping()
     }
+}
+
+/// A node's row of a field.
+fn at(field: &[[f64; 4]], node: u32) -> [f64; 3] {
+    let [x, y, z, _] = field[node as usize];
+    [x, y, z]
 }

@@ -8,6 +8,7 @@ mod forces;
 mod motion;
 mod nodes;
 mod reactions;
+mod static_load;
 mod strain;
 mod support_motion;
 mod system;
@@ -15,6 +16,7 @@ mod system;
 pub use deformed::DeformedTet;
 pub use field_error::FieldError;
 pub use forces::NodalForces;
+pub use static_load::ModelLoads;
 pub use support_motion::SupportMotion;
 
 use std::sync::Arc;
@@ -25,6 +27,7 @@ use sinew_mesh::TetMesh;
 use crate::assembly::{Assembled, assemble};
 use crate::body::Body;
 use crate::error::{Cause, FemError, Item};
+use crate::following::FollowingPressure;
 use crate::graph::Graph;
 use crate::large::LargeDeformation;
 use crate::loads::LoadsOnBody;
@@ -54,6 +57,8 @@ pub struct Model {
     /// Lumped mass of each node (kg).
     masses: Vec<f64>,
     supports: Supports,
+    /// Pressures that follow the surface, which the operators have as on the surface at rest.
+    following: Arc<[FollowingPressure]>,
     motions: Motions,
     /// Source of each load of the operators.
     load_items: Vec<Item>,
@@ -175,7 +180,14 @@ impl Model {
             loads: Vec::new(),
         };
         let mut moves: Vec<MoveFacts> = motions.parts().iter().map(facts_of).collect();
-        let loads = LoadsOnBody::new(mesh, &body, problem, &masses, &motions, &mut moves)?;
+        let loads = LoadsOnBody::new(
+            mesh,
+            &body,
+            (problem, &region_of),
+            &masses,
+            &motions,
+            &mut moves,
+        )?;
         let report = ModelReport {
             mass: masses.iter().sum(),
             volume,
@@ -206,6 +218,7 @@ impl Model {
             materials,
             masses,
             supports,
+            following: loads.following.into(),
             motions,
             load_items: loads.items,
             report,

@@ -137,7 +137,7 @@ impl Model {
         let when = when.into();
         self.require_held_inputs(when)?;
         let [u, v, a] = motion.map(|field| move |node: u32| field[node as usize]);
-        self.held_forces(when, self.row_forces(u, v, a), out);
+        self.held_forces(when, self.row_forces(when, u, v, a), out);
         Ok(())
     }
 
@@ -149,12 +149,13 @@ impl Model {
     /// Forces of `row_forces`, with the prescribed motion.
     fn forces_in_motion<'a>(
         &'a self,
-        when: LoadTime<'_>,
+        when: LoadTime<'a>,
         u: &'a [f64],
         v: &'a [f64],
     ) -> Result<impl Fn(u32) -> [f64; 3] + 'a, FieldError> {
         self.require_held_inputs(when)?;
         Ok(self.row_forces(
+            when,
             self.at_nodes(when, 0, Some(u))?,
             self.at_nodes(when, 1, Some(v))?,
             self.at_nodes(when, 2, None)?,
@@ -165,16 +166,18 @@ impl Model {
         self.supports.border(self.parts(), self.held_nodes())
     }
 
-    /// M (a + alpha v) + K u + D v (N) at a held node, D being the damping other than alpha M.
+    /// M (a + alpha v) + K u + D v (N) at a held node, D being the damping other than alpha M; less what pressures that follow the
+    /// surface do beyond those on the surface at rest.
     fn row_forces(
         &self,
+        when: LoadTime<'_>,
         u: impl Fn(u32) -> [f64; 3],
         v: impl Fn(u32) -> [f64; 3],
         a: impl Fn(u32) -> [f64; 3],
     ) -> impl Fn(u32) -> [f64; 3] {
         let damping = self.operators.damping();
         let (alpha, beta, border) = (damping.mass, damping.stiffness, self.border());
-        let large = self.large_forces(beta, &u, &v);
+        let large = self.large_forces(when, beta, &u, &v);
         move |node| {
             let mut force = border.internal_force(node, beta, &u, &v);
             if let Some(large) = &large {
@@ -187,10 +190,12 @@ impl Model {
         }
     }
 
-    /// The forces (N) of hyperelastic regions at all nodes, the part of their stiffness damping included; not numbers where a law has no
+    /// The forces (N) of hyperelastic regions at all nodes, the part of their stiffness damping and of pressures that follow their surface
+    /// included; not numbers where a law has no
     /// meaning, and `None` without such regions.
     fn large_forces(
         &self,
+        when: LoadTime<'_>,
         beta: f64,
         u: impl Fn(u32) -> [f64; 3],
         v: impl Fn(u32) -> [f64; 3],
@@ -214,6 +219,11 @@ impl Model {
         });
         if evaluated.is_err() {
             forces.fill([f64::NAN; 3]);
+        }
+        for pressure in &*self.following {
+            pressure.forces(pressure.factor(when), &u, |node, force| {
+                subtract(&mut forces[node as usize], 1.0, &force);
+            });
         }
         Some(forces)
     }

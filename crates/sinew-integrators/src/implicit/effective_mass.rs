@@ -244,8 +244,8 @@ impl EffectiveMass {
                         .add_load_change(loads, within, &mut self.a)
                 }
                 Equations::Forces(law) => {
-                    law.external_force(load, &mut self.a);
-                    law.external_force(before, &mut self.v);
+                    law.external_force(load, &state.u, &mut self.a);
+                    law.external_force(before, &state.u, &mut self.v);
                     add_scaled(-1.0, &self.v, &mut self.a);
                     true
                 }

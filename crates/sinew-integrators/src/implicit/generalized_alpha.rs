@@ -182,7 +182,7 @@ impl OneAcceleration for GeneralizedAlpha {
                 // The load was taken at t + dt whole; a share of it belongs to t.
                 for (when, sign) in [(start, old), (end, -old)] {
                     let when = when.under(step.inputs);
-                    system.external_force(when, spare);
+                    system.external_force(when, &state.u, spare);
                     for (force, load) in forces.iter_mut().zip(&*spare) {
                         *force += sign * load;
                     }

@@ -17,4 +17,4 @@ pub use implicit_euler::ImplicitEuler;
 pub use modal::{Modal, ModalSteps, Vectors};
 pub use newmark::Newmark;
 pub use newton::{NewtonError, NewtonSettings};
-pub use static_solution::{StaticError, static_solution};
+pub use static_solution::{StaticError, static_solution, static_solution_under};

@@ -1,7 +1,7 @@
 //! The equilibrium under a load.
 
 use sinew_core::vectors::norm;
-use sinew_core::{LinearSystem, System};
+use sinew_core::{LinearSystem, StaticLoad, System};
 
 use super::factor::{Combination, Factor};
 use super::factor_error::FactorError;
@@ -68,11 +68,24 @@ pub fn static_solution(system: &dyn System, force: &[f64]) -> Result<Vec<f64>, S
             system: system.dofs(),
         });
     }
+    static_solution_under(system, &force)
+}
+
+/// [`static_solution`] under a load that may depend on the displacement: `dW/du = F(u)`, the whole load growing from nothing.
+///
+/// # Errors
+/// As [`static_solution`].
+pub fn static_solution_under(
+    system: &dyn System,
+    load: &dyn StaticLoad,
+) -> Result<Vec<f64>, StaticError> {
     if let Some(linear) = system.as_linear() {
-        return linear_solution(linear, force);
+        let mut force = vec![0.0; system.dofs()];
+        load.force(&vec![0.0; system.dofs()], &mut force);
+        return linear_solution(linear, &force);
     }
     let law = system.as_elastic().ok_or(StaticError::Lacks)?;
-    follow_load(system, law, force).map_err(|unreached| match unreached.error {
+    follow_load(system, law, load).map_err(|unreached| match unreached.error {
         NewtonError::Singular(error) if unreached.share == 0.0 => StaticError::Singular(error),
         source => StaticError::Unreached {
             share: unreached.share,

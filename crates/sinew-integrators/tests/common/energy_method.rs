@@ -36,7 +36,7 @@ fn work(system: &dyn System, kind: &str, before: &State, after: &State, dt: f64)
     let moved: Vec<f64> = after.u.iter().zip(&before.u).map(|(b, a)| b - a).collect();
     let of = |when: LoadTime<'_>| {
         let mut force = vec![0.0; moved.len()];
-        system.external_force(when, &mut force);
+        system.external_force(when, &before.u, &mut force);
         let size = norm(&force) * (norm(&after.u) + norm(&before.u));
         [dot(&force, &moved), size]
     };

@@ -78,7 +78,7 @@ impl<P: Potential> ForceLaw for Law<P> {
         Ok(())
     }
 
-    fn external_force(&self, _when: LoadTime<'_>, out: &mut [f64]) {
+    fn external_force(&self, _when: LoadTime<'_>, _u: &[f64], out: &mut [f64]) {
         out.copy_from_slice(&self.load);
     }
 

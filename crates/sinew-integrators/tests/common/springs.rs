@@ -123,7 +123,7 @@ impl ForceLaw for Chain {
     fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
         let (mut load, mut damped) = (vec![0.0; out.len()], vec![0.0; out.len()]);
         self.elastic_force(trial, out)?;
-        self.external_force(trial.load, &mut load);
+        self.external_force(trial.load, trial.u, &mut load);
         if self.damping.stiffness != 0.0 {
             self.tangent_product(trial, TangentKind::Frozen, trial.v, &mut damped)?;
         }
@@ -137,7 +137,7 @@ impl ForceLaw for Chain {
         Ok(())
     }
 
-    fn external_force(&self, when: LoadTime<'_>, out: &mut [f64]) {
+    fn external_force(&self, when: LoadTime<'_>, _u: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         if let Some(last) = out.last_mut() {
             *last = self.force_size * (self.force)(when.t());
@@ -288,7 +288,7 @@ impl ForceLaw for Pendulum {
         Ok(())
     }
 
-    fn external_force(&self, _when: LoadTime<'_>, out: &mut [f64]) {
+    fn external_force(&self, _when: LoadTime<'_>, _u: &[f64], out: &mut [f64]) {
         out.copy_from_slice(&[0.0, 0.0, -self.weight]);
     }
 

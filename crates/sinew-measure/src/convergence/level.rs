@@ -213,7 +213,7 @@ fn rest(simulation: &Simulation, places: &Places) -> Result<Option<Observed>, Co
     };
     let end = simulation.settings().duration;
     let mut force = vec![0.0; system.dofs()];
-    system.external_force(LoadTime::at(end), &mut force);
+    system.external_force(LoadTime::at(end), &[], &mut force);
     let Some(u) = equilibrium(linear.operators(), &force) else {
         return Ok(None);
     };

@@ -52,6 +52,19 @@ impl TetMesh {
     ///
     /// If a triangle is no face of a tetrahedron, or a face of more than one.
     pub fn outward_triangles(&self, triangles: &[[u32; 3]]) -> Result<Vec<[u32; 3]>, SurfaceError> {
+        let faces = self.outward_faces(triangles)?;
+        Ok(faces.into_iter().map(|(triangle, _)| triangle).collect())
+    }
+
+    /// The triangles of [`TetMesh::outward_triangles`], each with the tetrahedron (0-based) that it is a face of.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`TetMesh::outward_triangles`].
+    pub fn outward_faces(
+        &self,
+        triangles: &[[u32; 3]],
+    ) -> Result<Vec<([u32; 3], usize)>, SurfaceError> {
         let adjacent = self.tets_behind(triangles);
         let oriented = triangles.iter().enumerate().map(|(index, triangle)| {
             let node_tags = triangle.map(|node| self.node_tag(node));
@@ -70,7 +83,7 @@ impl TetMesh {
                     })
                 }
                 Some(Adjacent { tet, opposite, .. }) => {
-                    Ok(self.turned_outward(*triangle, tet, opposite))
+                    Ok((self.turned_outward(*triangle, tet, opposite), tet))
                 }
             }
         });

@@ -272,6 +272,9 @@ fn described(load: &LoadSpec) -> String {
     let kind = match load.kind {
         LoadKind::Traction(traction) => format!("traction {} Pa", vector(traction)),
         LoadKind::Pressure(pressure) => format!("pressure {pressure} Pa"),
+        LoadKind::FollowingPressure(pressure) => {
+            format!("pressure {pressure} Pa, following the surface,")
+        }
         LoadKind::Force(force) => format!("force {} N", vector(force)),
     };
     let ramp = load.ramp.describe();

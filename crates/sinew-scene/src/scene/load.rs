@@ -8,9 +8,10 @@ use super::ramp::{self, RAMP};
 use super::region::taken;
 use super::selected::{GROUP, Members, Selections, WHERE};
 use crate::decode::{
-    Inner, Key, Needs, Number, Optional, Place, Table, TableDescription, Text, Usual, Vector,
+    Condition, Flag, Inner, Key, Needs, Number, Optional, Place, Table, TableDescription, Text,
+    Usual, Vector,
 };
-use crate::error::SceneError;
+use crate::error::{Fault, SceneError};
 
 pub(super) const LOAD: TableDescription = TableDescription {
     name: "load",
@@ -21,6 +22,7 @@ pub(super) const LOAD: TableDescription = TableDescription {
         &WHERE,
         &TRACTION,
         &PRESSURE,
+        &FOLLOW,
         &FORCE,
         &RAMP_OF_LOAD,
     ],
@@ -56,6 +58,15 @@ const PRESSURE: Key<Number> = Key::required(
 )
 .unit("Pa");
 
+const FOLLOW: Key<Flag, Optional> = Key::optional(
+    "follow",
+    "Whether the pressure follows the surface as it deforms: against the normal and on the area that it has then. On linear regions, whose \
+     shape is that at rest, it never does.",
+    Flag,
+    "it follows on regions of large deformation",
+)
+.only(&[Condition::with(PRESSURE.name, "goes with `pressure` only")]);
+
 const FORCE: Key<Vector> = Key::required(
     "force",
     "Total force, in equal parts on the nodes of the part that are not held.",
@@ -80,11 +91,13 @@ pub(super) struct LoadTables {
     pub(super) places: Vec<Place>,
 }
 
+/// Reads all loads of a body; whether some region of it `is_large`, of large deformation.
 pub(super) fn read_all(
     tables: Vec<Table<'_>>,
+    is_large: bool,
     selections: &mut Selections,
 ) -> Result<LoadTables, SceneError> {
-    let specs = tables.iter().map(|table| read(table, selections));
+    let specs = tables.iter().map(|table| read(table, is_large, selections));
     let specs = specs.collect::<Result<_, _>>()?;
     let mut names: Vec<Option<String>> = Vec::new();
     for table in &tables {
@@ -105,16 +118,22 @@ pub(super) fn read_all(
     })
 }
 
-fn read(table: &Table<'_>, selections: &mut Selections) -> Result<LoadSpec, SceneError> {
+fn read(
+    table: &Table<'_>,
+    is_large: bool,
+    selections: &mut Selections,
+) -> Result<LoadSpec, SceneError> {
     let kind = match table.exactly_one()? {
         key if key == TRACTION.name => LoadKind::Traction(table.read(&TRACTION)?),
         key if key == FORCE.name => LoadKind::Force(table.read(&FORCE)?),
-        _ => LoadKind::Pressure(table.read(&PRESSURE)?),
+        _ => pressure(table, is_large)?,
     };
     table.check_conditions()?;
     let members = match kind {
         LoadKind::Force(_) => Members::Nodes,
-        LoadKind::Traction(_) | LoadKind::Pressure(_) => Members::Triangles,
+        LoadKind::Traction(_) | LoadKind::Pressure(_) | LoadKind::FollowingPressure(_) => {
+            Members::Triangles
+        }
     };
     let group = selections.one_of(table, (&GROUP, &WHERE), members)?;
     let ramp = table.table(&RAMP_OF_LOAD)?;
@@ -123,5 +142,21 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<LoadSpec, Scen
         on: On::Group(group),
         kind,
         ramp: ramp.unwrap_or(Ramp::Step),
+    })
+}
+
+fn pressure(table: &Table<'_>, is_large: bool) -> Result<LoadKind, SceneError> {
+    let (pressure, follow) = (table.read(&PRESSURE)?, table.read(&FOLLOW)?);
+    if follow == Some(true) && !is_large {
+        let reason = "needs a region of large deformation, such as `model = \"neo-hookean\"`";
+        let fault = Fault::Misplaced {
+            key: FOLLOW.name,
+            reason: reason.into(),
+        };
+        return Err(table.place().key_fault(FOLLOW.name, fault));
+    }
+    Ok(match is_large && follow.unwrap_or(true) {
+        true => LoadKind::FollowingPressure(pressure),
+        false => LoadKind::Pressure(pressure),
     })
 }

@@ -314,7 +314,8 @@ impl Body {
         let (fixed, fixed_places) = fixed::read_all(document.tables(&SUPPORTS)?, &mut selections)?;
         let (motions, motion_places) =
             motion::read_all(document.tables(&MOTIONS)?, &mut selections)?;
-        let loads = load::read_all(document.tables(&LOADS)?, &mut selections)?;
+        let is_large = regions.iter().any(|region| region.law.is_hyperelastic());
+        let loads = load::read_all(document.tables(&LOADS)?, is_large, &mut selections)?;
         let gravity = document.read(&GRAVITY_VECTOR)?;
         let mut names: Vec<String> = loads.names.iter().flatten().cloned().collect();
         names.extend(gravity.map(|_| GRAVITY.to_owned()));

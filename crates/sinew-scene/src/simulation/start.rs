@@ -1,6 +1,6 @@
 //! The state of a body at t = 0.
 
-use sinew_core::{LinearSystem, State, System};
+use sinew_core::{State, System};
 use sinew_fem::Model;
 
 use super::model::BodyModel;
@@ -44,20 +44,21 @@ fn apply(
             std::array::from_fn(|i| strain[i] * (point[i] - origin[i]))
         }),
         Initial::Static { loads } => {
-            state.u = at_rest(&full_loads(loads, body, &built.model), &built.model)?;
+            state.u = at_rest(&places_of(loads, body), &built.model)?;
             Ok(())
         }
     }
 }
 
-/// The displacement (m) of the body at rest under a force (N).
+/// The displacement (m) of the body at rest under the loads at these places.
 #[cfg(feature = "implicit")]
-fn at_rest(force: &[f64], model: &Model) -> Result<Vec<f64>, Fault> {
-    Ok(sinew_integrators::static_solution(model, force)?)
+fn at_rest(loads: &[usize], model: &Model) -> Result<Vec<f64>, Fault> {
+    let load = model.full_loads(loads);
+    Ok(sinew_integrators::static_solution_under(model, &load)?)
 }
 
 #[cfg(not(feature = "implicit"))]
-fn at_rest(_force: &[f64], _model: &Model) -> Result<Vec<f64>, Fault> {
+fn at_rest(_loads: &[usize], _model: &Model) -> Result<Vec<f64>, Fault> {
     Err(Fault::StaticNotBuilt)
 }
 
@@ -81,18 +82,12 @@ fn set(
     Ok(())
 }
 
-/// The force (N) of the named loads at their full value.
-fn full_loads(names: &[String], body: &Body, model: &Model) -> Vec<f64> {
+/// Places of the named loads among those of the model.
+fn places_of(names: &[String], body: &Body) -> Vec<usize> {
     let gravity = Some(GRAVITY.to_owned());
     // The model's loads are those of the problem, then gravity.
     let load_names = body.load_names.iter().chain(std::iter::once(&gravity));
-    let mut force = vec![0.0; model.dofs()];
-    for (load, name) in model.operators().loads().iter().zip(load_names) {
-        if name.as_ref().is_some_and(|name| names.contains(name)) {
-            for &(dof, value) in &load.entries {
-                force[dof as usize] += value;
-            }
-        }
-    }
-    force
+    let is_named = |name: &&Option<String>| name.as_ref().is_some_and(|name| names.contains(name));
+    let named = load_names.enumerate().filter(|(_, name)| is_named(name));
+    named.map(|(place, _)| place).collect()
 }

@@ -188,3 +188,19 @@ fn a_group_whose_name_breaks_the_line() {
     let start = "scene.toml:15: [[load]] 1: no group is named \"to p\"";
     assert!(message.starts_with(start), "{message}");
 }
+
+#[test]
+fn following_traction() {
+    insta::assert_snapshot!(
+        refusal(BODY, "traction = [0.0, 0.0, -500.0]", "traction = [0.0, 0.0, -500.0]\nfollow = false"),
+        @"scene.toml:17: [[load]] 1: `follow` goes with `pressure` only"
+    );
+}
+
+#[test]
+fn pressure_that_follows_a_linear_region() {
+    insta::assert_snapshot!(
+        refusal(BODY, "traction = [0.0, 0.0, -500.0]", "pressure = 500.0\nfollow = true"),
+        @r#"scene.toml:17: [[load]] 1: `follow` needs a region of large deformation, such as `model = "neo-hookean"`"#
+    );
+}

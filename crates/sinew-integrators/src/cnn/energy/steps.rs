@@ -69,10 +69,13 @@ impl EnergySteps {
         }
     }
 
-    /// The loads of a step that the formula takes at both ends, and the mean of both.
-    fn take_loads(&mut self, step: &Step<'_>, t: f64) -> LoadTime<'static> {
+    /// The loads of a step that the formula takes at both ends, and the mean of both. Loads that follow the surface are taken
+    /// on that at the beginning: they are constant in the step, as its promise needs.
+    fn take_loads(&mut self, step: &Step<'_>, state: &State) -> LoadTime<'static> {
+        let t = state.t();
         let under = |when: LoadTime<'_>, out: &mut [f64]| {
-            step.system.external_force(when.under(step.inputs), out);
+            let when = when.under(step.inputs);
+            step.system.external_force(when, &state.u, out);
         };
         match self.kind {
             Kind::ImplicitEuler => {
@@ -109,7 +112,7 @@ impl EnergySteps {
         {
             let [_, before] = ends(t - last, last);
             let before = before.under(step.inputs);
-            step.system.external_force(before, &mut self.pull);
+            step.system.external_force(before, &state.u, &mut self.pull);
             let change = self.load_before.iter().zip(&self.pull).zip(masses);
             let values = self.a.iter_mut().zip(&state.a).zip(change);
             for ((a, kept), ((after, before), mass)) in values {
@@ -231,7 +234,7 @@ impl StepByHand for EnergySteps {
         let law = step.system.as_elastic();
         let elastic = law.ok_or_else(|| Needs::Tangents.lacking(self.id))?;
         let (t, dt, masses) = (state.t(), step.dt, step.system.mass());
-        let end = self.take_loads(step, t);
+        let end = self.take_loads(step, state);
         let mut work = StepReport::default();
         if self.kind == Kind::Trapezoidal {
             work += self.find_acceleration(step, elastic, state)?;

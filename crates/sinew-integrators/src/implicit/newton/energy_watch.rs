@@ -11,9 +11,11 @@ const TOLD: f64 = 0.05;
 /// depend on it by a remark only.
 pub(super) struct EnergyWatch {
     integrator: &'static str,
-    /// Displacement (m) at the beginning of the last step, and the mean load (N) over that step.
+    /// Displacement (m) at the beginning of the last step, and the mean load (N) over that step with that displacement.
     before: Vec<f64>,
     load: Vec<f64>,
+    /// Load (N) at the beginning of the step.
+    start_load: Vec<f64>,
     buffer: Vec<f64>,
     /// Time at which the last step ends (s).
     expected: Option<f64>,
@@ -42,6 +44,7 @@ impl EnergyWatch {
             integrator,
             before: zeros(),
             load: zeros(),
+            start_load: zeros(),
             buffer: zeros(),
             expected: None,
             start: 0.0,
@@ -76,9 +79,18 @@ impl EnergyWatch {
             return;
         };
         self.elastic = deformed.energy;
+        step.system
+            .external_force(ends[0], &state.u, &mut self.start_load);
         let kinetic = 0.5 * weighted_dot(step.system.mass(), &state.v, &state.v);
         let energy = kinetic + deformed.energy;
         if self.expected == Some(t) {
+            // What loads that follow the surface have changed by with it.
+            step.system
+                .external_force(ends[0], &self.before, &mut self.buffer);
+            for ((load, now), then) in self.load.iter_mut().zip(&self.start_load).zip(&self.buffer)
+            {
+                *load += 0.5 * (now - then);
+            }
             for (before, u) in self.before.iter_mut().zip(&state.u) {
                 *before = u - *before;
             }
@@ -87,10 +99,10 @@ impl EnergyWatch {
         } else {
             (self.start, self.work, self.turnover) = (energy, 0.0, energy.abs());
         }
-        step.system.external_force(ends[0], &mut self.load);
-        step.system.external_force(ends[1], &mut self.buffer);
-        for (load, end) in self.load.iter_mut().zip(&self.buffer) {
-            *load = 0.5 * (*load + end);
+        step.system
+            .external_force(ends[1], &state.u, &mut self.buffer);
+        for ((load, start), end) in self.load.iter_mut().zip(&self.start_load).zip(&self.buffer) {
+            *load = 0.5 * (start + end);
         }
         self.before.copy_from_slice(&state.u);
         let mut end = state.clock;

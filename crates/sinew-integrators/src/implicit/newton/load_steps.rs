@@ -2,7 +2,8 @@
 
 use sinew_core::vectors::{add_scaled, dot, largest, weighted_dot};
 use sinew_core::{
-    BlockMatrix, ElasticLaw, EvaluationError, LoadTime, StepReport, System, TangentKind, Trial,
+    BlockMatrix, ElasticLaw, EvaluationError, LoadTime, StaticLoad, StepReport, System,
+    TangentKind, Trial,
 };
 
 use super::newton_error::NewtonError;
@@ -28,13 +29,14 @@ const SETTINGS: NewtonSettings = NewtonSettings {
 /// Change of positions, as a share of body and displacement, that makes no difference.
 const ROUNDING: f64 = 1e-12;
 
-/// `dW/du = share F`.
+/// `dW/du = share F(u)`.
 struct StaticEquations<'s> {
     system: &'s dyn System,
     law: &'s dyn ElasticLaw,
-    /// F (N).
-    force: &'s [f64],
+    load: &'s dyn StaticLoad,
     share: f64,
+    /// F (N) at the point evaluated.
+    force: Vec<f64>,
     v: Vec<f64>,
     internal: Vec<f64>,
     extent: f64,
@@ -62,7 +64,8 @@ impl Equations for StaticEquations<'_> {
         let trial = self.trial(&point.x);
         point.energy = self.law.elastic_force(&trial, &mut point.elastic)?.energy;
         point.residual.copy_from_slice(&point.elastic);
-        add_scaled(-self.share, self.force, &mut point.residual);
+        self.load.force(&point.x, &mut self.force);
+        add_scaled(-self.share, &self.force, &mut point.residual);
         Ok(())
     }
 
@@ -72,7 +75,11 @@ impl Equations for StaticEquations<'_> {
         kind: TangentKind,
         out: &mut BlockMatrix,
     ) -> Result<(), EvaluationError> {
-        self.law.tangent(&self.trial(x), kind, out)
+        self.law.tangent(&self.trial(x), kind, out)?;
+        if kind == TangentKind::Exact {
+            self.load.add_stiffness(x, self.share, out);
+        }
+        Ok(())
     }
 
     fn derivative(&self) -> (&[f64], Combination) {
@@ -81,7 +88,7 @@ impl Equations for StaticEquations<'_> {
 
     fn forces(&self, point: &Point, weights: &[f64]) -> f64 {
         let elastic = weighted_dot(weights, &point.elastic, &point.elastic).sqrt();
-        elastic.max(self.share * dot(self.force, self.force).sqrt())
+        elastic.max(self.share * dot(&self.force, &self.force).sqrt())
     }
 
     fn is_rounding(&self, point: &Point, change: &[f64]) -> bool {
@@ -97,12 +104,12 @@ pub(in crate::implicit) struct Unreached {
     pub(in crate::implicit) error: NewtonError,
 }
 
-/// The displacement at which the law carries a force (N), from the undeformed body on: the load grows by steps that are
+/// The displacement at which the law carries a load, from the undeformed body on: the load grows by steps that are
 /// halved where Newton's method fails and lengthened where it succeeds.
 pub(in crate::implicit) fn follow_load(
     system: &dyn System,
     law: &dyn ElasticLaw,
-    force: &[f64],
+    load: &dyn StaticLoad,
 ) -> Result<Vec<f64>, Unreached> {
     let at_start = |error| Unreached { share: 0.0, error };
     let dofs = system.dofs();
@@ -111,8 +118,9 @@ pub(in crate::implicit) fn follow_load(
     let mut equations = StaticEquations {
         system,
         law,
-        force,
+        load,
         share: 0.0,
+        force: vec![0.0; dofs],
         v: vec![0.0; dofs],
         internal: vec![0.0; system.internal_variables()],
         extent: system.extent().unwrap_or(0.0),

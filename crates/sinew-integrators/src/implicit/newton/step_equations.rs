@@ -132,7 +132,14 @@ impl Equations for StepEquations<'_> {
         out: &mut BlockMatrix,
     ) -> Result<(), EvaluationError> {
         self.place(x);
-        self.law.tangent(&self.trial(), kind, out)
+        self.law.tangent(&self.trial(), kind, out)?;
+        if kind == TangentKind::Exact {
+            // The combination multiplies the tangent by k + d beta, loads by k.
+            let [d, k] = self.unknown.coefficients;
+            let share = k / (k + d * self.law.damping().stiffness);
+            self.law.add_load_stiffness(&self.trial(), share, out);
+        }
+        Ok(())
     }
 
     fn derivative(&self) -> (&[f64], Combination) {

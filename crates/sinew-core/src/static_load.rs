@@ -1,0 +1,19 @@
+//! Loads on a body at rest.
+
+use sinew_sparse::BlockMatrix;
+
+/// A load on a body at rest, which may depend on the displacement.
+pub trait StaticLoad {
+    /// `out = F(u)` (N) at a displacement (m).
+    fn force(&self, u: &[f64], out: &mut [f64]);
+
+    /// `out -= factor dF/du` (N/m), the symmetric part; nothing for loads that do not depend on the displacement.
+    fn add_stiffness(&self, _u: &[f64], _factor: f64, _out: &mut BlockMatrix) {}
+}
+
+/// A constant force (N).
+impl StaticLoad for &[f64] {
+    fn force(&self, _u: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self);
+    }
+}

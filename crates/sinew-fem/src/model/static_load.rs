@@ -1,0 +1,57 @@
+//! Loads of a model at their full value, for bodies at rest.
+
+use sinew_core::{BlockMatrix, LoadTime, StaticLoad};
+
+use super::Model;
+use crate::following::FollowingPressure;
+
+/// Some loads of a model at their full value, whatever their ramps; pressures follow the surface where they do. Supports are where they
+/// are at t = 0.
+#[derive(Clone, Debug)]
+pub struct ModelLoads<'m> {
+    model: &'m Model,
+    /// Their sum (N) on the surface at rest.
+    force: Vec<f64>,
+    following: Vec<&'m FollowingPressure>,
+}
+
+impl Model {
+    /// The loads at these places among those of [`Model::operators`](sinew_core::LinearSystem::operators): in the order of the problem,
+    /// then gravity. Places beyond have none.
+    #[must_use]
+    pub fn full_loads(&self, places: &[usize]) -> ModelLoads<'_> {
+        let mut force = vec![0.0; self.operators.dofs()];
+        let loads = self.operators.loads();
+        for load in places.iter().filter_map(|place| loads.get(*place)) {
+            for (dof, value) in &load.entries {
+                force[*dof as usize] += value;
+            }
+        }
+        let following = self.following.iter();
+        let following = following.filter(|pressure| places.contains(&pressure.load));
+        ModelLoads {
+            model: self,
+            force,
+            following: following.collect(),
+        }
+    }
+}
+
+impl StaticLoad for ModelLoads<'_> {
+    fn force(&self, u: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(&self.force);
+        let displacement = self.model.displacement_of(LoadTime::at(0.0), u);
+        for pressure in &self.following {
+            pressure.forces(1.0, &displacement, |node, force| {
+                self.model.add_at_node((node, force), 1.0, out);
+            });
+        }
+    }
+
+    fn add_stiffness(&self, u: &[f64], factor: f64, out: &mut BlockMatrix) {
+        let displacement = self.model.displacement_of(LoadTime::at(0.0), u);
+        for pressure in &self.following {
+            pressure.add_stiffness(factor, &self.model.body.cells, &displacement, out);
+        }
+    }
+}
