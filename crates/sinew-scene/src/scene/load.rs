@@ -29,7 +29,7 @@ pub(super) const LOAD: TableDescription = TableDescription {
     needs: Needs::OneOf(&[TRACTION.name, PRESSURE.name, FORCE.name]),
     examples: &[
         "[[load]]\nname = \"press\"\ngroup = \"top\"\ntraction = [0.0, 0.0, -500.0]\nramp = { kind = \"sin2\", rise = 0.2 }\n",
-        "[[load]]\ngroup = \"top\"\npressure = 2000.0\n",
+        "[[load]]\ngroup = \"top\"\npressure = 2000.0\nfollow = false\n",
         "[[load]]\nwhere = { sphere = { center = [0.1, 0.1, 0.2], radius = 0.02 } }\nforce = [0.0, 0.0, -1.5]\n",
     ],
 };
