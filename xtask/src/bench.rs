@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use sinew_bench::hard::HardBench;
 use sinew_bench::kernels::KernelBench;
+use sinew_bench::nonlinear::NonlinearBench;
 use sinew_bench::output::{OutputError, OutputFolder, OwnedFolder, say};
 use sinew_bench::report::{WriteError, brief, terminal, write_all};
 use sinew_bench::results::BenchResults;
@@ -54,9 +55,13 @@ pub(crate) struct Arguments {
     /// what makes them fast; exits with 1 if a guard does not hold
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "beside"])]
     kernels: bool,
+    /// Measure methods, laws and elements on tissue of large deformation instead: errors in time and of the mesh, cost, energy, smallest
+    /// elements; exits with 1 if a mark is not passed; about ten minutes
+    #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "kernels", "beside"])]
+    nonlinear: bool,
     /// Measure methods on cubes from 10 to 60 cells a side instead: error, time, set-up and memory over size, and
     /// the largest scene in real time; about 15 minutes
-    #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "kernels", "beside"])]
+    #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "kernels", "nonlinear", "beside"])]
     scale: bool,
     /// Run another program in turn with ours and print the ratios of CPU time, nothing else: scipy (installed by pip into
     /// target/) with our cheapest methods on the peers' cube, or CHOLMOD (skipped where it is not installed) with our
@@ -71,6 +76,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.kernels {
         return run_kernels(arguments);
+    }
+    if arguments.nonlinear {
+        return run_nonlinear(arguments);
     }
     if arguments.scale {
         return run_scale(arguments);
@@ -104,6 +112,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Measures the hard cases.
 fn run_hard(arguments: &Arguments) -> Result<(), Failure> {
     let bench = HardBench {
+        scenes: root().join("scenes"),
+        quick: arguments.quick,
+    };
+    let folder = folder(arguments, &bench.input_files());
+    folder.check(&bench.output_files())?;
+    let bar = Bar::new();
+    let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
+    bar.finish();
+    let results = results.map_err(Failure::input)?;
+    let _mine = folder.claim(&bench.output_files())?;
+    conclude(&results, &folder.files, arguments.all)
+}
+
+/// Measures large deformations.
+fn run_nonlinear(arguments: &Arguments) -> Result<(), Failure> {
+    let bench = NonlinearBench {
         scenes: root().join("scenes"),
         quick: arguments.quick,
     };
@@ -231,6 +255,8 @@ fn kind(arguments: &Arguments) -> &'static str {
         ["bench-hard", "bench-hard-quick"]
     } else if arguments.kernels {
         ["bench-kernels", "bench-kernels-quick"]
+    } else if arguments.nonlinear {
+        ["bench-nonlinear", "bench-nonlinear-quick"]
     } else if arguments.scale {
         ["bench-scale", "bench-scale-quick"]
     } else if arguments.scenes.is_empty() {
@@ -376,6 +402,7 @@ mod tests {
             of(|arguments| arguments.scenes.push("my.toml".into())),
             of(|arguments| arguments.hard = true),
             of(|arguments| arguments.kernels = true),
+            of(|arguments| arguments.nonlinear = true),
             of(|arguments| arguments.scale = true),
         ]
         .concat();

@@ -9,6 +9,7 @@ pub mod hard;
 pub mod kernels;
 mod machine;
 mod median;
+pub mod nonlinear;
 pub mod peers;
 mod pressed;
 pub mod report;

@@ -5,10 +5,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use sinew_core::Run;
-use sinew_core::spectrum::Spectrum;
 use sinew_scene::{Scene, SceneError, SceneModel, Simulation};
 
 use crate::cpu_time::thread_cpu_time;
+use crate::number;
 use crate::reference::{Course, Pace, ReferenceError, ReferenceMethod, Track, follow_by};
 use crate::row::CaseInfo;
 
@@ -156,6 +156,15 @@ impl Case {
         Self::by(course, id.into(), simulation, span)
     }
 
+    /// As [`Case::new`], of a body whose forces follow a law that shows no matrices: its reference is extrapolated.
+    ///
+    /// # Errors
+    /// [`CaseError::Reference`].
+    pub fn of_force_law(id: impl Into<String>, simulation: Simulation) -> Result<Self, CaseError> {
+        let span = Span::of(&simulation);
+        Self::by(Course::Extrapolated, id.into(), simulation, span)
+    }
+
     fn by(
         course: Course,
         id: String,
@@ -175,9 +184,10 @@ impl Case {
             source,
         })?;
         let reference_cpu_s = (thread_cpu_time() - before).as_secs_f64();
-        let linear = simulation.system().as_linear();
-        let critical_step = linear
-            .map(|linear| Spectrum::of(linear.operators()).critical_step())
+        let critical_step = simulation
+            .system()
+            .spectrum(None)
+            .map(|spectrum| spectrum.critical_step())
             .filter(|step| step.is_finite());
         Ok(Self {
             id,
@@ -221,7 +231,7 @@ impl Case {
         self.span.duration >= self.whole().duration
     }
 
-    /// 2/omega_max (s), where something vibrates.
+    /// 2/omega_max (s) at rest, where something vibrates.
     #[must_use]
     pub fn critical_step(&self) -> Option<f64> {
         self.critical_step
@@ -307,6 +317,12 @@ impl Case {
                 ),
                 ReferenceMethod::Faber => format!(
                     "Faber series of the {kind}'s motion in long steps; checked by its Taylor series over a fifth of the time ({} sweeps in all)",
+                    track.sweeps
+                ),
+                ReferenceMethod::Extrapolated { method, by_rule } => format!(
+                    "`{method}` in steps halved until the last halving changed the motion by {}, extrapolated to steps of no length; \
+                     checked against another method, extrapolated as well ({} sweeps in all)",
+                    number::short(by_rule),
                     track.sweeps
                 ),
             },

@@ -10,6 +10,7 @@ mod case;
 pub mod convergence;
 mod cost;
 mod cpu_time;
+mod deformation;
 mod forecast;
 mod growth;
 mod measure;

@@ -3,11 +3,12 @@
 use sinew_core::vectors::largest;
 use sinew_core::{
     Integrator, Moment, OptionError, RecordError, Recorder, Run, RunReport, SetupError,
-    SimulateError, System, Verdict, simulate,
+    SimulateError, StepError, System, Verdict, simulate,
 };
 
 use crate::case::Case;
 use crate::cpu_time::thread_cpu_time;
+use crate::deformation::DeformationWatch;
 use crate::growth::ErrorHistory;
 use crate::method_choice::MethodChoice;
 use crate::reference::{ErrorNorm, LateRange, ReferenceError, Track};
@@ -75,10 +76,25 @@ pub fn measure_with(
     let setup = integrator.prepare(system, dt)?;
     let setup_cpu = thread_cpu_time() - before;
 
-    let mut comparison = Comparison::new(&track, stride, &run);
-    comparison.history = (!case.is_whole()).then(|| ErrorHistory::new(is_damped(system)));
-    let mut state = start.clone();
-    let report = simulate(system, integrator, &mut state, &run, &mut comparison)?;
+    let compare = |integrator: &mut dyn Integrator, run: &Run| {
+        let mut comparison = Comparison::new(&track, stride, run);
+        comparison.history = (!case.is_whole()).then(|| ErrorHistory::new(is_damped(system)));
+        comparison.deformation = DeformationWatch::of(case.simulation());
+        let mut state = start.clone();
+        let report = simulate(system, integrator, &mut state, run, &mut comparison);
+        (comparison, state, report)
+    };
+    let (mut comparison, mut state, mut report) = compare(integrator, &run);
+    let refusal = report.as_ref().err().and_then(refusal);
+    if refusal.is_some() {
+        // The same as far as it goes.
+        let run = Run {
+            steps: comparison.step,
+            ..run
+        };
+        (comparison, state, report) = compare(integrator, &run);
+    }
+    let report = report?;
 
     let time_per_run = time_run(system, integrator, start, &run, report.steps, effort)?;
     let facts = integrator.facts().into_iter();
@@ -86,13 +102,15 @@ pub fn measure_with(
     let facts = facts
         .map(|fact| (fact.name.to_owned(), fact.value))
         .collect();
-    let simulated = report.steps as f64 * dt;
     let steps = report.steps.max(1) as f64;
+    let simulated = steps * dt;
 
-    let diverged_at = match report.outcome {
-        sinew_core::Outcome::Diverged { t, .. } => Some(t),
-        _ => None,
+    let outcome = match (&refusal, report.outcome) {
+        (Some(_), _) => RowOutcome::Refused,
+        (None, sinew_core::Outcome::Diverged { .. }) => RowOutcome::Diverged,
+        (None, _) => RowOutcome::Finished,
     };
+    let diverged_at = (outcome != RowOutcome::Finished).then(|| state.t());
     let error = match diverged_at {
         None => finite(comparison.norm.relative()),
         Some(_) => None,
@@ -107,12 +125,9 @@ pub fn measure_with(
         dt,
         steps: report.steps as u64,
         sweeps_per_s: report.work.sweeps as f64 / simulated,
-        outcome: if diverged_at.is_some() {
-            RowOutcome::Diverged
-        } else {
-            RowOutcome::Finished
-        },
+        outcome,
         diverged_at_s: diverged_at,
+        refusal,
         bounded: diverged_at.is_none() && comparison.max_u <= 10.0 * track.max_u,
         settles: diverged_at.is_none() && settled,
         error,
@@ -141,8 +156,30 @@ pub fn measure_with(
         us_per_step: time_per_run / steps * 1e6,
         setup_cpu_s: setup_cpu.as_secs_f64(),
         facts,
+        energy_rise: comparison
+            .deformation
+            .as_ref()
+            .and_then(DeformationWatch::energy_rise)
+            .and_then(finite),
+        smallest_volume_ratio: comparison
+            .deformation
+            .as_ref()
+            .map(DeformationWatch::smallest_volume_ratio)
+            .and_then(finite),
         ..Row::default()
     })
+}
+
+/// The reason for which a step was refused, where that is why a run ended.
+fn refusal(error: &SimulateError) -> Option<String> {
+    match error {
+        SimulateError::Step(
+            step @ (StepError::Refused { .. }
+            | StepError::NotConverged { .. }
+            | StepError::Inaccurate { .. }),
+        ) => Some(step.to_string()),
+        _ => None,
+    }
 }
 
 /// Whether anything damps a system, or may.
@@ -176,6 +213,8 @@ struct Comparison<'a> {
     norm: ErrorNorm,
     /// Present where the error beyond the last instant is asked for.
     history: Option<ErrorHistory>,
+    /// Present for bodies that follow a force law.
+    deformation: Option<DeformationWatch<'a>>,
     max_u: f64,
     late: LateRange,
 }
@@ -190,6 +229,7 @@ impl<'a> Comparison<'a> {
             step: 0,
             norm: ErrorNorm::default(),
             history: None,
+            deformation: None,
             max_u: 0.0,
             late: LateRange::new(dofs),
         }
@@ -211,6 +251,9 @@ impl Recorder for Comparison<'_> {
             if let Some(history) = &mut self.history {
                 history.include(state.t(), &state.u, reference);
             }
+        }
+        if let Some(deformation) = &mut self.deformation {
+            deformation.look(moment);
         }
         self.max_u = self.max_u.max(largest(&state.u));
         if 5 * self.step > 4 * self.steps {

@@ -61,6 +61,9 @@ pub struct Row {
     pub case: String,
     /// Id of the integrator.
     pub integrator: String,
+    /// The body's law and element, where runs of a case differ in them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
     /// Options that differ from the integrator's defaults.
     #[serde(default)]
     pub options: BTreeMap<String, Value>,
@@ -77,15 +80,18 @@ pub struct Row {
     pub sweeps_per_s: f64,
     /// End of the run.
     pub outcome: RowOutcome,
-    /// Simulated time at which the run was given up (s); only when diverged.
+    /// Simulated time at which the run was given up (s); only when diverged or refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diverged_at_s: Option<f64>,
+    /// The reason for which a step was refused; only when refused.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refusal: Option<String>,
     /// Every displacement is finite and at most ten times the largest of the reference.
     pub bounded: bool,
     /// The motion dies out as the reference's does.
     pub settles: bool,
     /// Relative L2 error of the displacement (fraction, 1 = as wrong as returning zero); none only
-    /// when diverged.
+    /// when diverged or refused.
     pub error: Option<f64>,
     /// Bound (fraction) below which the error lies, where the reference cannot measure one so small:
     /// a hundred times its own error. `error` is then the difference from it and no figure to quote.
@@ -138,6 +144,19 @@ pub struct Row {
     /// system; of hard cases only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy_drift: Option<f64>,
+    /// Largest excess of the energy over that of the start and the work of loads since, over all the energy they brought in; of bodies that
+    /// follow a force law and of which no part is moved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub energy_rise: Option<f64>,
+    /// The smallest ratio of an element's volume to that at rest, over all steps; of bodies that follow a force law.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smallest_volume_ratio: Option<f64>,
+    /// Relative L2 error (fraction) of the mesh and its element, without any error in time, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh_error: Option<f64>,
+    /// CPU time of the steps over that of the case's run to which costs are compared.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost_ratio: Option<f64>,
     /// No other run of the case is both as cheap and as accurate; see [`mark_pareto`].
     #[serde(default)]
     pub pareto: bool,
@@ -152,6 +171,8 @@ pub enum RowOutcome {
     Finished,
     /// The run was given up early: not finite, or far beyond the size of the body.
     Diverged,
+    /// A step was refused: by the body's law, or by a method that did not solve its equations.
+    Refused,
 }
 
 /// Work counts of a run.
@@ -197,16 +218,19 @@ pub enum RowVerdict {
     Unbounded,
     /// The run was given up early.
     Diverged,
+    /// A step was refused.
+    Refused,
 }
 
 impl RowVerdict {
     /// The verdicts, the best first.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Accurate,
         Self::Wrong,
         Self::Guarded,
         Self::Unbounded,
         Self::Diverged,
+        Self::Refused,
     ];
 
     /// A symbol that tells the verdict without colour.
@@ -218,6 +242,7 @@ impl RowVerdict {
             Self::Guarded => "G",
             Self::Unbounded => "∞",
             Self::Diverged => "D",
+            Self::Refused => "R",
         }
     }
 
@@ -230,15 +255,20 @@ impl RowVerdict {
             Self::Guarded => "guarded",
             Self::Unbounded => "unbounded",
             Self::Diverged => "diverged",
+            Self::Refused => "refused",
         }
     }
 }
 
 impl Row {
-    /// The integrator and its non-default options, as in `cnn Q=4`.
+    /// The integrator and its non-default options, as in `cnn Q=4`, and the law and element where they tell runs apart.
     #[must_use]
     pub fn label(&self) -> String {
-        label(&self.integrator, &self.options)
+        let method = label(&self.integrator, &self.options);
+        match &self.material {
+            Some(material) => format!("{method}, {material}"),
+            None => method,
+        }
     }
 
     /// The error in per cent without the sign, as in `1.23`, or as in `< 4.5e-8` where the reference can
@@ -262,7 +292,10 @@ impl Row {
     pub fn sound_error(&self) -> Option<f64> {
         match self.verdict() {
             RowVerdict::Accurate | RowVerdict::Wrong => self.error,
-            RowVerdict::Guarded | RowVerdict::Unbounded | RowVerdict::Diverged => None,
+            RowVerdict::Guarded
+            | RowVerdict::Unbounded
+            | RowVerdict::Diverged
+            | RowVerdict::Refused => None,
         }
     }
 
@@ -285,6 +318,7 @@ impl Row {
     pub fn verdict(&self) -> RowVerdict {
         match self.outcome {
             RowOutcome::Diverged => RowVerdict::Diverged,
+            RowOutcome::Refused => RowVerdict::Refused,
             RowOutcome::Finished if !self.bounded => RowVerdict::Unbounded,
             RowOutcome::Finished if self.guarded || self.saturated > 0.0 => RowVerdict::Guarded,
             RowOutcome::Finished if self.error.is_some_and(|e| e <= ACCURATE) => {
@@ -325,6 +359,10 @@ mod tests {
         assert_eq!(
             with(|r| r.outcome = RowOutcome::Diverged),
             RowVerdict::Diverged
+        );
+        assert_eq!(
+            with(|r| r.outcome = RowOutcome::Refused),
+            RowVerdict::Refused
         );
     }
 }

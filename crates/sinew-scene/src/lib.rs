@@ -34,6 +34,7 @@
 
 mod decode;
 mod error;
+mod formula;
 mod nearest;
 mod number;
 mod options_json;
@@ -49,6 +50,7 @@ mod simulation;
 mod source;
 
 pub use error::{Fault, NoStableStep, SceneError, StableStepError};
+pub use formula::{Formula, FormulaError};
 pub use options_json::options_json;
 pub use overrides::OverrideError;
 pub use plan::{Plan, PlanSection};

@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 use sinew_core::{OptionValue, Options, Ramp};
 use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule};
 use sinew_scene::{
-    Body, Initial, MeshChanges, MeshSource, Oscillator, ProbeAt, ProbePoint, Quantity, RunSettings,
-    Scene, SceneSource, Subject, TimeStep,
+    Body, Formula, Initial, MeshChanges, MeshSource, Oscillator, ProbeAt, ProbePoint, Quantity,
+    RunSettings, Scene, SceneSource, Subject, TimeStep,
 };
 
 fn scenes() -> Vec<PathBuf> {
@@ -283,11 +283,11 @@ substeps = "auto"
             },
             Initial::Displacement {
                 group: Some("top".into()),
-                value: [1.0, 0.0, 0.0],
+                value: [1.0, 0.0, 0.0].map(Formula::from),
             },
             Initial::Velocity {
                 group: None,
-                value: [0.0, 1.0, 0.0],
+                value: [0.0, 1.0, 0.0].map(Formula::from),
             },
             Initial::Stretch {
                 group: None,

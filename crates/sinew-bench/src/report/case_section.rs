@@ -135,7 +135,7 @@ fn cell(column: &Column, row: &Row) -> Cell {
     let verdict = row.verdict();
     let text = match verdict {
         // The cell says so in words.
-        RowVerdict::Diverged => text,
+        RowVerdict::Diverged | RowVerdict::Refused => text,
         verdict => format!("{text} {}", verdict.symbol()),
     };
     cell(text)

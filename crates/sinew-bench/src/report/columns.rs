@@ -130,8 +130,49 @@ static COLUMNS: [Column; 13] = [
     },
 ];
 
-/// Figures that only hard cases have.
-static HARD_COLUMNS: [Column; 3] = [
+/// Figures that only hard cases or large deformations have.
+static OTHER_COLUMNS: [Column; 8] = [
+    Column {
+        head: "mesh error",
+        unit: "%",
+        explained: "relative L2 error of the mesh and its element alone, without any error in time",
+        cell: |row| share(row.mesh_error),
+        key: Some(|row| row.mesh_error.unwrap_or(f64::INFINITY)),
+    },
+    Column {
+        head: "times",
+        unit: "",
+        explained: "CPU time over that of central difference whose steps follow the stiffness, on the same scene in the same run",
+        cell: |row| {
+            row.cost_ratio
+                .map_or_else(String::new, |x| shown(x, number::three))
+        },
+        key: Some(|row| row.cost_ratio.unwrap_or(f64::INFINITY)),
+    },
+    Column {
+        head: "energy rise",
+        unit: "%",
+        explained: "largest excess of the energy over that of the start and the work of loads since, over the most they brought in",
+        cell: |row| share(row.energy_rise),
+        key: Some(|row| row.energy_rise.unwrap_or(f64::INFINITY)),
+    },
+    Column {
+        head: "least J",
+        unit: "",
+        explained: "smallest ratio of an element's volume to that at rest, over all steps",
+        cell: |row| {
+            row.smallest_volume_ratio
+                .map_or_else(String::new, |x| shown(x, number::three))
+        },
+        key: Some(|row| row.smallest_volume_ratio.unwrap_or(f64::NEG_INFINITY)),
+    },
+    Column {
+        head: "refused because",
+        unit: "",
+        explained: "the reason for which a step was refused",
+        cell: |row| row.refusal.clone().unwrap_or_default(),
+        key: None,
+    },
     Column {
         head: "dt/crit.",
         unit: "",
@@ -146,10 +187,7 @@ static HARD_COLUMNS: [Column; 3] = [
         head: "static err.",
         unit: "%",
         explained: "distance of the last displacement from K u = F, where the reference comes to rest",
-        cell: |row| {
-            row.static_error
-                .map_or_else(String::new, |x| shown(x, number::percent))
-        },
+        cell: |row| share(row.static_error),
         key: Some(|row| row.static_error.unwrap_or(f64::INFINITY)),
     },
     Column {
@@ -164,12 +202,12 @@ static HARD_COLUMNS: [Column; 3] = [
     },
 ];
 
-/// The columns of a table of these rows: those of hard cases only where a row has such a figure.
+/// The columns of a table of these rows: those of hard cases and large deformations only where a row has such a figure.
 pub(super) fn columns_of(rows: &[&Row]) -> Vec<&'static Column> {
     let filled = |column: &&Column| rows.iter().any(|row| !(column.cell)(row).is_empty());
     COLUMNS
         .iter()
-        .chain(HARD_COLUMNS.iter().filter(filled))
+        .chain(OTHER_COLUMNS.iter().filter(filled))
         .collect()
 }
 
@@ -185,6 +223,11 @@ fn sweeps(row: &Row) -> String {
     } else {
         format!("{sweeps} + {solves} solves")
     }
+}
+
+/// A share in per cent where there is one.
+fn share(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |x| shown(x, number::percent))
 }
 
 fn yes(value: bool) -> String {

@@ -194,7 +194,7 @@ fn draw_steps(svg: &mut Svg, steps: &Steps, frame: Frame) {
 /// A run in its cell; its sign keeps clear of the line of the stable step at `limit`.
 fn draw_run(svg: &mut Svg, cell: Frame, run: &MapRun, limit: Option<f64>) {
     let (fill, ink) = match (run.verdict(), run.error) {
-        (RowVerdict::Unbounded | RowVerdict::Diverged, _) | (_, None) => {
+        (RowVerdict::Unbounded | RowVerdict::Diverged | RowVerdict::Refused, _) | (_, None) => {
             (verdict::tint(run.verdict()), Paint::OnTint)
         }
         (_, Some(error)) => {

@@ -77,7 +77,7 @@ fn how_to_read(page: &mut Page) {
             verdict.symbol(),
             verdict.word(),
             escape(verdict::meaning(verdict)),
-            if verdict == RowVerdict::Diverged {
+            if Some(&verdict) == RowVerdict::ALL.last() {
                 ".</li>\n"
             } else {
                 ", "

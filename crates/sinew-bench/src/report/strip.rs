@@ -182,7 +182,7 @@ fn draw_cell(svg: &mut Svg, frame: Frame, run: &Row) {
             .painted(Paint::OnTint)
             .bold(),
     );
-    // The symbol already says "unbounded" and "diverged".
+    // The symbol already says "unbounded", "diverged" and "refused".
     let text = match (run.outcome, run.error, run.diverged_at_s) {
         (RowOutcome::Finished, Some(_), _) if run.error_is_below.is_some() => {
             format!("{} %", run.error_in_percent().unwrap_or_default())
@@ -191,7 +191,9 @@ fn draw_cell(svg: &mut Svg, frame: Frame, run: &Row) {
             shown(100.0 * error, |x| format!("{} %", number::three(x)))
         }
         (RowOutcome::Finished, None, _) => "n/a".to_owned(),
-        (RowOutcome::Diverged, _, Some(t)) => format!("at {} s", number::short(t)),
+        (RowOutcome::Diverged | RowOutcome::Refused, _, Some(t)) => {
+            format!("at {} s", number::short(t))
+        }
         _ => String::new(),
     };
     svg.text(

@@ -13,6 +13,7 @@ pub(super) fn meaning(verdict: RowVerdict) -> &'static str {
         RowVerdict::Guarded => "cells saturated",
         RowVerdict::Unbounded => "|u| > 10× the reference's",
         RowVerdict::Diverged => "given up early",
+        RowVerdict::Refused => "a step was refused, by the law or by the method",
     }
 }
 
@@ -24,6 +25,7 @@ pub(super) fn tint(verdict: RowVerdict) -> Colour {
         RowVerdict::Guarded => Colour(0xec, 0xcf, 0xe0),
         RowVerdict::Unbounded => Colour(0xf6, 0xb9, 0x8d),
         RowVerdict::Diverged => Colour(0xd9, 0xd9, 0xd9),
+        RowVerdict::Refused => Colour(0xc9, 0xdd, 0xf0),
     }
 }
 
@@ -33,6 +35,10 @@ pub(super) fn error(row: &Row) -> String {
         (RowOutcome::Diverged, _) => match row.diverged_at_s {
             Some(t) => format!("diverged at t={} s", number::short(t)),
             None => "diverged".to_owned(),
+        },
+        (RowOutcome::Refused, _) => match row.diverged_at_s {
+            Some(t) => format!("refused at t={} s", number::short(t)),
+            None => "refused".to_owned(),
         },
         (RowOutcome::Finished, Some(error)) if row.bounded => match row.error_is_below {
             Some(_) => row.error_in_percent().unwrap_or_default(),
@@ -51,7 +57,7 @@ pub(super) fn error_with_unit(row: &Row) -> String {
         (RowOutcome::Finished, _) if row.error.is_none_or(|error| !error.is_finite()) => error(row),
         (RowOutcome::Finished, true) => format!("{} %", error(row)),
         (RowOutcome::Finished, false) => error(row).replace(')', " %)"),
-        (RowOutcome::Diverged, _) => error(row),
+        (RowOutcome::Diverged | RowOutcome::Refused, _) => error(row),
     }
 }
 

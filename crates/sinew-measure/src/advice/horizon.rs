@@ -114,6 +114,8 @@ impl<'a> ReferenceCost<'a> {
                 taylor.advance(&mut state, trial, |_| {});
                 SOLUTIONS * (thread_cpu_time() - before).as_secs_f64() / trial
             }
+            // Only force laws are followed so, which have gone above.
+            Course::Extrapolated => 0.0,
             Course::Faber => {
                 let mut expansion = Expansion::new(linear.operators(), spectrum, f64::INFINITY);
                 let trial = expansion.longest_step();

@@ -2,11 +2,14 @@
 //!
 //! A linear system under loads that are smooth between breakpoints is solved by its Taylor series
 //! in time, to rounding. Where that costs too much, Faber series of its exponential solve it in a
-//! twentieth of the products, and the Taylor series checks parts. No method under test is involved.
+//! twentieth of the products, and the Taylor series checks parts. No method under test is involved. Force laws are solved
+//! by a method of order 4 in steps that are halved and extrapolated, and by one of order 2 as a check.
 
 mod error_norm;
 mod expansion;
+mod extrapolated;
 mod faber;
+mod follow;
 mod peak;
 mod spot_checks;
 mod taylor;
@@ -14,6 +17,8 @@ mod track;
 
 pub use error_norm::ErrorNorm;
 pub(crate) use expansion::Expansion;
+pub(crate) use follow::{Course, Pace, follow_by};
+pub use follow::{follow, follow_affordably};
 pub use taylor::Taylor;
-pub(crate) use track::{Course, LateRange, Pace, TOLD_APART, follow_by};
-pub use track::{ReferenceError, ReferenceMethod, Track, follow, follow_affordably};
+pub(crate) use track::{LateRange, TOLD_APART};
+pub use track::{ReferenceError, ReferenceMethod, Track};

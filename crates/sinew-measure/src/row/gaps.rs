@@ -66,6 +66,7 @@ impl Row {
         let Self {
             case: _,
             integrator: _,
+            material: _,
             options: _,
             kernel: _,
             dt,
@@ -73,6 +74,7 @@ impl Row {
             sweeps_per_s,
             outcome,
             diverged_at_s,
+            refusal: _,
             bounded: _,
             settles: _,
             error,
@@ -91,6 +93,10 @@ impl Row {
             step_over_critical,
             static_error,
             energy_drift,
+            energy_rise,
+            smallest_volume_ratio,
+            mesh_error,
+            cost_ratio,
             pareto: _,
         } = self;
         let mut gaps = Gaps::default();
@@ -110,6 +116,10 @@ impl Row {
         gaps.maybe("step_over_critical", *step_over_critical);
         gaps.maybe("static_error", *static_error);
         gaps.maybe("energy_drift", *energy_drift);
+        gaps.maybe("energy_rise", *energy_rise);
+        gaps.maybe("smallest_volume_ratio", *smallest_volume_ratio);
+        gaps.maybe("mesh_error", *mesh_error);
+        gaps.maybe("cost_ratio", *cost_ratio);
         gaps.0
     }
 }

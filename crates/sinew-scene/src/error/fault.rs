@@ -100,6 +100,14 @@ pub enum Fault {
         /// The names of the loads.
         known: Vec<String>,
     },
+    /// A formula that gives no finite number somewhere on the body.
+    #[error("it is {value} at ({}, {}, {}) m: expected a finite number everywhere on the part", place[0], place[1], place[2])]
+    NotFinite {
+        /// What it gives.
+        value: f64,
+        /// The place (m).
+        place: [f64; 3],
+    },
     /// An impossible ramp.
     #[error(transparent)]
     Ramp(#[from] sinew_core::RampError),

@@ -6,6 +6,7 @@ use sinew_mesh::GroupMembers;
 use sinew_mesh::structured::Split;
 
 use super::section::PlanSection;
+use crate::formula::Formula;
 use crate::number::{count, length, short, vector};
 use crate::scene::{Body, Initial, MeshChanges, MeshSource, Quantity, Rotation, Way};
 use crate::simulation::{BodyModel, Probe, SelectedPart};
@@ -300,9 +301,9 @@ fn resultant(facts: &LoadFacts, supports: &str) -> String {
 fn start(initial: &Initial, built: &BodyModel) -> String {
     let (what, group) = match initial {
         Initial::Displacement { group, value } => {
-            (format!("displacement {} m", vector(*value)), group)
+            (format!("displacement {} m", formulas(value)), group)
         }
-        Initial::Velocity { group, value } => (format!("velocity {} m/s", vector(*value)), group),
+        Initial::Velocity { group, value } => (format!("velocity {} m/s", formulas(value)), group),
         Initial::Stretch {
             group,
             strain,
@@ -322,6 +323,10 @@ fn start(initial: &Initial, built: &BodyModel) -> String {
         Ok((cells, nodes)) => format!("{what} of {of}: {} of {nodes} nodes move", cells.len()),
         Err(error) => error.to_string(),
     }
+}
+
+fn formulas([x, y, z]: &[Formula; 3]) -> String {
+    format!("({x}, {y}, {z})")
 }
 
 fn probe(probe: &Probe) -> String {

@@ -1,27 +1,29 @@
 //! `[[initial]]`: displacement and velocity at t = 0.
 
+use super::field::Field;
 use super::selected::{self, Members, Selections, Where};
 use crate::decode::{
     Condition, Key, List, Needs, Optional, Or, Place, Table, TableDescription, Text, Vector,
 };
 use crate::error::{Fault, SceneError};
+use crate::formula::Formula;
 
 /// A part of the state at t = 0. Where several parts set the same node, the last one counts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Initial {
-    /// The same displacement (m) for all nodes of a group.
+    /// Displacements (m) of the nodes of a group.
     Displacement {
         /// The group; `None` stands for the whole body.
         group: Option<String>,
-        /// Displacement (m).
-        value: [f64; 3],
+        /// Displacement (m) along x, y and z, of the place at rest.
+        value: [Formula; 3],
     },
-    /// The same velocity (m/s) for all nodes of a group.
+    /// Velocities (m/s) of the nodes of a group.
     Velocity {
         /// The group; `None` stands for the whole body.
         group: Option<String>,
-        /// Velocity (m/s).
-        value: [f64; 3],
+        /// Velocity (m/s) along x, y and z, of the place at rest.
+        value: [Formula; 3],
     },
     /// u_i = strain_i (x_i - origin_i) for all nodes of a group.
     Stretch {
@@ -37,6 +39,18 @@ pub enum Initial {
         /// Names of the loads; `gravity` is one where the scene has gravity.
         loads: Vec<String>,
     },
+}
+
+impl Initial {
+    /// The key that gives it.
+    pub(crate) fn key(&self) -> &'static str {
+        match self {
+            Self::Displacement { .. } => DISPLACEMENT.name,
+            Self::Velocity { .. } => VELOCITY.name,
+            Self::Stretch { .. } => STRETCH.name,
+            Self::Static { .. } => STATIC.name,
+        }
+    }
 }
 
 pub(super) const INITIAL: TableDescription = TableDescription {
@@ -56,6 +70,7 @@ pub(super) const INITIAL: TableDescription = TableDescription {
         "[[initial]]\nstatic = [\"gravity\"]\n",
         "[[initial]]\ngroup = \"top\"\nvelocity = [0.0, 0.0, -0.1]\n",
         "[[initial]]\nwhere = { above = { z = 0.199 } }\ndisplacement = [0.0, 0.0, -0.001]\n",
+        "[[initial]]\nvelocity = [\"40 * z * (y - 0.01)\", \"-40 * z * (x - 0.01)\", 0]\n",
         "[[initial]]\nstretch = [0.05, 0.0, 0.0]\norigin = [0.1, 0.1, 0.0]\n",
     ],
 };
@@ -70,17 +85,18 @@ const GROUP: Key<Text, Optional> =
 
 const WHERE: Key<Where, Optional> = selected::WHERE.only(&[NOT_STATIC]);
 
-const DISPLACEMENT: Key<Vector> = Key::required(
+const DISPLACEMENT: Key<Field> = Key::required(
     "displacement",
-    "Displacement of all nodes of the part.",
-    Vector::finite("[x, y, z] in m, all finite"),
+    "Displacement of the nodes of the part: a number along each axis, or a formula of the place x, y, z (m), such as `\"0.5 * z\"`. \
+     Formulas have `+ - * / ^`, brackets, `pi`, `sin`, `cos`, `exp`, `sqrt` and `abs`.",
+    Field("[x, y, z] in m, each a finite number or a formula of x, y, z in quotes, such as \"0.5 * z\""),
 )
 .unit("m");
 
-const VELOCITY: Key<Vector> = Key::required(
+const VELOCITY: Key<Field> = Key::required(
     "velocity",
-    "Velocity of all nodes of the part.",
-    Vector::finite("[x, y, z] in m/s, all finite"),
+    "Velocity of the nodes of the part: numbers or formulas, as for `displacement`.",
+    Field("[x, y, z] in m/s, each a finite number or a formula of x, y, z in quotes, such as \"0.5 * z\""),
 )
 .unit("m/s");
 

@@ -2,6 +2,7 @@
 
 mod damping;
 mod document;
+mod field;
 mod fixed;
 mod initial;
 pub(crate) mod keys;

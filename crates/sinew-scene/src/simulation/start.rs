@@ -5,6 +5,7 @@ use sinew_fem::Model;
 
 use super::model::BodyModel;
 use crate::error::{Fault, SceneError};
+use crate::formula::Formula;
 use crate::scene::keys::GRAVITY;
 use crate::scene::{Body, Initial, Places};
 
@@ -15,7 +16,7 @@ pub(super) fn state(body: &Body, places: &Places, built: &BodyModel) -> Result<S
         apply(initial, body, built, &mut state).map_err(|fault| {
             let key = match fault {
                 Fault::UnknownGroup(_) => place.part_key(),
-                _ => "static",
+                _ => initial.key(),
             };
             place.value_fault(key, fault)
         })?;
@@ -31,11 +32,13 @@ fn apply(
 ) -> Result<(), Fault> {
     match initial {
         Initial::Displacement { group, value } => {
-            set(&mut state.u, group.as_deref(), built, |_| *value)
+            set(&mut state.u, group.as_deref(), built, |place| {
+                at(value, place)
+            })
         }
-        Initial::Velocity { group, value } => {
-            set(&mut state.v, group.as_deref(), built, |_| *value)
-        }
+        Initial::Velocity { group, value } => set(&mut state.v, group.as_deref(), built, |place| {
+            at(value, place)
+        }),
         Initial::Stretch {
             group,
             strain,
@@ -48,6 +51,10 @@ fn apply(
             Ok(())
         }
     }
+}
+
+fn at(value: &[Formula; 3], place: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|axis| value[axis].at(place))
 }
 
 /// The displacement (m) of the body at rest under the loads at these places.
@@ -74,6 +81,12 @@ fn set(
         let point = built.mesh.points[nodes[cell as usize] as usize];
         for (axis, value) in value_at(point).into_iter().enumerate() {
             let dof = 3 * cell as usize + axis;
+            if !value.is_finite() {
+                return Err(Fault::NotFinite {
+                    value,
+                    place: point,
+                });
+            }
             if !pinned[dof] {
                 field[dof] = value;
             }

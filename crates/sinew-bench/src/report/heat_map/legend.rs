@@ -65,7 +65,7 @@ pub(super) fn draw_legend(svg: &mut Svg, left: f64, top: f64) {
         };
         // Only failures have a colour of their own; other signs stand on that of their error.
         let ink = match verdict {
-            RowVerdict::Unbounded | RowVerdict::Diverged => {
+            RowVerdict::Unbounded | RowVerdict::Diverged | RowVerdict::Refused => {
                 svg.rect(sample, Paint::Data(verdict::tint(verdict)));
                 Paint::OnTint
             }

@@ -11,7 +11,9 @@ pub(super) fn held(body: &Body, built: &BodyModel) -> Vec<Warning> {
     for (index, initial) in body.initial.iter().enumerate() {
         let nodes = match initial {
             Initial::Displacement { group, value } => {
-                held_nodes(built, group.as_deref(), |_| *value)
+                held_nodes(built, group.as_deref(), |place| {
+                    std::array::from_fn(|axis| value[axis].at(place))
+                })
             }
             Initial::Stretch {
                 group,

@@ -1,0 +1,44 @@
+//! Laws and elements of a body.
+
+use sinew_fem::hyperelastic::Hyperelastic;
+
+/// The ratio of the two shear constants of laws that leave it open.
+const C1_OVER_C2: f64 = 4.0;
+
+/// A law with an element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Material {
+    law: &'static str,
+    element: &'static str,
+}
+
+impl Material {
+    /// Every law with every element.
+    pub(super) fn all() -> Vec<Self> {
+        let laws = Hyperelastic::IDS.iter();
+        laws.flat_map(|law| ["p1", "fbar", "fbar-edge"].map(|element| Self { law, element }))
+            .collect()
+    }
+
+    /// Whether the scene itself has the law and the element of this one but for the element.
+    pub(super) fn law(self) -> &'static str {
+        self.law
+    }
+
+    /// The material in words.
+    pub(super) fn words(self) -> String {
+        format!("{}, {}", self.law, self.element)
+    }
+
+    /// What a scene of one region changes to be made of it.
+    pub(super) fn values(self) -> Vec<String> {
+        let mut values = vec![
+            format!("region.1.model={}", self.law),
+            format!("region.1.element={}", self.element),
+        ];
+        if self.law.starts_with("mooney") {
+            values.push(format!("region.1.c1_over_c2={C1_OVER_C2:?}"));
+        }
+        values
+    }
+}

@@ -1,0 +1,62 @@
+//! The methods that large deformations are given to.
+
+use sinew_core::{OptionValue, Options};
+use sinew_measure::MethodChoice;
+
+/// Central difference whose parts of a step follow the stiffness: the method to which costs are compared.
+pub(super) fn yardstick() -> MethodChoice {
+    with(
+        "central-difference",
+        "substeps",
+        OptionValue::Text("auto".into()),
+    )
+}
+
+/// The methods of a quick run, and of runs that compare bodies.
+pub(super) fn few() -> Vec<MethodChoice> {
+    vec![yardstick(), MethodChoice::new("newmark"), energy("trap", 4)]
+}
+
+/// Every method there is, with the variants that trade error for cost.
+pub(super) fn all() -> Vec<MethodChoice> {
+    let mut methods = vec![yardstick()];
+    for id in sinew_integrators::ids() {
+        methods.push(MethodChoice::new(id).showing_defaults());
+        methods.extend(variants(id));
+    }
+    methods
+}
+
+/// Variants of a method that behave otherwise on tissue of large deformation.
+fn variants(id: &str) -> Vec<MethodChoice> {
+    match id {
+        "rk4" => vec![with("rk4", "substeps", OptionValue::Text("auto".into()))],
+        "generalized-alpha" => vec![with(
+            "generalized-alpha",
+            "rho_inf",
+            OptionValue::Number(0.8),
+        )],
+        "cnn-energy" => vec![
+            energy("trap", 1),
+            energy("trap", 16),
+            energy("ie", 4),
+            energy("ie", 16),
+        ],
+        _ => Vec::new(),
+    }
+}
+
+/// Sweeps that lower a step's energy, of a kind and at this many a step.
+pub(super) fn energy(kind: &str, sweeps: u32) -> MethodChoice {
+    let mut method = MethodChoice::new("cnn-energy");
+    method.options = Options::new()
+        .with("kind", OptionValue::Text(kind.into()))
+        .with_number("sweeps", f64::from(sweeps));
+    method
+}
+
+fn with(id: &str, key: &'static str, value: OptionValue) -> MethodChoice {
+    let mut method = MethodChoice::new(id);
+    method.options = method.options.with(key, value);
+    method
+}

@@ -1,0 +1,100 @@
+//! Energy and shape of a body that follows a force law, step by step.
+
+use sinew_core::vectors::{dot, weighted_dot};
+use sinew_core::{ElasticLaw, LoadTime, Moment, Trial};
+use sinew_scene::Simulation;
+
+/// Watches the energy of a motion and its smallest element.
+///
+/// The work of loads is taken by the mean of both ends of a step, as the balance of a run does. Damping, which takes energy away, is left
+/// out, so that under damping a rise is found late.
+pub(crate) struct DeformationWatch<'a> {
+    law: &'a dyn ElasticLaw,
+    /// Whether all energy comes from the start and from loads: no part of the body is moved.
+    knows_energy: bool,
+    smallest_volume_ratio: f64,
+    /// Displacement (m) and load (N) at the last step, none before the first.
+    last: Option<(f64, Vec<f64>)>,
+    /// Energy of the start and work of loads since (J).
+    allowed: f64,
+    largest_allowed: f64,
+    rise: f64,
+    v: Vec<f64>,
+    force: Vec<f64>,
+}
+
+impl<'a> DeformationWatch<'a> {
+    /// A watch, for bodies that follow a force law with an energy.
+    pub(crate) fn of(simulation: &'a Simulation) -> Option<Self> {
+        let system = simulation.system();
+        if system.as_linear().is_some() {
+            return None;
+        }
+        let body = simulation.model().body()?;
+        let zeros = || vec![0.0; system.dofs()];
+        Some(Self {
+            law: system.as_elastic()?,
+            knows_energy: body.problem.moves.is_empty(),
+            smallest_volume_ratio: f64::INFINITY,
+            last: None,
+            allowed: 0.0,
+            largest_allowed: 0.0,
+            rise: 0.0,
+            v: zeros(),
+            force: zeros(),
+        })
+    }
+
+    /// Looks at the state after a step. States that the law refuses are passed over: the run ends there by itself.
+    pub(crate) fn look(&mut self, moment: &Moment<'_>) {
+        let state = moment.state;
+        let trial = Trial {
+            load: LoadTime::at(state.t()),
+            dt: 0.0,
+            u: &state.u,
+            v: &state.v,
+            internal: &state.internal,
+        };
+        let Ok(deformed) = self.law.elastic_force(&trial, &mut self.force) else {
+            return;
+        };
+        self.smallest_volume_ratio = self
+            .smallest_volume_ratio
+            .min(deformed.smallest_volume_ratio);
+        if !self.knows_energy || moment.velocity(&mut self.v).is_err() {
+            return;
+        }
+        let energy = deformed.energy + 0.5 * weighted_dot(moment.system.mass(), &self.v, &self.v);
+        match &mut self.last {
+            None => {
+                self.allowed = energy;
+                self.last = Some((state.t(), state.u.clone()));
+            }
+            Some((t, u)) => {
+                let ends = LoadTime::at_both_ends(*t, state.t() - *t, 0.5);
+                for (before, u) in u.iter_mut().zip(&state.u) {
+                    *before = u - *before;
+                }
+                for end in ends {
+                    moment.system.external_force(end, &mut self.force);
+                    self.allowed += 0.5 * dot(&self.force, u);
+                }
+                *t = state.t();
+                u.copy_from_slice(&state.u);
+            }
+        }
+        self.largest_allowed = self.largest_allowed.max(self.allowed.abs());
+        self.rise = self.rise.max(energy - self.allowed);
+    }
+
+    /// The smallest ratio of an element's volume to that at rest so far.
+    pub(crate) fn smallest_volume_ratio(&self) -> f64 {
+        self.smallest_volume_ratio
+    }
+
+    /// Largest excess of the energy so far over what start and loads brought in, as a share of the most they did; none where supports
+    /// in motion bring in more.
+    pub(crate) fn energy_rise(&self) -> Option<f64> {
+        (self.knows_energy && self.largest_allowed > 0.0).then(|| self.rise / self.largest_allowed)
+    }
+}

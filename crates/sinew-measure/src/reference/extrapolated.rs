@@ -1,0 +1,205 @@
+//! Reference solutions of force laws, extrapolated to steps of no length.
+
+use sinew_core::{ElasticLaw, Integrator, State, System};
+use sinew_integrators::Method;
+use sinew_integrators::explicit::{CentralDifference, Rk4};
+#[cfg(feature = "implicit")]
+use sinew_integrators::implicit::{GeneralizedAlpha, Newmark};
+
+use super::error_norm::ErrorNorm;
+use super::track::{ReferenceError, ReferenceMethod, Sight, Track};
+
+/// Largest difference from the second solution with which a reference is still called one.
+const ALLOWED: f64 = 1e-2;
+
+/// A method whose error falls as a power of the step, and how far its steps are halved.
+struct Falling {
+    integrator: Box<dyn Integrator>,
+    order: i32,
+    /// Longest step (s) to begin with.
+    first: f64,
+    /// Most halvings of it.
+    halvings: u32,
+    /// Relative difference of two solutions in halved steps below which no shorter ones are tried.
+    aim: f64,
+}
+
+impl Falling {
+    /// The method of the solution and that of the check, for a system whose stable step of undamped leapfrog at rest is `critical` (s) and
+    /// instants `interval` (s) apart.
+    fn pair(system: &dyn System, critical: f64, interval: f64) -> [Self; 2] {
+        let damping = system.as_elastic().map(ElasticLaw::damping);
+        #[cfg(feature = "implicit")]
+        if damping.is_some_and(|damping| damping.stiffness > 0.0) {
+            return Self::implicit(interval);
+        }
+        let _ = damping;
+        let first = (critical / 4.0).min(interval);
+        [
+            Self {
+                integrator: Rk4.integrator(),
+                order: 4,
+                first,
+                halvings: 6,
+                aim: 1e-6,
+            },
+            Self {
+                integrator: CentralDifference.integrator(),
+                order: 2,
+                first: first / 2.0,
+                halvings: 6,
+                aim: 1e-5,
+            },
+        ]
+    }
+
+    /// Under stiffness damping explicit steps would have to be as short as the square of their stable length: the mean acceleration
+    /// method, and generalised-alpha as the check.
+    #[cfg(feature = "implicit")]
+    fn implicit(first: f64) -> [Self; 2] {
+        let falling = |integrator: Box<dyn Integrator>| Self {
+            integrator,
+            order: 2,
+            first,
+            halvings: 3,
+            aim: 1e-4,
+        };
+        [
+            falling(Newmark::default().integrator()),
+            falling(GeneralizedAlpha::with_spectral_radius(0.8).integrator()),
+        ]
+    }
+}
+
+/// A solution in halved steps until it hardly changes.
+struct Converged<'a> {
+    sight: Sight<'a>,
+    extrapolated: Vec<Vec<f64>>,
+    /// Relative difference between the extrapolated solution and that in the shortest steps.
+    difference: f64,
+    sweeps: u64,
+}
+
+/// Follows a system from `start` through `times` (s), increasing: by Runge and Kutta's method in steps halved until they hardly matter,
+/// extrapolated by Richardson's rule, and once more by central difference, which has another order and no formula in common, extrapolated
+/// as well. Bodies with stiffness damping are followed by implicit methods.
+///
+/// # Errors
+/// [`ReferenceError`] where neither converges, or the two solutions differ by more than 1 %.
+pub(super) fn by_extrapolation<'a>(
+    system: &dyn System,
+    start: &'a State,
+    times: &'a [f64],
+) -> Result<Track, ReferenceError> {
+    let critical = system
+        .spectrum(None)
+        .map_or(f64::INFINITY, |spectrum| spectrum.critical_step());
+    let interval = times.windows(2).map(|pair| pair[1] - pair[0]);
+    let interval = interval.fold(f64::INFINITY, f64::min);
+    let [method, of_check] = Falling::pair(system, critical, interval);
+    let name = method.integrator.id();
+    let solution = converge(method, system, start, times)?;
+    let check = converge(of_check, system, start, times)?;
+    let between = ErrorNorm::between(&check.extrapolated, &solution.extrapolated);
+    if between.is_nan() || between > ALLOWED {
+        return Err(ReferenceError::Inaccurate {
+            error: between,
+            allowed: ALLOWED,
+        });
+    }
+    let sweeps = solution.sweeps + check.sweeps;
+    let method = ReferenceMethod::Extrapolated {
+        method: name,
+        by_rule: solution.difference,
+    };
+    let mut track = solution.sight.track(method, between, sweeps);
+    track.displacements = solution.extrapolated;
+    Ok(track)
+}
+
+fn converge<'a>(
+    mut method: Falling,
+    system: &dyn System,
+    start: &'a State,
+    times: &'a [f64],
+) -> Result<Converged<'a>, ReferenceError> {
+    let mut sweeps = 0;
+    let mut coarse: Option<Sight<'_>> = None;
+    let mut best: Option<Converged<'a>> = None;
+    for halving in 0..=method.halvings {
+        let longest = method.first / 2.0_f64.powi(halving as i32);
+        // Steps that a law refuses are too long, as are those between which a solution diverges.
+        let Some(fine) = follow(&mut method, system, start, times, longest, &mut sweeps) else {
+            coarse = None;
+            continue;
+        };
+        if let Some(coarse) = &coarse {
+            let extrapolated = extrapolate(coarse, &fine, method.order);
+            let difference = ErrorNorm::between(&fine.displacements, &extrapolated);
+            best = Some(Converged {
+                sight: fine.clone(),
+                extrapolated,
+                difference,
+                sweeps,
+            });
+            if difference <= method.aim {
+                break;
+            }
+        }
+        coarse = Some(fine);
+    }
+    let method = method.integrator.id();
+    best.filter(|best| best.difference.is_finite())
+        .ok_or(ReferenceError::NotConverged { method })
+}
+
+/// The motion in steps of at most `longest` (s), a whole number between each two instants; `None` where it cannot be followed.
+fn follow<'a>(
+    method: &mut Falling,
+    system: &dyn System,
+    start: &State,
+    times: &'a [f64],
+    longest: f64,
+    sweeps: &mut u64,
+) -> Option<Sight<'a>> {
+    let mut sight = Sight::new(start, times);
+    let mut state = start.clone();
+    let (mut before, mut dt) = (state.t(), 0.0);
+    for &time in times {
+        let span = time - before;
+        before = time;
+        if span <= 0.0 {
+            sight.keep(&state);
+            continue;
+        }
+        let steps = (span / longest).ceil().max(1.0);
+        let own = span / steps;
+        // Instants at equal distances differ by rounding, which is no reason for another step.
+        if f64::abs(own / dt - 1.0) > 1e-9 || dt == 0.0 {
+            dt = own;
+        }
+        for _ in 0..steps as usize {
+            *sweeps += method.integrator.step(system, &mut state, dt).ok()?.sweeps;
+            if !state.u.iter().all(|u| u.is_finite()) {
+                return None;
+            }
+            sight.pass(&state);
+        }
+        sight.keep(&state);
+    }
+    Some(sight)
+}
+
+/// Richardson's rule for steps and half steps.
+fn extrapolate(coarse: &Sight<'_>, fine: &Sight<'_>, order: i32) -> Vec<Vec<f64>> {
+    let share = (2.0_f64.powi(order) - 1.0).recip();
+    let pairs = coarse.displacements.iter().zip(&fine.displacements);
+    pairs
+        .map(|(coarse, fine)| {
+            let pairs = coarse.iter().zip(fine);
+            pairs
+                .map(|(coarse, fine)| fine + share * (fine - coarse))
+                .collect()
+        })
+        .collect()
+}
