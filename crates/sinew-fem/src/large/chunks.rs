@@ -16,60 +16,14 @@ pub(super) struct Slot {
 /// Tetrahedra that are worked on together: what is kept of them stays in the first cache.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Chunk {
-    /// Their places, a multiple of the lanes of a vector.
+    /// Their places, a multiple of [`LANES`].
     pub(super) slots: Range<usize>,
     /// Their patches, each of which is whole.
     pub(super) patches: Range<usize>,
-    /// The edges that have all their tetrahedra in this chunk and those before, and were not there with fewer chunks.
-    pub(super) edges: Range<usize>,
-    /// The chunks that have all their edges then.
-    pub(super) forces: Range<usize>,
-    /// The nodes that have all their forces with this chunk, in the order of the sums.
-    pub(super) nodes: Range<usize>,
 }
 
-/// Tells chunks which edges and forces can follow them, so that these find in the second cache what they read. Edges are numbered by the last of
-/// their tetrahedra, and whole vectors of them are worked on.
-pub(super) fn follow(chunks: &mut [Chunk], edges_of: &[[u32; 6]], edges: usize) {
-    let most = |slots: &Range<usize>| {
-        let edges_of = edges_of.get(slots.clone()).unwrap_or_default();
-        edges_of
-            .iter()
-            .flatten()
-            .max()
-            .map_or(0, |edge| *edge as usize + 1)
-    };
-    let needed: Vec<usize> = chunks.iter().map(|chunk| most(&chunk.slots)).collect();
-    let last_use = last_places(edges_of, edges);
-    let (mut known, mut done) = (0, 0);
-    let count = chunks.len();
-    for (index, chunk) in chunks.iter_mut().enumerate() {
-        let complete = last_use.partition_point(|place| *place < chunk.slots.end);
-        let end = if index + 1 == count {
-            edges
-        } else {
-            complete / f64::LANES * f64::LANES
-        };
-        chunk.edges = known..end;
-        known = end;
-        let ready = needed[done..=index]
-            .iter()
-            .take_while(|needed| **needed <= end);
-        chunk.forces = done..done + ready.count();
-        done = chunk.forces.end;
-    }
-}
-
-/// The place of the last tetrahedron at each edge.
-fn last_places(edges_of: &[[u32; 6]], edges: usize) -> Vec<usize> {
-    let mut places = vec![0; edges];
-    for (place, edges) in edges_of.iter().enumerate() {
-        for edge in edges {
-            places[*edge as usize] = place;
-        }
-    }
-    places
-}
+/// Lanes of the widest vector.
+pub(super) const LANES: usize = f32::LANES;
 
 /// Tetrahedra in a chunk, unless a patch has more.
 const SIZE: usize = 256;
@@ -97,14 +51,11 @@ pub(super) fn chunks(
                 tet: run[run.len() - 1],
                 is_padding: true,
             };
-            let end = begin + (slots.len() - begin).next_multiple_of(f64::LANES);
+            let end = begin + (slots.len() - begin).next_multiple_of(LANES);
             slots.resize(end, padding);
             chunks.push(Chunk {
                 slots: begin..end,
                 patches: patches.clone(),
-                edges: 0..0,
-                forces: 0..0,
-                nodes: 0..0,
             });
             (begin, patches) = (end, patches.end..patches.end);
         }
@@ -132,7 +83,7 @@ mod tests {
         for chunk in cut {
             assert_eq!([chunk.slots.start, chunk.patches.start], expected);
             expected = [chunk.slots.end, chunk.patches.end];
-            assert_eq!(chunk.slots.len() % f64::LANES, 0);
+            assert_eq!(chunk.slots.len() % LANES, 0);
             assert!(chunk.slots.len() <= SIZE);
             for slot in &slots[chunk.slots] {
                 assert!(chunk.patches.contains(&(slot.tet as usize % 90)));
@@ -152,33 +103,5 @@ mod tests {
         let (slots, cut) = chunks(&tets, |_| None);
         assert_eq!((slots.len(), cut.len()), (1008, 4));
         assert!(cut.iter().all(|chunk| chunk.patches.is_empty()));
-    }
-
-    #[test]
-    fn forces_follow_when_all_their_edges_are_known() {
-        let tets: Vec<u32> = (0..2000).collect();
-        let (slots, mut cut) = chunks(&tets, |tet| Some(tet as usize / 6));
-        // Edges join a tetrahedron with those up to 300 places further.
-        let edges_of: Vec<[u32; 6]> = (0..slots.len() as u32)
-            .map(|place| [0, 1, 2, 3, 4, 5].map(|k| place.saturating_sub(60 * k) / 2))
-            .collect();
-        let edges = slots.len().div_ceil(2);
-        follow(&mut cut, &edges_of, edges);
-        let (mut known, mut given) = (0, 0);
-        for (index, chunk) in cut.iter().enumerate() {
-            assert_eq!((chunk.edges.start, chunk.forces.start), (known, given));
-            (known, given) = (chunk.edges.end, chunk.forces.end);
-            assert!(given <= index + 1);
-            for (place, edges) in edges_of.iter().enumerate() {
-                if place >= chunk.slots.end {
-                    assert!(edges.iter().all(|edge| *edge as usize >= known));
-                }
-            }
-            for chunk in &cut[chunk.forces.clone()] {
-                let edges = edges_of[chunk.slots.clone()].iter().flatten();
-                assert!(edges.into_iter().all(|edge| (*edge as usize) < known));
-            }
-        }
-        assert_eq!((known, given), (edges, cut.len()));
     }
 }

@@ -1,112 +1,147 @@
 //! Internal forces and the energy behind them.
 
-use sinew_core::{Deformed, EvaluationError};
-use sinew_sparse::simd::{InstructionSet, Number, WithDouble};
+#![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
 
-use super::chunks::Chunk;
+use std::ops::Range;
+
+use sinew_core::{Deformed, EvaluationError};
+use sinew_sparse::simd::{InstructionSet, Number, Real, SharedSlice, Vectors, WithReal};
+
+use super::chunks::LANES;
 use super::error::refused;
 use super::found::Found;
 use super::gather::{Gather, row_sum};
-use super::region::HyperelasticRegion;
-use super::scratch::{Kept, Rows, Scratch};
+use super::region::{HyperelasticRegion, Numbers};
+use super::schedule::{Piece, Task};
+use super::scratch::{Places, Rows};
 use crate::hyperelastic::{
     Deformation, HyperelasticLaw, LawVisitor, SMALLEST_VOLUME_RATIO, Tensor,
 };
 
-/// Writes the forces at the corners of a region's tetrahedra and their sums at the nodes that are complete with them, and tells what is found; without the energy unless it is asked for.
-pub(super) fn evaluate(
-    (region, gather): (&HyperelasticRegion, &Gather),
-    scratch: &mut Scratch,
-    set: InstructionSet,
-    with_energy: bool,
-) -> Result<Deformed, EvaluationError> {
-    region.law.with_law(Forces {
-        region,
-        gather,
-        scratch,
-        set,
-        with_energy,
-    })
+/// An evaluation of forces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Evaluation<'a, T> {
+    pub(super) regions: &'a [HyperelasticRegion],
+    /// What loops read of each region.
+    pub(super) numbers: &'a [Numbers<T>],
+    pub(super) gather: &'a Gather,
+    pub(super) places: Places<'a, T>,
+    pub(super) set: InstructionSet,
+    /// Whether it computes the energy and what else is found on the way.
+    pub(super) with_energy: bool,
 }
 
-struct Forces<'a> {
-    region: &'a HyperelasticRegion,
-    gather: &'a Gather,
-    scratch: &'a mut Scratch,
-    set: InstructionSet,
-    with_energy: bool,
-}
-
-impl LawVisitor for Forces<'_> {
-    type Output = Result<Deformed, EvaluationError>;
-
-    fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
-        let Scratch {
-            displacement,
-            corners,
-            sums,
-            kept,
-            ..
-        } = self.scratch;
-        self.set.with_vectors_or_numbers(Sweep {
-            region: self.region,
-            gather: self.gather,
-            law,
-            with_energy: self.with_energy,
-            displacement,
-            corners,
-            sums,
-            kept,
+impl<T: Vectors> Evaluation<'_, T> {
+    /// Does the tasks of a piece of a part, and tells what is found.
+    ///
+    /// # Safety
+    /// The parts of a schedule of these regions are done pass by pass; what else uses the places waits for the end.
+    pub(super) unsafe fn make(
+        &self,
+        part: usize,
+        piece: &Piece,
+    ) -> Result<Deformed, EvaluationError> {
+        let region = &self.regions[piece.region];
+        region.law.with_law(Forces {
+            evaluation: self,
+            part,
+            piece,
         })
     }
 }
 
-/// All loops over a region, for one law.
-struct Sweep<'a, L> {
-    region: &'a HyperelasticRegion,
-    gather: &'a Gather,
-    law: L,
-    with_energy: bool,
-    displacement: &'a [[f64; 4]],
-    corners: &'a mut [[f64; 4]],
-    sums: &'a mut [[f64; 4]],
-    kept: &'a mut Kept,
+struct Forces<'a, T> {
+    evaluation: &'a Evaluation<'a, T>,
+    part: usize,
+    piece: &'a Piece,
 }
 
-impl<L: HyperelasticLaw> WithDouble for Sweep<'_, L> {
+impl<T: Vectors> LawVisitor for Forces<'_, T> {
     type Output = Result<Deformed, EvaluationError>;
 
-    #[inline(always)]
-    fn run<N: Number<Real = f64>>(mut self) -> Self::Output {
-        let region = self.region;
-        let mut found = Found::<N>::none();
-        for chunk in &region.chunks {
-            if region.is_smoothed() {
-                self.means(chunk, &mut found)?;
-            }
-            self.edges(chunk, &mut found)?;
-            for chunk in &region.chunks[chunk.forces.clone()] {
-                self.forces(chunk, &mut found)?;
-                self.gather
-                    .sum(chunk.nodes.clone(), self.corners, self.sums);
-            }
-        }
-        Ok(found.over(&region.rest))
+    fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+        let Evaluation {
+            regions,
+            numbers,
+            gather,
+            places,
+            set,
+            with_energy,
+        } = *self.evaluation;
+        let of_part = self.part * places.chunk..(self.part + 1) * places.chunk;
+        let sweep = Sweep {
+            region: &regions[self.piece.region],
+            numbers: &numbers[self.piece.region],
+            gather,
+            law,
+            with_energy,
+            places,
+            of_part,
+            tasks: &self.piece.tasks,
+        };
+        T::with_vectors_or_numbers(set, sweep)
     }
 }
 
-impl<L: HyperelasticLaw> Sweep<'_, L> {
+/// All loops over a region, for one law.
+///
+/// The proof of all blocks below is the schedule: a task reads what its part did before or any part in a pass before, and
+/// nobody writes what another part of the pass reads ([`super::schedule::Schedule`]).
+struct Sweep<'a, T, L> {
+    region: &'a HyperelasticRegion,
+    numbers: &'a Numbers<T>,
+    gather: &'a Gather,
+    law: L,
+    with_energy: bool,
+    places: Places<'a, T>,
+    /// The numbers of `places.chunks` that are this part's.
+    of_part: Range<usize>,
+    tasks: &'a [Task],
+}
+
+impl<T: Vectors, L: HyperelasticLaw> WithReal<T> for Sweep<'_, T, L> {
+    type Output = Result<Deformed, EvaluationError>;
+
+    #[inline(always)]
+    fn run<N: Number<Real = T>>(self) -> Self::Output {
+        let mut found = Found::<N>::none();
+        for task in self.tasks {
+            match task {
+                Task::Means(chunk) => self.means(*chunk, &mut found)?,
+                Task::Edges(edges) => self.edges(edges.clone(), &mut found)?,
+                Task::Forces(chunk) => self.forces(*chunk, &mut found)?,
+                // SAFETY: see `Sweep`.
+                Task::Nodes(nodes) => unsafe {
+                    let places = &self.places;
+                    self.gather.sum(nodes.clone(), places.corners, places.sums);
+                },
+            }
+        }
+        Ok(found.over(&self.numbers.rest))
+    }
+}
+
+impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
     /// Takes the mean dilation of each patch of a chunk, and keeps the gradients.
     #[inline(always)]
-    fn means<N: Number<Real = f64>>(
-        &mut self,
-        chunk: &Chunk,
+    fn means<N: Number<Real = T>>(
+        &self,
+        chunk: usize,
         found: &mut Found<N>,
     ) -> Result<(), EvaluationError> {
-        let (region, rest) = (self.region, &self.region.rest);
+        let (region, rest, places) = (self.region, &*self.numbers.rest, &self.places);
+        let chunk = &region.chunks[chunk];
         let keeps_rows = !region.edges_of.is_empty();
+        // SAFETY: see `Sweep`.
+        let (dilations, kept) = unsafe {
+            (
+                places.dilations.write(from(region.kept.tets, &chunk.slots)),
+                places.chunks.write(self.of_part.clone()),
+            )
+        };
         for first in chunk.slots.clone().step_by(N::LANES) {
-            let gradient = rest.gradient_of::<N>(first, self.displacement);
+            let own = first - chunk.slots.start;
+            let gradient = rest.gradient_of::<N>(first, places.displacement);
             let at = self.law.at(gradient);
             if !admits::<L, N>(&at.deformation) {
                 return Err(refused_among::<L>(&lanes(at.volume_ratio), |lane| {
@@ -115,11 +150,14 @@ impl<L: HyperelasticLaw> Sweep<'_, L> {
             }
             let volume = rest.volumes::<N>(first);
             let dilation = volume * self.law.dilation(&at);
-            dilation.store(&mut self.kept.dilations[first..]);
+            dilation.store(&mut dilations[own..]);
             if keeps_rows {
-                store(gradient.scaled(volume), &mut self.kept.gradients[first..]);
+                let rows = region.kept.rows + first;
+                // SAFETY: see `Sweep`.
+                let rows = unsafe { places.gradients.write(rows..rows + N::LANES) };
+                store(gradient.scaled(volume), rows);
             } else {
-                let to = &mut self.kept.chunk[9 * (first - chunk.slots.start)..];
+                let to = &mut kept[9 * own..];
                 for (entry, to) in gradient
                     .0
                     .as_flattened()
@@ -133,36 +171,40 @@ impl<L: HyperelasticLaw> Sweep<'_, L> {
         let lambda = self.law.lame().0;
         for patch in chunk.patches.clone() {
             let tets = region.patches.of(patch);
-            let volume = region.patch_volumes[patch];
+            let volume = self.numbers.patch_volumes[patch];
             // The tetrahedra of a patch are neighbours in memory.
-            let first = tets.first().map_or(0, |tet| *tet as usize);
-            let dilations = &mut self.kept.dilations[first..first + tets.len()];
-            let mean = dilations.iter().sum::<f64>() / volume;
+            let first = tets
+                .first()
+                .map_or(0, |tet| *tet as usize - chunk.slots.start);
+            let dilations = &mut dilations[first..first + tets.len()];
+            let sum = dilations
+                .iter()
+                .fold(T::default(), |sum, of_tet| sum + *of_tet);
+            let mean = sum / volume;
             dilations.fill(mean);
-            found.energy_of_patches += 0.5 * volume * lambda * mean * mean;
+            let mean = mean.to_f64();
+            found.energy_of_patches += 0.5 * volume.to_f64() * lambda * mean * mean;
         }
         Ok(())
     }
 
-    /// Computes the stress at each edge that a chunk completes.
+    /// Computes the stress at some edges.
     #[inline(always)]
-    fn edges<N: Number<Real = f64>>(
-        &mut self,
-        chunk: &Chunk,
+    fn edges<N: Number<Real = T>>(
+        &self,
+        edges: Range<usize>,
         found: &mut Found<N>,
     ) -> Result<(), EvaluationError> {
-        let (region, rest) = (self.region, &self.region.rest);
+        let (region, rest, places) = (self.region, &*self.numbers.rest, &self.places);
         let last = region.edges.count().saturating_sub(1);
-        for first in chunk.edges.clone().step_by(N::LANES) {
-            let mut sums = [[[0.0; 4]; 3]; LANES];
+        for first in edges.step_by(N::LANES) {
+            let mut sums = [[[T::default(); 4]; 3]; LANES];
             for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
                 // Room behind the last edge repeats it.
-                *sum = rows_of(
-                    &self.kept.gradients,
-                    region.edges.of((first + lane).min(last)),
-                );
+                let tets = region.edges.of((first + lane).min(last));
+                *sum = rows_of(places.gradients, region.kept.rows, tets);
             }
-            let volume = N::load(&region.edge_volumes[first..]);
+            let volume = N::load(&self.numbers.edge_volumes[first..]);
             let over = N::select_le(volume, N::of(0.0), N::of(0.0), volume.recip());
             let at = self.law.at(load::<N>(&sums).scaled(over));
             if !admits::<L, N>(&at.deformation) {
@@ -171,7 +213,10 @@ impl<L: HyperelasticLaw> Sweep<'_, L> {
                     tets.first().map_or(0, |tet| rest.tag(*tet as usize))
                 }));
             }
-            store(self.law.stress(&at), &mut self.kept.at_edges[first..]);
+            let own = region.kept.edges + first;
+            // SAFETY: see `Sweep`.
+            let to = unsafe { places.at_edges.write(own..own + N::LANES) };
+            store(self.law.stress(&at), to);
             if self.with_energy {
                 let share = volume * N::of(region.edge_share / 6.0);
                 found.energy = share.mul_add(self.law.energy(&at), found.energy);
@@ -182,20 +227,33 @@ impl<L: HyperelasticLaw> Sweep<'_, L> {
 
     /// Computes the forces at the corners of the tetrahedra of a chunk.
     #[inline(always)]
-    fn forces<N: Number<Real = f64>>(
-        &mut self,
-        chunk: &Chunk,
+    fn forces<N: Number<Real = T>>(
+        &self,
+        chunk: usize,
         found: &mut Found<N>,
     ) -> Result<(), EvaluationError> {
-        let (region, rest) = (self.region, &self.region.rest);
+        let (region, rest, places) = (self.region, &*self.numbers.rest, &self.places);
+        let slots = region.chunks[chunk].slots.clone();
         let (is_smoothed, has_edges) = (region.is_smoothed(), !region.edges_of.is_empty());
         let (lambda, own_share) = (self.law.lame().0, 1.0 - region.edge_share);
-        for first in chunk.slots.clone().step_by(N::LANES) {
+        // SAFETY: see `Sweep`.
+        let (dilations, kept, corners) = unsafe {
+            let dilations = from(region.kept.tets, &slots);
+            let corners = from(region.first, &slots);
+            (
+                places
+                    .dilations
+                    .read(if is_smoothed { dilations } else { 0..0 }),
+                places.chunks.read(self.of_part.clone()),
+                places.corners.write(4 * corners.start..4 * corners.end),
+            )
+        };
+        for first in slots.clone().step_by(N::LANES) {
+            let own = first - slots.start;
             let gradient = if is_smoothed && !has_edges {
-                let from = &self.kept.chunk[9 * (first - chunk.slots.start)..];
-                load_entries(from)
+                load_entries(&kept[9 * own..])
             } else {
-                rest.gradient_of::<N>(first, self.displacement)
+                rest.gradient_of::<N>(first, places.displacement)
             };
             let at = self.law.at(gradient);
             if !admits::<L, N>(&at.deformation) {
@@ -204,7 +262,7 @@ impl<L: HyperelasticLaw> Sweep<'_, L> {
                 }));
             }
             let dilation = if is_smoothed {
-                N::load(&self.kept.dilations[first..])
+                N::load(&dilations[own..])
             } else {
                 self.law.dilation(&at)
             };
@@ -219,26 +277,25 @@ impl<L: HyperelasticLaw> Sweep<'_, L> {
             }
             let mut stress = self.law.stress(&at);
             if has_edges {
-                let mut sums = [[[0.0; 4]; 3]; LANES];
+                let mut sums = [[[T::default(); 4]; 3]; LANES];
                 for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
-                    *sum = rows_of(&self.kept.at_edges, &region.edges_of[first + lane]);
+                    let edges = &region.edges_of[first + lane];
+                    *sum = rows_of(places.at_edges, region.kept.edges, edges);
                 }
                 stress = stress.scaled(N::of(own_share));
                 stress = stress.plus(N::of(region.edge_share / 6.0), load(&sums));
             }
             stress = stress.plus(bulk, self.law.dilation_gradient(&at));
-            rest.forces(
-                first,
-                stress,
-                &mut self.corners[4 * (region.first + first)..],
-            );
+            rest.forces(first, stress, &mut corners[4 * own..]);
         }
         Ok(())
     }
 }
 
-/// Lanes at most.
-const LANES: usize = 8;
+/// A range of a region among that of all regions, in which its own begins at `first`.
+fn from(first: usize, range: &Range<usize>) -> Range<usize> {
+    first + range.start..first + range.end
+}
 
 /// Whether a law is defined for a deformation, which is finite, in all lanes.
 #[inline(always)]
@@ -257,9 +314,11 @@ const fn least<L: HyperelasticLaw>() -> f64 {
 }
 
 #[inline(always)]
-fn lanes<N: Number<Real = f64>>(number: N) -> [f64; LANES] {
+fn lanes<N: Number>(number: N) -> [f64; LANES] {
     let mut lanes = [1.0; LANES];
-    number.store(&mut lanes);
+    for (lane, of_lane) in lanes.iter_mut().enumerate().take(N::LANES) {
+        *of_lane = number.lane(lane);
+    }
     lanes
 }
 
@@ -277,10 +336,11 @@ fn refused_among<L: HyperelasticLaw>(
 
 /// The sum of some tensors.
 #[inline(always)]
-fn rows_of(all: &[Rows], places: &[u32]) -> Rows {
-    let [mut x, mut y, mut z] = [[0.0; 4]; 3];
+fn rows_of<T: Real>(all: SharedSlice<'_, Rows<T>>, first: usize, places: &[u32]) -> Rows<T> {
+    let [mut x, mut y, mut z] = [[T::default(); 4]; 3];
     for place in places {
-        let [other_x, other_y, other_z] = &all[*place as usize];
+        // SAFETY: see `Sweep`.
+        let [other_x, other_y, other_z] = unsafe { all.get(first + *place as usize) };
         x = row_sum(x, other_x);
         y = row_sum(y, other_y);
         z = row_sum(z, other_z);
@@ -289,7 +349,7 @@ fn rows_of(all: &[Rows], places: &[u32]) -> Rows {
 }
 
 #[inline(always)]
-fn load<N: Number<Real = f64>>(from: &[Rows]) -> Tensor<N> {
+fn load<N: Number>(from: &[Rows<N::Real>]) -> Tensor<N> {
     let rows = from.as_flattened();
     Tensor([
         N::load_rows(rows, 3),
@@ -299,7 +359,7 @@ fn load<N: Number<Real = f64>>(from: &[Rows]) -> Tensor<N> {
 }
 
 #[inline(always)]
-fn store<N: Number<Real = f64>>(tensor: Tensor<N>, to: &mut [Rows]) {
+fn store<N: Number>(tensor: Tensor<N>, to: &mut [Rows<N::Real>]) {
     let rows = to.as_flattened_mut();
     let [x, y, z] = tensor.0;
     N::store_rows(x, rows, 3);
@@ -309,7 +369,7 @@ fn store<N: Number<Real = f64>>(tensor: Tensor<N>, to: &mut [Rows]) {
 
 /// The tensor whose entries stand one vector behind the other.
 #[inline(always)]
-fn load_entries<N: Number<Real = f64>>(from: &[f64]) -> Tensor<N> {
+fn load_entries<N: Number>(from: &[N::Real]) -> Tensor<N> {
     let from = &from[..9 * N::LANES];
     let (first, rest) = from.split_at(3 * N::LANES);
     let (second, third) = rest.split_at(3 * N::LANES);
@@ -317,7 +377,7 @@ fn load_entries<N: Number<Real = f64>>(from: &[f64]) -> Tensor<N> {
 }
 
 #[inline(always)]
-fn load_row<N: Number<Real = f64>>(from: &[f64]) -> [N; 3] {
+fn load_row<N: Number>(from: &[N::Real]) -> [N; 3] {
     [
         N::load(from),
         N::load(&from[N::LANES..]),

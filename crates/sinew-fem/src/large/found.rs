@@ -19,7 +19,7 @@ pub(super) struct Found<N> {
     inverted: usize,
 }
 
-impl<N: Number<Real = f64>> Found<N> {
+impl<N: Number> Found<N> {
     #[inline(always)]
     pub(super) fn none() -> Self {
         Self {
@@ -33,7 +33,7 @@ impl<N: Number<Real = f64>> Found<N> {
 
     /// Takes note of the volume ratios of tetrahedra side by side.
     #[inline(always)]
-    pub(super) fn note(&mut self, first: usize, ratio: N, rest: &Rest) {
+    pub(super) fn note(&mut self, first: usize, ratio: N, rest: &Rest<N::Real>) {
         self.place = N::select_le(self.smallest, ratio, self.place, N::of(first as f64));
         self.smallest = self.smallest.min(ratio);
         if N::any_le(ratio, N::of(0.0)) {
@@ -46,7 +46,7 @@ impl<N: Number<Real = f64>> Found<N> {
 
     /// All lanes together.
     #[inline(always)]
-    pub(super) fn over(self, rest: &Rest) -> Deformed {
+    pub(super) fn over(self, rest: &Rest<N::Real>) -> Deformed {
         let mut found = Deformed {
             energy: self.energy_of_patches,
             inverted: self.inverted,

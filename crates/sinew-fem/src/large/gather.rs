@@ -1,6 +1,10 @@
 //! Sums of what tetrahedra give to their nodes.
 
-use std::ops::Range;
+#![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
+
+use std::ops::{Add, Range};
+
+use sinew_sparse::simd::{Real, SharedSlice};
 
 /// The corners of tetrahedra at each node. Sums are taken by node, in the order of the tetrahedra, so that no two
 /// threads write to one place and the bits do not depend on their number.
@@ -8,8 +12,6 @@ use std::ops::Range;
 pub(super) struct Gather {
     /// Nodes that have a corner, by the last of their tetrahedra.
     nodes: Vec<u32>,
-    /// The place of that tetrahedron.
-    last_places: Vec<u32>,
     /// Start of each node's part of `corners`, and the end of the last.
     starts: Vec<u32>,
     /// Corners: four times the tetrahedron's place, and the vertex.
@@ -48,20 +50,10 @@ impl Gather {
             starts.push(corners.len() as u32);
         }
         Self {
-            last_places: nodes
-                .iter()
-                .map(|node| last_places[*node as usize])
-                .collect(),
             nodes,
             starts,
             corners,
         }
-    }
-
-    /// Number of nodes that have all their corners among the first places of tetrahedra.
-    pub(super) fn complete(&self, places: usize) -> usize {
-        self.last_places
-            .partition_point(|last| (*last as usize) < places)
     }
 
     /// All of its nodes.
@@ -69,29 +61,56 @@ impl Gather {
         &self.nodes
     }
 
-    /// Writes the sums of the forces (N) at the corners of some of its nodes, by the number of the node.
+    /// The tetrahedra at one of its nodes, by their places.
+    pub(super) fn tets_at(&self, index: usize) -> impl Iterator<Item = usize> {
+        let range = self.starts[index] as usize..self.starts[index + 1] as usize;
+        let corners = self.corners[range].iter();
+        corners.map(|corner| *corner as usize / 4)
+    }
+
+    /// Writes the sums of the forces (N) at the corners of some of its nodes, in its own order of nodes.
+    ///
+    /// # Safety
+    /// Nobody else uses the sums of these nodes meanwhile, or writes forces at their corners.
     #[inline(always)]
-    pub(super) fn sum(&self, which: Range<usize>, at_corners: &[[f64; 4]], out: &mut [[f64; 4]]) {
+    pub(super) unsafe fn sum<T: Real>(
+        &self,
+        which: Range<usize>,
+        at_corners: SharedSlice<'_, [T; 4]>,
+        out: SharedSlice<'_, [T; 4]>,
+    ) {
         let starts = self.starts[which.start..=which.end].windows(2);
-        for (node, range) in self.nodes[which].iter().zip(starts) {
+        // SAFETY: the caller's promise.
+        let out = unsafe { out.write(which) };
+        for (out, range) in out.iter_mut().zip(starts) {
             let corners = &self.corners[range[0] as usize..range[1] as usize];
             // Two sums, since each addition waits for the one before.
-            let (mut even, mut odd) = ([0.0; 4], [0.0; 4]);
+            let (mut even, mut odd) = ([T::default(); 4], [T::default(); 4]);
             let (pairs, last) = corners.as_chunks::<2>();
-            for [one, other] in pairs {
-                even = row_sum(even, &at_corners[*one as usize]);
-                odd = row_sum(odd, &at_corners[*other as usize]);
+            // SAFETY: the caller's promise.
+            unsafe {
+                for [one, other] in pairs {
+                    even = row_sum(even, at_corners.get(*one as usize));
+                    odd = row_sum(odd, at_corners.get(*other as usize));
+                }
+                for corner in last {
+                    even = row_sum(even, at_corners.get(*corner as usize));
+                }
             }
-            for corner in last {
-                even = row_sum(even, &at_corners[*corner as usize]);
-            }
-            out[*node as usize] = row_sum(even, &odd);
+            *out = row_sum(even, &odd);
         }
+    }
+
+    /// [`Gather::sum`] for all nodes.
+    pub(super) fn sum_all(&self, at_corners: &mut [[f64; 4]], out: &mut [[f64; 4]]) {
+        let (at_corners, out) = (SharedSlice::of(at_corners), SharedSlice::of(out));
+        // SAFETY: both are borrowed for this call alone.
+        unsafe { self.sum(0..self.nodes.len(), at_corners, out) }
     }
 }
 
 /// The sum of two rows, which is one instruction.
 #[inline(always)]
-pub(super) fn row_sum(a: [f64; 4], b: &[f64; 4]) -> [f64; 4] {
+pub(super) fn row_sum<T: Add<Output = T> + Copy>(a: [T; 4], b: &[T; 4]) -> [T; 4] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]]
 }

@@ -11,6 +11,7 @@ mod node_blocks;
 mod product;
 mod region;
 mod rest;
+mod schedule;
 mod scratch;
 mod stress;
 
@@ -21,13 +22,16 @@ use std::sync::{Mutex, PoisonError};
 
 use sinew_core::{BlockMatrix, Deformed, EvaluationError, TangentKind};
 use sinew_mesh::TetMesh;
-use sinew_sparse::simd::InstructionSet;
+use sinew_sparse::simd::{InstructionSet, Vectors};
 
 use crate::cells::Cells;
 use crate::hyperelastic::Hyperelastic;
 use crate::smoothing::Smoothing;
 use chunks::chunks;
+use force::Evaluation;
 use gather::Gather;
+use region::{FirstPlaces, Numbers};
+use schedule::Schedule;
 
 /// Marks a tetrahedron that is in no hyperelastic region.
 const NO_PLACE: u32 = u32::MAX;
@@ -36,7 +40,11 @@ const NO_PLACE: u32 = u32::MAX;
 #[derive(Debug)]
 pub(crate) struct LargeDeformation {
     regions: Vec<HyperelasticRegion>,
+    /// What force loops read of each region.
+    numbers: Vec<Numbers<f64>>,
     gather: Gather,
+    /// The order of work of one thread.
+    alone: Schedule,
     nodes: usize,
     /// Places of tetrahedra, padding included.
     slots: usize,
@@ -56,6 +64,7 @@ impl LargeDeformation {
         regions: impl Iterator<Item = ((Hyperelastic, f64), &'a [u32])>,
     ) -> Option<Self> {
         let (mut made, mut count) = (Vec::new(), 0);
+        let mut kept = FirstPlaces::default();
         let mut place_of_tet = vec![NO_PLACE; mesh.tets.len()];
         for (law, members) in regions {
             let (slots, chunks) = chunks(members, |tet| smoothing.patch_of(tet as usize));
@@ -64,7 +73,9 @@ impl LargeDeformation {
                     place_of_tet[slot.tet as usize] = place;
                 }
             }
-            let region = HyperelasticRegion::new(mesh, smoothing, law, (&slots, chunks), count);
+            let places = (count, kept);
+            let region = HyperelasticRegion::new(mesh, smoothing, law, (&slots, chunks), places);
+            kept = region.next_places();
             made.push(region);
             count += slots.len();
         }
@@ -77,15 +88,9 @@ impl LargeDeformation {
         });
         let nodes: Vec<_> = nodes.collect();
         let gather = Gather::new(mesh.points.len(), nodes.iter().copied());
-        let mut known = 0;
-        for region in &mut made {
-            for chunk in &mut region.chunks {
-                let complete = gather.complete(region.first + chunk.slots.end);
-                chunk.nodes = known..complete;
-                known = complete;
-            }
-        }
         Some(Self {
+            numbers: made.iter().map(HyperelasticRegion::numbers).collect(),
+            alone: Schedule::new(&made, &gather, 1),
             gather,
             regions: made,
             nodes: mesh.points.len(),
@@ -100,8 +105,10 @@ impl LargeDeformation {
     pub(crate) fn with_scratch<T>(&self, with: impl FnOnce(&mut Scratch) -> T) -> T {
         let pool = || self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         let known = pool().pop();
-        let mut scratch =
-            known.unwrap_or_else(|| Scratch::new(self.nodes, self.slots, &self.regions));
+        let mut scratch = known.unwrap_or_else(|| {
+            let counts = [self.nodes, self.gather.nodes().len(), self.slots];
+            Scratch::new(counts, &self.regions)
+        });
         let result = with(&mut scratch);
         pool().push(scratch);
         result
@@ -114,9 +121,28 @@ impl LargeDeformation {
         scratch: &mut Scratch,
         with_energy: bool,
     ) -> Result<Deformed, EvaluationError> {
+        let evaluation = Evaluation {
+            regions: &self.regions,
+            numbers: &self.numbers,
+            gather: &self.gather,
+            places: scratch.places(),
+            set: self.set,
+            with_energy,
+        };
+        self.evaluate_alone(&evaluation)
+    }
+
+    /// Makes an evaluation whose places nobody else uses meanwhile.
+    #[allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
+    fn evaluate_alone<T: Vectors>(
+        &self,
+        evaluation: &Evaluation<'_, T>,
+    ) -> Result<Deformed, EvaluationError> {
         let mut all = Deformed::default();
-        for region in &self.regions {
-            let found = force::evaluate((region, &self.gather), scratch, self.set, with_energy)?;
+        let parts = self.alone.passes().iter().flatten();
+        for piece in parts.flatten() {
+            // SAFETY: the pieces of all passes, one after the other.
+            let found = unsafe { evaluation.make(0, piece) }?;
             all.energy += found.energy;
             all.inverted += found.inverted;
             if found.smallest_volume_ratio < all.smallest_volume_ratio {
@@ -150,16 +176,14 @@ impl LargeDeformation {
         for region in &self.regions {
             product::product(region, scratch, kind)?;
         }
-        let all = 0..self.gather.nodes().len();
-        self.gather.sum(all, &scratch.corners, &mut scratch.sums);
+        self.gather.sum_all(&mut scratch.corners, &mut scratch.sums);
         Ok(())
     }
 
     /// Calls `add` with each node of a region and the force (N) that was computed last.
     pub(crate) fn at_nodes(&self, scratch: &Scratch, mut add: impl FnMut(u32, [f64; 3])) {
-        for node in self.gather.nodes() {
-            let [x, y, z, _] = scratch.sums[*node as usize];
-            add(*node, [x, y, z]);
+        for (node, [x, y, z, _]) in self.gather.nodes().iter().zip(&scratch.sums) {
+            add(*node, [*x, *y, *z]);
         }
     }
 
@@ -209,6 +233,7 @@ mod tests {
     use crate::hyperelastic::Parameters;
     use crate::{Element, Law, Problem, Region};
     use sinew_mesh::structured::{Split, cube};
+    use sinew_sparse::simd::SharedSlice;
 
     const ELEMENTS: [Element; 5] = [
         Element::P1,
@@ -325,5 +350,70 @@ mod tests {
         );
         let facts = |found: &Deformed| (found.inverted, found.worst_element);
         assert_eq!(facts(found), facts(expected), "{name}");
+    }
+
+    /// The sums at the nodes by the parts of a schedule, in order or backwards in each pass; what no task has written is not a
+    /// number.
+    #[allow(
+        unsafe_code,
+        reason = "the parts of a schedule are done one after the other"
+    )]
+    fn in_parts(
+        large: &LargeDeformation,
+        field: &[[f64; 4]],
+        parts: usize,
+        backwards: bool,
+    ) -> Vec<[f64; 4]> {
+        let schedule = Schedule::new(&large.regions, &large.gather, parts);
+        let kept = scratch::Kept::filled(&large.regions, parts, f64::NAN);
+        let mut corners = vec![[f64::NAN; 4]; 4 * large.slots];
+        let mut sums = vec![[f64::NAN; 4]; large.gather.nodes().len()];
+        let evaluation = Evaluation {
+            regions: &large.regions,
+            numbers: &large.numbers,
+            gather: &large.gather,
+            places: kept.places(
+                field,
+                SharedSlice::of(&mut corners),
+                SharedSlice::of(&mut sums),
+            ),
+            set: large.set,
+            with_energy: false,
+        };
+        for pass in schedule.passes() {
+            assert_eq!(pass.len(), parts);
+            let mut order: Vec<usize> = (0..parts).collect();
+            if backwards {
+                order.reverse();
+            }
+            for part in order {
+                for piece in &pass[part] {
+                    // SAFETY: the parts of all passes, one after the other.
+                    unsafe { evaluation.make(part, piece) }.unwrap();
+                }
+            }
+        }
+        sums
+    }
+
+    #[test]
+    fn parts_in_any_order_give_the_same_bits() {
+        let mesh = cube(7, 0.1, Split::Kuhn).unwrap();
+        for element in ELEMENTS {
+            let large = region(&mesh, "stable-neo-hookean", element);
+            let mut field = vec![[0.0; 4]; mesh.points.len()];
+            fill(&mut field, |node| displacement(&mesh, false, node));
+            let expected = in_parts(&large, &field, 1, false);
+            assert!(
+                expected
+                    .as_flattened()
+                    .iter()
+                    .all(|force| force.is_finite())
+            );
+            for (parts, backwards) in [(2, false), (2, true), (3, true), (7, false), (7, true)] {
+                let found = in_parts(&large, &field, parts, backwards);
+                assert!(found == expected, "{element}, {parts} parts");
+            }
+        }
     }
 }

@@ -1,11 +1,11 @@
 //! A region of hyperelastic tetrahedra.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use sinew_mesh::TetMesh;
 use sinew_sparse::simd::Real;
 
-use super::chunks::{Chunk, Slot, follow};
+use super::chunks::{Chunk, LANES, Slot};
 use super::rest::Rest;
 use crate::hyperelastic::{Hyperelastic, Tensor};
 use crate::smoothing::{Average, Sets, Smoothing};
@@ -14,9 +14,11 @@ use crate::smoothing::{Average, Sets, Smoothing};
 #[derive(Clone, Debug)]
 pub(crate) struct HyperelasticRegion {
     pub(super) law: Hyperelastic,
-    pub(super) rest: Rest,
+    pub(super) rest: Arc<Rest>,
     /// Place of its first tetrahedron among those of all such regions.
     pub(super) first: usize,
+    /// Its places among what is kept for those of the regions that take means.
+    pub(super) kept: FirstPlaces,
     /// Its tetrahedra in the order in which they are worked on.
     pub(super) chunks: Vec<Chunk>,
     /// Share of the local energy that is averaged over edges.
@@ -24,13 +26,13 @@ pub(crate) struct HyperelasticRegion {
     /// The tetrahedra at each edge; none where `edge_share` is 0.
     pub(super) edges: Sets,
     /// The volume (m^3) of the tetrahedra at each edge, then zeros to fill a vector.
-    pub(super) edge_volumes: Vec<f64>,
+    pub(super) edge_volumes: Arc<[f64]>,
     /// The six edges of each tetrahedron.
     pub(super) edges_of: Vec<[u32; 6]>,
     /// The tetrahedra of each patch; none where the dilation of each tetrahedron is its own.
     pub(super) patches: Sets,
     /// The volume (m^3) of each patch.
-    pub(super) patch_volumes: Vec<f64>,
+    pub(super) patch_volumes: Arc<[f64]>,
     /// The patch of each tetrahedron.
     pub(super) patch_of: Vec<u32>,
     /// The mean gradients at each edge, made for the first tangent or own blocks: explicit runs need none.
@@ -43,8 +45,8 @@ impl HyperelasticRegion {
         mesh: &TetMesh,
         smoothing: &Smoothing,
         (law, edge_share): (Hyperelastic, f64),
-        (slots, mut chunks): (&[Slot], Vec<Chunk>),
-        first: usize,
+        (slots, chunks): (&[Slot], Vec<Chunk>),
+        (first, kept): (usize, FirstPlaces),
     ) -> Self {
         let mut edges_of: Vec<[u32; 6]> = Vec::new();
         let mut patch_of = Vec::new();
@@ -58,7 +60,6 @@ impl HyperelasticRegion {
         for edge in edges_of.as_flattened_mut() {
             *edge = edges as u32 - 1 - *edge;
         }
-        follow(&mut chunks, &edges_of, edges);
         let patches = numbered_anew(patch_of.iter_mut());
         let taken = (0u32..).zip(slots).filter(|(_, slot)| !slot.is_padding);
         let taken = taken.map(|(place, _)| place);
@@ -75,20 +76,44 @@ impl HyperelasticRegion {
             (0..sets.count()).map(|set| volume(set).sum()).collect()
         };
         let mut edge_volumes = volumes(&edges);
-        edge_volumes.resize(edges.count().next_multiple_of(f64::LANES), 0.0);
+        edge_volumes.resize(edges.count().next_multiple_of(LANES), 0.0);
         Self {
             law,
             first,
+            kept,
             chunks,
             edge_share,
-            edge_volumes,
-            patch_volumes: volumes(&patches),
+            patch_volumes: volumes(&patches).into(),
+            edge_volumes: edge_volumes.into(),
             edges,
             patches,
-            rest,
+            rest: Arc::new(rest),
             edges_of,
             patch_of,
             edge_averages: OnceLock::new(),
+        }
+    }
+
+    /// What force loops read of it.
+    pub(super) fn numbers(&self) -> Numbers<f64> {
+        Numbers {
+            rest: Arc::clone(&self.rest),
+            edge_volumes: Arc::clone(&self.edge_volumes),
+            patch_volumes: Arc::clone(&self.patch_volumes),
+        }
+    }
+
+    /// The first places behind those of this region.
+    pub(super) fn next_places(&self) -> FirstPlaces {
+        let tets = if self.is_smoothed() {
+            self.rest.count()
+        } else {
+            0
+        };
+        FirstPlaces {
+            tets: self.kept.tets + tets,
+            rows: self.kept.rows + self.edges_of.len(),
+            edges: self.kept.edges + self.edge_volumes.len(),
         }
     }
 
@@ -151,6 +176,39 @@ impl HyperelasticRegion {
             volumes += volume;
         }
         sum.scaled(volumes.recip())
+    }
+}
+
+/// Places of a region among those of all regions that need them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct FirstPlaces {
+    /// Of its first tetrahedron, where patches take means.
+    pub(super) tets: usize,
+    /// Of its first tetrahedron, where edges do.
+    pub(super) rows: usize,
+    /// Of its first edge.
+    pub(super) edges: usize,
+}
+
+/// What force loops read of a region, in their own precision.
+#[derive(Clone, Debug)]
+pub(super) struct Numbers<T> {
+    pub(super) rest: Arc<Rest<T>>,
+    /// The volume (m^3) of the tetrahedra at each edge, then zeros to fill a vector.
+    pub(super) edge_volumes: Arc<[T]>,
+    /// The volume (m^3) of each patch.
+    pub(super) patch_volumes: Arc<[T]>,
+}
+
+impl Numbers<f64> {
+    /// The same in another precision.
+    pub(super) fn rounded<T: Real>(&self) -> Numbers<T> {
+        let rounded = |values: &[f64]| values.iter().map(|value| T::of(*value)).collect();
+        Numbers {
+            rest: Arc::new(self.rest.rounded()),
+            edge_volumes: rounded(&self.edge_volumes),
+            patch_volumes: rounded(&self.patch_volumes),
+        }
     }
 }
 

@@ -1,7 +1,9 @@
 //! Tetrahedra at rest, as loops over deformed ones read them.
 
+use std::sync::Arc;
+
 use sinew_mesh::TetMesh;
-use sinew_sparse::simd::Number;
+use sinew_sparse::simd::{Number, Real};
 
 use super::chunks::Slot;
 use crate::hyperelastic::Tensor;
@@ -10,36 +12,34 @@ use crate::tetra;
 /// The tetrahedra of a region at rest, each quantity in an array of its own so that neighbours in memory fill a vector;
 /// "side by side" are as many as the number has lanes.
 #[derive(Clone, Debug)]
-pub(crate) struct Rest {
+pub(crate) struct Rest<T = f64> {
     /// The four mesh nodes.
-    nodes: [Vec<u32>; 4],
+    nodes: Arc<[Vec<u32>; 4]>,
     /// Gradients (1/m) of the shape functions of the last three vertices; the first has minus their sum.
-    gradients: [[Vec<f64>; 3]; 3],
+    gradients: [[Vec<T>; 3]; 3],
     /// Volumes (m^3).
-    volumes: Vec<f64>,
+    volumes: Vec<T>,
     /// Tags in the mesh, for messages.
-    tags: Vec<u64>,
+    tags: Arc<Vec<u64>>,
 }
 
 impl Rest {
     /// The tetrahedra of a mesh at these places, none of which is flat.
     pub(super) fn of(mesh: &TetMesh, slots: &[Slot]) -> Self {
         let with_room = || Vec::with_capacity(slots.len());
-        let mut rest = Self {
-            nodes: std::array::from_fn(|_| Vec::with_capacity(slots.len())),
-            gradients: std::array::from_fn(|_| std::array::from_fn(|_| with_room())),
-            volumes: with_room(),
-            tags: Vec::with_capacity(slots.len()),
-        };
+        let mut nodes: [Vec<u32>; 4] = std::array::from_fn(|_| Vec::with_capacity(slots.len()));
+        let mut gradients: [[Vec<f64>; 3]; 3] =
+            std::array::from_fn(|_| std::array::from_fn(|_| with_room()));
+        let (mut volumes, mut tags) = (with_room(), Vec::with_capacity(slots.len()));
         for slot in slots {
             let tet = slot.tet as usize;
-            let nodes = mesh.tets[tet];
-            let vertices = tetra::vertices(&mesh.points, nodes);
+            let of_tet = mesh.tets[tet];
+            let vertices = tetra::vertices(&mesh.points, of_tet);
             let [_, others @ ..] = tetra::gradients(&vertices).unwrap_or_default();
-            for (all, node) in rest.nodes.iter_mut().zip(nodes) {
+            for (all, node) in nodes.iter_mut().zip(of_tet) {
                 all.push(node);
             }
-            for (all, gradient) in rest.gradients.iter_mut().zip(others) {
+            for (all, gradient) in gradients.iter_mut().zip(others) {
                 for (all, component) in all.iter_mut().zip(gradient) {
                     all.push(component);
                 }
@@ -49,12 +49,52 @@ impl Rest {
             } else {
                 mesh.volume(tet)
             };
-            rest.volumes.push(volume);
-            rest.tags.push(mesh.tet_tags[tet]);
+            volumes.push(volume);
+            tags.push(mesh.tet_tags[tet]);
         }
-        rest
+        Self {
+            nodes: Arc::new(nodes),
+            gradients,
+            volumes,
+            tags: Arc::new(tags),
+        }
     }
 
+    /// The same in another precision.
+    pub(super) fn rounded<T: Real>(&self) -> Rest<T> {
+        let rounded = |values: &Vec<f64>| values.iter().map(|value| T::of(*value)).collect();
+        Rest {
+            nodes: Arc::clone(&self.nodes),
+            gradients: self
+                .gradients
+                .each_ref()
+                .map(|of| of.each_ref().map(rounded)),
+            volumes: rounded(&self.volumes),
+            tags: Arc::clone(&self.tags),
+        }
+    }
+
+    /// The places of tetrahedra.
+    pub(super) fn tets(&self) -> impl Iterator<Item = usize> {
+        (0..self.count()).filter(|tet| self.is_taken(*tet))
+    }
+
+    /// The gradients (1/m) of all four shape functions.
+    pub(super) fn all_gradients(&self, tet: usize) -> [[f64; 3]; 4] {
+        let [b, c, d] = self.gradients::<f64>(tet);
+        let first = std::array::from_fn(|axis| -(b[axis] + c[axis] + d[axis]));
+        [first, b, c, d]
+    }
+
+    /// [`Rest::gradient_of`] for a function of the node, in one tetrahedron.
+    pub(super) fn gradient_by(&self, tet: usize, field: impl Fn(u32) -> [f64; 3]) -> Tensor<f64> {
+        let [a, b, c, d] = self.nodes(tet).map(field);
+        let edges = [b, c, d].map(|end| difference(end, a));
+        Tensor::from_columns(edges) * Tensor(self.gradients(tet))
+    }
+}
+
+impl<T: Real> Rest<T> {
     /// Number of places.
     pub(super) fn count(&self) -> usize {
         self.volumes.len()
@@ -62,12 +102,7 @@ impl Rest {
 
     /// Whether a place is taken by a tetrahedron, not by padding.
     pub(super) fn is_taken(&self, tet: usize) -> bool {
-        self.volumes[tet] > 0.0
-    }
-
-    /// The places of tetrahedra.
-    pub(super) fn tets(&self) -> impl Iterator<Item = usize> {
-        (0..self.count()).filter(|tet| self.is_taken(*tet))
+        self.volumes[tet] > T::default()
     }
 
     /// The four nodes of a tetrahedron.
@@ -80,19 +115,19 @@ impl Rest {
     }
 
     /// The volume (m^3); 0 for padding.
-    pub(super) fn volume(&self, tet: usize) -> f64 {
+    pub(super) fn volume(&self, tet: usize) -> T {
         self.volumes[tet]
     }
 
     /// The volumes (m^3) of tetrahedra side by side.
     #[inline(always)]
-    pub(super) fn volumes<N: Number<Real = f64>>(&self, first: usize) -> N {
+    pub(super) fn volumes<N: Number<Real = T>>(&self, first: usize) -> N {
         N::load(&self.volumes[first..])
     }
 
     /// The gradients (1/m) of the shape functions of the last three vertices, of tetrahedra side by side.
     #[inline(always)]
-    fn gradients<N: Number<Real = f64>>(&self, first: usize) -> [[N; 3]; 3] {
+    fn gradients<N: Number<Real = T>>(&self, first: usize) -> [[N; 3]; 3] {
         let [b, c, d] = &self.gradients;
         [
             side_by_side(b, first),
@@ -101,22 +136,15 @@ impl Rest {
         ]
     }
 
-    /// The gradients (1/m) of all four shape functions.
-    pub(super) fn all_gradients(&self, tet: usize) -> [[f64; 3]; 4] {
-        let [b, c, d] = self.gradients::<f64>(tet);
-        let first = std::array::from_fn(|axis| -(b[axis] + c[axis] + d[axis]));
-        [first, b, c, d]
-    }
-
     /// The gradient, in tetrahedra side by side, of a field (m) that is given at all mesh nodes: row i, column j is the derivative of component
     /// i along j.
     #[inline(always)]
-    pub(super) fn gradient_of<N: Number<Real = f64>>(
+    pub(super) fn gradient_of<N: Number<Real = T>>(
         &self,
         first: usize,
-        field: &[[f64; 4]],
+        field: &[[T; 4]],
     ) -> Tensor<N> {
-        let [a, b, c, d] = &self.nodes;
+        let [a, b, c, d] = &*self.nodes;
         let a = N::gather_rows(field, &a[first..]);
         let b = N::gather_rows(field, &b[first..]);
         let c = N::gather_rows(field, &c[first..]);
@@ -125,20 +153,13 @@ impl Rest {
         Tensor::from_columns(edges) * Tensor(self.gradients(first))
     }
 
-    /// [`Rest::gradient_of`] for a function of the node, in one tetrahedron.
-    pub(super) fn gradient_by(&self, tet: usize, field: impl Fn(u32) -> [f64; 3]) -> Tensor<f64> {
-        let [a, b, c, d] = self.nodes(tet).map(field);
-        let edges = [b, c, d].map(|end| difference(end, a));
-        Tensor::from_columns(edges) * Tensor(self.gradients(tet))
-    }
-
     /// Writes the forces (N) of a stress (Pa) on the four vertices of tetrahedra side by side, four rows for each.
     #[inline(always)]
-    pub(super) fn forces<N: Number<Real = f64>>(
+    pub(super) fn forces<N: Number<Real = T>>(
         &self,
         first: usize,
         stress: Tensor<N>,
-        out: &mut [[f64; 4]],
+        out: &mut [[T; 4]],
     ) {
         let stress = stress.scaled(self.volumes(first));
         let [b, c, d] = self.gradients(first);
@@ -155,7 +176,7 @@ impl Rest {
 // Functions, since a closure is not always inlined where vectors need it.
 
 #[inline(always)]
-fn side_by_side<N: Number<Real = f64>>([x, y, z]: &[Vec<f64>; 3], first: usize) -> [N; 3] {
+fn side_by_side<N: Number>([x, y, z]: &[Vec<N::Real>; 3], first: usize) -> [N; 3] {
     [
         N::load(&x[first..]),
         N::load(&y[first..]),

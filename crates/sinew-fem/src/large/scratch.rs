@@ -1,5 +1,7 @@
 //! Room for evaluations.
 
+use sinew_sparse::simd::{Real, Shared, SharedSlice};
+
 use super::region::HyperelasticRegion;
 use crate::hyperelastic::Tensor;
 
@@ -12,10 +14,10 @@ pub(crate) struct Scratch {
     pub(crate) change: Vec<[f64; 4]>,
     /// Forces (N) at the four corners of each tetrahedron, each with 0 to fill a row.
     pub(super) corners: Vec<[f64; 4]>,
-    /// Their sums (N) at each mesh node that has corners.
+    /// Their sums (N) at each node that has corners, in the order of [`super::gather::Gather`].
     pub(super) sums: Vec<[f64; 4]>,
     /// What force loops keep.
-    pub(super) kept: Kept,
+    pub(super) kept: Kept<f64>,
     /// Gradient of the displacement in each tetrahedron of a region, where means are taken.
     pub(super) gradients: Vec<Tensor<f64>>,
     /// Gradient of its change.
@@ -26,43 +28,85 @@ pub(crate) struct Scratch {
     pub(super) dilations: Vec<[f64; 2]>,
 }
 
-/// What the force loops of regions that take means keep from one pass to the next.
+/// What force loops keep from one task to another. The threads of an evaluation share it.
 #[derive(Debug)]
-pub(super) struct Kept {
+pub(super) struct Kept<T> {
     /// The mean dilation of the patch of each tetrahedron.
-    pub(super) dilations: Vec<f64>,
-    /// The gradients of the displacement in the tetrahedra of a chunk, vector by vector.
-    pub(super) chunk: Vec<f64>,
+    dilations: Shared<T>,
+    /// The gradients of the displacement in the tetrahedra of a chunk, vector by vector; for each part.
+    chunks: Shared<T>,
+    /// Numbers for one part.
+    chunk: usize,
     /// The gradient of the displacement in each tetrahedron times its volume, by rows; where edges take means.
-    pub(super) gradients: Vec<Rows>,
+    gradients: Shared<Rows<T>>,
     /// The stress (Pa) at each edge by rows, and room to fill a vector.
-    pub(super) at_edges: Vec<Rows>,
+    at_edges: Shared<Rows<T>>,
 }
 
 /// A tensor, whose rows end in 0.
-pub(super) type Rows = [[f64; 4]; 3];
+pub(super) type Rows<T> = [[T; 4]; 3];
 
-impl Kept {
-    fn new(regions: &[HyperelasticRegion]) -> Self {
-        let most = |count: fn(&HyperelasticRegion) -> usize| {
-            let smoothed = regions.iter().filter(|region| region.is_smoothed());
-            smoothed.map(count).max().unwrap_or(0)
-        };
-        let chunk = most(|region| {
-            let sizes = region.chunks.iter().map(|chunk| chunk.slots.len());
-            sizes.max().unwrap_or(0)
-        });
+/// Where force loops keep what others read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Places<'a, T> {
+    /// Displacement (m) of all mesh nodes.
+    pub(super) displacement: &'a [[T; 4]],
+    pub(super) corners: SharedSlice<'a, [T; 4]>,
+    pub(super) sums: SharedSlice<'a, [T; 4]>,
+    pub(super) dilations: SharedSlice<'a, T>,
+    pub(super) chunks: SharedSlice<'a, T>,
+    /// Numbers of `chunks` for one part.
+    pub(super) chunk: usize,
+    pub(super) gradients: SharedSlice<'a, Rows<T>>,
+    pub(super) at_edges: SharedSlice<'a, Rows<T>>,
+}
+
+impl<T: Real> Kept<T> {
+    /// Room for regions that are worked on in so many parts.
+    pub(super) fn new(regions: &[HyperelasticRegion], parts: usize) -> Self {
+        Self::filled(regions, parts, T::default())
+    }
+
+    /// [`Kept::new`] with this number everywhere.
+    pub(super) fn filled(regions: &[HyperelasticRegion], parts: usize, with: T) -> Self {
+        let smoothed = || regions.iter().filter(|region| region.is_smoothed());
+        let chunks = smoothed().flat_map(|region| &region.chunks);
+        let chunk = 9 * chunks.map(|chunk| chunk.slots.len()).max().unwrap_or(0);
+        let zeros = |count| Shared::new(vec![with; count]);
+        let rows = |count| Shared::new(vec![[[with; 4]; 3]; count]);
+        let total = |of: fn(&HyperelasticRegion) -> usize| smoothed().map(of).sum::<usize>();
         Self {
-            dilations: vec![0.0; most(|region| region.rest.count())],
-            chunk: vec![0.0; 9 * chunk],
-            gradients: vec![[[0.0; 4]; 3]; most(|region| region.edges_of.len())],
-            at_edges: vec![[[0.0; 4]; 3]; most(|region| region.edge_volumes.len())],
+            dilations: zeros(total(|region| region.rest.count())),
+            chunks: zeros(chunk * parts),
+            chunk,
+            gradients: rows(total(|region| region.edges_of.len())),
+            at_edges: rows(total(|region| region.edge_volumes.len())),
+        }
+    }
+
+    /// With displacements, forces at corners and their sums, all places of an evaluation.
+    pub(super) fn places<'a>(
+        &'a self,
+        displacement: &'a [[T; 4]],
+        corners: SharedSlice<'a, [T; 4]>,
+        sums: SharedSlice<'a, [T; 4]>,
+    ) -> Places<'a, T> {
+        Places {
+            displacement,
+            corners,
+            sums,
+            dilations: self.dilations.slice(),
+            chunks: self.chunks.slice(),
+            chunk: self.chunk,
+            gradients: self.gradients.slice(),
+            at_edges: self.at_edges.slice(),
         }
     }
 }
 
 impl Scratch {
-    pub(super) fn new(nodes: usize, tets: usize, regions: &[HyperelasticRegion]) -> Self {
+    /// Room for nodes of the mesh, those in regions, and places of tetrahedra.
+    pub(super) fn new([nodes, taken, tets]: [usize; 3], regions: &[HyperelasticRegion]) -> Self {
         let most = |count: fn(&HyperelasticRegion) -> usize| {
             let smoothed = regions.iter().filter(|region| region.is_smoothed());
             smoothed.map(count).max().unwrap_or(0)
@@ -72,13 +116,20 @@ impl Scratch {
             displacement: vec![[0.0; 4]; nodes],
             change: vec![[0.0; 4]; nodes],
             corners: vec![[0.0; 4]; 4 * tets],
-            sums: vec![[0.0; 4]; nodes],
-            kept: Kept::new(regions),
+            sums: vec![[0.0; 4]; taken],
+            kept: Kept::new(regions, 1),
             gradients: vec![Tensor::zero(); smoothed],
             changes: vec![Tensor::zero(); smoothed],
             at_edges: vec![Tensor::zero(); most(|region| region.edges.count())],
             dilations: vec![[0.0; 2]; most(|region| region.patches.count())],
         }
+    }
+
+    /// The places of an evaluation in f64, which nobody else uses meanwhile.
+    pub(super) fn places(&mut self) -> Places<'_, f64> {
+        let (corners, sums) = (&mut self.corners[..], &mut self.sums[..]);
+        let (corners, sums) = (SharedSlice::of(corners), SharedSlice::of(sums));
+        self.kept.places(&self.displacement, corners, sums)
     }
 }
 

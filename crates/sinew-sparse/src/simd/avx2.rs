@@ -64,6 +64,61 @@ unsafe fn rows([x, y, z]: [__m256d; 3], to: *mut [f64; 4], stride: usize) {
     }
 }
 
+/// A row and the fourth after it.
+///
+/// # Safety
+/// As for the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn single_pair(rows: &[*const [f32; 4]; MOST], first: usize) -> __m256 {
+    unsafe {
+        let low = _mm256_castps128_ps256(_mm_loadu_ps(rows[first].cast()));
+        _mm256_insertf128_ps::<1>(low, _mm_loadu_ps(rows[first + 4].cast()))
+    }
+}
+
+/// The first three columns of eight rows.
+///
+/// # Safety
+/// As for the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn single_columns(rows: &[*const [f32; 4]; MOST], first: usize) -> [__m256; 3] {
+    unsafe {
+        let (a, b) = (single_pair(rows, first), single_pair(rows, first + 1));
+        let (c, d) = (single_pair(rows, first + 2), single_pair(rows, first + 3));
+        let (xy_ab, xy_cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+        let (z_ab, z_cd) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+        [
+            _mm256_shuffle_ps::<0x44>(xy_ab, xy_cd),
+            _mm256_shuffle_ps::<0xee>(xy_ab, xy_cd),
+            _mm256_shuffle_ps::<0x44>(z_ab, z_cd),
+        ]
+    }
+}
+
+/// Writes three columns and one of zeros as eight rows.
+///
+/// # Safety
+/// As for the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn single_rows([x, y, z]: [__m256; 3], to: *mut [f32; 4], stride: usize) {
+    unsafe {
+        let zero = _mm256_setzero_ps();
+        let (xy_low, z_low) = (_mm256_unpacklo_ps(x, y), _mm256_unpacklo_ps(z, zero));
+        let (xy_high, z_high) = (_mm256_unpackhi_ps(x, y), _mm256_unpackhi_ps(z, zero));
+        let rows = [
+            _mm256_shuffle_ps::<0x44>(xy_low, z_low),
+            _mm256_shuffle_ps::<0xee>(xy_low, z_low),
+            _mm256_shuffle_ps::<0x44>(xy_high, z_high),
+            _mm256_shuffle_ps::<0xee>(xy_high, z_high),
+        ];
+        for (n, row) in rows.into_iter().enumerate() {
+            _mm_storeu_ps(to.add(n * stride).cast(), _mm256_castps256_ps128(row));
+            let high = _mm256_extractf128_ps::<1>(row);
+            _mm_storeu_ps(to.add((n + 4) * stride).cast(), high);
+        }
+    }
+}
+
 impl Lanes<f64> for Avx2<__m256d> {
     #[inline(always)]
     unsafe fn splat(value: f64) -> Self {
@@ -276,6 +331,23 @@ impl Lanes<f32> for Avx2<__m256> {
                 _mm256_i32gather_ps::<4>(from, first),
                 _mm256_i32gather_ps::<4>(from, second),
             )
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn from_rows(rows: [*const [f32; 4]; MOST]) -> [Self; 3] {
+        unsafe {
+            let [x0, y0, z0] = single_columns(&rows, 0);
+            let [x1, y1, z1] = single_columns(&rows, 8);
+            [Self(x0, x1), Self(y0, y1), Self(z0, z1)]
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn to_rows([x, y, z]: [Self; 3], to: *mut [f32; 4], stride: usize) {
+        unsafe {
+            single_rows([x.0, y.0, z.0], to, stride);
+            single_rows([x.1, y.1, z.1], to.add(8 * stride), stride);
         }
     }
 

@@ -38,6 +38,34 @@ unsafe fn store_pair(rows: __m512d, low: *mut [f64; 4], high: *mut [f64; 4]) {
     }
 }
 
+/// Every fourth of sixteen rows, side by side.
+///
+/// # Safety
+/// As for the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn quarter(rows: &[*const [f32; 4]; MOST], first: usize) -> __m512 {
+    unsafe {
+        let all = _mm512_castps128_ps512(_mm_loadu_ps(rows[first].cast()));
+        let all = _mm512_insertf32x4::<1>(all, _mm_loadu_ps(rows[first + 4].cast()));
+        let all = _mm512_insertf32x4::<2>(all, _mm_loadu_ps(rows[first + 8].cast()));
+        _mm512_insertf32x4::<3>(all, _mm_loadu_ps(rows[first + 12].cast()))
+    }
+}
+
+/// Writes rows that stand side by side, each `stride` rows after the one before.
+///
+/// # Safety
+/// As for the methods of [`Lanes`].
+#[inline(always)]
+unsafe fn store_quarter(rows: __m512, to: *mut [f32; 4], stride: usize) {
+    unsafe {
+        _mm_storeu_ps(to.cast(), _mm512_castps512_ps128(rows));
+        _mm_storeu_ps(to.add(stride).cast(), _mm512_extractf32x4_ps::<1>(rows));
+        _mm_storeu_ps(to.add(2 * stride).cast(), _mm512_extractf32x4_ps::<2>(rows));
+        _mm_storeu_ps(to.add(3 * stride).cast(), _mm512_extractf32x4_ps::<3>(rows));
+    }
+}
+
 impl Lanes<f64> for Avx512<__m512d> {
     #[inline(always)]
     unsafe fn splat(value: f64) -> Self {
@@ -199,6 +227,37 @@ impl Lanes<f32> for Avx512<__m512> {
         unsafe {
             let index = _mm512_loadu_si512(index.cast());
             Self(_mm512_i32gather_ps::<4>(index, from))
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn from_rows(rows: [*const [f32; 4]; MOST]) -> [Self; 3] {
+        unsafe {
+            let (a, b) = (quarter(&rows, 0), quarter(&rows, 1));
+            let (c, d) = (quarter(&rows, 2), quarter(&rows, 3));
+            let (xy_ab, xy_cd) = (_mm512_unpacklo_ps(a, b), _mm512_unpacklo_ps(c, d));
+            let (z_ab, z_cd) = (_mm512_unpackhi_ps(a, b), _mm512_unpackhi_ps(c, d));
+            [
+                Self(_mm512_shuffle_ps::<0x44>(xy_ab, xy_cd)),
+                Self(_mm512_shuffle_ps::<0xee>(xy_ab, xy_cd)),
+                Self(_mm512_shuffle_ps::<0x44>(z_ab, z_cd)),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn to_rows([x, y, z]: [Self; 3], to: *mut [f32; 4], stride: usize) {
+        unsafe {
+            let zero = _mm512_setzero_ps();
+            let (xy, z_low) = (_mm512_unpacklo_ps(x.0, y.0), _mm512_unpacklo_ps(z.0, zero));
+            store_quarter(_mm512_shuffle_ps::<0x44>(xy, z_low), to, 4 * stride);
+            let second = _mm512_shuffle_ps::<0xee>(xy, z_low);
+            store_quarter(second, to.add(stride), 4 * stride);
+            let (xy, z_high) = (_mm512_unpackhi_ps(x.0, y.0), _mm512_unpackhi_ps(z.0, zero));
+            let third = _mm512_shuffle_ps::<0x44>(xy, z_high);
+            store_quarter(third, to.add(2 * stride), 4 * stride);
+            let fourth = _mm512_shuffle_ps::<0xee>(xy, z_high);
+            store_quarter(fourth, to.add(3 * stride), 4 * stride);
         }
     }
 

@@ -14,6 +14,7 @@ mod number;
 mod portable;
 mod real;
 mod set;
+mod shared;
 mod vector;
 
 pub(crate) use at::At;
@@ -22,7 +23,8 @@ pub use number::Number;
 pub(crate) use portable::Array;
 pub use real::Real;
 pub use set::InstructionSet;
-pub use vector::{WithDouble, WithNumber};
+pub use shared::{Shared, SharedSlice};
+pub use vector::{Vectors, WithNumber, WithReal};
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) use {avx2::Avx2, avx512::Avx512};

@@ -24,33 +24,50 @@ pub trait WithNumber {
     fn run<N: Number>(self) -> Self::Output;
 }
 
-/// Work in double precision that is written over any [`Number`] of it.
-pub trait WithDouble {
+/// Work in one precision that is written over any [`Number`] of it.
+pub trait WithReal<T: Real> {
     /// What comes of it.
     type Output;
 
     /// Does the work, as [`WithNumber::run`] does.
-    fn run<N: Number<Real = f64>>(self) -> Self::Output;
+    fn run<N: Number<Real = T>>(self) -> Self::Output;
 }
 
-impl InstructionSet {
-    /// Does work with vectors of f64, or with plain numbers where there are only the instructions of the build.
-    pub fn with_vectors_or_numbers<W: WithDouble>(self, work: W) -> W::Output {
-        match self {
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: the instructions are available.
-            Self::Avx2 if self.is_available() => unsafe {
-                doubles_on_avx2::<Vector<f64, Avx2<_>>, W>(work)
-            },
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: the instructions are available.
-            Self::Avx512 if self.is_available() => unsafe {
-                doubles_on_avx512::<Vector<f64, Avx512<_>>, W>(work)
-            },
-            _ => work.run::<f64>(),
-        }
-    }
+/// Numbers that there are vectors of.
+pub trait Vectors: Real + Number<Real = Self> {
+    /// Does work with vectors, or with plain numbers where there are only the instructions of the build.
+    fn with_vectors_or_numbers<W: WithReal<Self>>(set: InstructionSet, work: W) -> W::Output;
+}
 
+macro_rules! vectors {
+    ($number:ident) => {
+        impl Vectors for $number {
+            fn with_vectors_or_numbers<W: WithReal<Self>>(
+                set: InstructionSet,
+                work: W,
+            ) -> W::Output {
+                match set {
+                    #[cfg(target_arch = "x86_64")]
+                    // SAFETY: the instructions are available.
+                    InstructionSet::Avx2 if set.is_available() => unsafe {
+                        reals_on_avx2::<Self, Vector<Self, Avx2<_>>, W>(work)
+                    },
+                    #[cfg(target_arch = "x86_64")]
+                    // SAFETY: the instructions are available.
+                    InstructionSet::Avx512 if set.is_available() => unsafe {
+                        reals_on_avx512::<Self, Vector<Self, Avx512<_>>, W>(work)
+                    },
+                    _ => work.run::<Self>(),
+                }
+            }
+        }
+    };
+}
+
+vectors!(f64);
+vectors!(f32);
+
+impl InstructionSet {
     /// Does work with vectors of f64; `None` where this machine lacks the instructions.
     pub fn with_f64<W: WithNumber>(self, work: W) -> Option<W::Output> {
         self.is_available().then(|| match self {
@@ -102,7 +119,7 @@ unsafe fn on_avx512<N: Number, W: WithNumber>(work: W) -> W::Output {
 /// The instructions are available.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-unsafe fn doubles_on_avx2<N: Number<Real = f64>, W: WithDouble>(work: W) -> W::Output {
+unsafe fn reals_on_avx2<T: Real, N: Number<Real = T>, W: WithReal<T>>(work: W) -> W::Output {
     work.run::<N>()
 }
 
@@ -110,7 +127,7 @@ unsafe fn doubles_on_avx2<N: Number<Real = f64>, W: WithDouble>(work: W) -> W::O
 /// The instructions are available.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl")]
-unsafe fn doubles_on_avx512<N: Number<Real = f64>, W: WithDouble>(work: W) -> W::Output {
+unsafe fn reals_on_avx512<T: Real, N: Number<Real = T>, W: WithReal<T>>(work: W) -> W::Output {
     work.run::<N>()
 }
 

@@ -1,0 +1,261 @@
+//! The order in which threads work on a body.
+
+use std::ops::Range;
+
+use super::chunks::LANES;
+use super::gather::Gather;
+use super::region::HyperelasticRegion;
+
+/// What is done for a part of a region. Ranges of the region's own chunks and edges, and of nodes in the order of [`Gather`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Task {
+    /// Takes the means of a chunk's patches, and keeps its gradients.
+    Means(usize),
+    /// Computes the stress at some edges.
+    Edges(Range<usize>),
+    /// Computes the forces of a chunk's tetrahedra at their corners.
+    Forces(usize),
+    /// Adds up the forces at some nodes.
+    Nodes(Range<usize>),
+}
+
+/// Tasks in one region, one after the other.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub(super) region: usize,
+    pub(super) tasks: Vec<Task>,
+}
+
+/// Passes that follow one another, each of parts that threads may do at the same time.
+///
+/// Within a part edges, forces and sums at nodes follow the chunk that completes them, so that they find what they read in the second cache.
+/// What needs the chunks of two parts is left to later passes: the edges first, then the forces of chunks at such edges, then
+/// the nodes. So every task reads what its own part did before it, or any part in a pass before, and nobody writes what another
+/// part of the same pass reads.
+#[derive(Clone, Debug)]
+pub(crate) struct Schedule {
+    passes: Vec<Vec<Vec<Piece>>>,
+}
+
+/// When a task can be done.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct When {
+    pass: usize,
+    part: usize,
+    /// The chunk, of all regions, with which all is there that the task reads.
+    stage: usize,
+}
+
+const FIRST: usize = 0;
+const EDGES: usize = 1;
+const FORCES: usize = 2;
+const NODES: usize = 3;
+const PASSES: usize = 4;
+
+/// The chunks of all regions, one region behind the other.
+struct AllChunks {
+    /// Region, and number in the region.
+    chunks: Vec<(usize, usize)>,
+    /// The part of each.
+    part: Vec<usize>,
+    /// The chunk of each place of a tetrahedron.
+    of_place: Vec<u32>,
+}
+
+impl AllChunks {
+    fn new(regions: &[HyperelasticRegion], parts: usize) -> Self {
+        let places = regions.iter().map(|region| region.rest.count()).sum();
+        let (mut chunks, mut part) = (Vec::new(), Vec::new());
+        let mut of_place = Vec::with_capacity(places);
+        for (number, region) in regions.iter().enumerate() {
+            for (index, chunk) in region.chunks.iter().enumerate() {
+                part.push((of_place.len() * parts / places).min(parts - 1));
+                of_place.resize(of_place.len() + chunk.slots.len(), chunks.len() as u32);
+                chunks.push((number, index));
+            }
+        }
+        Self {
+            chunks,
+            part,
+            of_place,
+        }
+    }
+
+    /// When a task can be done that needs what was done with these chunks at these times; in `otherwise` where that is in two parts.
+    fn after(&self, needed: impl Iterator<Item = When>, otherwise: usize) -> When {
+        let all = needed.reduce(|a, b| When {
+            pass: if a.part == b.part {
+                a.pass.max(b.pass)
+            } else {
+                otherwise
+            },
+            part: a.part.max(b.part),
+            stage: a.stage.max(b.stage),
+        });
+        let mut when = all.unwrap_or(When {
+            pass: FIRST,
+            part: 0,
+            stage: 0,
+        });
+        if when.pass != FIRST {
+            when.pass = otherwise;
+        }
+        when
+    }
+
+    fn first(&self, place: usize) -> When {
+        let stage = self.of_place[place] as usize;
+        When {
+            pass: FIRST,
+            part: self.part[stage],
+            stage,
+        }
+    }
+}
+
+impl Schedule {
+    /// The work on these regions in so many parts.
+    pub(super) fn new(regions: &[HyperelasticRegion], gather: &Gather, parts: usize) -> Self {
+        let parts = parts.max(1);
+        let all = AllChunks::new(regions, parts);
+        // Edges are worked on in whole vectors.
+        let at_edges: Vec<Vec<When>> = regions
+            .iter()
+            .map(|region| {
+                let vectors = (0..region.edges.count()).step_by(LANES);
+                let when = |first: usize| {
+                    let edges = first..(first + LANES).min(region.edges.count());
+                    let tets = edges.flat_map(|edge| region.edges.of(edge));
+                    let needed = tets.map(|tet| all.first(region.first + *tet as usize));
+                    all.after(needed, EDGES)
+                };
+                vectors.map(when).collect()
+            })
+            .collect();
+        let mut forces = Vec::with_capacity(all.chunks.len());
+        for (number, index) in &all.chunks {
+            let region = &regions[*number];
+            let slots = region.chunks[*index].slots.clone();
+            let own = all.first(region.first + slots.start);
+            let edges = region.edges_of.get(slots).unwrap_or_default();
+            let vectors = edges.as_flattened().iter();
+            let vectors = vectors.map(|edge| at_edges[*number][*edge as usize / LANES]);
+            let when = all.after(std::iter::once(own).chain(vectors), FORCES);
+            forces.push(When {
+                part: own.part,
+                ..when
+            });
+        }
+        let nodes = (0..gather.nodes().len()).map(|index| {
+            let chunks = gather.tets_at(index).map(|place| all.of_place[place]);
+            all.after(chunks.map(|chunk| forces[chunk as usize]), NODES)
+        });
+
+        let mut tasks = Tasks::default();
+        for (stage, (region, chunk)) in all.chunks.iter().enumerate() {
+            let own = When {
+                pass: FIRST,
+                part: all.part[stage],
+                stage,
+            };
+            if regions[*region].is_smoothed() {
+                tasks.add(own, *region, Task::Means(*chunk));
+            }
+            tasks.add(forces[stage], *region, Task::Forces(*chunk));
+        }
+        for (number, (region, vectors)) in regions.iter().zip(&at_edges).enumerate() {
+            for (vector, when) in vectors.iter().enumerate() {
+                let first = vector * LANES;
+                let edges = first..(first + LANES).min(region.edges.count());
+                tasks.add(*when, number, Task::Edges(edges));
+            }
+        }
+        for (index, when) in nodes.enumerate() {
+            let region = all.chunks[when.stage].0;
+            tasks.add(when, region, Task::Nodes(index..index + 1));
+        }
+        Self {
+            passes: tasks.in_passes(parts),
+        }
+    }
+
+    /// The parts of each pass.
+    pub(super) fn passes(&self) -> &[Vec<Vec<Piece>>] {
+        &self.passes
+    }
+}
+
+/// Tasks in any order.
+#[derive(Default)]
+struct Tasks(Vec<(When, usize, Task)>);
+
+impl Tasks {
+    fn add(&mut self, when: When, region: usize, task: Task) {
+        self.0.push((when, region, task));
+    }
+
+    /// All of them in order, by pass and part; passes without any are left out.
+    fn in_passes(mut self, parts: usize) -> Vec<Vec<Vec<Piece>>> {
+        self.0
+            .sort_by_key(|(when, _, task)| (*when, task.rank(), task.first()));
+        let mut passes = vec![vec![Vec::<Piece>::new(); parts]; PASSES];
+        let count = |pass: usize| self.0.iter().filter(|(when, ..)| when.pass == pass).count();
+        let counts: Vec<usize> = (0..PASSES).map(count).collect();
+        let mut done = [0; PASSES];
+        for (when, region, task) in self.0 {
+            // What follows the first pass is shared out anew.
+            let part = match when.pass {
+                FIRST => when.part,
+                pass => done[pass] * parts / counts[pass],
+            };
+            done[when.pass] += 1;
+            let pieces = &mut passes[when.pass][part];
+            match pieces.last_mut().filter(|piece| piece.region == region) {
+                Some(piece) => {
+                    let last = piece.tasks.last_mut();
+                    if !last.is_some_and(|last| last.takes(&task)) {
+                        piece.tasks.push(task);
+                    }
+                }
+                None => pieces.push(Piece {
+                    region,
+                    tasks: vec![task],
+                }),
+            }
+        }
+        passes.retain(|parts| parts.iter().any(|pieces| !pieces.is_empty()));
+        passes
+    }
+}
+
+impl Task {
+    /// Its place among tasks that can be done at the same time.
+    fn rank(&self) -> u8 {
+        match self {
+            Self::Means(_) => 0,
+            Self::Edges(_) => 1,
+            Self::Forces(_) => 2,
+            Self::Nodes(_) => 3,
+        }
+    }
+
+    fn first(&self) -> usize {
+        match self {
+            Self::Means(chunk) | Self::Forces(chunk) => *chunk,
+            Self::Edges(range) | Self::Nodes(range) => range.start,
+        }
+    }
+
+    /// Makes this task one with the next, where they are neighbours.
+    fn takes(&mut self, next: &Self) -> bool {
+        match (self, next) {
+            (Self::Edges(own), Self::Edges(next)) | (Self::Nodes(own), Self::Nodes(next))
+                if own.end == next.start =>
+            {
+                own.end = next.end;
+                true
+            }
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! Arrays that the threads of a sweep share.
+
+#![allow(unsafe_code, reason = "memory that the threads of a sweep share")]
+
+use std::cell::UnsafeCell;
+use std::marker::PhantomData;
+use std::ops::Range;
+
+/// Numbers that threads write in different places at the same time.
+pub struct Shared<T>(Box<[UnsafeCell<T>]>);
+
+// SAFETY: nothing but `SharedSlice::read` and `SharedSlice::write` gives the numbers away while they are shared, and whoever calls
+// these promises that nobody writes what another one uses.
+unsafe impl<T: Send + Sync> Sync for Shared<T> {}
+
+impl<T> Shared<T> {
+    /// These numbers, to be shared.
+    #[must_use]
+    pub fn new(values: Vec<T>) -> Self {
+        Self(values.into_iter().map(UnsafeCell::new).collect())
+    }
+
+    /// Where they are.
+    #[inline(always)]
+    #[must_use]
+    pub fn slice(&self) -> SharedSlice<'_, T> {
+        SharedSlice {
+            first: UnsafeCell::raw_get(self.0.as_ptr()),
+            count: self.0.len(),
+            cells: PhantomData,
+        }
+    }
+}
+
+impl<T> std::fmt::Debug for Shared<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Shared")
+            .field("count", &self.0.len())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Where numbers are that threads write in different places at the same time.
+#[derive(Debug)]
+pub struct SharedSlice<'a, T> {
+    first: *mut T,
+    count: usize,
+    cells: PhantomData<&'a [UnsafeCell<T>]>,
+}
+
+impl<T> Clone for SharedSlice<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for SharedSlice<'_, T> {}
+
+// SAFETY: as for `Shared`.
+unsafe impl<T: Send + Sync> Send for SharedSlice<'_, T> {}
+// SAFETY: as for `Shared`.
+unsafe impl<T: Send + Sync> Sync for SharedSlice<'_, T> {}
+
+impl<'a, T: Copy> SharedSlice<'a, T> {
+    /// The numbers of a slice, which nobody else uses meanwhile.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(values: &'a mut [T]) -> Self {
+        Self {
+            first: values.as_mut_ptr(),
+            count: values.len(),
+            cells: PhantomData,
+        }
+    }
+
+    /// Number of numbers.
+    #[inline(always)]
+    #[must_use]
+    pub fn count(self) -> usize {
+        self.count
+    }
+
+    /// Some of the numbers, to be read.
+    ///
+    /// # Safety
+    /// Nobody writes any of them as long as the slice is used.
+    ///
+    /// # Panics
+    /// Where there are not so many.
+    #[inline(always)]
+    #[must_use]
+    pub unsafe fn read(self, range: Range<usize>) -> &'a [T] {
+        assert!(range.start <= range.end && range.end <= self.count);
+        // SAFETY: the range lies within the allocation, and the rest is the caller's promise.
+        unsafe { std::slice::from_raw_parts(self.first.add(range.start), range.len()) }
+    }
+
+    /// One of the numbers.
+    ///
+    /// # Safety
+    /// Nobody writes it meanwhile.
+    ///
+    /// # Panics
+    /// Where it is not there.
+    #[inline(always)]
+    #[must_use]
+    pub unsafe fn get(self, place: usize) -> &'a T {
+        assert!(place < self.count);
+        // SAFETY: the place lies within the allocation, and the rest is the caller's promise.
+        unsafe { &*self.first.add(place) }
+    }
+
+    /// Some of the numbers, to be written.
+    ///
+    /// # Safety
+    /// Nobody else uses any of them as long as the slice is used.
+    ///
+    /// # Panics
+    /// Where there are not so many.
+    #[inline(always)]
+    #[must_use]
+    #[allow(clippy::mut_from_ref, reason = "that is what the promise is for")]
+    pub unsafe fn write(self, range: Range<usize>) -> &'a mut [T] {
+        assert!(range.start <= range.end && range.end <= self.count);
+        // SAFETY: the range lies within the allocation, and the rest is the caller's promise.
+        unsafe { std::slice::from_raw_parts_mut(self.first.add(range.start), range.len()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    use super::*;
+
+    #[test]
+    fn threads_write_in_different_places() {
+        let all = Shared::new(vec![0_u32; 100]);
+        std::thread::scope(|scope| {
+            for part in 0..4 {
+                let slice = all.slice();
+                // SAFETY: each thread has a part of its own.
+                scope.spawn(move || unsafe { slice.write(25 * part..25 * part + 25) }.fill(7));
+            }
+        });
+        // SAFETY: all threads have come to their end.
+        assert_eq!(unsafe { all.slice().read(0..100) }, [7; 100]);
+    }
+
+    #[test]
+    fn nothing_beyond_the_end_is_given() {
+        let mut values = [1, 2, 3];
+        let slice = SharedSlice::of(&mut values);
+        // SAFETY: nobody else uses them.
+        let beyond = catch_unwind(AssertUnwindSafe(|| unsafe { slice.read(1..4) }.len()));
+        assert!(beyond.is_err());
+        // SAFETY: as above.
+        assert_eq!(unsafe { (slice.get(2), slice.count()) }, (&3, 3));
+    }
+}
