@@ -72,12 +72,9 @@ impl<'a> DeformationWatch<'a> {
             }
             Some((t, u)) => {
                 let ends = LoadTime::at_both_ends(*t, state.t() - *t, 0.5);
-                for (before, u) in u.iter_mut().zip(&state.u) {
-                    *before = u - *before;
-                }
-                for end in ends {
-                    moment.system.external_force(end, &mut self.force);
-                    self.allowed += 0.5 * dot(&self.force, u);
+                for (end, at) in ends.into_iter().zip([&u[..], &state.u]) {
+                    moment.system.external_force(end, at, &mut self.force);
+                    self.allowed += 0.5 * (dot(&self.force, &state.u) - dot(&self.force, u));
                 }
                 *t = state.t();
                 u.copy_from_slice(&state.u);
