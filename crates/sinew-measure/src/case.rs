@@ -83,9 +83,10 @@ pub enum CaseError {
     },
 }
 
-/// The course of a scene's reference: at a pace of the Taylor series, unless the body is large.
+/// The course of a scene's reference: at a pace of the Taylor series, unless the body is large or shows no matrices.
 pub(crate) fn course(simulation: &Simulation, pace: Pace) -> Course {
     match simulation.model() {
+        _ if simulation.system().as_linear().is_none() => Course::Extrapolated,
         SceneModel::Body(body) if body.mesh.tets.len() >= LARGE => Course::Faber,
         SceneModel::Body(_) | SceneModel::Oscillator(_) => Course::Taylor(pace),
     }
@@ -154,15 +155,6 @@ impl Case {
     ) -> Result<Self, CaseError> {
         let course = course(&simulation, pace);
         Self::by(course, id.into(), simulation, span)
-    }
-
-    /// As [`Case::new`], of a body whose forces follow a law that shows no matrices: its reference is extrapolated.
-    ///
-    /// # Errors
-    /// [`CaseError::Reference`].
-    pub fn of_force_law(id: impl Into<String>, simulation: Simulation) -> Result<Self, CaseError> {
-        let span = Span::of(&simulation);
-        Self::by(Course::Extrapolated, id.into(), simulation, span)
     }
 
     fn by(

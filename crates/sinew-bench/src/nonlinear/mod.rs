@@ -134,7 +134,7 @@ impl Running<'_> {
             let case = Scene::load_with(scene, &body.values)
                 .and_then(Scene::build)
                 .map_err(CaseError::from)
-                .and_then(|simulation| Case::of_force_law(planned.id, simulation));
+                .and_then(|simulation| Case::new(planned.id, simulation));
             let mut case = match case {
                 Ok(case) => case,
                 Err(found) => {

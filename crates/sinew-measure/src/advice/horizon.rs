@@ -6,7 +6,7 @@ use sinew_scene::Simulation;
 use super::error::AdviceError;
 use crate::case::{Span, course};
 use crate::cpu_time::thread_cpu_time;
-use crate::reference::{Course, Expansion, Pace, Taylor};
+use crate::reference::{Course, Expansion, Pace, Taylor, cost_of_extrapolation};
 
 /// The reference is solved twice, the second time in steps of two thirds: 1 + 3/2 solutions.
 const SOLUTIONS: f64 = 2.5;
@@ -95,8 +95,9 @@ impl<'a> ReferenceCost<'a> {
     fn per_second(&self, pace: Pace) -> f64 {
         let linear = self.simulation.system().as_linear();
         let (Some(linear), Some(spectrum)) = (linear, &self.spectrum) else {
-            // The reference says what is missing.
-            return 0.0;
+            let interval = Span::of(self.simulation).interval();
+            let (system, start) = (self.simulation.system(), self.simulation.initial_state());
+            return cost_of_extrapolation(system, start, interval);
         };
         let mut state = self.simulation.initial_state().clone();
         match course(self.simulation, pace) {

@@ -8,9 +8,13 @@ use sinew_integrators::implicit::{GeneralizedAlpha, Newmark};
 
 use super::error_norm::ErrorNorm;
 use super::track::{ReferenceError, ReferenceMethod, Sight, Track};
+use crate::cpu_time::thread_cpu_time;
 
 /// Largest difference from the second solution with which a reference is still called one.
 const ALLOWED: f64 = 1e-2;
+
+/// Steps by which the cost of a solution is told.
+const TRIAL_STEPS: u32 = 2;
 
 /// A method whose error falls as a power of the step, and how far its steps are halved.
 struct Falling {
@@ -71,6 +75,31 @@ impl Falling {
     }
 }
 
+/// Halvings after which most solutions hardly change.
+const USUAL_HALVINGS: i32 = 3;
+
+/// CPU time (s) per simulated second that [`by_extrapolation`] takes with the usual number of halvings, as some first steps tell; infinite where
+/// these fail.
+pub(crate) fn cost_of_extrapolation(system: &dyn System, start: &State, interval: f64) -> f64 {
+    let pair = Falling::pair(system, critical_step(system), interval);
+    let cost = |mut method: Falling| {
+        let (mut state, before) = (start.clone(), thread_cpu_time());
+        for _ in 0..TRIAL_STEPS {
+            if let Err(_refused) = method.integrator.step(system, &mut state, method.first) {
+                return f64::INFINITY;
+            }
+        }
+        let step = (thread_cpu_time() - before).as_secs_f64() / f64::from(TRIAL_STEPS);
+        (2.0_f64.powi(USUAL_HALVINGS + 1) - 1.0) * step / method.first
+    };
+    pair.map(cost).iter().sum()
+}
+
+fn critical_step(system: &dyn System) -> f64 {
+    let spectrum = system.spectrum(None);
+    spectrum.map_or(f64::INFINITY, |spectrum| spectrum.critical_step())
+}
+
 /// A solution in halved steps until it hardly changes.
 struct Converged<'a> {
     sight: Sight<'a>,
@@ -91,12 +120,9 @@ pub(super) fn by_extrapolation<'a>(
     start: &'a State,
     times: &'a [f64],
 ) -> Result<Track, ReferenceError> {
-    let critical = system
-        .spectrum(None)
-        .map_or(f64::INFINITY, |spectrum| spectrum.critical_step());
     let interval = times.windows(2).map(|pair| pair[1] - pair[0]);
     let interval = interval.fold(f64::INFINITY, f64::min);
-    let [method, of_check] = Falling::pair(system, critical, interval);
+    let [method, of_check] = Falling::pair(system, critical_step(system), interval);
     let name = method.integrator.id();
     let solution = converge(method, system, start, times)?;
     let check = converge(of_check, system, start, times)?;

@@ -17,6 +17,7 @@ mod track;
 
 pub use error_norm::ErrorNorm;
 pub(crate) use expansion::Expansion;
+pub(crate) use extrapolated::cost_of_extrapolation;
 pub(crate) use follow::{Course, Pace, follow_by};
 pub use follow::{follow, follow_affordably};
 pub use taylor::Taylor;

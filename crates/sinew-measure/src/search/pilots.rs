@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use sinew_core::{LinearSystem, LoadOverStep, OptionError, Ramp, Run};
-use sinew_scene::Simulation;
+use sinew_scene::{SceneModel, Simulation};
 
 use crate::case::Case;
 use crate::cost::Cost;
@@ -182,7 +182,14 @@ fn check_loads(simulation: &Simulation, needed: LoadOverStep, dt: f64) -> Result
 
 /// The loads of a scene over time.
 pub(crate) fn ramps(simulation: &Simulation) -> impl Iterator<Item = &Ramp> {
-    let operators = simulation.system().as_linear().map(LinearSystem::operators);
-    let loads = operators.map_or(&[][..], |operators| operators.loads());
-    loads.iter().map(|load| &load.ramp)
+    let (loads, moves) = match simulation.model() {
+        SceneModel::Oscillator(model) => (model.operators().loads(), &[][..]),
+        SceneModel::Body(body) => (
+            body.model.operators().loads(),
+            body.problem.moves.as_slice(),
+        ),
+    };
+    let courses = moves.iter().flat_map(|moving| &moving.courses);
+    let loads = loads.iter().map(|load| &load.ramp);
+    loads.chain(courses.map(|course| &course.ramp))
 }

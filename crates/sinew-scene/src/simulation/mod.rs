@@ -124,9 +124,9 @@ impl Simulation {
     /// What measures the error of a run of this scene, as a sentence goes on after "not known: ".
     #[must_use]
     pub fn how_to_know_the_error(&self) -> &'static str {
-        match self.system().as_linear() {
-            Some(_) => "`sinew plan --tolerance` measures it",
-            None => "`sinew converge` estimates it",
+        match self.system().internal_variables() {
+            0 => "`sinew plan --tolerance` measures it",
+            _ => "`sinew converge` estimates it",
         }
     }
 

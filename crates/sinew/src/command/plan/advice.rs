@@ -4,7 +4,7 @@ use crate::command::ruled;
 use comfy_table::CellAlignment;
 use sinew_measure::number::{milliseconds, percent, short, three};
 use sinew_measure::search::Pilot;
-use sinew_measure::{Advice, Answer, Row, RowOutcome};
+use sinew_measure::{Advice, Answer, LeftOut, MethodChoice, Row, RowOutcome};
 
 /// Heading of the column that is shown only where pilots covered a part of the scene.
 const EXPECTED: &str = "expected\n[%]";
@@ -271,9 +271,7 @@ fn provenance(advice: &Advice) -> String {
     if let Err(reason) = &advice.written {
         lines.push(format!("the run as written was not measured: {reason}"));
     }
-    for (method, reason) in &advice.refused {
-        lines.push(format!("left out: {}: {reason}", method.label()));
-    }
+    lines.extend(left_out(&advice.refused));
     let what = match (advice.choice_cut_short, advice.others_cut_short) {
         (true, _) => Some("every candidate was tried, so there may be a cheaper one"),
         (false, true) => Some("all runners-up were followed to their own best"),
@@ -283,6 +281,22 @@ fn provenance(advice: &Advice) -> String {
         format!("the time for pilots ran out before {what}: raise --pilot-seconds to look further")
     }));
     lines.join("\n")
+}
+
+/// A line for each reason for which methods were left out, with all of them.
+fn left_out(refused: &[(MethodChoice, LeftOut)]) -> Vec<String> {
+    let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
+    for (method, reason) in refused {
+        let reason = reason.to_string();
+        match reasons.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, methods)) => methods.push(method.label()),
+            None => reasons.push((reason, vec![method.label()])),
+        }
+    }
+    let line = |(reason, methods): (String, Vec<String>)| {
+        format!("left out: {}: {reason}", methods.join(", "))
+    };
+    reasons.into_iter().map(line).collect()
 }
 
 fn table(advice: &Advice, rows: &[(&str, &Pilot)]) -> String {
