@@ -3,6 +3,7 @@
 use sinew_sparse::Layers;
 
 use crate::elastic_law::ElasticLaw;
+use crate::element_forces::ElementForces;
 use crate::elements::Elements;
 use crate::energy::Energy;
 use crate::evaluation_error::EvaluationError;
@@ -141,6 +142,11 @@ pub trait ForceLaw: Send + Sync {
 
     /// The energy behind the forces and its tangent, where the law has one.
     fn elastic(&self) -> Option<&dyn ElasticLaw> {
+        None
+    }
+
+    /// Its forces as sums over elements, where machines with threads and vectors can compute them.
+    fn element_forces(&self) -> Option<&dyn ElementForces> {
         None
     }
 

@@ -10,11 +10,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use sinew_cnn::{LoadAt, Machine, Physics, Program, Register};
-use sinew_core::{Batch, Inputs, LinearSystem, State, System, VelocityTime};
+use sinew_core::{Batch, ElementPrecision, Inputs, LinearSystem, State, System, VelocityTime};
 use sinew_fem::{Element, Fixed, Law, Model, Problem, Region};
 use sinew_machines::{FastMachine, Layout};
 use sinew_mesh::structured::{Split, cube};
-use sinew_sparse::sweep::Precision;
 
 fn main() {
     for cells in [10, 20] {
@@ -24,7 +23,7 @@ fn main() {
     }
 }
 
-fn of<T: Precision>(model: &Model, cells: usize) {
+fn of<T: ElementPrecision>(model: &Model, cells: usize) {
     let layouts = [
         Layout::<T>::general(model.operators()),
         Layout::repeated(model).unwrap(),

@@ -4,7 +4,7 @@ use std::num::NonZero;
 use std::sync::Arc;
 
 use sinew_cnn::{Machine, Program, ReferenceMachine};
-use sinew_core::{Batch, Equations, State, StepError, System};
+use sinew_core::{Batch, ElementPrecision, Equations, ForceLaw, State, StepError, System};
 use sinew_sparse::simd::InstructionSet;
 use sinew_sparse::sweep::Precision;
 
@@ -60,15 +60,9 @@ impl Settings {
     }
 
     fn check_in<T: Precision>(&self, system: &dyn System) -> Result<(), Unfit> {
-        let Equations::Linear(linear) = system.equations() else {
-            return match self.kind {
-                Kind::General => Err(Unfit::Law("general")),
-                Kind::Repeated => Err(Unfit::Law("repeated")),
-                Kind::Auto | Kind::Reference if self.precision == PrecisionName::F32 => {
-                    Err(Unfit::LawInSinglePrecision)
-                }
-                Kind::Auto | Kind::Reference => Ok(()),
-            };
+        let linear = match system.equations() {
+            Equations::Linear(linear) => linear,
+            Equations::Forces(law) => return self.check_law(law),
         };
         // Rows that have changed had their templates.
         let changed = linear.operators().has_changed();
@@ -76,6 +70,19 @@ impl Settings {
             return Err(Unfit::NoTemplates);
         }
         Ok(())
+    }
+
+    /// Checks that a machine runs a force law as asked.
+    fn check_law(&self, law: &dyn ForceLaw) -> Result<(), Unfit> {
+        match self.kind {
+            Kind::General => Err(Unfit::Law("general")),
+            Kind::Repeated => Err(Unfit::Law("repeated")),
+            Kind::Auto if law.element_forces().is_some() => Ok(()),
+            Kind::Auto | Kind::Reference if self.precision == PrecisionName::F32 => {
+                Err(Unfit::LawInSinglePrecision)
+            }
+            Kind::Auto | Kind::Reference => Ok(()),
+        }
     }
 }
 
@@ -107,8 +114,9 @@ impl Threads {
 /// Cells below which a sweep is too short for kernels.
 const FEWEST_CELLS: usize = 16;
 
-/// A machine chosen for each system that it is given, as its settings say: the reference machine where
-/// forces follow from a law, templates where rows repeat and that pays, and the general kernels everywhere else.
+/// A machine chosen for each system that it is given, as its settings say: loops over elements where forces are sums over
+/// these, the reference machine where they follow from another law, templates where rows repeat and that pays, and the general kernels
+/// everywhere else.
 #[derive(Debug, Default)]
 pub struct Chosen {
     settings: Settings,
@@ -132,21 +140,31 @@ impl Chosen {
         }
     }
 
-    fn choose_in<T: Precision>(&self, system: &dyn System) -> Box<dyn Machine> {
-        let Equations::Linear(linear) = system.equations() else {
-            return Box::new(ReferenceMachine::default());
+    fn choose_in<T: ElementPrecision>(&self, system: &dyn System) -> Box<dyn Machine> {
+        let reference = || Box::new(ReferenceMachine::default());
+        let linear = match system.equations() {
+            Equations::Linear(linear) => linear,
+            Equations::Forces(law) => {
+                return match law.element_forces() {
+                    Some(forces) if self.settings.kind == Kind::Auto => {
+                        self.fast(Layout::<T>::beside_elements(forces))
+                    }
+                    _ => reference(),
+                };
+            }
         };
         let cells = linear.operators().stiffness().pattern().cells();
         let layout = match self.settings.kind {
-            Kind::Auto if cells < FEWEST_CELLS && T::NAME == f64::NAME => {
-                return Box::new(ReferenceMachine::default());
-            }
-            Kind::Reference => return Box::new(ReferenceMachine::default()),
+            Kind::Auto if cells < FEWEST_CELLS && T::NAME == f64::NAME => return reference(),
+            Kind::Reference => return reference(),
             Kind::General => None,
             Kind::Auto => Layout::<T>::repeated(linear).filter(|layout| layout.pays()),
             Kind::Repeated => Layout::<T>::repeated(linear),
         };
-        let layout = layout.unwrap_or_else(|| Layout::general(linear.operators()));
+        self.fast(layout.unwrap_or_else(|| Layout::general(linear.operators())))
+    }
+
+    fn fast<T: ElementPrecision>(&self, layout: Arc<Layout<T>>) -> Box<dyn Machine> {
         let machine = FastMachine::new(layout).with_threads(self.settings.threads.most());
         Box::new(match self.settings.instructions {
             Some(set) => machine.with_instructions(set),

@@ -1,12 +1,25 @@
 //! Programs as sweeps of kernels.
 
-use sinew_cnn::{Clamp, Forces, Program, Quotient, Register, Sweep, Update, Weight};
+use sinew_cnn::{Clamp, Forces, Product, Program, Quotient, Register, Sweep, Update, Weight};
 use sinew_sparse::sweep::{self as kernel, CellMap, Field, Precision};
 
 /// Number of the matrix K among a sweep's matrices.
 const STIFFNESS: usize = 0;
 /// Number of the dashpots.
 const DASHPOTS: usize = 1;
+
+/// Number of the forces of elements among the constants.
+pub(crate) const ELEMENTS: usize = 5;
+
+/// Matrices and damping beside the elements of a force law.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BesideElements {
+    /// Whether K is not 0.
+    pub(crate) stiffness: bool,
+    pub(crate) dashpots: bool,
+    /// alpha (1/s) of damping alpha M.
+    pub(crate) mass_damping: f64,
+}
 
 /// Vectors that a program needs besides its registers, in the order of their codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +29,8 @@ pub(crate) enum Constant {
     Mass,
     Live,
     Limits,
+    /// Forces of elements.
+    Elements,
     /// A row of the blocks P^-1.
     Row(usize),
 }
@@ -110,18 +125,20 @@ impl<T: Precision> Variant<T> {
 }
 
 impl<T: Precision> Compiled<T> {
-    pub(crate) fn new(program: &Program, layers: usize) -> Self {
+    pub(crate) fn new(program: &Program, layers: usize, beside: Option<BesideElements>) -> Self {
         let mut constants = vec![
             Constant::Forces,
             Constant::InverseMass,
             Constant::Mass,
             Constant::Live,
             Constant::Limits,
+            Constant::Elements,
         ];
         constants.extend((0..layers).map(Constant::Row));
         let count = program.registers().len();
         let mut maker = Maker {
             program,
+            beside,
             constants: 2 * count as Field,
             registers: vec![false; count],
             doubled: vec![false; count],
@@ -169,6 +186,7 @@ fn last_write(sweeps: &[Sweep], register: Register) -> Option<(usize, usize)> {
 
 struct Maker<'a> {
     program: &'a Program,
+    beside: Option<BesideElements>,
     /// Code of the first constant.
     constants: Field,
     registers: Vec<bool>,
@@ -189,29 +207,54 @@ impl Maker<'_> {
         is_last: bool,
         watched: Option<usize>,
     ) -> Variant<T> {
-        let (mut products, mut sources) = (Vec::new(), Vec::new());
-        if let Forces::Products {
-            stiffness,
-            dashpots,
-        } = sweep.forces
-        {
-            for (product, matrix) in [(stiffness, STIFFNESS), (dashpots, DASHPOTS)] {
-                if let Some(product) = product {
-                    sources.push(product.source);
-                    products.push(kernel::Product {
-                        matrix,
-                        factor: T::of(product.factor),
-                        source: self.register(product.source, false),
+        let mut own = Vec::new();
+        let mut all: Vec<(usize, Product)> = Vec::new();
+        let plain = |source| Product {
+            factor: 1.0,
+            source,
+        };
+        match (sweep.forces, self.beside) {
+            (
+                Forces::Products {
+                    stiffness,
+                    dashpots,
+                },
+                _,
+            ) => {
+                all.extend(stiffness.map(|product| (STIFFNESS, product)));
+                all.extend(dashpots.map(|product| (DASHPOTS, product)));
+            }
+            (Forces::Internal { u, v }, Some(beside)) => {
+                all.extend(beside.stiffness.then(|| (STIFFNESS, plain(u))));
+                all.extend(beside.dashpots.then(|| (DASHPOTS, plain(v))));
+                own.push(kernel::Own {
+                    field: self.constant(Constant::Elements),
+                    plain: T::of(-1.0),
+                    per_mass: T::of(0.0),
+                });
+                if beside.mass_damping != 0.0 {
+                    own.push(kernel::Own {
+                        field: self.register(v, false),
+                        plain: T::of(0.0),
+                        per_mass: T::of(-beside.mass_damping),
                     });
                 }
             }
+            (Forces::Internal { .. }, None) => {}
         }
-        let own = sweep.own.iter().map(|term| kernel::Own {
+        let sources: Vec<Register> = all.iter().map(|(_, product)| product.source).collect();
+        let products = all.into_iter().map(|(matrix, product)| kernel::Product {
+            matrix,
+            factor: T::of(product.factor),
+            source: self.register(product.source, false),
+        });
+        let products = products.collect();
+        let of_sweep = sweep.own.iter().map(|term| kernel::Own {
             field: self.register(term.register, false),
             plain: T::of(term.plain),
             per_mass: T::of(term.per_mass),
         });
-        let own = own.collect();
+        own.extend(of_sweep);
         let quotient = self.quotient(sweep.quotient);
         let forces =
             (sweep.loads != sinew_cnn::Loads::None).then(|| self.constant(Constant::Forces));
@@ -303,7 +346,8 @@ impl Maker<'_> {
             Constant::Mass => 2,
             Constant::Live => 3,
             Constant::Limits => 4,
-            Constant::Row(row) => 5 + row,
+            Constant::Elements => ELEMENTS,
+            Constant::Row(row) => ELEMENTS + 1 + row,
         };
         self.used[index] = true;
         self.constants + index as Field
@@ -311,7 +355,7 @@ impl Maker<'_> {
 
     /// The first row of the blocks; the others follow.
     fn rows(&mut self) -> Field {
-        self.used[5..].fill(true);
+        self.used[ELEMENTS + 1..].fill(true);
         self.constant(Constant::Row(0))
     }
 

@@ -6,7 +6,7 @@ use std::thread::{self, Thread};
 
 use sinew_sparse::sweep::Outcome;
 
-/// Chunks that are taken at a time.
+/// Chunks that are taken at a time, where there are many.
 const BLOCK: usize = 4;
 
 /// Looks for work, or for its end, before a thread lets others run: some tens of microseconds.
@@ -74,9 +74,10 @@ impl Patience {
 /// that happens often, the host goes on alone for a while, longer each time.
 pub(crate) struct Crew<'a> {
     work: &'a (dyn Fn(Range<usize>) -> Outcome + Sync),
-    chunks: usize,
-    /// The next chunk of each thread's share.
-    next: Vec<AtomicUsize>,
+    /// Chunks of the present sweep.
+    chunks: AtomicUsize,
+    /// What is left of each thread's share.
+    left: Vec<Left>,
     /// Chunks that are done.
     done: AtomicUsize,
     /// Number of the sweep.
@@ -94,7 +95,6 @@ pub(crate) struct Crew<'a> {
 /// The thread that hands out sweeps.
 pub(crate) struct Host<'a> {
     work: &'a (dyn Fn(Range<usize>) -> Outcome + Sync),
-    chunks: usize,
     /// `None` where the host is alone.
     crew: Option<&'a Crew<'a>>,
     workers: Vec<Thread>,
@@ -102,16 +102,14 @@ pub(crate) struct Host<'a> {
 }
 
 impl<'a> Crew<'a> {
-    /// Runs `body` with so many threads, itself included, for sweeps over `chunks` chunks, each made by `work`.
+    /// Runs `body` with so many threads, itself included, for sweeps whose chunks are made by `work`.
     pub(crate) fn gather<R>(
         (threads, patience): (usize, &mut Patience),
-        chunks: usize,
         work: &'a (dyn Fn(Range<usize>) -> Outcome + Sync),
         body: impl FnOnce(&mut Host<'_>) -> R,
     ) -> R {
         let mut host = Host {
             work,
-            chunks,
             crew: None,
             workers: Vec::new(),
             patience,
@@ -121,10 +119,8 @@ impl<'a> Crew<'a> {
         }
         let crew = Crew {
             work,
-            chunks,
-            next: (0..threads)
-                .map(|_| AtomicUsize::new(usize::MAX / 2))
-                .collect(),
+            chunks: AtomicUsize::new(0),
+            left: (0..threads).map(|_| Left::none()).collect(),
             done: AtomicUsize::new(0),
             turn: AtomicUsize::new(0),
             closed: AtomicBool::new(false),
@@ -161,23 +157,11 @@ impl<'a> Crew<'a> {
         })
     }
 
-    /// The chunks with which a thread begins.
-    fn share(&self, thread: usize) -> Range<usize> {
-        let of = |thread| self.chunks * thread / self.next.len();
-        of(thread)..of(thread + 1)
-    }
-
     /// Makes chunks of the present sweep until none is left.
     fn take_part(&self, thread: usize) {
-        let threads = self.next.len();
+        let threads = self.left.len();
         for other in (0..threads).map(|step| (thread + step) % threads) {
-            let end = self.share(other).end;
-            loop {
-                let first = self.next[other].fetch_add(BLOCK, Ordering::AcqRel);
-                if first >= end {
-                    break;
-                }
-                let chunks = first..(first + BLOCK).min(end);
+            while let Some(chunks) = self.left[other].take() {
                 // Also where the work panics, so that the host does not wait for ever.
                 let _done = Done(self, chunks.len());
                 let outcome = (self.work)(chunks);
@@ -213,6 +197,41 @@ impl<'a> Crew<'a> {
     }
 }
 
+/// What is left of a share: the next chunk, and the end in the upper half of the same word, so that a thread that comes late from the
+/// sweep before never takes the beginning of one share for that of another.
+struct Left(AtomicU64);
+
+impl Left {
+    fn none() -> Self {
+        Self(AtomicU64::new(0))
+    }
+
+    fn set(&self, share: Range<usize>) {
+        let word = (share.end as u64) << 32 | share.start as u64;
+        self.0.store(word, Ordering::Release);
+    }
+
+    /// Takes the next chunks: some where there are many, one by one where there are few.
+    fn take(&self) -> Option<Range<usize>> {
+        let mut word = self.0.load(Ordering::Acquire);
+        loop {
+            let (first, end) = ((word & u64::from(u32::MAX)) as usize, (word >> 32) as usize);
+            if first >= end {
+                return None;
+            }
+            let next = (first + if end - first > 2 * BLOCK { BLOCK } else { 1 }).min(end);
+            let after = (end as u64) << 32 | next as u64;
+            let exchange =
+                self.0
+                    .compare_exchange_weak(word, after, Ordering::AcqRel, Ordering::Acquire);
+            match exchange {
+                Ok(_) => return Some(first..next),
+                Err(present) => word = present,
+            }
+        }
+    }
+}
+
 /// A number of chunks that are done as soon as this is dropped.
 struct Done<'a>(&'a Crew<'a>, usize);
 
@@ -220,27 +239,29 @@ impl Drop for Done<'_> {
     fn drop(&mut self) {
         let crew = self.0;
         let done = crew.done.fetch_add(self.1, Ordering::SeqCst) + self.1;
-        if done == crew.chunks && crew.host_asleep.load(Ordering::SeqCst) {
+        if done == crew.chunks.load(Ordering::SeqCst) && crew.host_asleep.load(Ordering::SeqCst) {
             crew.host.unpark();
         }
     }
 }
 
 impl Host<'_> {
-    /// Makes a sweep that has been prepared.
-    pub(crate) fn sweep(&mut self) -> Outcome {
+    /// Makes a sweep over so many chunks that has been prepared.
+    pub(crate) fn sweep(&mut self, chunks: usize) -> Outcome {
         let crew = match self.crew {
             Some(crew) if self.patience.alone == 0 => crew,
             _ => {
                 self.patience.alone = self.patience.alone.saturating_sub(1);
-                return (self.work)(0..self.chunks);
+                return (self.work)(0..chunks);
             }
         };
         crew.saturated.store(0, Ordering::Relaxed);
         crew.exceeded.store(false, Ordering::Relaxed);
         crew.done.store(0, Ordering::Relaxed);
-        for (thread, next) in crew.next.iter().enumerate() {
-            next.store(crew.share(thread).start, Ordering::Release);
+        crew.chunks.store(chunks, Ordering::SeqCst);
+        let threads = crew.left.len();
+        for (thread, left) in crew.left.iter().enumerate() {
+            left.set(chunks * thread / threads..chunks * (thread + 1) / threads);
         }
         crew.turn.fetch_add(1, Ordering::SeqCst);
         for (asleep, worker) in crew.asleep.iter().zip(&self.workers) {
@@ -249,7 +270,7 @@ impl Host<'_> {
             }
         }
         crew.take_part(0);
-        self.wait(crew);
+        self.wait(crew, chunks);
         Outcome {
             saturated: crew.saturated.load(Ordering::Relaxed),
             exceeded: crew.exceeded.load(Ordering::Relaxed),
@@ -257,9 +278,9 @@ impl Host<'_> {
     }
 
     /// Waits for the chunks that others are at.
-    fn wait(&mut self, crew: &Crew<'_>) {
+    fn wait(&mut self, crew: &Crew<'_>, chunks: usize) {
         let mut looks = 0;
-        while crew.done.load(Ordering::Acquire) < crew.chunks {
+        while crew.done.load(Ordering::Acquire) < chunks {
             looks += 1;
             if looks <= SPINS {
                 std::hint::spin_loop();
@@ -267,7 +288,7 @@ impl Host<'_> {
                 thread::yield_now();
             } else {
                 crew.host_asleep.store(true, Ordering::SeqCst);
-                if crew.done.load(Ordering::SeqCst) < crew.chunks {
+                if crew.done.load(Ordering::SeqCst) < chunks {
                     thread::park();
                 }
                 crew.host_asleep.store(false, Ordering::SeqCst);
@@ -283,11 +304,11 @@ mod tests {
 
     use super::*;
 
+    /// Sweeps of different lengths, since a worker may come late from the one before.
     #[test]
     fn every_chunk_of_every_sweep_is_made_once_whatever_the_number_of_threads() {
         for threads in [1, 2, 3, 8] {
-            let chunks = 37;
-            let made: Vec<AtomicU32> = (0..chunks).map(|_| AtomicU32::new(0)).collect();
+            let made: Vec<AtomicU32> = (0..37).map(|_| AtomicU32::new(0)).collect();
             let work = |range: Range<usize>| {
                 let mut outcome = Outcome::default();
                 for chunk in range {
@@ -299,14 +320,18 @@ mod tests {
                 }
                 outcome
             };
-            Crew::gather((threads, &mut Patience::default()), chunks, &work, |host| {
-                for sweep in 1..=2000 {
-                    let outcome = host.sweep();
-                    assert_eq!((outcome.saturated, outcome.exceeded), (36 * 37 / 2, true));
-                    let all = made
-                        .iter()
-                        .all(|count| count.load(Ordering::Relaxed) == sweep);
-                    assert!(all, "{threads} threads, sweep {sweep}");
+            Crew::gather((threads, &mut Patience::default()), &work, |host| {
+                let mut expected = [0; 37];
+                for sweep in 1..=3000 {
+                    let chunks = [37, 2, 13][sweep % 3];
+                    let outcome = host.sweep(chunks);
+                    let sum = chunks as u64 * (chunks as u64 - 1) / 2;
+                    assert_eq!((outcome.saturated, outcome.exceeded), (sum, chunks > 5));
+                    expected[..chunks].iter_mut().for_each(|count| *count += 1);
+                    for (made, expected) in made.iter().zip(expected) {
+                        let made = made.load(Ordering::Relaxed);
+                        assert_eq!(made, expected, "{threads} threads, sweep {sweep}");
+                    }
                 }
             });
         }
@@ -350,9 +375,9 @@ mod tests {
         let mut patience = Patience::default();
         let sweeps = 300;
         for _ in 0..10 {
-            Crew::gather((2, &mut patience), 8, &work, |host| {
+            Crew::gather((2, &mut patience), &work, |host| {
                 for _ in 0..sweeps / 10 {
-                    host.sweep();
+                    host.sweep(8);
                 }
             });
         }

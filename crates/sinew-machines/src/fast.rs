@@ -3,20 +3,24 @@
 use std::ops::Range;
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
-use sinew_cnn::{FollowedLoad, Loads, Machine, Program, StepTime, Sweep};
+use sinew_cnn::{
+    self as program, FollowedLoad, LoadAt, Loads, Machine, Program, Register, StepTime, Sweep,
+};
 use sinew_core::{
-    Acceleration, Batch, Equations, LinearOperators, Revision, State, Step, StepError, StepReport,
-    Stepped, System, VelocityTime,
+    Acceleration, Batch, ElementForces, ElementPrecision, ElementSweep, Equations, LinearOperators,
+    LoadTime, Revision, State, Step, StepError, StepReport, Stepped, SweepShape, System,
+    VelocityTime,
 };
 use sinew_sparse::simd::InstructionSet;
 use sinew_sparse::sweep::{self as kernel, Field, Fields, Outcome, Precision, Rows};
 
-use crate::compiled::{Compiled, Constant, Variant};
+use crate::compiled::{BesideElements, Compiled, Constant, ELEMENTS, Variant};
 use crate::crew::{Crew, Host, Patience};
 use crate::forces::Forces;
 use crate::layout::Layout;
 
-/// Runs programs on the cells of a linear system in the order of a [`Layout`], each sweep in one pass.
+/// Runs programs on the cells of a system in the order of a [`Layout`], each sweep in one pass over matrices; where forces are sums
+/// over elements, after the passes over these.
 #[derive(Debug)]
 pub struct FastMachine<T> {
     layout: Arc<Layout<T>>,
@@ -41,8 +45,22 @@ struct Loaded<T> {
     forces_field: usize,
     forces: Forces,
     followed: FollowedLoad,
+    /// Forces of elements, where the system has them, and the number of their vector.
+    elements: Option<(Box<dyn ElementSweep<T>>, usize)>,
     /// The sweep under way.
     current: Current<T>,
+    work: Work,
+}
+
+/// What threads do.
+#[derive(Clone, Copy, Debug)]
+enum Work {
+    /// Elements take the displacements of a chunk of cells, in a vector.
+    Take(usize),
+    /// A pass over parts of the elements.
+    Elements(usize),
+    /// The cells of a chunk.
+    Cells,
 }
 
 /// A sweep of a program that is under way.
@@ -55,7 +73,7 @@ struct Current<T> {
     limit: T,
 }
 
-impl<T: Precision> FastMachine<T> {
+impl<T: ElementPrecision> FastMachine<T> {
     /// A machine with the matrices of a system in this layout.
     #[must_use]
     pub fn new(layout: Arc<Layout<T>>) -> Self {
@@ -99,7 +117,15 @@ impl<T: Precision> FastMachine<T> {
     }
 
     /// Takes rows and masses again that changed since the program was loaded.
-    fn follow_changes(&mut self, operators: &LinearOperators) {
+    fn follow_changes(&mut self, system: &dyn System) {
+        let Equations::Linear(linear) = system.equations() else {
+            if let Some(loaded) = self.loaded.take() {
+                let loaded = loaded.into_inner().unwrap_or_else(PoisonError::into_inner);
+                self.load(loaded.program, system);
+            }
+            return;
+        };
+        let operators = linear.operators();
         let Some(loaded) = self.loaded.as_mut().map(own) else {
             return;
         };
@@ -116,16 +142,17 @@ impl<T: Precision> FastMachine<T> {
             None => {
                 let program = Arc::clone(&loaded.program);
                 self.layout = Layout::general(operators);
-                let loaded = Loaded::new(program, &self.layout, operators);
+                let loaded = Loaded::new(program, &self.layout, operators, None);
                 self.loaded = Some(RwLock::new(loaded));
             }
         }
     }
 }
 
-impl<T: Precision> Machine for FastMachine<T> {
+impl<T: ElementPrecision> Machine for FastMachine<T> {
     fn name(&self) -> &'static str {
         match self.layout.stiffness {
+            _ if self.layout.elements > 0 => "elements",
             Rows::General(_) => "general",
             Rows::Lattice(_) => "repeated",
         }
@@ -146,20 +173,35 @@ impl<T: Precision> Machine for FastMachine<T> {
 
     fn load(&mut self, program: Arc<Program>, system: &dyn System) {
         self.loaded = None;
-        if let Equations::Linear(linear) = system.equations() {
-            let loaded = Loaded::new(program, &self.layout, linear.operators());
-            self.loaded = Some(RwLock::new(loaded));
-        }
+        let loaded = match system.equations() {
+            Equations::Linear(linear) => {
+                Loaded::new(program, &self.layout, linear.operators(), None)
+            }
+            Equations::Forces(law) => {
+                let Some(forces) = law.element_forces() else {
+                    return;
+                };
+                self.layout = Layout::beside_elements(forces);
+                let shape = SweepShape {
+                    numbering: &self.layout.numbering,
+                    set: self.set,
+                    parts: self.threads,
+                };
+                let elements = T::sweep_of(forces, shape);
+                Loaded::new(program, &self.layout, forces.operators(), Some(elements))
+            }
+        };
+        self.loaded = Some(RwLock::new(loaded));
     }
 
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
-        let Equations::Linear(linear) = batch.system().equations() else {
+        let system = batch.system();
+        let Some((operators, elements)) = matrices(system) else {
             return Err(StepError::NotPrepared);
         };
-        let operators = linear.operators();
         let before = self.loaded.as_mut().map(|loaded| own(loaded).matrices);
         if before.is_some_and(|before| before != operators.revision()) {
-            self.follow_changes(operators);
+            self.follow_changes(system);
         }
         let Some(loaded) = &mut self.loaded else {
             return Err(StepError::NotPrepared);
@@ -176,26 +218,61 @@ impl<T: Precision> Machine for FastMachine<T> {
             let sweeps = batch.parts_left() * program.step.len();
             let threads = match patience.is_alone_for(sweeps) {
                 true => 1,
-                false => layout.threads_for(chunks, sweeps).min(self.threads),
+                false => {
+                    let pays = layout.threads_for(chunks, elements, sweeps);
+                    pays.min(self.threads)
+                }
             };
-            Crew::gather((threads, patience), chunks, &work, |host| {
+            Crew::gather((threads, patience), &work, |host| {
                 let running = Running {
                     loaded,
                     layout,
                     operators,
                     host,
                 };
-                running.steps(&program, batch, state);
-            });
-        });
-        Ok(())
+                running.steps(&program, batch, state)
+            })
+        })
     }
 }
 
-impl<T: Precision> Loaded<T> {
-    fn new(program: Arc<Program>, layout: &Layout<T>, operators: &LinearOperators) -> Self {
+/// The matrices and loads of a system that kernels can run, and the number of its elements where forces are sums over these.
+fn matrices(system: &dyn System) -> Option<(&LinearOperators, usize)> {
+    match system.equations() {
+        Equations::Linear(linear) => Some((linear.operators(), 0)),
+        Equations::Forces(law) => {
+            let forces: &dyn ElementForces = law.element_forces()?;
+            Some((forces.operators(), forces.elements()))
+        }
+    }
+}
+
+/// What stands beside elements.
+fn beside(operators: &LinearOperators) -> BesideElements {
+    let stiffness = operators.stiffness();
+    let mut rows = 0..stiffness.pattern().cells();
+    let is_some = |row| {
+        let mut blocks = stiffness.row_blocks(row);
+        blocks.any(|(_, block)| block.iter().any(|entry| *entry != 0.0))
+    };
+    let damping = operators.damping();
+    BesideElements {
+        stiffness: rows.any(is_some),
+        dashpots: damping.extra.is_some(),
+        mass_damping: damping.mass,
+    }
+}
+
+impl<T: ElementPrecision> Loaded<T> {
+    fn new(
+        program: Arc<Program>,
+        layout: &Layout<T>,
+        operators: &LinearOperators,
+        elements: Option<Box<dyn ElementSweep<T>>>,
+    ) -> Self {
         let layers = operators.stiffness().layers().count();
-        let sweeps = Compiled::<T>::new(&program, layers);
+        let beside = elements.is_some().then(|| beside(operators));
+        let sweeps = Compiled::<T>::new(&program, layers, beside);
         let mut count = 0;
         let mut next = |used: bool| {
             let field = count;
@@ -216,6 +293,8 @@ impl<T: Precision> Loaded<T> {
             fields: Fields::new(count as usize, layers, positions, layout.reach),
             forces_field: table[registers] as usize,
             forces: Forces::new::<T>(operators, positions),
+            elements: elements.map(|elements| (elements, table[registers + ELEMENTS] as usize)),
+            work: Work::Cells,
             followed: FollowedLoad::of(&program),
             current: Current {
                 part: Part::Entry,
@@ -245,7 +324,7 @@ impl<T: Precision> Loaded<T> {
         let used = constants.iter().zip(&self.table[registers..]);
         for ((constant, used), field) in used {
             // Forces are written as a sweep asks for them.
-            if !used || *constant == Constant::Forces {
+            if !used || matches!(constant, Constant::Forces | Constant::Elements) {
                 continue;
             }
             for layer in 0..layers {
@@ -255,7 +334,7 @@ impl<T: Precision> Loaded<T> {
                     let cell = cell as usize;
                     let dof = cell * layers + layer;
                     let value = match constant {
-                        Constant::Forces => continue,
+                        Constant::Forces | Constant::Elements => continue,
                         Constant::InverseMass => 1.0 / mass[dof],
                         Constant::Mass => mass[dof],
                         Constant::Live => 1.0,
@@ -297,9 +376,18 @@ enum Part {
     Step,
 }
 
-impl<T: Precision> Running<'_, '_, T> {
+impl<T: ElementPrecision> Running<'_, '_, T> {
     /// Takes all steps, or parts of them, of a batch.
-    fn steps(mut self, program: &Program, batch: &mut Batch<'_>, state: &mut State) {
+    ///
+    /// # Errors
+    /// [`StepError::Refused`] where the system refuses a motion; the state is then that before the step, as far as the program's
+    /// sweeps before have not moved it.
+    fn steps(
+        mut self,
+        program: &Program,
+        batch: &mut Batch<'_>,
+        state: &mut State,
+    ) -> Result<(), StepError> {
         let running = program.velocity != VelocityTime::Same && state.is_staggered_by(batch.dt());
         let mut starts = !program.start.is_empty() && !running;
         let limit = T::of(batch.divergence_limit().min(T::LARGEST));
@@ -331,7 +419,9 @@ impl<T: Precision> Running<'_, '_, T> {
                     is_last,
                     limit,
                 };
-                if let Some(outcome) = self.sweep(sweep, current, &step, state.t()) {
+                let made = self.sweep(sweep, current, &step, state.t());
+                let outcome = made.inspect_err(|_| write(self.loaded).show(self.layout, state))?;
+                if let Some(outcome) = outcome {
                     exceeded |= outcome.exceeded;
                     work += StepReport {
                         saturated: outcome.saturated,
@@ -363,6 +453,7 @@ impl<T: Precision> Running<'_, '_, T> {
         if !written {
             write(self.loaded).show(self.layout, state);
         }
+        Ok(())
     }
 
     /// Makes one sweep, where the step needs it.
@@ -372,26 +463,63 @@ impl<T: Precision> Running<'_, '_, T> {
         current: Current<T>,
         step: &Step<'_>,
         t: f64,
-    ) -> Option<Outcome> {
+    ) -> Result<Option<Outcome>, StepError> {
         let when = StepTime::new(step, t);
         if !when.needs(sweep.when, Some(self.operators)) {
-            return None;
+            return Ok(None);
+        }
+        if let program::Forces::Internal { u, .. } = sweep.forces {
+            let at = match sweep.loads {
+                Loads::All { at, .. } => at,
+                _ => LoadAt::StartOf,
+            };
+            self.elements(u, when.load_time(at).under(step.inputs))?;
         }
         let mut loaded = write(self.loaded);
         loaded.take_loads(self.layout, sweep, self.operators, when);
         drop(loaded);
-        Some(self.make(current))
+        Ok(Some(self.make(current)))
     }
 
     fn make(&mut self, current: Current<T>) -> Outcome {
         write(self.loaded).prepare(current);
-        let outcome = self.host.sweep();
+        let chunks = read(self.loaded).chunks();
+        let outcome = self.host.sweep(chunks);
         write(self.loaded).swap();
         outcome
     }
+
+    /// Computes the forces of elements at the displacement in a register.
+    fn elements(&mut self, u: Register, when: LoadTime<'_>) -> Result<(), StepError> {
+        let refused = |source| StepError::Refused {
+            t: when.t(),
+            source,
+        };
+        let mut loaded = write(self.loaded);
+        let field = loaded.field(u.index());
+        loaded.work = Work::Take(field);
+        let chunks = loaded.chunks();
+        let Some((elements, _)) = &mut loaded.elements else {
+            return Err(StepError::NotPrepared);
+        };
+        elements.begin(when).map_err(refused)?;
+        let (passes, parts) = (elements.passes(), elements.parts());
+        drop(loaded);
+        self.host.sweep(chunks);
+        for pass in 0..passes {
+            write(self.loaded).work = Work::Elements(pass);
+            if self.host.sweep(parts).exceeded {
+                let mut loaded = write(self.loaded);
+                let elements = loaded.elements.as_mut();
+                let refusal = elements.map(|(elements, _)| refused(elements.refusal()));
+                return Err(refusal.unwrap_or(StepError::NotPrepared));
+            }
+        }
+        Ok(())
+    }
 }
 
-impl<T: Precision> Loaded<T> {
+impl<T: ElementPrecision> Loaded<T> {
     /// Number of chunks of a sweep.
     fn chunks(&self) -> usize {
         self.fields.positions().div_ceil(kernel::CHUNK * T::LANES)
@@ -423,13 +551,23 @@ impl<T: Precision> Loaded<T> {
     /// Prepares a sweep.
     fn prepare(&mut self, current: Current<T>) {
         self.current = current;
+        self.work = Work::Cells;
         let followed = &self.followed;
         let variant = current.of(&mut self.sweeps);
         variant.resolve(&self.table, |weight| followed.weight(weight));
     }
 
-    /// Makes the sweep that was prepared, on a range of chunks that no other thread makes.
+    /// Does the work that was prepared, on a range of chunks, or of parts, that no other thread makes.
     fn make(&self, layout: &Layout<T>, set: InstructionSet, chunks: Range<usize>) -> Outcome {
+        if let Some((elements, field)) = &self.elements {
+            let (done, is_defined) = self.of_elements((&**elements, *field), chunks.clone());
+            if done {
+                return Outcome {
+                    exceeded: !is_defined,
+                    ..Outcome::default()
+                };
+            }
+        }
         let (stiffness, dashpots) = (&layout.stiffness, layout.dashpots.as_ref());
         let sweep = kernel::Sweep {
             map: self.current.variant(&self.sweeps).map(),
@@ -439,6 +577,35 @@ impl<T: Precision> Loaded<T> {
             limit: self.current.limit,
         };
         run(&sweep, set, chunks)
+    }
+
+    /// Does what is to be done for elements before the cells are swept; whether that was all, and whether the law is defined.
+    #[allow(unsafe_code, reason = "a machine hands out each chunk once")]
+    fn of_elements(
+        &self,
+        (elements, field): (&dyn ElementSweep<T>, usize),
+        chunks: Range<usize>,
+    ) -> (bool, bool) {
+        let size = kernel::CHUNK * T::LANES;
+        let positions = || size * chunks.start..(size * chunks.end).min(self.fields.positions());
+        // SAFETY: as for `run` below; a crew ends each sweep before the next, and the vector of forces is read by the chunk that
+        // writes it.
+        unsafe {
+            match self.work {
+                Work::Take(source) => {
+                    elements.take(&self.fields, source, positions());
+                    (true, true)
+                }
+                Work::Elements(pass) => {
+                    let mut parts = chunks;
+                    (true, parts.all(|part| elements.make(pass, part)))
+                }
+                Work::Cells => {
+                    elements.give(&self.fields, field, positions());
+                    (false, true)
+                }
+            }
+        }
     }
 
     /// Ends the sweep that was prepared.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use sinew_core::{LinearOperators, LinearSystem};
+use sinew_core::{ElementForces, LinearOperators, LinearSystem};
 use sinew_sparse::sweep::{Grid, Lattice, Numbering, Precision, Rows, Sell};
 
 /// The matrices of a system as kernels read them.
@@ -15,10 +15,15 @@ pub struct Layout<T> {
     pub(crate) dashpots: Option<Rows<T>>,
     /// Blocks of the matrices, each row by itself.
     blocks: usize,
+    /// Elements of the force law beside which the matrices stand; 0 where there is none.
+    pub(crate) elements: usize,
 }
 
 /// The layout for any matrix.
 struct General<T>(Arc<Layout<T>>);
+
+/// The layout beside the elements of a force law.
+struct BesideElements<T>(Arc<Layout<T>>);
 
 /// The layout of a lattice, where there is one.
 struct Repeated<T>(Option<Arc<Layout<T>>>);
@@ -28,6 +33,9 @@ const BEGIN: usize = 2_000;
 
 /// Work of a sweep (microseconds, about) that is worth a thread.
 const SHARE: usize = 30;
+
+/// Elements that a microsecond, about, is enough for.
+const ELEMENTS: usize = 150;
 
 /// Bytes of matrices that stay in a second cache, and in a third.
 const SECOND_CACHE: usize = 2 << 20;
@@ -52,9 +60,35 @@ impl<T: Precision> Layout<T> {
                 reach: 0,
                 numbering,
                 blocks: blocks(operators),
+                elements: 0,
             }))
         };
         Arc::clone(&operators.derived::<General<T>>(of).0)
+    }
+
+    /// The matrices beside the elements of a force law, in the order of its forces; made once for all clones of the operators.
+    #[must_use]
+    pub fn beside_elements(forces: &dyn ElementForces) -> Arc<Self> {
+        let of = |operators: &LinearOperators| {
+            let order = forces.order();
+            let positions = order.len().next_multiple_of(T::LANES);
+            let mut position = vec![0; order.len()];
+            for (place, cell) in (0..).zip(&order) {
+                position[*cell as usize] = place;
+            }
+            let numbering = Numbering::at(position, positions);
+            let rows = |matrix| Rows::General(Sell::new(matrix, &numbering));
+            let extra = operators.damping().extra.as_ref();
+            BesideElements(Arc::new(Self {
+                stiffness: rows(operators.stiffness()),
+                dashpots: extra.map(|extra| rows(extra)),
+                reach: 0,
+                numbering,
+                blocks: blocks(operators),
+                elements: forces.elements(),
+            }))
+        };
+        Arc::clone(&forces.operators().derived::<BesideElements<T>>(of).0)
     }
 
     /// Templates on a lattice, where cells are on one and few templates make all rows; made once for all
@@ -86,6 +120,7 @@ impl<T: Precision> Layout<T> {
             reach: grid.reach(),
             numbering: grid.numbering().clone(),
             blocks: blocks(operators),
+            elements: 0,
         })
     }
 
@@ -114,6 +149,7 @@ impl<T: Precision> Layout<T> {
     pub(crate) fn in_words(&self) -> String {
         let cells = self.numbering.cells();
         match &self.stiffness {
+            _ if self.elements > 0 => format!("{} elements", self.elements),
             Rows::General(_) => format!("rows of any mesh ({cells}, {})", size(self.bytes())),
             Rows::Lattice(rows) => {
                 format!(
@@ -141,15 +177,15 @@ impl<T: Precision> Layout<T> {
         self.stiffness.bytes() + self.dashpots.as_ref().map_or(0, Rows::bytes)
     }
 
-    /// The number of threads that pays for sweeps over so many chunks: as many as each get work for some tens
+    /// The number of threads that pays for sweeps over so many chunks and elements: as many as each get work for some tens
     /// of microseconds in a sweep, and one where a batch ends before others have begun.
-    pub(crate) fn threads_for(&self, chunks: usize, sweeps: usize) -> usize {
+    pub(crate) fn threads_for(&self, chunks: usize, elements: usize, sweeps: usize) -> usize {
         // Microseconds, about: rows of blocks are read from memory, templates are not.
         let (work, vectors) = match self.stiffness {
             Rows::General(_) => (4, T::LANES),
             Rows::Lattice(_) => (1, 8),
         };
-        let of_sweep = chunks * work * vectors / 8;
+        let of_sweep = chunks * work * vectors / 8 + elements / ELEMENTS;
         if of_sweep.saturating_mul(sweeps) < BEGIN {
             return 1;
         }

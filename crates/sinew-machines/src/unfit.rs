@@ -16,8 +16,8 @@ pub enum Unfit {
     Law(&'static str),
     /// Single precision was asked for where forces follow from a law.
     #[error(
-        "precision = \"f32\" is for systems with matrices, and the forces of this one follow from a law; leave \
-         `precision` out"
+        "precision = \"f32\" is for matrices and for sums over elements without stiffness damping, by any machine but the \
+         reference; leave `precision` out"
     )]
     LawInSinglePrecision,
 }

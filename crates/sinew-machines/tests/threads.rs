@@ -9,12 +9,11 @@ mod bodies;
 use std::sync::Arc;
 
 use bodies::{bump, held_cube, leapfrog, run};
-use sinew_core::LinearSystem;
+use sinew_core::{ElementPrecision, LinearSystem};
 use sinew_machines::{FastMachine, Layout};
 use sinew_mesh::structured::Split;
-use sinew_sparse::sweep::Precision;
 
-fn same_bits_for_every_number_of_threads<T: Precision>(layout: &Arc<Layout<T>>) {
+fn same_bits_for_every_number_of_threads<T: ElementPrecision>(layout: &Arc<Layout<T>>) {
     let system = held_cube(20, Split::Kuhn);
     let (program, dt) = leapfrog(&system, 0.9);
     let start = bump(&system);

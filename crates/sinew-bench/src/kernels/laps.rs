@@ -5,11 +5,11 @@ use std::time::{Duration, Instant};
 
 use sinew_cnn::conformance::CountingAllocator;
 use sinew_cnn::{Machine, Program, Quotient, ReferenceMachine, Sweep, When};
+use sinew_core::ElementPrecision;
 use sinew_core::{Batch, Inputs, Layers, LinearSystem, Options, State, System};
 use sinew_fem::Rayleigh;
 use sinew_machines::{FastMachine, Kind, Layout, PrecisionName};
 use sinew_measure::thread_cpu_time;
-use sinew_sparse::sweep::Precision;
 
 use super::baseline::Baseline;
 use super::bodies::{Body, KernelBenchError};
@@ -185,7 +185,7 @@ fn runner(variant: Variant, model: &sinew_fem::Model, program: &Arc<Program>) ->
     }
 }
 
-fn runner_in<T: Precision>(
+fn runner_in<T: ElementPrecision>(
     variant: Variant,
     model: &sinew_fem::Model,
     program: &Arc<Program>,

@@ -300,14 +300,14 @@ fn from(first: usize, range: &Range<usize>) -> Range<usize> {
 /// Whether a law is defined for a deformation, which is finite, in all lanes.
 #[inline(always)]
 fn admits<L: HyperelasticLaw, N: Number>(deformation: &Deformation<N>) -> bool {
-    let ratio = deformation.volume_ratio;
-    N::all_le(N::of(least::<L>()), ratio) && N::all_le(ratio, N::of(f64::MAX))
+    let (ratio, largest) = (deformation.volume_ratio, N::Real::LARGEST);
+    N::all_le(N::of(least::<L>(largest)), ratio) && N::all_le(ratio, N::of(largest))
 }
 
-/// The smallest volume ratio that a law is defined for.
-const fn least<L: HyperelasticLaw>() -> f64 {
+/// The smallest volume ratio that a law is defined for, of numbers of this size.
+const fn least<L: HyperelasticLaw>(largest: f64) -> f64 {
     if L::DEFINED_WHEN_INVERTED {
-        f64::MIN
+        -largest
     } else {
         SMALLEST_VOLUME_RATIO
     }
@@ -329,7 +329,7 @@ fn refused_among<L: HyperelasticLaw>(
     ratios: &[f64; LANES],
     tag: impl Fn(usize) -> u64,
 ) -> EvaluationError {
-    let is_refused = |ratio: &f64| !(least::<L>()..=f64::MAX).contains(ratio);
+    let is_refused = |ratio: &f64| !(least::<L>(f64::MAX)..=f64::MAX).contains(ratio);
     let lane = ratios.iter().position(is_refused).unwrap_or(0);
     refused::<L>(tag(lane), ratios[lane])
 }

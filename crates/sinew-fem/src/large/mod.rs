@@ -14,9 +14,11 @@ mod rest;
 mod schedule;
 mod scratch;
 mod stress;
+mod threads;
 
 pub(crate) use region::HyperelasticRegion;
 pub(crate) use scratch::{Scratch, fill};
+pub(crate) use threads::SharedForces;
 
 use std::sync::{Mutex, PoisonError};
 
@@ -129,28 +131,18 @@ impl LargeDeformation {
             set: self.set,
             with_energy,
         };
-        self.evaluate_alone(&evaluation)
+        evaluate_alone(&self.alone, &evaluation)
     }
 
-    /// Makes an evaluation whose places nobody else uses meanwhile.
-    #[allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
-    fn evaluate_alone<T: Vectors>(
-        &self,
-        evaluation: &Evaluation<'_, T>,
-    ) -> Result<Deformed, EvaluationError> {
-        let mut all = Deformed::default();
-        let parts = self.alone.passes().iter().flatten();
-        for piece in parts.flatten() {
-            // SAFETY: the pieces of all passes, one after the other.
-            let found = unsafe { evaluation.make(0, piece) }?;
-            all.energy += found.energy;
-            all.inverted += found.inverted;
-            if found.smallest_volume_ratio < all.smallest_volume_ratio {
-                all.smallest_volume_ratio = found.smallest_volume_ratio;
-                all.worst_element = found.worst_element;
-            }
-        }
-        Ok(all)
+    /// The mesh nodes of the regions, by the order in which forces are complete.
+    pub(crate) fn nodes_in_order(&self) -> &[u32] {
+        self.gather.nodes()
+    }
+
+    /// Number of tetrahedra.
+    pub(crate) fn elements(&self) -> usize {
+        let count = |region: &HyperelasticRegion| region.rest.tets().count();
+        self.regions.iter().map(count).sum()
     }
 
     /// Computes the tangent at the displacement in the scratch times the change in it, as forces (N) at the corners.
@@ -225,6 +217,26 @@ impl LargeDeformation {
             .find(|region| region.first <= place)?;
         Some(stress::cauchy(region, place - region.first, displacement))
     }
+}
+
+/// Makes an evaluation, whose places nobody else uses meanwhile, by one thread.
+#[allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
+fn evaluate_alone<T: Vectors>(
+    schedule: &Schedule,
+    evaluation: &Evaluation<'_, T>,
+) -> Result<Deformed, EvaluationError> {
+    let mut all = Deformed::default();
+    for piece in schedule.passes().iter().flatten().flatten() {
+        // SAFETY: the pieces of all passes, one after the other.
+        let found = unsafe { evaluation.make(0, piece) }?;
+        all.energy += found.energy;
+        all.inverted += found.inverted;
+        if found.smallest_volume_ratio < all.smallest_volume_ratio {
+            all.smallest_volume_ratio = found.smallest_volume_ratio;
+            all.worst_element = found.worst_element;
+        }
+    }
+    Ok(all)
 }
 
 #[cfg(test)]

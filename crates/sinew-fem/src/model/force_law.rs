@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use sinew_core::spectrum::{Spectrum, estimated_largest_eigenvalue, largest_eigenvalue};
 use sinew_core::{
-    BlockMatrix, Damping, Deformed, ElasticLaw, EvaluationError, ForceLaw, Hash, LoadTime, Pattern,
-    State, TangentKind, Trial,
+    BlockMatrix, Damping, Deformed, ElasticLaw, ElementForces, EvaluationError, ForceLaw, Hash,
+    LoadTime, Pattern, State, TangentKind, Trial,
 };
 
 use super::Model;
@@ -143,6 +143,11 @@ impl ForceLaw for Model {
 
     fn elastic(&self) -> Option<&dyn ElasticLaw> {
         Some(self)
+    }
+
+    /// Without stiffness damping, which takes a tangent.
+    fn element_forces(&self) -> Option<&dyn ElementForces> {
+        (self.operators.damping().stiffness == 0.0).then_some(self)
     }
 
     /// Of materials, elements and geometry.

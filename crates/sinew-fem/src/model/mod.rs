@@ -1,6 +1,7 @@
 //! The model of a body.
 
 mod deformed;
+mod element_forces;
 mod energy;
 mod field_error;
 mod force_law;

@@ -4,6 +4,7 @@
 
 use std::cell::UnsafeCell;
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use crate::simd::{At, Real};
 
@@ -93,6 +94,45 @@ impl<T: Real> Fields<T> {
         let first = UnsafeCell::raw_get(self.lines.as_ptr()).cast::<T>();
         // SAFETY: `at` lies within the allocation, since `field` is one of its vectors.
         unsafe { first.add(at) }
+    }
+
+    /// Values of a layer at some positions, to be read.
+    ///
+    /// # Safety
+    /// Nobody writes any of them as long as the slice is used.
+    ///
+    /// # Panics
+    /// Where they are not there.
+    #[must_use]
+    pub unsafe fn read(&self, field: usize, layer: usize, positions: Range<usize>) -> &[T] {
+        let first = self.first_of(field, layer, &positions);
+        // SAFETY: the positions lie within the layer, and the rest is the caller's promise.
+        unsafe { std::slice::from_raw_parts(first, positions.len()) }
+    }
+
+    /// Values of a layer at some positions, to be written.
+    ///
+    /// # Safety
+    /// Nobody else uses any of them as long as the slice is used.
+    ///
+    /// # Panics
+    /// Where they are not there.
+    #[must_use]
+    #[allow(clippy::mut_from_ref, reason = "that is what the promise is for")]
+    pub unsafe fn write(&self, field: usize, layer: usize, positions: Range<usize>) -> &mut [T] {
+        let first = self.first_of(field, layer, &positions);
+        // SAFETY: the positions lie within the layer, and the rest is the caller's promise.
+        unsafe { std::slice::from_raw_parts_mut(first, positions.len()) }
+    }
+
+    /// The first of some positions of a layer.
+    fn first_of(&self, field: usize, layer: usize, positions: &Range<usize>) -> *mut T {
+        assert!(layer < self.layers, "a layer by its number");
+        let within = positions.start <= positions.end && positions.end <= self.positions;
+        assert!(within, "positions that there are");
+        let first = self.pointer(field);
+        // SAFETY: the layer lies within the allocation, and the position within the layer.
+        unsafe { first.add(layer * self.stride + positions.start) }
     }
 
     /// The values of a layer, one for each position.

@@ -1,10 +1,10 @@
 //! The best instruction set beside those that every processor has.
 
+use sinew_core::ElementPrecision;
 use sinew_core::{LinearSystem, State, System};
 use sinew_fem::Model;
 use sinew_machines::{FastMachine, Layout};
 use sinew_sparse::simd::InstructionSet;
-use sinew_sparse::sweep::Precision;
 
 use super::guard::{Guard, Limit};
 use super::runner::Runner;
@@ -23,7 +23,7 @@ pub(super) fn guards(quick: bool) -> Result<Vec<Guard>, KernelBenchError> {
     Ok(guards)
 }
 
-fn of<T: Precision>(
+fn of<T: ElementPrecision>(
     model: &Model,
     quick: bool,
     guards: &mut Vec<Guard>,

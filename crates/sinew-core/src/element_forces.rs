@@ -1,0 +1,103 @@
+//! Forces of elements, for machines that hold a motion in a form of their own.
+
+use std::fmt::Debug;
+use std::ops::Range;
+
+use sinew_sparse::simd::InstructionSet;
+use sinew_sparse::sweep::{Fields, Numbering, Precision};
+
+use crate::evaluation_error::EvaluationError;
+use crate::load_time::LoadTime;
+use crate::operators::LinearOperators;
+
+/// The part of a force law that machines with threads and vectors compute: forces of elements, beside matrices.
+///
+/// The law's net force is `f_ext - K u - (alpha M + E) v - f(u)`: M, K, alpha, the dashpots E and the loads are those of
+/// [`ElementForces::operators`], which has no stiffness damping, and f is the sum over the elements.
+pub trait ElementForces: Send + Sync {
+    /// The matrices and loads, and so the cells.
+    fn operators(&self) -> &LinearOperators;
+
+    /// All cells, in an order in which those come one after the other whose forces are complete one after the other.
+    fn order(&self) -> Vec<u32>;
+
+    /// Number of elements.
+    fn elements(&self) -> usize;
+
+    /// The sweep in double precision.
+    fn in_double(&self, shape: SweepShape<'_>) -> Box<dyn ElementSweep<f64>>;
+
+    /// The sweep in single precision.
+    fn in_single(&self, shape: SweepShape<'_>) -> Box<dyn ElementSweep<f32>>;
+}
+
+/// What a machine asks of a sweep over elements.
+#[derive(Clone, Copy, Debug)]
+pub struct SweepShape<'a> {
+    /// The position of each cell in the machine's vectors.
+    pub numbering: &'a Numbering,
+    /// The instructions.
+    pub set: InstructionSet,
+    /// Parts that threads may compute at the same time.
+    pub parts: usize,
+}
+
+/// A sweep over elements, with room for what it keeps: displacements are taken, forces made pass by pass, and then given. The bits do not
+/// depend on the number of parts.
+///
+/// # Safety
+/// Each of the three is called by several threads, each for places or parts of its own, none before the one
+/// before has come to its end everywhere, and nobody uses what it reads or writes of the vectors meanwhile.
+#[allow(unsafe_code, reason = "one contract for all methods stands above")]
+pub trait ElementSweep<T>: Debug + Send + Sync {
+    /// Number of passes.
+    fn passes(&self) -> usize;
+
+    /// Number of parts of a pass.
+    fn parts(&self) -> usize;
+
+    /// Begins a sweep at a time.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where a support follows an input that the time does not bring.
+    fn begin(&mut self, when: LoadTime<'_>) -> Result<(), EvaluationError>;
+
+    /// Takes the displacement (m) at some positions from a vector.
+    ///
+    /// # Safety
+    /// See [`ElementSweep`].
+    unsafe fn take(&self, fields: &Fields<T>, source: usize, positions: Range<usize>);
+
+    /// Computes a part of a pass; whether the law is defined for the elements that it met.
+    ///
+    /// # Safety
+    /// See [`ElementSweep`].
+    unsafe fn make(&self, pass: usize, part: usize) -> bool;
+
+    /// Writes the forces (N) at some positions to a vector.
+    ///
+    /// # Safety
+    /// See [`ElementSweep`].
+    unsafe fn give(&self, fields: &Fields<T>, out: usize, positions: Range<usize>);
+
+    /// The error for displacements that the law is not defined for: the same for any number of parts.
+    fn refusal(&mut self) -> EvaluationError;
+}
+
+/// Precisions that forces of elements are computed in.
+pub trait ElementPrecision: Precision {
+    /// The sweep in this precision.
+    fn sweep_of(forces: &dyn ElementForces, shape: SweepShape<'_>) -> Box<dyn ElementSweep<Self>>;
+}
+
+impl ElementPrecision for f64 {
+    fn sweep_of(forces: &dyn ElementForces, shape: SweepShape<'_>) -> Box<dyn ElementSweep<Self>> {
+        forces.in_double(shape)
+    }
+}
+
+impl ElementPrecision for f32 {
+    fn sweep_of(forces: &dyn ElementForces, shape: SweepShape<'_>) -> Box<dyn ElementSweep<Self>> {
+        forces.in_single(shape)
+    }
+}

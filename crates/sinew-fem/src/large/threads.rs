@@ -1,0 +1,108 @@
+//! Evaluations of forces that threads share.
+
+#![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
+
+use std::sync::Arc;
+
+use sinew_core::EvaluationError;
+use sinew_sparse::simd::{InstructionSet, Shared, SharedSlice, Vectors};
+
+use super::force::Evaluation;
+use super::region::Numbers;
+use super::schedule::Schedule;
+use super::scratch::Kept;
+use super::{LargeDeformation, evaluate_alone};
+
+/// The forces of all hyperelastic regions in one precision, in parts that threads compute at the same time.
+#[derive(Debug)]
+pub(crate) struct SharedForces<T> {
+    large: Arc<LargeDeformation>,
+    /// What loops read of each region.
+    numbers: Vec<Numbers<T>>,
+    schedule: Schedule,
+    set: InstructionSet,
+    kept: Kept<T>,
+    corners: Shared<[T; 4]>,
+    sums: Shared<[T; 4]>,
+}
+
+impl SharedForces<f64> {
+    /// In double precision.
+    pub(crate) fn double(large: &Arc<LargeDeformation>, parts: usize, set: InstructionSet) -> Self {
+        Self::new(large, large.numbers.clone(), parts, set)
+    }
+}
+
+impl SharedForces<f32> {
+    /// In single precision.
+    pub(crate) fn single(large: &Arc<LargeDeformation>, parts: usize, set: InstructionSet) -> Self {
+        let numbers = large.numbers.iter().map(Numbers::rounded).collect();
+        Self::new(large, numbers, parts, set)
+    }
+}
+
+impl<T: Vectors> SharedForces<T> {
+    fn new(
+        large: &Arc<LargeDeformation>,
+        numbers: Vec<Numbers<T>>,
+        parts: usize,
+        set: InstructionSet,
+    ) -> Self {
+        let rows = |count| Shared::new(vec![[T::default(); 4]; count]);
+        Self {
+            numbers,
+            schedule: Schedule::new(&large.regions, &large.gather, parts),
+            set,
+            kept: Kept::new(&large.regions, parts),
+            corners: rows(4 * large.slots),
+            sums: rows(large.gather.nodes().len()),
+            large: Arc::clone(large),
+        }
+    }
+
+    /// Number of passes.
+    pub(crate) fn passes(&self) -> usize {
+        self.schedule.passes().len()
+    }
+
+    fn evaluation<'a>(&'a self, displacement: &'a [[T; 4]]) -> Evaluation<'a, T> {
+        let (corners, sums) = (self.corners.slice(), self.sums.slice());
+        Evaluation {
+            regions: &self.large.regions,
+            numbers: &self.numbers,
+            gather: &self.large.gather,
+            places: self.kept.places(displacement, corners, sums),
+            set: self.set,
+            with_energy: false,
+        }
+    }
+
+    /// Computes a part of a pass with the displacement (m) of all mesh nodes.
+    ///
+    /// # Safety
+    /// Passes follow one another, each part of a pass is computed once, and nobody uses the sums meanwhile.
+    pub(crate) unsafe fn make(
+        &self,
+        displacement: &[[T; 4]],
+        pass: usize,
+        part: usize,
+    ) -> Result<(), EvaluationError> {
+        let evaluation = self.evaluation(displacement);
+        let mut pieces = self.schedule.passes()[pass][part].iter();
+        pieces.try_for_each(|piece| {
+            // SAFETY: the caller's promise.
+            unsafe { evaluation.make(part, piece) }.map(|_| ())
+        })
+    }
+
+    /// Computes everything, so that what is refused does not depend on the parts.
+    pub(crate) fn make_alone(&mut self, displacement: &[[T; 4]]) -> Result<(), EvaluationError> {
+        // Nobody else uses what belongs to `self`.
+        evaluate_alone(&self.large.alone, &self.evaluation(displacement)).map(|_| ())
+    }
+
+    /// The sums of the forces (N) at nodes, in the order of [`LargeDeformation::nodes_in_order`].
+    pub(crate) fn sums(&self) -> SharedSlice<'_, [T; 4]> {
+        self.sums.slice()
+    }
+}

@@ -1,0 +1,248 @@
+//! Forces of hyperelastic regions for machines with threads and vectors.
+
+#![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
+
+use std::ops::Range;
+
+use sinew_core::{
+    ElementForces, ElementPrecision, ElementSweep, EvaluationError, LinearOperators, LoadTime,
+    SweepShape,
+};
+use sinew_sparse::simd::{Real, Shared, Vectors};
+use sinew_sparse::sweep::{Fields, Numbering};
+
+use super::Model;
+use super::field_error::require_inputs;
+use crate::large::SharedForces;
+use crate::motion::Motions;
+
+/// Marks what is not there.
+const NONE: u32 = u32::MAX;
+
+impl ElementForces for Model {
+    fn operators(&self) -> &LinearOperators {
+        &self.operators
+    }
+
+    /// Cells of hyperelastic regions first, then those of others.
+    fn order(&self) -> Vec<u32> {
+        let cells = &self.body.cells;
+        let mut order = Vec::with_capacity(cells.nodes.len());
+        let mut is_taken = vec![false; cells.nodes.len()];
+        let large = self.large.iter();
+        let nodes = large.flat_map(|large| large.nodes_in_order());
+        for cell in nodes.filter_map(|node| cells.of_node(*node)) {
+            is_taken[cell as usize] = true;
+            order.push(cell);
+        }
+        let others = (0..).zip(&is_taken).filter(|(_, is_taken)| !**is_taken);
+        order.extend(others.map(|(cell, _)| cell));
+        order
+    }
+
+    fn elements(&self) -> usize {
+        self.large.as_ref().map_or(0, |large| large.elements())
+    }
+
+    fn in_double(&self, shape: SweepShape<'_>) -> Box<dyn ElementSweep<f64>> {
+        let forces = self.large.as_ref();
+        let forces = forces.map(|large| SharedForces::double(large, shape.parts, shape.set));
+        Box::new(Sweep::new(self, forces, shape))
+    }
+
+    fn in_single(&self, shape: SweepShape<'_>) -> Box<dyn ElementSweep<f32>> {
+        let forces = self.large.as_ref();
+        let forces = forces.map(|large| SharedForces::single(large, shape.parts, shape.set));
+        Box::new(Sweep::new(self, forces, shape))
+    }
+}
+
+/// A position of a machine's vectors.
+#[derive(Clone, Copy, Debug)]
+struct Position {
+    /// The mesh node.
+    node: u32,
+    /// Its place among the sums of forces.
+    sum: u32,
+    /// Components that are held.
+    pinned: [bool; 3],
+}
+
+/// The sweep over the tetrahedra of hyperelastic regions.
+#[derive(Debug)]
+struct Sweep<T> {
+    /// `None` where there are no such regions.
+    forces: Option<SharedForces<T>>,
+    parts: usize,
+    positions: Vec<Position>,
+    /// Displacement (m) of all mesh nodes, and a number to fill a row.
+    displacement: Shared<[T; 4]>,
+    motions: Motions,
+    /// Nodes that are moved, with the position of those that are cells.
+    moved: Vec<(u32, u32)>,
+    /// What motions add to the displacement of cells (m), by position; empty where they add nothing.
+    offsets: Vec<[T; 3]>,
+}
+
+impl<T: Vectors> Sweep<T> {
+    fn new(model: &Model, forces: Option<SharedForces<T>>, shape: SweepShape<'_>) -> Self {
+        let numbering: &Numbering = shape.numbering;
+        let cells = &model.body.cells;
+        let mut sums = vec![NONE; model.mesh.points.len()];
+        let nodes = model.large.iter().flat_map(|large| large.nodes_in_order());
+        for (sum, node) in (0..).zip(nodes) {
+            sums[*node as usize] = sum;
+        }
+        let position = |position: usize| {
+            let cell = numbering.cell(position).map(|cell| cell as usize);
+            let node = cell.map_or(NONE, |cell| cells.nodes[cell]);
+            let pinned = |axis: usize| cell.is_some_and(|cell| cells.pinned[3 * cell + axis]);
+            Position {
+                node,
+                sum: sums.get(node as usize).copied().unwrap_or(NONE),
+                pinned: std::array::from_fn(pinned),
+            }
+        };
+        let moved: Vec<(u32, u32)> = (0..model.mesh.points.len() as u32)
+            .filter(|node| (0..3).any(|axis| model.motions.part_of(*node, axis).is_some()))
+            .map(|node| {
+                let cell = cells.of_node(node);
+                let position = cell.map(|cell| numbering.position(cell) as u32);
+                (node, position.unwrap_or(NONE))
+            })
+            .collect();
+        let has_offsets = moved.iter().any(|(_, position)| *position != NONE);
+        let offsets = if has_offsets {
+            numbering.positions()
+        } else {
+            0
+        };
+        Self {
+            forces,
+            parts: shape.parts,
+            positions: (0..numbering.positions()).map(position).collect(),
+            displacement: Shared::new(vec![[T::default(); 4]; model.mesh.points.len()]),
+            motions: model.motions.clone(),
+            moved,
+            offsets: vec![[T::default(); 3]; offsets],
+        }
+    }
+
+    /// The displacement (m) of all mesh nodes.
+    ///
+    /// # Safety
+    /// Nobody writes it meanwhile.
+    unsafe fn displacement(&self) -> &[[T; 4]] {
+        let all = self.displacement.slice();
+        // SAFETY: the caller's promise.
+        unsafe { all.read(0..all.count()) }
+    }
+}
+
+impl<T: Vectors + ElementPrecision> ElementSweep<T> for Sweep<T> {
+    fn passes(&self) -> usize {
+        self.forces.as_ref().map_or(0, SharedForces::passes)
+    }
+
+    fn parts(&self) -> usize {
+        self.parts
+    }
+
+    fn begin(&mut self, when: LoadTime<'_>) -> Result<(), EvaluationError> {
+        if self.moved.is_empty() {
+            return Ok(());
+        }
+        require_inputs(self.motions.ramps(), when.inputs()).map_err(|error| EvaluationError {
+            element: 0,
+            reason: error.to_string(),
+        })?;
+        let at = self.motions.at(when);
+        for (node, position) in &self.moved {
+            let [x, y, z] = self.motions.field(&at, 0, *node).map(<T as Real>::of);
+            match self.offsets.get_mut(*position as usize) {
+                Some(offset) => *offset = [x, y, z],
+                // SAFETY: `self` is borrowed for this call alone.
+                None => unsafe {
+                    let node = *node as usize;
+                    let rows = self.displacement.slice().write(node..node + 1);
+                    rows[0] = [x, y, z, T::default()];
+                },
+            }
+        }
+        Ok(())
+    }
+
+    unsafe fn take(&self, fields: &Fields<T>, source: usize, positions: Range<usize>) {
+        // Products of smaller ones are numbers that processors compute with slowly.
+        let tiny = <T as Real>::of(T::TINY.sqrt());
+        let flushed = |value: T| {
+            if value < tiny && T::default() - value < tiny {
+                T::default()
+            } else {
+                value
+            }
+        };
+        let rows = self.displacement.slice();
+        // SAFETY: the caller's promise; each node is at one position.
+        unsafe {
+            let [x, y, z] = [0, 1, 2].map(|axis| fields.read(source, axis, positions.clone()));
+            let values = x.iter().zip(y).zip(z);
+            for (place, ((x, y), z)) in positions.zip(values) {
+                let node = self.positions[place].node as usize;
+                if node == NONE as usize {
+                    continue;
+                }
+                let [x, y, z] = [*x, *y, *z].map(flushed);
+                let [dx, dy, dz] = self.offsets.get(place).copied().unwrap_or_default();
+                rows.write(node..node + 1)[0] = [x + dx, y + dy, z + dz, T::default()];
+            }
+        }
+    }
+
+    unsafe fn make(&self, pass: usize, part: usize) -> bool {
+        let Some(forces) = &self.forces else {
+            return true;
+        };
+        // SAFETY: the caller's promise.
+        unsafe { forces.make(self.displacement(), pass, part) }.is_ok()
+    }
+
+    unsafe fn give(&self, fields: &Fields<T>, out: usize, positions: Range<usize>) {
+        let Some(forces) = &self.forces else {
+            return;
+        };
+        let sums = forces.sums();
+        // SAFETY: the caller's promise.
+        unsafe {
+            let [x, y, z] = [0, 1, 2].map(|axis| fields.write(out, axis, positions.clone()));
+            let values = x.iter_mut().zip(y).zip(z);
+            for (place, ((x, y), z)) in positions.zip(values) {
+                let Position { sum, pinned, .. } = self.positions[place];
+                if sum == NONE {
+                    continue;
+                }
+                let force = sums.get(sum as usize);
+                for ((out, force), pinned) in [x, y, z].into_iter().zip(force).zip(pinned) {
+                    *out = if pinned { T::default() } else { *force };
+                }
+            }
+        }
+    }
+
+    fn refusal(&mut self) -> EvaluationError {
+        let rows = self.displacement.slice();
+        // SAFETY: `self` is borrowed for this call alone.
+        let displacement = unsafe { rows.read(0..rows.count()) };
+        let refused = self
+            .forces
+            .as_mut()
+            .map(|forces| forces.make_alone(displacement));
+        match refused {
+            Some(Err(error)) => error,
+            Some(Ok(())) | None => EvaluationError {
+                element: 0,
+                reason: "its law has no meaning there".to_owned(),
+            },
+        }
+    }
+}
