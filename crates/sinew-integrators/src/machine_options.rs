@@ -9,8 +9,8 @@ use crate::{OptionDefault, OptionHelp, OptionKind};
 
 const MACHINE: OptionHelp = OptionHelp {
     key: "machine",
-    help: "what computes the steps: \"auto\" (templates where rows repeat on a lattice and that pays, else the general kernels), \
-           \"reference\" (plain loops), \"general\" or \"repeated\"",
+    help: "what computes the steps: \"auto\" (templates where rows repeat on a lattice and that pays, else the general kernels; loops over \
+           elements for hyperelastic bodies), \"reference\" (plain loops), \"general\" or \"repeated\"",
     expected: "\"auto\", \"reference\", \"general\" or \"repeated\"",
     kind: OptionKind::Words(&["auto", "reference", "general", "repeated"]),
     default: OptionDefault::Value("\"auto\""),

@@ -11,13 +11,13 @@ pub enum Unfit {
     NoTemplates,
     /// Kernels were asked for where forces follow from a law.
     #[error(
-        "machine = {0:?} runs matrices, and the forces of this system follow from a law; take \"auto\""
+        "machine = {0:?} runs matrices alone, and the forces of this system follow from a law; take \"auto\""
     )]
     Law(&'static str),
-    /// Single precision was asked for where forces follow from a law.
+    /// Single precision was asked for where forces follow from a law that no kernels run.
     #[error(
-        "precision = \"f32\" is for matrices and for sums over elements without stiffness damping, by any machine but the \
-         reference; leave `precision` out"
+        "precision = \"f32\" is for matrices, and for hyperelastic bodies without stiffness damping and following pressures on any \
+         machine but the reference; leave `precision` out"
     )]
     LawInSinglePrecision,
 }

@@ -29,6 +29,7 @@
 //! ```
 
 mod allocation;
+mod bodies;
 mod convergence;
 mod dense;
 mod everything;
@@ -42,6 +43,10 @@ mod work;
 use sinew_core::{Properties, System};
 
 pub use allocation::CountingAllocator;
+pub use bodies::{
+    Body, a_refused_body_leaves_the_machine_usable, batches_of_bodies_allocate_nothing,
+    batches_of_bodies_change_not_a_bit, bodies_move_as_by_the_reference,
+};
 pub use convergence::motions_converge_to_the_exact_ones;
 pub use laws::{
     batches_allocate_nothing, batches_change_not_a_bit, steps_are_those_of_the_definition,
@@ -163,6 +168,46 @@ macro_rules! machine_conformance {
             #[test]
             fn a_refused_trial_leaves_the_machine_usable() {
                 conformance::a_refused_trial_leaves_the_machine_usable(&$methods, &make);
+            }
+        }
+    };
+}
+
+/// Makes one test for each law that a machine has to keep on bodies whose forces follow from a law, in a module of this name: with the
+/// programs of a list of [`Method`]s on a list of [`Body`]s, for a closure that makes fresh machines, to a rounding (relative). The test's
+/// global allocator has to be [`CountingAllocator`].
+#[macro_export]
+macro_rules! machine_conformance_on_bodies {
+    ($name:ident, $methods:expr, $bodies:expr, $make:expr, $rounding:expr) => {
+        #[cfg(test)]
+        mod $name {
+            #[allow(unused_imports, reason = "a list may need nothing from outside")]
+            use super::*;
+            use $crate::conformance;
+
+            fn make() -> Box<dyn $crate::Machine> {
+                let make: fn() -> Box<dyn $crate::Machine> = $make;
+                make()
+            }
+
+            #[test]
+            fn bodies_move_as_by_the_reference() {
+                conformance::bodies_move_as_by_the_reference(&$methods, &$bodies, &make, $rounding);
+            }
+
+            #[test]
+            fn batches_of_bodies_change_not_a_bit() {
+                conformance::batches_of_bodies_change_not_a_bit(&$methods, &$bodies, &make);
+            }
+
+            #[test]
+            fn batches_of_bodies_allocate_nothing() {
+                conformance::batches_of_bodies_allocate_nothing(&$methods, &$bodies, &make);
+            }
+
+            #[test]
+            fn a_refused_body_leaves_the_machine_usable() {
+                conformance::a_refused_body_leaves_the_machine_usable(&$methods, &$bodies, &make);
             }
         }
     };

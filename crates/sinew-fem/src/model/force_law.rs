@@ -145,9 +145,10 @@ impl ForceLaw for Model {
         Some(self)
     }
 
-    /// Without stiffness damping, which takes a tangent.
+    /// Without stiffness damping, which takes a tangent, and pressures that follow the surface.
     fn element_forces(&self) -> Option<&dyn ElementForces> {
-        (self.operators.damping().stiffness == 0.0).then_some(self)
+        let is_sum = self.operators.damping().stiffness == 0.0 && self.following.is_empty();
+        is_sum.then_some(self)
     }
 
     /// Of materials, elements and geometry.

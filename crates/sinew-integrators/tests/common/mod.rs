@@ -11,6 +11,7 @@ pub(crate) mod cube;
 pub(crate) mod dense_methods;
 pub(crate) mod energy_method;
 pub(crate) mod exponential;
+pub(crate) mod methods;
 pub(crate) mod nonlinear;
 pub(crate) mod sliver;
 pub(crate) mod springs;
