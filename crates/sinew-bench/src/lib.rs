@@ -16,6 +16,7 @@ pub mod report;
 pub mod reproduce;
 pub mod results;
 pub mod scale;
+mod tissue;
 pub mod verify;
 
 pub use sinew_scene::output;

@@ -4,8 +4,12 @@ use std::path::PathBuf;
 
 use sinew_core::{OperatorError, OptionError, SetupError, SimulateError, StepError};
 use sinew_fem::FemError;
+use sinew_integrators::StaticError;
 use sinew_measure::MeasureError;
+use sinew_mesh::structured::StructuredError;
 use sinew_scene::SceneError;
+
+use crate::tissue::TissueError;
 
 /// Why a hard run or the figure of a mark could not be measured.
 #[derive(Debug, thiserror::Error)]
@@ -25,6 +29,15 @@ pub(crate) enum HardError {
     /// A copy of a scene's body.
     #[error(transparent)]
     Body(#[from] FemError),
+    /// An equilibrium.
+    #[error(transparent)]
+    Static(#[from] StaticError),
+    /// A structured mesh.
+    #[error(transparent)]
+    Mesh(#[from] StructuredError),
+    /// A block of tissue.
+    #[error(transparent)]
+    Tissue(#[from] TissueError),
     /// A copy of a scene's oscillator.
     #[error(transparent)]
     Oscillator(#[from] OperatorError),

@@ -10,6 +10,7 @@ use super::checks::{
     rotation, slivers, units, within_work,
 };
 use super::error::HardError;
+use super::large;
 use super::mark::Asked;
 use crate::results::Mark;
 
@@ -210,6 +211,11 @@ pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<
         give(symmetric, &mut |asked| {
             mirror::check(asked, measured.case("symmetric-load")?)
         });
+    }
+    for tissue in large::all() {
+        if !(measured.quick && tissue.slow) {
+            give(tissue.asked, &mut |asked| (tissue.check)(asked));
+        }
     }
     marks
 }

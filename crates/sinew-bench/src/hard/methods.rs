@@ -44,6 +44,13 @@ pub(crate) fn energy(sweeps: u32) -> MethodChoice {
     method
 }
 
+/// The same by a formula, "ie" or "trap".
+pub(crate) fn energy_of(kind: &str, sweeps: u32) -> MethodChoice {
+    let mut method = energy(sweeps);
+    method.options = method.options.with("kind", OptionValue::Text(kind.into()));
+    method
+}
+
 /// A method that cuts its step into stable parts.
 pub(crate) fn cut(integrator: &str) -> MethodChoice {
     automatic(integrator, "substeps")

@@ -5,6 +5,7 @@ mod checks;
 mod energy;
 mod error;
 mod hard_run;
+mod large;
 mod maps;
 mod mark;
 mod marks;

@@ -33,22 +33,44 @@ impl Corotational {
         Ok(Self { lambda, mu })
     }
 
+    /// `tr S I - S` and its inverse, which is 0 where there is none.
+    #[inline(always)]
+    fn turning<N: Number>(at: &Point<N, Rotated<N>>) -> [Tensor<N>; 2] {
+        let stretch = at.own.rotation.transposed_times(at.gradient).symmetric();
+        let system = Tensor::diagonal(stretch.trace()) - stretch;
+        // The inverse of a symmetric tensor is its cofactor over its determinant.
+        let cofactor = system.cofactor();
+        let determinant = dot(system.0[0], cofactor.0[0]);
+        let size = system.largest();
+        let least = N::of(8.0 * N::EPSILON) * size * size * size;
+        let over = N::select_le(determinant.abs(), least, N::of(0.0), determinant.recip());
+        [system, cofactor.scaled(over)]
+    }
+
     /// The change of R by a change of F: `R W`, with `W S + S W = R'dF - dF'R` for a skew W. 0 where that has no solution.
     #[inline(always)]
     fn rotation_change<N: Number>(at: &Point<N, Rotated<N>>, change: Tensor<N>) -> Tensor<N> {
         let rotation = at.own.rotation;
-        let stretch = rotation.transposed_times(at.gradient).symmetric();
-        let system = Tensor::diagonal(stretch.trace()) - stretch;
-        let cofactor = system.cofactor();
-        let determinant = dot(system.0[0], cofactor.0[0]);
+        let [_, inverse] = Self::turning(at);
         let [[_, xy, xz], [yx, _, yz], [zx, zy, _]] = rotation.transposed_times(change).0;
         let skew = [zy - yz, xz - zx, yx - xy];
-        // The inverse of a symmetric tensor is its cofactor over its determinant.
-        let axis = cofactor.on(skew);
-        let size = system.largest();
-        let least = N::of(8.0 * N::EPSILON) * size * size * size;
-        let over = N::select_le(determinant.abs(), least, N::of(0.0), determinant.recip());
-        rotation * Tensor::cross_product_with(axis.map(|entry| entry * over))
+        rotation * Tensor::cross_product_with(inverse.on(skew))
+    }
+
+    /// What the change of R adds to the tangent against turning, by the stress of the dilation: `mu I + c (tr S I - S)^-1` with
+    /// `c = bulk - 2 mu`, which is what matters in extension, or a multiple of I that is no less where c < 0, and never below 0.
+    #[inline(always)]
+    fn against_turning<N: Number>(&self, at: &Point<N, Rotated<N>>, bulk: N) -> Tensor<N> {
+        let (mu, zero) = (N::of(self.mu), N::of(0.0));
+        let [system, inverse] = Self::turning(at);
+        let excess = N::of(-2.0).mul_add(mu, bulk);
+        let exact = Tensor::diagonal(mu).plus(excess, inverse);
+        // No eigenvalue is above the mean by more than this share of the distance from it.
+        let mean = N::of(1.0 / 3.0) * system.trace();
+        let apart = (system - Tensor::diagonal(mean)).squared().sqrt();
+        let largest = N::of((2.0_f64 / 3.0).sqrt()).mul_add(apart, mean);
+        let weakened = (mu + excess / largest).max(zero);
+        Tensor::select_le(excess, zero, Tensor::diagonal(weakened), exact)
     }
 }
 
@@ -66,7 +88,7 @@ pub struct Rotated<N> {
 impl HyperelasticLaw for Corotational {
     const ID: &'static str = "corotational";
     const DEFINED_WHEN_INVERTED: bool = true;
-    const NODE_BLOCK: NodeBlock = NodeBlock::Frozen;
+    const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     type Own<N: Number> = Rotated<N>;
 
@@ -143,9 +165,11 @@ impl HyperelasticLaw for Corotational {
         bulk: Bulk<N>,
         gradient: [N; 3],
     ) -> Tensor<N> {
-        let mu = N::of(self.mu);
-        let turned = at.own.rotation.on(gradient);
-        Tensor::diagonal(mu * dot(gradient, gradient))
-            .plus(mu + bulk.modulus, Tensor::outer(turned, turned))
+        let (mu, rotation) = (N::of(self.mu), at.own.rotation);
+        let turned = rotation.on(gradient);
+        let frozen = Tensor::diagonal(mu * dot(gradient, gradient))
+            .plus(mu + bulk.modulus, Tensor::outer(turned, turned));
+        let across = Tensor::cross_product_with(gradient).times_transposed(rotation);
+        frozen + across.transposed_times(self.against_turning(at, bulk.stress) * across)
     }
 }

@@ -201,8 +201,6 @@ impl<N: Number> Bulk<N> {
 pub enum NodeBlock {
     /// The exact one, whose own blocks are positive semidefinite by themselves.
     Exact,
-    /// The one with rotations held fast.
-    Frozen,
     /// The exact one and something positive semidefinite, where that is needed.
     Majorant,
 }

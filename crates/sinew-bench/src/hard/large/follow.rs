@@ -1,0 +1,251 @@
+//! A run of tissue with all that a hard case judges it by.
+
+use sinew_core::vectors::{dot, weighted_dot};
+use sinew_core::{
+    Integrator, LoadTime, Moment, Options, Outcome, Run, State, System, Trial, Verdict, simulate,
+};
+use sinew_measure::MethodChoice;
+
+use crate::hard::error::HardError;
+use crate::report::milliseconds;
+use crate::tissue::Specimen;
+
+/// Sizes of the body that a displacement may have before the run counts as diverged.
+const SIZES: f64 = 20.0;
+
+/// A method at a step (s).
+pub(crate) struct Planned {
+    pub(crate) method: MethodChoice,
+    pub(crate) dt: f64,
+    /// Whether it has to come to the end, as others may that are refused by name.
+    pub(crate) must_end: bool,
+}
+
+impl Planned {
+    /// A run that has to come to its end.
+    pub(crate) fn must(method: MethodChoice, dt: f64) -> Self {
+        Self {
+            method,
+            dt,
+            must_end: true,
+        }
+    }
+
+    /// A run that may be refused.
+    pub(crate) fn may(method: MethodChoice, dt: f64) -> Self {
+        Self {
+            must_end: false,
+            ..Self::must(method, dt)
+        }
+    }
+
+    /// The run in words.
+    pub(crate) fn label(&self) -> String {
+        format!("{}, {} ms", self.method.label(), milliseconds(self.dt))
+    }
+}
+
+/// A run.
+pub(crate) struct Followed {
+    /// Displacements (m) at equal instants.
+    pub(crate) track: Vec<Vec<f64>>,
+    /// Why it ended before its time.
+    pub(crate) refusal: Option<String>,
+    /// Whether the method itself says that the energy grew.
+    pub(crate) tells_growth: bool,
+    /// Elements that are inside out at the end.
+    pub(crate) inverted: usize,
+    /// Velocities that a bound of cells cut, in all steps.
+    pub(crate) saturated: u64,
+    /// Largest excess of the energy over that at the start and the work of the loads since, over the largest that was allowed.
+    pub(crate) excess: f64,
+    /// Largest rise of the energy in a step beyond the work of the loads, over the same.
+    pub(crate) rise: f64,
+}
+
+impl Followed {
+    /// What the run says of itself where it is not right.
+    pub(crate) fn admits(&self) -> Option<String> {
+        if self.tells_growth {
+            return Some("tells that its energy grew".into());
+        }
+        (self.saturated > 0).then(|| format!("tells that {} velocities were cut", self.saturated))
+    }
+
+    /// Error of the displacements at all instants.
+    pub(crate) fn error(&self, exact: &[Vec<f64>]) -> f64 {
+        if self.track.len() != exact.len() {
+            return f64::INFINITY;
+        }
+        let pairs = self.track.iter().flatten().zip(exact.iter().flatten());
+        let (mut off, mut all) = (0.0, 0.0);
+        for (found, exact) in pairs {
+            off += (found - exact) * (found - exact);
+            all += exact * exact;
+        }
+        f64::sqrt(off / all)
+    }
+}
+
+/// The energy of a run under loads, step by step, where supports stand still.
+struct Ledger<'a> {
+    system: &'a dyn System,
+    before: Option<(State, f64)>,
+    start: f64,
+    work: f64,
+    largest: f64,
+    excess: f64,
+    rise: f64,
+    velocity: Vec<f64>,
+    force: Vec<f64>,
+}
+
+impl<'a> Ledger<'a> {
+    fn new(system: &'a dyn System) -> Self {
+        Self {
+            system,
+            before: None,
+            start: 0.0,
+            work: 0.0,
+            largest: 0.0,
+            excess: 0.0,
+            rise: 0.0,
+            velocity: vec![0.0; system.dofs()],
+            force: vec![0.0; system.dofs()],
+        }
+    }
+
+    /// Kinetic and elastic energy (J); not a number where the law refuses the state.
+    fn energy(&mut self, moment: &Moment<'_>) -> f64 {
+        let elastic = elastic(self.system, &moment.state.u, &mut self.force);
+        match (elastic, moment.velocity(&mut self.velocity)) {
+            (Some((energy, _)), Ok(())) => {
+                let v = &self.velocity;
+                energy + 0.5 * weighted_dot(self.system.mass(), v, v)
+            }
+            _ => f64::NAN,
+        }
+    }
+
+    /// Work (J) of the loads over a step: the mean of both ends' along the way.
+    fn work_since(&mut self, before: &State, state: &State) -> f64 {
+        let t = before.t();
+        let moved: Vec<f64> = state.u.iter().zip(&before.u).map(|(b, a)| b - a).collect();
+        let ends = LoadTime::at_both_ends(t, state.t() - t, 0.5);
+        let works = ends.map(|when| {
+            self.force.fill(0.0);
+            self.system.external_force(when, &mut self.force);
+            dot(&self.force, &moved)
+        });
+        0.5 * (works[0] + works[1])
+    }
+
+    fn see(&mut self, moment: &Moment<'_>) {
+        let energy = self.energy(moment);
+        let Some((before, last)) = self.before.take() else {
+            (self.start, self.largest) = (energy, energy.abs());
+            self.before = Some((moment.state.clone(), energy));
+            return;
+        };
+        let work = self.work_since(&before, moment.state);
+        self.work += work;
+        let allowed = self.start + self.work;
+        self.largest = self.largest.max(allowed.abs());
+        let larger = |most: f64, found: f64| {
+            if found.is_nan() {
+                f64::INFINITY
+            } else {
+                most.max(found)
+            }
+        };
+        self.excess = larger(self.excess, (energy - allowed) / self.largest);
+        self.rise = larger(self.rise, (energy - last - work) / self.largest);
+        self.before = Some((moment.state.clone(), energy));
+    }
+}
+
+/// Elastic energy (J) of a displacement, and the number of elements that are inside out; `None` where the law refuses it.
+fn elastic(system: &dyn System, u: &[f64], work: &mut [f64]) -> Option<(f64, usize)> {
+    let trial = Trial {
+        load: LoadTime::at(0.0),
+        dt: 0.0,
+        u,
+        v: u,
+        internal: &[],
+    };
+    let found = system.as_elastic()?.elastic_force(&trial, work).ok()?;
+    Some((found.energy, found.inverted))
+}
+
+/// The motion by central difference in steps so short that its error does not count, at equal instants.
+///
+/// # Errors
+/// [`HardError`] where the body refuses it.
+pub(crate) fn reference(
+    specimen: &Specimen,
+    dt: f64,
+    duration: f64,
+    instants: usize,
+) -> Result<Vec<Vec<f64>>, HardError> {
+    let mut integrator = sinew_integrators::build("central-difference", &Options::new())?;
+    let mut state = specimen.start.clone();
+    let steps = (duration / dt / instants as f64).ceil() as usize;
+    let dt = duration / (steps * instants) as f64;
+    let mut track = Vec::with_capacity(instants);
+    for _ in 0..instants {
+        for _ in 0..steps {
+            integrator.step(&specimen.model, &mut state, dt)?;
+        }
+        track.push(state.u.clone());
+    }
+    Ok(track)
+}
+
+/// Follows a method over `duration` (s), with displacements at so many equal instants.
+///
+/// # Errors
+/// [`HardError`] where there is no such method; that it refuses the body or a state is no error.
+pub(crate) fn follow(
+    specimen: &Specimen,
+    planned: &Planned,
+    duration: f64,
+    instants: usize,
+) -> Result<Followed, HardError> {
+    let system: &dyn System = &specimen.model;
+    let mut integrator = planned.method.build()?;
+    let mut state = specimen.start.clone();
+    let size = system.extent().unwrap_or(f64::INFINITY);
+    let run = Run::covering(duration, planned.dt).with_divergence_limit(SIZES * size);
+    let every = (run.steps / instants).max(1);
+    let (mut track, mut saturated) = (Vec::new(), 0);
+    let mut ledger = Ledger::new(system);
+    let mut record = |moment: &Moment<'_>| {
+        ledger.see(moment);
+        saturated = moment.work.saturated;
+        if moment.step > 0 && moment.step % every == 0 {
+            track.push(moment.state.u.clone());
+        }
+        Ok(Verdict::Continue)
+    };
+    let ended = simulate(system, &mut *integrator, &mut state, &run, &mut record);
+    let refusal = match ended {
+        Ok(report) => match report.outcome {
+            Outcome::Diverged { t, dof } => {
+                Some(format!("diverged at t = {t} s, {}", system.cell_name(dof)))
+            }
+            Outcome::Finished | Outcome::Stopped => None,
+        },
+        Err(error) => Some(error.to_string()),
+    };
+    let remarks = Integrator::remarks(&*integrator);
+    let inverted = elastic(system, &state.u, &mut ledger.force);
+    Ok(Followed {
+        track,
+        refusal,
+        tells_growth: remarks.iter().any(|remark| remark.contains("energy")),
+        inverted: inverted.map_or(usize::MAX, |(_, inverted)| inverted),
+        saturated,
+        excess: ledger.excess,
+        rise: ledger.rise,
+    })
+}

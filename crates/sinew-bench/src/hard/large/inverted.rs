@@ -1,0 +1,80 @@
+//! Cubes that start inside out: crushed into a point, or mirrored.
+
+use sinew_fem::Element;
+use sinew_measure::MethodChoice;
+use sinew_mesh::structured::{Split, cube};
+
+use super::follow::{Planned, follow};
+use super::tally::{Demand, Tally};
+use super::{LITTLE, ROUNDING};
+use crate::hard::error::HardError;
+use crate::hard::mark::Asked;
+use crate::hard::methods::{cut, energy_of};
+use crate::results::Mark;
+use crate::tissue::{self, EDGE, Specimen, YOUNGS_MODULUS};
+
+/// Laws whose stress pushes elements back that are inside out.
+const LAWS: [&str; 2] = ["stable-neo-hookean", "stable-neo-hookean-log"];
+
+const CELLS: usize = 6;
+
+/// Simulated time (s).
+const DURATION: f64 = 0.5;
+
+/// A start that is inside out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Start {
+    /// Every free node at the centre of the cube.
+    Crushed,
+    /// Every free node at its mirror image below the bottom.
+    Mirrored,
+}
+
+fn specimen(law: &'static str, start: Start) -> Result<Specimen, HardError> {
+    let mut problem = tissue::standing(tissue::law(law, YOUNGS_MODULUS, 0.45), Element::P1);
+    problem.damping = tissue::of_mass(10.0);
+    let specimen = Specimen::new(&cube(CELLS, EDGE, Split::Mirrored)?, &problem)?;
+    Ok(specimen.displaced(|place| match start {
+        Start::Crushed => place.map(|x| EDGE / 2.0 - x),
+        Start::Mirrored => [0.0, 0.0, -2.0 * place[2]],
+    }))
+}
+
+/// Methods whose energy falls let it rise in no step, and others never above that at the start. Central difference has to bring
+/// the crushed cube back to where no element is inside out; what dissipates may settle in a fold, and does.
+pub(crate) fn check(asked: Asked, start: Start) -> Result<Mark, HardError> {
+    let mut tally = Tally::default();
+    for law in LAWS {
+        let specimen = specimen(law, start)?;
+        for planned in [
+            Planned::must(energy_of("ie", 4), 0.02),
+            Planned::must(energy_of("ie", 16), 0.02),
+            Planned::must(energy_of("trap", 4), 0.02),
+            Planned::may(MethodChoice::new("implicit-euler"), 0.02),
+        ] {
+            let run = follow(&specimen, &planned, DURATION, 1)?;
+            let demand = Demand::new("rise of the energy in a step", run.rise, ROUNDING);
+            tally.judge(law, &planned, &run, demand);
+        }
+        let central = MethodChoice::new("central-difference");
+        for planned in [
+            Planned::must(central.clone(), 0.0005),
+            Planned::must(central, 0.001),
+            Planned::may(cut("central-difference"), 0.01),
+            Planned::may(MethodChoice::new("newmark"), 0.005),
+            Planned::may(MethodChoice::new("generalized-alpha"), 0.005),
+        ] {
+            let run = follow(&specimen, &planned, DURATION, 1)?;
+            let demand = Demand::new("energy above that at the start", run.excess, LITTLE);
+            tally.judge(law, &planned, &run, demand);
+            if start == Start::Crushed && planned.must_end && run.inverted > 0 {
+                let label = planned.label();
+                tally.fault(format!(
+                    "{law}: {label}: {} elements stay inside out",
+                    run.inverted
+                ));
+            }
+        }
+    }
+    Ok(tally.mark(asked))
+}

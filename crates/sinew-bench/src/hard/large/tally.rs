@@ -1,0 +1,93 @@
+//! A mark over several runs, each of which ends in a state that is checked or in a refusal that names what went wrong.
+
+use super::follow::{Followed, Planned};
+use crate::hard::mark::{Asked, Worst};
+use crate::report::three;
+use crate::results::Mark;
+
+/// What is asked of a run that comes to its end.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Demand {
+    /// The figure in words.
+    pub(crate) what: &'static str,
+    pub(crate) figure: f64,
+    /// The largest figure that is right.
+    pub(crate) limit: f64,
+}
+
+impl Demand {
+    /// A figure, and the largest that is right.
+    pub(crate) fn new(what: &'static str, figure: f64, limit: f64) -> Self {
+        Self {
+            what,
+            figure,
+            limit,
+        }
+    }
+}
+
+/// Runs and their ends.
+#[derive(Default)]
+pub(crate) struct Tally {
+    /// Figures over their limits.
+    worst: Worst,
+    right: usize,
+    /// Ends that are told, in words.
+    told: Vec<String>,
+    /// What must not be, in words.
+    faults: Vec<String>,
+}
+
+impl Tally {
+    /// Judges a run: it meets a demand, or says by itself that it does not. One that has to come to its end and is refused is a fault,
+    /// and so is a refusal without a name.
+    pub(crate) fn judge(&mut self, about: &str, planned: &Planned, run: &Followed, demand: Demand) {
+        let label = format!("{about}: {}", planned.label());
+        match &run.refusal {
+            Some(reason) if planned.must_end || !is_named(reason) => {
+                self.faults.push(format!("{label}: {reason}"));
+            }
+            Some(reason) => self.told.push(format!("{label}: {reason}")),
+            None if planned.must_end => self.demand(label, demand),
+            None if demand.figure <= demand.limit => self.demand(label, demand),
+            None => match run.admits() {
+                Some(words) => self.told.push(format!("{label}: {words}")),
+                None => self.demand(label, demand),
+            },
+        }
+    }
+
+    /// Puts a figure that belongs to no run to a demand.
+    pub(crate) fn demand(&mut self, label: String, demand: Demand) {
+        let what = format!("{label}: {} {}", demand.what, three(demand.figure));
+        // False for what is not a number.
+        self.right += usize::from(demand.figure <= demand.limit);
+        self.worst.include(demand.figure / demand.limit, what);
+    }
+
+    /// Takes note of something that must not be.
+    pub(crate) fn fault(&mut self, what: String) {
+        self.faults.push(what);
+    }
+
+    /// The mark, by the figure that is nearest to its limit or farthest beyond.
+    pub(crate) fn mark(self, asked: Asked) -> Mark {
+        let shown = |share: f64| format!("{} of what is allowed", three(share));
+        let faults = self.faults.iter().map(|fault| format!("FAULT {fault}"));
+        let mut notes: Vec<String> = faults.collect();
+        notes.push(format!("{} figures are right", self.right));
+        if !self.told.is_empty() {
+            notes.push(format!("told by name: {}", self.told.join("; ")));
+        }
+        asked
+            .measured(self.worst.figure, shown, self.worst.by)
+            .and(self.faults.is_empty() && self.right > 0)
+            .noting(notes.join("; "))
+    }
+}
+
+/// Whether a refusal says where or by what: an element, a node or a method.
+fn is_named(reason: &str) -> bool {
+    let names = ["element", "node", "`"];
+    names.iter().any(|name| reason.contains(name))
+}

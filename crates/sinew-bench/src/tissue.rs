@@ -1,0 +1,210 @@
+//! Blocks of tissue under large deformation, which the verification and the hard cases move.
+
+use std::f64::consts::{PI, TAU};
+
+use sinew_core::{Ramp, State, System};
+use sinew_fem::hyperelastic::Parameters;
+use sinew_fem::{
+    Element, FemError, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region,
+};
+use sinew_mesh::TetMesh;
+use sinew_mesh::structured::{Split, StructuredError, block};
+
+/// Density (kg/m^3).
+pub(crate) const DENSITY: f64 = 1060.0;
+
+/// Young's modulus (Pa).
+pub(crate) const YOUNGS_MODULUS: f64 = 3500.0;
+
+/// Edge (m) of the cubes.
+pub(crate) const EDGE: f64 = 0.1;
+
+/// Size (m) of the slender column.
+pub(crate) const COLUMN: [f64; 3] = [0.02, 0.02, 0.12];
+
+/// C1/C2 of the law of Mooney and Rivlin, which no other has.
+const C1_OVER_C2: f64 = 4.0;
+
+/// Why there is no such block.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum TissueError {
+    /// Its mesh.
+    #[error(transparent)]
+    Mesh(#[from] StructuredError),
+    /// Its model.
+    #[error(transparent)]
+    Model(#[from] FemError),
+}
+
+/// A hyperelastic law with these moduli at small strain.
+pub(crate) fn law(id: &'static str, youngs_modulus: f64, poissons_ratio: f64) -> Law {
+    let parameters = Parameters {
+        c1_over_c2: (id == "mooney-rivlin").then_some(C1_OVER_C2),
+        ..Parameters::new(youngs_modulus, poissons_ratio)
+    };
+    Law::Hyperelastic { id, parameters }
+}
+
+/// The law of most blocks: `neo-hookean`, E = 3500 Pa, nu = .45.
+pub(crate) fn soft() -> Law {
+    law("neo-hookean", YOUNGS_MODULUS, 0.45)
+}
+
+/// A free body of one material.
+pub(crate) fn free(law: Law, element: Element) -> Problem {
+    Problem {
+        regions: vec![Region {
+            group: None,
+            density: DENSITY,
+            law,
+            element,
+        }],
+        ..Problem::default()
+    }
+}
+
+/// A body that stands on its bottom, which is held.
+pub(crate) fn standing(law: Law, element: Element) -> Problem {
+    Problem {
+        fixed: vec![Fixed {
+            on: "bottom".into(),
+            axes: [true; 3],
+        }],
+        ..free(law, element)
+    }
+}
+
+/// Damping in proportion to the masses (1/s).
+pub(crate) fn of_mass(mass: f64) -> Rayleigh {
+    Rayleigh {
+        mass,
+        stiffness: 0.0,
+    }
+}
+
+/// A body with the state that it starts from.
+pub(crate) struct Specimen {
+    pub(crate) model: Model,
+    pub(crate) start: State,
+}
+
+impl Specimen {
+    /// A body at rest.
+    pub(crate) fn new(mesh: &TetMesh, problem: &Problem) -> Result<Self, TissueError> {
+        let model = Model::build(mesh, problem)?;
+        let start = State::at_rest(model.dofs());
+        Ok(Self { model, start })
+    }
+
+    /// The body at rest with these displacements (m) by the place of each node.
+    pub(crate) fn displaced(mut self, by: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
+        self.start.u = self.field(by);
+        self
+    }
+
+    /// The body undeformed with these velocities (m/s) by the place of each node.
+    pub(crate) fn thrown(mut self, at: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
+        self.start.v = self.field(at);
+        self
+    }
+
+    /// A vector at each free node by its place (m); components that are held are 0.
+    pub(crate) fn field(&self, of: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
+        let points = &self.model.mesh().points;
+        let nodes = self.model.nodes().iter();
+        let mut field: Vec<f64> = nodes.flat_map(|node| of(points[*node as usize])).collect();
+        for (value, is_held) in field.iter_mut().zip(self.model.pinned()) {
+            if *is_held {
+                *value = 0.0;
+            }
+        }
+        field
+    }
+}
+
+/// A cube that is stretched by half along z at the volume of rest, and let go.
+pub(crate) fn release(cells: usize, law: Law, element: Element) -> Result<Specimen, TissueError> {
+    let mesh = block([cells; 3], [EDGE; 3], Split::Mirrored)?;
+    let specimen = Specimen::new(&mesh, &standing(law, element))?;
+    Ok(specimen.displaced(|[x, y, z]| {
+        let narrower = (1.5_f64.powf(-0.5) - 1.0) * z / EDGE;
+        let middle = EDGE / 2.0;
+        [narrower * (x - middle), narrower * (y - middle), 0.5 * z]
+    }))
+}
+
+/// A column that is spun about its axis, by so much at the top (1/s), after Bonet, Gil, Lee and others (Comput. Methods Appl. Mech. Eng. 283,
+/// 2015).
+pub(crate) fn spun_column(
+    cells: [usize; 3],
+    size: [f64; 3],
+    spin: f64,
+    problem: &Problem,
+) -> Result<Specimen, TissueError> {
+    let mesh = block(cells, size, Split::Mirrored)?;
+    let specimen = Specimen::new(&mesh, problem)?;
+    let [width, depth, height] = size;
+    Ok(specimen.thrown(|[x, y, z]| {
+        let speed = spin * (PI * z / (2.0 * height)).sin();
+        [speed * (y - depth / 2.0), -speed * (x - width / 2.0), 0.0]
+    }))
+}
+
+/// A cube with mass damping (1/s) under a force of 12 N on its top, spread by the trapezoidal rule, that follows a ramp.
+pub(crate) fn pressed(
+    cells: usize,
+    law: Law,
+    element: Element,
+    damping: f64,
+    ramp: Ramp,
+) -> Result<Specimen, TissueError> {
+    let mesh = block([cells; 3], [EDGE; 3], Split::Mirrored)?;
+    let mut problem = standing(law, element);
+    problem.damping = of_mass(damping);
+    problem.loads = trapezoid(&mesh, cells, -12.0, &ramp);
+    Specimen::new(&mesh, &problem)
+}
+
+/// A vertical force (N) on the top of a cube, as the trapezoidal rule spreads a traction: nodes at the rim bear half, at corners a quarter.
+fn trapezoid(mesh: &TetMesh, cells: usize, force: f64, ramp: &Ramp) -> Vec<LoadSpec> {
+    let within = 1e-9..EDGE - 1e-9;
+    let rims = |x: f64| usize::from(!within.contains(&x));
+    let of_rims = |rim: usize| {
+        let nodes = (0u32..).zip(&mesh.points);
+        let nodes: Vec<u32> = nodes
+            .filter(|(_, [x, y, z])| *z > within.end && rims(*x) + rims(*y) == rim)
+            .map(|(node, _)| node)
+            .collect();
+        let share = nodes.len() as f64 * 0.5_f64.powi(rim as i32) / (cells * cells) as f64;
+        LoadSpec {
+            on: On::Nodes(nodes),
+            kind: LoadKind::Force([0.0, 0.0, share * force]),
+            ramp: ramp.clone(),
+        }
+    };
+    (0..3).map(of_rims).collect()
+}
+
+/// The mean angle (rad) by which the nodes at the top turned about the middle of the column, nearest to `near`: angles beyond half
+/// a turn follow from those before.
+pub(crate) fn rotation_of_top(specimen: &Specimen, u: &[f64], near: f64) -> f64 {
+    let mesh = specimen.model.mesh();
+    let (low, high) = mesh.bounding_box();
+    let middle = [0, 1].map(|axis| (low[axis] + high[axis]) / 2.0);
+    let (mut sum, mut count) = (0.0, 0);
+    for (node, u) in specimen.model.nodes().iter().zip(u.as_chunks::<3>().0) {
+        let point = mesh.points[*node as usize];
+        let arm = [0, 1].map(|axis| point[axis] - middle[axis]);
+        let is_turned = point[2] > high[2] - 1e-9 && arm[0].hypot(arm[1]) > 1e-9;
+        if is_turned {
+            let now = [arm[0] + u[0], arm[1] + u[1]];
+            let angle = f64::atan2(
+                arm[0] * now[1] - arm[1] * now[0],
+                arm[0] * now[0] + arm[1] * now[1],
+            );
+            sum += angle + ((near - angle) / TAU).round() * TAU;
+            count += 1;
+        }
+    }
+    sum / f64::from(count)
+}
