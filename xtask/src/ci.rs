@@ -87,6 +87,10 @@ fn steps(root: &Path) -> std::io::Result<Vec<Step>> {
         "quick hard cases",
         "xtask bench --hard --quick --out target/ci-hard",
     ));
+    steps.push(Step::new(
+        "quick large deformations",
+        "xtask bench --nonlinear --quick --out target/ci-nonlinear",
+    ));
     steps.push(Step::new("commands of the README", "xtask readme"));
     steps.push(Step::new("archive, tried elsewhere", "xtask dist"));
     steps.push(Step::new(

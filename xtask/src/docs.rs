@@ -1,5 +1,6 @@
 //! `cargo xtask docs`.
 
+use sinew_bench::nonlinear;
 use sinew_bench::output::{Destination, OutputError, say};
 use sinew_bench::report::{markdown_cheapest, work_precision};
 use sinew_bench::results::BenchResults;
@@ -11,10 +12,12 @@ use crate::repository::root;
 const CASE: &str = "paper-cube";
 /// A stability map of the hard cases that the README shows.
 const MAP: &str = "map-poisson.svg";
+/// The README's picture of a large deformation.
+const DEFORMATION: &str = "large-deformation.svg";
 const BEGIN: &str = "<!-- bench -->\n";
 const END: &str = "<!-- end -->";
 
-/// Brings the README's table and pictures up to the last bench and the last hard bench.
+/// Brings the README's table and pictures up to the last bench and the last hard bench; its picture of a large deformation is computed.
 pub(crate) fn run() -> Result<(), Failure> {
     let inputs = [
         root().join("target/bench-hard").join(MAP),
@@ -54,6 +57,10 @@ pub(crate) fn run() -> Result<(), Failure> {
             picture,
         ),
         (root().join("docs").join(MAP), map),
+        (
+            root().join("docs").join(DEFORMATION),
+            nonlinear::picture(&root().join("scenes")).map_err(Failure::chore)?,
+        ),
     ];
     // All paths are checked before one is written.
     let outputs = outputs.into_iter().map(|(path, text)| {

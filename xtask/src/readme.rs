@@ -11,7 +11,7 @@ use crate::repository::root;
 
 /// Commands that take too long, or need what not every computer has, with the reason. With `--help` behind it, which reads
 /// all options before it and then ends, each still fails where an option is gone.
-const NOT_RUN: [(&str, &str); 9] = [
+const NOT_RUN: [(&str, &str); 10] = [
     ("cargo xtask bench", "minutes; `ci` has the quick bench"),
     ("cargo xtask verify", "a step of `ci`"),
     ("cargo test --workspace", "minutes; a step of `ci`"),
@@ -28,6 +28,10 @@ const NOT_RUN: [(&str, &str); 9] = [
     (
         "cargo xtask bench --kernels",
         "minutes, and its guards want a quiet computer",
+    ),
+    (
+        "cargo xtask bench --nonlinear",
+        "ten minutes; `ci` has the quick one",
     ),
     (
         "cargo xtask bench --hard",

@@ -27,6 +27,9 @@ pub struct BenchResults {
     pub schema: u32,
     /// Revision of the source that ran.
     pub revision: String,
+    /// The subject of the page, where it is not what accuracy costs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub subject: Option<String>,
     /// Date of the run, as the caller wishes to write it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
@@ -88,6 +91,7 @@ impl BenchResults {
         Self {
             schema: SCHEMA,
             revision: revision.into(),
+            subject: None,
             date: None,
             machine,
             cases: Vec::new(),

@@ -255,6 +255,7 @@ fn oscillator_rows() -> Vec<Row> {
 fn case(id: &str, title: &str, dofs: usize, critical_step_s: f64) -> CaseInfo {
     CaseInfo {
         id: id.into(),
+        remarks: Vec::new(),
         title: title.into(),
         dofs,
         duration_s: 1.0,

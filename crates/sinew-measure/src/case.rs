@@ -300,6 +300,7 @@ impl Case {
         CaseInfo {
             id: self.id.clone(),
             title: self.simulation.scene().title().to_owned(),
+            remarks: Vec::new(),
             dofs: self.simulation.system().dofs(),
             duration_s: self.span.duration,
             reference: match track.method {

@@ -25,6 +25,9 @@ pub struct CaseInfo {
     pub id: String,
     /// Title for people.
     pub title: String,
+    /// Remarks for people.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<String>,
     /// Free degrees of freedom.
     pub dofs: usize,
     /// Simulated time (s).

@@ -17,6 +17,31 @@ pub(super) fn few() -> Vec<MethodChoice> {
     vec![yardstick(), MethodChoice::new("newmark"), energy("trap", 4)]
 }
 
+/// Methods for bodies on which an implicit step takes long.
+pub(super) fn of_large_bodies() -> Vec<MethodChoice> {
+    let mut methods = few();
+    methods.extend(
+        ["rk4", "generalized-alpha", "cnn-energy"]
+            .into_iter()
+            .flat_map(variants),
+    );
+    methods
+}
+
+/// Methods for damping that no explicit step can follow.
+pub(super) fn of_sofa() -> Vec<MethodChoice> {
+    let implicit = ["implicit-euler", "newmark", "generalized-alpha"].map(MethodChoice::new);
+    let mut methods = vec![
+        energy("ie", 5),
+        energy("ie", 10),
+        energy("ie", 40),
+        energy("trap", 10),
+        energy("trap", 40),
+    ];
+    methods.extend(implicit);
+    methods
+}
+
 /// Every method there is, with the variants that trade error for cost.
 pub(super) fn all() -> Vec<MethodChoice> {
     let mut methods = vec![yardstick()];

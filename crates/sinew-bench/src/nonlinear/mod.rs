@@ -3,9 +3,12 @@
 //! Errors in time are against a reference of the same body in steps of no length; errors of the mesh, against finer meshes, stand apart.
 
 mod cases;
+mod equal_error;
+mod marks;
 mod materials;
 mod mesh_error;
 mod methods;
+mod picture;
 
 use std::path::PathBuf;
 
@@ -14,6 +17,8 @@ use sinew_measure::{
     on_one_thread,
 };
 use sinew_scene::Scene;
+
+pub use self::picture::{PictureError, picture};
 
 use self::cases::NonlinearCase;
 use self::mesh_error::MeshReference;
@@ -79,6 +84,8 @@ impl NonlinearBench {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<BenchResults, BenchError> {
         let mut results = BenchResults::new(revision, machine);
+        results.subject =
+            Some("Large deformation: methods, laws and elements, with their errors".to_owned());
         let mut errors = Vec::new();
         let plan = cases::all(self.quick);
         let runs = |case: &NonlinearCase| {
@@ -105,10 +112,15 @@ impl NonlinearBench {
                 errors.push(error);
             }
         }
+        let (done, of) = (bench.done, bench.of);
         if results.cases.is_empty() {
             return Err(BenchError::Cases(errors));
         }
         mark_pareto(&mut results.rows);
+        results.marks = marks::all(&results.rows, self.quick, |case| {
+            let what = format!("mark: {case}");
+            progress(Progress::Run { done, of, what });
+        });
         Ok(results)
     }
 }
@@ -154,18 +166,23 @@ impl Running<'_> {
             }
             let finest = finest.as_ref().filter(|(law, _)| *law == body.law);
             let mesh_error = finest.and_then(|(_, finest)| finest.error_of(&case).ok());
-            self.info(&case, finest.map(|(_, finest)| finest));
+            self.info(planned, &case, finest.map(|(_, finest)| finest));
             self.runs(planned, &mut case, &body, mesh_error);
         }
         error
     }
 
     /// Describes a case by its first body.
-    fn info(&mut self, case: &Case, finest: Option<&MeshReference>) {
+    fn info(&mut self, planned: &NonlinearCase, case: &Case, finest: Option<&MeshReference>) {
         if self.results.case(case.id()).is_some() {
             return;
         }
         let mut info = case.info();
+        info.remarks = planned
+            .remarks
+            .iter()
+            .map(|remark| (*remark).to_owned())
+            .collect();
         if let Some(finest) = finest {
             info.reference.push_str(&format!(
                 "; of the mesh: two finer meshes of elements that do not lock, extrapolated, {} % from the finest",

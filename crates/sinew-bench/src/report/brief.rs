@@ -9,21 +9,27 @@ use crate::results::{BenchResults, Skipped};
 
 /// Most rows of a table.
 const MOST_ROWS: usize = 18;
+/// Most marks, and most scenes, that have room beside each other.
+const FEW: usize = 8;
 /// Most lines of a list.
 const MOST_ITEMS: usize = 4;
 
 const HEAD: [&str; 6] = ["scene", "error at most", "cheapest", "dt", "error", "CPU"];
 const UNITS: [&str; 6] = ["", "[%]", "", "[ms]", "[%]", "[s/s]"];
 
-/// The answer of a bench for a terminal, at most 34 lines: the marks where there are some, else the cheapest
-/// run of each scene for errors of at most 10, 1 and 0.1 %; then what was not run, and what is missing.
+/// The answer of a bench for a terminal, at most 34 lines: the marks where there are some, the cheapest run of each scene for errors of at
+/// most 10, 1 and 0.1 % where there are none or few marks; then what was not run, and what is missing.
 #[must_use]
 pub fn brief(results: &BenchResults) -> String {
     let mut parts = Vec::new();
-    if results.marks.is_empty() {
-        parts.extend(cheapest_runs(results));
-    } else {
+    let has_room = results.marks.len() <= FEW && results.case_ids().len() <= FEW;
+    if !results.marks.is_empty() {
         parts.push(marks::brief(&results.marks, MOST_ROWS));
+    }
+    if results.marks.is_empty() {
+        parts.extend(cheapest_runs(results, MOST_ROWS));
+    } else if has_room {
+        parts.extend(cheapest_runs(results, FEW));
     }
     parts.extend(list("not run", skipped(&results.skipped)));
     let missing = results.all_missing();
@@ -46,18 +52,18 @@ pub fn markdown_cheapest(results: &BenchResults) -> String {
     lines.join("\n")
 }
 
-fn cheapest_runs(results: &BenchResults) -> Option<String> {
+fn cheapest_runs(results: &BenchResults, most: usize) -> Option<String> {
     let cases = results.case_ids();
     if cases.is_empty() {
         return None;
     }
     let mut rows = answers(results, &GOOD_ENOUGH);
-    if rows.len() > MOST_ROWS {
+    if rows.len() > most {
         // One line for each scene is better than some scenes without any.
         rows = answers(results, &GOOD_ENOUGH[1..2]);
     }
-    let left_out = rows.len().saturating_sub(MOST_ROWS);
-    rows.truncate(MOST_ROWS);
+    let left_out = rows.len().saturating_sub(most);
+    rows.truncate(most);
     let head: [String; 6] = std::array::from_fn(|i| format!("{}\n{}", HEAD[i], UNITS[i]));
     let head = head.each_ref().map(|head| head.trim_end());
     let table = ruled::table(head, rows.into_iter(), 3);
@@ -219,8 +225,8 @@ mod tests {
 
     #[test]
     fn no_bench_takes_more_than_34_lines() {
-        for cases in [0, 1, 4, 9, 10, 18, 19, 200] {
-            for marks in [0, 1, 18, 300] {
+        for cases in [0, 1, 4, 8, 9, 10, 18, 19, 200] {
+            for marks in [0, 1, 8, 9, 18, 300] {
                 let mut results = results(cases);
                 results.marks = vec![Mark::default(); marks];
                 let skipped = |n: u32| Skipped {

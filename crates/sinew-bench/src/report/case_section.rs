@@ -16,6 +16,9 @@ pub(super) fn write(page: &mut Page, results: &BenchResults, id: &str, anchor: &
     page.section(anchor, &format!("{title} `{id}`"));
     if let Some(info) = info {
         facts(page, info);
+        for remark in &info.remarks {
+            page.paragraph(remark);
+        }
     }
     let rows: Vec<&Row> = results.rows_of(id).collect();
     if rows.is_empty() {
@@ -38,7 +41,7 @@ fn facts(page: &mut Page, info: &CaseInfo) {
     let critical = info.critical_step_s.map(|dt| {
         shown(1e3 * dt, |dt| {
             let dt = number::three(dt);
-            format!("{dt} ms (2/ω of the fastest mode, undamped)")
+            format!("{dt} ms (2/ω of the fastest mode at rest, undamped)")
         })
     });
     page.facts([

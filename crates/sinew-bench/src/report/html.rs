@@ -31,10 +31,12 @@ pub fn html(results: &BenchResults) -> String {
 
 /// Pages that lie side by side in a browser have different titles.
 fn title(results: &BenchResults) -> String {
-    let subject = if results.marks.is_empty() && results.maps.is_empty() {
-        "What accuracy costs: methods, steps, verdicts"
-    } else {
-        "Hard cases: where methods fail, and what is asked of them"
+    let subject = match &results.subject {
+        Some(subject) => subject,
+        None if results.marks.is_empty() && results.maps.is_empty() => {
+            "What accuracy costs: methods, steps, verdicts"
+        }
+        None => "Hard cases: where methods fail, and what is asked of them",
     };
     format!("sinew bench. {subject}")
 }

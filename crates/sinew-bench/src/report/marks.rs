@@ -64,7 +64,7 @@ pub(super) fn section(page: &mut Page, marks: &[Mark]) {
     if marks.is_empty() {
         return;
     }
-    page.section("marks", "Pass marks of the hard cases");
+    page.section("marks", "Pass marks");
     page.paragraph(&format!(
         "{}. Figures are measured in this run; limits were set before it.",
         counted(marks)

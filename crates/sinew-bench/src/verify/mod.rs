@@ -3,17 +3,17 @@
 //!
 //! A subject is a file under `subjects` with a list of checks, each a function that computes one or more figures.
 
-mod bodies;
+pub(crate) mod bodies;
 mod check;
 mod error;
 mod inputs;
 mod kinds;
-mod modes;
+pub(crate) mod modes;
 mod motion;
 mod page;
-mod places;
+pub(crate) mod places;
 mod quadrature;
-mod reference;
+pub(crate) mod reference;
 mod results;
 mod run;
 mod sources;

@@ -65,7 +65,7 @@ impl Falling {
             integrator,
             order: 2,
             first,
-            halvings: 3,
+            halvings: 2,
             aim: 1e-4,
         };
         [
@@ -228,4 +228,43 @@ fn extrapolate(coarse: &Sight<'_>, fine: &Sight<'_>, order: i32) -> Vec<Vec<f64>
                 .collect()
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use sinew_core::closed_form::DampedOscillator;
+    use sinew_core::{LinearModel, LinearOperators, Load, Ramp};
+
+    use super::*;
+
+    /// The rule asks nothing of a system but its forces, so that a linear one shows what it is worth.
+    #[test]
+    fn it_is_the_closed_form_of_a_loaded_oscillator() {
+        let load = Load {
+            ramp: Ramp::Step,
+            entries: vec![(0, 2.0)],
+        };
+        let operators = LinearOperators::oscillator(0.1, 100.0, 0.2)
+            .and_then(|operators| operators.with_loads(vec![load]))
+            .unwrap();
+        let start = State::new(vec![0.01], vec![-5.0]);
+        let times: Vec<f64> = (0..=20).map(|j| f64::from(j) * 0.1).collect();
+        let track = by_extrapolation(&LinearModel::new(operators), &start, &times).unwrap();
+        let exact = DampedOscillator {
+            omega: 1000.0_f64.sqrt(),
+            damping: 2.0,
+            load: 20.0,
+            displacement: 0.01,
+            velocity: -5.0,
+        };
+        let exact: Vec<Vec<f64>> = times.iter().map(|t| vec![exact.at(*t).0]).collect();
+        let error = ErrorNorm::between(&track.displacements, &exact);
+        assert!(error < 1e-7, "{error}");
+        // The error that it states bounds the true one.
+        assert!(
+            track.error >= error && track.error < 1e-4,
+            "{}",
+            track.error
+        );
+    }
 }

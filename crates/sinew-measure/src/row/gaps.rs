@@ -131,6 +131,7 @@ impl CaseInfo {
         let Self {
             id: _,
             title: _,
+            remarks: _,
             dofs: _,
             duration_s,
             reference: _,

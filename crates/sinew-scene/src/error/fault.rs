@@ -101,7 +101,7 @@ pub enum Fault {
         known: Vec<String>,
     },
     /// A formula that gives no finite number somewhere on the body.
-    #[error("it is {value} at ({}, {}, {}) m: expected a finite number everywhere on the part", place[0], place[1], place[2])]
+    #[error("a formula gives {value} at ({}, {}, {}) m: expected a finite number everywhere on the part", place[0], place[1], place[2])]
     NotFinite {
         /// What it gives.
         value: f64,

@@ -93,3 +93,19 @@ fn a_static_state_of_a_body_that_nothing_holds() {
         );
     }
 }
+
+#[test]
+fn a_velocity_that_is_no_formula() {
+    insta::assert_snapshot!(
+        refusal(BODY, "velocity = [0.0, 0.0, 1.0]", "velocity = [0.0, 0.0, \"0.5 * t\"]"),
+        @r#"scene.toml:19: [[initial]] 1: velocity = [0.0, 0.0, "0.5 * t"]: expected [x, y, z] in m/s, each a finite number or a formula of x, y, z in quotes, such as "0.5 * z""#
+    );
+}
+
+#[test]
+fn a_formula_without_a_finite_value_at_a_node() {
+    insta::assert_snapshot!(
+        refusal(BODY, "velocity = [0.0, 0.0, 1.0]", "velocity = [0.0, 0.0, \"1 / (z - 0.1)\"]"),
+        @"scene.toml:19: [[initial]] 1: a formula gives inf at (0.1, 0.1, 0.1) m: expected a finite number everywhere on the part"
+    );
+}

@@ -1,0 +1,100 @@
+//! What is asked of large deformations.
+
+use sinew_measure::Row;
+
+use super::{equal_error, methods};
+use crate::report::{number, percent};
+use crate::results::{Mark, MarkVerdict};
+
+/// Largest rise of the energy, over all that was brought in, by which rounding is not exceeded.
+const ROUNDING: f64 = 1e-11;
+
+/// All marks; `begins` is told of each that takes time.
+pub(super) fn all(rows: &[Row], quick: bool, begins: impl FnMut(&str)) -> Vec<Mark> {
+    let mut marks = vec![energy_never_rises(rows), steps_follow_the_stiffness(rows)];
+    marks.extend(equal_error::marks(quick, begins));
+    marks
+}
+
+fn mark(case: &str, asked: String, limit: f64) -> Mark {
+    Mark {
+        case: case.to_owned(),
+        asked,
+        limit: Some(limit),
+        ..Mark::default()
+    }
+}
+
+fn at(row: &Row) -> String {
+    let dt = number::milliseconds(row.dt);
+    format!("{}: {}, {dt} ms", row.case, row.label())
+}
+
+/// The certificate of the sweeps that lower a step's energy, over all cases, steps, kinds and numbers of sweeps.
+fn energy_never_rises(rows: &[Row]) -> Mark {
+    let own = rows
+        .iter()
+        .filter(|row| row.integrator == methods::energy("trap", 4).integrator);
+    let rises = own.filter_map(|row| Some((row.energy_rise?, row)));
+    let worst = rises.clone().max_by(|a, b| a.0.total_cmp(&b.0));
+    let asked = mark(
+        "cellular sweeps never raise the energy",
+        format!(
+            "largest rise over what start and loads brought in at most {}",
+            number::short(ROUNDING)
+        ),
+        ROUNDING,
+    );
+    let Some((rise, row)) = worst else {
+        return asked;
+    };
+    Mark {
+        measured: number::short(rise),
+        figure: Some(rise),
+        by: format!("the worst of {} runs: {}", rises.count(), at(row)),
+        verdict: match rise <= ROUNDING {
+            true => MarkVerdict::Pass,
+            false => MarkVerdict::Fail,
+        },
+        ..asked
+    }
+}
+
+/// Central difference whose parts follow the stiffness comes to the end everywhere.
+fn steps_follow_the_stiffness(rows: &[Row]) -> Mark {
+    let yardstick = methods::yardstick();
+    let own: Vec<&Row> = rows
+        .iter()
+        .filter(|row| {
+            row.integrator == yardstick.integrator && row.options.contains_key("substeps")
+        })
+        .collect();
+    let worst = own.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
+    let asked = mark(
+        "steps by the current stiffness come to the end",
+        "error at most 50 % at any step, nothing refused".to_owned(),
+        0.5,
+    );
+    let Some(worst) = worst else {
+        return asked;
+    };
+    let figure = error(worst);
+    Mark {
+        measured: match figure.is_finite() {
+            true => format!("{} %", percent(figure)),
+            false => worst.refusal.clone().unwrap_or("diverged".to_owned()),
+        },
+        figure: figure.is_finite().then_some(figure),
+        by: format!("the worst of {} runs: {}", own.len(), at(worst)),
+        verdict: match figure <= asked.limit.unwrap_or_default() {
+            true => MarkVerdict::Pass,
+            false => MarkVerdict::Fail,
+        },
+        ..asked
+    }
+}
+
+/// The error of a run; infinite of one that has none.
+fn error(row: &Row) -> f64 {
+    row.sound_error().unwrap_or(f64::INFINITY)
+}
