@@ -89,7 +89,7 @@ pub fn measure_with(
     if refusal.is_some() {
         // The same as far as it goes.
         let run = Run {
-            steps: comparison.step,
+            steps: comparison.reached,
             ..run
         };
         (comparison, state, report) = compare(integrator, &run);
@@ -210,6 +210,8 @@ struct Comparison<'a> {
     stride: usize,
     steps: usize,
     step: usize,
+    /// Steps after which the last state came.
+    reached: usize,
     norm: ErrorNorm,
     /// Present where the error beyond the last instant is asked for.
     history: Option<ErrorHistory>,
@@ -227,6 +229,7 @@ impl<'a> Comparison<'a> {
             stride,
             steps: run.steps,
             step: 0,
+            reached: 0,
             norm: ErrorNorm::default(),
             history: None,
             deformation: None,
@@ -244,6 +247,7 @@ impl Recorder for Comparison<'_> {
 
     fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
         let state = moment.state;
+        self.reached = moment.step;
         if self.step.is_multiple_of(self.stride)
             && let Some(reference) = self.track.displacements.get(self.step / self.stride)
         {
