@@ -2,11 +2,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use sinew_core::{Ramp, State, System};
+use sinew_core::{LinearSystem, Ramp, State, System};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{
     Element, FemError, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region,
 };
+use sinew_integrators::{StaticError, static_solution_under};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, StructuredError, block};
 
@@ -106,6 +107,12 @@ impl Specimen {
     pub(crate) fn thrown(mut self, at: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         self.start.v = self.field(at);
         self
+    }
+
+    /// The displacement (m) at rest under all loads at their full value.
+    pub(crate) fn equilibrium(&self) -> Result<Vec<f64>, StaticError> {
+        let loads: Vec<usize> = (0..self.model.operators().loads().len()).collect();
+        static_solution_under(&self.model, &self.model.full_loads(&loads))
     }
 
     /// A vector at each free node by its place (m); components that are held are 0.

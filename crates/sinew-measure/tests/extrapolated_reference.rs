@@ -15,7 +15,7 @@ use sinew_scene::Scene;
 fn case(name: &str, values: &[&str]) -> Case {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/nonlinear");
     let scene = Scene::load_with(scenes.join(name), values).unwrap();
-    Case::of_force_law("case", scene.build().unwrap()).unwrap()
+    Case::new("case", scene.build().unwrap()).unwrap()
 }
 
 /// The displacement along z of the scene's first probe, at an instant.

@@ -41,7 +41,7 @@ pub enum PictureError {
 /// [`PictureError`].
 pub fn picture(scenes: &Path) -> Result<String, PictureError> {
     let simulation = Scene::load(scenes.join(SCENE)).and_then(Scene::build);
-    let mut case = Case::of_force_law("twist", simulation.map_err(CaseError::from)?)?;
+    let mut case = Case::new("twist", simulation.map_err(CaseError::from)?)?;
     let method = methods::yardstick();
     let row = measure(&mut case, &method, STEP, Effort::UNTIMED)?;
 

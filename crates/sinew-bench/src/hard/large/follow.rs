@@ -132,12 +132,12 @@ impl<'a> Ledger<'a> {
         let t = before.t();
         let moved: Vec<f64> = state.u.iter().zip(&before.u).map(|(b, a)| b - a).collect();
         let ends = LoadTime::at_both_ends(t, state.t() - t, 0.5);
-        let works = ends.map(|when| {
-            self.force.fill(0.0);
-            self.system.external_force(when, &mut self.force);
-            dot(&self.force, &moved)
-        });
-        0.5 * (works[0] + works[1])
+        let mut work = 0.0;
+        for (when, at) in ends.into_iter().zip([before, state]) {
+            self.system.external_force(when, &at.u, &mut self.force);
+            work += 0.5 * dot(&self.force, &moved);
+        }
+        work
     }
 
     fn see(&mut self, moment: &Moment<'_>) {
@@ -222,7 +222,7 @@ pub(crate) fn follow(
     let mut record = |moment: &Moment<'_>| {
         ledger.see(moment);
         saturated = moment.work.saturated;
-        if moment.step > 0 && moment.step % every == 0 {
+        if moment.step > 0 && moment.step.is_multiple_of(every) {
             track.push(moment.state.u.clone());
         }
         Ok(Verdict::Continue)

@@ -1,8 +1,7 @@
 //! A core a thousand times stiffer than the tissue around it, of another law.
 
-use sinew_core::{LoadTime, Ramp, System};
+use sinew_core::Ramp;
 use sinew_fem::{Element, LoadKind, LoadSpec, Problem, Region};
-use sinew_integrators::static_solution;
 use sinew_measure::MethodChoice;
 
 use super::ROUNDING;
@@ -60,23 +59,16 @@ fn specimen(core: &'static str, element: Element, ramp: Ramp) -> Result<Specimen
     )?)
 }
 
-fn equilibrium(specimen: &Specimen) -> Result<Vec<f64>, HardError> {
-    let system: &dyn System = &specimen.model;
-    let mut force = vec![0.0; system.dofs()];
-    system.external_force(LoadTime::at(DURATION), &mut force);
-    Ok(static_solution(system, &force)?)
-}
-
 /// So stiff a core hardly strains: whatever its law, equilibria and motions are those with a core of the tissue's own law.
 pub(crate) fn check(asked: Asked) -> Result<Mark, HardError> {
     let mut tally = Tally::default();
     let rise = Ramp::Sin2 { rise: 0.1 };
     let alike = specimen("neo-hookean", Element::P1, rise.clone())?;
-    let rest = equilibrium(&alike)?;
+    let rest = alike.equilibrium()?;
     let exact = reference(&alike, FINE, DURATION, INSTANTS)?;
     for core in CORES {
         let body = specimen(core, Element::P1, rise.clone())?;
-        let off = relative_distance(&equilibrium(&body)?, &rest);
+        let off = relative_distance(&body.equilibrium()?, &rest);
         let demand = Demand::new("distance of the equilibrium", off, 2e-3);
         tally.demand(format!("core {core}"), demand);
         for (planned, limit) in [

@@ -1,8 +1,7 @@
 //! Tissue that hardly changes its volume: nu = .4999.
 
-use sinew_core::{LoadTime, Ramp, System};
+use sinew_core::Ramp;
 use sinew_fem::Element;
-use sinew_integrators::static_solution;
 use sinew_measure::MethodChoice;
 
 use super::ROUNDING;
@@ -32,13 +31,6 @@ fn specimen(nu: f64, element: Element, ramp: Ramp) -> Result<Specimen, HardError
     Ok(tissue::pressed(CELLS, law, element, 10.0, ramp)?)
 }
 
-fn equilibrium(specimen: &Specimen) -> Result<Vec<f64>, HardError> {
-    let system: &dyn System = &specimen.model;
-    let mut force = vec![0.0; system.dofs()];
-    system.external_force(LoadTime::at(DURATION), &mut force);
-    Ok(static_solution(system, &force)?)
-}
-
 /// A cube under 12 N is pressed as one with nu = .499, and moves as by short steps.
 pub(crate) fn check(asked: Asked) -> Result<Mark, HardError> {
     let mut tally = Tally::default();
@@ -47,7 +39,7 @@ pub(crate) fn check(asked: Asked) -> Result<Mark, HardError> {
         let about = element.to_string();
         let body = specimen(0.4999, element, rise.clone())?;
         let other = specimen(0.499, element, rise.clone())?;
-        let off = relative_distance(&equilibrium(&body)?, &equilibrium(&other)?);
+        let off = relative_distance(&body.equilibrium()?, &other.equilibrium()?);
         let demand = Demand::new(
             "distance of the equilibrium from that with nu .499",
             off,
