@@ -10,9 +10,20 @@
 use std::path::Path;
 
 use sinew_bench::machine;
-use sinew_bench::nonlinear::NonlinearBench;
+use sinew_bench::nonlinear::{NonlinearBench, picture};
 use sinew_bench::report::{brief, html};
 use sinew_bench::results::Mark;
+
+/// It is left in `target/tmp`, to be looked at.
+#[test]
+fn the_picture_says_its_error_and_is_small() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let svg = picture(&scenes).unwrap();
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("large-deformation.svg");
+    std::fs::write(path, &svg).unwrap();
+    assert!(svg.len() < 100_000, "{}", svg.len());
+    assert!(svg.contains("error over the run") && !svg.contains("left out"));
+}
 
 /// One test, because all of it is one run.
 #[test]

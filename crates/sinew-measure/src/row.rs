@@ -264,13 +264,18 @@ impl RowVerdict {
 }
 
 impl Row {
-    /// The integrator and its non-default options, as in `cnn Q=4`, and the law and element where they tell runs apart.
+    /// The integrator and its non-default options, as in `cnn Q=4`.
+    #[must_use]
+    pub fn method(&self) -> String {
+        label(&self.integrator, &self.options)
+    }
+
+    /// The method, and the law and element where they tell runs apart.
     #[must_use]
     pub fn label(&self) -> String {
-        let method = label(&self.integrator, &self.options);
         match &self.material {
-            Some(material) => format!("{method}, {material}"),
-            None => method,
+            Some(material) => format!("{}, {material}", self.method()),
+            None => self.method(),
         }
     }
 

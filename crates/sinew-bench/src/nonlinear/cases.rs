@@ -138,3 +138,37 @@ pub(super) fn all(quick: bool) -> Vec<NonlinearCase> {
     ]);
     cases
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use sinew_scene::Scene;
+
+    use super::*;
+
+    /// A slow bench should not find out late that a scene has a mistake.
+    #[test]
+    fn every_scene_is_read_with_every_law_and_finer_mesh() {
+        let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+        for case in all(false) {
+            let mut changes = vec![Vec::new()];
+            changes.extend(case.materials.iter().map(|material| material.values()));
+            let meshes = case.finer.map(|finer| finer.meshes);
+            changes.extend(meshes.iter().flatten().map(|mesh| vec![(*mesh).to_owned()]));
+            for values in changes {
+                let scene = Scene::load_with(scenes.join(case.scene), &values).unwrap();
+                let settings = scene.settings();
+                let interval = settings.duration / settings.samples as f64;
+                for dt in case.steps {
+                    let parts = interval / dt;
+                    assert!(
+                        (parts - parts.round()).abs() < 1e-9 * parts,
+                        "{} {dt}",
+                        case.id
+                    );
+                }
+            }
+        }
+    }
+}

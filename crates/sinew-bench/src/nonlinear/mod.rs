@@ -201,7 +201,9 @@ impl Running<'_> {
     ) {
         let mut yardstick = None;
         for method in &planned.methods {
-            for (number, &dt) in planned.steps.iter().enumerate() {
+            let steps = steps_of(planned, method);
+            self.done += planned.steps.len() - steps.len();
+            for (number, &dt) in steps.iter().enumerate() {
                 (self.progress)(Progress::Run {
                     done: self.done,
                     of: self.of,
@@ -228,7 +230,7 @@ impl Running<'_> {
                     }
                     // What lies in the method and the body is the same at any step.
                     Err(error @ (MeasureError::Setup(_) | MeasureError::Options(_))) => {
-                        self.done += planned.steps.len() - number - 1;
+                        self.done += steps.len() - number - 1;
                         self.skip(case.id(), label(method, body), dt, &error);
                         break;
                     }
@@ -245,6 +247,17 @@ impl Running<'_> {
             dt,
             reason: reason.to_string(),
         });
+    }
+}
+
+/// Steps of methods that factorise a matrix in each iteration: short ones cost minutes, and explicit methods are far beneath them there.
+const STEPS_OF_FACTORISING_METHODS: usize = 3;
+
+fn steps_of(planned: &NonlinearCase, method: &MethodChoice) -> &'static [f64] {
+    let entry = sinew_integrators::entry(&method.integrator);
+    match entry.is_some_and(|entry| entry.factorises) {
+        true => &planned.steps[..planned.steps.len().min(STEPS_OF_FACTORISING_METHODS)],
+        false => planned.steps,
     }
 }
 

@@ -11,7 +11,7 @@ use sinew_mesh::GroupMembers;
 use sinew_scene::Scene;
 
 use super::methods;
-use crate::report::percent;
+use crate::report::{number, percent};
 
 /// The scene, from the folder of scenes, and the step (s) of central difference.
 const SCENE: &str = "nonlinear/twist.toml";
@@ -35,7 +35,7 @@ pub enum PictureError {
     Still,
 }
 
-/// The column of the twist where it is turned farthest, coloured by displacement, with the error of the run in its title.
+/// The column of the twist when it stores most energy, coloured by displacement, with the error of the run in its title.
 ///
 /// # Errors
 /// [`PictureError`].
@@ -47,12 +47,13 @@ pub fn picture(scenes: &Path) -> Result<String, PictureError> {
 
     let simulation = case.simulation();
     let body = simulation.model().body().ok_or(PictureError::Still)?;
-    let mut farthest: Option<(f64, f64, Vec<f64>)> = None;
+    let mut tightest: Option<(f64, f64, Vec<f64>)> = None;
     let mut look = |moment: &Moment<'_>| {
         let (t, u) = (moment.state.t(), &moment.state.u);
-        let size = norm(u);
-        if farthest.as_ref().is_none_or(|(most, ..)| size > *most) {
-            farthest = Some((size, t, u.clone()));
+        let energy = moment.system.energy(u, &moment.state.v);
+        let stored = energy.map_or(0.0, |energy| energy.elastic);
+        if tightest.as_ref().is_none_or(|(most, ..)| stored > *most) {
+            tightest = Some((stored, t, u.clone()));
         }
         Ok(Verdict::Continue)
     };
@@ -67,7 +68,7 @@ pub fn picture(scenes: &Path) -> Result<String, PictureError> {
         recorder,
     )
     .map_err(MeasureError::from)?;
-    let (_, t, u) = farthest.ok_or(PictureError::Still)?;
+    let (_, t, u) = tightest.ok_or(PictureError::Still)?;
 
     let mesh = &body.mesh;
     let mut points = mesh.points.clone();
@@ -86,7 +87,10 @@ pub fn picture(scenes: &Path) -> Result<String, PictureError> {
         outline: Some(mesh.bounding_box().into()),
         size: (420.0, 430.0),
         ..Surface::new(
-            format!("Twisted tissue after {t} s: error over the run {error} %"),
+            format!(
+                "Twisted tissue at {} s: error over the run {error} %",
+                number::short(t)
+            ),
             &points,
             &triangles,
             &values,

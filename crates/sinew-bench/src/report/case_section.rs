@@ -26,9 +26,12 @@ pub(super) fn write(page: &mut Page, results: &BenchResults, id: &str, anchor: &
     } else {
         page.figure(&work_precision(results, id).svg(), "");
         front(page, results, id);
-        page.figure(&strip(results, id), "");
+        if rows.iter().any(|row| row.dt != rows[0].dt) {
+            page.figure(&strip(results, id), "");
+        }
         page.heading("All runs");
         page.table(&runs(&rows));
+        refusals(page, &rows);
         findings(page, &rows);
     }
     if id == crate::peers::CASE {
@@ -80,6 +83,19 @@ fn front(page: &mut Page, results: &BenchResults, id: &str) {
     );
     for sentence in front::sentences(results, id) {
         page.paragraph(&sentence);
+    }
+}
+
+/// The reasons for which runs were refused, folded away.
+fn refusals(page: &mut Page, rows: &[&Row]) {
+    let refused = rows.iter().filter_map(|row| {
+        let reason = row.refusal.as_ref()?;
+        let dt = number::milliseconds(row.dt);
+        Some(format!("{}, {dt} ms: {reason}", row.label()))
+    });
+    let refused: Vec<String> = refused.collect();
+    if !refused.is_empty() {
+        page.folded("Why steps were refused", |page| page.list(refused));
     }
 }
 

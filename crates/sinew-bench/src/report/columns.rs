@@ -131,7 +131,7 @@ static COLUMNS: [Column; 13] = [
 ];
 
 /// Figures that only hard cases or large deformations have.
-static OTHER_COLUMNS: [Column; 8] = [
+static OTHER_COLUMNS: [Column; 7] = [
     Column {
         head: "mesh error",
         unit: "%",
@@ -165,13 +165,6 @@ static OTHER_COLUMNS: [Column; 8] = [
                 .map_or_else(String::new, |x| shown(x, number::three))
         },
         key: Some(|row| row.smallest_volume_ratio.unwrap_or(f64::NEG_INFINITY)),
-    },
-    Column {
-        head: "refused because",
-        unit: "",
-        explained: "the reason for which a step was refused",
-        cell: |row| row.refusal.clone().unwrap_or_default(),
-        key: None,
     },
     Column {
         head: "dt/crit.",

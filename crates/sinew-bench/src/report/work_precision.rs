@@ -14,7 +14,7 @@ pub(super) const LEAST_SHOWN_ERROR: f64 = 1e-8;
 
 /// Error over CPU time of the runs of a case: a line per method over its steps, and the Pareto
 /// front down to the first run below all errors shown. A method looks the same in the plots of all
-/// cases, and no two look alike.
+/// cases and on all laws and elements of one, and no two look alike.
 #[must_use]
 pub fn work_precision(results: &BenchResults, case: &str) -> Plot {
     let rows: Vec<&Row> = results.rows_of(case).collect();
@@ -39,11 +39,11 @@ pub fn work_precision(results: &BenchResults, case: &str) -> Plot {
     if !front.is_empty() {
         plot.series.push(staircase(&front));
     }
-    for (index, label) in labels(results).into_iter().enumerate() {
+    for (index, label) in methods(results).into_iter().enumerate() {
         let mut runs: Vec<&Row> = rows
             .iter()
             .copied()
-            .filter(|row| row.label() == label)
+            .filter(|row| row.method() == label)
             .collect();
         runs.sort_by(|a, b| a.dt.total_cmp(&b.dt));
         if !runs.is_empty() {
@@ -58,15 +58,15 @@ pub fn work_precision(results: &BenchResults, case: &str) -> Plot {
 }
 
 /// The methods of all cases.
-fn labels(results: &BenchResults) -> Vec<String> {
-    let mut labels: Vec<String> = Vec::new();
+fn methods(results: &BenchResults) -> Vec<String> {
+    let mut methods: Vec<String> = Vec::new();
     for row in &results.rows {
-        let label = row.label();
-        if !labels.contains(&label) {
-            labels.push(label);
+        let method = row.method();
+        if !methods.contains(&method) {
+            methods.push(method);
         }
     }
-    labels
+    methods
 }
 
 fn point(row: &Row, ringed: bool) -> Point {
