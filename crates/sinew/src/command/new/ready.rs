@@ -46,6 +46,11 @@ const READY: &[Ready] = &[
         mesh: Some(("organ.msh", mesh!("organ.msh"))),
     },
     Ready {
+        name: "twisted-column",
+        scene: scene!("twisted-column.toml"),
+        mesh: None,
+    },
+    Ready {
         name: "beam",
         scene: scene!("beam.toml"),
         mesh: Some(("beam.msh", mesh!("beam.msh"))),
