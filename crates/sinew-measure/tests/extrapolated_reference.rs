@@ -22,7 +22,7 @@ fn case(name: &str, values: &[&str]) -> Case {
 fn probed(case: &Case, instant: usize) -> f64 {
     let probe = &case.simulation().probes()[0];
     let dof = probe.nodes[0].dofs[2].unwrap();
-    case.samples().displacements[instant][dof as usize]
+    case.samples().displacements[instant][dof]
 }
 
 /// Digits of another program, extrapolated from finer steps of central difference.

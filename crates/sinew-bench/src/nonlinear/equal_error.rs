@@ -52,7 +52,7 @@ const COMPARISONS: [Comparison; 2] = [
     Comparison {
         shape: Shape::HeldCube,
         cells: 5,
-        plain: &[10, 13, 16, 20],
+        plain: &[10, 11, 12, 13, 14, 16, 18, 20],
         reference: 8,
     },
     Comparison {
@@ -105,7 +105,7 @@ pub(super) fn marks(quick: bool, mut begins: impl FnMut(&str)) -> Vec<Mark> {
                 comparison.shape.words()
             );
             begins(&case);
-            let (laps, meshes) = if quick { (1, 2) } else { (3, usize::MAX) };
+            let (laps, meshes) = if quick { (1, 4) } else { (3, usize::MAX) };
             match comparison.measure(nu, laps, meshes) {
                 Ok(mark) => Mark { case, ..mark },
                 Err(error) => Mark {

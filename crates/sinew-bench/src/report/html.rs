@@ -15,7 +15,7 @@ pub fn html(results: &BenchResults) -> String {
     let mut page = Page::new(title(results));
     let missing = results.all_missing();
     header(&mut page, results, missing.len());
-    how_to_read(&mut page);
+    how_to_read(&mut page, results);
     let ids = results.case_ids();
     let anchors = slugs(&ids);
     marks::section(&mut page, &results.marks);
@@ -59,7 +59,7 @@ fn header(page: &mut Page, results: &BenchResults, missing: usize) {
     ]);
 }
 
-fn how_to_read(page: &mut Page) {
+fn how_to_read(page: &mut Page, results: &BenchResults) {
     page.section("how-to-read", "How to read this");
     page.markup(
         "<ul>\n\
@@ -96,9 +96,22 @@ fn how_to_read(page: &mut Page) {
          off the front is as good. Runs with an error above 50&nbsp;% are never on it, and the plots ring \
          none beyond the first with an error below 10<sup>−6</sup>&nbsp;%. Curves that lie under \
          others show as rims; a pointer over a mark names all runs there, a click on a name keeps \
-         its curve in view.</li>\n\
-         </ul>\n",
+         its curve in view.</li>\n",
     );
+    if results
+        .rows
+        .iter()
+        .any(|row| row.smallest_volume_ratio.is_some())
+    {
+        page.markup(
+            "<li><b>Large deformation</b>: the error is that in time, against the same body in steps of no length. The <b>mesh error</b> \
+             beside it is that of the mesh and its element alone, against finer meshes, and the same for all methods. <b>Times</b> is \
+             the cost over that of central difference whose steps follow the stiffness. <b>Energy rise</b> is the largest excess of the energy \
+             over that of the start and the work of loads since, with no share of damping. <b>Least J</b> is the smallest volume of an \
+             element, over all steps, over that at rest.</li>\n",
+        );
+    }
+    page.markup("</ul>\n");
 }
 
 fn summary(page: &mut Page, results: &BenchResults, ids: &[&str], anchors: &[String]) {
