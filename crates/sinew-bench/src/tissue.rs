@@ -2,12 +2,14 @@
 
 use std::f64::consts::{PI, TAU};
 
-use sinew_core::{LinearSystem, Ramp, State, System};
+use sinew_core::{Integrator, LinearSystem, Ramp, State, StepError, StepReport, System};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{
     Element, FemError, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region,
 };
-use sinew_integrators::{StaticError, static_solution_under};
+use sinew_integrators::explicit::PatchedCentralDifference;
+use sinew_integrators::{Frame, StaticError, static_solution_under};
+use sinew_measure::reference::ErrorNorm;
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, StructuredError, block};
 
@@ -28,7 +30,7 @@ const C1_OVER_C2: f64 = 4.0;
 
 /// Why there is no such block.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum TissueError {
+pub enum TissueError {
     /// Its mesh.
     #[error(transparent)]
     Mesh(#[from] StructuredError),
@@ -115,6 +117,36 @@ impl Specimen {
         static_solution_under(&self.model, &self.model.full_loads(&loads))
     }
 
+    /// Displacements (m) at so many equal instants of `steps` steps each, and the work of all of them.
+    pub(crate) fn track(
+        &self,
+        integrator: &mut dyn Integrator,
+        dt: f64,
+        steps: usize,
+        instants: usize,
+    ) -> Result<(Vec<Vec<f64>>, StepReport), StepError> {
+        let (mut state, mut work) = (self.start.clone(), StepReport::default());
+        let mut track = Vec::with_capacity(instants);
+        for _ in 0..instants {
+            for _ in 0..steps {
+                work += integrator.step(&self.model, &mut state, dt)?;
+            }
+            track.push(state.u.clone());
+        }
+        Ok((track, work))
+    }
+
+    /// The same by central difference.
+    pub(crate) fn by_central_difference(
+        &self,
+        dt: f64,
+        steps: usize,
+        instants: usize,
+    ) -> Result<Vec<Vec<f64>>, StepError> {
+        let mut integrator = Frame::new(PatchedCentralDifference::default());
+        Ok(self.track(&mut integrator, dt, steps, instants)?.0)
+    }
+
     /// A vector at each free node by its place (m); components that are held are 0.
     pub(crate) fn field(&self, of: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
         let points = &self.model.mesh().points;
@@ -127,6 +159,14 @@ impl Specimen {
         }
         field
     }
+}
+
+/// Error of displacements at all instants over the size of exact ones; infinite where there are fewer.
+pub(crate) fn relative_error(found: &[Vec<f64>], exact: &[Vec<f64>]) -> f64 {
+    if found.len() != exact.len() {
+        return f64::INFINITY;
+    }
+    ErrorNorm::between(found, exact)
 }
 
 /// A cube that is stretched by half along z at the volume of rest, and let go.
@@ -192,26 +232,22 @@ fn trapezoid(mesh: &TetMesh, cells: usize, force: f64, ramp: &Ramp) -> Vec<LoadS
     (0..3).map(of_rims).collect()
 }
 
-/// The mean angle (rad) by which the nodes at the top turned about the middle of the column, nearest to `near`: angles beyond half
-/// a turn follow from those before.
+/// The angle (rad) by which the nodes at the top of a column turned about its axis, the best fit to all of them, nearest to `near`:
+/// angles beyond half a turn follow from those before.
 pub(crate) fn rotation_of_top(specimen: &Specimen, u: &[f64], near: f64) -> f64 {
     let mesh = specimen.model.mesh();
     let (low, high) = mesh.bounding_box();
     let middle = [0, 1].map(|axis| (low[axis] + high[axis]) / 2.0);
-    let (mut sum, mut count) = (0.0, 0);
+    let (mut sine, mut cosine) = (0.0, 0.0);
     for (node, u) in specimen.model.nodes().iter().zip(u.as_chunks::<3>().0) {
         let point = mesh.points[*node as usize];
-        let arm = [0, 1].map(|axis| point[axis] - middle[axis]);
-        let is_turned = point[2] > high[2] - 1e-9 && arm[0].hypot(arm[1]) > 1e-9;
-        if is_turned {
-            let now = [arm[0] + u[0], arm[1] + u[1]];
-            let angle = f64::atan2(
-                arm[0] * now[1] - arm[1] * now[0],
-                arm[0] * now[0] + arm[1] * now[1],
-            );
-            sum += angle + ((near - angle) / TAU).round() * TAU;
-            count += 1;
+        if point[2] > high[2] - 1e-9 * (high[2] - low[2]) {
+            let [x, y] = [0, 1].map(|axis| point[axis] - middle[axis]);
+            let [now_x, now_y] = [x + u[0], y + u[1]];
+            sine += x * now_y - y * now_x;
+            cosine += x * now_x + y * now_y;
         }
     }
-    sum / f64::from(count)
+    let angle = sine.atan2(cosine);
+    angle + ((near - angle) / TAU).round() * TAU
 }

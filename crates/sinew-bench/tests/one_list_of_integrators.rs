@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Lists of runs, which are about certain methods.
-const LISTS: [&str; 10] = [
+const LISTS: [&str; 11] = [
     "sinew-bench/src/kernels/laps.rs",
     "sinew-bench/src/scale/methods.rs",
     "sinew-bench/src/scale/newmark.rs",
@@ -14,6 +14,7 @@ const LISTS: [&str; 10] = [
     "sinew-bench/src/hard/methods.rs",
     "sinew-bench/src/hard/maps.rs",
     "sinew-bench/src/hard/checks/",
+    "sinew-bench/src/hard/large/",
     "sinew-bench/src/nonlinear/methods.rs",
     "sinew-bench/src/reproduce/",
     "sinew-bench/src/verify/subjects/",

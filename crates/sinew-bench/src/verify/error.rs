@@ -1,12 +1,16 @@
 //! Reasons for which a figure cannot be computed.
 
-use sinew_core::{OperatorError, OptionError, StepError};
+use sinew_core::{EvaluationError, OperatorError, OptionError, StepError};
+use sinew_fem::hyperelastic::LawError;
+use sinew_fem::hyperelastic::closed_forms::ClosedFormError;
 use sinew_fem::{FemError, FieldError};
 use sinew_integrators::{FactorError, StaticError};
 use sinew_measure::{CaseError, MeasureError};
 use sinew_mesh::structured::StructuredError;
 use sinew_mesh::{MshFileError, TetMeshError, UnknownGroup};
 use sinew_sparse::AssemblyError;
+
+use crate::tissue::TissueError;
 
 /// Reasons for which a figure cannot be computed.
 #[derive(Debug, thiserror::Error)]
@@ -30,6 +34,18 @@ pub enum VerifyError {
     /// A field on a model.
     #[error(transparent)]
     Field(#[from] FieldError),
+    /// A block of tissue.
+    #[error(transparent)]
+    Tissue(#[from] TissueError),
+    /// The closed forms of a law.
+    #[error(transparent)]
+    ClosedForm(#[from] ClosedFormError),
+    /// A law that does not exist.
+    #[error(transparent)]
+    Law(#[from] LawError),
+    /// A state that a law refuses.
+    #[error(transparent)]
+    Refused(#[from] EvaluationError),
     /// Matrices.
     #[error(transparent)]
     Operators(#[from] OperatorError),

@@ -13,6 +13,7 @@ mod motion;
 mod page;
 pub(crate) mod places;
 mod quadrature;
+mod quasi_static;
 pub(crate) mod reference;
 mod results;
 mod run;

@@ -2,13 +2,13 @@
 
 use sinew_core::vectors::{dot, weighted_dot};
 use sinew_core::{
-    Integrator, LoadTime, Moment, Options, Outcome, Run, State, System, Trial, Verdict, simulate,
+    Integrator, LoadTime, Moment, Outcome, Run, State, System, Trial, Verdict, simulate,
 };
 use sinew_measure::MethodChoice;
 
 use crate::hard::error::HardError;
 use crate::report::milliseconds;
-use crate::tissue::Specimen;
+use crate::tissue::{Specimen, relative_error};
 
 /// Sizes of the body that a displacement may have before the run counts as diverged.
 const SIZES: f64 = 20.0;
@@ -74,16 +74,7 @@ impl Followed {
 
     /// Error of the displacements at all instants.
     pub(crate) fn error(&self, exact: &[Vec<f64>]) -> f64 {
-        if self.track.len() != exact.len() {
-            return f64::INFINITY;
-        }
-        let pairs = self.track.iter().flatten().zip(exact.iter().flatten());
-        let (mut off, mut all) = (0.0, 0.0);
-        for (found, exact) in pairs {
-            off += (found - exact) * (found - exact);
-            all += exact * exact;
-        }
-        f64::sqrt(off / all)
+        relative_error(&self.track, exact)
     }
 }
 
@@ -177,7 +168,7 @@ fn elastic(system: &dyn System, u: &[f64], work: &mut [f64]) -> Option<(f64, usi
     Some((found.energy, found.inverted))
 }
 
-/// The motion by central difference in steps so short that its error does not count, at equal instants.
+/// The motion by central difference in steps of `dt` (s) or a little less, so short that its error does not count, at equal instants.
 ///
 /// # Errors
 /// [`HardError`] where the body refuses it.
@@ -187,18 +178,9 @@ pub(crate) fn reference(
     duration: f64,
     instants: usize,
 ) -> Result<Vec<Vec<f64>>, HardError> {
-    let mut integrator = sinew_integrators::build("central-difference", &Options::new())?;
-    let mut state = specimen.start.clone();
-    let steps = (duration / dt / instants as f64).ceil() as usize;
-    let dt = duration / (steps * instants) as f64;
-    let mut track = Vec::with_capacity(instants);
-    for _ in 0..instants {
-        for _ in 0..steps {
-            integrator.step(&specimen.model, &mut state, dt)?;
-        }
-        track.push(state.u.clone());
-    }
-    Ok(track)
+    let steps = (duration / dt / instants as f64).ceil();
+    let dt = duration / (steps * instants as f64);
+    Ok(specimen.by_central_difference(dt, steps as usize, instants)?)
 }
 
 /// Follows a method over `duration` (s), with displacements at so many equal instants.

@@ -1,15 +1,22 @@
 //! The subjects of the verification, one file each.
 
 mod affine;
+mod bent_beam;
+mod bonded_block;
 mod cantilever;
 mod cook;
 mod energy;
 mod free_cube;
+mod hanging_bar;
 mod held_cube;
+mod hyperelastic;
+mod incompressible;
+mod large_motion;
 mod oscillator;
 mod pressure;
 mod propagation;
 mod springs;
+mod tissue_laws;
 mod wave;
 
 use super::subject::Subject;
@@ -27,4 +34,11 @@ pub(super) const SUBJECTS: &[Subject] = &[
     propagation::SUBJECT,
     energy::SUBJECT,
     springs::SUBJECT,
+    hyperelastic::SUBJECT,
+    hanging_bar::SUBJECT,
+    bonded_block::SUBJECT,
+    bent_beam::SUBJECT,
+    large_motion::SUBJECT,
+    incompressible::SUBJECT,
+    tissue_laws::SUBJECT,
 ];
