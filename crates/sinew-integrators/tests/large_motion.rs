@@ -327,9 +327,24 @@ fn the_papers_network_presses_tissue_below_its_stable_step_and_is_refused_beyond
         refused.contains("element") && refused.contains("neo-hookean"),
         "{refused}"
     );
-    let limited =
-        build("cnn", &plain().with_text("saturation", "auto")).prepare(&scene.model, 1e-4);
-    assert!(limited.is_err(), "a guard's limits follow from matrices");
+}
+
+#[test]
+fn options_that_need_matrices_are_refused_by_name_with_what_does_instead() {
+    let scene = Scene::push();
+    for (id, option, instead) in [
+        ("cnn", "saturation", "give a number instead"),
+        ("central-difference", "patches", "substeps = \"auto\""),
+    ] {
+        let options = plain().with_text(option, "auto");
+        let refused = build(id, &options).prepare(&scene.model, 1e-4).unwrap_err();
+        let refused = refused.to_string();
+        let named = format!("`{id}` needs the matrices of a linear system for {option} = \"auto\"");
+        assert!(
+            refused.starts_with(&named) && refused.contains(instead),
+            "{refused}"
+        );
+    }
 }
 
 /// An undamped cube that sags under its weight, at nine tenths of the stable step: parts that became fewer again would swing it up.

@@ -8,7 +8,7 @@
 //!
 //! *Computed motion.* A method's velocities may be larger; [`room`] says how much larger.
 
-use sinew_core::{Needs, SetupError, Start, State, System};
+use sinew_core::{SetupError, Start, State, System};
 
 use super::load_work::{LoadStrength, load_strengths};
 
@@ -50,9 +50,11 @@ pub(super) struct Bound {
 
 impl Bound {
     pub(super) fn new(integrator: &'static str, system: &dyn System) -> Result<Self, SetupError> {
-        let linear = system
-            .as_linear()
-            .ok_or_else(|| Needs::Matrices.lacking(integrator))?;
+        let linear = system.as_linear().ok_or(SetupError::Lacks {
+            integrator,
+            needs: "the matrices of a linear system for saturation = \"auto\", whose limits hold for motion about rest (give a number \
+                    instead)",
+        })?;
         let operators = linear.operators();
         let loads = load_strengths(operators);
         if loads.iter().any(|load| !load.at(0.0).is_finite()) {

@@ -22,7 +22,6 @@ use sinew_sparse::AssemblyError;
 use super::{CentralDifference, GuardOption};
 use crate::implicit::factor::{Combination, Factor};
 use crate::implicit::factor_error::FactorError;
-use crate::scheme::linear;
 use crate::{
     ConservedEnergy, Explicit, Method, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
     StepByHand,
@@ -92,6 +91,17 @@ impl Scheme for PatchedCentralDifference {
         Properties { needs, ..plain }
     }
 
+    fn lacking(&self) -> SetupError {
+        match self.auto {
+            true => SetupError::Lacks {
+                integrator: Self::ID,
+                needs: "the matrices of a linear system for patches = \"auto\", which solves them in blocks (substeps = \"auto\" \
+                        cuts the steps of any system)",
+            },
+            false => self.properties().needs.lacking(Self::ID),
+        }
+    }
+
     fn survives_change_of_rows(&self) -> bool {
         !self.auto
     }
@@ -105,7 +115,8 @@ impl Scheme for PatchedCentralDifference {
             return Scheme::stable_step(&CentralDifference, system, about);
         }
         let integrator = Self::ID;
-        let stiff = StiffElements::of(linear(system, integrator)?, integrator)?;
+        let linear = system.as_linear().ok_or_else(|| self.lacking())?;
+        let stiff = StiffElements::of(linear, integrator)?;
         Ok(stiff.stable_step())
     }
 
@@ -120,7 +131,7 @@ impl Scheme for PatchedCentralDifference {
             return Ok(plain().into());
         }
         let integrator = Self::ID;
-        let linear = linear(system, integrator)?;
+        let linear = system.as_linear().ok_or_else(|| self.lacking())?;
         let stiff = StiffElements::of(linear, integrator)?;
         let count = stiff.fewest_for(dt)?;
         if count == 0 {
