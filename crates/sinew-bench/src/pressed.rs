@@ -1,7 +1,7 @@
 //! A body of the peers' tissue.
 
 use sinew_core::Ramp;
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Problem, Region};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Problem, Region, Tissue};
 
 /// The peers' tissue, undamped, held on one group and pressed on another.
 pub(crate) fn problem(held: &str, pressed: &str) -> Problem {
@@ -14,6 +14,7 @@ pub(crate) fn problem(held: &str, pressed: &str) -> Problem {
                 poissons_ratio: 0.45,
             },
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         fixed: vec![Fixed {
             on: held.into(),

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use sinew_core::{Integrator, LinearSystem, Ramp, State, StepError, StepReport, System};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{
-    Element, FemError, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region,
+    Element, FemError, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region, Tissue,
 };
 use sinew_integrators::explicit::PatchedCentralDifference;
 use sinew_integrators::{Frame, StaticError, static_solution_under};
@@ -61,6 +61,7 @@ pub(crate) fn free(law: Law, element: Element) -> Problem {
             density: DENSITY,
             law,
             element,
+            tissue: Tissue::default(),
         }],
         ..Problem::default()
     }

@@ -11,7 +11,7 @@ use sinew_core::{
     BlockMatrix, Damping, Layers, LinearModel, LinearOperators, LinearSystem, LoadTime, Pattern,
     State, System,
 };
-use sinew_fem::{Element, Fixed, Law, Model, Problem, Region};
+use sinew_fem::{Element, Fixed, Law, Model, Problem, Region, Tissue};
 use sinew_mesh::structured::{self, Split};
 use sinew_testkit::body::bodies;
 use sinew_testkit::dense::{ROUNDING, dense, dense_damping, row_product};
@@ -177,6 +177,7 @@ fn a_node_of_no_tetrahedron_is_refused_by_its_tag() {
                 poissons_ratio: 0.3,
             },
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         fixed: vec![Fixed {
             on: "bottom".into(),

@@ -349,7 +349,7 @@ impl<'a> Batch<'a> {
     fn end_part(&mut self, state: &mut State, stepped: Stepped) -> bool {
         state.end_step(self.dt, stepped.velocity, stepped.acceleration);
         state.loads = self.loads;
-        self.system.accept(state);
+        self.system.accept(state, self.inputs, self.dt);
         self.step_work.add_part(stepped.work);
         self.parts_taken += 1;
         if self.parts_taken < self.parts {

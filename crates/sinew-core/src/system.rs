@@ -7,6 +7,7 @@ use crate::element_forces::ElementForces;
 use crate::elements::Elements;
 use crate::energy::Energy;
 use crate::evaluation_error::EvaluationError;
+use crate::input::Inputs;
 use crate::load_time::LoadTime;
 use crate::operators::LinearOperators;
 use crate::revision::Revision;
@@ -49,9 +50,10 @@ pub trait System: Send + Sync {
         0
     }
 
-    /// Tells that a step was accepted and the state is its result. Called once per step, or per
-    /// part of a step that is cut; laws with memory update the state's internal variables here.
-    fn accept(&self, _state: &mut State) {}
+    /// Tells that a step was accepted and the state is its result, `dt` (s) after the one before. Called once per step, or per
+    /// part of a step that is cut; laws with memory update the state's internal variables here. By hand it is called for a change that
+    /// takes no time, with 0, and for one after which all relaxes, with infinity.
+    fn accept(&self, _state: &mut State, _inputs: &Inputs, _dt: f64) {}
 
     /// Whether [`System::accept`] looks at the state. Where it does not, machines that hold u and v in a form
     /// of their own need not write them out after each step.

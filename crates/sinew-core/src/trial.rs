@@ -7,7 +7,7 @@ use crate::load_time::LoadTime;
 pub struct Trial<'a> {
     /// The time of the loads, and inputs from outside.
     pub load: LoadTime<'a>,
-    /// Time from the last accepted state to this point (s); laws with memory need it.
+    /// Time from the last accepted state to this point (s); laws with memory need it. Infinite where the point is held until all has relaxed.
     pub dt: f64,
     /// Displacement (m).
     pub u: &'a [f64],

@@ -18,7 +18,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use sinew_core::{Ramp, System};
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
+use sinew_fem::{
+    Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule, Tissue,
+};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
@@ -113,6 +115,7 @@ fn problem(law: Law) -> Problem {
             density: 1060.0,
             law,
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         fixed: vec![Fixed {
             on: "bottom".into(),

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use sinew_core::{ElasticLaw, ForceLaw, LoadTime, System, Trial};
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Law, Model, Problem, Region};
+use sinew_fem::{Element, Law, Model, Problem, Region, Tissue};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
@@ -62,6 +62,7 @@ fn problem(law: &'static str, element: Element) -> Problem {
                 parameters: Parameters::new(3500.0, 0.45),
             },
             element,
+            tissue: Tissue::default(),
         }],
         ..Problem::default()
     }

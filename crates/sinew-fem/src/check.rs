@@ -1,6 +1,7 @@
 //! Checks of a problem's numbers before anything is built.
 
 use crate::error::{Cause, FemError, Item};
+use crate::hyperelastic::Hyperelastic;
 use crate::number::{require, require_finite};
 use crate::{Element, Law, LoadKind, Problem, motion};
 
@@ -13,6 +14,27 @@ pub(crate) fn numbers(problem: &Problem) -> Result<(), FemError> {
         require(item, "density", density, expected, density > 0.0)?;
         region.law.check(item)?;
         region.element.check(item)?;
+        region.tissue.check(item)?;
+        match &region.law {
+            Law::Hyperelastic { id, parameters } => {
+                let [at_once, _] = region.tissue.moduli(parameters);
+                let law = Hyperelastic::new(id, &at_once);
+                let law = law.map_err(|error| match Hyperelastic::new(id, parameters) {
+                    Ok(_) => FemError::new(
+                        item,
+                        Cause::NoModuliAtOnce {
+                            poissons_ratio: at_once.poissons_ratio,
+                        },
+                    ),
+                    Err(_) => FemError::new(item, error.into()),
+                })?;
+                region.tissue.check_with(&law, item)?;
+            }
+            Law::Linear { .. } | Law::Springs { .. } if !region.tissue.is_plain() => {
+                return Err(FemError::new(item, Cause::TissueOfSmallStrain));
+            }
+            Law::Linear { .. } | Law::Springs { .. } => {}
+        }
         if matches!(region.law, Law::Springs { .. }) && region.element != Element::P1 {
             return Err(FemError::new(item, Cause::ElementOnSprings));
         }

@@ -86,6 +86,40 @@ pub enum Cause {
     /// An element on a network of springs.
     #[error("a network of springs has no element: expected none but p1")]
     ElementOnSprings,
+    /// Fibres without a direction.
+    #[error("direction = [0, 0, 0]: expected a vector that is not 0")]
+    NoDirection,
+    /// Fibres or memory beside a law that takes none.
+    #[error("fibres and memory go with laws of large deformation only, such as `neo-hookean`")]
+    TissueOfSmallStrain,
+    /// A term of a Prony series outside its range.
+    #[error("prony: {0}")]
+    Prony(crate::hyperelastic::ParameterError),
+    /// A Prony series without terms, or with too many.
+    #[error("prony has {found} terms: expected 1 to {most}")]
+    Terms {
+        /// Number of terms.
+        found: usize,
+        /// The most there may be.
+        most: usize,
+    },
+    /// Long-term moduli from which no instantaneous ones follow.
+    #[error(
+        "so much of the deviatoric stress relaxes that Poisson's ratio would be {poissons_ratio:.3} at once, and laws of large deformation \
+         have none below 0: take smaller shares, or a larger long-term ratio"
+    )]
+    NoModuliAtOnce {
+        /// Poisson's ratio of the instantaneous moduli.
+        poissons_ratio: f64,
+    },
+    /// Deviatoric relaxation of a law that has no isochoric part.
+    #[error(
+        "the law `{law}` has no isochoric part that could relax alone; `neo-hookean-iso` and `mooney-rivlin` have one"
+    )]
+    NoIsochoricPart {
+        /// The law's id.
+        law: &'static str,
+    },
     /// A law of large deformation that does not exist, or cannot have its parameters.
     #[error(transparent)]
     Law(#[from] crate::hyperelastic::LawError),

@@ -2,7 +2,7 @@
 //!
 //! ```
 //! use sinew_core::{Ramp, System};
-//! use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region};
+//! use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, Tissue};
 //! use sinew_mesh::structured::{self, Split};
 //!
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
@@ -12,6 +12,7 @@
 //!         density: 1060.0, // kg/m3
 //!         law: Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.45 },
 //!         element: Element::P1,
+//!         tissue: Tissue::default(),
 //!     }],
 //!     fixed: vec![Fixed { on: "sides".into(), axes: [true; 3] }],
 //!     loads: vec![LoadSpec {
@@ -31,13 +32,13 @@
 //!
 //! ```
 //! # use sinew_core::System;
-//! # use sinew_fem::{Element, Fixed, Law, Model, On, Problem, Region};
+//! # use sinew_fem::{Element, Fixed, Law, Model, On, Problem, Region, Tissue};
 //! # use sinew_mesh::structured::{self, Split};
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
 //! let law = Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.0 };
 //! let floor: Vec<u32> = (0..25).collect();
 //! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region { group: None, density: 1060.0, law, element: Element::P1 }],
+//!     regions: vec![Region { group: None, density: 1060.0, law, element: Element::P1, tissue: Tissue::default() }],
 //!     fixed: vec![Fixed { on: On::Nodes(floor.clone()), axes: [true; 3] }],
 //!     ..Problem::default()
 //! })?;
@@ -58,12 +59,12 @@
 //!
 //! ```
 //! # use sinew_core::{Ramp, System};
-//! # use sinew_fem::{Element, Course, Fixed, Law, Model, Moving, Problem, Region};
+//! # use sinew_fem::{Element, Course, Fixed, Law, Model, Moving, Problem, Region, Tissue};
 //! # use sinew_mesh::structured::{self, Split};
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
 //! let law = Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.0 };
 //! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region { group: None, density: 1060.0, law, element: Element::P1 }],
+//!     regions: vec![Region { group: None, density: 1060.0, law, element: Element::P1, tissue: Tissue::default() }],
 //!     fixed: vec![Fixed { on: "bottom".into(), axes: [true; 3] }],
 //!     moves: vec![Moving {
 //!         on: "top".into(),
@@ -120,6 +121,7 @@ pub mod springs;
 pub mod stress;
 mod supports;
 pub mod tetra;
+mod tissue;
 mod vector_error;
 mod volumes;
 
@@ -127,9 +129,12 @@ pub use body::smoothed_blocks;
 pub use element::Element;
 pub use error::{Cause, FemError, Item};
 pub use law::{Law, SpringRule};
-pub use model::{DeformedTet, FieldError, Model, ModelLoads, NodalForces, SupportMotion};
+pub use model::{
+    DeformedTet, FieldError, Model, ModelLoads, NodalForces, SupportMotion, WithMemory,
+};
 pub use on::On;
 pub use problem::{Course, Fixed, LoadKind, LoadSpec, Moving, Problem, Rayleigh, Region};
 pub use report::{LoadFacts, ModelReport, MoveFacts, RegionFacts};
 pub use springs::NetworkModulus;
+pub use tissue::{FibreFamily, Memory, Moduli, Tissue, ViscousPart};
 pub use vector_error::{ForceError, SupportMotionError};

@@ -5,13 +5,15 @@ use sinew_mesh::TetMesh;
 use crate::error::{Cause, FemError, Item};
 use crate::graph::Graph;
 use crate::hyperelastic::Hyperelastic;
+use crate::large::RegionLaw;
 use crate::network::Network;
 use crate::smoothing::SmoothedStrain;
 use crate::springs::Spring;
+use crate::tissue::{FibreFamily, Tissue};
 use crate::{Element, Law, Region, SpringRule, springs, stress, tetra};
 
 /// The law of a region ready for computation, calibration included.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Material {
     Continuum {
         /// Lame's constants (Pa).
@@ -21,6 +23,7 @@ pub(crate) enum Material {
     Hyperelastic {
         law: Hyperelastic,
         element: Element,
+        tissue: Tissue,
     },
     Springs {
         youngs_modulus: f64,
@@ -48,10 +51,17 @@ impl Material {
                 Ok((Self::Continuum { lame, element }, None))
             }
             Law::Hyperelastic { id, parameters } => {
-                let law = Hyperelastic::new(id, &parameters);
+                let [at_once, _] = region.tissue.moduli(&parameters);
+                let law = Hyperelastic::new(id, &at_once);
                 let law = law.map_err(|error| FemError::new(Item::Mesh, error.into()))?;
                 let element = region.element;
-                Ok((Self::Hyperelastic { law, element }, None))
+                let tissue = region.tissue.clone();
+                let material = Self::Hyperelastic {
+                    law,
+                    element,
+                    tissue,
+                };
+                Ok((material, None))
             }
             Law::Springs {
                 youngs_modulus,
@@ -80,9 +90,14 @@ impl Material {
 
     /// Its stiffness (Pa) against compression, `lambda + 2 mu`, and against shear, mu.
     pub(crate) fn compression_and_shear(&self) -> (f64, f64) {
-        match *self {
-            Self::Continuum { lame, .. } => p_wave_and_shear(lame),
-            Self::Hyperelastic { law, .. } => p_wave_and_shear(law.lame()),
+        match self {
+            Self::Continuum { lame, .. } => p_wave_and_shear(*lame),
+            Self::Hyperelastic { law, tissue, .. } => {
+                let (compression, shear) = p_wave_and_shear(law.lame());
+                let fibres = tissue.fibres.as_ref();
+                let along = fibres.map_or(0.0, |family| modulus_along(family, tissue));
+                (compression + along, shear)
+            }
             // nu = 1/4 and thus lambda = mu for any springs (Cauchy's relations).
             Self::Springs { youngs_modulus, .. } => (1.2 * youngs_modulus, 0.4 * youngs_modulus),
         }
@@ -101,10 +116,18 @@ impl Material {
         matches!(self, Self::Hyperelastic { .. })
     }
 
-    /// Its law of large deformation, with the share of shear that is averaged over edges.
-    pub(crate) fn hyperelastic(&self) -> Option<(Hyperelastic, f64)> {
+    /// What it is made of where it is of large deformation.
+    pub(crate) fn hyperelastic(&self) -> Option<RegionLaw<'_>> {
         match self {
-            Self::Hyperelastic { law, element } => Some((*law, element.edge_share())),
+            Self::Hyperelastic {
+                law,
+                element,
+                tissue,
+            } => Some(RegionLaw {
+                law: *law,
+                edge_share: element.edge_share(),
+                tissue,
+            }),
             Self::Continuum { .. } | Self::Springs { .. } => None,
         }
     }
@@ -144,7 +167,15 @@ impl Material {
                 let element = self.element();
                 let own_lambda = if element.has_patches() { 0.0 } else { lambda };
                 let own_mu = (1.0 - element.edge_share()) * mu;
-                tetra::stiffness(&tetra::vertices(points, *tet), own_lambda, own_mu)
+                let vertices = tetra::vertices(points, *tet);
+                let mut matrix = tetra::stiffness(&vertices, own_lambda, own_mu)?;
+                if let Self::Hyperelastic { tissue, .. } = self
+                    && let Some(family) = &tissue.fibres
+                {
+                    let modulus = modulus_along(family, tissue);
+                    add_fibres(&mut matrix, &vertices, family, modulus);
+                }
+                Some(matrix)
             }
             Self::Springs {
                 youngs_modulus,
@@ -176,6 +207,30 @@ impl Material {
                 youngs_modulus,
                 rule,
             } => Some(springs::springs(points, tets, youngs_modulus, rule)),
+        }
+    }
+}
+
+/// What fibres add to the stiffness (Pa) along them as soon as they are pulled.
+fn modulus_along(family: &FibreFamily, tissue: &Tissue) -> f64 {
+    4.0 * tissue.factor_of_fibres() * family.fibres.modulus_at_rest()
+}
+
+/// Adds the stiffness at rest of fibres, as if they were pulled.
+fn add_fibres(
+    matrix: &mut [f64; 144],
+    vertices: &[[f64; 3]; 4],
+    family: &FibreFamily,
+    modulus: f64,
+) {
+    let slope = family.fibres.half_slope_at_rest(family.unit_direction());
+    let gradients = tetra::gradients(vertices).unwrap_or_default();
+    let rate: [[f64; 3]; 4] = gradients.map(|gradient| slope.on(gradient));
+    let stiffness = modulus * tetra::signed_volume(vertices);
+    let rate = rate.as_flattened();
+    for (row, of_row) in matrix.chunks_exact_mut(12).zip(rate) {
+        for (entry, of_column) in row.iter_mut().zip(rate) {
+            *entry += stiffness * of_row * of_column;
         }
     }
 }

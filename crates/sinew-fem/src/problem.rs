@@ -2,7 +2,7 @@
 
 use sinew_core::Ramp;
 
-use crate::{Element, Law, On};
+use crate::{Element, Law, On, Tissue};
 
 /// Materials, damping, supports, prescribed motions and loads of a body.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,6 +32,8 @@ pub struct Region {
     pub law: Law,
     /// Element; springs have none but [`Element::P1`].
     pub element: Element,
+    /// What it has beside an isotropic law.
+    pub tissue: Tissue,
 }
 
 /// Rayleigh damping, `D = alpha M + beta K`.

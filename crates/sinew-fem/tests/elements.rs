@@ -8,7 +8,7 @@ use common::{DENSITY, at_most, linear, springs};
 use sinew_core::{
     ElementStiffness, Elements, LinearSystem, System, element_omegas_squared, spectrum,
 };
-use sinew_fem::{Element, Fixed, Law, Model, Problem, Region, SpringRule};
+use sinew_fem::{Element, Fixed, Law, Model, Problem, Region, SpringRule, Tissue};
 use sinew_mesh::structured::{self, Split};
 
 fn model(law: Law, axes: [bool; 3]) -> Model {
@@ -19,6 +19,7 @@ fn model(law: Law, axes: [bool; 3]) -> Model {
             density: DENSITY,
             law,
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         fixed: vec![Fixed {
             on: "sides".into(),

@@ -9,7 +9,7 @@ use common::{
 };
 use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, LoadTime, System, TangentKind, Trial};
 use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
-use sinew_fem::{Element, Law, Model, Problem, Region};
+use sinew_fem::{Element, Law, Model, Problem, Region, Tissue};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -389,6 +389,7 @@ fn regions_of_different_laws_and_elements_add_up() {
                     density: 1060.0,
                     law,
                     element: *element,
+                    tissue: Tissue::default(),
                 }
             });
         build(

@@ -8,7 +8,7 @@ use common::{DENSITY, add_node_group, body, held, held_along, linear, load, spri
 use sinew_core::{Ramp, RampError};
 use sinew_fem::{
     Cause, Element, FemError, Fixed, Item, Law, LoadKind, LoadSpec, Model, On, Problem, Region,
-    SpringRule,
+    SpringRule, Tissue,
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -33,6 +33,7 @@ fn region(group: Option<&str>) -> Region {
         density: DENSITY,
         law: linear(3500.0, 0.45),
         element: Element::P1,
+        tissue: Tissue::default(),
     }
 }
 

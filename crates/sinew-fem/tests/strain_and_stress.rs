@@ -11,7 +11,7 @@ use common::{
 use nalgebra::{Matrix3, Vector3};
 use sinew_core::System;
 use sinew_fem::stress::von_mises;
-use sinew_fem::{Element, FieldError, LoadKind, Model, Problem, Region, SpringRule};
+use sinew_fem::{Element, FieldError, LoadKind, Model, Problem, Region, SpringRule, Tissue};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -160,6 +160,7 @@ fn half_springs() -> (TetMesh, Model) {
         density: 1000.0,
         law,
         element: Element::P1,
+        tissue: Tissue::default(),
     };
     let problem = Problem {
         regions: vec![

@@ -300,7 +300,8 @@ fn what_it_cannot_promise_is_refused_by_name() {
     let refusal = energy_method("trap", 4).prepare(&system, 0.01).unwrap_err();
     assert_eq!(
         refusal.to_string(),
-        "`cnn-energy` needs forces that follow from an energy of the displacement alone, without memory, which this system does not offer"
+        "`cnn-energy` needs an energy of the displacement alone behind the forces (stress that relaxes has none; \
+         `generalized-alpha`, `newmark` and explicit methods do without), which this system does not offer"
     );
     let refusal = build("cnn-stabilised", &plain())
         .prepare(&system.0, 0.01)

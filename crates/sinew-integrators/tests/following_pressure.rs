@@ -10,7 +10,7 @@ use sinew_core::{
     BlockMatrix, ElasticLaw, ForceLaw, Inputs, LoadTime, Options, Ramp, State, System, Trial,
 };
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue};
 use sinew_integrators::static_solution_under;
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
@@ -33,6 +33,7 @@ fn neo_hookean(element: Element) -> Region {
             parameters: Parameters::new(3500.0, 0.45),
         },
         element,
+        tissue: Tissue::default(),
     }
 }
 

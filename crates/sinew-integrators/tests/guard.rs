@@ -633,7 +633,7 @@ impl System for Told {
     fn equations(&self) -> Equations<'_> {
         self.inner.equations()
     }
-    fn accept(&self, state: &mut State) {
+    fn accept(&self, state: &mut State, _inputs: &sinew_core::Inputs, _dt: f64) {
         self.states.lock().unwrap().push(state.clone());
     }
 }

@@ -19,7 +19,7 @@ use sinew_core::{
     BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
     OptionValue, Options, Pattern, Ramp, StableStep, State, System,
 };
-use sinew_fem::{Element, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region};
+use sinew_fem::{Element, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, Tissue};
 use sinew_integrators::explicit::Guarded;
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -87,6 +87,7 @@ fn tissue() -> Region {
         density: 1060.0,
         law: linear(3500.0, 0.3),
         element: Element::P1,
+        tissue: Tissue::default(),
     }
 }
 
@@ -197,6 +198,7 @@ impl Slender {
                 density,
                 law: linear(modulus, self.poissons_ratio),
                 element: Element::P1,
+                tissue: Tissue::default(),
             });
         }
         let fixed = vec![held("bottom", [true; 3])];

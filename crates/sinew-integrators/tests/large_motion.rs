@@ -11,7 +11,9 @@ use sinew_core::{
     ElasticLaw, LoadTime, Options, Ramp, StableStep, State, StepError, System, TangentKind, Trial,
 };
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region};
+use sinew_fem::{
+    Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region, Tissue,
+};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
 
@@ -41,6 +43,7 @@ impl Scene {
                     parameters,
                 },
                 element: Element::P1,
+                tissue: Tissue::default(),
             }],
             fixed: vec![Fixed {
                 on: "bottom".into(),

@@ -16,7 +16,7 @@ use sinew_core::{
     LoadTime, OptionValue, Options, Pattern, Ramp, State, System,
 };
 use sinew_fem::{
-    Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule,
+    Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule, Tissue,
 };
 use sinew_integrators::implicit::Modal;
 use sinew_integrators::{Frame, Method};
@@ -136,6 +136,7 @@ fn body(
             density: 1060.0,
             law,
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         damping,
         fixed: fixed.iter().map(held).collect(),

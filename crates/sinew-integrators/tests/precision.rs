@@ -11,7 +11,7 @@ use sinew_core::{
     Equations, EvaluationError, ForceLaw, Layers, LoadTime, OptionError, Revision, SetupError,
     State, System, Trial,
 };
-use sinew_fem::{Element, Law, Model, Problem, Region};
+use sinew_fem::{Element, Law, Model, Problem, Region, Tissue};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers};
 
@@ -215,6 +215,7 @@ fn stiffnesses_too_far_apart_for_24_bits_are_refused() {
             density: 1060.0,
             law,
             element: Element::P1,
+            tissue: Tissue::default(),
         };
         let problem = Problem {
             regions: vec![region("stiff", law(factor)), region("soft", law(1.0))],

@@ -9,7 +9,7 @@ mod bodies;
 use bodies::{body, bump, difference, held_cube, leapfrog, run};
 use sinew_cnn::{Machine, ReferenceMachine};
 use sinew_core::{LinearSystem, System};
-use sinew_fem::{Element, Fixed, Law, Model, Problem, Region, SpringRule};
+use sinew_fem::{Element, Fixed, Law, Model, Problem, Region, SpringRule, Tissue};
 use sinew_machines::{Chosen, FastMachine, Layout, Settings};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
@@ -52,6 +52,7 @@ fn a_free_cube_has_a_template_for_each_kind_of_node() {
         density: 1060.0,
         law,
         element: Element::P1,
+        tissue: Tissue::default(),
     }];
     let model = Model::build(
         &mesh,
@@ -86,6 +87,7 @@ fn springs_repeat_as_tetrahedra_do() {
             density: 1060.0,
             law,
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         fixed: vec![Fixed {
             on: "sides".into(),
@@ -148,6 +150,7 @@ fn voxels(cells: usize) -> Model {
             density: 1060.0,
             law: bodies::TISSUE,
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         ..Problem::default()
     };

@@ -24,7 +24,7 @@ pub(crate) struct Energies {
     pub(crate) damped: f64,
     /// Energy that the method took since the beginning, where its closed form is known.
     pub(crate) method: Option<f64>,
-    /// What the energy gained beyond all that: what the method, where that is not known, and the distance of the rows bring
+    /// What the energy gained beyond all that: what memory stores and dissipates, which is less than 0 then; what the method, where that is not known, and the distance of the rows bring
     /// in or take away.
     pub(crate) remainder: f64,
 }
@@ -49,6 +49,8 @@ pub(crate) struct LastRow {
     pub(crate) u: Vec<f64>,
     pub(crate) v: Vec<f64>,
     pub(crate) a: Vec<f64>,
+    /// Internal variables, where forces on supports in motion are asked for.
+    pub(crate) internal: Vec<f64>,
 }
 
 /// Sums up, from row to row, what loads, moved supports and damping do.
@@ -91,6 +93,11 @@ impl<'a> Balance<'a> {
         balance
     }
 
+    /// Whether stress relaxes: what memory stores and what it dissipates are not told apart, and stand in the remainder.
+    pub(crate) fn has_memory(&self) -> bool {
+        self.simulation.system().internal_variables() > 0
+    }
+
     /// Whether it is known what the method takes.
     pub(crate) fn knows_method(&self) -> bool {
         self.form.is_some()
@@ -127,6 +134,10 @@ impl<'a> Balance<'a> {
             u: moment.state.u.clone(),
             v: v.to_vec(),
             a: self.acceleration(moment, v)?,
+            internal: match self.moved_body() {
+                Some(_) => moment.state.internal.clone(),
+                None => Vec::new(),
+            },
         };
         let nodes = self.nodes(&here)?;
         let (kinetic, elastic) = self.stored(&here, nodes.as_ref())?;
@@ -236,7 +247,8 @@ impl<'a> Balance<'a> {
         let (mut loads, mut supports) = (u.clone(), u.clone());
         model.displacements_at(row.t, &row.u, &mut u)?;
         model.load_forces(row.t, &u, &mut loads)?;
-        model.reactions(row.t, &row.u, &row.v, &mut supports)?;
+        let body = model.with_memory(&row.internal);
+        body.reactions(row.t, &row.u, &row.v, &mut supports)?;
         Ok(Some(Nodes {
             u: u.into_flattened(),
             loads: loads.into_flattened(),

@@ -14,7 +14,7 @@ use crate::request;
 pub(crate) const NAME: &str = "checkpoint.bin";
 
 /// The first line, with the version of what follows.
-const HEAD: &str = "sinew checkpoint 1";
+const HEAD: &str = "sinew checkpoint 2";
 
 /// Bytes of the checksum at its end.
 const CHECKSUM: usize = 32;
@@ -40,7 +40,8 @@ impl Checkpoint {
         largest: &[f64],
     ) -> Result<(), RecordRunError> {
         let state = state.to_bytes(simulation.system());
-        let lists: [&[f64]; 5] = [&[row.t, row.before], &row.u, &row.v, &row.a, largest];
+        let times = [row.t, row.before];
+        let lists: [&[f64]; 6] = [&times, &row.u, &row.v, &row.a, &row.internal, largest];
         let json = serde_json::to_string(progress).map_err(|error| unusable(folder, &error))?;
         let mut bytes = format!("{HEAD}\n{json}\n{}", state.len());
         for list in lists {
@@ -101,7 +102,7 @@ impl Checkpoint {
             .iter()
             .zip(counts)
             .all(|(list, count)| list.len() == *count);
-        let Ok([t, u, v, a, largest]) = <[Vec<f64>; 5]>::try_from(lists) else {
+        let Ok([t, u, v, a, internal, largest]) = <[Vec<f64>; 6]>::try_from(lists) else {
             return Err(damaged());
         };
         if !whole || numbers.next().is_some() || t.len() != 2 {
@@ -116,6 +117,7 @@ impl Checkpoint {
                 u,
                 v,
                 a,
+                internal,
             },
             largest,
         }))

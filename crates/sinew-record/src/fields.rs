@@ -25,6 +25,8 @@ pub(crate) struct Snapshot {
     pub(crate) v: Vec<f64>,
     /// Acceleration (m/s^2); empty where none is asked for.
     pub(crate) a: Vec<f64>,
+    /// Internal variables.
+    pub(crate) internal: Vec<f64>,
 }
 
 impl Snapshot {
@@ -39,6 +41,7 @@ impl Snapshot {
         let state = moment.state;
         (self.frame, self.t) = (frame, state.t());
         self.u.clone_from(&state.u);
+        self.internal.clone_from(&state.internal);
         self.v.clear();
         self.v.extend_from_slice(v);
         if has_acceleration {
@@ -124,13 +127,20 @@ impl<'a> Fields<'a> {
         snapshot: &Snapshot,
         seen: &mut Seen,
     ) -> Result<(), RecordRunError> {
-        let Snapshot { frame, t, u, v, a } = snapshot;
+        let Snapshot {
+            frame,
+            t,
+            u,
+            v,
+            a,
+            internal,
+        } = snapshot;
         self.model.displacements_at(*t, u, &mut self.u)?;
         self.model.velocities_at(*t, v, &mut self.v)?;
         if self.settings.acceleration {
             self.model.accelerations_at(*t, a, &mut self.a)?;
         }
-        self.deform(*t, seen)?;
+        self.deform(*t, internal, seen)?;
         let grid = if self.settings.surface_only {
             let of = |field: &[[f64; 3]]| {
                 let nodes = surface.nodes.iter();
@@ -187,11 +197,12 @@ impl<'a> Fields<'a> {
     }
 
     /// Makes the fields on tetrahedra of the displacement, and sees what is largest.
-    fn deform(&mut self, t: f64, seen: &mut Seen) -> Result<(), RecordRunError> {
+    fn deform(&mut self, t: f64, internal: &[f64], seen: &mut Seen) -> Result<(), RecordRunError> {
         let (mesh, tets) = (self.model.mesh(), &mut self.tets);
         tets.clear();
         let mut inverted = 0;
-        for (number, tet) in self.model.deformed_tets(&self.u)?.enumerate() {
+        let body = self.model.with_memory(internal);
+        for (number, tet) in body.deformed_tets(&self.u)?.enumerate() {
             let tag = || mesh.tet_tags[number];
             let [xx, yy, zz, xy, yz, zx] = tet.strain;
             // No principal strain is larger than this norm.

@@ -81,7 +81,7 @@ impl Tables {
                 tables::probes_head(simulation)
             })?,
             energy: open(tables::ENERGY, lengths.energy, &|| {
-                tables::energy_head(balance.knows_method())
+                tables::energy_head(balance.knows_method(), balance.has_memory())
             })?,
             reactions: reactions
                 .map(|reactions| open(tables::REACTIONS, lengths.reactions, &|| reactions.head()))

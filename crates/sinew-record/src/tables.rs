@@ -35,11 +35,12 @@ pub(crate) fn probes_head(simulation: &Simulation) -> String {
     text
 }
 
-/// The line of column names; what the method takes has one where it is known.
-pub(crate) fn energy_head(knows_method: bool) -> String {
+/// The line of column names; what the method takes has one where it is known, and what memory takes is part of the remainder.
+pub(crate) fn energy_head(knows_method: bool, has_memory: bool) -> String {
     let method = if knows_method { "method_J," } else { "" };
+    let memory = if has_memory { "memory_and_" } else { "" };
     format!(
-        "t_s,kinetic_J,elastic_J,work_of_loads_J,work_of_supports_J,damped_J,{method}remainder_J\n"
+        "t_s,kinetic_J,elastic_J,work_of_loads_J,work_of_supports_J,damped_J,{method}{memory}remainder_J\n"
     )
 }
 
@@ -150,7 +151,8 @@ impl<'a> Reactions<'a> {
             return Ok(());
         };
         let (t, u) = (moment.state.t(), &moment.state.u);
-        body.model.reactions(t, u, v, &mut self.forces)?;
+        let with_memory = body.model.with_memory(&moment.state.internal);
+        with_memory.reactions(t, u, v, &mut self.forces)?;
         body.model.displacements_at(t, u, &mut self.u)?;
         out.clear();
         push(out, t);

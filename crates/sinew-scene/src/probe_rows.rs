@@ -159,6 +159,7 @@ impl<'a> ProbeRows<'a> {
                 }
                 (Quantity::Stress, Some(model)) => {
                     let mut mean = [0.0; 6];
+                    let model = model.with_memory(&moment.state.internal);
                     for (tet, share) in &probe.tets {
                         let stress = model.tet_stress(t, u, *tet as usize)?;
                         for (mean, stress) in mean.iter_mut().zip(stress) {

@@ -12,7 +12,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use sinew_core::{OptionValue, Options, Ramp};
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule};
+use sinew_fem::{
+    Element, Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule, Tissue,
+};
 use sinew_scene::{
     Body, Formula, Initial, MeshChanges, MeshSource, Oscillator, ProbeAt, ProbePoint, Quantity,
     RunSettings, Scene, SceneSource, Subject, TimeStep,
@@ -136,6 +138,7 @@ fn the_papers_cube() {
                     damping_ratio: 0.0,
                 },
                 element: Element::P1,
+                tissue: Tissue::default(),
             }],
             damping: Rayleigh {
                 mass: 80.0,

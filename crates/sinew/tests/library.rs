@@ -68,6 +68,7 @@ fn a_frame_loop_needs_no_other_import() {
                 poissons_ratio: 0.4,
             },
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         damping: Rayleigh {
             mass: 5.0,

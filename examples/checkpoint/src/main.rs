@@ -21,7 +21,9 @@ use std::path::Path;
 use std::process::{Command, ExitCode, Output};
 
 use sinew_core::{Inputs, Options, Ramp, Run, State, System, simulate_under};
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region};
+use sinew_fem::{
+    Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, Tissue,
+};
 use sinew_mesh::structured::{Split, cube};
 
 const STEP: f64 = 0.004;
@@ -200,6 +202,7 @@ fn block(cells: usize, youngs_modulus: f64) -> Result<Model, Box<dyn Error>> {
                 poissons_ratio: 0.4,
             },
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         damping: Rayleigh {
             mass: 5.0,

@@ -23,7 +23,10 @@ use std::error::Error;
 use std::time::{Duration, Instant};
 
 use sinew_core::{Inputs, LoadTime, Options, State, System, worst_beyond};
-use sinew_fem::{Element, Fixed, Law, Model, NodalForces, On, Problem, Rayleigh, Region, stress::von_mises};
+use sinew_fem::{
+    Element, Fixed, Law, Model, NodalForces, On, Problem, Rayleigh, Region, Tissue,
+    stress::von_mises,
+};
 use sinew_integrators::{Stepper, build};
 use sinew_mesh::structured::{Split, block};
 
@@ -52,6 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             density,
             law,
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         damping: Rayleigh {
             mass: 40.0,

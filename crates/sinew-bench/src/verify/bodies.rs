@@ -1,7 +1,7 @@
 //! Bodies of one material, and their equilibria.
 
 use sinew_core::{LinearSystem, LoadTime, Ramp, System};
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue};
 use sinew_integrators::static_solution;
 
 use super::error::VerifyError;
@@ -24,6 +24,7 @@ pub(crate) fn body(youngs_modulus: f64, poissons_ratio: f64, element: Element) -
             density: DENSITY,
             law,
             element,
+            tissue: Tissue::default(),
         }],
         ..Problem::default()
     }

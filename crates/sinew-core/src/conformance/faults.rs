@@ -127,7 +127,7 @@ impl Integrator for Method {
                 }
             }
             match self.fault {
-                Fault::AcceptsTwice => step.system.accept(state),
+                Fault::AcceptsTwice => step.system.accept(state, step.inputs, step.dt),
                 Fault::ChangesInternalVariables => {
                     state.internal.iter_mut().for_each(|z| *z += 1.0);
                 }

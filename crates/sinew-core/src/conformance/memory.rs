@@ -87,8 +87,7 @@ impl System for Maxwell {
     fn internal_variables(&self) -> usize {
         1
     }
-    fn accept(&self, state: &mut State) {
-        let dt = state.clock.last_step().unwrap_or(0.0);
+    fn accept(&self, state: &mut State, _inputs: &Inputs, dt: f64) {
         state.internal[0] = Self::elongation(state.internal[0], state.u[0], state.v[0], dt);
     }
 }
@@ -204,9 +203,9 @@ impl System for Counting {
     fn internal_variables(&self) -> usize {
         2
     }
-    fn accept(&self, state: &mut State) {
+    fn accept(&self, state: &mut State, _inputs: &Inputs, dt: f64) {
         state.internal[0] += 1.0;
-        state.internal[1] += state.clock.last_step().unwrap_or(f64::NAN);
+        state.internal[1] += dt;
         let mut accepted = self.accepted.lock().unwrap_or_else(PoisonError::into_inner);
         *accepted = (state.t(), state.internal[0]);
     }

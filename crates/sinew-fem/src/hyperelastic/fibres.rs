@@ -1,5 +1,7 @@
 //! Fibres that stiffen a material in tension.
 
+use std::fmt;
+
 use sinew_sparse::simd::Number;
 
 use super::deformation::Deformation;
@@ -47,6 +49,8 @@ pub struct FibrePoint<N> {
     stretch: N,
     /// First and second derivative of the energy by X.
     derivatives: [N; 2],
+    /// The second derivative that it has, or would have as soon as it is pulled.
+    second_when_pulled: N,
     /// Half of dX/dF.
     slope: Tensor<N>,
     /// `J^-2/3` and `kd I1 + (1 - 3 kd) I4` where X is freed of volume change.
@@ -81,6 +85,20 @@ impl Fibres {
             split: true,
             ..self
         }
+    }
+
+    /// The same with moduli that are so many times as large.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        let stiffening = match self.stiffening {
+            Stiffening::Quadratic { eta } => Stiffening::Quadratic { eta: factor * eta },
+            Stiffening::Exponential { k1, k2, dispersion } => Stiffening::Exponential {
+                k1: factor * k1,
+                k2,
+                dispersion,
+            },
+        };
+        Self { stiffening, ..self }
     }
 
     /// kd.
@@ -130,6 +148,7 @@ impl Fibres {
             direction,
             stretch: pulled,
             derivatives: [first, N::select_le(stretch, zero, zero, second)],
+            second_when_pulled: second,
             slope,
             split,
         }
@@ -141,6 +160,27 @@ impl Fibres {
         let kd = self.dispersion();
         let along = Tensor::outer(tensor.on(direction), direction);
         tensor.scaled(N::of(kd)).plus(N::of(1.0 - 3.0 * kd), along)
+    }
+
+    /// The modulus (Pa) by which a stretch along the fibres raises the energy, `d2 psi/dX2` at rest on the side of tension.
+    #[must_use]
+    pub fn modulus_at_rest(&self) -> f64 {
+        match self.stiffening {
+            Stiffening::Quadratic { eta } => eta,
+            Stiffening::Exponential { k1, .. } => k1,
+        }
+    }
+
+    /// Half of dX/dF at rest, where X is freed of volume change as far as it is so.
+    #[must_use]
+    pub fn half_slope_at_rest(&self, direction: [f64; 3]) -> Tensor<f64> {
+        self.at(&Deformation::of(Tensor::zero()), direction).slope
+    }
+
+    /// Whether they are defined only where J > 0.
+    #[must_use]
+    pub fn is_split(&self) -> bool {
+        self.split
     }
 
     /// The energy density (J/m^3).
@@ -215,6 +255,33 @@ impl Fibres {
         let length = N::of(1.0 - 3.0 * kd) * across * across;
         let length = N::of(kd).mul_add(dot(gradient, gradient), length);
         block + Tensor::diagonal(N::of(2.0) * first * length)
+    }
+}
+
+impl<N: Number> FibrePoint<N> {
+    /// The same with the stiffness of fibres in tension where they are idle: no state near this one is stiffer by much.
+    #[must_use]
+    pub fn as_if_pulled(self) -> Self {
+        let [first, _] = self.derivatives;
+        Self {
+            derivatives: [first, self.second_when_pulled],
+            ..self
+        }
+    }
+}
+
+impl fmt::Display for Fibres {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.stiffening {
+            Stiffening::Quadratic { eta } => write!(f, "eta = {eta} Pa"),
+            Stiffening::Exponential { k1, k2, dispersion } => {
+                write!(f, "k1 = {k1} Pa, k2 = {k2}, dispersion {dispersion}")
+            }
+        }?;
+        if self.split {
+            write!(f, ", freed of volume change")?;
+        }
+        Ok(())
     }
 }
 

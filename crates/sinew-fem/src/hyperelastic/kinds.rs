@@ -93,6 +93,7 @@ struct Facts {
     id: &'static str,
     lame: (f64, f64),
     is_defined_when_inverted: bool,
+    has_isochoric_part: bool,
 }
 
 struct Tell;
@@ -105,6 +106,7 @@ impl LawVisitor for Tell {
             id: L::ID,
             lame: law.lame(),
             is_defined_when_inverted: L::DEFINED_WHEN_INVERTED,
+            has_isochoric_part: L::HAS_ISOCHORIC_PART,
         }
     }
 }
@@ -126,6 +128,12 @@ impl Hyperelastic {
     #[must_use]
     pub fn is_defined_when_inverted(&self) -> bool {
         self.with_law(Tell).is_defined_when_inverted
+    }
+
+    /// Whether its isochoric part can relax alone.
+    #[must_use]
+    pub fn has_isochoric_part(&self) -> bool {
+        self.with_law(Tell).has_isochoric_part
     }
 }
 

@@ -26,6 +26,8 @@ pub trait HyperelasticLaw: Copy + Debug + Send + Sync + 'static {
     const ID: &'static str;
     /// Whether it is defined where J <= 0.
     const DEFINED_WHEN_INVERTED: bool;
+    /// Whether its local energy is an isochoric one, of F freed of volume change, and `mu/3 (J - 1)^2`.
+    const HAS_ISOCHORIC_PART: bool = false;
     /// The tangent that its node blocks belong to.
     const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
 

@@ -45,6 +45,7 @@ pub use neo_hookean::NeoHookean;
 pub use neo_hookean_iso::NeoHookeanIso;
 pub use neo_hookean_log::NeoHookeanLog;
 pub use parameters::{ParameterError, Parameters};
+pub(crate) use projection::semidefinite;
 pub use projection::{Linearised, Projection, TangentKind};
 pub use stable_neo_hookean::StableNeoHookean;
 pub use stable_neo_hookean_log::StableNeoHookeanLog;

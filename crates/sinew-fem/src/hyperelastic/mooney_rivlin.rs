@@ -98,6 +98,7 @@ impl<N: Number> Isochoric<N> {
 impl HyperelasticLaw for MooneyRivlin {
     const ID: &'static str = "mooney-rivlin";
     const DEFINED_WHEN_INVERTED: bool = false;
+    const HAS_ISOCHORIC_PART: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Majorant;
 
     type Own<N: Number> = Isochoric<N>;

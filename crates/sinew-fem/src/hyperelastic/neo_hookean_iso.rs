@@ -33,6 +33,7 @@ impl NeoHookeanIso {
 impl HyperelasticLaw for NeoHookeanIso {
     const ID: &'static str = "neo-hookean-iso";
     const DEFINED_WHEN_INVERTED: bool = false;
+    const HAS_ISOCHORIC_PART: bool = true;
     const NODE_BLOCK: NodeBlock = NodeBlock::Exact;
 
     type Own<N: Number> = Isochoric<N>;

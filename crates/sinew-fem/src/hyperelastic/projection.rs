@@ -121,7 +121,7 @@ impl<N: Number> Projection<N> {
 
 /// A symmetric tensor without its negative eigenvalues: half the sum of the tensor and its positive square root's square, which is `V |s| V'`.
 #[inline(always)]
-fn semidefinite<N: Number>(tensor: Tensor<N>) -> Tensor<N> {
+pub(crate) fn semidefinite<N: Number>(tensor: Tensor<N>) -> Tensor<N> {
     let SingularValues { values, right, .. } = SingularValues::of(tensor);
     let half = N::of(0.5);
     let mut sum = tensor.scaled(half);

@@ -22,7 +22,7 @@ pub struct Term {
 }
 
 /// What a step makes of a term.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TermStep {
     /// `e^-x`, x = dt/tau.
     decay: f64,
@@ -63,7 +63,7 @@ pub fn instantaneous_over_longterm(terms: &[Term]) -> f64 {
 }
 
 impl Term {
-    /// What a step of dt (s), 0 or above, makes of the term.
+    /// What a step of dt (s), 0 or above, makes of the term; nothing is left after an infinite one.
     #[must_use]
     pub fn over(&self, dt: f64) -> TermStep {
         let x = dt / self.time;
@@ -85,6 +85,20 @@ impl Term {
 }
 
 impl TermStep {
+    /// `e^-x`, x = dt/tau: what is left of the memory.
+    #[inline(always)]
+    #[must_use]
+    pub fn decay(&self) -> f64 {
+        self.decay
+    }
+
+    /// `g (1 - e^-x)/x`: the share of a change of S0 that is remembered.
+    #[inline(always)]
+    #[must_use]
+    pub fn gain(&self) -> f64 {
+        self.gain
+    }
+
     /// The memory after the step, by that before it and the change of S0 over it: exact where S0 is linear in time over the step
     /// (Taylor, Pister and Goudreau, International Journal for Numerical Methods in Engineering 2, 1970).
     #[inline(always)]

@@ -4,6 +4,29 @@ use sinew_core::EvaluationError;
 
 use crate::hyperelastic::HyperelasticLaw;
 
+/// The error for a tetrahedron that fibres freed of volume change are not defined for.
+#[cold]
+pub(super) fn fibres_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
+    EvaluationError {
+        element: tag,
+        reason: format!(
+            "its volume is {volume_ratio:.3} of that at rest, and fibres freed of volume change have no meaning from 0 down: take a shorter \
+             step, or fibres without `split`"
+        ),
+    }
+}
+
+/// The error for a tetrahedron, or the mean of some, that memory is not defined for.
+#[cold]
+pub(super) fn memory_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
+    EvaluationError {
+        element: tag,
+        reason: format!(
+            "its volume is {volume_ratio:.3} of that at rest, and stress that relaxes has no meaning from 0 down: take a shorter step"
+        ),
+    }
+}
+
 /// The error for a tetrahedron, or the mean of some, that a law is not defined for.
 #[cold]
 pub(super) fn refused<L: HyperelasticLaw>(tag: u64, volume_ratio: f64) -> EvaluationError {

@@ -7,16 +7,18 @@ use std::ops::Range;
 use sinew_core::{Deformed, EvaluationError};
 use sinew_sparse::simd::{InstructionSet, Number, Real, SharedSlice, Vectors, WithReal};
 
+use super::beside::{StressBeside, carried_energy};
 use super::chunks::LANES;
 use super::error::refused;
 use super::found::Found;
 use super::gather::{Gather, row_sum};
+use super::kept::{lanes, load, load_entries, store, store_entries};
+use super::memory::{Past, Points, Relaxing, Remembered, Remembering, require};
 use super::region::{HyperelasticRegion, Numbers};
 use super::schedule::{Piece, Task};
 use super::scratch::{Places, Rows};
-use crate::hyperelastic::{
-    Deformation, HyperelasticLaw, LawVisitor, SMALLEST_VOLUME_RATIO, Tensor,
-};
+use crate::hyperelastic::prony::{deviatoric, first_piola};
+use crate::hyperelastic::{Deformation, HyperelasticLaw, LawVisitor, SMALLEST_VOLUME_RATIO};
 
 /// An evaluation of forces.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +28,9 @@ pub(super) struct Evaluation<'a, T> {
     pub(super) numbers: &'a [Numbers<T>],
     pub(super) gather: &'a Gather,
     pub(super) places: Places<'a, T>,
+    pub(super) past: Past<'a, T>,
+    /// Where stress is remembered, and no forces are computed: by one thread.
+    pub(super) remembered: Option<Remembered<'a, T>>,
     pub(super) set: InstructionSet,
     /// Whether it computes the energy and what else is found on the way.
     pub(super) with_energy: bool,
@@ -42,6 +47,9 @@ impl<T: Vectors> Evaluation<'_, T> {
         piece: &Piece,
     ) -> Result<Deformed, EvaluationError> {
         let region = &self.regions[piece.region];
+        if self.remembered.is_some() && region.memory.is_none() {
+            return Ok(Deformed::default());
+        }
         region.law.with_law(Forces {
             evaluation: self,
             part,
@@ -65,12 +73,22 @@ impl<T: Vectors> LawVisitor for Forces<'_, T> {
             numbers,
             gather,
             places,
+            past,
+            remembered,
             set,
             with_energy,
         } = *self.evaluation;
         let of_part = self.part * places.chunk..(self.part + 1) * places.chunk;
+        let region = &regions[self.piece.region];
+        let relaxing = match remembered {
+            Some(_) => Relaxing::none(),
+            None => Relaxing::of(region.memory.as_ref(), past),
+        };
         let sweep = Sweep {
-            region: &regions[self.piece.region],
+            region,
+            relaxing,
+            remembered,
+            set,
             numbers: &numbers[self.piece.region],
             gather,
             law,
@@ -92,6 +110,9 @@ struct Sweep<'a, T, L> {
     numbers: &'a Numbers<T>,
     gather: &'a Gather,
     law: L,
+    relaxing: Relaxing<'a, T>,
+    remembered: Option<Remembered<'a, T>>,
+    set: InstructionSet,
     with_energy: bool,
     places: Places<'a, T>,
     /// The numbers of `places.chunks` that are this part's.
@@ -110,6 +131,7 @@ impl<T: Vectors, L: HyperelasticLaw> WithReal<T> for Sweep<'_, T, L> {
                 Task::Means(chunk) => self.means(*chunk, &mut found)?,
                 Task::Edges(edges) => self.edges(edges.clone(), &mut found)?,
                 Task::Forces(chunk) => self.forces(*chunk, &mut found)?,
+                Task::Nodes(_) if self.remembered.is_some() => {}
                 // SAFETY: see `Sweep`.
                 Task::Nodes(nodes) => unsafe {
                     let places = &self.places;
@@ -157,18 +179,10 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 let rows = unsafe { places.gradients.write(rows..rows + N::LANES) };
                 store(gradient.scaled(volume), rows);
             } else {
-                let to = &mut kept[9 * own..];
-                for (entry, to) in gradient
-                    .0
-                    .as_flattened()
-                    .iter()
-                    .zip(to.chunks_exact_mut(N::LANES))
-                {
-                    entry.store(to);
-                }
+                store_entries(gradient, &mut kept[9 * own..]);
             }
         }
-        let lambda = self.law.lame().0;
+        let lambda = self.relaxing.factor_of_dilation() * self.law.lame().0;
         for patch in chunk.patches.clone() {
             let tets = region.patches.of(patch);
             let volume = self.numbers.patch_volumes[patch];
@@ -183,7 +197,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             let mean = sum / volume;
             dilations.fill(mean);
             let mean = mean.to_f64();
-            found.energy_of_patches += 0.5 * volume.to_f64() * lambda * mean * mean;
+            found.energy_of_sets += 0.5 * volume.to_f64() * lambda * mean * mean;
         }
         Ok(())
     }
@@ -197,6 +211,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
     ) -> Result<(), EvaluationError> {
         let (region, rest, places) = (self.region, &*self.numbers.rest, &self.places);
         let last = region.edges.count().saturating_sub(1);
+        let mut remembering = self.remembering();
         for first in edges.step_by(N::LANES) {
             let mut sums = [[[T::default(); 4]; 3]; LANES];
             for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
@@ -213,16 +228,72 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                     tets.first().map_or(0, |tet| rest.tag(*tet as usize))
                 }));
             }
+            let mut stress = self.law.stress(&at);
+            if let Some(remembering) = &mut remembering {
+                if remembering.is_deviatoric() {
+                    stress = deviatoric(&at.deformation, stress);
+                }
+                remembering.take(Points::Edges, first, &at.deformation, stress);
+                continue;
+            }
+            let mut density = N::of(0.0);
+            if self.with_energy {
+                density = self.law.energy(&at);
+            }
+            if self.relaxing.is_there() {
+                require(&self.relaxing, &at.deformation, |lane| {
+                    let tets = region.edges.of((first + lane).min(last));
+                    tets.first().map_or(0, |tet| rest.tag(*tet as usize))
+                })?;
+                let factor = N::of(self.relaxing.factor);
+                let half = N::of(0.5) * self.law.dilation(&at);
+                let left = N::of(self.relaxing.bulk_left()) * self.law.dilation(&at);
+                let gradient = self.law.dilation_gradient(&at);
+                stress = stress.scaled(factor).plus(left, gradient);
+                density = half.mul_add(left, factor * density);
+                if let Some(carried) = self.relaxing.carried::<N>(Points::Edges, first) {
+                    stress = stress + first_piola(&at.deformation, carried);
+                    density = density + carried_energy(&at.deformation, carried);
+                }
+            }
             let own = region.kept.edges + first;
             // SAFETY: see `Sweep`.
             let to = unsafe { places.at_edges.write(own..own + N::LANES) };
-            store(self.law.stress(&at), to);
+            store(stress, to);
             if self.with_energy {
                 let share = volume * N::of(region.edge_share / 6.0);
-                found.energy = share.mul_add(self.law.energy(&at), found.energy);
+                found.energy = share.mul_add(density, found.energy);
             }
         }
         Ok(())
+    }
+
+    /// The memory that is brought up to date, where it is.
+    fn remembering(&self) -> Option<Remembering<'_, T>> {
+        let (memory, remembered) = (self.region.memory.as_ref()?, self.remembered?);
+        let variables = remembered.internal;
+        // SAFETY: one thread remembers (`Evaluation::remembered`), and no two tasks at a time do.
+        let internal = unsafe { variables.write(memory.range()) };
+        Some(Remembering::of(memory, remembered.dt, internal))
+    }
+
+    /// Computes the stress beside the law's in the tetrahedra of a chunk, and keeps the gradients; the energy where it is asked for.
+    fn beside(&self, slots: &Range<usize>) -> Result<f64, EvaluationError> {
+        // SAFETY: see `Sweep`.
+        let kept = unsafe { self.places.chunks.write(self.of_part.clone()) };
+        let (gradients, stress) = kept.split_at_mut(self.places.gradients_of_chunk);
+        let work = StressBeside {
+            region: self.region,
+            rest: &self.numbers.rest,
+            relaxing: &self.relaxing,
+            slots,
+            displacement: self.places.displacement,
+            gradients,
+            gradients_are_known: self.region.is_smoothed() && self.region.edges_of.is_empty(),
+            stress,
+            with_energy: self.with_energy,
+        };
+        T::with_vectors_or_numbers(self.set, work)
     }
 
     /// Computes the forces at the corners of the tetrahedra of a chunk.
@@ -235,7 +306,14 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         let (region, rest, places) = (self.region, &*self.numbers.rest, &self.places);
         let slots = region.chunks[chunk].slots.clone();
         let (is_smoothed, has_edges) = (region.is_smoothed(), !region.edges_of.is_empty());
-        let (lambda, own_share) = (self.law.lame().0, 1.0 - region.edge_share);
+        let is_relaxing = self.relaxing.is_there();
+        let has_beside = region.fibres.is_some() || is_relaxing;
+        if has_beside {
+            found.energy_of_sets += self.beside(&slots)?;
+        }
+        let own_share = 1.0 - region.edge_share;
+        let lambda = self.relaxing.factor_of_dilation() * self.law.lame().0;
+        let mut remembering = self.remembering();
         // SAFETY: see `Sweep`.
         let (dilations, kept, corners) = unsafe {
             let dilations = from(region.kept.tets, &slots);
@@ -248,9 +326,10 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 places.corners.write(4 * corners.start..4 * corners.end),
             )
         };
+        let (kept, beside) = kept.split_at(places.gradients_of_chunk);
         for first in slots.clone().step_by(N::LANES) {
             let own = first - slots.start;
-            let gradient = if is_smoothed && !has_edges {
+            let gradient = if has_beside || is_smoothed && !has_edges {
                 load_entries(&kept[9 * own..])
             } else {
                 rest.gradient_of::<N>(first, places.displacement)
@@ -266,16 +345,39 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             } else {
                 self.law.dilation(&at)
             };
-            let bulk = N::of(lambda) * dilation;
+            let mut bulk = N::of(lambda) * dilation;
             if self.with_energy {
                 found.note(first, at.volume_ratio, rest);
                 let mut density = N::of(own_share) * self.law.energy(&at);
+                if is_relaxing {
+                    let half = N::of(0.5) * self.law.dilation(&at) * self.law.dilation(&at);
+                    let left = N::of(own_share * self.relaxing.bulk_left());
+                    density = left.mul_add(half, N::of(self.relaxing.factor) * density);
+                }
                 if !is_smoothed {
                     density = (N::of(0.5) * dilation).mul_add(bulk, density);
                 }
                 found.energy = rest.volumes::<N>(first).mul_add(density, found.energy);
             }
             let mut stress = self.law.stress(&at);
+            if let Some(remembering) = &mut remembering {
+                stress = stress.scaled(N::of(own_share));
+                if remembering.is_deviatoric() {
+                    stress = deviatoric(&at.deformation, stress);
+                } else {
+                    stress = stress.plus(bulk, self.law.dilation_gradient(&at));
+                    if has_beside {
+                        stress = stress + load_entries(&beside[9 * own..]);
+                    }
+                }
+                remembering.take(Points::Tets, first, &at.deformation, stress);
+                continue;
+            }
+            if is_relaxing {
+                stress = stress.scaled(N::of(self.relaxing.factor));
+                let left = N::of(own_share * self.relaxing.bulk_left());
+                bulk = left.mul_add(self.law.dilation(&at), bulk);
+            }
             if has_edges {
                 let mut sums = [[[T::default(); 4]; 3]; LANES];
                 for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
@@ -286,6 +388,9 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 stress = stress.plus(N::of(region.edge_share / 6.0), load(&sums));
             }
             stress = stress.plus(bulk, self.law.dilation_gradient(&at));
+            if has_beside {
+                stress = stress + load_entries(&beside[9 * own..]);
+            }
             rest.forces(first, stress, &mut corners[4 * own..]);
         }
         Ok(())
@@ -313,15 +418,6 @@ const fn least<L: HyperelasticLaw>(largest: f64) -> f64 {
     }
 }
 
-#[inline(always)]
-fn lanes<N: Number>(number: N) -> [f64; LANES] {
-    let mut lanes = [1.0; LANES];
-    for (lane, of_lane) in lanes.iter_mut().enumerate().take(N::LANES) {
-        *of_lane = number.lane(lane);
-    }
-    lanes
-}
-
 /// The error for the first lane that a law is not defined for.
 #[cold]
 #[inline(never)]
@@ -346,41 +442,4 @@ fn rows_of<T: Real>(all: SharedSlice<'_, Rows<T>>, first: usize, places: &[u32])
         z = row_sum(z, other_z);
     }
     [x, y, z]
-}
-
-#[inline(always)]
-fn load<N: Number>(from: &[Rows<N::Real>]) -> Tensor<N> {
-    let rows = from.as_flattened();
-    Tensor([
-        N::load_rows(rows, 3),
-        N::load_rows(&rows[1..], 3),
-        N::load_rows(&rows[2..], 3),
-    ])
-}
-
-#[inline(always)]
-fn store<N: Number>(tensor: Tensor<N>, to: &mut [Rows<N::Real>]) {
-    let rows = to.as_flattened_mut();
-    let [x, y, z] = tensor.0;
-    N::store_rows(x, rows, 3);
-    N::store_rows(y, &mut rows[1..], 3);
-    N::store_rows(z, &mut rows[2..], 3);
-}
-
-/// The tensor whose entries stand one vector behind the other.
-#[inline(always)]
-fn load_entries<N: Number>(from: &[N::Real]) -> Tensor<N> {
-    let from = &from[..9 * N::LANES];
-    let (first, rest) = from.split_at(3 * N::LANES);
-    let (second, third) = rest.split_at(3 * N::LANES);
-    Tensor([load_row(first), load_row(second), load_row(third)])
-}
-
-#[inline(always)]
-fn load_row<N: Number>(from: &[N::Real]) -> [N; 3] {
-    [
-        N::load(from),
-        N::load(&from[N::LANES..]),
-        N::load(&from[2 * N::LANES..]),
-    ]
 }

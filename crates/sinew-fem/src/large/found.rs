@@ -10,8 +10,8 @@ use super::rest::Rest;
 pub(super) struct Found<N> {
     /// Energy (J) of tetrahedra and edges.
     pub(super) energy: N,
-    /// Energy (J) of the dilation of patches.
-    pub(super) energy_of_patches: f64,
+    /// Energy (J) of the dilation of patches, and of the fibres of chunks.
+    pub(super) energy_of_sets: f64,
     /// The smallest volume ratio.
     smallest: N,
     /// The place of the first lane beside it.
@@ -24,7 +24,7 @@ impl<N: Number> Found<N> {
     pub(super) fn none() -> Self {
         Self {
             energy: N::of(0.0),
-            energy_of_patches: 0.0,
+            energy_of_sets: 0.0,
             smallest: N::of(f64::INFINITY),
             place: N::of(0.0),
             inverted: 0,
@@ -48,7 +48,7 @@ impl<N: Number> Found<N> {
     #[inline(always)]
     pub(super) fn over(self, rest: &Rest<N::Real>) -> Deformed {
         let mut found = Deformed {
-            energy: self.energy_of_patches,
+            energy: self.energy_of_sets,
             inverted: self.inverted,
             ..Deformed::default()
         };

@@ -2,22 +2,24 @@
 
 use sinew_core::{BlockMatrix, ElementStiffness, EvaluationError, TangentKind};
 
+use super::beside::TangentBeside;
 use super::means::{at_edge, check, means, take_dilation};
-use super::product::OwnTangent;
+use super::memory::{Past, Relaxing};
+use super::product::{EdgeTangent, OwnTangent, of_patch};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
 use crate::cells::Cells;
 use crate::elements::moving_part;
-use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Linearised, Tensor};
+use crate::hyperelastic::{Deformation, HyperelasticLaw, LawVisitor, Tensor};
 use crate::smoothing::Average;
 
 /// Adds the tangent of a region, on a pattern that has its couplings.
 pub(super) fn add(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
+    past: Past<'_>,
     kind: TangentKind,
-    cells: &Cells,
-    out: &mut BlockMatrix,
+    (cells, out): (&Cells, &mut BlockMatrix),
 ) -> Result<(), EvaluationError> {
     let mut sum = Sum {
         cells,
@@ -29,6 +31,7 @@ pub(super) fn add(
     region.law.with_law(Tangents {
         region,
         scratch,
+        relaxing: Relaxing::of(region.memory.as_ref(), past),
         kind,
         sum: &mut sum,
     })
@@ -37,6 +40,7 @@ pub(super) fn add(
 struct Tangents<'a, 'o> {
     region: &'a HyperelasticRegion,
     scratch: &'a mut Scratch,
+    relaxing: Relaxing<'a>,
     kind: TangentKind,
     sum: &'a mut Sum<'o>,
 }
@@ -58,36 +62,46 @@ impl LawVisitor for Tangents<'_, '_> {
         let Self {
             region,
             scratch,
+            relaxing,
             kind,
             sum,
         } = self;
         let (rest, lambda) = (&region.rest, law.lame().0);
+        let beside_of = |tet: usize, deformation: &Deformation<f64>| {
+            TangentBeside::of(region, &relaxing, tet, deformation, (kind, false))
+        };
         if !region.is_smoothed() {
             for tet in rest.tets() {
                 let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
-                check(&law, &at, rest.tag(tet))?;
-                let tangent = Linearised::of(&law, &at, law.own_bulk(&at), kind);
+                check(region, &law, &relaxing, &at, tet)?;
+                let left = relaxing.left_of(1.0, law.own_bulk(&at), law.dilation(&at));
+                let own = OwnTangent::of(&law, &at, left, kind);
+                let beside = beside_of(tet, &at.deformation);
                 sum.average.of(std::iter::once(region.tet(tet)));
-                sum.add(1.0, |change| tangent.on(change));
+                sum.add(1.0, |change| beside.with(own.on(change), change));
             }
             return Ok(());
         }
-        means(region, scratch, &law)?;
+        means(region, scratch, &law, &relaxing)?;
+        let share = 1.0 - region.edge_share;
         for tet in rest.tets() {
             let at = law.at(scratch.gradients[tet]);
             let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
-            let own = OwnTangent::of(&law, &at, region, lambda * dilation, kind);
+            let left = relaxing.left_of(share, of_patch(lambda * dilation), law.dilation(&at));
+            let own = OwnTangent::of(&law, &at, left, kind);
+            let beside = beside_of(tet, &at.deformation);
             sum.average.of(std::iter::once(region.tet(tet)));
-            sum.add(1.0, |change| own.on(change));
+            sum.add(1.0, |change| beside.with(own.on(change), change));
         }
         for (edge, average) in region.edge_averages().iter().enumerate() {
-            let at = at_edge(region, &law, region.edges.of(edge), scratch)?;
-            let tangent = Linearised::of(&law, &at, Bulk::none(), kind);
+            let at = at_edge(region, &law, region.edges.of(edge), scratch, &relaxing)?;
+            let tangent = EdgeTangent::of(&law, &at, (&relaxing, edge), kind);
             sum.average.clone_from(average);
             sum.add(region.edge_share / 6.0, |change| tangent.on(change));
         }
         for patch in 0..region.patches.count() {
             take_dilation(region, &law, patch, scratch, &mut sum.average);
+            let lambda = relaxing.factor_of_dilation() * lambda;
             sum.average.stiffness(1.0, [lambda, 0.0], &mut sum.whole);
             sum.add_whole();
         }

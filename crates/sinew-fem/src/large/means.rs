@@ -2,10 +2,11 @@
 
 use sinew_core::EvaluationError;
 
-use super::error::refused;
+use super::error::{fibres_refused, refused};
+use super::memory::{Relaxing, require};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
-use crate::hyperelastic::{Bulk, HyperelasticLaw, Point};
+use crate::hyperelastic::{HyperelasticLaw, Point};
 use crate::smoothing::Average;
 
 /// Takes the gradient of the displacement in each tetrahedron and the mean dilation of each patch.
@@ -13,6 +14,7 @@ pub(super) fn means<L: HyperelasticLaw>(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
     law: &L,
+    relaxing: &Relaxing<'_>,
 ) -> Result<(), EvaluationError> {
     for patch in 0..region.patches.count() {
         let tets = region.patches.of(patch);
@@ -22,7 +24,7 @@ pub(super) fn means<L: HyperelasticLaw>(
             let gradient = region.rest.gradient_of::<f64>(tet, &scratch.displacement);
             scratch.gradients[tet] = gradient;
             let at = law.at(gradient);
-            check(law, &at, region.rest.tag(tet))?;
+            check(region, law, relaxing, &at, tet)?;
             sum += region.rest.volume(tet) * law.dilation(&at);
         }
         scratch.dilations[patch] = [sum / region.patch_volumes[patch], 0.0];
@@ -37,10 +39,14 @@ pub(super) fn at_edge<L: HyperelasticLaw>(
     law: &L,
     tets: &[u32],
     scratch: &Scratch,
+    relaxing: &Relaxing<'_>,
 ) -> Result<Point<f64, L::Own<f64>>, EvaluationError> {
     let at = law.at(region.mean_tensor(tets, |tet| scratch.gradients[tet]));
-    let first = tets.first().map_or(0, |tet| region.rest.tag(*tet as usize));
-    check(law, &at, first)?;
+    let first = || tets.first().map_or(0, |tet| region.rest.tag(*tet as usize));
+    if !is_defined(law, &at) {
+        return Err(refused::<L>(first(), at.volume_ratio));
+    }
+    require(relaxing, &at.deformation, |_| first())?;
     Ok(at)
 }
 
@@ -60,24 +66,28 @@ pub(super) fn take_dilation<L: HyperelasticLaw>(
     }));
 }
 
-/// The dilational energy of a tetrahedron by the mean of its patch, whose own modulus is added elsewhere.
+/// Refuses a tetrahedron that the law or the fibres are not defined for.
 #[inline(always)]
-pub(super) fn bulk_of_patch(lambda: f64, dilation: f64) -> Bulk<f64> {
-    Bulk {
-        stress: lambda * dilation,
-        modulus: 0.0,
+pub(super) fn check<L: HyperelasticLaw>(
+    region: &HyperelasticRegion,
+    law: &L,
+    relaxing: &Relaxing<'_>,
+    at: &Point<f64, L::Own<f64>>,
+    tet: usize,
+) -> Result<(), EvaluationError> {
+    if !is_defined(law, at) {
+        return Err(refused::<L>(region.rest.tag(tet), at.volume_ratio));
+    }
+    require(relaxing, &at.deformation, |_| region.rest.tag(tet))?;
+    match &region.fibres {
+        Some(fibres) if !fibres.admits(&at.deformation) => {
+            Err(fibres_refused(region.rest.tag(tet), at.volume_ratio))
+        }
+        _ => Ok(()),
     }
 }
 
 #[inline(always)]
-pub(super) fn check<L: HyperelasticLaw>(
-    law: &L,
-    at: &Point<f64, L::Own<f64>>,
-    tag: u64,
-) -> Result<(), EvaluationError> {
-    if law.admits(&at.deformation) && at.volume_ratio.is_finite() {
-        Ok(())
-    } else {
-        Err(refused::<L>(tag, at.volume_ratio))
-    }
+fn is_defined<L: HyperelasticLaw>(law: &L, at: &Point<f64, L::Own<f64>>) -> bool {
+    law.admits(&at.deformation) && at.volume_ratio.is_finite()
 }

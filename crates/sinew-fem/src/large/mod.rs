@@ -1,12 +1,16 @@
 //! Regions of hyperelastic tetrahedra: their forces, energy and tangent at any displacement.
 
+mod beside;
 mod chunks;
 mod error;
+mod fibres;
 mod force;
 mod found;
 mod gather;
+mod kept;
 mod matrix;
 mod means;
+mod memory;
 mod node_blocks;
 mod product;
 mod region;
@@ -16,7 +20,9 @@ mod scratch;
 mod stress;
 mod threads;
 
-pub(crate) use region::HyperelasticRegion;
+pub(crate) use memory::Past;
+pub(crate) use product::Wanted;
+pub(crate) use region::{HyperelasticRegion, RegionLaw};
 pub(crate) use scratch::{Scratch, fill};
 pub(crate) use threads::SharedForces;
 
@@ -24,14 +30,14 @@ use std::sync::{Mutex, PoisonError};
 
 use sinew_core::{BlockMatrix, Deformed, EvaluationError, TangentKind};
 use sinew_mesh::TetMesh;
-use sinew_sparse::simd::{InstructionSet, Vectors};
+use sinew_sparse::simd::{InstructionSet, SharedSlice, Vectors};
 
 use crate::cells::Cells;
-use crate::hyperelastic::Hyperelastic;
 use crate::smoothing::Smoothing;
 use chunks::chunks;
 use force::Evaluation;
 use gather::Gather;
+use memory::Remembered;
 use region::{FirstPlaces, Numbers};
 use schedule::Schedule;
 
@@ -50,6 +56,8 @@ pub(crate) struct LargeDeformation {
     nodes: usize,
     /// Places of tetrahedra, padding included.
     slots: usize,
+    /// Numbers that are remembered.
+    variables: usize,
     /// The instructions that force loops are run with.
     set: InstructionSet,
     /// Place of each tetrahedron of the mesh among those of the regions.
@@ -59,11 +67,11 @@ pub(crate) struct LargeDeformation {
 }
 
 impl LargeDeformation {
-    /// The regions with laws and shares of edges, each with its tetrahedra; `None` where there are none.
+    /// The regions, each with its tetrahedra; `None` where there are none.
     pub(crate) fn new<'a>(
         mesh: &TetMesh,
         smoothing: &Smoothing,
-        regions: impl Iterator<Item = ((Hyperelastic, f64), &'a [u32])>,
+        regions: impl Iterator<Item = (RegionLaw<'a>, &'a [u32])>,
     ) -> Option<Self> {
         let (mut made, mut count) = (Vec::new(), 0);
         let mut kept = FirstPlaces::default();
@@ -97,6 +105,7 @@ impl LargeDeformation {
             regions: made,
             nodes: mesh.points.len(),
             slots: count,
+            variables: kept.variables,
             set: InstructionSet::best(),
             place_of_tet,
             pool: Mutex::default(),
@@ -121,9 +130,12 @@ impl LargeDeformation {
     pub(crate) fn evaluate(
         &self,
         scratch: &mut Scratch,
+        past: Past<'_>,
         with_energy: bool,
     ) -> Result<Deformed, EvaluationError> {
         let evaluation = Evaluation {
+            past,
+            remembered: None,
             regions: &self.regions,
             numbers: &self.numbers,
             gather: &self.gather,
@@ -132,6 +144,32 @@ impl LargeDeformation {
             with_energy,
         };
         evaluate_alone(&self.alone, &evaluation)
+    }
+
+    /// Number of internal variables.
+    pub(crate) fn variables(&self) -> usize {
+        self.variables
+    }
+
+    /// Brings internal variables up to date with the displacement in the scratch, `dt` (s) after the one they are of.
+    pub(crate) fn remember(
+        &self,
+        scratch: &mut Scratch,
+        dt: f64,
+        internal: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        let internal = SharedSlice::of(internal);
+        let evaluation = Evaluation {
+            past: Past::RELAXED,
+            remembered: Some(Remembered { internal, dt }),
+            regions: &self.regions,
+            numbers: &self.numbers,
+            gather: &self.gather,
+            places: scratch.places(),
+            set: self.set,
+            with_energy: false,
+        };
+        evaluate_alone(&self.alone, &evaluation).map(drop)
     }
 
     /// The mesh nodes of the regions, by the order in which forces are complete.
@@ -149,24 +187,11 @@ impl LargeDeformation {
     pub(crate) fn product(
         &self,
         scratch: &mut Scratch,
-        kind: TangentKind,
-    ) -> Result<(), EvaluationError> {
-        self.products(scratch, Some(kind))
-    }
-
-    /// [`LargeDeformation::product`] with the tangent that stiffness damping multiplies: the exact one, so that the rate of a stress is damped,
-    /// but with rotations held fast where a law has one, which is semidefinite.
-    pub(crate) fn damped_product(&self, scratch: &mut Scratch) -> Result<(), EvaluationError> {
-        self.products(scratch, None)
-    }
-
-    fn products(
-        &self,
-        scratch: &mut Scratch,
-        kind: Option<TangentKind>,
+        past: Past<'_>,
+        wanted: Wanted,
     ) -> Result<(), EvaluationError> {
         for region in &self.regions {
-            product::product(region, scratch, kind)?;
+            product::product(region, scratch, past, wanted)?;
         }
         self.gather.sum_all(&mut scratch.corners, &mut scratch.sums);
         Ok(())
@@ -183,22 +208,24 @@ impl LargeDeformation {
     pub(crate) fn add_tangent(
         &self,
         scratch: &mut Scratch,
+        past: Past<'_>,
         kind: TangentKind,
         cells: &Cells,
         out: &mut BlockMatrix,
     ) -> Result<(), EvaluationError> {
         let mut regions = self.regions.iter();
-        regions.try_for_each(|region| matrix::add(region, scratch, kind, cells, out))
+        regions.try_for_each(|region| matrix::add(region, scratch, past, kind, (cells, &mut *out)))
     }
 
     /// Adds own blocks of the tangent at the displacement in the scratch: calls `add` with each node and its block (N/m).
     pub(crate) fn node_blocks(
         &self,
         scratch: &mut Scratch,
+        past: Past<'_>,
         mut add: impl FnMut(u32, [[f64; 3]; 3]),
     ) -> Result<(), EvaluationError> {
         let mut regions = self.regions.iter();
-        regions.try_for_each(|region| node_blocks::add(region, scratch, &mut add))
+        regions.try_for_each(|region| node_blocks::add(region, scratch, past, &mut add))
     }
 
     /// The Cauchy stress (Pa) of a tetrahedron of the mesh, in the order of [`crate::stress`], with the displacement (m) of each node; `None`
@@ -206,6 +233,7 @@ impl LargeDeformation {
     pub(crate) fn stress(
         &self,
         tet: usize,
+        past: Past<'_>,
         displacement: impl Fn(u32) -> [f64; 3],
     ) -> Option<[f64; 6]> {
         let place = *self.place_of_tet.get(tet)?;
@@ -215,7 +243,8 @@ impl LargeDeformation {
             .iter()
             .rev()
             .find(|region| region.first <= place)?;
-        Some(stress::cauchy(region, place - region.first, displacement))
+        let tet = place - region.first;
+        Some(stress::cauchy(region, tet, past, displacement))
     }
 }
 
@@ -242,8 +271,10 @@ fn evaluate_alone<T: Vectors>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hyperelastic::Parameters;
-    use crate::{Element, Law, Problem, Region};
+    use crate::hyperelastic::fibres::{Fibres, Stiffening};
+    use crate::hyperelastic::prony::Term;
+    use crate::hyperelastic::{Hyperelastic, Parameters};
+    use crate::{Element, FibreFamily, Law, Memory, Moduli, Problem, Region, Tissue, ViscousPart};
     use sinew_mesh::structured::{Split, cube};
     use sinew_sparse::simd::SharedSlice;
 
@@ -261,7 +292,43 @@ mod tests {
         },
     ];
 
-    fn region(mesh: &TetMesh, id: &'static str, element: Element) -> LargeDeformation {
+    /// Without and with fibres and memory.
+    fn tissues() -> [Tissue; 4] {
+        let exponential = Stiffening::Exponential {
+            k1: 1000.0,
+            k2: 2.0,
+            dispersion: 0.1,
+        };
+        let fibrous = |stiffening| Tissue {
+            fibres: Some(FibreFamily {
+                fibres: Fibres::new(stiffening).unwrap(),
+                direction: [1.0, 2.0, -1.0],
+            }),
+            ..Tissue::default()
+        };
+        let term = |share, time| Term { share, time };
+        let memory = Memory {
+            terms: vec![term(0.3, 0.05), term(0.2, 0.5)],
+            part: ViscousPart::All,
+            moduli: Moduli::Instantaneous,
+        };
+        [
+            Tissue::default(),
+            fibrous(Stiffening::Quadratic { eta: 2000.0 }),
+            fibrous(exponential),
+            Tissue {
+                memory: Some(memory),
+                ..Tissue::default()
+            },
+        ]
+    }
+
+    fn region(
+        mesh: &TetMesh,
+        id: &'static str,
+        element: Element,
+        tissue: &Tissue,
+    ) -> LargeDeformation {
         let mut parameters = Parameters::new(3500.0, 0.45);
         parameters.c1_over_c2 = (id == "mooney-rivlin").then_some(4.0);
         let problem = Problem {
@@ -270,13 +337,19 @@ mod tests {
                 density: 1060.0,
                 law: Law::Hyperelastic { id, parameters },
                 element,
+                tissue: tissue.clone(),
             }],
             ..Problem::default()
         };
         let smoothing = Smoothing::new(mesh, &problem, &vec![0; mesh.tets.len()]);
         let law = Hyperelastic::new(id, &parameters).unwrap();
         let tets: Vec<u32> = (0..mesh.tets.len() as u32).collect();
-        let regions = std::iter::once(((law, element.edge_share()), tets.as_slice()));
+        let region = RegionLaw {
+            law,
+            edge_share: element.edge_share(),
+            tissue,
+        };
+        let regions = std::iter::once((region, tets.as_slice()));
         LargeDeformation::new(mesh, &smoothing, regions).unwrap()
     }
 
@@ -285,9 +358,17 @@ mod tests {
         large: &LargeDeformation,
         field: impl Fn(u32) -> [f64; 3],
     ) -> Result<(Deformed, Vec<[f64; 3]>), EvaluationError> {
+        let mut internal: Vec<f64> = (0..large.variables())
+            .map(|i| 100.0 * (0.37 * i as f64).sin())
+            .collect();
         large.with_scratch(|scratch| {
             fill(&mut scratch.displacement, field);
-            let found = large.evaluate(scratch, true)?;
+            large.remember(scratch, 0.02, &mut internal)?;
+            let past = Past {
+                internal: &internal,
+                dt: 0.01,
+            };
+            let found = large.evaluate(scratch, past, true)?;
             let mut forces = vec![[0.0; 3]; large.nodes];
             large.at_nodes(scratch, |node, force| forces[node as usize] = force);
             Ok((found, forces))
@@ -312,11 +393,14 @@ mod tests {
     fn every_instruction_set_gives_what_plain_numbers_give() {
         for cells in [1, 3, 5] {
             let mesh = cube(cells, 0.1, Split::Kuhn).unwrap();
-            for (id, element) in Hyperelastic::IDS
-                .iter()
-                .flat_map(|id| ELEMENTS.map(|element| (*id, element)))
+            let [plain, others @ ..] = tissues();
+            let laws = Hyperelastic::IDS.iter().map(|id| (*id, &plain));
+            let others = others.iter().map(|tissue| ("neo-hookean", tissue));
+            for ((id, tissue), element) in laws
+                .chain(others)
+                .flat_map(|of| ELEMENTS.map(|element| (of, element)))
             {
-                let mut large = region(&mesh, id, element);
+                let mut large = region(&mesh, id, element, tissue);
                 for is_pushed in [false, true] {
                     let field = |node| displacement(&mesh, is_pushed, node);
                     large.set = InstructionSet::Portable;
@@ -390,6 +474,8 @@ mod tests {
                 SharedSlice::of(&mut sums),
             ),
             set: large.set,
+            past: Past::RELAXED,
+            remembered: None,
             with_energy: false,
         };
         for pass in schedule.passes() {
@@ -411,8 +497,10 @@ mod tests {
     #[test]
     fn parts_in_any_order_give_the_same_bits() {
         let mesh = cube(7, 0.1, Split::Kuhn).unwrap();
-        for element in ELEMENTS {
-            let large = region(&mesh, "stable-neo-hookean", element);
+        let tissues = tissues();
+        let of = |element: Element| tissues.iter().map(move |tissue| (element, tissue));
+        for (element, tissue) in ELEMENTS.into_iter().flat_map(of) {
+            let large = region(&mesh, "stable-neo-hookean", element, tissue);
             let mut field = vec![[0.0; 4]; mesh.points.len()];
             fill(&mut field, |node| displacement(&mesh, false, node));
             let expected = in_parts(&large, &field, 1, false);

@@ -2,42 +2,65 @@
 
 use sinew_core::{EvaluationError, TangentKind};
 
-use super::means::{at_edge, bulk_of_patch, check, means};
+use super::beside::TangentBeside;
+use super::means::{at_edge, check, means};
+use super::memory::{Past, Points, Relaxing};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
 use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Linearised, Point, Tensor};
 
-/// Writes the change of the forces at the corners of a region's tetrahedra; without a kind, frozen where the law has a rotation and
-/// exact elsewhere.
+/// The tangent of a product.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// One of a kind.
+    Kind(TangentKind),
+    /// That which stiffness damping multiplies: the exact one, so that the rate of a stress is damped, but with rotations held fast where a
+    /// law has one, which is semidefinite; of stress that relaxes, as it is at once.
+    Damped,
+    /// That which bounds a stable step: the exact one, with fibres that are idle as if they were pulled, since they may be before the next look.
+    Stiffest,
+}
+
+/// Writes the change of the forces at the corners of a region's tetrahedra.
 pub(super) fn product(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
-    kind: Option<TangentKind>,
+    past: Past<'_>,
+    wanted: Wanted,
 ) -> Result<(), EvaluationError> {
     region.law.with_law(Products {
         region,
         scratch,
-        kind,
+        relaxing: match wanted {
+            Wanted::Damped => Relaxing::none(),
+            Wanted::Kind(_) | Wanted::Stiffest => Relaxing::of(region.memory.as_ref(), past),
+        },
+        wanted,
     })
 }
 
 struct Products<'a> {
     region: &'a HyperelasticRegion,
     scratch: &'a mut Scratch,
-    kind: Option<TangentKind>,
+    relaxing: Relaxing<'a>,
+    wanted: Wanted,
 }
 
 impl LawVisitor for Products<'_> {
     type Output = Result<(), EvaluationError>;
 
     fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
-        let kind = self.kind.unwrap_or_else(|| {
-            let at = law.at(Tensor::<f64>::zero());
-            match law.frozen_tangent(&at, Tensor::zero()) {
-                Some(_) => TangentKind::Frozen,
-                None => TangentKind::Exact,
+        let kind = match self.wanted {
+            Wanted::Kind(kind) => kind,
+            Wanted::Stiffest => TangentKind::Exact,
+            Wanted::Damped => {
+                let at = law.at(Tensor::<f64>::zero());
+                match law.frozen_tangent(&at, Tensor::zero()) {
+                    Some(_) => TangentKind::Frozen,
+                    None => TangentKind::Exact,
+                }
             }
-        });
+        };
         if self.region.is_smoothed() {
             self.smoothed(law, kind)
         } else {
@@ -48,14 +71,19 @@ impl LawVisitor for Products<'_> {
 
 impl Products<'_> {
     fn plain<L: HyperelasticLaw>(self, law: L, kind: TangentKind) -> Result<(), EvaluationError> {
-        let rest = &self.region.rest;
-        let corners = &mut self.scratch.corners[4 * self.region.first..];
+        let (region, relaxing) = (self.region, self.relaxing);
+        let rest = &region.rest;
+        let corners = &mut self.scratch.corners[4 * region.first..];
         for tet in rest.tets() {
             let at = law.at(rest.gradient_of::<f64>(tet, &self.scratch.displacement));
-            check(&law, &at, rest.tag(tet))?;
+            check(region, &law, &relaxing, &at, tet)?;
             let change = rest.gradient_of::<f64>(tet, &self.scratch.change);
-            let tangent = Linearised::of(&law, &at, law.own_bulk(&at), kind);
-            rest.forces(tet, tangent.on(change), &mut corners[4 * tet..]);
+            let left = relaxing.left_of(1.0, law.own_bulk(&at), law.dilation(&at));
+            let own = OwnTangent::of(&law, &at, left, kind);
+            let how = (kind, self.wanted == Wanted::Stiffest);
+            let beside = TangentBeside::of(region, &relaxing, tet, &at.deformation, how);
+            let stress = beside.with(own.on(change), change);
+            rest.forces(tet, stress, &mut corners[4 * tet..]);
         }
         Ok(())
     }
@@ -66,10 +94,13 @@ impl Products<'_> {
         kind: TangentKind,
     ) -> Result<(), EvaluationError> {
         let Self {
-            region, scratch, ..
+            region,
+            scratch,
+            relaxing,
+            wanted,
         } = self;
-        let (rest, lambda) = (&region.rest, law.lame().0);
-        means(region, scratch, &law)?;
+        let (rest, lambda, share) = (&region.rest, law.lame().0, 1.0 - region.edge_share);
+        means(region, scratch, &law, &relaxing)?;
         for patch in 0..region.patches.count() {
             let tets = region.patches.of(patch);
             for tet in tets {
@@ -84,49 +115,62 @@ impl Products<'_> {
         }
         for edge in 0..region.edges.count() {
             let tets = region.edges.of(edge);
-            let at = at_edge(region, &law, tets, scratch)?;
+            let at = at_edge(region, &law, tets, scratch, &relaxing)?;
             let change = region.mean_tensor(tets, |tet| scratch.changes[tet]);
-            let tangent = Linearised::of(&law, &at, Bulk::none(), kind);
+            let tangent = EdgeTangent::of(&law, &at, (&relaxing, edge), kind);
             scratch.at_edges[edge] = tangent.on(change);
         }
         let corners = &mut scratch.corners[4 * region.first..];
         for tet in rest.tets() {
             let at = law.at(scratch.gradients[tet]);
             let [dilation, change] = scratch.dilations[region.patch_of[tet] as usize];
-            let own = OwnTangent::of(&law, &at, region, lambda * dilation, kind);
+            let left = relaxing.left_of(share, of_patch(lambda * dilation), law.dilation(&at));
+            let own = OwnTangent::of(&law, &at, left, kind);
             let mut stress = own.on(scratch.changes[tet]);
-            stress = stress.plus(lambda * change, law.dilation_gradient(&at));
+            let of_patch = relaxing.factor_of_dilation() * lambda * change;
+            stress = stress.plus(of_patch, law.dilation_gradient(&at));
             for edge in region.edges_of.get(tet).into_iter().flatten() {
                 stress = stress.plus(region.edge_share / 6.0, scratch.at_edges[*edge as usize]);
             }
+            let how = (kind, wanted == Wanted::Stiffest);
+            let beside = TangentBeside::of(region, &relaxing, tet, &at.deformation, how);
+            stress = beside.with(stress, scratch.changes[tet]);
             rest.forces(tet, stress, &mut corners[4 * tet..]);
         }
         Ok(())
     }
 }
 
-/// The tangent of a tetrahedron's own share of the local energy and of the stress of its patch.
+/// The dilational energy of a tetrahedron by the mean of its patch, whose own modulus is added elsewhere.
+pub(super) fn of_patch(stress: f64) -> Bulk<f64> {
+    Bulk {
+        stress,
+        modulus: 0.0,
+    }
+}
+
+/// The tangent of a share of the local energy, and of the dilational one.
 pub(super) struct OwnTangent<'a, L: HyperelasticLaw> {
     law: &'a L,
     at: &'a Point<f64, L::Own<f64>>,
-    /// The tangent for each share, where the tetrahedron has one.
+    /// The tangent for each share, where there is one.
     linearised: Option<(f64, Linearised<'a, f64, L>)>,
-    /// What is left of the stress of the patch (Pa).
+    /// First derivative of the dilational energy (Pa), where there is no share.
     bulk_stress: f64,
 }
 
 impl<'a, L: HyperelasticLaw> OwnTangent<'a, L> {
-    /// `bulk_stress` is lambda times the mean dilation of the patch.
     pub(super) fn of(
         law: &'a L,
         at: &'a Point<f64, L::Own<f64>>,
-        region: &HyperelasticRegion,
-        bulk_stress: f64,
+        (share, bulk): (f64, Bulk<f64>),
         kind: TangentKind,
     ) -> Self {
-        let share = 1.0 - region.edge_share;
         if share > 0.0 {
-            let bulk = bulk_of_patch(1.0, bulk_stress / share);
+            let bulk = Bulk {
+                stress: bulk.stress / share,
+                modulus: bulk.modulus / share,
+            };
             Self {
                 law,
                 at,
@@ -140,7 +184,7 @@ impl<'a, L: HyperelasticLaw> OwnTangent<'a, L> {
                 law,
                 at,
                 linearised: None,
-                bulk_stress: if is_exact { bulk_stress } else { 0.0 },
+                bulk_stress: if is_exact { bulk.stress } else { 0.0 },
             }
         }
     }
@@ -153,6 +197,38 @@ impl<'a, L: HyperelasticLaw> OwnTangent<'a, L> {
                 .law
                 .dilation_tangent(self.at, change)
                 .scaled(self.bulk_stress),
+        }
+    }
+}
+
+/// The tangent of the local energy at the mean deformation of an edge.
+pub(super) struct EdgeTangent<'a, L: HyperelasticLaw> {
+    own: OwnTangent<'a, L>,
+    /// R (Pa).
+    carried: Option<Tensor<f64>>,
+}
+
+impl<'a, L: HyperelasticLaw> EdgeTangent<'a, L> {
+    pub(super) fn of(
+        law: &'a L,
+        at: &'a Point<f64, L::Own<f64>>,
+        (relaxing, edge): (&Relaxing<'_>, usize),
+        kind: TangentKind,
+    ) -> Self {
+        let left = relaxing.left_of(1.0, Bulk::none(), law.dilation(at));
+        let is_exact = kind == TangentKind::Exact;
+        Self {
+            own: OwnTangent::of(law, at, left, kind),
+            carried: relaxing.carried_tensor(Points::Edges, edge, is_exact),
+        }
+    }
+
+    /// The change of the stress by a change of F.
+    pub(super) fn on(&self, change: Tensor<f64>) -> Tensor<f64> {
+        let own = self.own.on(change);
+        match self.carried {
+            Some(carried) => own + change * carried,
+            None => own,
         }
     }
 }

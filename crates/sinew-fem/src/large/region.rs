@@ -6,14 +6,28 @@ use sinew_mesh::TetMesh;
 use sinew_sparse::simd::Real;
 
 use super::chunks::{Chunk, LANES, Slot};
+use super::fibres::RegionFibres;
+use super::memory::RegionMemory;
 use super::rest::Rest;
 use crate::hyperelastic::{Hyperelastic, Tensor};
 use crate::smoothing::{Average, Sets, Smoothing};
+use crate::tissue::Tissue;
+
+/// What a region of hyperelastic tetrahedra is made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RegionLaw<'a> {
+    pub(crate) law: Hyperelastic,
+    /// Share of the local energy that is averaged over edges.
+    pub(crate) edge_share: f64,
+    pub(crate) tissue: &'a Tissue,
+}
 
 /// A region of hyperelastic tetrahedra, numbered by itself.
 #[derive(Clone, Debug)]
 pub(crate) struct HyperelasticRegion {
     pub(super) law: Hyperelastic,
+    pub(super) fibres: Option<RegionFibres>,
+    pub(super) memory: Option<RegionMemory>,
     pub(super) rest: Arc<Rest>,
     /// Place of its first tetrahedron among those of all such regions.
     pub(super) first: usize,
@@ -44,7 +58,11 @@ impl HyperelasticRegion {
     pub(super) fn new(
         mesh: &TetMesh,
         smoothing: &Smoothing,
-        (law, edge_share): (Hyperelastic, f64),
+        RegionLaw {
+            law,
+            edge_share,
+            tissue,
+        }: RegionLaw<'_>,
         (slots, chunks): (&[Slot], Vec<Chunk>),
         (first, kept): (usize, FirstPlaces),
     ) -> Self {
@@ -79,6 +97,14 @@ impl HyperelasticRegion {
         edge_volumes.resize(edges.count().next_multiple_of(LANES), 0.0);
         Self {
             law,
+            fibres: tissue
+                .fibres
+                .as_ref()
+                .map(|family| RegionFibres::new(family, tissue.factor_of_fibres())),
+            memory: tissue.memory.as_ref().map(|memory| {
+                let points = [rest.count(), edge_volumes.len()];
+                RegionMemory::new(memory, law.lame().1, kept.variables, points)
+            }),
             first,
             kept,
             chunks,
@@ -114,6 +140,8 @@ impl HyperelasticRegion {
             tets: self.kept.tets + tets,
             rows: self.kept.rows + self.edges_of.len(),
             edges: self.kept.edges + self.edge_volumes.len(),
+            variables: self.kept.variables
+                + self.memory.as_ref().map_or(0, RegionMemory::variables),
         }
     }
 
@@ -188,6 +216,8 @@ pub(super) struct FirstPlaces {
     pub(super) rows: usize,
     /// Of its first edge.
     pub(super) edges: usize,
+    /// Of its first internal variable.
+    pub(super) variables: usize,
 }
 
 /// What force loops read of a region, in their own precision.

@@ -33,10 +33,11 @@ pub(crate) struct Scratch {
 pub(super) struct Kept<T> {
     /// The mean dilation of the patch of each tetrahedron.
     dilations: Shared<T>,
-    /// The gradients of the displacement in the tetrahedra of a chunk, vector by vector; for each part.
+    /// The gradients of the displacement in the tetrahedra of a chunk, vector by vector, then the stress (Pa) beside the law's; for each part.
     chunks: Shared<T>,
-    /// Numbers for one part.
+    /// Numbers for one part, and those of gradients among them.
     chunk: usize,
+    gradients_of_chunk: usize,
     /// The gradient of the displacement in each tetrahedron times its volume, by rows; where edges take means.
     gradients: Shared<Rows<T>>,
     /// The stress (Pa) at each edge by rows, and room to fill a vector.
@@ -57,6 +58,8 @@ pub(super) struct Places<'a, T> {
     pub(super) chunks: SharedSlice<'a, T>,
     /// Numbers of `chunks` for one part.
     pub(super) chunk: usize,
+    /// Those of gradients, before those of the stress beside the law's.
+    pub(super) gradients_of_chunk: usize,
     pub(super) gradients: SharedSlice<'a, Rows<T>>,
     pub(super) at_edges: SharedSlice<'a, Rows<T>>,
 }
@@ -70,8 +73,19 @@ impl<T: Real> Kept<T> {
     /// [`Kept::new`] with this number everywhere.
     pub(super) fn filled(regions: &[HyperelasticRegion], parts: usize, with: T) -> Self {
         let smoothed = || regions.iter().filter(|region| region.is_smoothed());
-        let chunks = smoothed().flat_map(|region| &region.chunks);
-        let chunk = 9 * chunks.map(|chunk| chunk.slots.len()).max().unwrap_or(0);
+        let has_beside =
+            |region: &HyperelasticRegion| region.fibres.is_some() || region.memory.is_some();
+        let keep = regions
+            .iter()
+            .filter(|region| region.is_smoothed() || has_beside(region));
+        let chunks = keep.flat_map(|region| &region.chunks);
+        let gradients = 9 * chunks.map(|chunk| chunk.slots.len()).max().unwrap_or(0);
+        let beside = if regions.iter().any(has_beside) {
+            gradients
+        } else {
+            0
+        };
+        let chunk = gradients + beside;
         let zeros = |count| Shared::new(vec![with; count]);
         let rows = |count| Shared::new(vec![[[with; 4]; 3]; count]);
         let total = |of: fn(&HyperelasticRegion) -> usize| smoothed().map(of).sum::<usize>();
@@ -79,6 +93,7 @@ impl<T: Real> Kept<T> {
             dilations: zeros(total(|region| region.rest.count())),
             chunks: zeros(chunk * parts),
             chunk,
+            gradients_of_chunk: gradients,
             gradients: rows(total(|region| region.edges_of.len())),
             at_edges: rows(total(|region| region.edge_volumes.len())),
         }
@@ -98,6 +113,7 @@ impl<T: Real> Kept<T> {
             dilations: self.dilations.slice(),
             chunks: self.chunks.slice(),
             chunk: self.chunk,
+            gradients_of_chunk: self.gradients_of_chunk,
             gradients: self.gradients.slice(),
             at_edges: self.at_edges.slice(),
         }

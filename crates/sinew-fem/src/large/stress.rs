@@ -1,18 +1,23 @@
 //! Stresses of deformed tetrahedra.
 
+use super::memory::{Past, Points, Relaxing};
+use super::product::of_patch;
 use super::region::HyperelasticRegion;
-use crate::hyperelastic::{HyperelasticLaw, LawVisitor};
+use crate::hyperelastic::prony::first_piola;
+use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Point};
 
 /// The Cauchy stress (Pa), `P F'/J`, of a tetrahedron, with the displacement (m) of each mesh node; not a number where the law has no
 /// meaning.
 pub(super) fn cauchy(
     region: &HyperelasticRegion,
     tet: usize,
+    past: Past<'_>,
     displacement: impl Fn(u32) -> [f64; 3],
 ) -> [f64; 6] {
     region.law.with_law(Cauchy {
         region,
         tet,
+        relaxing: Relaxing::of(region.memory.as_ref(), past),
         displacement,
     })
 }
@@ -20,6 +25,7 @@ pub(super) fn cauchy(
 struct Cauchy<'a, U> {
     region: &'a HyperelasticRegion,
     tet: usize,
+    relaxing: Relaxing<'a>,
     displacement: U,
 }
 
@@ -30,26 +36,49 @@ impl<U: Fn(u32) -> [f64; 3]> LawVisitor for Cauchy<'_, U> {
         let Self {
             region,
             tet,
+            relaxing,
             displacement,
         } = self;
         let rest = &region.rest;
         let gradient = |tet: usize| rest.gradient_by(tet, &displacement);
         let at = law.at(gradient(tet));
-        let mut is_defined = law.admits(&at.deformation);
-        let mut stress = if let Some(patch) = region.patch_of.get(tet) {
-            let [dilation] = region.mean(region.patches.of(*patch as usize), |tet| {
-                [law.dilation(&law.at(gradient(tet)))]
-            });
-            let own = law.stress(&at).scaled(1.0 - region.edge_share);
-            own.plus(law.lame().0 * dilation, law.dilation_gradient(&at))
-        } else {
-            law.stress_with(&at, law.own_bulk(&at))
+        let is_possible = |at: &Point<f64, L::Own<f64>>| {
+            law.admits(&at.deformation) && relaxing.admits(&at.deformation)
         };
+        let mut is_defined = is_possible(&at);
+        let (share, bulk) = match region.patch_of.get(tet) {
+            Some(patch) => {
+                let [dilation] = region.mean(region.patches.of(*patch as usize), |tet| {
+                    [law.dilation(&law.at(gradient(tet)))]
+                });
+                let bulk = of_patch(law.lame().0 * dilation);
+                (1.0 - region.edge_share, bulk)
+            }
+            None => (1.0, law.own_bulk(&at)),
+        };
+        let left_at = |at: &Point<f64, L::Own<f64>>, share: f64, bulk: Bulk<f64>| {
+            let (share, bulk) = relaxing.left_of(share, bulk, law.dilation(at));
+            let local = law.stress(at).scaled(share);
+            local.plus(bulk.stress, law.dilation_gradient(at))
+        };
+        let mut stress = left_at(&at, share, bulk);
         for edge in region.edges_of.get(tet).into_iter().flatten() {
-            let tets = region.edges.of(*edge as usize);
-            let at = law.at(region.mean_tensor(tets, gradient));
-            is_defined &= law.admits(&at.deformation);
-            stress = stress.plus(region.edge_share / 6.0, law.stress(&at));
+            let edge = *edge as usize;
+            let at = law.at(region.mean_tensor(region.edges.of(edge), gradient));
+            is_defined &= is_possible(&at);
+            let mut own = left_at(&at, 1.0, Bulk::none());
+            if let Some(carried) = relaxing.carried::<f64>(Points::Edges, edge) {
+                own = own + first_piola(&at.deformation, carried);
+            }
+            stress = stress.plus(region.edge_share / 6.0, own);
+        }
+        if let Some(fibres) = &region.fibres {
+            is_defined &= fibres.admits(&at.deformation);
+            let own = fibres.fibres.stress(&fibres.at(tet, &at.deformation));
+            stress = stress.plus(relaxing.factor_of_fibres(), own);
+        }
+        if let Some(carried) = relaxing.carried::<f64>(Points::Tets, tet) {
+            stress = stress + first_piola(&at.deformation, carried);
         }
         if !is_defined {
             return [f64::NAN; 6];

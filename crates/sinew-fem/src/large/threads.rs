@@ -11,7 +11,7 @@ use super::force::Evaluation;
 use super::region::Numbers;
 use super::schedule::Schedule;
 use super::scratch::Kept;
-use super::{LargeDeformation, evaluate_alone};
+use super::{LargeDeformation, Past, evaluate_alone};
 
 /// The forces of all hyperelastic regions in one precision, in parts that threads compute at the same time.
 #[derive(Debug)]
@@ -72,6 +72,9 @@ impl<T: Vectors> SharedForces<T> {
             numbers: &self.numbers,
             gather: &self.large.gather,
             places: self.kept.places(displacement, corners, sums),
+            // Bodies with memory are not shared.
+            past: Past::RELAXED,
+            remembered: None,
             set: self.set,
             with_energy: false,
         }

@@ -3,6 +3,7 @@
 use super::Model;
 use super::field_error::FieldError;
 use crate::hyperelastic::{SingularValues, Tensor};
+use crate::large::Past;
 use crate::{stress, tetra};
 
 /// A tetrahedron as a motion deforms it.
@@ -30,6 +31,14 @@ impl Model {
         &'a self,
         displacement: &'a [[f64; 3]],
     ) -> Result<impl Iterator<Item = DeformedTet> + 'a, FieldError> {
+        self.deformed_tets_after(Past::RELAXED, displacement)
+    }
+
+    pub(super) fn deformed_tets_after<'a>(
+        &'a self,
+        past: Past<'a>,
+        displacement: &'a [[f64; 3]],
+    ) -> Result<impl Iterator<Item = DeformedTet> + 'a, FieldError> {
         self.require_nodes("the displacement", displacement)?;
         let gradient = move |tet: usize| {
             let nodes = self.mesh.tets[tet];
@@ -54,7 +63,7 @@ impl Model {
                     small
                 },
                 stress: if is_hyperelastic {
-                    self.large_stress(tet, |node| displacement[node as usize])
+                    self.large_stress(tet, past, |node| displacement[node as usize])
                 } else {
                     let strain = self.strain_among(&means, tet, small);
                     self.material_of(tet).stress(&strain)

@@ -5,18 +5,18 @@ use sinew_core::LoadTime;
 use super::Model;
 use super::field_error::{FieldError, require_inputs};
 use crate::error::Item;
-use crate::large::fill;
+use crate::large::{Past, fill};
 use crate::parts::WholePart;
 
 impl Model {
-    /// The energy (J) of the hyperelastic regions; not a number where a law has no meaning.
+    /// The energy (J) of the hyperelastic regions, of stress that relaxes what stays for a long time; not a number where a law has no meaning.
     pub(super) fn large_energy(&self, displacement: &[[f64; 3]]) -> f64 {
         self.large.as_ref().map_or(0.0, |large| {
             large.with_scratch(|scratch| {
                 fill(&mut scratch.displacement, |node| {
                     displacement[node as usize]
                 });
-                let found = large.evaluate(scratch, true);
+                let found = large.evaluate(scratch, Past::RELAXED, true);
                 found.map_or(f64::NAN, |found| found.energy)
             })
         })

@@ -9,7 +9,7 @@ use sinew_core::{
 };
 
 use super::Model;
-use crate::large::{LargeDeformation, Scratch, fill};
+use crate::large::{LargeDeformation, Past, Scratch, Wanted, fill};
 
 /// A hyperelastic body at a trial point. Evaluations of models without such regions leave everything to the matrices.
 impl Model {
@@ -57,6 +57,23 @@ impl Model {
         })?;
         fill(out, field);
         Ok(())
+    }
+
+    /// `out = K w` (N), K being a tangent.
+    fn product(
+        &self,
+        trial: &Trial<'_>,
+        wanted: Wanted,
+        w: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        self.operators.stiffness().multiply(w, out);
+        self.at_trial((trial.load, trial.u), |large, scratch| {
+            fill(&mut scratch.change, |node| self.body.cells.at_node(w, node));
+            large.product(scratch, past(trial), wanted)?;
+            self.add_at_nodes(large, scratch, 1.0, out);
+            Ok(())
+        })
     }
 
     /// `out += factor f` at the degrees of freedom, f being the force that was computed last.
@@ -113,17 +130,24 @@ impl Model {
     }
 }
 
+fn past<'a>(trial: &Trial<'a>) -> Past<'a> {
+    Past {
+        internal: trial.internal,
+        dt: trial.dt,
+    }
+}
+
 impl ForceLaw for Model {
     fn net_force(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
         self.operators.net_force(trial.load, trial.u, trial.v, out);
         let beta = self.operators.damping().stiffness;
         self.at_trial((trial.load, trial.u), |large, scratch| {
-            large.evaluate(scratch, false)?;
+            large.evaluate(scratch, past(trial), false)?;
             self.add_at_nodes(large, scratch, -1.0, out);
             self.add_following(trial.load, |node| at(&scratch.displacement, node), out);
             if beta != 0.0 {
                 self.fill(trial.load, 1, trial.v, &mut scratch.change)?;
-                large.damped_product(scratch)?;
+                large.product(scratch, past(trial), Wanted::Damped)?;
                 self.add_at_nodes(large, scratch, -beta, out);
             }
             Ok(())
@@ -147,7 +171,13 @@ impl ForceLaw for Model {
 
     /// Without stiffness damping, which takes a tangent, and pressures that follow the surface.
     fn element_forces(&self) -> Option<&dyn ElementForces> {
-        let is_sum = self.operators.damping().stiffness == 0.0 && self.following.is_empty();
+        // What a machine of its own holds has no memory.
+        let is_sum = self.operators.damping().stiffness == 0.0
+            && self.following.is_empty()
+            && self
+                .large
+                .as_ref()
+                .is_none_or(|large| large.variables() == 0);
         is_sum.then_some(self)
     }
 
@@ -181,11 +211,11 @@ impl ForceLaw for Model {
             dt: 0.0,
             u,
             v: &zero,
-            internal: &[],
+            internal: about.map_or(&[], |state| &state.internal),
         };
         let mut failed = false;
         let mut product = |x: &[f64], out: &mut [f64]| {
-            let product = self.tangent_product(&trial, TangentKind::Exact, x, out);
+            let product = self.product(&trial, Wanted::Stiffest, x, out);
             failed |= product.is_err();
             self.add_load_product(&trial, x, out);
         };
@@ -222,7 +252,7 @@ impl ElasticLaw for Model {
     ) -> Result<Deformed, EvaluationError> {
         let linear = self.operators.elastic_force(trial, out)?;
         let found = self.at_trial((trial.load, trial.u), |large, scratch| {
-            let found = large.evaluate(scratch, true)?;
+            let found = large.evaluate(scratch, past(trial), true)?;
             self.add_at_nodes(large, scratch, 1.0, out);
             Ok(found)
         })?;
@@ -245,7 +275,7 @@ impl ElasticLaw for Model {
         let set = out.set_to(self.operators.stiffness());
         debug_assert!(set.is_ok(), "linear regions couple no others");
         self.at_trial((trial.load, trial.u), |large, scratch| {
-            large.add_tangent(scratch, kind, &self.body.cells, out)
+            large.add_tangent(scratch, past(trial), kind, &self.body.cells, out)
         })
     }
 
@@ -256,20 +286,14 @@ impl ElasticLaw for Model {
         w: &[f64],
         out: &mut [f64],
     ) -> Result<(), EvaluationError> {
-        self.operators.stiffness().multiply(w, out);
-        self.at_trial((trial.load, trial.u), |large, scratch| {
-            fill(&mut scratch.change, |node| self.body.cells.at_node(w, node));
-            large.product(scratch, kind)?;
-            self.add_at_nodes(large, scratch, 1.0, out);
-            Ok(())
-        })
+        self.product(trial, Wanted::Kind(kind), w, out)
     }
 
     fn node_blocks(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
         self.operators.node_blocks(trial, out)?;
         let cells = &self.body.cells;
         self.at_trial((trial.load, trial.u), |large, scratch| {
-            large.node_blocks(scratch, |node, block| {
+            large.node_blocks(scratch, past(trial), |node, block| {
                 let Some(cell) = cells.of_node(node) else {
                     return;
                 };

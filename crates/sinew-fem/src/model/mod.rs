@@ -13,12 +13,14 @@ mod static_load;
 mod strain;
 mod support_motion;
 mod system;
+mod with_memory;
 
 pub use deformed::DeformedTet;
 pub use field_error::FieldError;
 pub use forces::NodalForces;
 pub use static_load::ModelLoads;
 pub use support_motion::SupportMotion;
+pub use with_memory::WithMemory;
 
 use std::sync::Arc;
 

@@ -6,7 +6,7 @@ use super::Model;
 use super::field_error::{FieldError, require_inputs};
 use crate::On;
 use crate::border::Border;
-use crate::large::fill;
+use crate::large::{Past, Wanted, fill};
 
 impl Model {
     /// Nodes (0-based) that are held or moved in some direction, increasing.
@@ -45,11 +45,20 @@ impl Model {
         v: &[f64],
         out: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
+        self.reactions_after(Past::RELAXED, when.into(), [u, v], out)
+    }
+
+    pub(super) fn reactions_after(
+        &self,
+        past: Past<'_>,
+        when: LoadTime<'_>,
+        [u, v]: [&[f64]; 2],
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
         self.require_dofs("the displacement", u)?;
         self.require_dofs("the velocity", v)?;
         self.require_nodes("the output", out)?;
-        let when = when.into();
-        let force = self.forces_in_motion(when, u, v)?;
+        let force = self.forces_in_motion((when, past), u, v)?;
         self.held_forces(when, force, out);
         Ok(())
     }
@@ -100,7 +109,7 @@ impl Model {
         self.require_dofs("the displacement", u)?;
         self.require_dofs("the velocity", v)?;
         let when = when.into();
-        let force_in_motion = self.forces_in_motion(when, u, v)?;
+        let force_in_motion = self.forces_in_motion((when, Past::RELAXED), u, v)?;
         let mut sum = [0.0; 3];
         for &node in nodes {
             self.require_node(node)?;
@@ -137,7 +146,7 @@ impl Model {
         let when = when.into();
         self.require_held_inputs(when)?;
         let [u, v, a] = motion.map(|field| move |node: u32| field[node as usize]);
-        self.held_forces(when, self.row_forces(when, u, v, a), out);
+        self.held_forces(when, self.row_forces((when, Past::RELAXED), u, v, a), out);
         Ok(())
     }
 
@@ -149,13 +158,13 @@ impl Model {
     /// Forces of `row_forces`, with the prescribed motion.
     fn forces_in_motion<'a>(
         &'a self,
-        when: LoadTime<'a>,
+        (when, past): (LoadTime<'a>, Past<'a>),
         u: &'a [f64],
         v: &'a [f64],
     ) -> Result<impl Fn(u32) -> [f64; 3] + 'a, FieldError> {
         self.require_held_inputs(when)?;
         Ok(self.row_forces(
-            when,
+            (when, past),
             self.at_nodes(when, 0, Some(u))?,
             self.at_nodes(when, 1, Some(v))?,
             self.at_nodes(when, 2, None)?,
@@ -170,14 +179,14 @@ impl Model {
     /// surface do beyond those on the surface at rest.
     fn row_forces(
         &self,
-        when: LoadTime<'_>,
+        at: (LoadTime<'_>, Past<'_>),
         u: impl Fn(u32) -> [f64; 3],
         v: impl Fn(u32) -> [f64; 3],
         a: impl Fn(u32) -> [f64; 3],
     ) -> impl Fn(u32) -> [f64; 3] {
         let damping = self.operators.damping();
         let (alpha, beta, border) = (damping.mass, damping.stiffness, self.border());
-        let large = self.large_forces(when, beta, &u, &v);
+        let large = self.large_forces(at, beta, &u, &v);
         move |node| {
             let mut force = border.internal_force(node, beta, &u, &v);
             if let Some(large) = &large {
@@ -195,7 +204,7 @@ impl Model {
     /// meaning, and `None` without such regions.
     fn large_forces(
         &self,
-        when: LoadTime<'_>,
+        (when, past): (LoadTime<'_>, Past<'_>),
         beta: f64,
         u: impl Fn(u32) -> [f64; 3],
         v: impl Fn(u32) -> [f64; 3],
@@ -204,13 +213,13 @@ impl Model {
         let mut forces = vec![[0.0; 3]; self.mesh.points.len()];
         let evaluated = large.with_scratch(|scratch| {
             fill(&mut scratch.displacement, &u);
-            large.evaluate(scratch, false)?;
+            large.evaluate(scratch, past, false)?;
             large.at_nodes(scratch, |node, force| {
                 subtract(&mut forces[node as usize], -1.0, &force);
             });
             if beta != 0.0 {
                 fill(&mut scratch.change, &v);
-                large.damped_product(scratch)?;
+                large.product(scratch, past, Wanted::Damped)?;
                 large.at_nodes(scratch, |node, force| {
                     subtract(&mut forces[node as usize], -beta, &force);
                 });

@@ -4,6 +4,7 @@ use sinew_core::LoadTime;
 
 use super::Model;
 use super::field_error::{FieldError, require_length};
+use crate::large::Past;
 use crate::material::Material;
 use crate::smoothing::{MeanStrains, SmoothedStrain};
 use crate::springs::Spring;
@@ -51,12 +52,21 @@ impl Model {
         u: &[f64],
         out: &mut [[f64; 6]],
     ) -> Result<(), FieldError> {
-        let when = when.into();
+        self.stress_after(Past::RELAXED, when.into(), u, out)
+    }
+
+    pub(super) fn stress_after(
+        &self,
+        past: Past<'_>,
+        when: LoadTime<'_>,
+        u: &[f64],
+        out: &mut [[f64; 6]],
+    ) -> Result<(), FieldError> {
         self.strain(when, u, out)?;
         let means = self.mean_strains(|tet| out[tet]);
         let at_node = self.at_nodes(when, 0, Some(u))?;
         for (tet, out) in out.iter_mut().enumerate() {
-            *out = match self.large_stress(tet, &at_node) {
+            *out = match self.large_stress(tet, past, &at_node) {
                 Some(stress) => stress,
                 None => self.stress_at(tet, &self.strain_among(&means, tet, *out))?,
             };
@@ -75,13 +85,23 @@ impl Model {
         u: &[f64],
         tet: usize,
     ) -> Result<[f64; 6], FieldError> {
+        self.tet_stress_after(Past::RELAXED, when.into(), u, tet)
+    }
+
+    pub(super) fn tet_stress_after(
+        &self,
+        past: Past<'_>,
+        when: LoadTime<'_>,
+        u: &[f64],
+        tet: usize,
+    ) -> Result<[f64; 6], FieldError> {
         self.require_dofs("the displacement", u)?;
         let tets = self.region_of.len();
         if tet >= tets {
             return Err(FieldError::TetOutOfRange { tet, tets });
         }
-        let at_node = self.at_nodes(when.into(), 0, Some(u))?;
-        if let Some(stress) = self.large_stress(tet, &at_node) {
+        let at_node = self.at_nodes(when, 0, Some(u))?;
+        if let Some(stress) = self.large_stress(tet, past, &at_node) {
             return Ok(stress);
         }
         let strain = |tet| self.strain_of(&at_node, tet);
@@ -122,9 +142,10 @@ impl Model {
     pub(super) fn large_stress(
         &self,
         tet: usize,
+        past: Past<'_>,
         displacement: impl Fn(u32) -> [f64; 3],
     ) -> Option<[f64; 6]> {
-        self.large.as_ref()?.stress(tet, displacement)
+        self.large.as_ref()?.stress(tet, past, displacement)
     }
 
     fn stress_at(&self, tet: usize, strain: &SmoothedStrain) -> Result<[f64; 6], FieldError> {

@@ -1,11 +1,12 @@
 //! The traits by which integrators see a model.
 
 use sinew_core::{
-    ElementStiffness, Elements, Energy, Equations, Layers, LinearOperators, LinearSystem, LoadTime,
-    Revision, Scales, System, element_omegas_squared,
+    ElementStiffness, Elements, Energy, Equations, Inputs, Layers, LinearOperators, LinearSystem,
+    LoadTime, Revision, Scales, State, System, element_omegas_squared,
 };
 
 use super::Model;
+use crate::large::fill;
 use crate::material::Material;
 use crate::parts::WholePart;
 use crate::tetra;
@@ -34,8 +35,29 @@ impl System for Model {
         }
     }
 
+    /// What stress that relaxes remembers.
+    fn internal_variables(&self) -> usize {
+        self.large.as_ref().map_or(0, |large| large.variables())
+    }
+
+    /// Brings memory up to date; where the law has no meaning, which the next evaluation refuses, it stays.
+    fn accept(&self, state: &mut State, inputs: &Inputs, dt: f64) {
+        let Some(large) = self.large.as_ref().filter(|large| large.variables() > 0) else {
+            return;
+        };
+        let when = LoadTime::at(state.t()).under(inputs);
+        let State { u, internal, .. } = state;
+        let Ok(displacement) = self.at_nodes(when, 0, Some(u)) else {
+            return;
+        };
+        large.with_scratch(|scratch| {
+            fill(&mut scratch.displacement, displacement);
+            let _ = large.remember(scratch, dt, internal);
+        });
+    }
+
     fn looks_at_steps(&self) -> bool {
-        false
+        self.internal_variables() > 0
     }
 
     fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
@@ -50,7 +72,7 @@ impl System for Model {
         Some(stiffest.reduce(f64::max)? / softest.reduce(f64::min)?)
     }
 
-    /// The energy of the degrees of freedom, without the energy that supports in motion hold and store; `None` for
+    /// The energy of the degrees of freedom, of stress that relaxes what stays for a long time, without the energy that supports in motion hold and store; `None` for
     /// hyperelastic regions with such supports, where the two cannot be told apart, and outside a law's domain.
     fn energy(&self, u: &[f64], v: &[f64]) -> Option<Energy> {
         let linear = self.operators.energy(u, v);

@@ -3,7 +3,9 @@
 #![allow(dead_code, reason = "each test file uses some of these")]
 
 use sinew_core::{LinearSystem, LoadTime, Ramp, System};
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule};
+use sinew_fem::{
+    Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule, Tissue,
+};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
 /// Density of soft tissue (kg/m^3).
@@ -52,6 +54,7 @@ pub(crate) fn body(law: Law) -> Problem {
             density: DENSITY,
             law,
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         ..Problem::default()
     }

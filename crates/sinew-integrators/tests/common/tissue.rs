@@ -1,6 +1,6 @@
 //! Bodies of one material.
 
-use sinew_fem::{Element, Fixed, Law, Problem, Region};
+use sinew_fem::{Element, Fixed, Law, Problem, Region, Tissue};
 
 /// Density of soft tissue (kg/m^3).
 pub(crate) const DENSITY: f64 = 1060.0;
@@ -20,6 +20,7 @@ pub(crate) fn body(law: Law) -> Problem {
             density: DENSITY,
             law,
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         ..Problem::default()
     }

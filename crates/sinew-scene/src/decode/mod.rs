@@ -16,5 +16,5 @@ pub(crate) use place::Place;
 pub(crate) use presence::{Optional, Or, Usual};
 pub(crate) use table::Table;
 pub(crate) use values::{
-    Count, Flag, Inner, Kind, List, Number, Text, Values, Vector, Words, Written,
+    Count, Flag, Inner, Kind, List, Number, Pairs, Text, Values, Vector, Words, Written,
 };

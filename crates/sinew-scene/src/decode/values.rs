@@ -274,6 +274,48 @@ impl<V: Values> Values for List<V> {
     }
 }
 
+/// A list of pairs of numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pairs {
+    /// The lists that fit, in words.
+    pub(crate) expected: &'static str,
+    /// Each number of a pair.
+    pub(crate) of: Number,
+    /// Whether pairs that fit by themselves fit together.
+    pub(crate) fits: fn(&Vec<[f64; 2]>) -> bool,
+}
+
+impl Kind for Pairs {
+    fn expected(&self) -> String {
+        self.expected.to_owned()
+    }
+
+    fn shape(&self) -> Shape {
+        let pair = Shape::List {
+            of: Box::new(self.of.shape()),
+            least: 2,
+            most: Some(2),
+        };
+        Shape::List {
+            of: Box::new(pair),
+            least: 1,
+            most: None,
+        }
+    }
+}
+
+impl Values for Pairs {
+    type Read = Vec<[f64; 2]>;
+
+    fn read(&self, value: &DeValue<'_>) -> Result<Vec<[f64; 2]>, Misfit> {
+        let pairs = list(value, |pair| {
+            let numbers = list(pair, |number| self.of.read(number))?;
+            <[f64; 2]>::try_from(numbers).map_err(|_| Misfit::Value)
+        })?;
+        satisfying(pairs, self.fits)
+    }
+}
+
 /// Three values, along x, y and z.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Vector<V = Number, T = f64> {

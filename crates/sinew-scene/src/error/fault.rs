@@ -89,6 +89,9 @@ pub enum Fault {
         /// The table that uses it.
         by: String,
     },
+    /// A number that a law cannot have.
+    #[error(transparent)]
+    Parameter(#[from] sinew_fem::hyperelastic::ParameterError),
     /// A load that does not exist.
     #[error(
         "no load is named \"{name}\"; the named loads are {}",

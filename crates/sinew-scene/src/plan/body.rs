@@ -1,7 +1,7 @@
 //! Sections about the body: mesh, materials, supports, loads, initial state and probes.
 
 use sinew_core::Ramp;
-use sinew_fem::{Course, LoadFacts, LoadKind, LoadSpec, ModelReport, Region, RegionFacts};
+use sinew_fem::{Course, Law, LoadFacts, LoadKind, LoadSpec, ModelReport, Region, RegionFacts};
 use sinew_mesh::GroupMembers;
 use sinew_mesh::structured::Split;
 
@@ -135,6 +135,8 @@ fn material(region: &Region, facts: &RegionFacts) -> Vec<String> {
             region.element, facts.patches
         ));
     }
+    lines.extend(region.tissue.fibres.iter().map(ToString::to_string));
+    lines.extend(memory(region));
     lines.extend(facts.network.map(|network| {
         let youngs_modulus = region.law.youngs_modulus();
         let share = |modulus: f64| short(modulus / youngs_modulus);
@@ -146,6 +148,23 @@ fn material(region: &Region, facts: &RegionFacts) -> Vec<String> {
         )
     }));
     lines
+}
+
+/// What relaxes, and the moduli before and after.
+fn memory(region: &Region) -> Vec<String> {
+    let (Some(memory), Law::Hyperelastic { parameters, .. }) = (&region.tissue.memory, region.law)
+    else {
+        return Vec::new();
+    };
+    let words = region.tissue.moduli(&parameters).map(|moduli| {
+        let (modulus, ratio) = (moduli.youngs_modulus, moduli.poissons_ratio);
+        format!("E = {} Pa, nu = {}", short(modulus), short(ratio))
+    });
+    let [at_once, later] = words;
+    vec![
+        memory.to_string(),
+        format!("at small strain {at_once} at once, {later} in the long term"),
+    ]
 }
 
 fn damping(body: &Body, report: &ModelReport) -> String {

@@ -1,6 +1,6 @@
 //! A force that moves a body a little.
 
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region};
+use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue};
 use sinew_mesh::TetMesh;
 
 use super::parts::Parts;
@@ -45,6 +45,7 @@ fn displacement(mesh: &TetMesh, parts: &Parts, force: f64) -> Option<f64> {
                 poissons_ratio: POISSONS_RATIO,
             },
             element: Element::P1,
+            tissue: Tissue::default(),
         }],
         fixed: vec![Fixed {
             on: On::Nodes(parts.held.nodes(mesh)),

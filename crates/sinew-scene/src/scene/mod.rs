@@ -8,6 +8,7 @@ mod initial;
 pub(crate) mod keys;
 mod load;
 mod mesh;
+mod model;
 mod motion;
 mod oscillator;
 mod output;
@@ -17,6 +18,7 @@ mod ramp;
 mod region;
 mod run;
 mod selected;
+mod tissue;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

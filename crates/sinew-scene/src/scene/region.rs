@@ -3,9 +3,11 @@
 use std::ops::Bound;
 
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Law, Region, SpringRule};
+use sinew_fem::{Element, Law, Region, SpringRule, Tissue};
 
+use super::model::{MODEL, MOONEY_RIVLIN, MaterialModel, SOLIDS, SPRINGS_MODEL};
 use super::selected::{Members, NOT_WHERE, OPTIONAL_GROUP, Selections, WHERE_OF_TETRAHEDRA};
+use super::tissue::{self, FIBRES_OF_REGION, MODULI, PRONY, VISCOUS_PART};
 use crate::decode::{
     Condition, Count, Flag, Inner, Key, Needs, Number, Optional, Or, Place, Table,
     TableDescription, Text, Words,
@@ -27,6 +29,10 @@ pub(super) const REGION: TableDescription = TableDescription {
         &ELEMENT,
         &EDGE_SHARE,
         &PATCH,
+        &FIBRES_OF_REGION,
+        &PRONY,
+        &VISCOUS_PART,
+        &MODULI,
     ],
     needs: Needs::Any,
     examples: &[
@@ -37,16 +43,12 @@ pub(super) const REGION: TableDescription = TableDescription {
          element = \"fbar-edge\"\nedge_share = 0.9\npatch = 12\n",
         "[[region]]\ndensity = 1060.0\nmodel = \"mooney-rivlin\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\n\
          c1_over_c2 = 4.0\n",
+        "[[region]]\ndensity = 1060.0\nmodel = \"neo-hookean\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\n\
+         fibres = { direction = [0.0, 0.0, 1.0], eta = 2000.0 }\n",
+        "[[region]]\ndensity = 1060.0\nmodel = \"mooney-rivlin\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\nc1_over_c2 = 4.0\n\
+         prony = [[0.3, 0.05], [0.2, 0.5]]\nviscous_part = \"deviatoric\"\nmoduli = \"longterm\"\n",
     ],
 };
-
-#[derive(Clone, Copy, PartialEq)]
-enum MaterialModel {
-    Springs,
-    Linear,
-    /// A law of large deformation, by its id.
-    Hyperelastic(&'static str),
-}
 
 const GROUP: Key<Text, Optional> = OPTIONAL_GROUP.only(&[NOT_WHERE]);
 
@@ -56,56 +58,6 @@ const DENSITY: Key<Number> = Key::required(
     Number::above_zero("a finite density above 0 kg/m3"),
 )
 .unit("kg/m3");
-
-const MODEL: Key<Words<MaterialModel>> = Key::required(
-    "model",
-    "`\"linear\"`: an isotropic elastic solid at small strain and rotation. `\"springs\"`: springs along the edges of the mesh. \
-     All others are isotropic solids at any strain and rotation: `\"neo-hookean\"` is the one to begin with; \
-     `\"stable-neo-hookean\"` also has a meaning where tetrahedra turn inside out; `\"corotational\"` is linear but for rotations; \
-     `\"stvk\"` (Saint Venant and Kirchhoff) collapses under strong compression; `\"mooney-rivlin\"` fits rubber-like tissue better \
-     in shear; `\"neo-hookean-log\"`, `\"neo-hookean-iso\"` and `\"stable-neo-hookean-log\"` are there for comparison with other programs.",
-    Words(&[
-        (SPRINGS_MODEL, MaterialModel::Springs),
-        (LINEAR_MODEL, MaterialModel::Linear),
-        ("neo-hookean", MaterialModel::Hyperelastic("neo-hookean")),
-        (
-            "stable-neo-hookean",
-            MaterialModel::Hyperelastic("stable-neo-hookean"),
-        ),
-        ("corotational", MaterialModel::Hyperelastic("corotational")),
-        ("stvk", MaterialModel::Hyperelastic("stvk")),
-        (MOONEY_RIVLIN, MaterialModel::Hyperelastic(MOONEY_RIVLIN)),
-        (
-            "neo-hookean-log",
-            MaterialModel::Hyperelastic("neo-hookean-log"),
-        ),
-        (
-            "neo-hookean-iso",
-            MaterialModel::Hyperelastic("neo-hookean-iso"),
-        ),
-        (
-            "stable-neo-hookean-log",
-            MaterialModel::Hyperelastic("stable-neo-hookean-log"),
-        ),
-    ]),
-);
-
-const SPRINGS_MODEL: &str = "springs";
-const LINEAR_MODEL: &str = "linear";
-const MOONEY_RIVLIN: &str = "mooney-rivlin";
-
-/// The models that are solids.
-const SOLIDS: &[&str] = &[
-    LINEAR_MODEL,
-    "neo-hookean",
-    "stable-neo-hookean",
-    "corotational",
-    "stvk",
-    MOONEY_RIVLIN,
-    "neo-hookean-log",
-    "neo-hookean-iso",
-    "stable-neo-hookean-log",
-];
 
 const YOUNGS_MODULUS: Key<Number> = Key::required(
     "youngs_modulus",
@@ -319,11 +271,16 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
         MaterialModel::Springs => Element::P1,
         MaterialModel::Linear | MaterialModel::Hyperelastic(_) => element(table)?,
     };
+    let tissue = match model {
+        MaterialModel::Springs | MaterialModel::Linear => Tissue::default(),
+        MaterialModel::Hyperelastic(id) => tissue::read(table, id)?,
+    };
     Ok(Region {
         group,
         density,
         law,
         element,
+        tissue,
     })
 }
 
@@ -356,24 +313,4 @@ fn poissons_ratio(table: &Table<'_>) -> Result<f64, SceneError> {
         }
         _ => error,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use sinew_fem::hyperelastic::Hyperelastic;
-
-    use super::*;
-
-    #[test]
-    fn every_law_of_large_deformation_is_a_model() {
-        let Words(words) = MODEL.values;
-        let ids = words.iter().filter_map(|(word, model)| match model {
-            MaterialModel::Hyperelastic(id) => Some((*word, *id)),
-            MaterialModel::Springs | MaterialModel::Linear => None,
-        });
-        let ids: Vec<_> = ids.collect();
-        let laws: Vec<_> = Hyperelastic::IDS.iter().map(|id| (*id, *id)).collect();
-        assert_eq!(ids, laws);
-        assert_eq!(SOLIDS[1..], *Hyperelastic::IDS);
-    }
 }

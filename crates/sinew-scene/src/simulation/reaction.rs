@@ -106,9 +106,8 @@ impl Simulation {
         let mut v = vec![0.0; state.u.len()];
         state.velocity_at_t(self.system(), Inputs::none(), &mut v)?;
         let mut forces = vec![[0.0; 3]; built.mesh.points.len()];
-        built
-            .model
-            .reactions(state.t(), &state.u, &v, &mut forces)?;
+        let body = built.model.with_memory(&state.internal);
+        body.reactions(state.t(), &state.u, &v, &mut forces)?;
         let parts = self.held_parts()?.into_iter();
         Ok(parts
             .map(|HeldPlace { by, on, nodes }| {

@@ -1,6 +1,6 @@
 //! The state of a body at t = 0.
 
-use sinew_core::{State, System};
+use sinew_core::{Inputs, State, System};
 use sinew_fem::Model;
 
 use super::model::BodyModel;
@@ -11,6 +11,7 @@ use crate::scene::{Body, Initial, Places};
 
 pub(super) fn state(body: &Body, places: &Places, built: &BodyModel) -> Result<State, SceneError> {
     let mut state = State::at_rest(built.model.dofs());
+    state.internal = vec![0.0; built.model.internal_variables()];
     for (index, initial) in body.initial.iter().enumerate() {
         let place = places.of(&places.initial, index);
         apply(initial, body, built, &mut state).map_err(|fault| {
@@ -21,6 +22,8 @@ pub(super) fn state(body: &Body, places: &Places, built: &BodyModel) -> Result<S
             place.value_fault(key, fault)
         })?;
     }
+    // A displacement that is given comes about at t = 0.
+    built.model.accept(&mut state, Inputs::none(), 0.0);
     Ok(state)
 }
 
@@ -48,6 +51,8 @@ fn apply(
         }),
         Initial::Static { loads } => {
             state.u = at_rest(&places_of(loads, body), &built.model)?;
+            state.internal.fill(0.0);
+            built.model.accept(state, Inputs::none(), f64::INFINITY);
             Ok(())
         }
     }

@@ -22,6 +22,7 @@ mod region;
 mod run;
 mod scenes;
 mod support;
+mod tissue;
 
 use common::{build, try_build};
 use sinew_scene::{Fault, Scene, SceneError};

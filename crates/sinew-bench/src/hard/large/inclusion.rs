@@ -1,7 +1,7 @@
 //! A core a thousand times stiffer than the tissue around it, of another law.
 
 use sinew_core::Ramp;
-use sinew_fem::{Element, LoadKind, LoadSpec, Problem, Region};
+use sinew_fem::{Element, LoadKind, LoadSpec, Problem, Region, Tissue};
 use sinew_measure::MethodChoice;
 
 use super::ROUNDING;
@@ -39,6 +39,7 @@ fn specimen(core: &'static str, element: Element, ramp: Ramp) -> Result<Specimen
         density: tissue::DENSITY,
         law,
         element,
+        tissue: Tissue::default(),
     };
     let problem = Problem {
         regions: vec![

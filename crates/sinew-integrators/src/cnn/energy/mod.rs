@@ -148,7 +148,8 @@ impl Scheme for CnnEnergy {
         if system.as_linear().is_none() && system.internal_variables() > 0 {
             return Err(SetupError::Lacks {
                 integrator: Self::ID,
-                needs: "forces that follow from an energy of the displacement alone, without memory",
+                needs: "an energy of the displacement alone behind the forces (stress that relaxes has none; `generalized-alpha`, `newmark` \
+                        and explicit methods do without)",
             });
         }
         let steps = EnergySteps::new(Self::ID, system, self.kind, self.sweeps);

@@ -64,6 +64,10 @@ impl EnergyWatch {
         force: &mut [f64],
         report: &mut StepReport,
     ) {
+        if !state.internal.is_empty() {
+            // What memory stores and what it dissipates are not told apart.
+            return;
+        }
         let t = state.t();
         let ends = LoadTime::at_both_ends(t, step.dt, 0.5).map(|when| when.under(step.inputs));
         let trial = Trial {

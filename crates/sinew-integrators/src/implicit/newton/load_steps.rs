@@ -43,10 +43,11 @@ struct StaticEquations<'s> {
 }
 
 impl<'s> StaticEquations<'s> {
+    /// A point that is held for ever: what relaxes has done so.
     fn trial<'t>(&'t self, u: &'t [f64]) -> Trial<'t> {
         Trial {
             load: LoadTime::at(0.0),
-            dt: 0.0,
+            dt: f64::INFINITY,
             u,
             v: &self.v,
             internal: &self.internal,

@@ -46,6 +46,16 @@ const READY: &[Ready] = &[
         mesh: Some(("organ.msh", mesh!("organ.msh"))),
     },
     Ready {
+        name: "organ-fibres",
+        scene: scene!("organ-fibres.toml"),
+        mesh: Some(("organ.msh", mesh!("organ.msh"))),
+    },
+    Ready {
+        name: "creep",
+        scene: scene!("creep.toml"),
+        mesh: None,
+    },
+    Ready {
         name: "twisted-column",
         scene: scene!("twisted-column.toml"),
         mesh: None,

@@ -1,0 +1,173 @@
+//! Stress beside the law's: that of fibres, and what is left of earlier stress.
+
+use sinew_core::{EvaluationError, TangentKind};
+use std::ops::Range;
+
+use sinew_sparse::simd::{Number, Vectors, WithReal};
+
+use super::error::fibres_refused;
+use super::fibres::RegionFibres;
+use super::kept::{first_below, lanes, load_entries, store_entries};
+use super::memory::{Points, Relaxing, require};
+use super::region::HyperelasticRegion;
+use super::rest::Rest;
+use crate::hyperelastic::fibres::FibrePoint;
+use crate::hyperelastic::prony::first_piola;
+use crate::hyperelastic::{Deformation, SMALLEST_VOLUME_RATIO, Tensor};
+
+/// The stress beside the law's in the tetrahedra of a chunk, compiled once for all laws.
+pub(super) struct StressBeside<'a, T> {
+    pub(super) region: &'a HyperelasticRegion,
+    pub(super) rest: &'a Rest<T>,
+    pub(super) relaxing: &'a Relaxing<'a, T>,
+    /// Places of the chunk's tetrahedra.
+    pub(super) slots: &'a Range<usize>,
+    pub(super) displacement: &'a [[T; 4]],
+    /// Where the gradients of the displacement are kept, vector by vector, and whether they are known.
+    pub(super) gradients: &'a mut [T],
+    pub(super) gradients_are_known: bool,
+    /// Where the stress (Pa) goes, vector by vector.
+    pub(super) stress: &'a mut [T],
+    pub(super) with_energy: bool,
+}
+
+impl<T: Vectors> WithReal<T> for StressBeside<'_, T> {
+    /// The energy (J); 0 unless it is asked for.
+    type Output = Result<f64, EvaluationError>;
+
+    #[inline(always)]
+    fn run<N: Number<Real = T>>(self) -> Self::Output {
+        let rest = self.rest;
+        let factor = N::of(self.relaxing.factor_of_fibres());
+        let mut energy = N::of(0.0);
+        for first in self.slots.clone().step_by(N::LANES) {
+            let place = 9 * (first - self.slots.start);
+            let gradient = if self.gradients_are_known {
+                load_entries(&self.gradients[place..])
+            } else {
+                let gradient = rest.gradient_of::<N>(first, self.displacement);
+                store_entries(gradient, &mut self.gradients[place..]);
+                gradient
+            };
+            let deformation = Deformation::of(gradient);
+            let (mut stress, mut density) = (Tensor::zero(), N::of(0.0));
+            if let Some(own) = &self.region.fibres {
+                let fibres = &own.fibres;
+                let least = N::of(SMALLEST_VOLUME_RATIO);
+                if fibres.is_split() && !N::all_le(least, deformation.volume_ratio) {
+                    let ratios = lanes(deformation.volume_ratio);
+                    let lane = first_below(&ratios);
+                    return Err(fibres_refused(rest.tag(first + lane), ratios[lane]));
+                }
+                let at = fibres.at(&deformation, own.directions::<N>(first));
+                stress = fibres.stress(&at).scaled(factor);
+                if self.with_energy {
+                    density = factor * fibres.energy(&at);
+                }
+            }
+            require(self.relaxing, &deformation, |lane| rest.tag(first + lane))?;
+            if let Some(carried) = self.relaxing.carried::<N>(Points::Tets, first) {
+                stress = stress + first_piola(&deformation, carried);
+                if self.with_energy {
+                    density = density + carried_energy(&deformation, carried);
+                }
+            }
+            store_entries(stress, &mut self.stress[place..]);
+            if self.with_energy {
+                energy = rest.volumes::<N>(first).mul_add(density, energy);
+            }
+        }
+        Ok((0..N::LANES).map(|lane| energy.lane(lane)).sum())
+    }
+}
+
+/// `R : (F'F - I)/2`, whose derivative by F is F R.
+#[inline(always)]
+pub(super) fn carried_energy<N: Number>(deformation: &Deformation<N>, carried: [N; 6]) -> N {
+    let [[xx, xy, _], [_, yy, yz], [zx, _, zz]] = deformation.twice_green_strain().0;
+    let [rxx, ryy, rzz, rxy, ryz, rzx] = carried;
+    let diagonal = rxx * xx + ryy * yy + rzz * zz;
+    let half = N::of(0.5);
+    half.mul_add(diagonal, rxy * xy + ryz * yz + rzx * zx)
+}
+
+/// The tangent of the stress beside the law's in a tetrahedron; nothing where there is none.
+pub(super) struct TangentBeside<'a> {
+    fibres: Option<(&'a RegionFibres, FibrePoint<f64>)>,
+    factor_of_fibres: f64,
+    /// R (Pa).
+    carried: Option<Tensor<f64>>,
+    is_exact: bool,
+}
+
+impl<'a> TangentBeside<'a> {
+    /// The tangent of a kind; idle fibres may count as pulled.
+    pub(super) fn of(
+        region: &'a HyperelasticRegion,
+        relaxing: &Relaxing<'_>,
+        tet: usize,
+        deformation: &Deformation<f64>,
+        (kind, idle_count): (TangentKind, bool),
+    ) -> Self {
+        let fibres = region.fibres.as_ref().map(|fibres| {
+            let at = fibres.at(tet, deformation);
+            (fibres, if idle_count { at.as_if_pulled() } else { at })
+        });
+        let is_exact = kind == TangentKind::Exact;
+        Self {
+            fibres,
+            factor_of_fibres: relaxing.factor_of_fibres(),
+            carried: relaxing.carried_tensor(Points::Tets, tet, is_exact),
+            is_exact,
+        }
+    }
+
+    /// A change of the law's stress with that beside it by a change of F.
+    pub(super) fn with(&self, stress: Tensor<f64>, change: Tensor<f64>) -> Tensor<f64> {
+        let mut stress = stress;
+        if let Some((RegionFibres { fibres, .. }, at)) = &self.fibres {
+            let tangent = if self.is_exact {
+                fibres.tangent(at, change)
+            } else {
+                fibres.semidefinite_tangent(at, change)
+            };
+            stress = stress.plus(self.factor_of_fibres, tangent);
+        }
+        match self.carried {
+            Some(carried) => stress + change * carried,
+            None => stress,
+        }
+    }
+}
+
+/// A node's own block beside the law's in a tetrahedron, for each m^3, without negative eigenvalues. Idle fibres count as pulled: else it would
+/// jump as soon as they are.
+pub(super) fn block_beside(
+    region: &HyperelasticRegion,
+    relaxing: &Relaxing<'_>,
+    tet: usize,
+    deformation: &Deformation<f64>,
+    gradient: [f64; 3],
+) -> Tensor<f64> {
+    let mut block = carried_block(relaxing, (Points::Tets, tet), gradient);
+    if let Some(fibres) = &region.fibres {
+        let at = fibres.at(tet, deformation).as_if_pulled();
+        let own = fibres.fibres.node_block(&at, gradient);
+        block = block.plus(relaxing.factor_of_fibres(), own);
+    }
+    block
+}
+
+/// `g . R g`, or 0 where that is less, on the diagonal.
+pub(super) fn carried_block(
+    relaxing: &Relaxing<'_>,
+    (points, place): (Points, usize),
+    gradient: [f64; 3],
+) -> Tensor<f64> {
+    let Some(carried) = relaxing.carried_tensor(points, place, true) else {
+        return Tensor::zero();
+    };
+    let [x, y, z] = carried.on(gradient);
+    let along = x * gradient[0] + y * gradient[1] + z * gradient[2];
+    Tensor::diagonal(along.max(0.0))
+}

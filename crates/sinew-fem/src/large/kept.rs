@@ -1,0 +1,73 @@
+//! Tensors as force loops keep them from one task to another, and lanes of vectors.
+
+use sinew_sparse::simd::Number;
+
+use super::chunks::LANES;
+use super::scratch::Rows;
+use crate::hyperelastic::{SMALLEST_VOLUME_RATIO, Tensor};
+
+/// Tensors side by side.
+#[inline(always)]
+pub(super) fn load<N: Number>(from: &[Rows<N::Real>]) -> Tensor<N> {
+    let rows = from.as_flattened();
+    Tensor([
+        N::load_rows(rows, 3),
+        N::load_rows(&rows[1..], 3),
+        N::load_rows(&rows[2..], 3),
+    ])
+}
+
+/// Writes tensors side by side.
+#[inline(always)]
+pub(super) fn store<N: Number>(tensor: Tensor<N>, to: &mut [Rows<N::Real>]) {
+    let rows = to.as_flattened_mut();
+    let [x, y, z] = tensor.0;
+    N::store_rows(x, rows, 3);
+    N::store_rows(y, &mut rows[1..], 3);
+    N::store_rows(z, &mut rows[2..], 3);
+}
+
+/// The tensor whose entries stand one vector behind the other.
+#[inline(always)]
+pub(super) fn load_entries<N: Number>(from: &[N::Real]) -> Tensor<N> {
+    let from = &from[..9 * N::LANES];
+    let (first, rest) = from.split_at(3 * N::LANES);
+    let (second, third) = rest.split_at(3 * N::LANES);
+    Tensor([load_row(first), load_row(second), load_row(third)])
+}
+
+#[inline(always)]
+fn load_row<N: Number>(from: &[N::Real]) -> [N; 3] {
+    [
+        N::load(from),
+        N::load(&from[N::LANES..]),
+        N::load(&from[2 * N::LANES..]),
+    ]
+}
+
+/// Writes the entries of a tensor one vector behind the other.
+#[inline(always)]
+pub(super) fn store_entries<N: Number>(tensor: Tensor<N>, to: &mut [N::Real]) {
+    let entries = tensor.0.as_flattened().iter();
+    for (entry, to) in entries.zip(to.chunks_exact_mut(N::LANES)) {
+        entry.store(to);
+    }
+}
+
+/// All lanes; 1 beyond the last.
+#[inline(always)]
+pub(super) fn lanes<N: Number>(number: N) -> [f64; LANES] {
+    let mut lanes = [1.0; LANES];
+    for (lane, of_lane) in lanes.iter_mut().enumerate().take(N::LANES) {
+        *of_lane = number.lane(lane);
+    }
+    lanes
+}
+
+/// The first lane of these volume ratios that is not above 0.
+#[cold]
+#[inline(never)]
+pub(super) fn first_below(ratios: &[f64; LANES]) -> usize {
+    let is_below = |ratio: &f64| ratio.is_nan() || *ratio < SMALLEST_VOLUME_RATIO;
+    ratios.iter().position(is_below).unwrap_or(0)
+}

@@ -1,0 +1,344 @@
+//! Memory of a region: stress that relaxes.
+//!
+//! With S0 the stress that relaxes, at once, and h_i the memories of its terms, a step makes of them `S = f S0 + R` at its end: f is a factor and R, which
+//! is symmetric, follows from what was remembered before the step. So during a step a tissue with memory is elastic: its stress is the derivative of
+//! `f psi + R : (F'F - I)/2`, which gives tangents and searches along lines. Only what is remembered takes an inverse of F, once a step.
+
+use std::ops::Range;
+
+use sinew_core::EvaluationError;
+use sinew_sparse::simd::{Number, Real, SharedSlice};
+
+use super::error::memory_refused;
+use super::kept::{first_below, lanes};
+use crate::hyperelastic::prony::{Symmetric, Term, TermStep, relaxing, second_piola};
+use crate::hyperelastic::{Bulk, Deformation, SMALLEST_VOLUME_RATIO, Tensor, semidefinite};
+use crate::tissue::{Memory, ViscousPart};
+
+/// What a body remembers, and since when.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Past<'a, T = f64> {
+    /// Internal variables; none where the body was at rest before.
+    pub(crate) internal: &'a [T],
+    /// Time (s) since then: 0 where all happens at once, infinite where all has relaxed.
+    pub(crate) dt: f64,
+}
+
+impl<T> Past<'_, T> {
+    /// All has relaxed.
+    pub(crate) const RELAXED: Self = Self {
+        internal: &[],
+        dt: f64::INFINITY,
+    };
+}
+
+/// What a region remembers: for each of its points S0 and the memory of each term, six numbers each. Points are the places of tetrahedra and,
+/// where shear is averaged over edges, these too. All first numbers of tetrahedra stand one behind the other, then all second ones, and so on.
+#[derive(Clone, Debug)]
+pub(super) struct RegionMemory {
+    terms: Vec<Term>,
+    is_deviatoric: bool,
+    /// Its first internal variable among those of the body.
+    first: usize,
+    tets: usize,
+    edges: usize,
+    /// Bulk modulus (Pa) of the local part of the law.
+    local_bulk: f64,
+}
+
+impl RegionMemory {
+    /// `points` are numbers of places of tetrahedra and edges.
+    pub(super) fn new(memory: &Memory, mu: f64, first: usize, points: [usize; 2]) -> Self {
+        let [tets, edges] = points;
+        Self {
+            terms: memory.terms.clone(),
+            is_deviatoric: memory.part == ViscousPart::Deviatoric,
+            first,
+            tets,
+            edges,
+            local_bulk: 2.0 / 3.0 * mu,
+        }
+    }
+
+    /// Numbers at each point.
+    fn numbers(&self) -> usize {
+        6 * (1 + self.terms.len())
+    }
+
+    /// Number of internal variables.
+    pub(super) fn variables(&self) -> usize {
+        self.numbers() * (self.tets + self.edges)
+    }
+
+    /// Its internal variables among those of the body.
+    pub(super) fn range(&self) -> Range<usize> {
+        self.first..self.first + self.variables()
+    }
+
+    /// What a step of `dt` (s) makes of the terms.
+    fn steps(&self, dt: f64) -> Steps {
+        let mut terms = [TermStep::default(); Memory::MOST_TERMS];
+        for (step, term) in terms.iter_mut().zip(&self.terms) {
+            *step = term.over(dt);
+        }
+        Steps {
+            terms,
+            count: self.terms.len(),
+        }
+    }
+}
+
+/// What a step makes of the terms of a series.
+#[derive(Clone, Copy, Debug)]
+struct Steps {
+    terms: [TermStep; Memory::MOST_TERMS],
+    count: usize,
+}
+
+impl Steps {
+    #[inline(always)]
+    fn all(&self) -> &[TermStep] {
+        &self.terms[..self.count]
+    }
+}
+
+/// A kind of points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Points {
+    Tets,
+    Edges,
+}
+
+/// The memory of a region in an evaluation; for regions without it, that of an elastic one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Relaxing<'a, T = f64> {
+    memory: Option<&'a RegionMemory>,
+    steps: Steps,
+    /// f.
+    pub(super) factor: f64,
+    /// Of the region; empty where it was at rest before.
+    internal: &'a [T],
+}
+
+impl<'a, T: Real> Relaxing<'a, T> {
+    /// The memory of a region at a time after what it remembers.
+    pub(super) fn of(memory: Option<&'a RegionMemory>, past: Past<'a, T>) -> Self {
+        let Some(memory) = memory else {
+            return Self::none();
+        };
+        let steps = memory.steps(past.dt);
+        let gains: f64 = steps.all().iter().map(TermStep::gain).sum();
+        Self {
+            memory: Some(memory),
+            steps,
+            factor: 1.0 - relaxing(&memory.terms) + gains,
+            internal: past.internal.get(memory.range()).unwrap_or_default(),
+        }
+    }
+
+    /// That of a region as if it had none.
+    pub(super) fn none() -> Self {
+        Self {
+            memory: None,
+            steps: Steps {
+                terms: [TermStep::default(); Memory::MOST_TERMS],
+                count: 0,
+            },
+            factor: 1.0,
+            internal: &[],
+        }
+    }
+
+    /// Whether there is any.
+    #[inline(always)]
+    pub(super) fn is_there(&self) -> bool {
+        self.memory.is_some()
+    }
+
+    /// The factor of the stress of fibres, which are elastic where only deviatoric stress relaxes: their deviatoric stress alone has no energy.
+    #[inline(always)]
+    pub(super) fn factor_of_fibres(&self) -> f64 {
+        if self.is_deviatoric() {
+            1.0
+        } else {
+            self.factor
+        }
+    }
+
+    #[inline(always)]
+    fn is_deviatoric(&self) -> bool {
+        self.memory.is_some_and(|memory| memory.is_deviatoric)
+    }
+
+    /// The factor of the dilational energy of patches.
+    #[inline(always)]
+    pub(super) fn factor_of_dilation(&self) -> f64 {
+        self.factor_of_fibres()
+    }
+
+    /// Bulk modulus (Pa) of the part of the local energy that does not relax although f multiplies it.
+    #[inline(always)]
+    pub(super) fn bulk_left(&self) -> f64 {
+        match self.memory {
+            Some(memory) if memory.is_deviatoric => (1.0 - self.factor) * memory.local_bulk,
+            _ => 0.0,
+        }
+    }
+
+    /// What is left of a share of the local energy, and of the derivatives of the dilational one.
+    pub(super) fn left_of(&self, share: f64, bulk: Bulk<f64>, dilation: f64) -> (f64, Bulk<f64>) {
+        let (factor, left) = (self.factor_of_dilation(), share * self.bulk_left());
+        let bulk = Bulk {
+            stress: factor * bulk.stress + left * dilation,
+            modulus: factor * bulk.modulus + left,
+        };
+        (self.factor * share, bulk)
+    }
+
+    /// R (Pa) at points side by side; `None` where nothing is remembered.
+    #[inline(always)]
+    pub(super) fn carried<N: Number<Real = T>>(
+        &self,
+        points: Points,
+        place: usize,
+    ) -> Option<Symmetric<N>> {
+        let memory = self.memory?;
+        if self.internal.is_empty() {
+            return None;
+        }
+        let (start, count) = memory.part(points);
+        let all = &self.internal[start + place..];
+        let load = |k: usize| -> Symmetric<N> {
+            let entry = |c: usize| N::load(&all[(6 * k + c) * count..]);
+            [entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)]
+        };
+        let mut gains = 0.0;
+        let mut carried = [N::of(0.0); 6];
+        for (k, step) in self.steps.all().iter().enumerate() {
+            gains += step.gain();
+            add(&mut carried, N::of(step.decay()), load(k + 1));
+        }
+        add(&mut carried, N::of(-gains), load(0));
+        Some(carried)
+    }
+
+    /// Whether it is defined for a deformation, in all lanes.
+    #[inline(always)]
+    pub(super) fn admits<N: Number>(&self, deformation: &Deformation<N>) -> bool {
+        !self.is_there() || N::all_le(N::of(SMALLEST_VOLUME_RATIO), deformation.volume_ratio)
+    }
+}
+
+impl Relaxing<'_> {
+    /// R (Pa) at a point as a tensor, without negative eigenvalues unless it is wanted exactly.
+    pub(super) fn carried_tensor(
+        &self,
+        points: Points,
+        place: usize,
+        is_exact: bool,
+    ) -> Option<Tensor<f64>> {
+        let carried = tensor(self.carried::<f64>(points, place)?);
+        Some(if is_exact {
+            carried
+        } else {
+            semidefinite(carried)
+        })
+    }
+}
+
+impl RegionMemory {
+    /// The first variable of points of a kind, and their number.
+    #[inline(always)]
+    fn part(&self, points: Points) -> (usize, usize) {
+        match points {
+            Points::Tets => (0, self.tets),
+            Points::Edges => (self.numbers() * self.tets, self.edges),
+        }
+    }
+}
+
+/// Internal variables of a body that are brought up to date, a time (s) after what stands in them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Remembered<'a, T> {
+    pub(super) internal: SharedSlice<'a, T>,
+    pub(super) dt: f64,
+}
+
+/// The memory of a region while it is brought up to date.
+#[derive(Debug)]
+pub(super) struct Remembering<'a, T> {
+    memory: &'a RegionMemory,
+    steps: Steps,
+    internal: &'a mut [T],
+}
+
+impl<'a, T: Real> Remembering<'a, T> {
+    /// `dt` (s) after what stands in the internal variables of the region.
+    pub(super) fn of(memory: &'a RegionMemory, dt: f64, internal: &'a mut [T]) -> Self {
+        Self {
+            memory,
+            steps: memory.steps(dt),
+            internal,
+        }
+    }
+
+    /// Whether only deviatoric stress relaxes.
+    #[inline(always)]
+    pub(super) fn is_deviatoric(&self) -> bool {
+        self.memory.is_deviatoric
+    }
+
+    /// Remembers the first Piola-Kirchhoff stress (Pa) that relaxes, at points side by side.
+    #[inline(always)]
+    pub(super) fn take<N: Number<Real = T>>(
+        &mut self,
+        points: Points,
+        place: usize,
+        deformation: &Deformation<N>,
+        stress: Tensor<N>,
+    ) {
+        let now = second_piola(deformation, stress);
+        let (start, count) = self.memory.part(points);
+        let all = &mut self.internal[start + place..];
+        let mut change = now;
+        for (c, change) in change.iter_mut().enumerate() {
+            let at = &mut all[c * count..];
+            let before = N::load(at);
+            change.store(at);
+            *change = *change - before;
+        }
+        for (k, step) in self.steps.all().iter().enumerate() {
+            for (c, change) in change.iter().enumerate() {
+                let at = &mut all[(6 * (k + 1) + c) * count..];
+                let kept = N::load(at) * N::of(step.decay());
+                change.mul_add(N::of(step.gain()), kept).store(at);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn add<N: Number>(sum: &mut Symmetric<N>, factor: N, term: Symmetric<N>) {
+    for (sum, term) in sum.iter_mut().zip(term) {
+        *sum = term.mul_add(factor, *sum);
+    }
+}
+
+fn tensor([xx, yy, zz, xy, yz, zx]: Symmetric<f64>) -> Tensor<f64> {
+    Tensor([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
+}
+
+/// Refuses what memory is not defined for.
+#[inline(always)]
+pub(super) fn require<N: Number, T: Real>(
+    relaxing: &Relaxing<'_, T>,
+    deformation: &Deformation<N>,
+    tag: impl Fn(usize) -> u64,
+) -> Result<(), EvaluationError> {
+    if relaxing.admits(deformation) {
+        return Ok(());
+    }
+    let ratios = lanes(deformation.volume_ratio);
+    let lane = first_below(&ratios);
+    Err(memory_refused(tag(lane), ratios[lane]))
+}

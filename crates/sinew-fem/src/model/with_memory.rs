@@ -1,0 +1,81 @@
+//! What a model tells of a state of which it remembers more than the displacement.
+
+use sinew_core::LoadTime;
+
+use super::Model;
+use super::deformed::DeformedTet;
+use super::field_error::FieldError;
+use crate::large::Past;
+
+/// A model with the internal variables of a state ([`sinew_core::State::internal`]): its stresses and reactions are those in that state. Asked without,
+/// a model with memory tells what it comes to when it is held for a long time.
+#[derive(Clone, Copy, Debug)]
+pub struct WithMemory<'m> {
+    model: &'m Model,
+    past: Past<'m>,
+}
+
+impl Model {
+    /// The model with the internal variables of a state, whose displacement is that which is asked about.
+    #[must_use]
+    pub fn with_memory<'m>(&'m self, internal: &'m [f64]) -> WithMemory<'m> {
+        WithMemory {
+            model: self,
+            past: Past { internal, dt: 0.0 },
+        }
+    }
+}
+
+impl WithMemory<'_> {
+    /// [`Model::stress`].
+    ///
+    /// # Errors
+    /// Same as there.
+    pub fn stress<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        u: &[f64],
+        out: &mut [[f64; 6]],
+    ) -> Result<(), FieldError> {
+        self.model.stress_after(self.past, when.into(), u, out)
+    }
+
+    /// [`Model::tet_stress`].
+    ///
+    /// # Errors
+    /// Same as there.
+    pub fn tet_stress<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        u: &[f64],
+        tet: usize,
+    ) -> Result<[f64; 6], FieldError> {
+        self.model.tet_stress_after(self.past, when.into(), u, tet)
+    }
+
+    /// [`Model::deformed_tets`].
+    ///
+    /// # Errors
+    /// Same as there.
+    pub fn deformed_tets<'a>(
+        &'a self,
+        displacement: &'a [[f64; 3]],
+    ) -> Result<impl Iterator<Item = DeformedTet> + 'a, FieldError> {
+        self.model.deformed_tets_after(self.past, displacement)
+    }
+
+    /// [`Model::reactions`].
+    ///
+    /// # Errors
+    /// Same as there.
+    pub fn reactions<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        u: &[f64],
+        v: &[f64],
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
+        self.model
+            .reactions_after(self.past, when.into(), [u, v], out)
+    }
+}

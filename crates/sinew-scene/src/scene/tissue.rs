@@ -1,0 +1,194 @@
+//! What tissue has beside an isotropic law, in `[[region]]`.
+
+use std::ops::Bound;
+
+use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
+use sinew_fem::hyperelastic::prony::Term;
+use sinew_fem::{FibreFamily, Memory, Moduli, Tissue, ViscousPart};
+
+use super::model::{ISOCHORIC, LAWS, MODEL};
+use crate::decode::{
+    Condition, Flag, Inner, Key, Needs, Number, Optional, Or, Pairs, Table, TableDescription,
+    Vector, Words,
+};
+use crate::error::{Fault, SceneError};
+
+pub(super) const FIBRES_OF_REGION: Key<Inner, Optional> = Key::optional(
+    "fibres",
+    "Fibres that stiffen the tissue where they are stretched. Young's modulus and Poisson's ratio are then those across them.",
+    Inner::one(
+        "a table such as { direction = [0.0, 0.0, 1.0], eta = 2000.0 }",
+        &FIBRES,
+    ),
+    "the same in all directions",
+)
+.only(&[of_large_deformation(
+    "goes with laws of large deformation only, such as model = \"neo-hookean\"",
+)]);
+
+/// The model must be a law of large deformation.
+const fn of_large_deformation(reason: &'static str) -> Condition {
+    Condition::where_is(MODEL.name, LAWS, reason)
+}
+
+const FIBRES: TableDescription = TableDescription {
+    name: "fibres",
+    meaning: "A family of fibres. They pull and never push: where they are shorter than at rest, the tissue is as without them. With F the deformation \
+              gradient and a0 the direction at rest, I4 = |F a0|^2 is the square of their stretch.",
+    keys: &[&DIRECTION, &ETA, &K1, &K2, &DISPERSION, &SPLIT],
+    needs: Needs::OneOf(&[ETA.name, K1.name]),
+    examples: &[
+        "{ direction = [0.0, 0.0, 1.0], eta = 2000.0 }",
+        "{ direction = [1.0, 1.0, 0.0], k1 = 1000.0, k2 = 2.0, dispersion = 0.1 }",
+    ],
+};
+
+const DIRECTION: Key<Vector> = Key::required(
+    "direction",
+    "The direction of the fibres at rest; its length does not matter.",
+    Vector {
+        fits: |direction| *direction != [0.0; 3],
+        ..Vector::finite("a vector [x, y, z] that is not 0")
+    },
+);
+
+const ETA: Key<Number, Optional> = Key::optional(
+    "eta",
+    "Modulus of fibres that store eta/2 (I4 - 1)^2: stretched a little they add four times as much to the stiffness along them.",
+    Number::above_zero("a finite modulus above 0 Pa"),
+    "k1 and k2",
+)
+.unit("Pa");
+
+const K1: Key<Number, Optional> = Key::optional(
+    "k1",
+    "Modulus of fibres that store k1/(2 k2) (exp(k2 X^2) - 1), with X = d (I1 - 3) + (1 - 3 d) (I4 - 1) and d the dispersion \
+     (Gasser, Ogden and Holzapfel 2006): the more they are stretched the stiffer they are.",
+    Number::above_zero("a finite modulus above 0 Pa"),
+    "eta",
+)
+.unit("Pa");
+
+const K2: Key<Number> = Key::required(
+    "k2",
+    "How soon the fibres stiffen.",
+    Number::above_zero("a finite number above 0"),
+)
+.only(&[Condition::with(K1.name, "goes with `k1` only")]);
+
+const DISPERSION: Key<Number, Or<f64>> = Key::or(
+    "dispersion",
+    "How far single fibres stray from the direction: 0 where all are parallel, 1/3 where all directions are as frequent.",
+    Number::between(
+        "a number from 0 to 1/3",
+        Bound::Included(0.0),
+        Bound::Included(1.0 / 3.0),
+    ),
+    0.0,
+)
+.only(&[Condition::with(K1.name, "goes with `k1` only")]);
+
+const SPLIT: Key<Flag, Or<bool>> = Key::or(
+    "split",
+    "Whether the fibres feel J^(-2/3) I4, J being the ratio of volumes, and not I4 itself. Then a body that grows alike in all directions does not stretch \
+     them; for comparison with programs that do so.",
+    Flag,
+    false,
+)
+.only(&[Condition::with(ETA.name, "goes with `eta` only")]);
+
+pub(super) const PRONY: Key<Pairs, Optional> = Key::optional(
+    "prony",
+    "Shares g of the stress that relax, each with the time tau in which it falls to 1/e: a stress that is held falls as \
+     1 - sum g (1 - exp(-t/tau)). What is left, 1 - sum g, stays.",
+    Pairs {
+        expected: "a list of 1 to 8 pairs [share, time in s], all above 0, with shares that together are below 1",
+        of: Number::above_zero("a finite number above 0"),
+        fits: |pairs| {
+            let sum: f64 = pairs.iter().map(|[share, _]| share).sum();
+            (1..=Memory::MOST_TERMS).contains(&pairs.len()) && sum < 1.0
+        },
+    },
+    "no stress relaxes",
+)
+.only(&[of_large_deformation(
+    "goes with laws of large deformation only, such as model = \"neo-hookean\"",
+)]);
+
+pub(super) const VISCOUS_PART: Key<Words<ViscousPart>, Or<ViscousPart>> = Key::or(
+    "viscous_part",
+    "The stress that relaxes. `\"all\"`: all of it, that of fibres too. `\"deviatoric\"`: that of the isochoric part of the law alone; pressure and \
+     fibres stay elastic.",
+    Words(&[
+        ("all", ViscousPart::All),
+        (DEVIATORIC, ViscousPart::Deviatoric),
+    ]),
+    ViscousPart::All,
+)
+.only(&[Condition::with(PRONY.name, "goes with `prony` only")]);
+
+const DEVIATORIC: &str = "deviatoric";
+
+pub(super) const MODULI: Key<Words<Moduli>, Or<Moduli>> = Key::or(
+    "moduli",
+    "What the moduli of the region are, those of fibres that relax included. `\"instantaneous\"`: those of a deformation that takes no time. \
+     `\"longterm\"`: those of one that is held until all has relaxed.",
+    Words(&[
+        ("instantaneous", Moduli::Instantaneous),
+        ("longterm", Moduli::LongTerm),
+    ]),
+    Moduli::Instantaneous,
+)
+.only(&[Condition::with(PRONY.name, "goes with `prony` only")]);
+
+/// What the table of a region with this law of large deformation says.
+pub(super) fn read(region: &Table<'_>, law: &str) -> Result<Tissue, SceneError> {
+    let fibres = region.table(&FIBRES_OF_REGION)?;
+    Ok(Tissue {
+        fibres: fibres.as_ref().map(fibre_family).transpose()?,
+        memory: memory(region, law)?,
+    })
+}
+
+fn memory(region: &Table<'_>, law: &str) -> Result<Option<Memory>, SceneError> {
+    let Some(pairs) = region.read(&PRONY)? else {
+        return Ok(None);
+    };
+    let part = region.read(&VISCOUS_PART)?;
+    if part == ViscousPart::Deviatoric && !ISOCHORIC.contains(&law) {
+        let fault = Fault::Misplaced {
+            key: VISCOUS_PART.name,
+            reason: format!(
+                "= \"{DEVIATORIC}\" goes with model = \"neo-hookean-iso\" or \"mooney-rivlin\" only, which have a part that keeps the volume"
+            ),
+        };
+        return Err(region.place().value_fault(VISCOUS_PART.name, fault));
+    }
+    let term = |[share, time]: [f64; 2]| Term { share, time };
+    Ok(Some(Memory {
+        terms: pairs.into_iter().map(term).collect(),
+        part,
+        moduli: region.read(&MODULI)?,
+    }))
+}
+
+fn fibre_family(table: &Table<'_>) -> Result<FibreFamily, SceneError> {
+    table.check_conditions()?;
+    let direction = table.read(&DIRECTION)?;
+    let key = table.exactly_one()?;
+    let stiffening = match table.read(&ETA)? {
+        Some(eta) => Stiffening::Quadratic { eta },
+        None => Stiffening::Exponential {
+            k1: table.read(&K1)?.unwrap_or_default(),
+            k2: table.read(&K2)?,
+            dispersion: table.read(&DISPERSION)?,
+        },
+    };
+    let fibres = Fibres::new(stiffening);
+    let fibres = fibres.map_err(|error| table.place().value_fault(key, error.into()))?;
+    let is_split = table.read(&SPLIT)?;
+    Ok(FibreFamily {
+        fibres: if is_split { fibres.split() } else { fibres },
+        direction,
+    })
+}
