@@ -54,7 +54,7 @@ pub trait ElementSweep<T>: Debug + Send + Sync {
     fn passes(&self) -> usize;
 
     /// Number of parts of a pass.
-    fn parts(&self) -> usize;
+    fn parts(&self, pass: usize) -> usize;
 
     /// Begins a sweep at a time.
     ///
@@ -82,6 +82,34 @@ pub trait ElementSweep<T>: Debug + Send + Sync {
 
     /// The error for displacements that the law is not defined for: the same for any number of parts.
     fn refusal(&mut self) -> EvaluationError;
+}
+
+/// Makes a whole sweep by the calling thread: from the displacement in one vector to the forces in another.
+///
+/// # Errors
+/// [`EvaluationError`] where the law is not defined for the displacement.
+#[allow(unsafe_code, reason = "nobody else uses what is borrowed")]
+pub fn sweep_alone<T: ElementPrecision>(
+    sweep: &mut dyn ElementSweep<T>,
+    fields: &mut Fields<T>,
+    [source, out]: [usize; 2],
+    when: LoadTime<'_>,
+) -> Result<(), EvaluationError> {
+    sweep.begin(when)?;
+    let all = 0..fields.positions();
+    // SAFETY: both are borrowed for this call alone, and everything is done in its order.
+    unsafe {
+        sweep.take(fields, source, all.clone());
+        for pass in 0..sweep.passes() {
+            for part in 0..sweep.parts(pass) {
+                if !sweep.make(pass, part) {
+                    return Err(sweep.refusal());
+                }
+            }
+        }
+        sweep.give(fields, out, all);
+    }
+    Ok(())
 }
 
 /// Precisions that forces of elements are computed in.

@@ -73,7 +73,7 @@ pub use bytes::BytesError;
 pub use channel_record::{Between, InputError};
 pub use clock::Clock;
 pub use elastic_law::{Deformed, ElasticLaw, TangentKind};
-pub use element_forces::{ElementForces, ElementPrecision, ElementSweep, SweepShape};
+pub use element_forces::{ElementForces, ElementPrecision, ElementSweep, SweepShape, sweep_alone};
 pub use elements::{ElementStiffness, Elements, element_omegas_squared};
 pub use energy::Energy;
 pub use evaluation_error::EvaluationError;

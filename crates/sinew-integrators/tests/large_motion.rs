@@ -373,3 +373,32 @@ fn steps_by_the_current_stiffness_make_no_energy() {
     let (found, fine) = (largest(&found[80..]), largest(&fine[80..]));
     assert!((found / fine - 1.0).abs() < 0.05, "{found} {fine}");
 }
+
+/// Beside the same steps in f64, also where a pressure is a hundred times as large as the stress that bends: nothing in the loops is a
+/// difference of large numbers. A stretch that swings to and fro adds the most.
+#[test]
+fn single_precision_is_off_by_its_rounding() {
+    let in_f32 = plain().with_text("precision", "f32");
+    let mut stiff = Scene::push();
+    let region = &mut stiff.problem.regions[0];
+    region.law = Law::Hyperelastic {
+        id: "neo-hookean",
+        parameters: Parameters::new(3500.0, 0.499),
+    };
+    region.element = Element::FbarEdge {
+        edge_share: 0.9,
+        patch: None,
+    };
+    stiff.model = stiff.model.with_problem(&stiff.problem).unwrap();
+    for (name, scene, rate, most) in [
+        ("push", Scene::push(), 2000, 1e-5),
+        ("push, nu .499", stiff, 8000, 1e-4),
+        ("release", Scene::release(), 4000, 1e-4),
+    ] {
+        let expected = scene.run(rate, 50).unwrap();
+        let found = scene.run_by("central-difference", &in_f32, rate, 50);
+        let off = relative_error(&found.unwrap(), &expected);
+        println!("{name}: {off:.1e}");
+        assert!(off < most && off > 1e-8, "{name}: {off:.1e}");
+    }
+}

@@ -72,6 +72,9 @@ fn problems() -> Vec<(&'static str, Problem)> {
         region(law("neo-hookean"), EDGES, Some("low")),
         region(linear(3500.0, 0.45), Element::P1, Some("high")),
     ]);
+    let mut pressed = one("neo-hookean", Element::P1);
+    pressed.loads[0].kind = LoadKind::FollowingPressure(300.0);
+    pressed.fixed.push(held("top", [false, true, false]));
     let two_laws = problem(vec![
         region(law("mooney-rivlin"), Element::P1, Some("high")),
         region(law("neo-hookean-log"), EDGES, Some("low")),
@@ -82,6 +85,7 @@ fn problems() -> Vec<(&'static str, Problem)> {
         ("edges, held and damped", damped),
         ("patches below a moved support", moved),
         ("edges below a linear region", mixed),
+        ("pressure that follows", pressed),
         ("two laws", two_laws),
     ]
 }

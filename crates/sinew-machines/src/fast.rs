@@ -503,11 +503,15 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
             return Err(StepError::NotPrepared);
         };
         elements.begin(when).map_err(refused)?;
-        let (passes, parts) = (elements.passes(), elements.parts());
+        let passes = elements.passes();
         drop(loaded);
         self.host.sweep(chunks);
         for pass in 0..passes {
-            write(self.loaded).work = Work::Elements(pass);
+            let mut loaded = write(self.loaded);
+            loaded.work = Work::Elements(pass);
+            let elements = loaded.elements.as_ref();
+            let parts = elements.map_or(0, |(elements, _)| elements.parts(pass));
+            drop(loaded);
             if self.host.sweep(parts).exceeded {
                 let mut loaded = write(self.loaded);
                 let elements = loaded.elements.as_mut();

@@ -149,7 +149,7 @@ impl<T: Precision> Layout<T> {
     pub(crate) fn in_words(&self) -> String {
         let cells = self.numbering.cells();
         match &self.stiffness {
-            _ if self.elements > 0 => format!("{} elements", self.elements),
+            _ if self.elements > 0 => format!("loops over {} elements", self.elements),
             Rows::General(_) => format!("rows of any mesh ({cells}, {})", size(self.bytes())),
             Rows::Lattice(rows) => {
                 format!(

@@ -16,8 +16,8 @@ pub enum Unfit {
     Law(&'static str),
     /// Single precision was asked for where forces follow from a law that no kernels run.
     #[error(
-        "precision = \"f32\" is for matrices, and for hyperelastic bodies without stiffness damping and following pressures on any \
-         machine but the reference; leave `precision` out"
+        "precision = \"f32\" is for matrices, and for hyperelastic bodies without stiffness damping and memory on any machine but the \
+         reference; leave `precision` out"
     )]
     LawInSinglePrecision,
 }

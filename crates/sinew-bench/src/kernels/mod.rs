@@ -2,6 +2,7 @@
 
 mod baseline;
 mod bodies;
+mod elements;
 mod guards;
 mod laps;
 mod memory;
@@ -16,6 +17,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 pub use bodies::KernelBenchError;
+pub use elements::{ElementMark, ElementRow};
 pub use guards::{Guard, Limit};
 pub use roofs::{OperationRate, ReadRate, Roofs};
 pub use row::KernelRow;
@@ -49,6 +51,10 @@ pub struct KernelResults {
     pub guards: Vec<Guard>,
     /// One row for each body, machine, precision and number of threads.
     pub rows: Vec<KernelRow>,
+    /// Forces of hyperelastic elements: one row for each body, law, element, precision and instruction set.
+    pub elements: Vec<ElementRow>,
+    /// What ratios of these should reach.
+    pub marks: Vec<ElementMark>,
 }
 
 impl KernelBench {
@@ -64,7 +70,7 @@ impl KernelBench {
     ) -> Result<KernelResults, KernelBenchError> {
         let mut rows = Vec::new();
         let bodies = bodies::bodies(&self.meshes, self.generated.as_deref(), self.quick)?;
-        let of = bodies.len() + 2;
+        let of = bodies.len() + 3;
         for (done, body) in bodies.into_iter().enumerate() {
             let what = body.name.clone();
             progress(Progress::Run { done, of, what });
@@ -74,6 +80,8 @@ impl KernelBench {
             let what = what.to_owned();
             progress(Progress::Run { done, of, what });
         };
+        next(of - 3, "forces of hyperelastic elements");
+        let elements = elements::rows(self.quick)?;
         next(of - 2, "what the computer can do");
         let roofs = Roofs::measure(self.quick);
         next(of - 1, "guards");
@@ -84,6 +92,8 @@ impl KernelBench {
             roofs,
             guards,
             rows,
+            marks: elements::marks(&elements),
+            elements,
         })
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::KernelResults;
+use super::elements::{ElementMark, ElementRow};
 use super::roofs::{OperationRate, Roofs};
 use super::row::KernelRow;
 use crate::report::ruled;
@@ -33,6 +34,7 @@ impl fmt::Display for KernelResults {
         )?;
         let table = ruled::table(HEAD, self.rows.iter().map(cells), 3);
         writeln!(f, "{}\n", ruled::lines(table, 2))?;
+        writeln!(f, "{}", self.of_elements())?;
         writeln!(f, "{}", self.roofs)?;
         for guard in &self.guards {
             let verdict = if guard.holds() { "" } else { "FAIL " };
@@ -64,9 +66,63 @@ impl KernelResults {
         });
         let guards: Vec<String> = guards.collect();
         format!(
-            "The fastest kernels on one thread beside one scalar CSR product in f64 with the update (B1)\n\n{}\n\n{}",
+            "The fastest kernels on one thread beside one scalar CSR product in f64 with the update (B1)\n\n{}\n\n{}\n{}",
             ruled::lines(table, 2),
+            self.of_elements(),
             guards.join("\n")
+        )
+    }
+
+    /// The forces of hyperelastic elements, and their marks.
+    fn of_elements(&self) -> String {
+        let table = ruled::table(
+            HEAD_OF_ELEMENTS,
+            self.elements.iter().map(cells_of_element),
+            5,
+        );
+        let marks: Vec<String> = self.marks.iter().map(ToString::to_string).collect();
+        format!(
+            "Forces of hyperelastic elements on one thread, CPU time, medians of laps in turn\n\n{}\n\n{}\n",
+            ruled::lines(table, 2),
+            marks.join("\n")
+        )
+    }
+}
+
+pub(super) const HEAD_OF_ELEMENTS: [&str; 9] = [
+    "body",
+    "law",
+    "element",
+    "precision",
+    "instructions",
+    "ns a tetrahedron",
+    "over p1",
+    "gain",
+    "off [relative]",
+];
+
+pub(super) fn cells_of_element(row: &ElementRow) -> [String; 9] {
+    [
+        row.mesh.clone(),
+        row.law.to_owned(),
+        row.element.to_owned(),
+        row.precision.to_owned(),
+        row.instructions.to_owned(),
+        three(row.ns_per_tet),
+        three(row.ratio_to_p1),
+        three(row.gain_over_scalar),
+        format!("{:.1e}", row.difference),
+    ]
+}
+
+impl fmt::Display for ElementMark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verdict = if self.reached { "reached" } else { "MISSED" };
+        let (value, mark) = (three(self.value), three(self.mark));
+        write!(
+            f,
+            "{verdict}: {}, {} {value}, mark {mark}",
+            self.row, self.what
         )
     }
 }

@@ -11,10 +11,11 @@ use super::beside::{StressBeside, carried_energy};
 use super::chunks::LANES;
 use super::error::refused;
 use super::found::Found;
-use super::gather::{Gather, row_sum};
+use super::gather::Gather;
 use super::kept::{lanes, load, load_entries, store, store_entries};
 use super::memory::{Past, Points, Relaxing, Remembered, Remembering, require};
 use super::region::{HyperelasticRegion, Numbers};
+use super::rooms::{RegionRooms, Rooms};
 use super::schedule::{Piece, Task};
 use super::scratch::{Places, Rows};
 use crate::hyperelastic::prony::{deviatoric, first_piola};
@@ -27,6 +28,8 @@ pub(super) struct Evaluation<'a, T> {
     /// What loops read of each region.
     pub(super) numbers: &'a [Numbers<T>],
     pub(super) gather: &'a Gather,
+    /// Where in the places it keeps what tasks read of each other.
+    pub(super) rooms: &'a Rooms,
     pub(super) places: Places<'a, T>,
     pub(super) past: Past<'a, T>,
     /// Where stress is remembered, and no forces are computed: by one thread.
@@ -72,6 +75,7 @@ impl<T: Vectors> LawVisitor for Forces<'_, T> {
             regions,
             numbers,
             gather,
+            rooms,
             places,
             past,
             remembered,
@@ -91,6 +95,8 @@ impl<T: Vectors> LawVisitor for Forces<'_, T> {
             set,
             numbers: &numbers[self.piece.region],
             gather,
+            rooms: &rooms.regions[self.piece.region],
+            corners: &rooms.corners,
             law,
             with_energy,
             places,
@@ -109,6 +115,9 @@ struct Sweep<'a, T, L> {
     region: &'a HyperelasticRegion,
     numbers: &'a Numbers<T>,
     gather: &'a Gather,
+    rooms: &'a RegionRooms,
+    /// The place of each corner at nodes.
+    corners: &'a [u32],
     law: L,
     relaxing: Relaxing<'a, T>,
     remembered: Option<Remembered<'a, T>>,
@@ -135,7 +144,8 @@ impl<T: Vectors, L: HyperelasticLaw> WithReal<T> for Sweep<'_, T, L> {
                 // SAFETY: see `Sweep`.
                 Task::Nodes(nodes) => unsafe {
                     let places = &self.places;
-                    self.gather.sum(nodes.clone(), places.corners, places.sums);
+                    self.gather
+                        .sum(nodes.clone(), self.corners, places.corners, places.sums);
                 },
             }
         }
@@ -148,11 +158,11 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
     #[inline(always)]
     fn means<N: Number<Real = T>>(
         &self,
-        chunk: usize,
+        number: usize,
         found: &mut Found<N>,
     ) -> Result<(), EvaluationError> {
         let (region, rest, places) = (self.region, &*self.numbers.rest, &self.places);
-        let chunk = &region.chunks[chunk];
+        let chunk = &region.chunks[number];
         let keeps_rows = !region.edges_of.is_empty();
         // SAFETY: see `Sweep`.
         let (dilations, kept) = unsafe {
@@ -174,7 +184,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             let dilation = volume * self.law.dilation(&at);
             dilation.store(&mut dilations[own..]);
             if keeps_rows {
-                let rows = region.kept.rows + first;
+                let rows = self.rooms.gradients[number] as usize + own;
                 // SAFETY: see `Sweep`.
                 let rows = unsafe { places.gradients.write(rows..rows + N::LANES) };
                 store(gradient.scaled(volume), rows);
@@ -212,12 +222,12 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         let (region, rest, places) = (self.region, &*self.numbers.rest, &self.places);
         let last = region.edges.count().saturating_sub(1);
         let mut remembering = self.remembering();
+        let mut sums = [[[T::default(); 4]; 3]; LANES];
         for first in edges.step_by(N::LANES) {
-            let mut sums = [[[T::default(); 4]; 3]; LANES];
             for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
                 // Room behind the last edge repeats it.
-                let tets = region.edges.of((first + lane).min(last));
-                *sum = rows_of(places.gradients, region.kept.rows, tets);
+                let tets = region.edges.range((first + lane).min(last));
+                *sum = rows_of(places.gradients, &self.rooms.gradients_at[tets]);
             }
             let volume = N::load(&self.numbers.edge_volumes[first..]);
             let over = N::select_le(volume, N::of(0.0), N::of(0.0), volume.recip());
@@ -256,7 +266,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                     density = density + carried_energy(&at.deformation, carried);
                 }
             }
-            let own = region.kept.edges + first;
+            let own = self.rooms.edges[first / LANES] as usize + first % LANES;
             // SAFETY: see `Sweep`.
             let to = unsafe { places.at_edges.write(own..own + N::LANES) };
             store(stress, to);
@@ -317,16 +327,17 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         // SAFETY: see `Sweep`.
         let (dilations, kept, corners) = unsafe {
             let dilations = from(region.kept.tets, &slots);
-            let corners = from(region.first, &slots);
+            let corners = self.rooms.corners[chunk] as usize;
             (
                 places
                     .dilations
                     .read(if is_smoothed { dilations } else { 0..0 }),
                 places.chunks.read(self.of_part.clone()),
-                places.corners.write(4 * corners.start..4 * corners.end),
+                places.corners.write(corners..corners + 4 * slots.len()),
             )
         };
         let (kept, beside) = kept.split_at(places.gradients_of_chunk);
+        let mut sums = [[[T::default(); 4]; 3]; LANES];
         for first in slots.clone().step_by(N::LANES) {
             let own = first - slots.start;
             let gradient = if has_beside || is_smoothed && !has_edges {
@@ -379,10 +390,8 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 bulk = left.mul_add(self.law.dilation(&at), bulk);
             }
             if has_edges {
-                let mut sums = [[[T::default(); 4]; 3]; LANES];
                 for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
-                    let edges = &region.edges_of[first + lane];
-                    *sum = rows_of(places.at_edges, region.kept.edges, edges);
+                    *sum = rows_of(places.at_edges, &self.rooms.edges_of[first + lane]);
                 }
                 stress = stress.scaled(N::of(own_share));
                 stress = stress.plus(N::of(region.edge_share / 6.0), load(&sums));
@@ -430,16 +439,17 @@ fn refused_among<L: HyperelasticLaw>(
     refused::<L>(tag(lane), ratios[lane])
 }
 
-/// The sum of some tensors.
+/// The sum of some tensors, all of whose entries are added as one row.
 #[inline(always)]
-fn rows_of<T: Real>(all: SharedSlice<'_, Rows<T>>, first: usize, places: &[u32]) -> Rows<T> {
-    let [mut x, mut y, mut z] = [[T::default(); 4]; 3];
+fn rows_of<T: Real>(all: SharedSlice<'_, Rows<T>>, places: &[u32]) -> Rows<T> {
+    let mut sums = [[T::default(); 4]; 3];
     for place in places {
         // SAFETY: see `Sweep`.
-        let [other_x, other_y, other_z] = unsafe { all.get(first + *place as usize) };
-        x = row_sum(x, other_x);
-        y = row_sum(y, other_y);
-        z = row_sum(z, other_z);
+        let other = unsafe { all.get(*place as usize) };
+        let entries = sums.as_flattened_mut().iter_mut();
+        for (sum, entry) in entries.zip(other.as_flattened()) {
+            *sum = *sum + *entry;
+        }
     }
-    [x, y, z]
+    sums
 }

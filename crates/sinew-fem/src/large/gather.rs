@@ -61,6 +61,11 @@ impl Gather {
         &self.nodes
     }
 
+    /// Corners of all its nodes: four times the tetrahedron's place, and the vertex.
+    pub(super) fn corners(&self) -> &[u32] {
+        &self.corners
+    }
+
     /// The tetrahedra at one of its nodes, by their places.
     pub(super) fn tets_at(&self, index: usize) -> impl Iterator<Item = usize> {
         let range = self.starts[index] as usize..self.starts[index + 1] as usize;
@@ -68,7 +73,8 @@ impl Gather {
         corners.map(|corner| *corner as usize / 4)
     }
 
-    /// Writes the sums of the forces (N) at the corners of some of its nodes, in its own order of nodes.
+    /// Writes the sums of the forces (N) at the corners of some of its nodes, in its own order of nodes; each corner of [`Gather::corners`]
+    /// is at a place of its own.
     ///
     /// # Safety
     /// Nobody else uses the sums of these nodes meanwhile, or writes forces at their corners.
@@ -76,6 +82,7 @@ impl Gather {
     pub(super) unsafe fn sum<T: Real>(
         &self,
         which: Range<usize>,
+        places: &[u32],
         at_corners: SharedSlice<'_, [T; 4]>,
         out: SharedSlice<'_, [T; 4]>,
     ) {
@@ -83,7 +90,7 @@ impl Gather {
         // SAFETY: the caller's promise.
         let out = unsafe { out.write(which) };
         for (out, range) in out.iter_mut().zip(starts) {
-            let corners = &self.corners[range[0] as usize..range[1] as usize];
+            let corners = &places[range[0] as usize..range[1] as usize];
             // Two sums, since each addition waits for the one before.
             let (mut even, mut odd) = ([T::default(); 4], [T::default(); 4]);
             let (pairs, last) = corners.as_chunks::<2>();
@@ -101,16 +108,16 @@ impl Gather {
         }
     }
 
-    /// [`Gather::sum`] for all nodes.
+    /// [`Gather::sum`] for all nodes, with four corners for each place of a tetrahedron.
     pub(super) fn sum_all(&self, at_corners: &mut [[f64; 4]], out: &mut [[f64; 4]]) {
         let (at_corners, out) = (SharedSlice::of(at_corners), SharedSlice::of(out));
         // SAFETY: both are borrowed for this call alone.
-        unsafe { self.sum(0..self.nodes.len(), at_corners, out) }
+        unsafe { self.sum(0..self.nodes.len(), &self.corners, at_corners, out) }
     }
 }
 
 /// The sum of two rows, which is one instruction.
 #[inline(always)]
-pub(super) fn row_sum<T: Add<Output = T> + Copy>(a: [T; 4], b: &[T; 4]) -> [T; 4] {
+fn row_sum<T: Add<Output = T> + Copy>(a: [T; 4], b: &[T; 4]) -> [T; 4] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]]
 }

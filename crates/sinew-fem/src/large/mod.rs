@@ -15,6 +15,7 @@ mod node_blocks;
 mod product;
 mod region;
 mod rest;
+mod rooms;
 mod schedule;
 mod scratch;
 mod stress;
@@ -26,7 +27,7 @@ pub(crate) use region::{HyperelasticRegion, RegionLaw};
 pub(crate) use scratch::{Scratch, fill};
 pub(crate) use threads::SharedForces;
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use sinew_core::{BlockMatrix, Deformed, EvaluationError, TangentKind};
 use sinew_mesh::TetMesh;
@@ -52,7 +53,7 @@ pub(crate) struct LargeDeformation {
     numbers: Vec<Numbers<f64>>,
     gather: Gather,
     /// The order of work of one thread.
-    alone: Schedule,
+    alone: OnceLock<Schedule>,
     nodes: usize,
     /// Places of tetrahedra, padding included.
     slots: usize,
@@ -100,7 +101,7 @@ impl LargeDeformation {
         let gather = Gather::new(mesh.points.len(), nodes.iter().copied());
         Some(Self {
             numbers: made.iter().map(HyperelasticRegion::numbers).collect(),
-            alone: Schedule::new(&made, &gather, 1),
+            alone: OnceLock::new(),
             gather,
             regions: made,
             nodes: mesh.points.len(),
@@ -112,13 +113,19 @@ impl LargeDeformation {
         })
     }
 
+    /// The order of work of one thread, made for the first evaluation: machines have their own.
+    fn alone(&self) -> &Schedule {
+        self.alone
+            .get_or_init(|| Schedule::new(&self.regions, &self.gather, 1))
+    }
+
     /// Does something with room that is used again, and with a field over all nodes in it.
     pub(crate) fn with_scratch<T>(&self, with: impl FnOnce(&mut Scratch) -> T) -> T {
         let pool = || self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         let known = pool().pop();
         let mut scratch = known.unwrap_or_else(|| {
-            let counts = [self.nodes, self.gather.nodes().len(), self.slots];
-            Scratch::new(counts, &self.regions)
+            let counts = [self.nodes, self.gather.nodes().len()];
+            Scratch::new(counts, &self.regions, self.alone().rooms())
         });
         let result = with(&mut scratch);
         pool().push(scratch);
@@ -139,11 +146,12 @@ impl LargeDeformation {
             regions: &self.regions,
             numbers: &self.numbers,
             gather: &self.gather,
+            rooms: self.alone().rooms(),
             places: scratch.places(),
             set: self.set,
             with_energy,
         };
-        evaluate_alone(&self.alone, &evaluation)
+        evaluate_alone(self.alone(), &evaluation)
     }
 
     /// Number of internal variables.
@@ -165,11 +173,12 @@ impl LargeDeformation {
             regions: &self.regions,
             numbers: &self.numbers,
             gather: &self.gather,
+            rooms: self.alone().rooms(),
             places: scratch.places(),
             set: self.set,
             with_energy: false,
         };
-        evaluate_alone(&self.alone, &evaluation).map(drop)
+        evaluate_alone(self.alone(), &evaluation).map(drop)
     }
 
     /// The mesh nodes of the regions, by the order in which forces are complete.
@@ -190,6 +199,7 @@ impl LargeDeformation {
         past: Past<'_>,
         wanted: Wanted,
     ) -> Result<(), EvaluationError> {
+        scratch.corners.resize(4 * self.slots, [0.0; 4]);
         for region in &self.regions {
             product::product(region, scratch, past, wanted)?;
         }
@@ -461,18 +471,14 @@ mod tests {
         backwards: bool,
     ) -> Vec<[f64; 4]> {
         let schedule = Schedule::new(&large.regions, &large.gather, parts);
-        let kept = scratch::Kept::filled(&large.regions, parts, f64::NAN);
-        let mut corners = vec![[f64::NAN; 4]; 4 * large.slots];
+        let kept = scratch::Kept::filled(&large.regions, schedule.rooms(), parts, f64::NAN);
         let mut sums = vec![[f64::NAN; 4]; large.gather.nodes().len()];
         let evaluation = Evaluation {
             regions: &large.regions,
             numbers: &large.numbers,
             gather: &large.gather,
-            places: kept.places(
-                field,
-                SharedSlice::of(&mut corners),
-                SharedSlice::of(&mut sums),
-            ),
+            rooms: schedule.rooms(),
+            places: kept.places(field, SharedSlice::of(&mut sums)),
             set: large.set,
             past: Past::RELAXED,
             remembered: None,

@@ -31,7 +31,7 @@ pub(crate) struct HyperelasticRegion {
     pub(super) rest: Arc<Rest>,
     /// Place of its first tetrahedron among those of all such regions.
     pub(super) first: usize,
-    /// Its places among what is kept for those of the regions that take means.
+    /// Its places among what is kept, for those of the regions that need it.
     pub(super) kept: FirstPlaces,
     /// Its tetrahedra in the order in which they are worked on.
     pub(super) chunks: Vec<Chunk>,
@@ -138,8 +138,6 @@ impl HyperelasticRegion {
         };
         FirstPlaces {
             tets: self.kept.tets + tets,
-            rows: self.kept.rows + self.edges_of.len(),
-            edges: self.kept.edges + self.edge_volumes.len(),
             variables: self.kept.variables
                 + self.memory.as_ref().map_or(0, RegionMemory::variables),
         }
@@ -212,10 +210,6 @@ impl HyperelasticRegion {
 pub(super) struct FirstPlaces {
     /// Of its first tetrahedron, where patches take means.
     pub(super) tets: usize,
-    /// Of its first tetrahedron, where edges do.
-    pub(super) rows: usize,
-    /// Of its first edge.
-    pub(super) edges: usize,
     /// Of its first internal variable.
     pub(super) variables: usize,
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use sinew_mesh::TetMesh;
-use sinew_sparse::simd::{Number, Real};
+use sinew_sparse::simd::{Aligned, Number, Real};
 
 use super::chunks::Slot;
 use crate::hyperelastic::Tensor;
@@ -11,14 +11,14 @@ use crate::tetra;
 
 /// The tetrahedra of a region at rest, each quantity in an array of its own so that neighbours in memory fill a vector;
 /// "side by side" are as many as the number has lanes.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Rest<T = f64> {
     /// The four mesh nodes.
     nodes: Arc<[Vec<u32>; 4]>,
     /// Gradients (1/m) of the shape functions of the last three vertices; the first has minus their sum.
-    gradients: [[Vec<T>; 3]; 3],
+    gradients: [[Aligned<T>; 3]; 3],
     /// Volumes (m^3).
-    volumes: Vec<T>,
+    volumes: Aligned<T>,
     /// Tags in the mesh, for messages.
     tags: Arc<Vec<u64>>,
 }
@@ -54,15 +54,18 @@ impl Rest {
         }
         Self {
             nodes: Arc::new(nodes),
-            gradients,
-            volumes,
+            gradients: gradients.map(|of| of.map(|values| Aligned::from(&values[..]))),
+            volumes: Aligned::from(&volumes[..]),
             tags: Arc::new(tags),
         }
     }
 
     /// The same in another precision.
     pub(super) fn rounded<T: Real>(&self) -> Rest<T> {
-        let rounded = |values: &Vec<f64>| values.iter().map(|value| T::of(*value)).collect();
+        let rounded = |values: &Aligned<f64>| {
+            let values: Vec<T> = values.iter().map(|value| T::of(*value)).collect();
+            Aligned::from(&values[..])
+        };
         Rest {
             nodes: Arc::clone(&self.nodes),
             gradients: self
@@ -176,7 +179,7 @@ impl<T: Real> Rest<T> {
 // Functions, since a closure is not always inlined where vectors need it.
 
 #[inline(always)]
-fn side_by_side<N: Number>([x, y, z]: &[Vec<N::Real>; 3], first: usize) -> [N; 3] {
+fn side_by_side<N: Number>([x, y, z]: &[Aligned<N::Real>; 3], first: usize) -> [N; 3] {
     [
         N::load(&x[first..]),
         N::load(&y[first..]),

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::chunks::LANES;
 use super::gather::Gather;
 use super::region::HyperelasticRegion;
+use super::rooms::Rooms;
 
 /// What is done for a part of a region. Ranges of the region's own chunks and edges, and of nodes in the order of [`Gather`].
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,34 +33,39 @@ pub(super) struct Piece {
 /// What needs the chunks of two parts is left to later passes: the edges first, then the forces of chunks at such edges, then
 /// the nodes. So every task reads what its own part did before it, or any part in a pass before, and nobody writes what another
 /// part of the same pass reads.
+///
+/// What a part keeps from one task to another goes where something was that nobody needs any more: so little room is used again
+/// and again, and stays in the second cache, instead of streaming through it to memory and back.
 #[derive(Clone, Debug)]
 pub(crate) struct Schedule {
     passes: Vec<Vec<Vec<Piece>>>,
+    rooms: Rooms,
 }
 
 /// When a task can be done.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct When {
-    pass: usize,
-    part: usize,
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct When {
+    pub(super) pass: usize,
+    pub(super) part: usize,
     /// The chunk, of all regions, with which all is there that the task reads.
-    stage: usize,
+    pub(super) stage: usize,
 }
 
-const FIRST: usize = 0;
+/// The pass in which a part follows its chunks.
+pub(super) const FIRST: usize = 0;
 const EDGES: usize = 1;
 const FORCES: usize = 2;
 const NODES: usize = 3;
 const PASSES: usize = 4;
 
 /// The chunks of all regions, one region behind the other.
-struct AllChunks {
+pub(super) struct AllChunks {
     /// Region, and number in the region.
-    chunks: Vec<(usize, usize)>,
+    pub(super) chunks: Vec<(usize, usize)>,
     /// The part of each.
-    part: Vec<usize>,
+    pub(super) part: Vec<usize>,
     /// The chunk of each place of a tetrahedron.
-    of_place: Vec<u32>,
+    pub(super) of_place: Vec<u32>,
 }
 
 impl AllChunks {
@@ -146,10 +152,12 @@ impl Schedule {
                 ..when
             });
         }
-        let nodes = (0..gather.nodes().len()).map(|index| {
+        let at_node = |index: usize| {
             let chunks = gather.tets_at(index).map(|place| all.of_place[place]);
             all.after(chunks.map(|chunk| forces[chunk as usize]), NODES)
-        });
+        };
+        let nodes: Vec<When> = (0..gather.nodes().len()).map(at_node).collect();
+        let rooms = Rooms::new((regions, gather), &all, (&at_edges, &forces, &nodes));
 
         let mut tasks = Tasks::default();
         for (stage, (region, chunk)) in all.chunks.iter().enumerate() {
@@ -170,13 +178,19 @@ impl Schedule {
                 tasks.add(*when, number, Task::Edges(edges));
             }
         }
-        for (index, when) in nodes.enumerate() {
+        for (index, when) in nodes.into_iter().enumerate() {
             let region = all.chunks[when.stage].0;
             tasks.add(when, region, Task::Nodes(index..index + 1));
         }
         Self {
             passes: tasks.in_passes(parts),
+            rooms,
         }
+    }
+
+    /// Where is kept what tasks read of each other.
+    pub(super) fn rooms(&self) -> &Rooms {
+        &self.rooms
     }
 
     /// The parts of each pass.

@@ -1,18 +1,19 @@
 //! Room for evaluations.
 
-use sinew_sparse::simd::{Real, Shared, SharedSlice};
+use sinew_sparse::simd::{Aligned, Real, Shared, SharedSlice};
 
 use super::region::HyperelasticRegion;
+use super::rooms::Rooms;
 use crate::hyperelastic::Tensor;
 
 /// Room for one evaluation, used again by the next.
 #[derive(Debug)]
 pub(crate) struct Scratch {
     /// Displacement (m) of all mesh nodes, and a number to fill a row.
-    pub(crate) displacement: Vec<[f64; 4]>,
+    pub(crate) displacement: Aligned<[f64; 4]>,
     /// Its change, for products.
     pub(crate) change: Vec<[f64; 4]>,
-    /// Forces (N) at the four corners of each tetrahedron, each with 0 to fill a row.
+    /// Change of the forces (N) at the four corners of each tetrahedron, each with 0 to fill a row; empty until a product is made.
     pub(super) corners: Vec<[f64; 4]>,
     /// Their sums (N) at each node that has corners, in the order of [`super::gather::Gather`].
     pub(super) sums: Vec<[f64; 4]>,
@@ -38,10 +39,12 @@ pub(super) struct Kept<T> {
     /// Numbers for one part, and those of gradients among them.
     chunk: usize,
     gradients_of_chunk: usize,
-    /// The gradient of the displacement in each tetrahedron times its volume, by rows; where edges take means.
+    /// Gradients of the displacement times volumes, by rows; where edges take means.
     gradients: Shared<Rows<T>>,
-    /// The stress (Pa) at each edge by rows, and room to fill a vector.
+    /// Stresses (Pa) at edges by rows.
     at_edges: Shared<Rows<T>>,
+    /// Forces (N) at the corners of tetrahedra, each with 0 to fill a row.
+    corners: Shared<[T; 4]>,
 }
 
 /// A tensor, whose rows end in 0.
@@ -66,12 +69,17 @@ pub(super) struct Places<'a, T> {
 
 impl<T: Real> Kept<T> {
     /// Room for regions that are worked on in so many parts.
-    pub(super) fn new(regions: &[HyperelasticRegion], parts: usize) -> Self {
-        Self::filled(regions, parts, T::default())
+    pub(super) fn new(regions: &[HyperelasticRegion], rooms: &Rooms, parts: usize) -> Self {
+        Self::filled(regions, rooms, parts, T::default())
     }
 
     /// [`Kept::new`] with this number everywhere.
-    pub(super) fn filled(regions: &[HyperelasticRegion], parts: usize, with: T) -> Self {
+    pub(super) fn filled(
+        regions: &[HyperelasticRegion],
+        rooms: &Rooms,
+        parts: usize,
+        with: T,
+    ) -> Self {
         let smoothed = || regions.iter().filter(|region| region.is_smoothed());
         let has_beside =
             |region: &HyperelasticRegion| region.fibres.is_some() || region.memory.is_some();
@@ -86,30 +94,29 @@ impl<T: Real> Kept<T> {
             0
         };
         let chunk = gradients + beside;
-        let zeros = |count| Shared::new(vec![with; count]);
-        let rows = |count| Shared::new(vec![[[with; 4]; 3]; count]);
-        let total = |of: fn(&HyperelasticRegion) -> usize| smoothed().map(of).sum::<usize>();
+        let zeros = |count| Shared::filled(with, count);
+        let rows = |count| Shared::filled([[with; 4]; 3], count);
         Self {
-            dilations: zeros(total(|region| region.rest.count())),
+            dilations: zeros(smoothed().map(|region| region.rest.count()).sum()),
             chunks: zeros(chunk * parts),
             chunk,
             gradients_of_chunk: gradients,
-            gradients: rows(total(|region| region.edges_of.len())),
-            at_edges: rows(total(|region| region.edge_volumes.len())),
+            gradients: rows(rooms.gradients_count),
+            at_edges: rows(rooms.edges_count),
+            corners: Shared::filled([with; 4], rooms.corners_count),
         }
     }
 
-    /// With displacements, forces at corners and their sums, all places of an evaluation.
+    /// With displacements and sums of forces, all places of an evaluation.
     pub(super) fn places<'a>(
         &'a self,
         displacement: &'a [[T; 4]],
-        corners: SharedSlice<'a, [T; 4]>,
         sums: SharedSlice<'a, [T; 4]>,
     ) -> Places<'a, T> {
         Places {
             displacement,
-            corners,
             sums,
+            corners: self.corners.slice(),
             dilations: self.dilations.slice(),
             chunks: self.chunks.slice(),
             chunk: self.chunk,
@@ -121,19 +128,23 @@ impl<T: Real> Kept<T> {
 }
 
 impl Scratch {
-    /// Room for nodes of the mesh, those in regions, and places of tetrahedra.
-    pub(super) fn new([nodes, taken, tets]: [usize; 3], regions: &[HyperelasticRegion]) -> Self {
+    /// Room for nodes of the mesh, and those in regions.
+    pub(super) fn new(
+        [nodes, taken]: [usize; 2],
+        regions: &[HyperelasticRegion],
+        rooms: &Rooms,
+    ) -> Self {
         let most = |count: fn(&HyperelasticRegion) -> usize| {
             let smoothed = regions.iter().filter(|region| region.is_smoothed());
             smoothed.map(count).max().unwrap_or(0)
         };
         let smoothed = most(|region| region.rest.count());
         Self {
-            displacement: vec![[0.0; 4]; nodes],
+            displacement: Aligned::filled([0.0; 4], nodes),
             change: vec![[0.0; 4]; nodes],
-            corners: vec![[0.0; 4]; 4 * tets],
+            corners: Vec::new(),
             sums: vec![[0.0; 4]; taken],
-            kept: Kept::new(regions, 1),
+            kept: Kept::new(regions, rooms, 1),
             gradients: vec![Tensor::zero(); smoothed],
             changes: vec![Tensor::zero(); smoothed],
             at_edges: vec![Tensor::zero(); most(|region| region.edges.count())],
@@ -143,9 +154,8 @@ impl Scratch {
 
     /// The places of an evaluation in f64, which nobody else uses meanwhile.
     pub(super) fn places(&mut self) -> Places<'_, f64> {
-        let (corners, sums) = (&mut self.corners[..], &mut self.sums[..]);
-        let (corners, sums) = (SharedSlice::of(corners), SharedSlice::of(sums));
-        self.kept.places(&self.displacement, corners, sums)
+        let sums = SharedSlice::of(&mut self.sums);
+        self.kept.places(&self.displacement, sums)
     }
 }
 

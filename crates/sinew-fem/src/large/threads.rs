@@ -22,7 +22,6 @@ pub(crate) struct SharedForces<T> {
     schedule: Schedule,
     set: InstructionSet,
     kept: Kept<T>,
-    corners: Shared<[T; 4]>,
     sums: Shared<[T; 4]>,
 }
 
@@ -48,14 +47,13 @@ impl<T: Vectors> SharedForces<T> {
         parts: usize,
         set: InstructionSet,
     ) -> Self {
-        let rows = |count| Shared::new(vec![[T::default(); 4]; count]);
+        let schedule = Schedule::new(&large.regions, &large.gather, parts);
         Self {
             numbers,
-            schedule: Schedule::new(&large.regions, &large.gather, parts),
             set,
-            kept: Kept::new(&large.regions, parts),
-            corners: rows(4 * large.slots),
-            sums: rows(large.gather.nodes().len()),
+            kept: Kept::new(&large.regions, schedule.rooms(), parts),
+            schedule,
+            sums: Shared::filled([T::default(); 4], large.gather.nodes().len()),
             large: Arc::clone(large),
         }
     }
@@ -65,13 +63,18 @@ impl<T: Vectors> SharedForces<T> {
         self.schedule.passes().len()
     }
 
-    fn evaluation<'a>(&'a self, displacement: &'a [[T; 4]]) -> Evaluation<'a, T> {
-        let (corners, sums) = (self.corners.slice(), self.sums.slice());
+    fn evaluation<'a>(
+        &'a self,
+        schedule: &'a Schedule,
+        kept: &'a Kept<T>,
+        displacement: &'a [[T; 4]],
+    ) -> Evaluation<'a, T> {
         Evaluation {
             regions: &self.large.regions,
             numbers: &self.numbers,
             gather: &self.large.gather,
-            places: self.kept.places(displacement, corners, sums),
+            rooms: schedule.rooms(),
+            places: kept.places(displacement, self.sums.slice()),
             // Bodies with memory are not shared.
             past: Past::RELAXED,
             remembered: None,
@@ -90,7 +93,7 @@ impl<T: Vectors> SharedForces<T> {
         pass: usize,
         part: usize,
     ) -> Result<(), EvaluationError> {
-        let evaluation = self.evaluation(displacement);
+        let evaluation = self.evaluation(&self.schedule, &self.kept, displacement);
         let mut pieces = self.schedule.passes()[pass][part].iter();
         pieces.try_for_each(|piece| {
             // SAFETY: the caller's promise.
@@ -100,8 +103,10 @@ impl<T: Vectors> SharedForces<T> {
 
     /// Computes everything, so that what is refused does not depend on the parts.
     pub(crate) fn make_alone(&mut self, displacement: &[[T; 4]]) -> Result<(), EvaluationError> {
+        let alone = self.large.alone();
+        let kept = Kept::new(&self.large.regions, alone.rooms(), 1);
         // Nobody else uses what belongs to `self`.
-        evaluate_alone(&self.large.alone, &self.evaluation(displacement)).map(|_| ())
+        evaluate_alone(alone, &self.evaluation(alone, &kept, displacement)).map(|_| ())
     }
 
     /// The sums of the forces (N) at nodes, in the order of [`LargeDeformation::nodes_in_order`].

@@ -3,6 +3,7 @@
 #![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use sinew_core::{
     ElementForces, ElementPrecision, ElementSweep, EvaluationError, LinearOperators, LoadTime,
@@ -13,6 +14,7 @@ use sinew_sparse::sweep::{Fields, Numbering};
 
 use super::Model;
 use super::field_error::require_inputs;
+use crate::following::FollowingPressure;
 use crate::large::SharedForces;
 use crate::motion::Motions;
 
@@ -82,6 +84,63 @@ struct Sweep<T> {
     moved: Vec<(u32, u32)>,
     /// What motions add to the displacement of cells (m), by position; empty where they add nothing.
     offsets: Vec<[T; 3]>,
+    following: Following,
+}
+
+/// Pressures that follow the surface.
+#[derive(Debug)]
+struct Following {
+    pressures: Arc<[FollowingPressure]>,
+    /// Their factors at the time of the sweep.
+    factors: Vec<f64>,
+    /// The position of each mesh node; empty where there are no pressures.
+    position: Vec<u32>,
+    /// Forces (N) by position, beyond those on the surface at rest.
+    forces: Shared<[f64; 3]>,
+}
+
+impl Following {
+    fn new(model: &Model, numbering: &Numbering) -> Self {
+        let pressures = Arc::clone(&model.following);
+        let (mut position, mut positions) = (Vec::new(), 0);
+        if !pressures.is_empty() {
+            let cell = |node| model.body.cells.of_node(node);
+            let nodes = 0..model.mesh.points.len() as u32;
+            let of = |node| cell(node).map_or(NONE, |cell| numbering.position(cell) as u32);
+            position = nodes.map(of).collect();
+            positions = numbering.positions();
+        }
+        Self {
+            factors: vec![0.0; pressures.len()],
+            pressures,
+            position,
+            forces: Shared::filled([0.0; 3], positions),
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.pressures.is_empty()
+    }
+
+    /// Computes the forces.
+    ///
+    /// # Safety
+    /// Nobody uses them meanwhile.
+    unsafe fn make(&self, displacement: impl Fn(u32) -> [f64; 3]) {
+        let all = self.forces.slice();
+        // SAFETY: the caller's promise.
+        let forces = unsafe { all.write(0..all.count()) };
+        forces.fill([0.0; 3]);
+        for (pressure, factor) in self.pressures.iter().zip(&self.factors) {
+            pressure.forces(*factor, &displacement, |node, force| {
+                if let Some(sum) = forces.get_mut(self.position[node as usize] as usize) {
+                    sum.iter_mut()
+                        .zip(force)
+                        .for_each(|(sum, force)| *sum += force);
+                }
+            });
+        }
+    }
 }
 
 impl<T: Vectors> Sweep<T> {
@@ -121,10 +180,11 @@ impl<T: Vectors> Sweep<T> {
             forces,
             parts: shape.parts,
             positions: (0..numbering.positions()).map(position).collect(),
-            displacement: Shared::new(vec![[T::default(); 4]; model.mesh.points.len()]),
+            displacement: Shared::filled([T::default(); 4], model.mesh.points.len()),
             motions: model.motions.clone(),
             moved,
             offsets: vec![[T::default(); 3]; offsets],
+            following: Following::new(model, numbering),
         }
     }
 
@@ -144,11 +204,18 @@ impl<T: Vectors + ElementPrecision> ElementSweep<T> for Sweep<T> {
         self.forces.as_ref().map_or(0, SharedForces::passes)
     }
 
-    fn parts(&self) -> usize {
-        self.parts
+    /// In the first pass pressures are a part of their own.
+    fn parts(&self, pass: usize) -> usize {
+        self.parts + usize::from(pass == 0 && !self.following.is_empty())
     }
 
     fn begin(&mut self, when: LoadTime<'_>) -> Result<(), EvaluationError> {
+        let Following {
+            pressures, factors, ..
+        } = &mut self.following;
+        for (pressure, factor) in pressures.iter().zip(factors) {
+            *factor = pressure.factor(when);
+        }
         if self.moved.is_empty() {
             return Ok(());
         }
@@ -204,7 +271,18 @@ impl<T: Vectors + ElementPrecision> ElementSweep<T> for Sweep<T> {
             return true;
         };
         // SAFETY: the caller's promise.
-        unsafe { forces.make(self.displacement(), pass, part) }.is_ok()
+        let displacement = unsafe { self.displacement() };
+        if part == self.parts {
+            let of = |node: u32| {
+                let [x, y, z, _] = displacement[node as usize].map(Real::to_f64);
+                [x, y, z]
+            };
+            // SAFETY: the caller's promise.
+            unsafe { self.following.make(of) };
+            return true;
+        }
+        // SAFETY: as above.
+        unsafe { forces.make(displacement, pass, part) }.is_ok()
     }
 
     unsafe fn give(&self, fields: &Fields<T>, out: usize, positions: Range<usize>) {
@@ -218,12 +296,18 @@ impl<T: Vectors + ElementPrecision> ElementSweep<T> for Sweep<T> {
             let values = x.iter_mut().zip(y).zip(z);
             for (place, ((x, y), z)) in positions.zip(values) {
                 let Position { sum, pinned, .. } = self.positions[place];
-                if sum == NONE {
-                    continue;
+                let [mut fx, mut fy, mut fz, _] = match sum {
+                    NONE => [T::default(); 4],
+                    sum => *sums.get(sum as usize),
+                };
+                if !self.following.is_empty() {
+                    let pressure = self.following.forces.slice();
+                    let [px, py, pz] = pressure.get(place).map(<T as Real>::of);
+                    (fx, fy, fz) = (fx - px, fy - py, fz - pz);
                 }
-                let force = sums.get(sum as usize);
-                for ((out, force), pinned) in [x, y, z].into_iter().zip(force).zip(pinned) {
-                    *out = if pinned { T::default() } else { *force };
+                let outs = [x, y, z].into_iter().zip([fx, fy, fz]);
+                for ((out, force), pinned) in outs.zip(pinned) {
+                    *out = if pinned { T::default() } else { force };
                 }
             }
         }

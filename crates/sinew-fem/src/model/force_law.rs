@@ -169,11 +169,10 @@ impl ForceLaw for Model {
         Some(self)
     }
 
-    /// Without stiffness damping, which takes a tangent, and pressures that follow the surface.
+    /// Without stiffness damping, which takes a tangent, and memory.
     fn element_forces(&self) -> Option<&dyn ElementForces> {
         // What a machine of its own holds has no memory.
         let is_sum = self.operators.damping().stiffness == 0.0
-            && self.following.is_empty()
             && self
                 .large
                 .as_ref()

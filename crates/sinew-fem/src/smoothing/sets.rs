@@ -53,7 +53,8 @@ impl Sets {
         &self.tets[self.range(set)]
     }
 
-    fn range(&self, set: usize) -> Range<usize> {
+    /// The place of a set's tetrahedra in lists that have a number for each member of each set.
+    pub(crate) fn range(&self, set: usize) -> Range<usize> {
         self.starts[set] as usize..self.starts[set + 1] as usize
     }
 }

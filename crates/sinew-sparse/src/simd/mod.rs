@@ -4,6 +4,7 @@
 //! chosen when the program runs, so that a portable build uses what the machine has. All code that
 //! touches a kernel's memory by address stands here and in [`crate::sweep`].
 
+mod aligned;
 mod at;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -17,6 +18,7 @@ mod set;
 mod shared;
 mod vector;
 
+pub use aligned::Aligned;
 pub(crate) use at::At;
 pub(crate) use lanes::Lanes;
 pub use number::Number;

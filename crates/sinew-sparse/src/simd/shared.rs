@@ -6,18 +6,30 @@ use std::cell::UnsafeCell;
 use std::marker::PhantomData;
 use std::ops::Range;
 
+use super::aligned::Aligned;
+
 /// Numbers that threads write in different places at the same time.
-pub struct Shared<T>(Box<[UnsafeCell<T>]>);
+pub struct Shared<T> {
+    first: *mut T,
+    /// Whose memory `first` points to; used through it alone.
+    owner: Aligned<T>,
+}
 
 // SAFETY: nothing but `SharedSlice::read` and `SharedSlice::write` gives the numbers away while they are shared, and whoever calls
 // these promises that nobody writes what another one uses.
+unsafe impl<T: Send + Sync> Send for Shared<T> {}
+// SAFETY: as above.
 unsafe impl<T: Send + Sync> Sync for Shared<T> {}
 
-impl<T> Shared<T> {
-    /// These numbers, to be shared.
+impl<T: Copy> Shared<T> {
+    /// So many of this number, to be shared.
     #[must_use]
-    pub fn new(values: Vec<T>) -> Self {
-        Self(values.into_iter().map(UnsafeCell::new).collect())
+    pub fn filled(value: T, count: usize) -> Self {
+        let mut owner = Aligned::filled(value, count);
+        Self {
+            first: owner.as_mut_ptr(),
+            owner,
+        }
     }
 
     /// Where they are.
@@ -25,8 +37,8 @@ impl<T> Shared<T> {
     #[must_use]
     pub fn slice(&self) -> SharedSlice<'_, T> {
         SharedSlice {
-            first: UnsafeCell::raw_get(self.0.as_ptr()),
-            count: self.0.len(),
+            first: self.first,
+            count: self.owner.count(),
             cells: PhantomData,
         }
     }
@@ -35,7 +47,7 @@ impl<T> Shared<T> {
 impl<T> std::fmt::Debug for Shared<T> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Shared")
-            .field("count", &self.0.len())
+            .field("count", &self.owner.count())
             .finish_non_exhaustive()
     }
 }
@@ -135,7 +147,7 @@ mod tests {
 
     #[test]
     fn threads_write_in_different_places() {
-        let all = Shared::new(vec![0_u32; 100]);
+        let all = Shared::filled(0_u32, 100);
         std::thread::scope(|scope| {
             for part in 0..4 {
                 let slice = all.slice();
