@@ -20,7 +20,7 @@ impl Material {
             .collect()
     }
 
-    /// Whether the scene itself has the law and the element of this one but for the element.
+    /// The law's id.
     pub(super) fn law(self) -> &'static str {
         self.law
     }
