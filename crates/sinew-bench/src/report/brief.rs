@@ -17,7 +17,7 @@ const MOST_ITEMS: usize = 4;
 const HEAD: [&str; 6] = ["scene", "error at most", "cheapest", "dt", "error", "CPU"];
 const UNITS: [&str; 6] = ["", "[%]", "", "[ms]", "[%]", "[s/s]"];
 
-/// The answer of a bench for a terminal, at most 34 lines: the marks where there are some, the cheapest run of each scene for errors of at
+/// The answer of a bench for a terminal, at most 35 lines: the marks where there are some, the cheapest run of each scene for errors of at
 /// most 10, 1 and 0.1 % where there are none or few marks; then what was not run, and what is missing.
 #[must_use]
 pub fn brief(results: &BenchResults) -> String {
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn no_bench_takes_more_than_34_lines() {
+    fn no_bench_takes_more_than_35_lines() {
         for cases in [0, 1, 4, 8, 9, 10, 18, 19, 200] {
             for marks in [0, 1, 8, 9, 18, 300] {
                 let mut results = results(cases);
@@ -237,7 +237,7 @@ mod tests {
                 results.missing = (0..50).map(|_| Missing::scene("a.toml", "gone")).collect();
                 let text = brief(&results);
                 let lines = text.lines().count();
-                assert!(lines <= 34, "{cases} cases, {marks} marks: {lines}\n{text}");
+                assert!(lines <= 35, "{cases} cases, {marks} marks: {lines}\n{text}");
             }
         }
     }
