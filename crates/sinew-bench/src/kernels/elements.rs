@@ -4,8 +4,7 @@ use serde::Serialize;
 use sinew_core::{
     ElementPrecision, ElementSweep, Equations, LoadTime, SweepShape, System, sweep_alone,
 };
-use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Law, Model, Problem, Region};
+use sinew_fem::{Element, Model, Problem};
 use sinew_measure::thread_cpu_time;
 use sinew_mesh::structured::{Split, cube};
 use sinew_sparse::simd::InstructionSet;
@@ -13,6 +12,7 @@ use sinew_sparse::sweep::{Fields, Numbering, Precision};
 
 use super::bodies::KernelBenchError;
 use crate::median::median;
+use crate::tissue;
 
 /// Forces of one law and element on a cube.
 #[derive(Clone, Debug, Serialize)]
@@ -234,18 +234,7 @@ fn on_cube(cells: usize, quick: bool) -> Result<Vec<ElementRow>, KernelBenchErro
 }
 
 fn problem((id, element, _): Material) -> Problem {
-    Problem {
-        regions: vec![Region {
-            group: None,
-            density: 1060.0,
-            law: Law::Hyperelastic {
-                id,
-                parameters: Parameters::new(3500.0, 0.45),
-            },
-            element,
-        }],
-        ..Problem::default()
-    }
+    tissue::free(tissue::law(id, tissue::YOUNGS_MODULUS, 0.45), element)
 }
 
 fn runner<T: ElementPrecision>(
