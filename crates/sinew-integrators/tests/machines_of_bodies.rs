@@ -13,7 +13,10 @@ use sinew_cnn::conformance::{Body, CountingAllocator};
 use sinew_cnn::{Machine, ReferenceMachine};
 use sinew_core::{ForceLaw, Ramp, State, System};
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Course, Element, Law, LoadKind, LoadSpec, Model, Moving, Problem, Region};
+use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
+use sinew_fem::{
+    Course, Element, FibreFamily, Law, LoadKind, LoadSpec, Model, Moving, Problem, Region,
+};
 use sinew_machines::{Chosen, PrecisionName, Settings, Threads};
 use sinew_mesh::structured::{Split, cube};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -75,6 +78,11 @@ fn problems() -> Vec<(&'static str, Problem)> {
     let mut pressed = one("neo-hookean", Element::P1);
     pressed.loads[0].kind = LoadKind::FollowingPressure(300.0);
     pressed.fixed.push(held("top", [false, true, false]));
+    let mut fibrous = one("neo-hookean", EDGES);
+    fibrous.regions[0].tissue.fibres = Some(FibreFamily {
+        fibres: Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap(),
+        direction: [0.0, 1.0, 2.0],
+    });
     let two_laws = problem(vec![
         region(law("mooney-rivlin"), Element::P1, Some("high")),
         region(law("neo-hookean-log"), EDGES, Some("low")),
@@ -86,6 +94,7 @@ fn problems() -> Vec<(&'static str, Problem)> {
         ("patches below a moved support", moved),
         ("edges below a linear region", mixed),
         ("pressure that follows", pressed),
+        ("fibres", fibrous),
         ("two laws", two_laws),
     ]
 }

@@ -12,12 +12,12 @@ use super::chunks::LANES;
 use super::error::refused;
 use super::found::Found;
 use super::gather::Gather;
-use super::kept::{lanes, load, load_entries, store, store_entries};
+use super::kept::{Rows, lanes, load, load_entries, store, store_entries};
 use super::memory::{Past, Points, Relaxing, Remembered, Remembering, require};
 use super::region::{HyperelasticRegion, Numbers};
 use super::rooms::{RegionRooms, Rooms};
 use super::schedule::{Piece, Task};
-use super::scratch::{Places, Rows};
+use super::scratch::Places;
 use crate::hyperelastic::prony::{deviatoric, first_piola};
 use crate::hyperelastic::{Deformation, HyperelasticLaw, LawVisitor, SMALLEST_VOLUME_RATIO};
 

@@ -3,8 +3,10 @@
 use sinew_sparse::simd::Number;
 
 use super::chunks::LANES;
-use super::scratch::Rows;
 use crate::hyperelastic::{SMALLEST_VOLUME_RATIO, Tensor};
+
+/// A tensor, whose rows end in 0.
+pub(super) type Rows<T> = [[T; 4]; 3];
 
 /// Tensors side by side.
 #[inline(always)]

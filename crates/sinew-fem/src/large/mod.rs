@@ -14,12 +14,14 @@ mod memory;
 mod node_blocks;
 mod product;
 mod region;
+mod regions;
 mod rest;
 mod rooms;
 mod schedule;
 mod scratch;
 mod stress;
 mod threads;
+mod when;
 
 pub(crate) use memory::Past;
 pub(crate) use product::Wanted;
@@ -27,11 +29,11 @@ pub(crate) use region::{HyperelasticRegion, RegionLaw};
 pub(crate) use scratch::{Scratch, fill};
 pub(crate) use threads::SharedForces;
 
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use sinew_core::{BlockMatrix, Deformed, EvaluationError, TangentKind};
 use sinew_mesh::TetMesh;
-use sinew_sparse::simd::{InstructionSet, SharedSlice, Vectors};
+use sinew_sparse::simd::{InstructionSet, SharedSlice};
 
 use crate::cells::Cells;
 use crate::smoothing::Smoothing;
@@ -40,7 +42,7 @@ use force::Evaluation;
 use gather::Gather;
 use memory::Remembered;
 use region::{FirstPlaces, Numbers};
-use schedule::Schedule;
+use regions::{Regions, evaluate_alone};
 
 /// Marks a tetrahedron that is in no hyperelastic region.
 const NO_PLACE: u32 = u32::MAX;
@@ -48,12 +50,9 @@ const NO_PLACE: u32 = u32::MAX;
 /// All hyperelastic regions of a body.
 #[derive(Debug)]
 pub(crate) struct LargeDeformation {
-    regions: Vec<HyperelasticRegion>,
+    all: Arc<Regions>,
     /// What force loops read of each region.
     numbers: Vec<Numbers<f64>>,
-    gather: Gather,
-    /// The order of work of one thread.
-    alone: OnceLock<Schedule>,
     nodes: usize,
     /// Places of tetrahedra, padding included.
     slots: usize,
@@ -101,9 +100,7 @@ impl LargeDeformation {
         let gather = Gather::new(mesh.points.len(), nodes.iter().copied());
         Some(Self {
             numbers: made.iter().map(HyperelasticRegion::numbers).collect(),
-            alone: OnceLock::new(),
-            gather,
-            regions: made,
+            all: Arc::new(Regions::new(made, gather)),
             nodes: mesh.points.len(),
             slots: count,
             variables: kept.variables,
@@ -113,19 +110,13 @@ impl LargeDeformation {
         })
     }
 
-    /// The order of work of one thread, made for the first evaluation: machines have their own.
-    fn alone(&self) -> &Schedule {
-        self.alone
-            .get_or_init(|| Schedule::new(&self.regions, &self.gather, 1))
-    }
-
     /// Does something with room that is used again, and with a field over all nodes in it.
     pub(crate) fn with_scratch<T>(&self, with: impl FnOnce(&mut Scratch) -> T) -> T {
         let pool = || self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         let known = pool().pop();
         let mut scratch = known.unwrap_or_else(|| {
-            let counts = [self.nodes, self.gather.nodes().len()];
-            Scratch::new(counts, &self.regions, self.alone().rooms())
+            let counts = [self.nodes, self.all.gather.nodes().len()];
+            Scratch::new(counts, &self.all.regions, self.all.alone().rooms())
         });
         let result = with(&mut scratch);
         pool().push(scratch);
@@ -143,15 +134,15 @@ impl LargeDeformation {
         let evaluation = Evaluation {
             past,
             remembered: None,
-            regions: &self.regions,
+            regions: &self.all.regions,
             numbers: &self.numbers,
-            gather: &self.gather,
-            rooms: self.alone().rooms(),
+            gather: &self.all.gather,
+            rooms: self.all.alone().rooms(),
             places: scratch.places(),
             set: self.set,
             with_energy,
         };
-        evaluate_alone(self.alone(), &evaluation)
+        evaluate_alone(self.all.alone(), &evaluation)
     }
 
     /// Number of internal variables.
@@ -170,26 +161,37 @@ impl LargeDeformation {
         let evaluation = Evaluation {
             past: Past::RELAXED,
             remembered: Some(Remembered { internal, dt }),
-            regions: &self.regions,
+            regions: &self.all.regions,
             numbers: &self.numbers,
-            gather: &self.gather,
-            rooms: self.alone().rooms(),
+            gather: &self.all.gather,
+            rooms: self.all.alone().rooms(),
             places: scratch.places(),
             set: self.set,
             with_energy: false,
         };
-        evaluate_alone(self.alone(), &evaluation).map(drop)
+        evaluate_alone(self.all.alone(), &evaluation).map(drop)
+    }
+
+    /// Its forces in double precision, by instructions of choice, in so many parts that threads compute at the same time.
+    pub(crate) fn in_double(&self, parts: usize, set: InstructionSet) -> SharedForces<f64> {
+        SharedForces::new(Arc::clone(&self.all), self.numbers.clone(), parts, set)
+    }
+
+    /// [`LargeDeformation::in_double`] in single precision.
+    pub(crate) fn in_single(&self, parts: usize, set: InstructionSet) -> SharedForces<f32> {
+        let numbers = self.numbers.iter().map(Numbers::rounded).collect();
+        SharedForces::new(Arc::clone(&self.all), numbers, parts, set)
     }
 
     /// The mesh nodes of the regions, by the order in which forces are complete.
     pub(crate) fn nodes_in_order(&self) -> &[u32] {
-        self.gather.nodes()
+        self.all.gather.nodes()
     }
 
     /// Number of tetrahedra.
     pub(crate) fn elements(&self) -> usize {
         let count = |region: &HyperelasticRegion| region.rest.tets().count();
-        self.regions.iter().map(count).sum()
+        self.all.regions.iter().map(count).sum()
     }
 
     /// Computes the tangent at the displacement in the scratch times the change in it, as forces (N) at the corners.
@@ -200,16 +202,18 @@ impl LargeDeformation {
         wanted: Wanted,
     ) -> Result<(), EvaluationError> {
         scratch.corners.resize(4 * self.slots, [0.0; 4]);
-        for region in &self.regions {
+        for region in &self.all.regions {
             product::product(region, scratch, past, wanted)?;
         }
-        self.gather.sum_all(&mut scratch.corners, &mut scratch.sums);
+        self.all
+            .gather
+            .sum_all(&mut scratch.corners, &mut scratch.sums);
         Ok(())
     }
 
     /// Calls `add` with each node of a region and the force (N) that was computed last.
     pub(crate) fn at_nodes(&self, scratch: &Scratch, mut add: impl FnMut(u32, [f64; 3])) {
-        for (node, [x, y, z, _]) in self.gather.nodes().iter().zip(&scratch.sums) {
+        for (node, [x, y, z, _]) in self.all.gather.nodes().iter().zip(&scratch.sums) {
             add(*node, [*x, *y, *z]);
         }
     }
@@ -223,7 +227,7 @@ impl LargeDeformation {
         cells: &Cells,
         out: &mut BlockMatrix,
     ) -> Result<(), EvaluationError> {
-        let mut regions = self.regions.iter();
+        let mut regions = self.all.regions.iter();
         regions.try_for_each(|region| matrix::add(region, scratch, past, kind, (cells, &mut *out)))
     }
 
@@ -234,7 +238,7 @@ impl LargeDeformation {
         past: Past<'_>,
         mut add: impl FnMut(u32, [[f64; 3]; 3]),
     ) -> Result<(), EvaluationError> {
-        let mut regions = self.regions.iter();
+        let mut regions = self.all.regions.iter();
         regions.try_for_each(|region| node_blocks::add(region, scratch, past, &mut add))
     }
 
@@ -249,6 +253,7 @@ impl LargeDeformation {
         let place = *self.place_of_tet.get(tet)?;
         let place = (place != NO_PLACE).then_some(place as usize)?;
         let region = self
+            .all
             .regions
             .iter()
             .rev()
@@ -258,28 +263,9 @@ impl LargeDeformation {
     }
 }
 
-/// Makes an evaluation, whose places nobody else uses meanwhile, by one thread.
-#[allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
-fn evaluate_alone<T: Vectors>(
-    schedule: &Schedule,
-    evaluation: &Evaluation<'_, T>,
-) -> Result<Deformed, EvaluationError> {
-    let mut all = Deformed::default();
-    for piece in schedule.passes().iter().flatten().flatten() {
-        // SAFETY: the pieces of all passes, one after the other.
-        let found = unsafe { evaluation.make(0, piece) }?;
-        all.energy += found.energy;
-        all.inverted += found.inverted;
-        if found.smallest_volume_ratio < all.smallest_volume_ratio {
-            all.smallest_volume_ratio = found.smallest_volume_ratio;
-            all.worst_element = found.worst_element;
-        }
-    }
-    Ok(all)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::schedule::Schedule;
     use super::*;
     use crate::hyperelastic::fibres::{Fibres, Stiffening};
     use crate::hyperelastic::prony::Term;
@@ -470,13 +456,13 @@ mod tests {
         parts: usize,
         backwards: bool,
     ) -> Vec<[f64; 4]> {
-        let schedule = Schedule::new(&large.regions, &large.gather, parts);
-        let kept = scratch::Kept::filled(&large.regions, schedule.rooms(), parts, f64::NAN);
-        let mut sums = vec![[f64::NAN; 4]; large.gather.nodes().len()];
+        let schedule = Schedule::new(&large.all.regions, &large.all.gather, parts);
+        let kept = scratch::Kept::filled(&large.all.regions, schedule.rooms(), parts, f64::NAN);
+        let mut sums = vec![[f64::NAN; 4]; large.all.gather.nodes().len()];
         let evaluation = Evaluation {
-            regions: &large.regions,
+            regions: &large.all.regions,
             numbers: &large.numbers,
-            gather: &large.gather,
+            gather: &large.all.gather,
             rooms: schedule.rooms(),
             places: kept.places(field, SharedSlice::of(&mut sums)),
             set: large.set,

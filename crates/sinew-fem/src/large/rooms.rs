@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::chunks::LANES;
 use super::gather::Gather;
 use super::region::HyperelasticRegion;
-use super::schedule::{AllChunks, FIRST, When};
+use super::when::{AllChunks, FIRST, When};
 
 /// Places in the arrays of an evaluation.
 #[derive(Clone, Debug)]

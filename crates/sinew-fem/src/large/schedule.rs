@@ -6,6 +6,7 @@ use super::chunks::LANES;
 use super::gather::Gather;
 use super::region::HyperelasticRegion;
 use super::rooms::Rooms;
+use super::when::{AllChunks, FIRST, When};
 
 /// What is done for a part of a region. Ranges of the region's own chunks and edges, and of nodes in the order of [`Gather`].
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,82 +43,10 @@ pub(crate) struct Schedule {
     rooms: Rooms,
 }
 
-/// When a task can be done.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct When {
-    pub(super) pass: usize,
-    pub(super) part: usize,
-    /// The chunk, of all regions, with which all is there that the task reads.
-    pub(super) stage: usize,
-}
-
-/// The pass in which a part follows its chunks.
-pub(super) const FIRST: usize = 0;
 const EDGES: usize = 1;
 const FORCES: usize = 2;
 const NODES: usize = 3;
 const PASSES: usize = 4;
-
-/// The chunks of all regions, one region behind the other.
-pub(super) struct AllChunks {
-    /// Region, and number in the region.
-    pub(super) chunks: Vec<(usize, usize)>,
-    /// The part of each.
-    pub(super) part: Vec<usize>,
-    /// The chunk of each place of a tetrahedron.
-    pub(super) of_place: Vec<u32>,
-}
-
-impl AllChunks {
-    fn new(regions: &[HyperelasticRegion], parts: usize) -> Self {
-        let places = regions.iter().map(|region| region.rest.count()).sum();
-        let (mut chunks, mut part) = (Vec::new(), Vec::new());
-        let mut of_place = Vec::with_capacity(places);
-        for (number, region) in regions.iter().enumerate() {
-            for (index, chunk) in region.chunks.iter().enumerate() {
-                part.push((of_place.len() * parts / places).min(parts - 1));
-                of_place.resize(of_place.len() + chunk.slots.len(), chunks.len() as u32);
-                chunks.push((number, index));
-            }
-        }
-        Self {
-            chunks,
-            part,
-            of_place,
-        }
-    }
-
-    /// When a task can be done that needs what was done with these chunks at these times; in `otherwise` where that is in two parts.
-    fn after(&self, needed: impl Iterator<Item = When>, otherwise: usize) -> When {
-        let all = needed.reduce(|a, b| When {
-            pass: if a.part == b.part {
-                a.pass.max(b.pass)
-            } else {
-                otherwise
-            },
-            part: a.part.max(b.part),
-            stage: a.stage.max(b.stage),
-        });
-        let mut when = all.unwrap_or(When {
-            pass: FIRST,
-            part: 0,
-            stage: 0,
-        });
-        if when.pass != FIRST {
-            when.pass = otherwise;
-        }
-        when
-    }
-
-    fn first(&self, place: usize) -> When {
-        let stage = self.of_place[place] as usize;
-        When {
-            pass: FIRST,
-            part: self.part[stage],
-            stage,
-        }
-    }
-}
 
 impl Schedule {
     /// The work on these regions in so many parts.

@@ -2,6 +2,7 @@
 
 use sinew_sparse::simd::{Aligned, Real, Shared, SharedSlice};
 
+use super::kept::Rows;
 use super::region::HyperelasticRegion;
 use super::rooms::Rooms;
 use crate::hyperelastic::Tensor;
@@ -46,9 +47,6 @@ pub(super) struct Kept<T> {
     /// Forces (N) at the corners of tetrahedra, each with 0 to fill a row.
     corners: Shared<[T; 4]>,
 }
-
-/// A tensor, whose rows end in 0.
-pub(super) type Rows<T> = [[T; 4]; 3];
 
 /// Where force loops keep what others read.
 #[derive(Clone, Copy, Debug)]

@@ -8,15 +8,16 @@ use sinew_core::EvaluationError;
 use sinew_sparse::simd::{InstructionSet, Shared, SharedSlice, Vectors};
 
 use super::force::Evaluation;
+use super::memory::Past;
 use super::region::Numbers;
+use super::regions::{Regions, evaluate_alone};
 use super::schedule::Schedule;
 use super::scratch::Kept;
-use super::{LargeDeformation, Past, evaluate_alone};
 
 /// The forces of all hyperelastic regions in one precision, in parts that threads compute at the same time.
 #[derive(Debug)]
 pub(crate) struct SharedForces<T> {
-    large: Arc<LargeDeformation>,
+    all: Arc<Regions>,
     /// What loops read of each region.
     numbers: Vec<Numbers<T>>,
     schedule: Schedule,
@@ -25,36 +26,21 @@ pub(crate) struct SharedForces<T> {
     sums: Shared<[T; 4]>,
 }
 
-impl SharedForces<f64> {
-    /// In double precision.
-    pub(crate) fn double(large: &Arc<LargeDeformation>, parts: usize, set: InstructionSet) -> Self {
-        Self::new(large, large.numbers.clone(), parts, set)
-    }
-}
-
-impl SharedForces<f32> {
-    /// In single precision.
-    pub(crate) fn single(large: &Arc<LargeDeformation>, parts: usize, set: InstructionSet) -> Self {
-        let numbers = large.numbers.iter().map(Numbers::rounded).collect();
-        Self::new(large, numbers, parts, set)
-    }
-}
-
 impl<T: Vectors> SharedForces<T> {
-    fn new(
-        large: &Arc<LargeDeformation>,
+    pub(super) fn new(
+        all: Arc<Regions>,
         numbers: Vec<Numbers<T>>,
         parts: usize,
         set: InstructionSet,
     ) -> Self {
-        let schedule = Schedule::new(&large.regions, &large.gather, parts);
+        let schedule = Schedule::new(&all.regions, &all.gather, parts);
         Self {
             numbers,
             set,
-            kept: Kept::new(&large.regions, schedule.rooms(), parts),
+            kept: Kept::new(&all.regions, schedule.rooms(), parts),
             schedule,
-            sums: Shared::filled([T::default(); 4], large.gather.nodes().len()),
-            large: Arc::clone(large),
+            sums: Shared::filled([T::default(); 4], all.gather.nodes().len()),
+            all,
         }
     }
 
@@ -70,9 +56,9 @@ impl<T: Vectors> SharedForces<T> {
         displacement: &'a [[T; 4]],
     ) -> Evaluation<'a, T> {
         Evaluation {
-            regions: &self.large.regions,
+            regions: &self.all.regions,
             numbers: &self.numbers,
-            gather: &self.large.gather,
+            gather: &self.all.gather,
             rooms: schedule.rooms(),
             places: kept.places(displacement, self.sums.slice()),
             // Bodies with memory are not shared.
@@ -103,13 +89,13 @@ impl<T: Vectors> SharedForces<T> {
 
     /// Computes everything, so that what is refused does not depend on the parts.
     pub(crate) fn make_alone(&mut self, displacement: &[[T; 4]]) -> Result<(), EvaluationError> {
-        let alone = self.large.alone();
-        let kept = Kept::new(&self.large.regions, alone.rooms(), 1);
+        let alone = self.all.alone();
+        let kept = Kept::new(&self.all.regions, alone.rooms(), 1);
         // Nobody else uses what belongs to `self`.
         evaluate_alone(alone, &self.evaluation(alone, &kept, displacement)).map(|_| ())
     }
 
-    /// The sums of the forces (N) at nodes, in the order of [`LargeDeformation::nodes_in_order`].
+    /// The sums of the forces (N) at nodes, in the order of [`super::gather::Gather`].
     pub(crate) fn sums(&self) -> SharedSlice<'_, [T; 4]> {
         self.sums.slice()
     }

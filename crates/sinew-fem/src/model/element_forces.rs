@@ -48,13 +48,13 @@ impl ElementForces for Model {
 
     fn in_double(&self, shape: SweepShape<'_>) -> Box<dyn ElementSweep<f64>> {
         let forces = self.large.as_ref();
-        let forces = forces.map(|large| SharedForces::double(large, shape.parts, shape.set));
+        let forces = forces.map(|large| large.in_double(shape.parts, shape.set));
         Box::new(Sweep::new(self, forces, shape))
     }
 
     fn in_single(&self, shape: SweepShape<'_>) -> Box<dyn ElementSweep<f32>> {
         let forces = self.large.as_ref();
-        let forces = forces.map(|large| SharedForces::single(large, shape.parts, shape.set));
+        let forces = forces.map(|large| large.in_single(shape.parts, shape.set));
         Box::new(Sweep::new(self, forces, shape))
     }
 }
