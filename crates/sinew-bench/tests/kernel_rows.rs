@@ -46,6 +46,15 @@ fn every_machine_takes_the_same_steps_and_allocates_nothing() {
             "{row:?}"
         );
     }
+    // Six laws and elements, by plain numbers and by vectors of both precisions.
+    assert_eq!(results.elements.len(), 18);
+    for row in &results.elements {
+        let rounding = if row.precision == "f64" { 1e-13 } else { 1e-4 };
+        assert!(row.difference < rounding, "{row:?}");
+        let ratios = [row.ns_per_tet, row.ratio_to_p1, row.gain_over_scalar];
+        assert!(ratios.iter().all(|ratio| *ratio > 0.0), "{row:?}");
+    }
+    assert_eq!(results.marks.len(), 8);
     assert!(results.guards.len() > 4);
     assert!(results.guards.iter().all(|guard| guard.ratio > 0.0));
     let page = results.html();
