@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Lists of runs, which are about certain methods.
-const LISTS: [&str; 11] = [
+const LISTS: [&str; 12] = [
     "sinew-bench/src/kernels/laps.rs",
     "sinew-bench/src/scale/methods.rs",
     "sinew-bench/src/scale/newmark.rs",
@@ -18,6 +18,7 @@ const LISTS: [&str; 11] = [
     "sinew-bench/src/nonlinear/methods.rs",
     "sinew-bench/src/reproduce/",
     "sinew-bench/src/verify/subjects/",
+    "sinew-bench/src/verify/quasi_static.rs",
 ];
 
 fn sources(folder: &Path, into: &mut Vec<PathBuf>) {

@@ -4,8 +4,8 @@ use sinew_core::Ramp;
 use sinew_fem::{Element, LoadKind, LoadSpec, Problem, Region, Tissue};
 use sinew_measure::MethodChoice;
 
-use super::ROUNDING;
 use super::follow::{Planned, follow, reference};
+use super::tally::ROUNDING;
 use super::tally::{Demand, Tally};
 use crate::hard::error::HardError;
 use crate::hard::hard_run::relative_distance;

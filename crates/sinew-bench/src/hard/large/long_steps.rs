@@ -6,7 +6,7 @@ use sinew_measure::MethodChoice;
 
 use super::follow::{Planned, follow};
 use super::tally::{Demand, Tally};
-use super::{LITTLE, ROUNDING};
+use super::tally::{LITTLE, ROUNDING};
 use crate::hard::error::HardError;
 use crate::hard::mark::Asked;
 use crate::hard::methods::{cut, energy_of};

@@ -17,13 +17,6 @@ use super::error::HardError;
 use super::mark::Asked;
 use crate::results::Mark;
 
-/// Rounding of energies, over the largest of them.
-const ROUNDING: f64 = 1e-12;
-
-/// Energy above what start and loads bring that methods without a promise need not tell, over the largest that was allowed: what implicit
-/// methods tell from on.
-const LITTLE: f64 = 0.05;
-
 /// A hard case of tissue.
 pub(crate) struct LargeCase {
     pub(crate) asked: Asked,

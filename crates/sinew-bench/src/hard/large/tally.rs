@@ -5,6 +5,13 @@ use crate::hard::mark::{Asked, Worst};
 use crate::report::three;
 use crate::results::Mark;
 
+/// Rounding of energies, over the largest of them.
+pub(super) const ROUNDING: f64 = 1e-12;
+
+/// Energy above what start and loads bring that methods without a promise need not tell, over the largest that was allowed: what implicit
+/// methods tell from on.
+pub(super) const LITTLE: f64 = 0.05;
+
 /// What is asked of a run that comes to its end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Demand {
