@@ -121,14 +121,8 @@ impl Simulation {
         step::options(self.settings(), self.system())
     }
 
-    /// What measures the error of a run of this scene, as a sentence goes on after "not known: ".
-    #[must_use]
-    pub fn how_to_know_the_error(&self) -> &'static str {
-        match self.system().internal_variables() {
-            0 => "`sinew plan --tolerance` measures it",
-            _ => "`sinew converge` estimates it",
-        }
-    }
+    /// What measures the error of a run, as a sentence goes on after "not known: ".
+    pub const HOW_TO_KNOW_THE_ERROR: &'static str = "`sinew plan --tolerance` measures it";
 
     /// Whether steps are cut by the current stiffness: dt = "auto" on a body that is not linear.
     #[must_use]

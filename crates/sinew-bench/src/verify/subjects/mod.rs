@@ -6,12 +6,14 @@ mod bonded_block;
 mod cantilever;
 mod cook;
 mod energy;
+mod fibres;
 mod free_cube;
 mod hanging_bar;
 mod held_cube;
 mod hyperelastic;
 mod incompressible;
 mod large_motion;
+mod memory;
 mod oscillator;
 mod pressure;
 mod propagation;
@@ -35,6 +37,8 @@ pub(super) const SUBJECTS: &[Subject] = &[
     energy::SUBJECT,
     springs::SUBJECT,
     hyperelastic::SUBJECT,
+    fibres::SUBJECT,
+    memory::SUBJECT,
     hanging_bar::SUBJECT,
     bonded_block::SUBJECT,
     bent_beam::SUBJECT,
