@@ -18,7 +18,7 @@ impl Kind for Field {
     fn shape(&self) -> Shape {
         let number = Shape::Number(std::ops::Bound::Unbounded, std::ops::Bound::Unbounded);
         let formula = Shape::Text {
-            pattern: Some("\\S"),
+            pattern: Some("^[-+*/^()0-9.\\seExyzpisncoqrtab]+$"),
             except: None,
         };
         Shape::List {

@@ -40,6 +40,7 @@ const FIBRES: TableDescription = TableDescription {
     examples: &[
         "{ direction = [0.0, 0.0, 1.0], eta = 2000.0 }",
         "{ direction = [1.0, 1.0, 0.0], k1 = 1000.0, k2 = 2.0, dispersion = 0.1 }",
+        "{ direction = [1.0, 0.0, 0.0], eta = 2000.0, split = true }",
     ],
 };
 

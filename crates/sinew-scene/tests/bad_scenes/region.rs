@@ -84,7 +84,7 @@ fn misspelt_density() {
         refusal(BODY, "density = 1060.0", "densty = 1060.0"),
         @"
     scene.toml:5: [[region]] 1: unknown key `densty`; did you mean `density`?
-    help: the keys here are `group`, `where`, `density`, `model`, `youngs_modulus`, `poissons_ratio`, `springs`, `c1_over_c2`, `element`, `edge_share`, `patch`
+    help: the keys here are `group`, `where`, `density`, `model`, `youngs_modulus`, `poissons_ratio`, `springs`, `c1_over_c2`, `element`, `edge_share`, `patch`, `fibres`, `prony`, `viscous_part`, `moduli`
     "
     );
 }
