@@ -58,6 +58,11 @@ pub trait ElasticLaw: Send + Sync {
     /// As [`ElasticLaw::elastic_force`].
     fn node_blocks(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError>;
 
+    /// Whether loads depend on the displacement, as those that follow the surface.
+    fn loads_follow(&self) -> bool {
+        false
+    }
+
     /// `out -= factor dF/du` (N/m), the symmetric part, with the loads F as far as they depend on the displacement: what Newton's method
     /// adds to the exact tangent.
     fn add_load_stiffness(&self, _trial: &Trial<'_>, _factor: f64, _out: &mut BlockMatrix) {}

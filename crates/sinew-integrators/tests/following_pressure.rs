@@ -292,3 +292,44 @@ fn a_body_that_breathes_under_pressure_keeps_its_energy() {
         );
     }
 }
+
+/// A load that lags behind the surface is no load of constant direction: the trapezoidal rule would make energy of the difference.
+#[test]
+fn cellular_energy_steps_follow_a_surface_by_implicit_euler_alone() {
+    let model = Model::build(&block(2), &pressed(Element::P1, 300.0, &ALL_ROUND)).unwrap();
+    let of = |kind: &str| build("cnn-energy", &plain().with_text("kind", kind));
+    let refused = of("trap").prepare(&model, 1e-3).unwrap_err().to_string();
+    assert!(
+        refused.contains("kind = \"ie\"") && refused.contains("`newmark`"),
+        "{refused}"
+    );
+    of("ie").prepare(&model, 1e-3).unwrap();
+}
+
+/// A pressure on one side alone has a derivative without symmetry at the rim, by which the iteration converges linearly.
+#[test]
+fn a_cube_finds_its_equilibrium_under_pressure_on_one_side() {
+    for (cells, pressure) in [(4, -300.0), (4, 300.0)] {
+        let mut problem = pressed(Element::P1, pressure, &["top"]);
+        problem.fixed = vec![Fixed {
+            on: "bottom".into(),
+            axes: [true; 3],
+        }];
+        let model = Model::build(&block(cells), &problem).unwrap();
+        let u = static_solution_under(&model, &model.full_loads(&[0])).unwrap();
+        let trial = Trial {
+            load: LoadTime::at(0.0),
+            dt: 0.0,
+            u: &u,
+            v: &vec![0.0; u.len()],
+            internal: &[],
+        };
+        let mut left = vec![0.0; u.len()];
+        model.net_force(&trial, &mut left).unwrap();
+        let size = |force: &[f64]| force.iter().map(|f| f * f).sum::<f64>().sqrt();
+        assert!(
+            size(&left) < 1e-7 * size(&external(&model, &u)),
+            "{pressure}"
+        );
+    }
+}

@@ -333,6 +333,7 @@ fn the_papers_network_presses_tissue_below_its_stable_step_and_is_refused_beyond
 }
 
 #[test]
+#[cfg(feature = "implicit")]
 fn options_that_need_matrices_are_refused_by_name_with_what_does_instead() {
     let scene = Scene::push();
     for (id, option, instead) in [

@@ -309,6 +309,10 @@ impl ElasticLaw for Model {
         })
     }
 
+    fn loads_follow(&self) -> bool {
+        !self.following.is_empty()
+    }
+
     fn add_load_stiffness(&self, trial: &Trial<'_>, factor: f64, out: &mut BlockMatrix) {
         for pressure in &*self.following {
             let displacement = self.displacement_of(trial.load, trial.u);

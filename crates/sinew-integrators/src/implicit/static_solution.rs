@@ -26,7 +26,7 @@ pub enum StaticError {
     },
     /// The equilibrium of a nonlinear law could be followed from the undeformed body to a share of the load only.
     #[error(
-        "the body carries {:.2} % of the load; for more no equilibrium was found: {source}",
+        "the equilibrium was followed up to {:.2} % of the load; beyond that none was found: {source}",
         100.0 * share
     )]
     Unreached {

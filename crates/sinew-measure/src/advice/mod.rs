@@ -77,6 +77,8 @@ pub struct Advice {
     pub whole: Span,
     /// The part of it, from t = 0 on, over which errors were measured.
     pub measured: Span,
+    /// Whether the stiffness changes with the deformation, so that a step that was stable over that part need not be so later.
+    pub stiffness_changes: bool,
     /// Instants (s) after that part at which loads jump or have kinks, increasing; no run saw what
     /// follows.
     pub unseen_changes: Vec<f64>,
@@ -158,6 +160,7 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
         refused.extend(unknown.map(|candidate| (candidate.method, LeftOut::StabilityUnknown)));
     }
 
+    let stiffness_changes = case.simulation().system().as_linear().is_none();
     let reference = case.info().reference;
     let reference_error = case.samples().error;
     let least_error = case.samples().least_error();
@@ -218,6 +221,7 @@ fn advise_here(simulation: Simulation, question: Question) -> Result<Advice, Adv
         question,
         whole,
         measured,
+        stiffness_changes,
         unseen_changes,
         reference,
         reference_error,

@@ -108,7 +108,7 @@ const GROUP: Key<Text, Optional> = Key::optional(
 
 const QUANTITY: Key<Words<Quantity>, Or<Quantity>> = Key::or(
     "quantity",
-    "What is written down. The stress is that of the elastic law, with von Mises' of the same (mean) stress beside it.",
+    "What is written down. The stress is that of the law, what relaxes of it included, with von Mises' of the same (mean) stress beside it.",
     Words(&[
         ("displacement", Quantity::Displacement),
         ("velocity", Quantity::Velocity),

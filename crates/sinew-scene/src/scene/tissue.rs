@@ -49,7 +49,7 @@ const DIRECTION: Key<Vector> = Key::required(
     "The direction of the fibres at rest; its length does not matter.",
     Vector {
         fits: |direction| *direction != [0.0; 3],
-        ..Vector::finite("a vector [x, y, z] that is not 0")
+        ..Vector::finite("a vector [x, y, z], all finite, that is not 0")
     },
 );
 

@@ -8,8 +8,8 @@ mod point;
 mod steps;
 
 use sinew_core::{
-    EnergyBehaviour, Needs, OptionError, OptionValue, Options, Properties, SetupError, StepReport,
-    System,
+    ElasticLaw, EnergyBehaviour, Needs, OptionError, OptionValue, Options, Properties, SetupError,
+    StepReport, System,
 };
 
 use self::steps::EnergySteps;
@@ -150,6 +150,14 @@ impl Scheme for CnnEnergy {
                 integrator: Self::ID,
                 needs: "an energy of the displacement alone behind the forces (stress that relaxes has none; `generalized-alpha`, `newmark` \
                         and explicit methods do without)",
+            });
+        }
+        let loads_follow = system.as_elastic().is_some_and(ElasticLaw::loads_follow);
+        if loads_follow && self.kind == Kind::Trapezoidal {
+            return Err(SetupError::Lacks {
+                integrator: Self::ID,
+                needs: "loads that do not depend on the displacement for kind = \"trap\", which would make energy of what they lag behind (kind = \"ie\" \
+                        takes the surface at the beginning of each step; `generalized-alpha`, `newmark` and explicit methods follow it)",
             });
         }
         let steps = EnergySteps::new(Self::ID, system, self.kind, self.sweeps);

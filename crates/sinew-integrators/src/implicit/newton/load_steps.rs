@@ -26,6 +26,12 @@ const SETTINGS: NewtonSettings = NewtonSettings {
     most_iterations: 25,
 };
 
+/// The same under loads that follow the surface, whose derivative the tangent has by its symmetric part: the iteration converges linearly.
+const SETTINGS_FOR_FOLLOWING_LOADS: NewtonSettings = NewtonSettings {
+    most_iterations: 50,
+    ..SETTINGS
+};
+
 /// Change of positions, as a share of body and displacement, that makes no difference.
 const ROUNDING: f64 = 1e-12;
 
@@ -114,7 +120,12 @@ pub(in crate::implicit) fn follow_load(
 ) -> Result<Vec<f64>, Unreached> {
     let at_start = |error| Unreached { share: 0.0, error };
     let dofs = system.dofs();
-    let mut newton = Newton::set_up(law, system.layers(), vec![1.0; dofs], SETTINGS, None)
+    let settings = if law.loads_follow() {
+        SETTINGS_FOR_FOLLOWING_LOADS
+    } else {
+        SETTINGS
+    };
+    let mut newton = Newton::set_up(law, system.layers(), vec![1.0; dofs], settings, None)
         .map_err(|error| at_start(NewtonError::Singular(error)))?;
     let mut equations = StaticEquations {
         system,
@@ -149,10 +160,30 @@ pub(in crate::implicit) fn follow_load(
             Err(error) => {
                 return Err(Unreached {
                     share: reached,
-                    error,
+                    error: if law.loads_follow() {
+                        with_way_out(error)
+                    } else {
+                        error
+                    },
                 });
             }
         }
     }
     Ok(u)
+}
+
+/// The error of an iteration that loads without a symmetric derivative slow down, with what comes to the same rest.
+fn with_way_out(error: NewtonError) -> NewtonError {
+    match error {
+        NewtonError::Unbalanced {
+            iterations,
+            residual,
+            ..
+        } => NewtonError::Unbalanced {
+            iterations,
+            residual,
+            reason: "loads that follow the surface slow them down; a run in which the load rises, with damping, comes to rest there",
+        },
+        other => other,
+    }
 }

@@ -252,9 +252,14 @@ fn provenance(advice: &Advice) -> String {
         let unseen = unseen_changes(advice).map_or_else(String::new, |changes| {
             format!("; no pilot saw what the loads do from {changes} on")
         });
+        let later = if advice.stiffness_changes {
+            "; large deformation changes the stiffness, and a step that is stable so far may not be so later"
+        } else {
+            ""
+        };
         lines.push(format!(
             "errors, costs and verdicts are those of the first {} s of {} s, all that the time for pilots allows; \
-             expected errors let phase errors grow on to {} s{unseen}: raise --pilot-seconds to cover more",
+             expected errors let phase errors grow on to {} s{unseen}{later}: raise --pilot-seconds to cover more",
             short(measured),
             short(whole),
             short(whole)
