@@ -67,6 +67,11 @@ pub trait ElasticLaw: Send + Sync {
     /// adds to the exact tangent.
     fn add_load_stiffness(&self, _trial: &Trial<'_>, _factor: f64, _out: &mut BlockMatrix) {}
 
+    /// `out = -factor dF/du w` (N), the part of the derivative without symmetry: what [`ElasticLaw::add_load_stiffness`] leaves out.
+    fn load_skew_product(&self, _trial: &Trial<'_>, _factor: f64, _w: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+    }
+
     /// `D`: the mass-proportional rate, the factor of the tangent, and a constant matrix.
     fn damping(&self) -> &Damping;
 }

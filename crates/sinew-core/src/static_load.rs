@@ -9,6 +9,11 @@ pub trait StaticLoad {
 
     /// `out -= factor dF/du` (N/m), the symmetric part; nothing for loads that do not depend on the displacement.
     fn add_stiffness(&self, _u: &[f64], _factor: f64, _out: &mut BlockMatrix) {}
+
+    /// `out = -factor dF/du w` (N), the part of the derivative without symmetry; whether there is any.
+    fn skew_product(&self, _u: &[f64], _factor: f64, _w: &[f64], _out: &mut [f64]) -> bool {
+        false
+    }
 }
 
 /// A constant force (N).

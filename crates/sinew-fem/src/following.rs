@@ -21,6 +21,13 @@ pub(crate) struct FollowingPressure {
     triangles: Vec<Triangle>,
 }
 
+/// A part of a derivative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    Symmetric,
+    Skew,
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Triangle {
     nodes: [u32; 3],
@@ -124,10 +131,10 @@ impl FollowingPressure {
         }
     }
 
-    /// Calls `add` with nodes and what [`FollowingPressure::add_stiffness`] gives times a change of the displacement (N).
+    /// Calls `add` with nodes and a part of the derivative of `-factor` times the forces, times a change of the displacement (N).
     pub(crate) fn stiffness_product(
         &self,
-        factor: f64,
+        (part, factor): (Part, f64),
         displacement: impl Fn(u32) -> [f64; 3],
         change: impl Fn(u32) -> [f64; 3],
         mut add: impl FnMut(u32, [f64; 3]),
@@ -139,8 +146,11 @@ impl FollowingPressure {
             for i in 0..3 {
                 let mut force = [0.0; 3];
                 for j in 0..3 {
-                    let turned = cross(minus(opposite[j], opposite[i]), moved[j]);
-                    force = plus(force, turned);
+                    let edge = match part {
+                        Part::Symmetric => minus(opposite[j], opposite[i]),
+                        Part::Skew => plus(opposite[j], opposite[i]),
+                    };
+                    force = plus(force, cross(edge, moved[j]));
                 }
                 add(triangle.nodes[i], force.map(|force| share * force));
             }

@@ -9,6 +9,7 @@ use sinew_core::{
 };
 
 use super::Model;
+use crate::following::{FollowingPressure, Part};
 use crate::large::{LargeDeformation, Past, Scratch, Wanted, fill};
 
 /// A hyperelastic body at a trial point. Evaluations of models without such regions leave everything to the matrices.
@@ -29,17 +30,34 @@ impl Model {
         })
     }
 
-    /// What [`ElasticLaw::add_load_stiffness`] adds, times a change of the displacement.
-    fn add_load_product(&self, trial: &Trial<'_>, change: &[f64], out: &mut [f64]) {
-        let cells = &self.body.cells;
+    /// Adds a part of the derivative of the loads times `-factor` and a change of the displacement.
+    fn add_load_product(
+        &self,
+        trial: &Trial<'_>,
+        (part, factor): (Part, f64),
+        change: &[f64],
+        out: &mut [f64],
+    ) {
         for pressure in &*self.following {
-            pressure.stiffness_product(
-                pressure.factor(trial.load),
-                self.displacement_of(trial.load, trial.u),
-                |node| cells.at_node(change, node),
-                |node, force| self.add_at_node((node, force), 1.0, out),
-            );
+            let displacement = self.displacement_of(trial.load, trial.u);
+            let factor = factor * pressure.factor(trial.load);
+            self.add_product_of((pressure, part, factor), displacement, change, out);
         }
+    }
+
+    pub(super) fn add_product_of(
+        &self,
+        (pressure, part, factor): (&FollowingPressure, Part, f64),
+        displacement: impl Fn(u32) -> [f64; 3],
+        change: &[f64],
+        out: &mut [f64],
+    ) {
+        pressure.stiffness_product(
+            (part, factor),
+            displacement,
+            |node| self.body.cells.at_node(change, node),
+            |node, force| self.add_at_node((node, force), 1.0, out),
+        );
     }
 
     /// Writes a field over the degrees of freedom to all nodes, prescribed motions included.
@@ -216,7 +234,7 @@ impl ForceLaw for Model {
         let mut product = |x: &[f64], out: &mut [f64]| {
             let product = self.product(&trial, Wanted::Stiffest, x, out);
             failed |= product.is_err();
-            self.add_load_product(&trial, x, out);
+            self.add_load_product(&trial, (Part::Symmetric, 1.0), x, out);
         };
         let largest = |product: &mut dyn FnMut(&[f64], &mut [f64])| match about {
             Some(_) => estimated_largest_eigenvalue(mass, product),
@@ -319,6 +337,11 @@ impl ElasticLaw for Model {
             let factor = factor * pressure.factor(trial.load);
             pressure.add_stiffness(factor, &self.body.cells, displacement, out);
         }
+    }
+
+    fn load_skew_product(&self, trial: &Trial<'_>, factor: f64, w: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        self.add_load_product(trial, (Part::Skew, factor), w, out);
     }
 
     fn damping(&self) -> &Damping {

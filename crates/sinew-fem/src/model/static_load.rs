@@ -3,7 +3,7 @@
 use sinew_core::{BlockMatrix, LoadTime, StaticLoad};
 
 use super::Model;
-use crate::following::FollowingPressure;
+use crate::following::{FollowingPressure, Part};
 
 /// Some loads of a model at their full value, whatever their ramps; pressures follow the surface where they do. Supports are where they
 /// are at t = 0.
@@ -53,5 +53,15 @@ impl StaticLoad for ModelLoads<'_> {
         for pressure in &self.following {
             pressure.add_stiffness(factor, &self.model.body.cells, &displacement, out);
         }
+    }
+
+    fn skew_product(&self, u: &[f64], factor: f64, w: &[f64], out: &mut [f64]) -> bool {
+        out.fill(0.0);
+        let displacement = self.model.displacement_of(LoadTime::at(0.0), u);
+        for &pressure in &self.following {
+            let part = (pressure, Part::Skew, factor);
+            self.model.add_product_of(part, &displacement, w, out);
+        }
+        !self.following.is_empty()
     }
 }

@@ -26,12 +26,6 @@ const SETTINGS: NewtonSettings = NewtonSettings {
     most_iterations: 25,
 };
 
-/// The same under loads that follow the surface, whose derivative the tangent has by its symmetric part: the iteration converges linearly.
-const SETTINGS_FOR_FOLLOWING_LOADS: NewtonSettings = NewtonSettings {
-    most_iterations: 50,
-    ..SETTINGS
-};
-
 /// Change of positions, as a share of body and displacement, that makes no difference.
 const ROUNDING: f64 = 1e-12;
 
@@ -89,6 +83,10 @@ impl Equations for StaticEquations<'_> {
         Ok(())
     }
 
+    fn skew_product(&mut self, x: &[f64], change: &[f64], out: &mut [f64]) -> bool {
+        self.load.skew_product(x, self.share, change, out)
+    }
+
     fn derivative(&self) -> (&[f64], Combination) {
         (self.system.mass(), Combination::STATIC)
     }
@@ -120,12 +118,7 @@ pub(in crate::implicit) fn follow_load(
 ) -> Result<Vec<f64>, Unreached> {
     let at_start = |error| Unreached { share: 0.0, error };
     let dofs = system.dofs();
-    let settings = if law.loads_follow() {
-        SETTINGS_FOR_FOLLOWING_LOADS
-    } else {
-        SETTINGS
-    };
-    let mut newton = Newton::set_up(law, system.layers(), vec![1.0; dofs], settings, None)
+    let mut newton = Newton::set_up(law, system.layers(), vec![1.0; dofs], SETTINGS, None)
         .map_err(|error| at_start(NewtonError::Singular(error)))?;
     let mut equations = StaticEquations {
         system,
@@ -160,30 +153,10 @@ pub(in crate::implicit) fn follow_load(
             Err(error) => {
                 return Err(Unreached {
                     share: reached,
-                    error: if law.loads_follow() {
-                        with_way_out(error)
-                    } else {
-                        error
-                    },
+                    error,
                 });
             }
         }
     }
     Ok(u)
-}
-
-/// The error of an iteration that loads without a symmetric derivative slow down, with what comes to the same rest.
-fn with_way_out(error: NewtonError) -> NewtonError {
-    match error {
-        NewtonError::Unbalanced {
-            iterations,
-            residual,
-            ..
-        } => NewtonError::Unbalanced {
-            iterations,
-            residual,
-            reason: "loads that follow the surface slow them down; a run in which the load rises, with damping, comes to rest there",
-        },
-        other => other,
-    }
 }

@@ -6,6 +6,7 @@ mod newton_error;
 mod settings;
 mod solver;
 mod step_equations;
+mod unsymmetric;
 
 pub(super) use self::load_steps::follow_load;
 pub use self::newton_error::NewtonError;

@@ -5,6 +5,7 @@ use sinew_core::{BlockMatrix, ElasticLaw, EvaluationError, Layers, StepReport, T
 
 use super::newton_error::NewtonError;
 use super::settings::NewtonSettings;
+use super::unsymmetric::Unsymmetric;
 use crate::implicit::factor::{Combination, Factor, Matrices};
 use crate::implicit::factor_error::FactorError;
 
@@ -49,6 +50,11 @@ pub(super) trait Equations {
 
     /// The masses (kg), and the derivative of g as a combination of them, the tangent and the other damping.
     fn derivative(&self) -> (&[f64], Combination);
+
+    /// Writes the part of the derivative without symmetry at `x`, which is not in the tangent, times a change of x; whether there is any.
+    fn skew_product(&mut self, _x: &[f64], _change: &[f64], _out: &mut [f64]) -> bool {
+        false
+    }
 
     /// Size of the forces that balance each other at a point, in the norm by these weights.
     fn forces(&self, point: &Point, weights: &[f64]) -> f64;
@@ -126,6 +132,7 @@ pub(super) struct Newton {
     /// The last refusal of the present iteration.
     refusal: Option<EvaluationError>,
     singular: Option<FactorError>,
+    unsymmetric: Unsymmetric,
 }
 
 impl Newton {
@@ -165,6 +172,7 @@ impl Newton {
             trial: Point::new(dofs),
             refusal: None,
             singular: None,
+            unsymmetric: Unsymmetric::default(),
         })
     }
 
@@ -289,6 +297,12 @@ impl Newton {
         }
         self.factor.solve(&mut self.direction);
         work.solves += 1;
+        if kind == TangentKind::Exact {
+            let x = &self.point.x;
+            let skew = |change: &[f64], out: &mut [f64]| equations.skew_product(x, change, out);
+            let direction = &mut self.direction;
+            work.solves += self.unsymmetric.solve(&mut self.factor, skew, direction);
+        }
         work.projected_solves += u64::from(kind != TangentKind::Exact);
         Some(dot(&self.point.residual, &self.direction))
     }

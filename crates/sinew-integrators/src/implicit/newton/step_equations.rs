@@ -142,6 +142,16 @@ impl Equations for StepEquations<'_> {
         Ok(())
     }
 
+    fn skew_product(&mut self, x: &[f64], change: &[f64], out: &mut [f64]) -> bool {
+        if !self.law.loads_follow() {
+            return false;
+        }
+        self.place(x);
+        let [_, k] = self.unknown.coefficients;
+        self.law.load_skew_product(&self.trial(), k, change, out);
+        true
+    }
+
     fn derivative(&self) -> (&[f64], Combination) {
         let [d, k] = self.unknown.coefficients;
         (
