@@ -29,7 +29,8 @@ impl Unsymmetric {
     ) -> u64 {
         self.product.resize(x.len(), 0.0);
         let size = norm(x);
-        if !skew(x, &mut self.product) || !(size > 0.0 && size.is_finite()) {
+        let is_there = skew(x, &mut self.product) && size > 0.0 && size.is_finite();
+        if !is_there {
             return 0;
         }
         self.keep(0, x, size);
