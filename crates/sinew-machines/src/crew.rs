@@ -6,7 +6,7 @@ use std::thread::{self, Thread};
 
 use sinew_sparse::sweep::Outcome;
 
-/// Chunks that are taken at a time, where there are many.
+/// Chunks that are taken at a time, where each thread has as many.
 const BLOCK: usize = 4;
 
 /// Looks for work, or for its end, before a thread lets others run: some tens of microseconds.
@@ -76,6 +76,8 @@ pub(crate) struct Crew<'a> {
     work: &'a (dyn Fn(Range<usize>) -> Outcome + Sync),
     /// Chunks of the present sweep.
     chunks: AtomicUsize,
+    /// Chunks that are taken at a time.
+    block: AtomicUsize,
     /// What is left of each thread's share.
     left: Vec<Left>,
     /// Chunks that are done.
@@ -120,6 +122,7 @@ impl<'a> Crew<'a> {
         let crew = Crew {
             work,
             chunks: AtomicUsize::new(0),
+            block: AtomicUsize::new(BLOCK),
             left: (0..threads).map(|_| Left::none()).collect(),
             done: AtomicUsize::new(0),
             turn: AtomicUsize::new(0),
@@ -161,7 +164,7 @@ impl<'a> Crew<'a> {
     fn take_part(&self, thread: usize) {
         let threads = self.left.len();
         for other in (0..threads).map(|step| (thread + step) % threads) {
-            while let Some(chunks) = self.left[other].take() {
+            while let Some(chunks) = self.left[other].take(self.block.load(Ordering::Relaxed)) {
                 // Also where the work panics, so that the host does not wait for ever.
                 let _done = Done(self, chunks.len());
                 let outcome = (self.work)(chunks);
@@ -211,15 +214,15 @@ impl Left {
         self.0.store(word, Ordering::Release);
     }
 
-    /// Takes the next chunks: some where there are many, one by one where there are few.
-    fn take(&self) -> Option<Range<usize>> {
+    /// Takes the next chunks, a block of them.
+    fn take(&self, block: usize) -> Option<Range<usize>> {
         let mut word = self.0.load(Ordering::Acquire);
         loop {
             let (first, end) = ((word & u64::from(u32::MAX)) as usize, (word >> 32) as usize);
             if first >= end {
                 return None;
             }
-            let next = (first + if end - first > 2 * BLOCK { BLOCK } else { 1 }).min(end);
+            let next = (first + block).min(end);
             let after = (end as u64) << 32 | next as u64;
             let exchange =
                 self.0
@@ -260,6 +263,9 @@ impl Host<'_> {
         crew.done.store(0, Ordering::Relaxed);
         crew.chunks.store(chunks, Ordering::SeqCst);
         let threads = crew.left.len();
+        // Where there are few, each is worth a thread of its own.
+        let block = if chunks > threads * BLOCK { BLOCK } else { 1 };
+        crew.block.store(block, Ordering::Relaxed);
         for (thread, left) in crew.left.iter().enumerate() {
             left.set(chunks * thread / threads..chunks * (thread + 1) / threads);
         }
