@@ -9,7 +9,7 @@ use sinew_bench::output::{OutputError, OutputFolder, OwnedFolder, say};
 use sinew_bench::report::{WriteError, brief, terminal, write_all};
 use sinew_bench::results::BenchResults;
 use sinew_bench::scale::ScaleBench;
-use sinew_bench::{Bench, machine, revision};
+use sinew_bench::{Bench, BenchError, Progress, machine, revision};
 
 use crate::beside::{self, Program};
 use crate::failure::Failure;
@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "beside"])]
     kernels: bool,
     /// Measure methods, laws and elements on tissue of large deformation instead: errors in time and of the mesh, cost, energy, smallest
-    /// elements; exits with 1 if a mark is not passed; about ten minutes
+    /// elements; exits with 1 if a mark is not passed; about a quarter of an hour
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "kernels", "beside"])]
     nonlinear: bool,
     /// Measure methods on cubes from 10 to 60 cells a side instead: error, time, set-up and memory over size, and
@@ -98,14 +98,26 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(program) = arguments.beside {
         return beside::run(program, &bench);
     }
-    let folder = folder(arguments, &bench.input_files());
     bench.check().map_err(Failure::input)?;
-    folder.check(&bench.output_files())?;
+    let files = (bench.input_files(), bench.output_files());
+    measure(arguments, files, |show| {
+        bench.run(revision(&root()), machine(), show)
+    })
+}
+
+/// Runs a bench that reads and writes these files, shows how far it is, and writes its results.
+fn measure(
+    arguments: &Arguments,
+    (inputs, outputs): (Vec<PathBuf>, Vec<String>),
+    run: impl FnOnce(&mut (dyn FnMut(Progress) + Send)) -> Result<BenchResults, BenchError>,
+) -> Result<(), Failure> {
+    let folder = folder(arguments, &inputs);
+    folder.check(&outputs)?;
     let bar = Bar::new();
-    let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
+    let results = run(&mut |progress| bar.show(progress));
     bar.finish();
     let results = results.map_err(Failure::input)?;
-    let _mine = folder.claim(&bench.output_files())?;
+    let _mine = folder.claim(&outputs)?;
     conclude(&results, &folder.files, arguments.all)
 }
 
@@ -115,14 +127,10 @@ fn run_hard(arguments: &Arguments) -> Result<(), Failure> {
         scenes: root().join("scenes"),
         quick: arguments.quick,
     };
-    let folder = folder(arguments, &bench.input_files());
-    folder.check(&bench.output_files())?;
-    let bar = Bar::new();
-    let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
-    bar.finish();
-    let results = results.map_err(Failure::input)?;
-    let _mine = folder.claim(&bench.output_files())?;
-    conclude(&results, &folder.files, arguments.all)
+    let files = (bench.input_files(), bench.output_files());
+    measure(arguments, files, |show| {
+        bench.run(revision(&root()), machine(), show)
+    })
 }
 
 /// Measures large deformations.
@@ -131,14 +139,10 @@ fn run_nonlinear(arguments: &Arguments) -> Result<(), Failure> {
         scenes: root().join("scenes"),
         quick: arguments.quick,
     };
-    let folder = folder(arguments, &bench.input_files());
-    folder.check(&bench.output_files())?;
-    let bar = Bar::new();
-    let results = bench.run(revision(&root()), machine(), |progress| bar.show(progress));
-    bar.finish();
-    let results = results.map_err(Failure::input)?;
-    let _mine = folder.claim(&bench.output_files())?;
-    conclude(&results, &folder.files, arguments.all)
+    let files = (bench.input_files(), bench.output_files());
+    measure(arguments, files, |show| {
+        bench.run(revision(&root()), machine(), show)
+    })
 }
 
 /// Measures the kernels.

@@ -31,7 +31,7 @@ const NOT_RUN: [(&str, &str); 10] = [
     ),
     (
         "cargo xtask bench --nonlinear",
-        "ten minutes; `ci` has the quick one",
+        "a quarter of an hour; `ci` has the quick one",
     ),
     (
         "cargo xtask bench --hard",

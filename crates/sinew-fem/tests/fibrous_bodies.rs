@@ -4,10 +4,12 @@
 
 mod common;
 
-use common::{at_most, body, build, dot, held, jitter, max_abs, relative_difference};
+use common::{
+    at, at_most, body, build, dot, elastic, held, max_abs, moved, product, relative_difference,
+    uneven_cube, waves,
+};
 use sinew_core::{
-    BlockMatrix, ElasticLaw, ElementStiffness, Elements, ForceLaw, Layers, LoadTime, System,
-    TangentKind, Trial,
+    BlockMatrix, ElasticLaw, ElementStiffness, Elements, ForceLaw, Layers, System, TangentKind,
 };
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
@@ -73,12 +75,6 @@ fn all() -> impl Iterator<Item = (String, Problem)> {
     })
 }
 
-fn uneven_cube() -> TetMesh {
-    let mut mesh = structured::cube(3, 0.1, Split::Kuhn).unwrap();
-    jitter(&mut mesh, 0.006, 11);
-    mesh
-}
-
 fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
     common::on_cells(model, |node| {
         let [x, y, z] = mesh.points[node];
@@ -88,38 +84,6 @@ fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
             size * (0.25 * z + 0.15 * y + 3.0 * x * x),
         ]
     })
-}
-
-fn waves(dofs: usize, seed: f64) -> Vec<f64> {
-    (0..dofs).map(|i| (seed * i as f64 + seed).sin()).collect()
-}
-
-fn moved(u: &[f64], h: f64, w: &[f64]) -> Vec<f64> {
-    u.iter().zip(w).map(|(u, w)| u + h * w).collect()
-}
-
-fn at<'a>(u: &'a [f64], v: &'a [f64]) -> Trial<'a> {
-    Trial {
-        load: LoadTime::at(0.0),
-        dt: 0.0,
-        u,
-        v,
-        internal: &[],
-    }
-}
-
-fn elastic(model: &Model, u: &[f64]) -> (f64, Vec<f64>) {
-    let (mut force, v) = (vec![0.0; u.len()], vec![0.0; u.len()]);
-    let found = model.elastic_force(&at(u, &v), &mut force).unwrap();
-    (found.energy, force)
-}
-
-fn product(model: &Model, kind: TangentKind, u: &[f64], w: &[f64]) -> Vec<f64> {
-    let (mut out, v) = (vec![0.0; u.len()], vec![0.0; u.len()]);
-    model
-        .tangent_product(&at(u, &v), kind, w, &mut out)
-        .unwrap();
-    out
 }
 
 #[test]

@@ -5,9 +5,10 @@
 mod common;
 
 use common::{
-    at_most, body, build, dot, held, jitter, linear, max_abs, relative_difference, stiffness_times,
+    at, at_most, body, build, dot, elastic, held, jitter, linear, max_abs, product,
+    relative_difference, stiffness_times, uneven_cube, waves,
 };
-use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, LoadTime, System, TangentKind, Trial};
+use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, System, TangentKind};
 use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
 use sinew_fem::{Element, Law, Model, Problem, Region, Tissue};
 use sinew_mesh::structured::{self, Split};
@@ -53,12 +54,6 @@ fn all() -> impl Iterator<Item = (&'static str, Element)> {
     ids.flat_map(|id| ELEMENTS.into_iter().map(move |element| (*id, element)))
 }
 
-fn uneven_cube() -> TetMesh {
-    let mut mesh = structured::cube(3, 0.1, Split::Kuhn).unwrap();
-    jitter(&mut mesh, 0.006, 11);
-    mesh
-}
-
 /// A displacement that squeezes, turns and bends, with strains of some 30 %.
 fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
     common::on_cells(model, |node| {
@@ -69,34 +64,6 @@ fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
             size * (-0.25 * z + 0.15 * y + 3.0 * x * x),
         ]
     })
-}
-
-fn waves(dofs: usize, seed: f64) -> Vec<f64> {
-    (0..dofs).map(|i| (seed * i as f64 + seed).sin()).collect()
-}
-
-fn at<'a>(u: &'a [f64], v: &'a [f64]) -> Trial<'a> {
-    Trial {
-        load: LoadTime::at(0.0),
-        dt: 0.0,
-        u,
-        v,
-        internal: &[],
-    }
-}
-
-fn elastic(model: &Model, u: &[f64]) -> (f64, Vec<f64>) {
-    let (mut force, v) = (vec![0.0; u.len()], vec![0.0; u.len()]);
-    let found = model.elastic_force(&at(u, &v), &mut force).unwrap();
-    (found.energy, force)
-}
-
-fn product(model: &Model, kind: TangentKind, u: &[f64], w: &[f64]) -> Vec<f64> {
-    let (mut out, v) = (vec![0.0; u.len()], vec![0.0; u.len()]);
-    model
-        .tangent_product(&at(u, &v), kind, w, &mut out)
-        .unwrap();
-    out
 }
 
 #[test]

@@ -4,7 +4,9 @@
 
 mod common;
 
-use common::{at_most, body, build, dot, held, jitter, max_abs, relative_difference};
+use common::{
+    at_most, body, build, dot, held, max_abs, moved, relative_difference, uneven_cube, waves,
+};
 use sinew_core::{
     BlockMatrix, ElasticLaw, ForceLaw, Inputs, Layers, LoadTime, State, System, TangentKind, Trial,
 };
@@ -84,12 +86,6 @@ fn all() -> impl Iterator<Item = (String, Problem)> {
     })
 }
 
-fn uneven_cube() -> TetMesh {
-    let mut mesh = structured::cube(3, 0.1, Split::Kuhn).unwrap();
-    jitter(&mut mesh, 0.006, 11);
-    mesh
-}
-
 fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
     common::on_cells(model, |node| {
         let [x, y, z] = mesh.points[node];
@@ -99,14 +95,6 @@ fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
             size * (0.25 * z + 0.15 * y + 3.0 * x * x),
         ]
     })
-}
-
-fn waves(dofs: usize, seed: f64) -> Vec<f64> {
-    (0..dofs).map(|i| (seed * i as f64 + seed).sin()).collect()
-}
-
-fn moved(u: &[f64], h: f64, w: &[f64]) -> Vec<f64> {
-    u.iter().zip(w).map(|(u, w)| u + h * w).collect()
 }
 
 /// A state that remembers nothing but rest.

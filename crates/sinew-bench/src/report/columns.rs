@@ -143,10 +143,7 @@ static OTHER_COLUMNS: [Column; 7] = [
         head: "times",
         unit: "",
         explained: "CPU time over that of central difference whose steps follow the stiffness, on the same scene in the same run",
-        cell: |row| {
-            row.cost_ratio
-                .map_or_else(String::new, |x| shown(x, number::three))
-        },
+        cell: |row| three(row.cost_ratio),
         key: Some(|row| row.cost_ratio.unwrap_or(f64::INFINITY)),
     },
     Column {
@@ -160,20 +157,14 @@ static OTHER_COLUMNS: [Column; 7] = [
         head: "least J",
         unit: "",
         explained: "smallest ratio of an element's volume to that at rest, over all steps",
-        cell: |row| {
-            row.smallest_volume_ratio
-                .map_or_else(String::new, |x| shown(x, number::three))
-        },
+        cell: |row| three(row.smallest_volume_ratio),
         key: Some(|row| row.smallest_volume_ratio.unwrap_or(f64::NEG_INFINITY)),
     },
     Column {
         head: "dt/crit.",
         unit: "",
         explained: "step over the critical step 2/omega of the fastest undamped mode",
-        cell: |row| {
-            row.step_over_critical
-                .map_or_else(String::new, |x| shown(x, number::three))
-        },
+        cell: |row| three(row.step_over_critical),
         key: Some(|row| row.step_over_critical.unwrap_or(f64::INFINITY)),
     },
     Column {
@@ -187,10 +178,7 @@ static OTHER_COLUMNS: [Column; 7] = [
         head: "energy drift",
         unit: "1/1000 steps",
         explained: "relative change of the method's own energy in 1000 steps, where nothing damps or loads the body",
-        cell: |row| {
-            row.energy_drift
-                .map_or_else(String::new, |x| shown(x, number::three))
-        },
+        cell: |row| three(row.energy_drift),
         key: Some(|row| row.energy_drift.unwrap_or(f64::INFINITY)),
     },
 ];
@@ -221,6 +209,10 @@ fn sweeps(row: &Row) -> String {
 /// A share in per cent where there is one.
 fn share(value: Option<f64>) -> String {
     value.map_or_else(String::new, |x| shown(x, number::percent))
+}
+
+fn three(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |x| shown(x, number::three))
 }
 
 fn yes(value: bool) -> String {

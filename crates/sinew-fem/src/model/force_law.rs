@@ -38,10 +38,13 @@ impl Model {
         change: &[f64],
         out: &mut [f64],
     ) {
+        if self.following.is_empty() {
+            return;
+        }
+        let displacement = self.displacement_of(trial.load, trial.u);
         for pressure in &*self.following {
-            let displacement = self.displacement_of(trial.load, trial.u);
             let factor = factor * pressure.factor(trial.load);
-            self.add_product_of((pressure, part, factor), displacement, change, out);
+            self.add_product_of((pressure, part, factor), &displacement, change, out);
         }
     }
 
@@ -332,10 +335,13 @@ impl ElasticLaw for Model {
     }
 
     fn add_load_stiffness(&self, trial: &Trial<'_>, factor: f64, out: &mut BlockMatrix) {
+        if self.following.is_empty() {
+            return;
+        }
+        let displacement = self.displacement_of(trial.load, trial.u);
         for pressure in &*self.following {
-            let displacement = self.displacement_of(trial.load, trial.u);
             let factor = factor * pressure.factor(trial.load);
-            pressure.add_stiffness(factor, &self.body.cells, displacement, out);
+            pressure.add_stiffness(factor, &self.body.cells, &displacement, out);
         }
     }
 

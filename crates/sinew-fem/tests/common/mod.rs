@@ -2,10 +2,11 @@
 
 #![allow(dead_code, reason = "each test file uses some of these")]
 
-use sinew_core::{LinearSystem, LoadTime, Ramp, System};
+use sinew_core::{ElasticLaw, LinearSystem, LoadTime, Ramp, System, TangentKind, Trial};
 use sinew_fem::{
     Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule, Tissue,
 };
+use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
 /// Density of soft tissue (kg/m^3).
@@ -222,4 +223,48 @@ pub(crate) fn relative_difference(reached: &[f64], expected: &[f64]) -> f64 {
     assert_eq!(reached.len(), expected.len());
     let difference: Vec<f64> = reached.iter().zip(expected).map(|(a, b)| a - b).collect();
     max_abs(&difference) / max_abs(expected)
+}
+
+/// A cube of 10 cm whose inner and outer nodes are moved about.
+pub(crate) fn uneven_cube() -> TetMesh {
+    let mut mesh = structured::cube(3, 0.1, Split::Kuhn).unwrap_or_else(|error| panic!("{error}"));
+    jitter(&mut mesh, 0.006, 11);
+    mesh
+}
+
+/// Any numbers for the degrees of freedom.
+pub(crate) fn waves(dofs: usize, seed: f64) -> Vec<f64> {
+    (0..dofs).map(|i| (seed * i as f64 + seed).sin()).collect()
+}
+
+/// `u + h w`.
+pub(crate) fn moved(u: &[f64], h: f64, w: &[f64]) -> Vec<f64> {
+    u.iter().zip(w).map(|(u, w)| u + h * w).collect()
+}
+
+/// A point of a body that remembers nothing, at t = 0.
+pub(crate) fn at<'a>(u: &'a [f64], v: &'a [f64]) -> Trial<'a> {
+    Trial {
+        load: LoadTime::at(0.0),
+        dt: 0.0,
+        u,
+        v,
+        internal: &[],
+    }
+}
+
+/// Elastic energy (J) and force (N) at a displacement.
+pub(crate) fn elastic(model: &Model, u: &[f64]) -> (f64, Vec<f64>) {
+    let (mut force, v) = (vec![0.0; u.len()], vec![0.0; u.len()]);
+    let found = model.elastic_force(&at(u, &v), &mut force);
+    let found = found.unwrap_or_else(|error| panic!("{error}"));
+    (found.energy, force)
+}
+
+/// The tangent at a displacement times a change of it (N).
+pub(crate) fn product(model: &Model, kind: TangentKind, u: &[f64], w: &[f64]) -> Vec<f64> {
+    let (mut out, v) = (vec![0.0; u.len()], vec![0.0; u.len()]);
+    let made = model.tangent_product(&at(u, &v), kind, w, &mut out);
+    made.unwrap_or_else(|error| panic!("{error}"));
+    out
 }

@@ -88,12 +88,14 @@ impl EnergyWatch {
         let kinetic = 0.5 * weighted_dot(step.system.mass(), &state.v, &state.v);
         let energy = kinetic + deformed.energy;
         if self.expected == Some(t) {
-            // What loads that follow the surface have changed by with it.
-            step.system
-                .external_force(ends[0], &self.before, &mut self.buffer);
-            for ((load, now), then) in self.load.iter_mut().zip(&self.start_load).zip(&self.buffer)
-            {
-                *load += 0.5 * (now - then);
+            if law.loads_follow() {
+                // What they have changed by with the surface.
+                step.system
+                    .external_force(ends[0], &self.before, &mut self.buffer);
+                let values = self.start_load.iter().zip(&self.buffer);
+                for (load, (now, then)) in self.load.iter_mut().zip(values) {
+                    *load += 0.5 * (now - then);
+                }
             }
             for (before, u) in self.before.iter_mut().zip(&state.u) {
                 *before = u - *before;
