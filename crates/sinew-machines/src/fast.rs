@@ -63,6 +63,17 @@ enum Work {
     Cells,
 }
 
+impl Work {
+    /// Numbers that tell apart what takes different times.
+    fn kind(self) -> usize {
+        match self {
+            Self::Cells => 0,
+            Self::Take(_) => 1,
+            Self::Elements(pass) => 2 + pass,
+        }
+    }
+}
+
 /// A sweep of a program that is under way.
 #[derive(Clone, Copy, Debug)]
 struct Current<T> {
@@ -484,9 +495,15 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
     fn make(&mut self, current: Current<T>) -> Outcome {
         write(self.loaded).prepare(current);
         let chunks = read(self.loaded).chunks();
-        let outcome = self.host.sweep(chunks);
+        let outcome = self.sweep_over(chunks);
         write(self.loaded).swap();
         outcome
+    }
+
+    /// Makes the work that has been prepared.
+    fn sweep_over(&mut self, chunks: usize) -> Outcome {
+        let kind = read(self.loaded).work.kind();
+        self.host.sweep(kind, chunks)
     }
 
     /// Computes the forces of elements at the displacement in a register.
@@ -505,14 +522,14 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
         elements.begin(when).map_err(refused)?;
         let passes = elements.passes();
         drop(loaded);
-        self.host.sweep(chunks);
+        self.sweep_over(chunks);
         for pass in 0..passes {
             let mut loaded = write(self.loaded);
             loaded.work = Work::Elements(pass);
             let elements = loaded.elements.as_ref();
             let parts = elements.map_or(0, |(elements, _)| elements.parts(pass));
             drop(loaded);
-            if self.host.sweep(parts).exceeded {
+            if self.sweep_over(parts).exceeded {
                 let mut loaded = write(self.loaded);
                 let elements = loaded.elements.as_mut();
                 let refusal = elements.map(|(elements, _)| refused(elements.refusal()));

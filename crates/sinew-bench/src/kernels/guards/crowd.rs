@@ -64,6 +64,7 @@ pub(super) fn guards(quick: bool) -> Result<Vec<Guard>, KernelBenchError> {
         }
         Ok::<(), KernelBenchError>(())
     };
+    measure(0, cores)?;
     measure(cores, cores)?;
     measure(0, 4 * cores)?;
     measure(cores, 4 * cores)?;

@@ -1,10 +1,15 @@
 //! Threads that share the chunks of a sweep.
 
+mod patience;
+
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::thread::{self, Thread};
+use std::time::Instant;
 
 use sinew_sparse::sweep::Outcome;
+
+pub(crate) use patience::Patience;
 
 /// Chunks that are taken at a time, where each thread has as many.
 const BLOCK: usize = 4;
@@ -15,63 +20,10 @@ const SPINS: u32 = 4_000;
 /// Times that the host lets others run before it sleeps.
 const YIELDS: u32 = 20;
 
-/// Sweeps after which late workers are counted.
-const WATCHED: u32 = 32;
-
-/// Late sweeps of those that the host puts up with: each may cost it a slice of the scheduler, milliseconds.
-const MOST_LATE: u32 = 1;
-
-/// Most sweeps that it goes on alone.
-const LONGEST_ALONE: u32 = 4096;
-
-/// The host's memory of late workers, kept from batch to batch: on a machine that others use, every batch would
-/// find out again.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Patience {
-    watched: u32,
-    late: u32,
-    /// Sweeps that are still made alone, and how many the next time.
-    alone: u32,
-    next_alone: u32,
-}
-
-impl Default for Patience {
-    fn default() -> Self {
-        Self {
-            watched: 0,
-            late: 0,
-            alone: 0,
-            next_alone: WATCHED,
-        }
-    }
-}
-
-impl Patience {
-    /// Whether so many sweeps are made alone anyway.
-    pub(crate) fn is_alone_for(&self, sweeps: usize) -> bool {
-        self.alone as usize >= sweeps
-    }
-
-    /// Notes a sweep with others.
-    fn note(&mut self, late: bool) {
-        self.watched += 1;
-        self.late += u32::from(late);
-        if self.late > MOST_LATE {
-            self.alone = self.next_alone;
-            self.next_alone = (2 * self.next_alone).min(LONGEST_ALONE);
-            (self.watched, self.late) = (0, 0);
-        } else if self.watched == WATCHED {
-            // Others are in time again.
-            self.next_alone = (self.next_alone / 2).max(WATCHED);
-            (self.watched, self.late) = (0, 0);
-        }
-    }
-}
-
 /// Threads that take part in sweeps for as long as a batch lasts. Every chunk is computed by one thread,
 /// whichever; each begins with its own share, so that its rows stay in its cache, and then takes what
 /// others have left. So a thread that gets no processor delays none but the chunks it is at. Where
-/// that happens often, the host goes on alone for a while, longer each time.
+/// others cost more time than they save, the host goes on alone ([`Patience`]).
 pub(crate) struct Crew<'a> {
     work: &'a (dyn Fn(Range<usize>) -> Outcome + Sync),
     /// Chunks of the present sweep.
@@ -103,6 +55,11 @@ pub(crate) struct Host<'a> {
     patience: &'a mut Patience,
 }
 
+/// Time since a moment (s).
+fn since(moment: Instant) -> f64 {
+    moment.elapsed().as_secs_f64()
+}
+
 impl<'a> Crew<'a> {
     /// Runs `body` with so many threads, itself included, for sweeps whose chunks are made by `work`.
     pub(crate) fn gather<R>(
@@ -110,15 +67,15 @@ impl<'a> Crew<'a> {
         work: &'a (dyn Fn(Range<usize>) -> Outcome + Sync),
         body: impl FnOnce(&mut Host<'_>) -> R,
     ) -> R {
-        let mut host = Host {
-            work,
-            crew: None,
-            workers: Vec::new(),
-            patience,
-        };
         if threads <= 1 {
-            return body(&mut host);
+            return body(&mut Host {
+                work,
+                crew: None,
+                workers: Vec::new(),
+                patience,
+            });
         }
+        let begun = Instant::now();
         let crew = Crew {
             work,
             chunks: AtomicUsize::new(0),
@@ -133,7 +90,7 @@ impl<'a> Crew<'a> {
             saturated: AtomicU64::new(0),
             exceeded: AtomicBool::new(false),
         };
-        thread::scope(|scope| {
+        let (result, ended) = thread::scope(|scope| {
             let workers = (1..threads).map_while(|worker| {
                 let crew = &crew;
                 let spawned =
@@ -142,10 +99,12 @@ impl<'a> Crew<'a> {
                 Some(spawned.ok()?.thread().clone())
             });
             let mut host = Host {
+                work,
                 crew: Some(&crew),
                 workers: workers.collect(),
-                ..host
+                patience: &mut *patience,
             };
+            host.patience.note_gathering(since(begun));
             // Also where `body` panics, so that no worker waits for ever.
             struct Close<'c>(&'c Crew<'c>, Vec<Thread>);
             impl Drop for Close<'_> {
@@ -156,8 +115,10 @@ impl<'a> Crew<'a> {
                 }
             }
             let _close = Close(&crew, host.workers.clone());
-            body(&mut host)
-        })
+            (body(&mut host), Instant::now())
+        });
+        patience.note_gathering(since(ended));
+        result
     }
 
     /// Makes chunks of the present sweep until none is left.
@@ -249,15 +210,25 @@ impl Drop for Done<'_> {
 }
 
 impl Host<'_> {
-    /// Makes a sweep over so many chunks that has been prepared.
-    pub(crate) fn sweep(&mut self, chunks: usize) -> Outcome {
-        let crew = match self.crew {
-            Some(crew) if self.patience.alone == 0 => crew,
-            _ => {
-                self.patience.alone = self.patience.alone.saturating_sub(1);
-                return (self.work)(0..chunks);
-            }
+    /// Makes a sweep over so many chunks that has been prepared. Sweeps of a kind take about the same time a chunk.
+    pub(crate) fn sweep(&mut self, kind: usize, chunks: usize) -> Outcome {
+        let crew = self.crew.filter(|_| !self.patience.is_alone(kind));
+        if crew.is_none() && !self.patience.is_alone(kind) {
+            return (self.work)(0..chunks);
+        }
+        let begun = Instant::now();
+        let outcome = match crew {
+            Some(crew) => self.share(crew, chunks),
+            None => (self.work)(0..chunks),
         };
+        match crew {
+            Some(_) => self.patience.note_shared(kind, chunks, since(begun)),
+            None => self.patience.note_alone(kind, chunks, since(begun)),
+        }
+        outcome
+    }
+
+    fn share(&self, crew: &Crew<'_>, chunks: usize) -> Outcome {
         crew.saturated.store(0, Ordering::Relaxed);
         crew.exceeded.store(false, Ordering::Relaxed);
         crew.done.store(0, Ordering::Relaxed);
@@ -276,37 +247,37 @@ impl Host<'_> {
             }
         }
         crew.take_part(0);
-        self.wait(crew, chunks);
+        wait(crew, chunks);
         Outcome {
             saturated: crew.saturated.load(Ordering::Relaxed),
             exceeded: crew.exceeded.load(Ordering::Relaxed),
         }
     }
+}
 
-    /// Waits for the chunks that others are at.
-    fn wait(&mut self, crew: &Crew<'_>, chunks: usize) {
-        let mut looks = 0;
-        while crew.done.load(Ordering::Acquire) < chunks {
-            looks += 1;
-            if looks <= SPINS {
-                std::hint::spin_loop();
-            } else if looks <= SPINS + YIELDS {
-                thread::yield_now();
-            } else {
-                crew.host_asleep.store(true, Ordering::SeqCst);
-                if crew.done.load(Ordering::SeqCst) < chunks {
-                    thread::park();
-                }
-                crew.host_asleep.store(false, Ordering::SeqCst);
+/// Waits for the chunks that others are at.
+fn wait(crew: &Crew<'_>, chunks: usize) {
+    let mut looks = 0;
+    while crew.done.load(Ordering::Acquire) < chunks {
+        looks += 1;
+        if looks <= SPINS {
+            std::hint::spin_loop();
+        } else if looks <= SPINS + YIELDS {
+            thread::yield_now();
+        } else {
+            crew.host_asleep.store(true, Ordering::SeqCst);
+            if crew.done.load(Ordering::SeqCst) < chunks {
+                thread::park();
             }
+            crew.host_asleep.store(false, Ordering::SeqCst);
         }
-        self.patience.note(looks > SPINS);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use std::sync::atomic::AtomicU32;
+    use std::time::Duration;
 
     use super::*;
 
@@ -330,7 +301,8 @@ mod tests {
                 let mut expected = [0; 37];
                 for sweep in 1..=3000 {
                     let chunks = [37, 2, 13][sweep % 3];
-                    let outcome = host.sweep(chunks);
+                    *host.patience = Patience::trusting();
+                    let outcome = host.sweep(0, chunks);
                     let sum = chunks as u64 * (chunks as u64 - 1) / 2;
                     assert_eq!((outcome.saturated, outcome.exceeded), (sum, chunks > 5));
                     expected[..chunks].iter_mut().for_each(|count| *count += 1);
@@ -343,29 +315,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_host_of_late_workers_goes_on_alone_for_longer_and_longer_and_tries_again() {
-        let mut patience = Patience::default();
-        let mut alone = 0;
-        for expected in [32, 64, 128] {
-            assert!(!patience.is_alone_for(1));
-            patience.note(true);
-            patience.note(false);
-            assert!(!patience.is_alone_for(1));
-            patience.note(true);
-            assert!(patience.is_alone_for(expected) && !patience.is_alone_for(expected + 1));
-            alone += patience.alone;
-            patience.alone = 0;
-        }
-        assert_eq!(alone, 32 + 64 + 128);
-        // A few late sweeps now and then are none of that.
-        for sweep in 0..20 * WATCHED {
-            patience.note(sweep % WATCHED == 3);
-            assert!(!patience.is_alone_for(1));
-        }
-        assert_eq!(patience.next_alone, WATCHED);
-    }
-
     /// Chunks of which each takes a while that a worker sleeps through: the host finds out, and makes the rest itself.
     #[test]
     fn sleeping_workers_are_not_waited_for_in_every_sweep() {
@@ -374,7 +323,9 @@ mod tests {
         let work = |range: Range<usize>| {
             if thread::current().id() != host {
                 by_others.fetch_add(range.len(), Ordering::Relaxed);
-                thread::sleep(std::time::Duration::from_millis(2));
+                thread::sleep(Duration::from_millis(5));
+            } else {
+                thread::sleep(Duration::from_micros(20));
             }
             Outcome::default()
         };
@@ -383,14 +334,11 @@ mod tests {
         for _ in 0..10 {
             Crew::gather((2, &mut patience), &work, |host| {
                 for _ in 0..sweeps / 10 {
-                    host.sweep(8);
+                    host.sweep(0, 8);
                 }
             });
         }
-        // Two late sweeps before each time alone, of 32, 64 and 128 sweeps.
-        assert!(
-            by_others.load(Ordering::Relaxed) <= 4 * 2 * 8,
-            "{by_others:?}"
-        );
+        // One sweep shows it: what it lost is fifty times as long as all others.
+        assert!(by_others.load(Ordering::Relaxed) <= 8, "{by_others:?}");
     }
 }
