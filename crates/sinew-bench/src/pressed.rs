@@ -1,7 +1,7 @@
 //! A body of the peers' tissue.
 
 use sinew_core::Ramp;
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Problem, Region, Tissue};
+use sinew_fem::{Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Problem, Region, Tissue};
 
 /// The peers' tissue, undamped, held on one group and pressed on another.
 pub(crate) fn problem(held: &str, pressed: &str) -> Problem {
@@ -15,6 +15,7 @@ pub(crate) fn problem(held: &str, pressed: &str) -> Problem {
             },
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         fixed: vec![Fixed {
             on: held.into(),

@@ -5,7 +5,8 @@ use std::f64::consts::{PI, TAU};
 use sinew_core::{Integrator, LinearSystem, Ramp, State, StepError, StepReport, System};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{
-    Element, FemError, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region, Tissue,
+    Element, FemError, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh,
+    Region, Tissue,
 };
 use sinew_integrators::explicit::PatchedCentralDifference;
 use sinew_integrators::{Frame, StaticError, static_solution_under};
@@ -62,6 +63,7 @@ pub(crate) fn free(law: Law, element: Element) -> Problem {
             law,
             element,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         ..Problem::default()
     }

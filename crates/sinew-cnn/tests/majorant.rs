@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use sinew_cnn::{Blend, DampingShare, GammaRule, Inner, Majorant, Stabiliser};
 use sinew_core::spectrum::critical_step;
 use sinew_core::{LinearOperators, LinearSystem, System};
-use sinew_fem::{Element, Fixed, Law, Model, Problem, Region, SpringRule, Tissue};
+use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, SpringRule, Tissue};
 use sinew_mesh::structured::{self, Split};
 use sinew_testkit::body::{Body, bodies_up_to};
 use sinew_testkit::dense::{dense, dense_damping};
@@ -373,6 +373,7 @@ fn cube(cells: usize, law: Law, axes: [bool; 3]) -> Model {
             law,
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         fixed: vec![Fixed {
             on: "sides".into(),

@@ -11,7 +11,7 @@ use sinew_core::{
     BlockMatrix, Damping, Layers, LinearModel, LinearOperators, LinearSystem, LoadTime, Pattern,
     State, System,
 };
-use sinew_fem::{Element, Fixed, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
 use sinew_mesh::structured::{self, Split};
 use sinew_testkit::body::bodies;
 use sinew_testkit::dense::{ROUNDING, dense, dense_damping, row_product};
@@ -178,6 +178,7 @@ fn a_node_of_no_tetrahedron_is_refused_by_its_tag() {
             },
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         fixed: vec![Fixed {
             on: "bottom".into(),

@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 
 use sinew_core::{Ramp, System};
 use sinew_fem::{
-    Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule, Tissue,
+    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule, Tissue,
 };
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
@@ -116,6 +116,7 @@ fn problem(law: Law) -> Problem {
             law,
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         fixed: vec![Fixed {
             on: "bottom".into(),

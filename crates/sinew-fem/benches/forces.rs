@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use sinew_core::{ElasticLaw, ForceLaw, LoadTime, System, Trial};
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Element, FromMesh, Law, Model, Problem, Region, Tissue};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
@@ -63,6 +63,7 @@ fn problem(law: &'static str, element: Element) -> Problem {
             },
             element,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         ..Problem::default()
     }

@@ -8,6 +8,7 @@ use sinew_mesh::TetMesh;
 use crate::body::Body;
 use crate::elements::moving_part;
 use crate::error::{Cause, FemError, Item};
+use crate::from_mesh::ByTet;
 use crate::graph::Graph;
 use crate::large::LargeDeformation;
 use crate::lumped::Lumped;
@@ -42,16 +43,24 @@ pub(crate) fn assemble(
     body: &Body,
     problem: &Problem,
     mut graph: Graph<'_>,
-    region_of: &[u32],
+    (region_of, by_tet): (&[u32], &ByTet),
     lumped: &Lumped,
 ) -> Result<Assembled, FemError> {
     let members = members(problem.regions.len(), region_of);
     let (mut materials, mut networks, mut facts) = (Vec::new(), Vec::new(), Vec::new());
-    for ((region, members), volume) in problem.regions.iter().zip(&members).zip(&lumped.volumes) {
-        let (material, network) = Material::new(region, mesh, &mut graph, members, *volume)?;
+    for (index, region) in problem.regions.iter().enumerate() {
+        let (members, volume) = (&members[index], lumped.volumes[index]);
+        let own = by_tet.region(index);
+        let part = (members.as_slice(), volume);
+        let (material, network) = Material::new(region, own, mesh, &mut graph, part)?;
+        let modulus = region.law.youngs_modulus();
+        let [_, largest] = own.moduli;
         facts.push(RegionFacts {
             tets: members.len(),
-            volume: *volume,
+            volume,
+            youngs_modulus: own.moduli.map(|factor| factor * modulus),
+            mean_youngs_modulus: own.shares.mean(mesh, members) * largest * modulus,
+            density: own.densities.map(|factor| factor * region.density),
             patches: body.smoothing.patches_among(members),
             network: network.as_ref().map(|network| network.modulus),
         });
@@ -154,7 +163,7 @@ fn add_tetrahedra(
     let mut part = ElementStiffness::default();
     for &index in members {
         let tet = &mesh.tets[index as usize];
-        let Some(matrix) = material.stiffness(&mesh.points, tet) else {
+        let Some(matrix) = material.stiffness(mesh, index as usize) else {
             return Err(flat(mesh, index as usize, 0.0));
         };
         let added = match tet.map(|node| body.cells.of_node(node)) {

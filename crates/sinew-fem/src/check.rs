@@ -14,7 +14,7 @@ pub(crate) fn numbers(problem: &Problem) -> Result<(), FemError> {
         require(item, "density", density, expected, density > 0.0)?;
         region.law.check(item)?;
         region.element.check(item)?;
-        region.tissue.check(item)?;
+        region.tissue.check(&region.from_mesh, item)?;
         match &region.law {
             Law::Hyperelastic { id, parameters } => {
                 let [at_once, _] = region.tissue.moduli(parameters);

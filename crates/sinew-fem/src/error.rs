@@ -89,6 +89,14 @@ pub enum Cause {
     /// Fibres without a direction.
     #[error("direction = [0, 0, 0]: expected a vector that is not 0")]
     NoDirection,
+    /// Data of the mesh that cannot give a property.
+    #[error("{quantity}: {error}")]
+    Data {
+        /// Name of the property.
+        quantity: &'static str,
+        /// The reason.
+        error: crate::from_mesh::DataError,
+    },
     /// Fibres or memory beside a law that takes none.
     #[error("fibres and memory go with laws of large deformation only, such as `neo-hookean`")]
     TissueOfSmallStrain,

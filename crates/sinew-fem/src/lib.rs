@@ -2,7 +2,7 @@
 //!
 //! ```
 //! use sinew_core::{Ramp, System};
-//! use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, Tissue};
+//! use sinew_fem::{Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Problem, Region, Tissue};
 //! use sinew_mesh::structured::{self, Split};
 //!
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
@@ -13,6 +13,7 @@
 //!         law: Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.45 },
 //!         element: Element::P1,
 //!         tissue: Tissue::default(),
+//!         from_mesh: FromMesh::default(),
 //!     }],
 //!     fixed: vec![Fixed { on: "sides".into(), axes: [true; 3] }],
 //!     loads: vec![LoadSpec {
@@ -32,13 +33,13 @@
 //!
 //! ```
 //! # use sinew_core::System;
-//! # use sinew_fem::{Element, Fixed, Law, Model, On, Problem, Region, Tissue};
+//! # use sinew_fem::{Element, Fixed, FromMesh, Law, Model, On, Problem, Region, Tissue};
 //! # use sinew_mesh::structured::{self, Split};
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
 //! let law = Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.0 };
 //! let floor: Vec<u32> = (0..25).collect();
 //! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region { group: None, density: 1060.0, law, element: Element::P1, tissue: Tissue::default() }],
+//!     regions: vec![Region { group: None, density: 1060.0, law, element: Element::P1, tissue: Tissue::default(), from_mesh: FromMesh::default() }],
 //!     fixed: vec![Fixed { on: On::Nodes(floor.clone()), axes: [true; 3] }],
 //!     ..Problem::default()
 //! })?;
@@ -59,12 +60,12 @@
 //!
 //! ```
 //! # use sinew_core::{Ramp, System};
-//! # use sinew_fem::{Element, Course, Fixed, Law, Model, Moving, Problem, Region, Tissue};
+//! # use sinew_fem::{Element, Course, Fixed, FromMesh, Law, Model, Moving, Problem, Region, Tissue};
 //! # use sinew_mesh::structured::{self, Split};
 //! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
 //! let law = Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.0 };
 //! let model = Model::build(&mesh, &Problem {
-//!     regions: vec![Region { group: None, density: 1060.0, law, element: Element::P1, tissue: Tissue::default() }],
+//!     regions: vec![Region { group: None, density: 1060.0, law, element: Element::P1, tissue: Tissue::default(), from_mesh: FromMesh::default() }],
 //!     fixed: vec![Fixed { on: "bottom".into(), axes: [true; 3] }],
 //!     moves: vec![Moving {
 //!         on: "top".into(),
@@ -98,6 +99,7 @@ mod element;
 mod elements;
 mod error;
 mod following;
+mod from_mesh;
 mod graph;
 pub mod hyperelastic;
 mod large;
@@ -116,6 +118,7 @@ mod problem;
 mod regions;
 mod report;
 mod scales;
+mod shares;
 mod smoothing;
 pub mod springs;
 pub mod stress;
@@ -128,6 +131,7 @@ mod volumes;
 pub use body::smoothed_blocks;
 pub use element::Element;
 pub use error::{Cause, FemError, Item};
+pub use from_mesh::{DataError, FromMesh};
 pub use law::{Law, SpringRule};
 pub use model::{
     DeformedTet, FieldError, Model, ModelLoads, NodalForces, SupportMotion, WithMemory,

@@ -3,6 +3,7 @@
 use sinew_mesh::TetMesh;
 
 use crate::Problem;
+use crate::from_mesh::ByTet;
 
 /// Masses of nodes and volumes of regions.
 pub(crate) struct Lumped {
@@ -16,7 +17,12 @@ pub(crate) struct Lumped {
 
 impl Lumped {
     /// The masses of a body, whose tetrahedra are in the regions `region_of`.
-    pub(crate) fn new(mesh: &TetMesh, problem: &Problem, region_of: &[u32]) -> Self {
+    pub(crate) fn new(
+        mesh: &TetMesh,
+        problem: &Problem,
+        region_of: &[u32],
+        by_tet: &ByTet,
+    ) -> Self {
         let mut lumped = Self {
             masses: vec![0.0; mesh.points.len()],
             volumes: vec![0.0; problem.regions.len()],
@@ -24,7 +30,8 @@ impl Lumped {
         };
         for (index, (tet, region)) in mesh.tets.iter().zip(region_of).enumerate() {
             let (volume, region) = (mesh.volume(index), *region as usize);
-            let quarter = problem.regions[region].density * volume / 4.0;
+            let density = problem.regions[region].density * by_tet.density(index);
+            let quarter = density * volume / 4.0;
             for &node in tet {
                 lumped.masses[node as usize] += quarter;
             }

@@ -1,12 +1,18 @@
 //! The mechanics of the laws: stiffness, stress and springs of tetrahedra.
 
+use std::fmt;
+use std::sync::Arc;
+
+use sinew_core::Hash;
 use sinew_mesh::TetMesh;
 
 use crate::error::{Cause, FemError, Item};
+use crate::from_mesh::RegionByTet;
 use crate::graph::Graph;
 use crate::hyperelastic::Hyperelastic;
 use crate::large::RegionLaw;
 use crate::network::Network;
+use crate::shares::Shares;
 use crate::smoothing::SmoothedStrain;
 use crate::springs::Spring;
 use crate::tissue::{FibreFamily, Tissue};
@@ -14,7 +20,15 @@ use crate::{Element, Law, Region, SpringRule, springs, stress, tetra};
 
 /// The law of a region ready for computation, calibration included.
 #[derive(Clone, Debug)]
-pub(crate) enum Material {
+pub(crate) struct Material {
+    /// Of its stiffest tetrahedron.
+    kind: Kind,
+    /// The stiffness of each tetrahedron.
+    shares: Shares,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
     Continuum {
         /// Lame's constants (Pa).
         lame: (f64, f64),
@@ -24,6 +38,8 @@ pub(crate) enum Material {
         law: Hyperelastic,
         element: Element,
         tissue: Tissue,
+        /// The direction of the fibres in each tetrahedron of the mesh, as unit vectors; `None` where all have that of `tissue`.
+        directions: Option<Directions>,
     },
     Springs {
         youngs_modulus: f64,
@@ -36,32 +52,33 @@ impl Material {
     /// where it is a network. `graph` is that of the mesh.
     pub(crate) fn new(
         region: &Region,
+        by_tet: &RegionByTet,
         mesh: &TetMesh,
         graph: &mut Graph<'_>,
-        members: &[u32],
-        volume: f64,
+        (members, volume): (&[u32], f64),
     ) -> Result<(Self, Option<Network>), FemError> {
-        match region.law {
+        let mut law = region.law;
+        let [_, largest] = by_tet.moduli;
+        *law.youngs_modulus_mut() *= largest;
+        let shares = by_tet.shares.clone();
+        let mut network = None;
+        let kind = match law {
             Law::Linear {
                 youngs_modulus,
                 poissons_ratio,
-            } => {
-                let lame = tetra::lame(youngs_modulus, poissons_ratio);
-                let element = region.element;
-                Ok((Self::Continuum { lame, element }, None))
-            }
+            } => Kind::Continuum {
+                lame: tetra::lame(youngs_modulus, poissons_ratio),
+                element: region.element,
+            },
             Law::Hyperelastic { id, parameters } => {
                 let [at_once, _] = region.tissue.moduli(&parameters);
                 let law = Hyperelastic::new(id, &at_once);
-                let law = law.map_err(|error| FemError::new(Item::Mesh, error.into()))?;
-                let element = region.element;
-                let tissue = region.tissue.clone();
-                let material = Self::Hyperelastic {
-                    law,
-                    element,
-                    tissue,
-                };
-                Ok((material, None))
+                Kind::Hyperelastic {
+                    law: law.map_err(|error| FemError::new(Item::Mesh, error.into()))?,
+                    element: region.element,
+                    tissue: region.tissue.clone(),
+                    directions: by_tet.directions.clone().map(Directions),
+                }
             }
             Law::Springs {
                 youngs_modulus,
@@ -69,89 +86,103 @@ impl Material {
                 calibrate,
                 damping_ratio,
             } => {
-                let tets = members.iter().map(|tet| &mesh.tets[*tet as usize]);
+                let tets = members.iter().map(|tet| {
+                    let modulus = youngs_modulus * shares.of(*tet as usize);
+                    (&mesh.tets[*tet as usize], modulus)
+                });
                 let graph = graph.pattern()?;
-                let springs = springs::springs_on(graph, &mesh.points, tets, youngs_modulus, rule)
+                let springs = springs::springs_on(graph, &mesh.points, tets, rule)
                     .map_err(|error| FemError::new(Item::Mesh, Cause::Operators(error.into())))?;
-                let mut network = Network::new(&mesh.points, springs, volume, damping_ratio);
+                let mut made = Network::new(&mesh.points, springs, volume, damping_ratio);
                 let calibration = if calibrate {
-                    network.calibrate(youngs_modulus)
+                    made.calibrate(youngs_modulus * shares.mean(mesh, members))
                 } else {
                     1.0
                 };
-                let material = Self::Springs {
+                network = Some(made);
+                Kind::Springs {
                     youngs_modulus: youngs_modulus * calibration,
                     rule,
-                };
-                Ok((material, Some(network)))
+                }
             }
-        }
+        };
+        Ok((Self { kind, shares }, network))
     }
 
-    /// Its stiffness (Pa) against compression, `lambda + 2 mu`, and against shear, mu.
+    /// Its largest stiffness (Pa) against compression, `lambda + 2 mu`, and its least against shear, mu.
     pub(crate) fn compression_and_shear(&self) -> (f64, f64) {
-        match self {
-            Self::Continuum { lame, .. } => p_wave_and_shear(*lame),
-            Self::Hyperelastic { law, tissue, .. } => {
+        let (compression, shear) = match &self.kind {
+            Kind::Continuum { lame, .. } => p_wave_and_shear(*lame),
+            Kind::Hyperelastic { law, tissue, .. } => {
                 let (compression, shear) = p_wave_and_shear(law.lame());
                 let fibres = tissue.fibres.as_ref();
                 let along = fibres.map_or(0.0, |family| modulus_along(family, tissue));
                 (compression + along, shear)
             }
             // nu = 1/4 and thus lambda = mu for any springs (Cauchy's relations).
-            Self::Springs { youngs_modulus, .. } => (1.2 * youngs_modulus, 0.4 * youngs_modulus),
-        }
+            Kind::Springs { youngs_modulus, .. } => (1.2 * youngs_modulus, 0.4 * youngs_modulus),
+        };
+        (compression, self.shares.least() * shear)
     }
 
     /// The element that it is on.
     pub(crate) fn element(&self) -> Element {
-        match *self {
-            Self::Continuum { element, .. } | Self::Hyperelastic { element, .. } => element,
-            Self::Springs { .. } => Element::P1,
+        match self.kind {
+            Kind::Continuum { element, .. } | Kind::Hyperelastic { element, .. } => element,
+            Kind::Springs { .. } => Element::P1,
         }
     }
 
     /// Whether it is of large deformation.
     pub(crate) fn is_hyperelastic(&self) -> bool {
-        matches!(self, Self::Hyperelastic { .. })
+        matches!(self.kind, Kind::Hyperelastic { .. })
     }
 
     /// What it is made of where it is of large deformation.
     pub(crate) fn hyperelastic(&self) -> Option<RegionLaw<'_>> {
-        match self {
-            Self::Hyperelastic {
+        match &self.kind {
+            Kind::Hyperelastic {
                 law,
                 element,
                 tissue,
+                directions,
             } => Some(RegionLaw {
                 law: *law,
                 edge_share: element.edge_share(),
                 tissue,
+                shares: &self.shares,
+                directions: directions.as_ref().map(|Directions(all)| &**all),
             }),
-            Self::Continuum { .. } | Self::Springs { .. } => None,
+            Kind::Continuum { .. } | Kind::Springs { .. } => None,
         }
     }
 
-    /// Lame's constants (Pa) at small strain; `None` where it is a network of springs.
+    /// Lame's constants (Pa) at small strain, of the stiffest tetrahedron; `None` where it is a network of springs.
     fn lame(&self) -> Option<(f64, f64)> {
-        match self {
-            Self::Continuum { lame, .. } => Some(*lame),
-            Self::Hyperelastic { law, .. } => Some(law.lame()),
-            Self::Springs { .. } => None,
+        match &self.kind {
+            Kind::Continuum { lame, .. } => Some(*lame),
+            Kind::Hyperelastic { law, .. } => Some(law.lame()),
+            Kind::Springs { .. } => None,
         }
     }
 
-    /// Lame's constants (Pa) that act on the mean strain at an edge.
-    pub(crate) fn averaged_over_edges(&self) -> [f64; 2] {
-        let (_, mu) = self.lame().unwrap_or_default();
-        [0.0, self.element().edge_share() * mu]
+    /// The stiffness of some of its tetrahedra together over that of the stiffest.
+    pub(crate) fn share_of(&self, mesh: &TetMesh, tets: &[u32]) -> f64 {
+        self.shares.mean(mesh, tets)
     }
 
-    /// Lame's constants (Pa) that act on the mean strain of a patch.
-    pub(crate) fn averaged_over_patches(&self) -> [f64; 2] {
+    /// Lame's constants (Pa) that act on the mean strain at an edge of some tetrahedra.
+    pub(crate) fn averaged_over_edge(&self, mesh: &TetMesh, tets: &[u32]) -> [f64; 2] {
+        let (_, mu) = self.lame().unwrap_or_default();
+        let share = self.element().edge_share() * self.share_of(mesh, tets);
+        [0.0, share * mu]
+    }
+
+    /// Lame's constants (Pa) that act on the mean strain of a patch of some tetrahedra.
+    pub(crate) fn averaged_over_patch(&self, mesh: &TetMesh, tets: &[u32]) -> [f64; 2] {
         let (lambda, _) = self.lame().unwrap_or_default();
         let share = if self.element().has_patches() {
-            1.0
+            self.share_of(mesh, tets)
         } else {
             0.0
         };
@@ -160,54 +191,98 @@ impl Material {
 
     /// Stiffness matrix (N/m) of a tetrahedron by itself, without what acts on averages, at small strain: 12 x 12, row-major and
     /// vertex-major; `None` where it is flat.
-    pub(crate) fn stiffness(&self, points: &[[f64; 3]], tet: &[u32; 4]) -> Option<[f64; 144]> {
-        match *self {
-            Self::Continuum { .. } | Self::Hyperelastic { .. } => {
+    pub(crate) fn stiffness(&self, mesh: &TetMesh, tet: usize) -> Option<[f64; 144]> {
+        let share = self.shares.of(tet);
+        let (points, nodes) = (&mesh.points, &mesh.tets[tet]);
+        match &self.kind {
+            Kind::Continuum { .. } | Kind::Hyperelastic { .. } => {
                 let (lambda, mu) = self.lame().unwrap_or_default();
                 let element = self.element();
-                let own_lambda = if element.has_patches() { 0.0 } else { lambda };
-                let own_mu = (1.0 - element.edge_share()) * mu;
-                let vertices = tetra::vertices(points, *tet);
+                let own_lambda = if element.has_patches() {
+                    0.0
+                } else {
+                    share * lambda
+                };
+                let own_mu = (1.0 - element.edge_share()) * (share * mu);
+                let vertices = tetra::vertices(points, *nodes);
                 let mut matrix = tetra::stiffness(&vertices, own_lambda, own_mu)?;
-                if let Self::Hyperelastic { tissue, .. } = self
+                if let Kind::Hyperelastic {
+                    tissue, directions, ..
+                } = &self.kind
                     && let Some(family) = &tissue.fibres
                 {
                     let modulus = modulus_along(family, tissue);
-                    add_fibres(&mut matrix, &vertices, family, modulus);
+                    let direction = match directions {
+                        Some(Directions(all)) => all[tet],
+                        None => family.unit_direction(),
+                    };
+                    add_fibres(&mut matrix, &vertices, (family, direction), modulus);
                 }
                 Some(matrix)
             }
-            Self::Springs {
+            Kind::Springs {
                 youngs_modulus,
                 rule,
-            } => Some(springs::stiffness(points, tet, youngs_modulus, rule)),
+            } => Some(springs::stiffness(
+                points,
+                nodes,
+                share * youngs_modulus,
+                *rule,
+            )),
         }
     }
 
     /// Stress (Pa) at a small strain, in the order of [`crate::stress`]; `None` where the law has none.
     pub(crate) fn stress(&self, strain: &SmoothedStrain) -> Option<[f64; 6]> {
         let SmoothedStrain { shear, dilation } = strain;
-        match *self {
-            Self::Continuum {
+        match self.kind {
+            Kind::Continuum {
                 lame: (lambda, mu), ..
             } => Some(stress::with_dilation(shear, *dilation, lambda, mu)),
-            Self::Hyperelastic { .. } | Self::Springs { .. } => None,
+            Kind::Hyperelastic { .. } | Kind::Springs { .. } => None,
         }
     }
 
     /// The springs of some tetrahedra; `None` where the law has none.
-    pub(crate) fn springs<'a>(
+    pub(crate) fn springs(
         &self,
-        points: &[[f64; 3]],
-        tets: impl Iterator<Item = &'a [u32; 4]>,
+        mesh: &TetMesh,
+        tets: impl Iterator<Item = usize>,
     ) -> Option<Vec<Spring>> {
-        match *self {
-            Self::Continuum { .. } | Self::Hyperelastic { .. } => None,
-            Self::Springs {
+        match self.kind {
+            Kind::Continuum { .. } | Kind::Hyperelastic { .. } => None,
+            Kind::Springs {
                 youngs_modulus,
                 rule,
-            } => Some(springs::springs(points, tets, youngs_modulus, rule)),
+            } => {
+                let tets = tets.map(|tet| (&mesh.tets[tet], self.shares.of(tet) * youngs_modulus));
+                Some(springs::springs_of(&mesh.points, tets, rule))
+            }
         }
+    }
+
+    /// Adds what tells it from others.
+    pub(crate) fn add_to(&self, hash: &mut Hash) {
+        hash.add(format!("{:?}", self.kind).as_bytes());
+        let mut add = |numbers: &[f64]| numbers.iter().for_each(|x| hash.add(&x.to_le_bytes()));
+        add(self.shares.values());
+        if let Kind::Hyperelastic {
+            directions: Some(Directions(all)),
+            ..
+        } = &self.kind
+        {
+            add(all.as_flattened());
+        }
+    }
+}
+
+/// Unit vectors in each tetrahedron of a mesh.
+#[derive(Clone)]
+struct Directions(Arc<[[f64; 3]]>);
+
+impl fmt::Debug for Directions {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("of each tetrahedron")
     }
 }
 
@@ -220,10 +295,10 @@ fn modulus_along(family: &FibreFamily, tissue: &Tissue) -> f64 {
 fn add_fibres(
     matrix: &mut [f64; 144],
     vertices: &[[f64; 3]; 4],
-    family: &FibreFamily,
+    (family, direction): (&FibreFamily, [f64; 3]),
     modulus: f64,
 ) {
-    let slope = family.fibres.half_slope_at_rest(family.unit_direction());
+    let slope = family.fibres.half_slope_at_rest(direction);
     let gradients = tetra::gradients(vertices).unwrap_or_default();
     let rate: [[f64; 3]; 4] = gradients.map(|gradient| slope.on(gradient));
     let stiffness = modulus * tetra::signed_volume(vertices);

@@ -116,14 +116,16 @@ impl<'a> Parts<'a> {
         let material = |tet: usize| &self.materials[self.region_of[tet] as usize];
         let (moduli, share) = match (part, members.first()) {
             (Part::Edge(_), Some(first)) => {
-                (material(*first as usize).averaged_over_edges(), 1.0 / 6.0)
+                let material = material(*first as usize);
+                (material.averaged_over_edge(self.mesh, members), 1.0 / 6.0)
             }
             (Part::Patch(_), Some(first)) => {
-                (material(*first as usize).averaged_over_patches(), 1.0)
+                let material = material(*first as usize);
+                (material.averaged_over_patch(self.mesh, members), 1.0)
             }
             (Part::Tet(tet), _) => {
                 let nodes = &self.mesh.tets[tet];
-                let matrix = material(tet).stiffness(&self.mesh.points, nodes);
+                let matrix = material(tet).stiffness(self.mesh, tet);
                 average.nodes.clear();
                 average.nodes.extend(nodes);
                 stiffness.clear();

@@ -2,7 +2,7 @@
 
 use sinew_core::Ramp;
 
-use crate::{Element, Law, On, Tissue};
+use crate::{Element, FromMesh, Law, On, Tissue};
 
 /// Materials, damping, supports, prescribed motions and loads of a body.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,6 +34,8 @@ pub struct Region {
     pub element: Element,
     /// What it has beside an isotropic law.
     pub tissue: Tissue,
+    /// What differs from tetrahedron to tetrahedron.
+    pub from_mesh: FromMesh,
 }
 
 /// Rayleigh damping, `D = alpha M + beta K`.

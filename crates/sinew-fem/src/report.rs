@@ -75,6 +75,12 @@ pub struct RegionFacts {
     pub tets: usize,
     /// Volume (m^3).
     pub volume: f64,
+    /// The least and the largest Young's modulus (Pa) that the law was given.
+    pub youngs_modulus: [f64; 2],
+    /// Its mean (Pa) by volume.
+    pub mean_youngs_modulus: f64,
+    /// The least and the largest density (kg/m^3).
+    pub density: [f64; 2],
     /// Number of patches over which it averages changes of volume.
     pub patches: usize,
     /// Moduli of its springs as a material, calibration included; `None` for continua.

@@ -35,24 +35,30 @@ pub fn springs<'a>(
     youngs_modulus: f64,
     rule: SpringRule,
 ) -> Vec<Spring> {
-    summed(
-        tets.flat_map(|tet| of_tetrahedron(points, tet, youngs_modulus, rule))
-            .collect(),
-    )
+    springs_of(points, tets.map(|tet| (tet, youngs_modulus)), rule)
 }
 
-/// [`springs`], for a million tetrahedra: `graph` has their edges, so that no list of all contributions is made and
+/// [`springs`] of tetrahedra with a Young's modulus (Pa) each.
+pub(crate) fn springs_of<'a>(
+    points: &[[f64; 3]],
+    tets: impl Iterator<Item = (&'a [u32; 4], f64)>,
+    rule: SpringRule,
+) -> Vec<Spring> {
+    let parts = tets.flat_map(|(tet, modulus)| of_tetrahedron(points, tet, modulus, rule));
+    summed(parts.collect())
+}
+
+/// [`springs_of`], for a million tetrahedra: `graph` has their edges, so that no list of all contributions is made and
 /// sorted.
 pub(crate) fn springs_on<'a>(
     graph: &Arc<Pattern>,
     points: &[[f64; 3]],
-    tets: impl Iterator<Item = &'a [u32; 4]>,
-    youngs_modulus: f64,
+    tets: impl Iterator<Item = (&'a [u32; 4], f64)>,
     rule: SpringRule,
 ) -> Result<Vec<Spring>, AssemblyError> {
     // The stiffness of each edge, in the row of its lower node.
     let mut sums = BlockMatrix::zeros(Arc::clone(graph), Layers::One);
-    for tet in tets {
+    for (tet, youngs_modulus) in tets {
         for Spring {
             nodes: [a, b],
             stiffness,
@@ -264,8 +270,9 @@ mod tests {
         let graph = Arc::new(Pattern::from_elements(mesh.points.len(), &mesh.tets).unwrap());
         // A part of the body, in another order than that of the mesh.
         let part = || mesh.tets.iter().rev().step_by(3);
+        let with_modulus = || part().map(|tet| (tet, 3500.0));
         for rule in [SpringRule::Lloyd, SpringRule::VanGelder] {
-            let on_graph = springs_on(&graph, &mesh.points, part(), 3500.0, rule).unwrap();
+            let on_graph = springs_on(&graph, &mesh.points, with_modulus(), rule).unwrap();
             assert_eq!(on_graph, springs(&mesh.points, part(), 3500.0, rule));
             assert!(on_graph.len() < (graph.blocks() - graph.cells()) / 2);
         }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::error::{Cause, FemError, Item};
+use crate::from_mesh::FromMesh;
 use crate::hyperelastic::fibres::Fibres;
 use crate::hyperelastic::prony::{self, Term};
 use crate::hyperelastic::{Hyperelastic, Parameters};
@@ -22,7 +23,7 @@ pub struct Tissue {
 pub struct FibreFamily {
     /// How they pull.
     pub fibres: Fibres,
-    /// Their direction at rest, of any length but 0.
+    /// Their direction at rest, of any length but 0, unless the mesh's data give it ([`crate::FromMesh`]).
     pub direction: [f64; 3],
 }
 
@@ -65,10 +66,12 @@ impl Tissue {
     }
 
     /// Refuses numbers outside their ranges.
-    pub(crate) fn check(&self, item: Item) -> Result<(), FemError> {
-        if let Some(FibreFamily { direction, .. }) = &self.fibres {
+    pub(crate) fn check(&self, from_mesh: &FromMesh, item: Item) -> Result<(), FemError> {
+        let family = self.fibres.as_ref();
+        let family = family.filter(|_| from_mesh.direction.is_none());
+        if let Some(FibreFamily { direction, .. }) = family {
             require_finite(item, "direction", direction)?;
-            if *direction == [0.0; 3] {
+            if unit(*direction).is_none() {
                 return Err(FemError::new(item, Cause::NoDirection));
             }
         }
@@ -152,12 +155,20 @@ impl ViscousPart {
 impl FibreFamily {
     /// The direction as a unit vector.
     pub(crate) fn unit_direction(&self) -> [f64; 3] {
-        // Scaled first, so that no square overflows or is lost.
-        let largest = self.direction.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
-        let scaled = self.direction.map(|d| d / largest);
-        let length = scaled.iter().map(|d| d * d).sum::<f64>().sqrt();
-        scaled.map(|d| d / length)
+        unit(self.direction).unwrap_or_default()
     }
+}
+
+/// The unit vector along another; `None` where that is 0 or not finite.
+pub(crate) fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
+    // Scaled first, so that no square overflows or is lost.
+    let largest = vector.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+    if !(vector.iter().all(|d| d.is_finite()) && largest > 0.0) {
+        return None;
+    }
+    let scaled = vector.map(|d| d / largest);
+    let length = scaled.iter().map(|d| d * d).sum::<f64>().sqrt();
+    Some(scaled.map(|d| d / length))
 }
 
 impl fmt::Display for FibreFamily {

@@ -8,7 +8,7 @@ use common::{DENSITY, at_most, linear, springs};
 use sinew_core::{
     ElementStiffness, Elements, LinearSystem, System, element_omegas_squared, spectrum,
 };
-use sinew_fem::{Element, Fixed, Law, Model, Problem, Region, SpringRule, Tissue};
+use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, SpringRule, Tissue};
 use sinew_mesh::structured::{self, Split};
 
 fn model(law: Law, axes: [bool; 3]) -> Model {
@@ -20,6 +20,7 @@ fn model(law: Law, axes: [bool; 3]) -> Model {
             law,
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         fixed: vec![Fixed {
             on: "sides".into(),

@@ -10,7 +10,7 @@ use common::{
 };
 use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, System, TangentKind};
 use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
-use sinew_fem::{Element, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Element, FromMesh, Law, Model, Problem, Region, Tissue};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -357,6 +357,7 @@ fn regions_of_different_laws_and_elements_add_up() {
                     law,
                     element: *element,
                     tissue: Tissue::default(),
+                    from_mesh: FromMesh::default(),
                 }
             });
         build(

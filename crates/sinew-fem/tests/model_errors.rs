@@ -7,8 +7,8 @@ mod common;
 use common::{DENSITY, add_node_group, body, held, held_along, linear, load, springs};
 use sinew_core::{Ramp, RampError};
 use sinew_fem::{
-    Cause, Element, FemError, Fixed, Item, Law, LoadKind, LoadSpec, Model, On, Problem, Region,
-    SpringRule, Tissue,
+    Cause, Element, FemError, Fixed, FromMesh, Item, Law, LoadKind, LoadSpec, Model, On, Problem,
+    Region, SpringRule, Tissue,
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -34,6 +34,7 @@ fn region(group: Option<&str>) -> Region {
         law: linear(3500.0, 0.45),
         element: Element::P1,
         tissue: Tissue::default(),
+        from_mesh: FromMesh::default(),
     }
 }
 

@@ -9,7 +9,7 @@ use common::{
     relative_difference,
 };
 use sinew_core::{BlockMatrix, LinearSystem, System};
-use sinew_fem::{Element, Law, LoadKind, Model, Problem, Region, SpringRule, Tissue};
+use sinew_fem::{Element, FromMesh, Law, LoadKind, Model, Problem, Region, SpringRule, Tissue};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -42,6 +42,7 @@ fn in_two_regions(lower: Law, upper: Law) -> Problem {
         law,
         element: Element::P1,
         tissue: Tissue::default(),
+        from_mesh: FromMesh::default(),
     };
     Problem {
         regions: vec![region("lower", lower), region("upper", upper)],

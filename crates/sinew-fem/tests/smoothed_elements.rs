@@ -10,7 +10,9 @@ use common::{
 };
 use nalgebra::{Matrix3, Vector3};
 use sinew_core::{ElementStiffness, Elements, LinearSystem, System};
-use sinew_fem::{Cause, Element, Law, LoadKind, Model, Problem, Region, SpringRule, Tissue};
+use sinew_fem::{
+    Cause, Element, FromMesh, Law, LoadKind, Model, Problem, Region, SpringRule, Tissue,
+};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -288,6 +290,7 @@ fn regions_of_different_elements_share_nodes_and_nothing_else() {
         law: linear(if stiff { 3500.0 } else { 3500e-20 }, 0.45),
         element,
         tissue: Tissue::default(),
+        from_mesh: FromMesh::default(),
     };
     let model = |low_is_stiff| {
         let regions = vec![

@@ -11,7 +11,9 @@ use common::{
 use nalgebra::{Matrix3, Vector3};
 use sinew_core::System;
 use sinew_fem::stress::von_mises;
-use sinew_fem::{Element, FieldError, LoadKind, Model, Problem, Region, SpringRule, Tissue};
+use sinew_fem::{
+    Element, FieldError, FromMesh, LoadKind, Model, Problem, Region, SpringRule, Tissue,
+};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
@@ -161,6 +163,7 @@ fn half_springs() -> (TetMesh, Model) {
         law,
         element: Element::P1,
         tissue: Tissue::default(),
+        from_mesh: FromMesh::default(),
     };
     let problem = Problem {
         regions: vec![

@@ -10,7 +10,9 @@ use sinew_core::{
     BlockMatrix, ElasticLaw, ForceLaw, Inputs, LoadTime, Options, Ramp, State, System, Trial,
 };
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue};
+use sinew_fem::{
+    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue,
+};
 use sinew_integrators::static_solution_under;
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
@@ -34,6 +36,7 @@ fn neo_hookean(element: Element) -> Region {
         },
         element,
         tissue: Tissue::default(),
+        from_mesh: FromMesh::default(),
     }
 }
 

@@ -19,7 +19,7 @@ use sinew_core::{
     BlockMatrix, Damping, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
     OptionValue, Options, Pattern, Ramp, StableStep, State, System,
 };
-use sinew_fem::{Element, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, Tissue};
+use sinew_fem::{Element, FromMesh, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, Tissue};
 use sinew_integrators::explicit::Guarded;
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -88,6 +88,7 @@ fn tissue() -> Region {
         law: linear(3500.0, 0.3),
         element: Element::P1,
         tissue: Tissue::default(),
+        from_mesh: FromMesh::default(),
     }
 }
 
@@ -199,6 +200,7 @@ impl Slender {
                 law: linear(modulus, self.poissons_ratio),
                 element: Element::P1,
                 tissue: Tissue::default(),
+                from_mesh: FromMesh::default(),
             });
         }
         let fixed = vec![held("bottom", [true; 3])];

@@ -12,7 +12,7 @@ use sinew_core::{
 };
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{
-    Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region, Tissue,
+    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Rayleigh, Region, Tissue,
 };
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
@@ -44,6 +44,7 @@ impl Scene {
                 },
                 element: Element::P1,
                 tissue: Tissue::default(),
+                from_mesh: FromMesh::default(),
             }],
             fixed: vec![Fixed {
                 on: "bottom".into(),

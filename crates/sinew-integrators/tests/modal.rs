@@ -16,7 +16,8 @@ use sinew_core::{
     LoadTime, OptionValue, Options, Pattern, Ramp, State, System,
 };
 use sinew_fem::{
-    Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule, Tissue,
+    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region,
+    SpringRule, Tissue,
 };
 use sinew_integrators::implicit::Modal;
 use sinew_integrators::{Frame, Method};
@@ -137,6 +138,7 @@ fn body(
             law,
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         damping,
         fixed: fixed.iter().map(held).collect(),

@@ -11,7 +11,7 @@ use sinew_core::{
     Equations, EvaluationError, ForceLaw, Layers, LoadTime, OptionError, Revision, SetupError,
     State, System, Trial,
 };
-use sinew_fem::{Element, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Element, FromMesh, Law, Model, Problem, Region, Tissue};
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers};
 
@@ -216,6 +216,7 @@ fn stiffnesses_too_far_apart_for_24_bits_are_refused() {
             law,
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         };
         let problem = Problem {
             regions: vec![region("stiff", law(factor)), region("soft", law(1.0))],

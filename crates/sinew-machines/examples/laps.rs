@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use sinew_cnn::{LoadAt, Machine, Physics, Program, Register};
 use sinew_core::{Batch, ElementPrecision, Inputs, LinearSystem, State, System, VelocityTime};
-use sinew_fem::{Element, Fixed, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
 use sinew_machines::{FastMachine, Layout};
 use sinew_mesh::structured::{Split, cube};
 
@@ -69,6 +69,7 @@ fn held_cube(cells: usize) -> Model {
             },
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         fixed: vec![Fixed {
             on: "sides".into(),

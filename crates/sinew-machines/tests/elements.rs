@@ -11,7 +11,7 @@ use sinew_cnn::conformance::CountingAllocator;
 use sinew_cnn::{Machine, ReferenceMachine};
 use sinew_core::{Batch, ElementPrecision, Equations, Inputs, State, StepError, System};
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Course, Element, Fixed, Law, Model, Moving, Problem, Region, Tissue};
+use sinew_fem::{Course, Element, Fixed, FromMesh, Law, Model, Moving, Problem, Region, Tissue};
 use sinew_machines::{FastMachine, Layout};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
@@ -39,6 +39,7 @@ fn problem(law: Law, element: Element) -> Problem {
             law,
             element,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         fixed: vec![Fixed {
             on: "bottom".into(),

@@ -9,7 +9,7 @@ mod bodies;
 use bodies::{body, bump, difference, held_cube, leapfrog, run};
 use sinew_cnn::{Machine, ReferenceMachine};
 use sinew_core::{LinearSystem, System};
-use sinew_fem::{Element, Fixed, Law, Model, Problem, Region, SpringRule, Tissue};
+use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, SpringRule, Tissue};
 use sinew_machines::{Chosen, FastMachine, Layout, Settings};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
@@ -53,6 +53,7 @@ fn a_free_cube_has_a_template_for_each_kind_of_node() {
         law,
         element: Element::P1,
         tissue: Tissue::default(),
+        from_mesh: FromMesh::default(),
     }];
     let model = Model::build(
         &mesh,
@@ -88,6 +89,7 @@ fn springs_repeat_as_tetrahedra_do() {
             law,
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         fixed: vec![Fixed {
             on: "sides".into(),
@@ -151,6 +153,7 @@ fn voxels(cells: usize) -> Model {
             law: bodies::TISSUE,
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         ..Problem::default()
     };

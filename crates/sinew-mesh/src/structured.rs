@@ -124,6 +124,7 @@ pub fn block(cells: [usize; 3], size: [f64; 3], split: Split) -> Result<TetMesh,
         points,
         tets,
         groups,
+        data: Vec::new(),
         notes: Vec::new(),
     })
 }

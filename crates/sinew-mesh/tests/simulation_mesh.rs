@@ -246,3 +246,113 @@ fn a_hand_made_mesh_is_checked() {
     mesh.cells[0].connectivity[3] = 4;
     insta::assert_snapshot!(refusal(&mesh), @"tetra with tag 1 has node index 4, but there are 4 nodes (0..=3)");
 }
+
+/// Two tetrahedra (1 and 2) and a triangle (3), with sections of data behind them.
+fn with_data(sections: &str) -> TetMesh {
+    tet_mesh(&format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n$EndNodes\n\
+         $Elements\n3\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 2 3 4 5\n3 2 2 2 2 1 2 3\n$EndElements\n{sections}"
+    ))
+}
+
+/// A section of data at step 0.
+fn section(name: &str, step: i32, components: usize, rows: &[&str]) -> String {
+    format!(
+        "$ElementData\n1\n\"{name}\"\n1\n0\n3\n{step}\n{components}\n{}\n{}\n$EndElementData\n",
+        rows.len(),
+        rows.join("\n")
+    )
+}
+
+#[test]
+fn data_of_tetrahedra_stay_by_name() {
+    let surface = section("surface", 0, 1, &["3 7"]);
+    let moduli = section("E", 0, 1, &["3 7", "2 20", "1 10"]);
+    let along = section("along", 0, 3, &["1 1 0 0", "2 0 0 -2"]);
+    let mesh = with_data(&(surface + &moduli + &along));
+    let names: Vec<&str> = mesh.data.iter().map(|data| data.name.as_str()).collect();
+    assert_eq!(names, ["E", "along"]);
+    let values = |name: &str| mesh.data(name).expect("it is there").values.clone();
+    assert_eq!(values("E"), [10.0, 20.0]);
+    assert_eq!(values("along"), [1.0, 0.0, 0.0, 0.0, 0.0, -2.0]);
+    let error = mesh.data("surface").expect_err("no tetrahedron has it");
+    insta::assert_snapshot!(error, @r#"no data of tetrahedra are named "surface"; there are "E" (a number), "along" (3 numbers)"#);
+}
+
+#[test]
+fn parts_of_data_are_put_together_and_steps_or_copies_are_told_apart() {
+    let parts = section("E", 0, 1, &["1 10"]) + &section("E", 0, 1, &["2 20"]);
+    let mesh = with_data(&parts);
+    assert_eq!(
+        mesh.data("E").map(|data| &data.values[..]),
+        Ok(&[10.0, 20.0][..])
+    );
+    for step in [0, 4] {
+        let again = parts.clone() + &section("E", step, 1, &["1 11", "2 21"]);
+        let mesh = with_data(&again);
+        let error = mesh.data("E").expect_err("there are two");
+        let steps = format!("(time steps 0, {step})");
+        assert!(error.to_string().contains(&steps), "{error}");
+    }
+}
+
+/// gmsh writes version 2.2 with a copy of an element for each group, under a tag of its own.
+#[test]
+fn a_copy_gives_the_data_that_the_first_lacks() {
+    let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n\
+                $Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 2 2 1 1 2 3 4\n$EndElements\n";
+    let mesh = tet_mesh(&(text.to_owned() + &section("E", 0, 1, &["2 20"])));
+    assert_eq!(mesh.data("E").map(|data| &data.values[..]), Ok(&[20.0][..]));
+    let both = section("E", 0, 1, &["1 10", "2 20"]);
+    let mesh = tet_mesh(&(text.to_owned() + &both));
+    assert_eq!(mesh.data("E").map(|data| &data.values[..]), Ok(&[10.0][..]));
+}
+
+#[test]
+fn data_follow_refinement_files_and_turns() {
+    let moduli = section("E", 0, 1, &["2 20", "1 10"]);
+    let along = section("along", 0, 3, &["1 1 0 0", "2 0 0 -2"]);
+    let mesh = with_data(&(moduli + &along));
+    let fine = mesh.refined().expect("it is small");
+    let values = |mesh: &TetMesh, name: &str| mesh.data(name).expect("it is there").values.clone();
+    let eight = |value: f64| [value; 8];
+    assert_eq!(values(&fine, "E"), [eight(10.0), eight(20.0)].concat());
+    assert_eq!(
+        values(&fine, "along")[21..27],
+        [1.0, 0.0, 0.0, 0.0, 0.0, -2.0]
+    );
+    let mut file = Vec::new();
+    sinew_mesh::write_msh41_ascii(&fine.to_mesh(), &mut file).expect("memory takes it");
+    let again = sinew_mesh::read_msh(&file).expect("it was written just now");
+    assert_eq!(again.to_tet_mesh().expect("so it was").data, fine.data);
+    let mut turned = mesh;
+    turned.rotate([0.0, 1.0, 0.0], 90.0);
+    assert_eq!(values(&turned, "along"), [0.0, 0.0, -1.0, -2.0, 0.0, 0.0]);
+    assert_eq!(values(&turned, "E"), [10.0, 20.0]);
+}
+
+#[test]
+fn data_follow_cells_that_a_file_stores_by_groups() {
+    let mut mesh = sinew_mesh::structured::cube(1, 1.0, sinew_mesh::structured::Split::Kuhn)
+        .expect("it is small");
+    mesh.groups.clear();
+    for tag in [1, 2] {
+        let tets = (0..6).filter(|tet| tet % 2 == tag % 2).collect();
+        mesh.groups.push(sinew_mesh::Group {
+            name: format!("part {tag}"),
+            dim: 3,
+            tag: tag as i32,
+            members: GroupMembers::Tets(tets),
+        });
+    }
+    mesh.data.push(sinew_mesh::TetData {
+        name: "tag".to_owned(),
+        step: 0,
+        components: 1,
+        values: mesh.tet_tags.iter().map(|tag| *tag as f64).collect(),
+    });
+    let moved = mesh.to_mesh().to_tet_mesh().expect("it came from one");
+    assert_ne!(moved.tet_tags, mesh.tet_tags);
+    let tags = moved.tet_tags.iter().map(|tag| *tag as f64);
+    assert_eq!(moved.data[0].values, tags.collect::<Vec<_>>());
+}

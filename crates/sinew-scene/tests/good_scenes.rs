@@ -13,7 +13,8 @@ use std::path::{Path, PathBuf};
 
 use sinew_core::{OptionValue, Options, Ramp};
 use sinew_fem::{
-    Element, Fixed, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule, Tissue,
+    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule,
+    Tissue,
 };
 use sinew_scene::{
     Body, Formula, Initial, MeshChanges, MeshSource, Oscillator, ProbeAt, ProbePoint, Quantity,
@@ -139,6 +140,7 @@ fn the_papers_cube() {
                 },
                 element: Element::P1,
                 tissue: Tissue::default(),
+                from_mesh: FromMesh::default(),
             }],
             damping: Rayleigh {
                 mass: 80.0,

@@ -7,8 +7,8 @@ use proptest::prelude::*;
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{LinearSystem, Ramp, State};
 use sinew_fem::{
-    Element, Fixed, Item, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, SpringRule,
-    Tissue,
+    Element, Fixed, FromMesh, Item, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region,
+    SpringRule, Tissue,
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -288,6 +288,7 @@ fn regions(tets: usize) -> impl Strategy<Value = (Vec<Region>, Vec<Group>)> {
         law,
         element: Element::P1,
         tissue: Tissue::default(),
+        from_mesh: FromMesh::default(),
     };
     let one = (500.0..2000.0, laws())
         .prop_map(move |(density, law)| (vec![region(None, density, law)], vec![]));

@@ -15,6 +15,7 @@
 //!         law: Law::Linear { youngs_modulus: 3500.0, poissons_ratio: 0.45 },
 //!         element: Element::P1,
 //!         tissue: Tissue::default(),
+//!         from_mesh: FromMesh::default(),
 //!     }],
 //!     fixed: vec![Fixed { on: "bottom".into(), axes: [true; 3] }],
 //!     gravity: Some([0.0, 0.0, -9.81]),
@@ -46,8 +47,8 @@ pub mod prelude {
     };
     pub use sinew_fem::stress::von_mises;
     pub use sinew_fem::{
-        Course, Element, Fixed, Law, LoadKind, LoadSpec, Model, Moving, NodalForces, On, Problem,
-        Rayleigh, Region, SpringRule, Tissue,
+        Course, Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Moving, NodalForces, On,
+        Problem, Rayleigh, Region, SpringRule, Tissue,
     };
     pub use sinew_integrators::Stepper;
     pub use sinew_mesh::structured::{self, Split};

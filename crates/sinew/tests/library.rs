@@ -69,6 +69,7 @@ fn a_frame_loop_needs_no_other_import() {
             },
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         damping: Rayleigh {
             mass: 5.0,

@@ -22,7 +22,7 @@ use std::process::{Command, ExitCode, Output};
 
 use sinew_core::{Inputs, Options, Ramp, Run, State, System, simulate_under};
 use sinew_fem::{
-    Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, Tissue,
+    Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, FromMesh, Tissue,
 };
 use sinew_mesh::structured::{Split, cube};
 
@@ -203,6 +203,7 @@ fn block(cells: usize, youngs_modulus: f64) -> Result<Model, Box<dyn Error>> {
             },
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         damping: Rayleigh {
             mass: 5.0,

@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 
 use sinew_core::{Inputs, LoadTime, Options, State, System, worst_beyond};
 use sinew_fem::{
-    Element, Fixed, Law, Model, NodalForces, On, Problem, Rayleigh, Region, Tissue,
+    Element, Fixed, Law, Model, NodalForces, On, Problem, Rayleigh, Region, FromMesh, Tissue,
     stress::von_mises,
 };
 use sinew_integrators::{Stepper, build};
@@ -56,6 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             law,
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         damping: Rayleigh {
             mass: 40.0,

@@ -1,7 +1,9 @@
 //! Bodies of one material, and their equilibria.
 
 use sinew_core::{LinearSystem, LoadTime, Ramp, System};
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue};
+use sinew_fem::{
+    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue,
+};
 use sinew_integrators::static_solution;
 
 use super::error::VerifyError;
@@ -25,6 +27,7 @@ pub(crate) fn body(youngs_modulus: f64, poissons_ratio: f64, element: Element) -
             law,
             element,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         ..Problem::default()
     }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use sinew_sparse::simd::{Number, Vectors, WithReal};
 
 use super::error::fibres_refused;
-use super::fibres::RegionFibres;
+use super::fibres::{Directions, RegionFibres};
 use super::kept::{first_below, lanes, load_entries, store_entries};
 use super::memory::{Points, Relaxing, require};
 use super::region::HyperelasticRegion;
@@ -19,6 +19,8 @@ use crate::hyperelastic::{Deformation, SMALLEST_VOLUME_RATIO, Tensor};
 pub(super) struct StressBeside<'a, T> {
     pub(super) region: &'a HyperelasticRegion,
     pub(super) rest: &'a Rest<T>,
+    /// The directions of fibres, where there are any.
+    pub(super) directions: Option<&'a Directions<T>>,
     pub(super) relaxing: &'a Relaxing<'a, T>,
     /// Places of the chunk's tetrahedra.
     pub(super) slots: &'a Range<usize>,
@@ -51,7 +53,7 @@ impl<T: Vectors> WithReal<T> for StressBeside<'_, T> {
             };
             let deformation = Deformation::of(gradient);
             let (mut stress, mut density) = (Tensor::zero(), N::of(0.0));
-            if let Some(own) = &self.region.fibres {
+            if let (Some(own), Some(directions)) = (&self.region.fibres, self.directions) {
                 let fibres = &own.fibres;
                 let least = N::of(SMALLEST_VOLUME_RATIO);
                 if fibres.is_split() && !N::all_le(least, deformation.volume_ratio) {
@@ -59,7 +61,7 @@ impl<T: Vectors> WithReal<T> for StressBeside<'_, T> {
                     let lane = first_below(&ratios);
                     return Err(fibres_refused(rest.tag(first + lane), ratios[lane]));
                 }
-                let at = fibres.at(&deformation, own.directions::<N>(first));
+                let at = fibres.at(&deformation, directions.of::<N>(first));
                 stress = fibres.stress(&at).scaled(factor);
                 if self.with_energy {
                     density = factor * fibres.energy(&at);

@@ -3,8 +3,11 @@
 //! They see the strain of each tetrahedron by itself, also where the law sees averages: fibres resist a stretch along their own
 //! direction and no shear across it, which is what locks tetrahedra in bending, and their direction may be another in each.
 
-use sinew_sparse::simd::Number;
+use std::sync::Arc;
 
+use sinew_sparse::simd::{Aligned, Number, Real};
+
+use super::chunks::Slot;
 use crate::hyperelastic::fibres::{FibrePoint, Fibres};
 use crate::hyperelastic::{Deformation, SMALLEST_VOLUME_RATIO};
 use crate::tissue::FibreFamily;
@@ -13,32 +16,82 @@ use crate::tissue::FibreFamily;
 #[derive(Clone, Debug)]
 pub(super) struct RegionFibres {
     pub(super) fibres: Fibres,
-    direction: [f64; 3],
+    pub(super) directions: Directions,
+}
+
+/// The direction of fibres at rest as unit vectors.
+#[derive(Clone, Debug)]
+pub(super) enum Directions<T = f64> {
+    /// The same in all tetrahedra.
+    Same([f64; 3]),
+    /// That of each tetrahedron, one array for each component.
+    Each(Arc<[Aligned<T>; 3]>),
 }
 
 impl RegionFibres {
-    /// Fibres whose moduli are those of a family times a factor.
-    pub(super) fn new(family: &FibreFamily, factor: f64) -> Self {
+    /// Fibres whose moduli are those of a family times a factor, in the tetrahedra at these places; with a direction for each tetrahedron of
+    /// the mesh, or that of the family.
+    pub(super) fn new(
+        family: &FibreFamily,
+        factor: f64,
+        slots: &[Slot],
+        directions: Option<&[[f64; 3]]>,
+    ) -> Self {
+        let each = |all: &[[f64; 3]]| {
+            let along = |axis: usize| -> Vec<f64> {
+                let of_slot = |slot: &Slot| all[slot.tet as usize][axis];
+                slots.iter().map(of_slot).collect()
+            };
+            let all = [0, 1, 2].map(|axis| Aligned::from(&along(axis)[..]));
+            Directions::Each(Arc::new(all))
+        };
         Self {
             fibres: family.fibres.scaled(factor),
-            direction: family.unit_direction(),
+            directions: match directions {
+                Some(all) => each(all),
+                None => Directions::Same(family.unit_direction()),
+            },
         }
-    }
-
-    /// The directions in tetrahedra side by side.
-    #[inline(always)]
-    pub(super) fn directions<N: Number>(&self, _first: usize) -> [N; 3] {
-        let [x, y, z] = self.direction;
-        [N::of(x), N::of(y), N::of(z)]
     }
 
     /// The fibres of a tetrahedron at its deformation.
     pub(super) fn at(&self, tet: usize, deformation: &Deformation<f64>) -> FibrePoint<f64> {
-        self.fibres.at(deformation, self.directions(tet))
+        self.fibres.at(deformation, self.directions.of(tet))
     }
 
     /// Whether they are defined for a deformation.
     pub(super) fn admits(&self, deformation: &Deformation<f64>) -> bool {
         !self.fibres.is_split() || deformation.volume_ratio >= SMALLEST_VOLUME_RATIO
+    }
+}
+
+impl Directions {
+    /// The same in another precision.
+    pub(super) fn rounded<T: Real>(&self) -> Directions<T> {
+        match self {
+            Self::Same(direction) => Directions::Same(*direction),
+            Self::Each(all) => Directions::Each(Arc::new(all.each_ref().map(|values| {
+                let values: Vec<T> = values.iter().map(|value| T::of(*value)).collect();
+                Aligned::from(&values[..])
+            }))),
+        }
+    }
+}
+
+impl<T: Real> Directions<T> {
+    /// The directions in tetrahedra side by side.
+    #[inline(always)]
+    pub(super) fn of<N: Number<Real = T>>(&self, first: usize) -> [N; 3] {
+        match self {
+            Self::Same([x, y, z]) => [N::of(*x), N::of(*y), N::of(*z)],
+            Self::Each(all) => {
+                let [x, y, z] = &**all;
+                [
+                    N::load(&x[first..]),
+                    N::load(&y[first..]),
+                    N::load(&z[first..]),
+                ]
+            }
+        }
     }
 }

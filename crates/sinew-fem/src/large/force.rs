@@ -18,6 +18,7 @@ use super::region::{HyperelasticRegion, Numbers};
 use super::rooms::{RegionRooms, Rooms};
 use super::schedule::{Piece, Task};
 use super::scratch::Places;
+use super::stiffness::times;
 use crate::hyperelastic::prony::{deviatoric, first_piola};
 use crate::hyperelastic::{Deformation, HyperelasticLaw, LawVisitor, SMALLEST_VOLUME_RATIO};
 
@@ -154,7 +155,7 @@ impl<T: Vectors, L: HyperelasticLaw> WithReal<T> for Sweep<'_, T, L> {
 }
 
 impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
-    /// Takes the mean dilation of each patch of a chunk, and keeps the gradients.
+    /// Takes the mean dilation of each patch of a chunk, times its share of the stiffness, and keeps the gradients.
     #[inline(always)]
     fn means<N: Number<Real = T>>(
         &self,
@@ -205,9 +206,13 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 .iter()
                 .fold(T::default(), |sum, of_tet| sum + *of_tet);
             let mean = sum / volume;
-            dilations.fill(mean);
-            let mean = mean.to_f64();
-            found.energy_of_sets += 0.5 * volume.to_f64() * lambda * mean * mean;
+            let stressing = match &self.numbers.stiffness {
+                Some(stiffness) => mean * stiffness.of_patch(patch),
+                None => mean,
+            };
+            dilations.fill(stressing);
+            let (mean, stressing) = (mean.to_f64(), stressing.to_f64());
+            found.energy_of_sets += 0.5 * volume.to_f64() * lambda * stressing * mean;
         }
         Ok(())
     }
@@ -238,7 +243,12 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                     tets.first().map_or(0, |tet| rest.tag(*tet as usize))
                 }));
             }
+            let stiffness = self.numbers.stiffness.as_ref();
+            let share = stiffness.map(|stiffness| stiffness.at_edges::<N>(first));
             let mut stress = self.law.stress(&at);
+            if let Some(share) = share {
+                stress = stress.scaled(share);
+            }
             if let Some(remembering) = &mut remembering {
                 if remembering.is_deviatoric() {
                     stress = deviatoric(&at.deformation, stress);
@@ -248,7 +258,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             }
             let mut density = N::of(0.0);
             if self.with_energy {
-                density = self.law.energy(&at);
+                density = times(share, self.law.energy(&at));
             }
             if self.relaxing.is_there() {
                 require(&self.relaxing, &at.deformation, |lane| {
@@ -258,6 +268,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 let factor = N::of(self.relaxing.factor);
                 let half = N::of(0.5) * self.law.dilation(&at);
                 let left = N::of(self.relaxing.bulk_left()) * self.law.dilation(&at);
+                let left = times(share, left);
                 let gradient = self.law.dilation_gradient(&at);
                 stress = stress.scaled(factor).plus(left, gradient);
                 density = half.mul_add(left, factor * density);
@@ -295,6 +306,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         let work = StressBeside {
             region: self.region,
             rest: &self.numbers.rest,
+            directions: self.numbers.directions.as_ref(),
             relaxing: &self.relaxing,
             slots,
             displacement: self.places.displacement,
@@ -356,7 +368,12 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             } else {
                 self.law.dilation(&at)
             };
+            let stiffness = self.numbers.stiffness.as_ref();
+            let share = stiffness.map(|stiffness| stiffness.of_tets::<N>(first));
             let mut bulk = N::of(lambda) * dilation;
+            if !is_smoothed {
+                bulk = times(share, bulk);
+            }
             if self.with_energy {
                 found.note(first, at.volume_ratio, rest);
                 let mut density = N::of(own_share) * self.law.energy(&at);
@@ -365,12 +382,16 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                     let left = N::of(own_share * self.relaxing.bulk_left());
                     density = left.mul_add(half, N::of(self.relaxing.factor) * density);
                 }
+                density = times(share, density);
                 if !is_smoothed {
                     density = (N::of(0.5) * dilation).mul_add(bulk, density);
                 }
                 found.energy = rest.volumes::<N>(first).mul_add(density, found.energy);
             }
             let mut stress = self.law.stress(&at);
+            if let Some(share) = share {
+                stress = stress.scaled(share);
+            }
             if let Some(remembering) = &mut remembering {
                 stress = stress.scaled(N::of(own_share));
                 if remembering.is_deviatoric() {
@@ -386,7 +407,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             }
             if is_relaxing {
                 stress = stress.scaled(N::of(self.relaxing.factor));
-                let left = N::of(own_share * self.relaxing.bulk_left());
+                let left = times(share, N::of(own_share * self.relaxing.bulk_left()));
                 bulk = left.mul_add(self.law.dilation(&at), bulk);
             }
             if has_edges {

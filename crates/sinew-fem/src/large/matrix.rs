@@ -5,7 +5,7 @@ use sinew_core::{BlockMatrix, ElementStiffness, EvaluationError, TangentKind};
 use super::beside::TangentBeside;
 use super::means::{at_edge, check, means, take_dilation};
 use super::memory::{Past, Relaxing};
-use super::product::{EdgeTangent, OwnTangent, of_patch};
+use super::product::{EdgeTangent, OwnTangent, left_of_smoothed, left_of_tet};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
 use crate::cells::Cells;
@@ -74,7 +74,7 @@ impl LawVisitor for Tangents<'_, '_> {
             for tet in rest.tets() {
                 let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
                 check(region, &law, &relaxing, &at, tet)?;
-                let left = relaxing.left_of(1.0, law.own_bulk(&at), law.dilation(&at));
+                let left = left_of_tet(region, &relaxing, &law, &at, tet);
                 let own = OwnTangent::of(&law, &at, left, kind);
                 let beside = beside_of(tet, &at.deformation);
                 sum.average.of(std::iter::once(region.tet(tet)));
@@ -83,11 +83,10 @@ impl LawVisitor for Tangents<'_, '_> {
             return Ok(());
         }
         means(region, scratch, &law, &relaxing)?;
-        let share = 1.0 - region.edge_share;
         for tet in rest.tets() {
             let at = law.at(scratch.gradients[tet]);
             let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
-            let left = relaxing.left_of(share, of_patch(lambda * dilation), law.dilation(&at));
+            let left = left_of_smoothed(region, &relaxing, &law, &at, (tet, dilation));
             let own = OwnTangent::of(&law, &at, left, kind);
             let beside = beside_of(tet, &at.deformation);
             sum.average.of(std::iter::once(region.tet(tet)));
@@ -95,12 +94,13 @@ impl LawVisitor for Tangents<'_, '_> {
         }
         for (edge, average) in region.edge_averages().iter().enumerate() {
             let at = at_edge(region, &law, region.edges.of(edge), scratch, &relaxing)?;
-            let tangent = EdgeTangent::of(&law, &at, (&relaxing, edge), kind);
+            let tangent = EdgeTangent::of(&law, &at, (region, &relaxing, edge), kind);
             sum.average.clone_from(average);
             sum.add(region.edge_share / 6.0, |change| tangent.on(change));
         }
         for patch in 0..region.patches.count() {
             take_dilation(region, &law, patch, scratch, &mut sum.average);
+            let lambda = region.stiffness_of_patch(patch) * lambda;
             let lambda = relaxing.factor_of_dilation() * lambda;
             sum.average.stiffness(1.0, [lambda, 0.0], &mut sum.whole);
             sum.add_whole();

@@ -19,6 +19,7 @@ mod rest;
 mod rooms;
 mod schedule;
 mod scratch;
+mod stiffness;
 mod stress;
 mod threads;
 mod when;
@@ -270,7 +271,10 @@ mod tests {
     use crate::hyperelastic::fibres::{Fibres, Stiffening};
     use crate::hyperelastic::prony::Term;
     use crate::hyperelastic::{Hyperelastic, Parameters};
-    use crate::{Element, FibreFamily, Law, Memory, Moduli, Problem, Region, Tissue, ViscousPart};
+    use crate::shares::Shares;
+    use crate::{
+        Element, FibreFamily, FromMesh, Law, Memory, Moduli, Problem, Region, Tissue, ViscousPart,
+    };
     use sinew_mesh::structured::{Split, cube};
     use sinew_sparse::simd::SharedSlice;
 
@@ -324,6 +328,7 @@ mod tests {
         id: &'static str,
         element: Element,
         tissue: &Tissue,
+        is_uneven: bool,
     ) -> LargeDeformation {
         let mut parameters = Parameters::new(3500.0, 0.45);
         parameters.c1_over_c2 = (id == "mooney-rivlin").then_some(4.0);
@@ -334,16 +339,26 @@ mod tests {
                 law: Law::Hyperelastic { id, parameters },
                 element,
                 tissue: tissue.clone(),
+                from_mesh: FromMesh::default(),
             }],
             ..Problem::default()
         };
         let smoothing = Smoothing::new(mesh, &problem, &vec![0; mesh.tets.len()]);
         let law = Hyperelastic::new(id, &parameters).unwrap();
         let tets: Vec<u32> = (0..mesh.tets.len() as u32).collect();
+        let uneven = || (0..mesh.tets.len()).map(|tet| (tet as f64 * 1.7).sin());
+        let shares: Vec<f64> = uneven().map(|x| 0.6 + 0.4 * x).collect();
+        let shares = match is_uneven {
+            true => Shares::new(shares.into(), 0..mesh.tets.len()),
+            false => Shares::default(),
+        };
+        let directions: Vec<[f64; 3]> = uneven().map(|x| [x.cos(), 0.0, x.sin()]).collect();
         let region = RegionLaw {
             law,
             edge_share: element.edge_share(),
             tissue,
+            shares: &shares,
+            directions: is_uneven.then_some(&directions),
         };
         let regions = std::iter::once((region, tets.as_slice()));
         LargeDeformation::new(mesh, &smoothing, regions).unwrap()
@@ -391,19 +406,24 @@ mod tests {
             let mesh = cube(cells, 0.1, Split::Kuhn).unwrap();
             let [plain, others @ ..] = tissues();
             let laws = Hyperelastic::IDS.iter().map(|id| (*id, &plain));
-            let others = others.iter().map(|tissue| ("neo-hookean", tissue));
-            for ((id, tissue), element) in laws
+            let laws = laws.map(|(id, tissue)| (id, tissue, false));
+            let others = [false, true].into_iter().flat_map(|is_uneven| {
+                let others = others.iter().chain(is_uneven.then_some(&plain));
+                others.map(move |tissue| ("neo-hookean", tissue, is_uneven))
+            });
+            for ((id, tissue, is_uneven), element) in laws
                 .chain(others)
                 .flat_map(|of| ELEMENTS.map(|element| (of, element)))
             {
-                let mut large = region(&mesh, id, element, tissue);
+                let mut large = region(&mesh, id, element, tissue, is_uneven);
                 for is_pushed in [false, true] {
                     let field = |node| displacement(&mesh, is_pushed, node);
                     large.set = InstructionSet::Portable;
                     let expected = evaluated(&large, field);
                     for set in InstructionSet::available() {
                         large.set = set;
-                        let name = format!("{id}, {element}, {cells}, {is_pushed}, {set:?}");
+                        let name =
+                            format!("{id}, {element}, {cells}, {is_pushed}, {is_uneven}, {set:?}");
                         match (evaluated(&large, field), &expected) {
                             (Ok(found), Ok(expected)) => are_near(&name, &found, expected),
                             (Err(found), Err(expected)) => {
@@ -492,7 +512,7 @@ mod tests {
         let tissues = tissues();
         let of = |element: Element| tissues.iter().map(move |tissue| (element, tissue));
         for (element, tissue) in ELEMENTS.into_iter().flat_map(of) {
-            let large = region(&mesh, "stable-neo-hookean", element, tissue);
+            let large = region(&mesh, "stable-neo-hookean", element, tissue, true);
             let mut field = vec![[0.0; 4]; mesh.points.len()];
             fill(&mut field, |node| displacement(&mesh, false, node));
             let expected = in_parts(&large, &field, 1, false);

@@ -5,7 +5,7 @@ use sinew_core::EvaluationError;
 use super::beside::{block_beside, carried_block};
 use super::means::{at_edge, check, means, take_dilation};
 use super::memory::{Past, Points, Relaxing};
-use super::product::of_patch;
+use super::product::{left_of_smoothed, left_of_tet};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
 use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Point, Tensor};
@@ -48,7 +48,7 @@ impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
             for tet in rest.tets() {
                 let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
                 check(region, &law, &relaxing, &at, tet)?;
-                let left = relaxing.left_of(1.0, law.own_bulk(&at), law.dilation(&at));
+                let left = left_of_tet(region, &relaxing, &law, &at, tet);
                 for (node, gradient) in rest.nodes(tet).into_iter().zip(rest.all_gradients(tet)) {
                     let beside = block_beside(region, &relaxing, tet, &at.deformation, gradient);
                     let block = own_block(&law, &at, left, gradient) + beside;
@@ -63,7 +63,7 @@ impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
         for tet in rest.tets().filter(|_| share > 0.0 || has_beside) {
             let at = law.at(scratch.gradients[tet]);
             let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
-            let left = relaxing.left_of(share, of_patch(lambda * dilation), law.dilation(&at));
+            let left = left_of_smoothed(region, &relaxing, &law, &at, (tet, dilation));
             for (node, gradient) in rest.nodes(tet).into_iter().zip(rest.all_gradients(tet)) {
                 let beside = block_beside(region, &relaxing, tet, &at.deformation, gradient);
                 let block = own_block(&law, &at, left, gradient) + beside;
@@ -72,7 +72,8 @@ impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
         }
         for (edge, average) in region.edge_averages().iter().enumerate() {
             let at = at_edge(region, &law, region.edges.of(edge), scratch, &relaxing)?;
-            let left = relaxing.left_of(1.0, Bulk::none(), law.dilation(&at));
+            let stiffness = region.stiffness_at_edge(edge);
+            let left = relaxing.left_of(stiffness, Bulk::none(), law.dilation(&at));
             let volume = region.edge_share / 6.0 * average.volume;
             for (node, gradient) in average.nodes.iter().zip(&average.gradients) {
                 let carried = carried_block(&relaxing, (Points::Edges, edge), *gradient);
@@ -83,6 +84,7 @@ impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
         let lambda = relaxing.factor_of_dilation() * lambda;
         let mut average = Average::default();
         for patch in 0..region.patches.count() {
+            let lambda = region.stiffness_of_patch(patch) * lambda;
             take_dilation(region, &law, patch, scratch, &mut average);
             for (node, gradient) in average.nodes.iter().zip(&average.gradients) {
                 let block = Tensor::outer(*gradient, *gradient);

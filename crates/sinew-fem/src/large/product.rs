@@ -78,7 +78,7 @@ impl Products<'_> {
             let at = law.at(rest.gradient_of::<f64>(tet, &self.scratch.displacement));
             check(region, &law, &relaxing, &at, tet)?;
             let change = rest.gradient_of::<f64>(tet, &self.scratch.change);
-            let left = relaxing.left_of(1.0, law.own_bulk(&at), law.dilation(&at));
+            let left = left_of_tet(region, &relaxing, &law, &at, tet);
             let own = OwnTangent::of(&law, &at, left, kind);
             let how = (kind, self.wanted == Wanted::Stiffest);
             let beside = TangentBeside::of(region, &relaxing, tet, &at.deformation, how);
@@ -99,7 +99,7 @@ impl Products<'_> {
             relaxing,
             wanted,
         } = self;
-        let (rest, lambda, share) = (&region.rest, law.lame().0, 1.0 - region.edge_share);
+        let (rest, lambda) = (&region.rest, law.lame().0);
         means(region, scratch, &law, &relaxing)?;
         for patch in 0..region.patches.count() {
             let tets = region.patches.of(patch);
@@ -117,16 +117,18 @@ impl Products<'_> {
             let tets = region.edges.of(edge);
             let at = at_edge(region, &law, tets, scratch, &relaxing)?;
             let change = region.mean_tensor(tets, |tet| scratch.changes[tet]);
-            let tangent = EdgeTangent::of(&law, &at, (&relaxing, edge), kind);
+            let tangent = EdgeTangent::of(&law, &at, (region, &relaxing, edge), kind);
             scratch.at_edges[edge] = tangent.on(change);
         }
         let corners = &mut scratch.corners[4 * region.first..];
         for tet in rest.tets() {
             let at = law.at(scratch.gradients[tet]);
-            let [dilation, change] = scratch.dilations[region.patch_of[tet] as usize];
-            let left = relaxing.left_of(share, of_patch(lambda * dilation), law.dilation(&at));
+            let patch = region.patch_of[tet] as usize;
+            let [dilation, change] = scratch.dilations[patch];
+            let left = left_of_smoothed(region, &relaxing, &law, &at, (tet, dilation));
             let own = OwnTangent::of(&law, &at, left, kind);
             let mut stress = own.on(scratch.changes[tet]);
+            let lambda = lambda * region.stiffness_of_patch(patch);
             let of_patch = relaxing.factor_of_dilation() * lambda * change;
             stress = stress.plus(of_patch, law.dilation_gradient(&at));
             for edge in region.edges_of.get(tet).into_iter().flatten() {
@@ -141,12 +143,41 @@ impl Products<'_> {
     }
 }
 
-/// The dilational energy of a tetrahedron by the mean of its patch, whose own modulus is added elsewhere.
-pub(super) fn of_patch(stress: f64) -> Bulk<f64> {
-    Bulk {
-        stress,
+/// What is left of the energy of a tetrahedron that is averaged with no other.
+#[inline(always)]
+pub(super) fn left_of_tet<L: HyperelasticLaw>(
+    region: &HyperelasticRegion,
+    relaxing: &Relaxing<'_>,
+    law: &L,
+    at: &Point<f64, L::Own<f64>>,
+    tet: usize,
+) -> (f64, Bulk<f64>) {
+    let stiffness = region.stiffness_of_tet(tet);
+    let Bulk { stress, modulus } = law.own_bulk(at);
+    let bulk = Bulk {
+        stress: stiffness * stress,
+        modulus: stiffness * modulus,
+    };
+    relaxing.left_of(stiffness, bulk, law.dilation(at))
+}
+
+/// What is left of a tetrahedron's own share of the local energy, and of the dilational one by the mean dilation of its patch, whose own modulus
+/// is added elsewhere.
+#[inline(always)]
+pub(super) fn left_of_smoothed<L: HyperelasticLaw>(
+    region: &HyperelasticRegion,
+    relaxing: &Relaxing<'_>,
+    law: &L,
+    at: &Point<f64, L::Own<f64>>,
+    (tet, mean_dilation): (usize, f64),
+) -> (f64, Bulk<f64>) {
+    let patch = region.patch_of[tet] as usize;
+    let bulk = Bulk {
+        stress: region.stiffness_of_patch(patch) * law.lame().0 * mean_dilation,
         modulus: 0.0,
-    }
+    };
+    let share = (1.0 - region.edge_share) * region.stiffness_of_tet(tet);
+    relaxing.left_of(share, bulk, law.dilation(at))
 }
 
 /// The tangent of a share of the local energy, and of the dilational one.
@@ -212,10 +243,11 @@ impl<'a, L: HyperelasticLaw> EdgeTangent<'a, L> {
     pub(super) fn of(
         law: &'a L,
         at: &'a Point<f64, L::Own<f64>>,
-        (relaxing, edge): (&Relaxing<'_>, usize),
+        (region, relaxing, edge): (&HyperelasticRegion, &Relaxing<'_>, usize),
         kind: TangentKind,
     ) -> Self {
-        let left = relaxing.left_of(1.0, Bulk::none(), law.dilation(at));
+        let stiffness = region.stiffness_at_edge(edge);
+        let left = relaxing.left_of(stiffness, Bulk::none(), law.dilation(at));
         let is_exact = kind == TangentKind::Exact;
         Self {
             own: OwnTangent::of(law, at, left, kind),

@@ -6,10 +6,12 @@ use sinew_mesh::TetMesh;
 use sinew_sparse::simd::Real;
 
 use super::chunks::{Chunk, LANES, Slot};
-use super::fibres::RegionFibres;
+use super::fibres::{Directions, RegionFibres};
 use super::memory::RegionMemory;
 use super::rest::Rest;
+use super::stiffness::Stiffness;
 use crate::hyperelastic::{Hyperelastic, Tensor};
+use crate::shares::Shares;
 use crate::smoothing::{Average, Sets, Smoothing};
 use crate::tissue::Tissue;
 
@@ -20,12 +22,19 @@ pub(crate) struct RegionLaw<'a> {
     /// Share of the local energy that is averaged over edges.
     pub(crate) edge_share: f64,
     pub(crate) tissue: &'a Tissue,
+    /// The stiffness of each tetrahedron of the mesh over that of the law.
+    pub(crate) shares: &'a Shares,
+    /// The direction of fibres in each tetrahedron of the mesh, as unit vectors; `None` where all have that of the tissue.
+    pub(crate) directions: Option<&'a [[f64; 3]]>,
 }
 
 /// A region of hyperelastic tetrahedra, numbered by itself.
 #[derive(Clone, Debug)]
 pub(crate) struct HyperelasticRegion {
+    /// The law of the stiffest tetrahedron.
     pub(super) law: Hyperelastic,
+    /// What its energies are multiplied by; `None` where all tetrahedra are equally stiff.
+    stiffness: Option<Arc<Stiffness>>,
     pub(super) fibres: Option<RegionFibres>,
     pub(super) memory: Option<RegionMemory>,
     pub(super) rest: Arc<Rest>,
@@ -62,6 +71,8 @@ impl HyperelasticRegion {
             law,
             edge_share,
             tissue,
+            shares,
+            directions,
         }: RegionLaw<'_>,
         (slots, chunks): (&[Slot], Vec<Chunk>),
         (first, kept): (usize, FirstPlaces),
@@ -95,12 +106,17 @@ impl HyperelasticRegion {
         };
         let mut edge_volumes = volumes(&edges);
         edge_volumes.resize(edges.count().next_multiple_of(LANES), 0.0);
+        let stiffness = shares.vary().then(|| {
+            let of_slots = slots.iter().map(|slot| shares.of(slot.tet as usize));
+            let of_slots: Vec<f64> = of_slots.collect();
+            Arc::new(Stiffness::new(&of_slots, &rest, [&edges, &patches]))
+        });
         Self {
             law,
-            fibres: tissue
-                .fibres
-                .as_ref()
-                .map(|family| RegionFibres::new(family, tissue.factor_of_fibres())),
+            stiffness,
+            fibres: tissue.fibres.as_ref().map(|family| {
+                RegionFibres::new(family, tissue.factor_of_fibres(), slots, directions)
+            }),
             memory: tissue.memory.as_ref().map(|memory| {
                 let points = [rest.count(), edge_volumes.len()];
                 RegionMemory::new(memory, law.lame().1, kept.variables, points)
@@ -126,7 +142,27 @@ impl HyperelasticRegion {
             rest: Arc::clone(&self.rest),
             edge_volumes: Arc::clone(&self.edge_volumes),
             patch_volumes: Arc::clone(&self.patch_volumes),
+            stiffness: self.stiffness.clone(),
+            directions: self.fibres.as_ref().map(|fibres| fibres.directions.clone()),
         }
+    }
+
+    /// What energies of the law are multiplied by in a tetrahedron.
+    pub(super) fn stiffness_of_tet(&self, tet: usize) -> f64 {
+        let stiffness = self.stiffness.as_ref();
+        stiffness.map_or(1.0, |stiffness| stiffness.of_tet(tet))
+    }
+
+    /// [`Self::stiffness_of_tet`] at the mean deformation of an edge.
+    pub(super) fn stiffness_at_edge(&self, edge: usize) -> f64 {
+        let stiffness = self.stiffness.as_ref();
+        stiffness.map_or(1.0, |stiffness| stiffness.at_edge(edge))
+    }
+
+    /// [`Self::stiffness_of_tet`] at the mean dilation of a patch.
+    pub(super) fn stiffness_of_patch(&self, patch: usize) -> f64 {
+        let stiffness = self.stiffness.as_ref();
+        stiffness.map_or(1.0, |stiffness| stiffness.of_patch(patch))
     }
 
     /// The first places behind those of this region.
@@ -222,6 +258,10 @@ pub(super) struct Numbers<T> {
     pub(super) edge_volumes: Arc<[T]>,
     /// The volume (m^3) of each patch.
     pub(super) patch_volumes: Arc<[T]>,
+    /// What energies of the law are multiplied by; `None` where all tetrahedra are equally stiff.
+    pub(super) stiffness: Option<Arc<Stiffness<T>>>,
+    /// The directions of fibres; `None` where there are none.
+    pub(super) directions: Option<Directions<T>>,
 }
 
 impl Numbers<f64> {
@@ -232,6 +272,8 @@ impl Numbers<f64> {
             rest: Arc::new(self.rest.rounded()),
             edge_volumes: rounded(&self.edge_volumes),
             patch_volumes: rounded(&self.patch_volumes),
+            stiffness: self.stiffness.as_ref().map(|own| Arc::new(own.rounded())),
+            directions: self.directions.as_ref().map(Directions::rounded),
         }
     }
 }

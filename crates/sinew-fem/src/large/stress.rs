@@ -1,7 +1,7 @@
 //! Stresses of deformed tetrahedra.
 
 use super::memory::{Past, Points, Relaxing};
-use super::product::of_patch;
+use super::product::{left_of_smoothed, left_of_tet};
 use super::region::HyperelasticRegion;
 use crate::hyperelastic::prony::first_piola;
 use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Point};
@@ -46,27 +46,27 @@ impl<U: Fn(u32) -> [f64; 3]> LawVisitor for Cauchy<'_, U> {
             law.admits(&at.deformation) && relaxing.admits(&at.deformation)
         };
         let mut is_defined = is_possible(&at);
-        let (share, bulk) = match region.patch_of.get(tet) {
+        let left = match region.patch_of.get(tet) {
             Some(patch) => {
                 let [dilation] = region.mean(region.patches.of(*patch as usize), |tet| {
                     [law.dilation(&law.at(gradient(tet)))]
                 });
-                let bulk = of_patch(law.lame().0 * dilation);
-                (1.0 - region.edge_share, bulk)
+                left_of_smoothed(region, &relaxing, &law, &at, (tet, dilation))
             }
-            None => (1.0, law.own_bulk(&at)),
+            None => left_of_tet(region, &relaxing, &law, &at, tet),
         };
-        let left_at = |at: &Point<f64, L::Own<f64>>, share: f64, bulk: Bulk<f64>| {
-            let (share, bulk) = relaxing.left_of(share, bulk, law.dilation(at));
+        let stress_at = |at: &Point<f64, L::Own<f64>>, (share, bulk): (f64, Bulk<f64>)| {
             let local = law.stress(at).scaled(share);
             local.plus(bulk.stress, law.dilation_gradient(at))
         };
-        let mut stress = left_at(&at, share, bulk);
+        let mut stress = stress_at(&at, left);
         for edge in region.edges_of.get(tet).into_iter().flatten() {
             let edge = *edge as usize;
             let at = law.at(region.mean_tensor(region.edges.of(edge), gradient));
             is_defined &= is_possible(&at);
-            let mut own = left_at(&at, 1.0, Bulk::none());
+            let stiffness = region.stiffness_at_edge(edge);
+            let left = relaxing.left_of(stiffness, Bulk::none(), law.dilation(&at));
+            let mut own = stress_at(&at, left);
             if let Some(carried) = relaxing.carried::<f64>(Points::Edges, edge) {
                 own = own + first_piola(&at.deformation, carried);
             }

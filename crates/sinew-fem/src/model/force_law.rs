@@ -204,7 +204,9 @@ impl ForceLaw for Model {
     /// Of materials, elements and geometry.
     fn fingerprint(&self) -> u64 {
         let mut hash = Hash::new();
-        hash.add(format!("{:?}", self.materials).as_bytes());
+        for material in &self.materials {
+            material.add_to(&mut hash);
+        }
         for coordinate in self.mesh.points.as_flattened() {
             hash.add(&coordinate.to_le_bytes());
         }

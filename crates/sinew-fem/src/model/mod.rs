@@ -31,6 +31,7 @@ use crate::assembly::{Assembled, assemble};
 use crate::body::Body;
 use crate::error::{Cause, FemError, Item};
 use crate::following::FollowingPressure;
+use crate::from_mesh::ByTet;
 use crate::graph::Graph;
 use crate::large::LargeDeformation;
 use crate::loads::LoadsOnBody;
@@ -166,7 +167,8 @@ impl Model {
         region_of: Vec<u32>,
         kept: impl FnOnce() -> Arc<TetMesh>,
     ) -> Result<Self, FemError> {
-        let lumped = Lumped::new(mesh, problem, &region_of);
+        let by_tet = ByTet::new(mesh, problem, &region_of)?;
+        let lumped = Lumped::new(mesh, problem, &region_of, &by_tet);
         let Assembled {
             stiffness,
             damping,
@@ -174,7 +176,7 @@ impl Model {
             materials,
             large,
             facts,
-        } = assemble(mesh, &body, problem, graph, &region_of, &lumped)?;
+        } = assemble(mesh, &body, problem, graph, (&region_of, &by_tet), &lumped)?;
         let Lumped { masses, volume, .. } = lumped;
         let motions = Motions::new(mesh, problem)?;
         let facts_of = |part: &MovedPart| MoveFacts {

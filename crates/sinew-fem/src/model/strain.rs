@@ -6,7 +6,7 @@ use super::Model;
 use super::field_error::{FieldError, require_length};
 use crate::large::Past;
 use crate::material::Material;
-use crate::smoothing::{MeanStrains, SmoothedStrain};
+use crate::smoothing::{MeanStrains, SmoothedStrain, scaled};
 use crate::springs::Spring;
 use crate::{stress, tetra};
 
@@ -109,7 +109,7 @@ impl Model {
         let smoothed = self
             .body
             .smoothing
-            .strain_at(&self.mesh, tet, share, strain);
+            .strain_at(&self.mesh, tet, share, strain, |tets| self.share_of(tets));
         self.stress_at(tet, &smoothed)
     }
 
@@ -119,10 +119,9 @@ impl Model {
     /// An edge between two regions is in both: the springs of all regions together make K.
     #[must_use]
     pub fn springs(&self, region: usize) -> Option<Vec<Spring>> {
-        let mesh = &self.mesh;
-        let tets = mesh.tets.iter().zip(&self.region_of);
-        let members = tets.filter_map(|(tet, of)| (*of as usize == region).then_some(tet));
-        self.materials.get(region)?.springs(&mesh.points, members)
+        let regions = self.region_of.iter().enumerate();
+        let members = regions.filter_map(|(tet, of)| (*of as usize == region).then_some(tet));
+        self.materials.get(region)?.springs(&self.mesh, members)
     }
 
     fn strain_of(&self, displacement: impl Fn(u32) -> [f64; 3], tet: usize) -> [f64; 6] {
@@ -156,7 +155,8 @@ impl Model {
 
     /// The mean strains of the sets over which regions average, with the strain of each tetrahedron.
     pub(super) fn mean_strains(&self, strain: impl Fn(usize) -> [f64; 6]) -> MeanStrains {
-        self.body.smoothing.mean_strains(&self.mesh, strain)
+        let share = |tets: &[u32]| self.share_of(tets);
+        self.body.smoothing.mean_strains(&self.mesh, strain, share)
     }
 
     /// The strain of a tetrahedron as its stress sees it.
@@ -167,7 +167,14 @@ impl Model {
         own: [f64; 6],
     ) -> SmoothedStrain {
         let share = self.edge_share(tet);
+        let own = scaled(own, self.share_of(&[tet as u32]));
         self.body.smoothing.strain_among(means, tet, share, own)
+    }
+
+    /// The stiffness of some tetrahedra of one region over that of its law.
+    fn share_of(&self, tets: &[u32]) -> f64 {
+        let material = tets.first().map(|tet| self.material_of(*tet as usize));
+        material.map_or(1.0, |material| material.share_of(&self.mesh, tets))
     }
 
     pub(super) fn material_of(&self, tet: usize) -> &Material {

@@ -10,7 +10,7 @@ mod strain;
 pub(crate) use average::Average;
 pub(crate) use edges::{Edges, NO_EDGE};
 pub(crate) use sets::Sets;
-pub(crate) use strain::{MeanStrains, SmoothedStrain};
+pub(crate) use strain::{MeanStrains, SmoothedStrain, scaled};
 
 use sinew_mesh::TetMesh;
 

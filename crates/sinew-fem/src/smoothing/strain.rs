@@ -4,14 +4,14 @@ use sinew_mesh::TetMesh;
 
 use super::Smoothing;
 
-/// Mean strains of all edges and patches.
+/// Mean strains of all edges and patches, each times its share of stiffness.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MeanStrains {
     edges: Vec<[f64; 6]>,
     patches: Vec<[f64; 6]>,
 }
 
-/// The strain of a tetrahedron as its stress sees it.
+/// The strain of a tetrahedron as its stress sees it: what it averages over, times shares of the stiffness of its region's law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SmoothedStrain {
     /// The strain that shear resists, in the order of [`crate::stress`].
@@ -22,7 +22,7 @@ pub(crate) struct SmoothedStrain {
 
 impl SmoothedStrain {
     /// The strain of a tetrahedron by itself.
-    pub(crate) fn plain(strain: [f64; 6]) -> Self {
+    fn plain(strain: [f64; 6]) -> Self {
         Self {
             shear: strain,
             dilation: trace(&strain),
@@ -31,21 +31,23 @@ impl SmoothedStrain {
 }
 
 impl Smoothing {
-    /// The mean strains of all sets, with the strain of each tetrahedron.
+    /// The mean strains of all sets, with the strain of each tetrahedron and the share of stiffness of each set.
     pub(crate) fn mean_strains(
         &self,
         mesh: &TetMesh,
         strain: impl Fn(usize) -> [f64; 6],
+        share: impl Fn(&[u32]) -> f64,
     ) -> MeanStrains {
         let edges = (0..self.edges.tets.count()).map(|edge| self.edges.tets.of(edge));
         let patches = (0..self.patches.count()).map(|patch| self.patches.of(patch));
+        let of = |tets: &[u32]| mean(mesh, tets, &strain, &share);
         MeanStrains {
-            edges: edges.map(|tets| mean(mesh, tets, &strain)).collect(),
-            patches: patches.map(|tets| mean(mesh, tets, &strain)).collect(),
+            edges: edges.map(of).collect(),
+            patches: patches.map(of).collect(),
         }
     }
 
-    /// The strain of a tetrahedron of `own` strain in a region that averages a share of shear over edges.
+    /// The strain of a tetrahedron of `own` strain, times its share of stiffness, in a region that averages a share of shear over edges.
     pub(crate) fn strain_among(
         &self,
         means: &MeanStrains,
@@ -57,17 +59,19 @@ impl Smoothing {
         self.smoothed(tet, edge_share, own, edge, |patch| means.patches[patch])
     }
 
-    /// [`Smoothing::strain_among`] for a single tetrahedron, with the strain of each of its neighbours.
+    /// [`Smoothing::strain_among`] for a single tetrahedron, with the strain of each of its neighbours and the shares of sets.
     pub(crate) fn strain_at(
         &self,
         mesh: &TetMesh,
         tet: usize,
         edge_share: f64,
         strain: impl Fn(usize) -> [f64; 6],
+        share: impl Fn(&[u32]) -> f64,
     ) -> SmoothedStrain {
-        let edge = |edge| mean(mesh, self.edges.tets.of(edge), &strain);
-        let patch = |patch| mean(mesh, self.patches.of(patch), &strain);
-        self.smoothed(tet, edge_share, strain(tet), edge, patch)
+        let edge = |edge| mean(mesh, self.edges.tets.of(edge), &strain, &share);
+        let patch = |patch| mean(mesh, self.patches.of(patch), &strain, &share);
+        let own = scaled(strain(tet), share(&[tet as u32]));
+        self.smoothed(tet, edge_share, own, edge, patch)
     }
 
     fn smoothed(
@@ -94,8 +98,18 @@ impl Smoothing {
     }
 }
 
-/// The mean strain of some tetrahedra by volume.
-fn mean(mesh: &TetMesh, tets: &[u32], strain: &impl Fn(usize) -> [f64; 6]) -> [f64; 6] {
+/// A strain times a share of stiffness.
+pub(crate) fn scaled(strain: [f64; 6], share: f64) -> [f64; 6] {
+    strain.map(|component| share * component)
+}
+
+/// The mean strain of some tetrahedra by volume, times their share of stiffness.
+fn mean(
+    mesh: &TetMesh,
+    tets: &[u32],
+    strain: &impl Fn(usize) -> [f64; 6],
+    share: &impl Fn(&[u32]) -> f64,
+) -> [f64; 6] {
     let (mut sum, mut all) = ([0.0; 6], 0.0);
     for tet in tets {
         let volume = mesh.volume(*tet as usize);
@@ -104,7 +118,7 @@ fn mean(mesh: &TetMesh, tets: &[u32], strain: &impl Fn(usize) -> [f64; 6]) -> [f
         }
         all += volume;
     }
-    sum.map(|sum| sum / all)
+    scaled(sum.map(|sum| sum / all), share(tets))
 }
 
 fn trace([xx, yy, zz, ..]: &[f64; 6]) -> f64 {

@@ -4,7 +4,7 @@
 
 use sinew_core::{ElasticLaw, LinearSystem, LoadTime, Ramp, System, TangentKind, Trial};
 use sinew_fem::{
-    Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule, Tissue,
+    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Problem, Region, SpringRule, Tissue,
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetMesh};
@@ -56,6 +56,7 @@ pub(crate) fn body(law: Law) -> Problem {
             law,
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         ..Problem::default()
     }

@@ -1,6 +1,6 @@
 //! Bodies of one material.
 
-use sinew_fem::{Element, Fixed, Law, Problem, Region, Tissue};
+use sinew_fem::{Element, Fixed, FromMesh, Law, Problem, Region, Tissue};
 
 /// Density of soft tissue (kg/m^3).
 pub(crate) const DENSITY: f64 = 1060.0;
@@ -21,6 +21,7 @@ pub(crate) fn body(law: Law) -> Problem {
             law,
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         ..Problem::default()
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use sinew_cnn::{LoadAt, Loads, Machine, Physics, Program, Register};
 use sinew_core::{Batch, Inputs, LinearSystem, State, System, VelocityTime};
-use sinew_fem::{Element, Fixed, Law, Model, Problem, Region, Tissue};
+use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
 
@@ -28,6 +28,7 @@ pub(crate) fn body(mesh: &TetMesh, held: &str) -> Model {
             law: TISSUE,
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         fixed: vec![Fixed {
             on: held.into(),

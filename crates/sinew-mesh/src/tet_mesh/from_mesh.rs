@@ -18,6 +18,7 @@ impl Mesh {
     /// * Nodes at the same place stay separate: cuts and contact surfaces have them.
     /// * A group without a name is called `"dim:tag"`. Groups of one dimension with the same name become one.
     /// * Flat and inverted tetrahedra are kept as they are.
+    /// * Cell data that some tetrahedron has stay, those of the parts of a partitioned file put together; data at nodes do not.
     ///
     /// [`TetMesh::notes`] tells which of these happened.
     ///
@@ -55,6 +56,7 @@ impl Mesh {
                 .map(|tet| tet.map(|node| new_index[node as usize]))
                 .collect(),
             tet_tags: tets.tags,
+            data: self.data_in_tets(&tets.copies),
             groups,
             notes,
         })
@@ -135,6 +137,8 @@ struct MergedTets {
     tags: Vec<u64>,
     /// Physical tags (absolute, ascending) of each tetrahedron.
     groups: Vec<Vec<i32>>,
+    /// Pairs (first, copy) of places among the tetrahedra of all blocks.
+    copies: Vec<(usize, usize)>,
 }
 
 fn merged_tets(mesh: &Mesh, notes: &mut Vec<String>) -> Result<MergedTets, TetMeshError> {
@@ -187,6 +191,7 @@ fn merged_tets(mesh: &Mesh, notes: &mut Vec<String>) -> Result<MergedTets, TetMe
             .filter(kept)
             .map(|cell| std::mem::take(&mut groups[cell]))
             .collect(),
+        copies,
     })
 }
 

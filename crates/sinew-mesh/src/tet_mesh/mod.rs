@@ -10,6 +10,7 @@ mod group;
 mod placement;
 mod refine;
 mod surface;
+mod tet_data;
 mod to_mesh;
 mod vector;
 
@@ -20,6 +21,7 @@ pub use group::{Group, GroupMembers};
 pub use refine::RefineError;
 pub(crate) use surface::OUTWARD_FACES;
 pub use surface::SurfaceError;
+pub use tet_data::{TetData, TetDataError};
 pub(crate) use vector::{cross, dot, sub};
 
 /// Points, tetrahedra and groups, every point being a corner of some tetrahedron.
@@ -41,6 +43,8 @@ pub struct TetMesh {
     pub node_tags: Vec<u64>,
     /// The groups, highest dimension first, then by tag.
     pub groups: Vec<Group>,
+    /// Values in the tetrahedra.
+    pub data: Vec<TetData>,
     /// Notes for the user, one sentence each, on what was merged or dropped on the way from the file.
     pub notes: Vec<String>,
 }
@@ -81,6 +85,7 @@ impl TetMesh {
             points,
             tets,
             groups: Vec::new(),
+            data: Vec::new(),
             notes: Vec::new(),
         })
     }

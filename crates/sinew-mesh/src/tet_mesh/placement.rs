@@ -11,7 +11,8 @@ impl TetMesh {
     }
 
     /// Turns the mesh about an axis through the origin by an angle (degrees), counter-clockwise as seen from the axis's tip, by
-    /// the formula of Rodrigues (1840). Multiples of 90 degrees about a coordinate axis are exact.
+    /// the formula of Rodrigues (1840). Multiples of 90 degrees about a coordinate axis are exact. Data of three components are
+    /// vectors, such as directions, and turn with it.
     ///
     /// The length of `axis` does not matter; an axis of no length, or one that is not finite, turns nothing.
     ///
@@ -32,7 +33,9 @@ impl TetMesh {
         }
         let axis = axis.map(|x| x / length);
         let (sin, cos) = sine_and_cosine(degrees);
-        for point in &mut self.points {
+        let vectors = self.data.iter_mut().filter(|data| data.components == 3);
+        let vectors = vectors.flat_map(|data| data.values.as_chunks_mut().0);
+        for point in self.points.iter_mut().chain(vectors) {
             let across = cross(axis, *point);
             let along = dot(axis, *point) * (1.0 - cos);
             for i in 0..3 {

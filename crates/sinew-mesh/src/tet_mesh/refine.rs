@@ -1,6 +1,6 @@
 //! Refinement: each tetrahedron cut into eight.
 
-use super::{Group, GroupMembers, TetMesh, dot, sub};
+use super::{Group, GroupMembers, TetData, TetMesh, dot, sub};
 
 /// A mesh cannot be refined.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -55,7 +55,7 @@ impl TetMesh {
     /// [`Split::Kuhn`](crate::structured::Split::Kuhn) becomes the one with twice as many cells.
     ///
     /// Old nodes come first and keep their tags; tetrahedra are numbered anew, the eight of tetrahedron `t` being `8 t..8 t + 8`.
-    /// All groups stay: tetrahedra become eight, triangles four, lines two. Triangles and lines whose edges are none of the
+    /// The eight have the data of the one. All groups stay: tetrahedra become eight, triangles four, lines two. Triangles and lines whose edges are none of the
     /// tetrahedra stay as they are, which [`TetMesh::notes`] tells. Curved surfaces stay as flat as they were.
     ///
     /// # Errors
@@ -103,6 +103,7 @@ impl TetMesh {
             points,
             tets,
             groups,
+            data: self.data.iter().map(TetData::refined).collect(),
             notes,
         })
     }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::collect_groups::unnamed;
+use super::tet_data::in_blocks;
 use super::{Group, GroupMembers, TetMesh};
 use crate::cell_type::CellType;
 use crate::mesh::{CellBlock, Entity, Mesh};
@@ -12,17 +13,20 @@ impl TetMesh {
     /// This mesh as cell blocks, ready to be written to a file.
     ///
     /// There is one block, and one geometrical entity, for each combination of groups that occurs; within a block the
-    /// order is kept. Reading the written file back gives this mesh again, except that cells move when the groups are not
-    /// stored one after another.
+    /// order is kept. Data are cell data. Reading the written file back gives this mesh again, except that cells move when the
+    /// groups are not stored one after another.
     #[must_use]
     pub fn to_mesh(&self) -> Mesh {
         let mut cells: Vec<CellBlock> = Vec::new();
         cells.extend(self.blocks_of_lower_dim(0, CellType::Vertex));
         cells.extend(self.blocks_of_lower_dim(1, CellType::Line));
         cells.extend(self.blocks_of_lower_dim(2, CellType::Triangle));
-        let first_tet_block = cells.len();
-        cells.extend(self.tet_blocks());
-        number_the_rest(&mut cells, first_tet_block);
+        let lower: Vec<usize> = cells.iter().map(CellBlock::len).collect();
+        let (blocks, tets_of_blocks) = self.tet_blocks();
+        cells.extend(blocks);
+        number_the_rest(&mut cells, lower.len());
+        let data = self.data.iter();
+        let cell_data = data.map(|data| in_blocks(data, &lower, &tets_of_blocks));
 
         let on_first_volume = Entity { dim: 3, tag: 1 };
         let names = self
@@ -35,6 +39,7 @@ impl TetMesh {
             node_entities: vec![on_first_volume; self.points.len()],
             cells,
             physical_names: names.map(|g| ((g.dim, g.tag), g.name.clone())).collect(),
+            cell_data: cell_data.collect(),
             ..Mesh::default()
         }
     }
@@ -60,13 +65,13 @@ impl TetMesh {
                 }
             }
         }
-        blocks_by_groups(
-            kind,
-            rows.iter().map(|(row, tags)| (row.as_slice(), tags, None)),
-        )
+        let rows = rows.iter().map(|(row, tags)| (row.as_slice(), tags, None));
+        let (blocks, _) = blocks_by_groups(kind, rows);
+        blocks
     }
 
-    fn tet_blocks(&self) -> Vec<CellBlock> {
+    /// The blocks of tetrahedra, and the tetrahedra of each.
+    fn tet_blocks(&self) -> (Vec<CellBlock>, Vec<Vec<usize>>) {
         let mut tags_of = vec![Vec::new(); self.tets.len()];
         for group in self.groups_of_dim(3) {
             if let GroupMembers::Tets(tets) = &group.members {
@@ -90,20 +95,23 @@ fn rows_of(members: &GroupMembers) -> Vec<Vec<u32>> {
     }
 }
 
-/// One block for each list of groups, in the order in which the lists first occur.
+/// One block for each list of groups, in the order in which the lists first occur, and the places of its cells among all.
 fn blocks_by_groups<'a>(
     kind: CellType,
     rows: impl Iterator<Item = (&'a [u32], &'a Vec<i32>, Option<u64>)>,
-) -> Vec<CellBlock> {
+) -> (Vec<CellBlock>, Vec<Vec<usize>>) {
     let mut blocks: Vec<CellBlock> = Vec::new();
+    let mut places: Vec<Vec<usize>> = Vec::new();
     let mut block_of: BTreeMap<&[i32], usize> = BTreeMap::new();
     let mut groups_of_block: Vec<&[i32]> = Vec::new();
-    for (nodes, groups, element_tag) in rows {
+    for (place, (nodes, groups, element_tag)) in rows.enumerate() {
         let index = *block_of.entry(groups).or_insert_with(|| {
             blocks.push(CellBlock::new(kind, Vec::new()));
+            places.push(Vec::new());
             groups_of_block.push(groups);
             blocks.len() - 1
         });
+        places[index].push(place);
         blocks[index].connectivity.extend_from_slice(nodes);
         blocks[index].element_tags.extend(element_tag);
     }
@@ -111,7 +119,7 @@ fn blocks_by_groups<'a>(
         block.geometrical = vec![entity; block.len()];
         block.physical = PhysicalTags::uniform(groups, block.len());
     }
-    blocks
+    (blocks, places)
 }
 
 /// Gives the cells of lower dimension tags that no tetrahedron has, or new tags to all cells if there is no room.

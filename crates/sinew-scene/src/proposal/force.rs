@@ -1,6 +1,8 @@
 //! A force that moves a body a little.
 
-use sinew_fem::{Element, Fixed, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue};
+use sinew_fem::{
+    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, On, Problem, Region, Tissue,
+};
 use sinew_mesh::TetMesh;
 
 use super::parts::Parts;
@@ -46,6 +48,7 @@ fn displacement(mesh: &TetMesh, parts: &Parts, force: f64) -> Option<f64> {
             },
             element: Element::P1,
             tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
         }],
         fixed: vec![Fixed {
             on: On::Nodes(parts.held.nodes(mesh)),

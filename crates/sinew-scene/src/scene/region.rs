@@ -3,7 +3,7 @@
 use std::ops::Bound;
 
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Law, Region, SpringRule, Tissue};
+use sinew_fem::{Element, FromMesh, Law, Region, SpringRule, Tissue};
 
 use super::model::{MODEL, MOONEY_RIVLIN, MaterialModel, SOLIDS, SPRINGS_MODEL};
 use super::selected::{Members, NOT_WHERE, OPTIONAL_GROUP, Selections, WHERE_OF_TETRAHEDRA};
@@ -281,6 +281,7 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
         law,
         element,
         tissue,
+        from_mesh: FromMesh::default(),
     })
 }
 

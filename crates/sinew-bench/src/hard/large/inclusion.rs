@@ -1,7 +1,7 @@
 //! A core a thousand times stiffer than the tissue around it, of another law.
 
 use sinew_core::Ramp;
-use sinew_fem::{Element, LoadKind, LoadSpec, Problem, Region, Tissue};
+use sinew_fem::{Element, FromMesh, LoadKind, LoadSpec, Problem, Region, Tissue};
 use sinew_measure::MethodChoice;
 
 use super::follow::{Planned, follow, reference};
@@ -40,6 +40,7 @@ fn specimen(core: &'static str, element: Element, ramp: Ramp) -> Result<Specimen
         law,
         element,
         tissue: Tissue::default(),
+        from_mesh: FromMesh::default(),
     };
     let problem = Problem {
         regions: vec![

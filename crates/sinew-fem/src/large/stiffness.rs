@@ -1,0 +1,91 @@
+//! Stiffness of a region that differs from tetrahedron to tetrahedron.
+
+use sinew_sparse::simd::{Aligned, Number, Real};
+
+use super::chunks::LANES;
+use super::rest::Rest;
+use crate::smoothing::Sets;
+
+/// What energies of a region's law are multiplied by. Fibres have moduli of their own, and what is remembered is a stress, which has its share.
+#[derive(Debug)]
+pub(super) struct Stiffness<T = f64> {
+    /// In each tetrahedron.
+    tets: Aligned<T>,
+    /// At each edge, then zeros to fill a vector.
+    edges: Aligned<T>,
+    /// In each patch.
+    patches: Vec<T>,
+}
+
+impl Stiffness {
+    /// By that of each tetrahedron; sets have the mean of theirs by volume.
+    pub(super) fn new(tets: &[f64], rest: &Rest, [edges, patches]: [&Sets; 2]) -> Self {
+        let mean = |sets: &Sets, set: usize| {
+            let (mut sum, mut volumes) = (0.0, 0.0);
+            for tet in sets.of(set) {
+                let volume = rest.volume(*tet as usize);
+                sum += volume * tets[*tet as usize];
+                volumes += volume;
+            }
+            sum / volumes
+        };
+        let means =
+            |sets: &Sets| -> Vec<f64> { (0..sets.count()).map(|set| mean(sets, set)).collect() };
+        let mut of_edges = means(edges);
+        of_edges.resize(edges.count().next_multiple_of(LANES), 0.0);
+        Self {
+            tets: Aligned::from(tets),
+            edges: Aligned::from(&of_edges[..]),
+            patches: means(patches),
+        }
+    }
+
+    /// The same in another precision.
+    pub(super) fn rounded<T: Real>(&self) -> Stiffness<T> {
+        let rounded = |values: &[f64]| -> Vec<T> { values.iter().map(|x| T::of(*x)).collect() };
+        Stiffness {
+            tets: Aligned::from(&rounded(&self.tets)[..]),
+            edges: Aligned::from(&rounded(&self.edges)[..]),
+            patches: rounded(&self.patches),
+        }
+    }
+
+    /// That at an edge.
+    pub(super) fn at_edge(&self, edge: usize) -> f64 {
+        self.edges[edge]
+    }
+
+    /// That of a tetrahedron.
+    pub(super) fn of_tet(&self, tet: usize) -> f64 {
+        self.tets[tet]
+    }
+}
+
+impl<T: Real> Stiffness<T> {
+    /// That of tetrahedra side by side.
+    #[inline(always)]
+    pub(super) fn of_tets<N: Number<Real = T>>(&self, first: usize) -> N {
+        N::load(&self.tets[first..])
+    }
+
+    /// That at edges side by side.
+    #[inline(always)]
+    pub(super) fn at_edges<N: Number<Real = T>>(&self, first: usize) -> N {
+        N::load(&self.edges[first..])
+    }
+
+    /// That of a patch.
+    #[inline(always)]
+    pub(super) fn of_patch(&self, patch: usize) -> T {
+        self.patches[patch]
+    }
+}
+
+/// A number times a share, where there is one.
+#[inline(always)]
+pub(super) fn times<N: Number>(share: Option<N>, number: N) -> N {
+    match share {
+        Some(share) => share * number,
+        None => number,
+    }
+}
