@@ -245,6 +245,22 @@ def open_cut(cut, mouth, names):
     gmsh.model.setPhysicalName(2, lip + 1, names[1])
 
 
+def add_data(name, values_at):
+    """Adds a view with the values of each cell by its middle (m), to four significant digits.
+
+    Nothing but tetrahedra needs them, but meshio reads no data that some cells lack.
+    """
+    points, _ = points_and_tets()
+    tags, rows = [], []
+    for kind, corners in [(TRIANGLE, 3), (TETRAHEDRON, 4)]:
+        of_kind, nodes = gmsh.model.mesh.getElementsByType(kind)
+        values = [np.atleast_1d(values_at(*middle)) for middle in points[nodes.reshape(-1, corners)].mean(axis=1)]
+        tags.extend(of_kind)
+        rows += [[float(f"{value:.4g}") for value in row] for row in values]
+    view = gmsh.view.add(name)
+    gmsh.view.addModelData(view, 0, gmsh.model.getCurrent(), "ElementData", tags, rows, numComponents=len(rows[0]))
+
+
 # ---------------------------------------------------------------------------------------------------------------------
 # The meshes
 
@@ -414,6 +430,29 @@ def incision():
     open_cut(cut, mouth, ["lip-left", "lip-right"])
 
 
+@in_collection(
+    "muscle",
+    "properties by element: a muscle 100 mm long, stiffer towards its tendons, with fibres along its curved outline",
+    54.32,
+    lambda mesh: no_node_is_doubled(mesh) and mesh.has_data(stiffness=1, along=3),
+)
+def muscle():
+    [[belly]] = joined(common_part(ellipsoid((0, 0, 0), (60, 15, 15)), box((-50, -20, -20), (50, 20, 20))))
+    gmsh.model.occ.remove(without(gmsh.model.occ.getEntities(3), [belly]), recursive=True)
+    gmsh.model.occ.synchronize()
+    surface = boundary([belly])
+    origin, insertion = flat(surface, 0, -50), flat(surface, 0, 50)
+    group("belly", [belly])
+    group("origin", origin)
+    group("insertion", insertion)
+    group("fascia", without(surface, origin + insertion))
+    mesh_evenly(6)
+    # Pa, at the distance x from the middle.
+    add_data("stiffness", lambda x, y, z: 20e3 + 180e3 * (x / 0.05) ** 4)
+    # The ellipsoids of one middle and half axis along x that are narrower in proportion keep y and z over sqrt(.06^2 - x^2).
+    add_data("along", lambda x, y, z: np.divide([0.06**2 - x**2, -x * y, -x * z], 0.06**2 - x**2))
+
+
 @in_collection("paper-cube-mirrored", "the paper's cube with neighbouring cells mirrored: no preferred direction", 8000)
 def paper_cube_mirrored(cells=10, edge=0.2):
     """Node (i, j, k) has the tag 1 + i + 11 (j + 11 k); cell (i, j, k) is reflected in x, y, z where i, j, k is odd."""
@@ -454,7 +493,11 @@ def write(name):
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     for tag, point in zip(tags, coordinates.reshape(-1, 3).round(DIGITS) + 0.0):
         gmsh.model.mesh.setNode(tag, point, [])
-    gmsh.write(str(HERE / f"{name}.msh"))
+    path = str(HERE / f"{name}.msh")
+    gmsh.write(path)
+    gmsh.option.setNumber("PostProcessing.SaveMesh", 0)
+    for view in gmsh.view.getTags():
+        gmsh.view.write(view, path, append=True)
     gmsh.finalize()
 
 
@@ -467,6 +510,7 @@ class Mesh:
         self.points = file.points
         self.cell_types = set(file.cells_dict)
         self.tets = file.cells_dict["tetra"]
+        self.data = file.cell_data_dict
         self.groups = {
             name: file.cells_dict[kind][members]
             for name in sorted(file.field_data, key=lambda name: file.field_data[name][0])
@@ -491,6 +535,14 @@ class Mesh:
     @property
     def doubled_nodes(self):
         return len(self.points) - len(np.unique(self.points, axis=0))
+
+    def has_data(self, **components):
+        """Whether all tetrahedra have values of these names, with so many components each, and there are no others."""
+        named = {name: np.reshape(of["tetra"], (len(self.tets), -1)) for name, of in self.data.items() if ":" not in name}
+        return (
+            {name: values.shape[1] for name, values in named.items()} == components
+            and all(np.isfinite(values).all() for values in named.values())
+        )
 
     def has_boundary(self, volume, surface):
         """Whether the outer faces of a group of tetrahedra are the triangles of another group."""

@@ -36,7 +36,10 @@ pub enum DataError {
     #[error(transparent)]
     Name(#[from] TetDataError),
     /// Another number of values for each tetrahedron than the property has.
-    #[error("data \"{name}\" have {found} values for each tetrahedron: expected {expected}")]
+    #[error(
+        "data \"{name}\" are {} for each tetrahedron: expected {}",
+        numbers(*found), numbers(*expected)
+    )]
     Components {
         /// Name of the data.
         name: String,
@@ -303,6 +306,13 @@ impl<'a> Members<'a> {
     fn tag(self, tet: usize) -> u64 {
         let ordinal = tet as u64 + 1;
         self.mesh.tet_tags.get(tet).copied().unwrap_or(ordinal)
+    }
+}
+
+fn numbers(count: usize) -> String {
+    match count {
+        1 => "a number".to_owned(),
+        _ => format!("{count} numbers"),
     }
 }
 

@@ -68,6 +68,37 @@ impl Law {
         }
     }
 
+    /// The law in words, with Young's modulus (Pa) as it is said.
+    #[must_use]
+    pub fn with_modulus(&self, youngs_modulus: &str) -> String {
+        match self {
+            Self::Linear { poissons_ratio, .. } => {
+                format!("linear elastic, E = {youngs_modulus} Pa, nu = {poissons_ratio}")
+            }
+            Self::Hyperelastic { id, parameters } => {
+                let (nu, ratio) = (parameters.poissons_ratio, parameters.c1_over_c2);
+                let ratio = ratio.map_or_else(String::new, |ratio| format!(", C1/C2 = {ratio}"));
+                format!("{id}, E = {youngs_modulus} Pa, nu = {nu} at small strain{ratio}")
+            }
+            Self::Springs {
+                rule, calibrate, ..
+            } => {
+                let rule = match rule {
+                    SpringRule::Lloyd => "lloyd",
+                    SpringRule::VanGelder => "van-gelder",
+                };
+                let calibrated = if *calibrate {
+                    "calibrated"
+                } else {
+                    "not calibrated"
+                };
+                format!(
+                    "springs \"{rule}\" {calibrated}, E = {youngs_modulus} Pa, nu = 1/4 by nature"
+                )
+            }
+        }
+    }
+
     /// Whether it is a law of large deformation.
     #[must_use]
     pub fn is_hyperelastic(&self) -> bool {
@@ -123,46 +154,6 @@ impl Law {
 
 impl fmt::Display for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Linear {
-                youngs_modulus,
-                poissons_ratio,
-            } => write!(
-                f,
-                "linear elastic, E = {youngs_modulus} Pa, nu = {poissons_ratio}"
-            ),
-            Self::Hyperelastic { id, parameters } => {
-                let Parameters {
-                    youngs_modulus,
-                    poissons_ratio,
-                    c1_over_c2,
-                } = parameters;
-                write!(
-                    f,
-                    "{id}, E = {youngs_modulus} Pa, nu = {poissons_ratio} at small strain"
-                )?;
-                c1_over_c2.map_or(Ok(()), |ratio| write!(f, ", C1/C2 = {ratio}"))
-            }
-            Self::Springs {
-                youngs_modulus,
-                rule,
-                calibrate,
-                ..
-            } => {
-                let rule = match rule {
-                    SpringRule::Lloyd => "lloyd",
-                    SpringRule::VanGelder => "van-gelder",
-                };
-                let calibrated = if *calibrate {
-                    "calibrated"
-                } else {
-                    "not calibrated"
-                };
-                write!(
-                    f,
-                    "springs \"{rule}\" {calibrated}, E = {youngs_modulus} Pa, nu = 1/4 by nature"
-                )
-            }
-        }
+        f.write_str(&self.with_modulus(&self.youngs_modulus().to_string()))
     }
 }

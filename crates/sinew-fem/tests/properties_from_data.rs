@@ -719,11 +719,11 @@ fn data_that_cannot_give_a_property_are_refused_by_name_and_tag() {
     );
     assert_eq!(
         said(&mesh, density("along"), false),
-        "region 1: density: data \"along\" have 3 values for each tetrahedron: expected 1"
+        "region 1: density: data \"along\" are 3 numbers for each tetrahedron: expected a number"
     );
     assert_eq!(
         said(&mesh, direction("E"), true),
-        "region 1: direction: data \"E\" have 1 values for each tetrahedron: expected 3"
+        "region 1: direction: data \"E\" are a number for each tetrahedron: expected 3 numbers"
     );
     assert_eq!(
         said(&mesh, young("holes"), false),

@@ -279,6 +279,20 @@ fn data_of_tetrahedra_stay_by_name() {
     insta::assert_snapshot!(error, @r#"no data of tetrahedra are named "surface"; there are "E" (a number), "along" (3 numbers)"#);
 }
 
+/// As gmsh writes its views.
+#[test]
+fn schemes_of_interpolation_before_data_are_nothing_to_warn_of() {
+    let text = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n\
+         $Elements\n1\n1 4 0 1 2 3 4\n$EndElements\n$InterpolationScheme\n\"INTERPOLATION_SCHEME\"\n1\n5\n2\n1 1\n1\n1 3\n0 0 0\n\
+         $EndInterpolationScheme\n{}",
+        section("E", 0, 1, &["1 10"])
+    );
+    let mesh = read(&text);
+    assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
+    assert_eq!(mesh.cell_data.len(), 1);
+}
+
 #[test]
 fn parts_of_data_are_put_together_and_steps_or_copies_are_told_apart() {
     let parts = section("E", 0, 1, &["1 10"]) + &section("E", 0, 1, &["2 20"]);

@@ -218,6 +218,27 @@ fn the_organ_with_fibres_sags_by_less_with_its_weight_on_its_base() {
     assert!((-0.0045..-0.003).contains(&sag), "{sag} m");
 }
 
+/// A tapered bar gives way by the integral of F/(A E) (Timoshenko and Gere, Mechanics of Materials, section 2.3); fibres add four times their
+/// modulus to E. The outline is an ellipse of half axes 60 and 15 mm.
+#[test]
+fn the_muscle_starts_stretched_as_a_tapered_bar() {
+    let simulation = ready("muscle");
+    let (traction, eta) = (2e3, 10e3);
+    let section = |x: f64| 0.015_f64.powi(2) * (1.0 - (x / 0.06).powi(2));
+    let slices = 1000;
+    let stretch = (0..slices).map(|slice| {
+        let x = 0.05 * (2.0 * (f64::from(slice) + 0.5) / f64::from(slices) - 1.0);
+        let modulus = 20e3 + 180e3 * (x / 0.05).powi(4) + 4.0 * eta;
+        section(0.05) / section(x) * traction / modulus * 0.1 / f64::from(slices)
+    });
+    let start = simulation.initial_state();
+    let [x, ..] = probe(&simulation, start, 0);
+    is_near(x, stretch.sum(), 0.03);
+    let [pull, ..] = body(&simulation).model.report().loads[0].asked;
+    let [force, ..] = reaction(&simulation, start, 0);
+    is_near(force, -pull, 1e-5);
+}
+
 /// `1/(E (1 - g)) (1 - g exp(-(1 - g) t/tau))` times the stress: the standard linear solid under a constant stress (Christensen, Theory of
 /// Viscoelasticity, 1982).
 #[test]

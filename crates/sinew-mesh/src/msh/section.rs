@@ -269,6 +269,9 @@ fn read_elements(
     Ok((section, format!("the declared {total} elements")))
 }
 
+/// Sections that nobody misses. gmsh writes its own schemes of interpolation, by which it draws elements, before every view.
+const WITHOUT_MEANING: [&str; 2] = ["Comments", "InterpolationScheme"];
+
 fn skip(
     cursor: &mut Cursor<'_>,
     offset: usize,
@@ -281,7 +284,7 @@ fn skip(
     while !cursor.is_at_end() {
         let line = cursor.line();
         if line == end.as_bytes() || line == end_of_version_1.as_bytes() {
-            if name != "Comments" {
+            if !WITHOUT_MEANING.contains(&name) {
                 remarks.at(
                     offset,
                     format!("section ${} is not read and was skipped", shown(name)),

@@ -1,7 +1,10 @@
 //! Sections about the body: mesh, materials, supports, loads, initial state and probes.
 
 use sinew_core::Ramp;
-use sinew_fem::{Course, Law, LoadFacts, LoadKind, LoadSpec, ModelReport, Region, RegionFacts};
+use sinew_fem::hyperelastic::Parameters;
+use sinew_fem::{
+    Course, FromMesh, Law, LoadFacts, LoadKind, LoadSpec, ModelReport, Region, RegionFacts,
+};
 use sinew_mesh::GroupMembers;
 use sinew_mesh::structured::Split;
 
@@ -124,22 +127,36 @@ fn material(region: &Region, facts: &RegionFacts) -> Vec<String> {
         Some(name) => format!("`{name}`"),
         None => "whole mesh".to_owned(),
     };
-    let head = format!(
-        "{group}: {} tetrahedra, {} kg/m3",
-        facts.tets, region.density
-    );
-    let mut lines = vec![format!("{head}, {}", region.law)];
+    let density = span(facts.density);
+    let head = format!("{group}: {} tetrahedra, {density} kg/m3", facts.tets);
+    let law = region.law.with_modulus(&span(facts.youngs_modulus));
+    let mut lines = vec![format!("{head}, {law}")];
+    let FromMesh {
+        youngs_modulus,
+        density,
+        direction,
+    } = &region.from_mesh;
+    let by_data = [("E", youngs_modulus), ("density", density)];
+    let by_data = by_data.into_iter().filter_map(|(what, name)| {
+        let name = name.as_ref()?;
+        Some(format!(
+            "{what} of each tetrahedron by the mesh's data `{name}`"
+        ))
+    });
+    lines.extend(by_data);
     if region.element.has_patches() {
         lines.push(format!(
             "element {}, in {} patches",
             region.element, facts.patches
         ));
     }
-    lines.extend(region.tissue.fibres.iter().map(ToString::to_string));
-    lines.extend(memory(region));
+    lines.extend(region.tissue.fibres.iter().map(|family| match direction {
+        Some(name) => format!("fibres along the mesh's data `{name}`, {}", family.fibres),
+        None => family.to_string(),
+    }));
+    lines.extend(memory(region, facts));
     lines.extend(facts.network.map(|network| {
-        let youngs_modulus = region.law.youngs_modulus();
-        let share = |modulus: f64| short(modulus / youngs_modulus);
+        let share = |modulus: f64| short(modulus / facts.mean_youngs_modulus);
         format!(
             "its springs average to {} E (Voigt), {} to {} E by direction",
             share(network.voigt),
@@ -150,17 +167,40 @@ fn material(region: &Region, facts: &RegionFacts) -> Vec<String> {
     lines
 }
 
+/// The least and the largest value of what may differ from tetrahedron to tetrahedron.
+fn span(values: [f64; 2]) -> String {
+    between(values.map(|value| value.to_string()))
+}
+
+fn between([least, largest]: [String; 2]) -> String {
+    if least == largest {
+        least
+    } else {
+        format!("{least} to {largest}")
+    }
+}
+
 /// What relaxes, and the moduli before and after.
-fn memory(region: &Region) -> Vec<String> {
+fn memory(region: &Region, facts: &RegionFacts) -> Vec<String> {
     let (Some(memory), Law::Hyperelastic { parameters, .. }) = (&region.tissue.memory, region.law)
     else {
         return Vec::new();
     };
-    let words = region.tissue.moduli(&parameters).map(|moduli| {
-        let (modulus, ratio) = (moduli.youngs_modulus, moduli.poissons_ratio);
-        format!("E = {} Pa, nu = {}", short(modulus), short(ratio))
+    let [least, largest] = facts.youngs_modulus.map(|youngs_modulus| {
+        region.tissue.moduli(&Parameters {
+            youngs_modulus,
+            ..parameters
+        })
     });
-    let [at_once, later] = words;
+    let words = |when: usize| {
+        let modulus = [least[when], largest[when]].map(|moduli| moduli.youngs_modulus);
+        let (modulus, ratio) = (
+            between(modulus.map(short)),
+            short(least[when].poissons_ratio),
+        );
+        format!("E = {modulus} Pa, nu = {ratio}")
+    };
+    let [at_once, later] = [0, 1].map(words);
     vec![
         memory.to_string(),
         format!("at small strain {at_once} at once, {later} in the long term"),

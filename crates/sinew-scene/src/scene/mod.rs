@@ -4,6 +4,7 @@ mod damping;
 mod document;
 mod field;
 mod fixed;
+mod from_mesh;
 mod initial;
 pub(crate) mod keys;
 mod load;

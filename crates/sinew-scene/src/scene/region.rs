@@ -5,6 +5,7 @@ use std::ops::Bound;
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{Element, FromMesh, Law, Region, SpringRule, Tissue};
 
+use super::from_mesh::{self, OrData};
 use super::model::{MODEL, MOONEY_RIVLIN, MaterialModel, SOLIDS, SPRINGS_MODEL};
 use super::selected::{Members, NOT_WHERE, OPTIONAL_GROUP, Selections, WHERE_OF_TETRAHEDRA};
 use super::tissue::{self, FIBRES_OF_REGION, MODULI, PRONY, VISCOUS_PART};
@@ -47,22 +48,25 @@ pub(super) const REGION: TableDescription = TableDescription {
          fibres = { direction = [0.0, 0.0, 1.0], eta = 2000.0 }\n",
         "[[region]]\ndensity = 1060.0\nmodel = \"mooney-rivlin\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\nc1_over_c2 = 4.0\n\
          prony = [[0.3, 0.05], [0.2, 0.5]]\nviscous_part = \"deviatoric\"\nmoduli = \"longterm\"\n",
+        "[[region]]\ndensity = 1060.0\nmodel = \"neo-hookean\"\nyoungs_modulus = { data = \"stiffness\" }\npoissons_ratio = 0.45\n\
+         fibres = { direction = { data = \"along\" }, eta = 2000.0 }\n",
     ],
 };
 
 const GROUP: Key<Text, Optional> = OPTIONAL_GROUP.only(&[NOT_WHERE]);
 
-const DENSITY: Key<Number> = Key::required(
+const DENSITY: Key<OrData<Number>> = Key::required(
     "density",
     "Mass of each cubic metre.",
-    Number::above_zero("a finite density above 0 kg/m3"),
+    OrData(Number::above_zero("a finite density above 0 kg/m3")),
 )
 .unit("kg/m3");
 
-const YOUNGS_MODULUS: Key<Number> = Key::required(
+const YOUNGS_MODULUS: Key<OrData<Number>> = Key::required(
     "youngs_modulus",
-    "Young's modulus: the stress for each unit of strain when a bar of the material is pulled.",
-    Number::above_zero("a finite Young's modulus above 0 Pa"),
+    "Young's modulus: the stress for each unit of strain when a bar of the material is pulled. By data, edges and patches over which an \
+     element averages have the mean of their tetrahedra by volume, so a jump that is known beforehand is sharper between two regions.",
+    OrData(Number::above_zero("a finite Young's modulus above 0 Pa")),
 )
 .unit("Pa");
 
@@ -247,8 +251,9 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
     table.check_conditions()?;
     let group =
         selections.at_most_one_of(table, (&GROUP, &WHERE_OF_TETRAHEDRA), Members::Tetrahedra)?;
-    let density = table.read(&DENSITY)?;
-    let youngs_modulus = table.read(&YOUNGS_MODULUS)?;
+    // Data give the multiples of 1 kg/m^3 and 1 Pa.
+    let (density, density_data) = from_mesh::read(table, &DENSITY)?.or(1.0);
+    let (youngs_modulus, modulus_data) = from_mesh::read(table, &YOUNGS_MODULUS)?.or(1.0);
     let law = match model {
         MaterialModel::Springs => springs(&table.table(&SPRINGS_OF_REGION)?, youngs_modulus)?,
         MaterialModel::Linear => Law::Linear {
@@ -271,8 +276,8 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
         MaterialModel::Springs => Element::P1,
         MaterialModel::Linear | MaterialModel::Hyperelastic(_) => element(table)?,
     };
-    let tissue = match model {
-        MaterialModel::Springs | MaterialModel::Linear => Tissue::default(),
+    let (tissue, direction) = match model {
+        MaterialModel::Springs | MaterialModel::Linear => (Tissue::default(), None),
         MaterialModel::Hyperelastic(id) => tissue::read(table, id)?,
     };
     Ok(Region {
@@ -281,7 +286,11 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Region, SceneE
         law,
         element,
         tissue,
-        from_mesh: FromMesh::default(),
+        from_mesh: FromMesh {
+            youngs_modulus: modulus_data,
+            density: density_data,
+            direction,
+        },
     })
 }
 

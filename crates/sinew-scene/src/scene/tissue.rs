@@ -6,6 +6,7 @@ use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::prony::Term;
 use sinew_fem::{FibreFamily, Memory, Moduli, Tissue, ViscousPart};
 
+use super::from_mesh::{self, OrData};
 use super::model::{ISOCHORIC, LAWS, MODEL};
 use crate::decode::{
     Condition, Flag, Inner, Key, Needs, Number, Optional, Or, Pairs, Table, TableDescription,
@@ -41,16 +42,18 @@ const FIBRES: TableDescription = TableDescription {
         "{ direction = [0.0, 0.0, 1.0], eta = 2000.0 }",
         "{ direction = [1.0, 1.0, 0.0], k1 = 1000.0, k2 = 2.0, dispersion = 0.1 }",
         "{ direction = [1.0, 0.0, 0.0], eta = 2000.0, split = true }",
+        "{ direction = { data = \"along\" }, eta = 2000.0 }",
     ],
 };
 
-const DIRECTION: Key<Vector> = Key::required(
+const DIRECTION: Key<OrData<Vector>> = Key::required(
     "direction",
-    "The direction of the fibres at rest; its length does not matter.",
-    Vector {
+    "The direction of the fibres at rest; its length does not matter. Data have three numbers for each tetrahedron, in the axes of the mesh \
+     file: they turn with the mesh.",
+    OrData(Vector {
         fits: |direction| *direction != [0.0; 3],
         ..Vector::finite("a vector [x, y, z], all finite, that is not 0")
-    },
+    }),
 );
 
 const ETA: Key<Number, Optional> = Key::optional(
@@ -142,13 +145,12 @@ pub(super) const MODULI: Key<Words<Moduli>, Or<Moduli>> = Key::or(
 )
 .only(&[Condition::with(PRONY.name, "goes with `prony` only")]);
 
-/// What the table of a region with this law of large deformation says.
-pub(super) fn read(region: &Table<'_>, law: &str) -> Result<Tissue, SceneError> {
+/// What the table of a region with this law of large deformation says, and the name of the data that give the direction of fibres.
+pub(super) fn read(region: &Table<'_>, law: &str) -> Result<(Tissue, Option<String>), SceneError> {
     let fibres = region.table(&FIBRES_OF_REGION)?;
-    Ok(Tissue {
-        fibres: fibres.as_ref().map(fibre_family).transpose()?,
-        memory: memory(region, law)?,
-    })
+    let (fibres, data) = fibres.as_ref().map(fibre_family).transpose()?.unzip();
+    let memory = memory(region, law)?;
+    Ok((Tissue { fibres, memory }, data.flatten()))
 }
 
 fn memory(region: &Table<'_>, law: &str) -> Result<Option<Memory>, SceneError> {
@@ -173,9 +175,9 @@ fn memory(region: &Table<'_>, law: &str) -> Result<Option<Memory>, SceneError> {
     }))
 }
 
-fn fibre_family(table: &Table<'_>) -> Result<FibreFamily, SceneError> {
+fn fibre_family(table: &Table<'_>) -> Result<(FibreFamily, Option<String>), SceneError> {
     table.check_conditions()?;
-    let direction = table.read(&DIRECTION)?;
+    let (direction, data) = from_mesh::read(table, &DIRECTION)?.or([0.0; 3]);
     let key = table.exactly_one()?;
     let stiffening = match table.read(&ETA)? {
         Some(eta) => Stiffening::Quadratic { eta },
@@ -188,8 +190,9 @@ fn fibre_family(table: &Table<'_>) -> Result<FibreFamily, SceneError> {
     let fibres = Fibres::new(stiffening);
     let fibres = fibres.map_err(|error| table.place().value_fault(key, error.into()))?;
     let is_split = table.read(&SPLIT)?;
-    Ok(FibreFamily {
+    let family = FibreFamily {
         fibres: if is_split { fibres.split() } else { fibres },
         direction,
-    })
+    };
+    Ok((family, data))
 }

@@ -10,7 +10,7 @@ use super::motion_table::MotionTable;
 use super::selected;
 use crate::error::{Fault, SceneError};
 use crate::scene::keys::GRAVITY;
-use crate::scene::{Body, Motion, Places, Way};
+use crate::scene::{Body, MeshSource, Motion, Places, Way};
 
 /// Assembles the matrices.
 pub(super) fn build(
@@ -23,6 +23,13 @@ pub(super) fn build(
         problem.moves.push(moving(motion, places, index)?);
     }
     let selected = selected::add_to(&mut mesh, body, places)?;
+    if problem
+        .regions
+        .iter()
+        .all(|region| region.from_mesh.is_empty())
+    {
+        mesh.data = Vec::new();
+    }
     let mesh = Arc::new(mesh);
     let model = Model::build_on(Arc::clone(&mesh), &problem)
         .map_err(|error| refused(error, body, places))?;
@@ -87,7 +94,19 @@ fn refused(error: FemError, body: &Body, places: &Places) -> SceneError {
             "displacement" => "ramp",
             key => key,
         },
+        (Item::Region(_), Cause::Data { quantity, .. }) => match *quantity {
+            "direction" => "fibres",
+            quantity => quantity,
+        },
         _ => place.part_key(),
     };
-    place.value_fault(key, Fault::Model(error))
+    let is_data = matches!(error.cause(), Cause::Data { .. });
+    let error = place.value_fault(key, Fault::Model(error));
+    match &body.mesh {
+        _ if !is_data => error,
+        MeshSource::File(path) => error.with_help(format!("the mesh file is {}", path.display())),
+        MeshSource::Cube { .. } | MeshSource::Block { .. } => error.with_help(
+            "meshes that the scene makes have no data: write a .msh file with an `$ElementData` section",
+        ),
+    }
 }

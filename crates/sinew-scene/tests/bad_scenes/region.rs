@@ -42,7 +42,7 @@ fn single_brackets() {
 fn negative_density() {
     insta::assert_snapshot!(
         refusal(BODY, "density = 1060.0", "density = -3"),
-        @"scene.toml:5: [[region]] 1: density = -3: expected a finite density above 0 kg/m3"
+        @r#"scene.toml:5: [[region]] 1: density = -3: expected a finite density above 0 kg/m3, or { data = "name" }"#
     );
 }
 
@@ -50,7 +50,7 @@ fn negative_density() {
 fn zero_density() {
     insta::assert_snapshot!(
         refusal(BODY, "density = 1060.0", "density = 0.0"),
-        @"scene.toml:5: [[region]] 1: density = 0.0: expected a finite density above 0 kg/m3"
+        @r#"scene.toml:5: [[region]] 1: density = 0.0: expected a finite density above 0 kg/m3, or { data = "name" }"#
     );
 }
 
@@ -58,7 +58,7 @@ fn zero_density() {
 fn density_that_is_not_a_number() {
     insta::assert_snapshot!(
         refusal(BODY, "density = 1060.0", "density = nan"),
-        @"scene.toml:5: [[region]] 1: density = nan: expected a finite density above 0 kg/m3"
+        @r#"scene.toml:5: [[region]] 1: density = nan: expected a finite density above 0 kg/m3, or { data = "name" }"#
     );
 }
 
@@ -66,7 +66,7 @@ fn density_that_is_not_a_number() {
 fn density_in_words() {
     insta::assert_snapshot!(
         refusal(BODY, "density = 1060.0", "density = \"like water\""),
-        @r#"scene.toml:5: [[region]] 1: density = "like water": expected a finite density above 0 kg/m3, found a string"#
+        @r#"scene.toml:5: [[region]] 1: density = "like water": expected a finite density above 0 kg/m3, or { data = "name" }, found a string"#
     );
 }
 
@@ -74,7 +74,7 @@ fn density_in_words() {
 fn density_beyond_all_numbers() {
     insta::assert_snapshot!(
         refusal(BODY, "density = 1060.0", "density = 1e999"),
-        @"scene.toml:5: [[region]] 1: density = 1e999: expected a finite density above 0 kg/m3"
+        @r#"scene.toml:5: [[region]] 1: density = 1e999: expected a finite density above 0 kg/m3, or { data = "name" }"#
     );
 }
 
@@ -93,7 +93,7 @@ fn misspelt_density() {
 fn no_density() {
     insta::assert_snapshot!(
         refusal(BODY, "density = 1060.0\n", ""),
-        @"scene.toml:4: [[region]] 1: `density` is missing: expected a finite density above 0 kg/m3"
+        @r#"scene.toml:4: [[region]] 1: `density` is missing: expected a finite density above 0 kg/m3, or { data = "name" }"#
     );
 }
 
@@ -101,7 +101,7 @@ fn no_density() {
 fn zero_modulus() {
     insta::assert_snapshot!(
         refusal(BODY, "youngs_modulus = 3500.0", "youngs_modulus = 0"),
-        @"scene.toml:7: [[region]] 1: youngs_modulus = 0: expected a finite Young's modulus above 0 Pa"
+        @r#"scene.toml:7: [[region]] 1: youngs_modulus = 0: expected a finite Young's modulus above 0 Pa, or { data = "name" }"#
     );
 }
 
@@ -109,7 +109,7 @@ fn zero_modulus() {
 fn infinite_modulus() {
     insta::assert_snapshot!(
         refusal(BODY, "youngs_modulus = 3500.0", "youngs_modulus = inf"),
-        @"scene.toml:7: [[region]] 1: youngs_modulus = inf: expected a finite Young's modulus above 0 Pa"
+        @r#"scene.toml:7: [[region]] 1: youngs_modulus = inf: expected a finite Young's modulus above 0 Pa, or { data = "name" }"#
     );
 }
 

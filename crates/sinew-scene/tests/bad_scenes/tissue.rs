@@ -28,12 +28,12 @@ fn fibres_in_linear_tissue() {
 
 #[test]
 fn fibres_without_length() {
-    insta::assert_snapshot!(refused_fibres("direction = [0, 0, 0], eta = 1.0"), @"scene.toml:9: [[region]] 1 fibres: direction = [0, 0, 0]: expected a vector [x, y, z], all finite, that is not 0");
+    insta::assert_snapshot!(refused_fibres("direction = [0, 0, 0], eta = 1.0"), @r#"scene.toml:9: [[region]] 1 fibres: direction = [0, 0, 0]: expected a vector [x, y, z], all finite, that is not 0, or { data = "name" }"#);
 }
 
 #[test]
 fn fibres_without_direction() {
-    insta::assert_snapshot!(refused_fibres("eta = 1.0"), @"scene.toml:9: [[region]] 1 fibres: `direction` is missing: expected a vector [x, y, z], all finite, that is not 0");
+    insta::assert_snapshot!(refused_fibres("eta = 1.0"), @r#"scene.toml:9: [[region]] 1 fibres: `direction` is missing: expected a vector [x, y, z], all finite, that is not 0, or { data = "name" }"#);
 }
 
 #[test]

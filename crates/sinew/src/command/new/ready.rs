@@ -51,6 +51,11 @@ const READY: &[Ready] = &[
         mesh: Some(("organ.msh", mesh!("organ.msh"))),
     },
     Ready {
+        name: "muscle",
+        scene: scene!("muscle.toml"),
+        mesh: Some(("muscle.msh", mesh!("muscle.msh"))),
+    },
+    Ready {
         name: "creep",
         scene: scene!("creep.toml"),
         mesh: None,
