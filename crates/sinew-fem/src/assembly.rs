@@ -6,9 +6,9 @@ use sinew_core::{BlockMatrix, ElementStiffness, Layers};
 use sinew_mesh::TetMesh;
 
 use crate::body::Body;
+use crate::by_tet::ByTet;
 use crate::elements::moving_part;
 use crate::error::{Cause, FemError, Item};
-use crate::from_mesh::ByTet;
 use crate::graph::Graph;
 use crate::large::LargeDeformation;
 use crate::lumped::Lumped;

@@ -93,6 +93,7 @@
 mod assembly;
 mod body;
 mod border;
+mod by_tet;
 mod cells;
 mod check;
 mod element;

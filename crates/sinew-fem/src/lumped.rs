@@ -3,7 +3,7 @@
 use sinew_mesh::TetMesh;
 
 use crate::Problem;
-use crate::from_mesh::ByTet;
+use crate::by_tet::ByTet;
 
 /// Masses of nodes and volumes of regions.
 pub(crate) struct Lumped {

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use sinew_core::Hash;
 use sinew_mesh::TetMesh;
 
+use crate::by_tet::RegionByTet;
 use crate::error::{Cause, FemError, Item};
-use crate::from_mesh::RegionByTet;
 use crate::graph::Graph;
 use crate::hyperelastic::Hyperelastic;
 use crate::large::RegionLaw;

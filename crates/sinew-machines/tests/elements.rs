@@ -11,10 +11,13 @@ use sinew_cnn::conformance::CountingAllocator;
 use sinew_cnn::{Machine, ReferenceMachine};
 use sinew_core::{Batch, ElementPrecision, Equations, Inputs, State, StepError, System};
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Course, Element, Fixed, FromMesh, Law, Model, Moving, Problem, Region, Tissue};
+use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
+use sinew_fem::{
+    Course, Element, FibreFamily, Fixed, FromMesh, Law, Model, Moving, Problem, Region, Tissue,
+};
 use sinew_machines::{FastMachine, Layout};
-use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
+use sinew_mesh::{TetData, TetMesh};
 
 #[global_allocator]
 static ALLOCATOR: CountingAllocator = CountingAllocator;
@@ -76,10 +79,41 @@ fn models(mesh: &TetMesh) -> Vec<(String, Model)> {
         courses: Course::along(&[0.0, 0.1], &[[0.0; 3], [0.01, 0.0, 0.0]]),
     });
     problems.push(("moved".into(), moved));
+    let mut uneven = problem(law("neo-hookean"), EDGES);
+    let region = &mut uneven.regions[0];
+    *region.law.youngs_modulus_mut() = 1.0;
+    region.tissue.fibres = Some(FibreFamily {
+        fibres: Fibres::new(Stiffening::Quadratic { eta: 2000.0 }).unwrap(),
+        direction: [0.0; 3],
+    });
+    region.from_mesh.youngs_modulus = Some("E".to_owned());
+    region.from_mesh.direction = Some("along".to_owned());
+    problems.push(("with moduli and fibres by data".into(), uneven));
+    let mesh = with_data(mesh);
     let models = problems.into_iter();
     models
-        .map(|(name, problem)| (name, Model::build(mesh, &problem).unwrap()))
+        .map(|(name, problem)| (name, Model::build(&mesh, &problem).unwrap()))
         .collect()
+}
+
+/// The same mesh with moduli and directions that differ from one tetrahedron to the next.
+fn with_data(mesh: &TetMesh) -> TetMesh {
+    let mut mesh = mesh.clone();
+    let waves = (0..mesh.tets.len()).map(|tet| (1.3 * tet as f64).sin());
+    let of = |name: &str, components: usize, values: Vec<f64>| TetData {
+        name: name.to_owned(),
+        step: 0,
+        components,
+        values,
+    };
+    let moduli = waves.clone().map(|x| 3500.0 * (1.5 + x));
+    let along = waves.flat_map(|x| [x, 1.0, 2.0 * x * x]);
+    let data = [
+        of("E", 1, moduli.collect()),
+        of("along", 3, along.collect()),
+    ];
+    mesh.data.extend(data);
+    mesh
 }
 
 fn machine<T: ElementPrecision>(model: &Model, threads: usize) -> FastMachine<T> {

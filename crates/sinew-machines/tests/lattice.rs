@@ -11,8 +11,8 @@ use sinew_cnn::{Machine, ReferenceMachine};
 use sinew_core::{LinearSystem, System};
 use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, SpringRule, Tissue};
 use sinew_machines::{Chosen, FastMachine, Layout, Settings};
-use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, cube};
+use sinew_mesh::{TetData, TetMesh};
 
 /// The number of templates of a body, after its motion by them has been compared with the reference
 /// machine's.
@@ -100,6 +100,59 @@ fn springs_repeat_as_tetrahedra_do() {
     let model = Model::build(&mesh, &problem).unwrap();
     assert!(model.operators().damping().extra.is_some());
     assert_eq!(templates(&model), 3);
+}
+
+/// A held cube whose tetrahedra have moduli by data.
+fn with_moduli(cells: usize, modulus: impl Fn(&TetMesh, usize) -> f64) -> Model {
+    let mut mesh = cube(cells, 0.1, Split::Kuhn).unwrap();
+    let values = (0..mesh.tets.len()).map(|tet| modulus(&mesh, tet));
+    let values = values.collect();
+    mesh.data.push(TetData {
+        name: "E".to_owned(),
+        step: 0,
+        components: 1,
+        values,
+    });
+    let regions = vec![Region {
+        group: None,
+        density: 1060.0,
+        law: Law::Linear {
+            youngs_modulus: 1.0,
+            poissons_ratio: 0.45,
+        },
+        element: Element::P1,
+        tissue: Tissue::default(),
+        from_mesh: FromMesh {
+            youngs_modulus: Some("E".to_owned()),
+            ..FromMesh::default()
+        },
+    }];
+    let fixed = vec![Fixed {
+        on: "sides".into(),
+        axes: [true; 3],
+    }];
+    let problem = Problem {
+        regions,
+        fixed,
+        ..Problem::default()
+    };
+    Model::build(&mesh, &problem).unwrap()
+}
+
+/// Moduli by data leave those templates that are the same: none where each node has rows of its own, one for the inside of each layer of tetrahedra
+/// and one for each plane between two where moduli differ by layers.
+#[test]
+fn moduli_by_data_repeat_where_they_do_and_nowhere_else() {
+    let same = with_moduli(9, |_, _| 3500.0);
+    assert_eq!(templates(&same), 3);
+    let in_layers = with_moduli(9, |mesh, tet| {
+        let height = mesh.tets[tet].map(|node| mesh.points[node as usize][2]);
+        let middle = height.iter().sum::<f64>() / 4.0;
+        if middle < 0.05 { 3000.0 } else { 6000.0 }
+    });
+    assert!(templates(&in_layers) > 3);
+    let uneven = with_moduli(6, |_, tet| 3500.0 * (1.5 + (1.3 * tet as f64).sin()));
+    assert!(Layout::<f64>::repeated(&uneven).is_none());
 }
 
 #[test]

@@ -29,9 +29,9 @@ use sinew_mesh::TetMesh;
 
 use crate::assembly::{Assembled, assemble};
 use crate::body::Body;
+use crate::by_tet::ByTet;
 use crate::error::{Cause, FemError, Item};
 use crate::following::FollowingPressure;
-use crate::from_mesh::ByTet;
 use crate::graph::Graph;
 use crate::large::LargeDeformation;
 use crate::loads::LoadsOnBody;

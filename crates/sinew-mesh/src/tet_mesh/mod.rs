@@ -2,8 +2,10 @@
 
 mod add_group;
 mod boundary;
+mod collect_data;
 mod collect_groups;
 mod error;
+mod find_data;
 mod find_group;
 mod from_mesh;
 mod group;
@@ -16,12 +18,13 @@ mod vector;
 
 pub use add_group::AddGroupError;
 pub use error::TetMeshError;
+pub use find_data::TetDataError;
 pub use find_group::UnknownGroup;
 pub use group::{Group, GroupMembers};
 pub use refine::RefineError;
 pub(crate) use surface::OUTWARD_FACES;
 pub use surface::SurfaceError;
-pub use tet_data::{TetData, TetDataError};
+pub use tet_data::TetData;
 pub(crate) use vector::{cross, dot, sub};
 
 /// Points, tetrahedra and groups, every point being a corner of some tetrahedron.

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use super::collect_data::in_blocks;
 use super::collect_groups::unnamed;
-use super::tet_data::in_blocks;
 use super::{Group, GroupMembers, TetMesh};
 use crate::cell_type::CellType;
 use crate::mesh::{CellBlock, Entity, Mesh};

@@ -1,0 +1,238 @@
+//! Properties of materials that differ from tetrahedron to tetrahedron.
+
+use std::sync::Arc;
+
+use sinew_mesh::{TetData, TetMesh};
+
+use crate::error::{Cause, FemError, Item};
+use crate::from_mesh::{DataError, FromMesh};
+use crate::shares::Shares;
+use crate::tissue::unit;
+use crate::{Problem, Region};
+
+/// What the data give, looked up and checked.
+#[derive(Debug, Default)]
+pub(crate) struct ByTet {
+    regions: Vec<RegionByTet>,
+    /// What densities are multiplied by in each tetrahedron.
+    densities: Option<Vec<f64>>,
+}
+
+/// What the data give to a region; arrays are over all tetrahedra of the mesh.
+#[derive(Clone, Debug)]
+pub(crate) struct RegionByTet {
+    /// The least and the largest factor of Young's modulus.
+    pub(crate) moduli: [f64; 2],
+    /// The stiffness of each tetrahedron, of the largest.
+    pub(crate) shares: Shares,
+    /// The direction of fibres as unit vectors.
+    pub(crate) directions: Option<Arc<[[f64; 3]]>>,
+    /// The least and the largest factor of the density.
+    pub(crate) densities: [f64; 2],
+}
+
+impl Default for RegionByTet {
+    fn default() -> Self {
+        Self {
+            moduli: [1.0; 2],
+            shares: Shares::default(),
+            directions: None,
+            densities: [1.0; 2],
+        }
+    }
+}
+
+impl ByTet {
+    /// What the data of a mesh give, whose tetrahedra are in the regions `region_of`.
+    pub(crate) fn new(
+        mesh: &TetMesh,
+        problem: &Problem,
+        region_of: &[u32],
+    ) -> Result<Self, FemError> {
+        let regions = vec![RegionByTet::default(); problem.regions.len()];
+        let mut by_tet = Self {
+            regions,
+            densities: None,
+        };
+        let (mut moduli, mut directions) = (None, None);
+        for (index, region) in problem.regions.iter().enumerate() {
+            let FromMesh {
+                youngs_modulus,
+                density,
+                direction,
+            } = &region.from_mesh;
+            let members = Members {
+                mesh,
+                region_of,
+                index,
+            };
+            let at = |quantity: &'static str| {
+                move |error: DataError| {
+                    FemError::new(Item::Region(index), Cause::Data { quantity, error })
+                }
+            };
+            let of_region = &mut by_tet.regions[index];
+            if let Some(name) = youngs_modulus {
+                let all = moduli.get_or_insert_with(|| vec![1.0; mesh.tets.len()]);
+                let modulus = region.law.youngs_modulus();
+                let expected = "a finite modulus above 0 Pa";
+                of_region.moduli = members
+                    .positive(name, (modulus, expected), all)
+                    .map_err(at("youngs_modulus"))?;
+                let [_, largest] = of_region.moduli;
+                members.tets().for_each(|tet| all[tet] /= largest);
+            }
+            if let Some(name) = density {
+                let all = by_tet
+                    .densities
+                    .get_or_insert_with(|| vec![1.0; mesh.tets.len()]);
+                let expected = "a finite density above 0 kg/m3";
+                of_region.densities = members
+                    .positive(name, (region.density, expected), all)
+                    .map_err(at("density"))?;
+            }
+            if let Some(name) = direction {
+                let all = directions.get_or_insert_with(|| vec![[0.0; 3]; mesh.tets.len()]);
+                members
+                    .directions(region, name, all)
+                    .map_err(at("direction"))?;
+            }
+        }
+        let moduli: Option<Arc<[f64]>> = moduli.map(Arc::from);
+        let directions: Option<Arc<[[f64; 3]]>> = directions.map(Arc::from);
+        for ((index, region), of_region) in
+            problem.regions.iter().enumerate().zip(&mut by_tet.regions)
+        {
+            let members = Members {
+                mesh,
+                region_of,
+                index,
+            };
+            if let (Some(_), Some(all)) = (&region.from_mesh.youngs_modulus, &moduli) {
+                of_region.shares = Shares::new(Arc::clone(all), members.tets());
+            }
+            if region.from_mesh.direction.is_some() {
+                of_region.directions.clone_from(&directions);
+            }
+        }
+        Ok(by_tet)
+    }
+
+    /// What they give to a region.
+    pub(crate) fn region(&self, index: usize) -> &RegionByTet {
+        &self.regions[index]
+    }
+
+    /// What the density of a tetrahedron's region is multiplied by.
+    pub(crate) fn density(&self, tet: usize) -> f64 {
+        self.densities.as_ref().map_or(1.0, |all| all[tet])
+    }
+}
+
+/// The tetrahedra of a region.
+#[derive(Clone, Copy)]
+struct Members<'a> {
+    mesh: &'a TetMesh,
+    region_of: &'a [u32],
+    index: usize,
+}
+
+impl<'a> Members<'a> {
+    fn tets(self) -> impl Iterator<Item = usize> + use<'a> {
+        let of_region = self.region_of.iter().enumerate();
+        let is_own =
+            move |(tet, region): (usize, &u32)| (*region as usize == self.index).then_some(tet);
+        of_region.filter_map(is_own)
+    }
+
+    /// The data with a name, which have so many values for each tetrahedron, and some for each of these.
+    fn data(self, name: &str, expected: usize) -> Result<&'a TetData, DataError> {
+        let data = self.mesh.data(name)?;
+        let name = || name.to_owned();
+        if data.components != expected {
+            return Err(DataError::Components {
+                name: name(),
+                found: data.components,
+                expected,
+            });
+        }
+        let mut without = self.tets().filter(|tet| {
+            let row = values(data, *tet);
+            row.is_empty() || row.iter().all(|value| value.is_nan())
+        });
+        match without.next() {
+            None => Ok(data),
+            Some(first) => Err(DataError::NoValue {
+                name: name(),
+                count: 1 + without.count(),
+                tag: self.tag(first),
+            }),
+        }
+    }
+
+    /// Writes factors of a property, which make it finite and above 0; returns the least and the largest.
+    fn positive(
+        self,
+        name: &str,
+        (property, expected): (f64, &'static str),
+        out: &mut [f64],
+    ) -> Result<[f64; 2], DataError> {
+        let data = self.data(name, 1)?;
+        let [mut least, mut largest] = [f64::INFINITY, 0.0_f64];
+        for tet in self.tets() {
+            for factor in values(data, tet) {
+                let found = property * factor;
+                if !(found.is_finite() && found > 0.0) {
+                    return Err(DataError::Value {
+                        name: name.to_owned(),
+                        tag: self.tag(tet),
+                        found: *factor,
+                        expected,
+                    });
+                }
+                out[tet] = *factor;
+                least = least.min(*factor);
+                largest = largest.max(*factor);
+            }
+        }
+        Ok([least, largest])
+    }
+
+    /// Writes directions as unit vectors.
+    fn directions(
+        self,
+        region: &Region,
+        name: &str,
+        out: &mut [[f64; 3]],
+    ) -> Result<(), DataError> {
+        if region.tissue.fibres.is_none() {
+            let name = name.to_owned();
+            return Err(DataError::NoFibres { name });
+        }
+        let data = self.data(name, 3)?;
+        for tet in self.tets() {
+            if let [x, y, z] = *values(data, tet) {
+                let refused = || DataError::Direction {
+                    name: name.to_owned(),
+                    tag: self.tag(tet),
+                    found: [x, y, z],
+                };
+                out[tet] = unit([x, y, z]).ok_or_else(refused)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn tag(self, tet: usize) -> u64 {
+        let ordinal = tet as u64 + 1;
+        self.mesh.tet_tags.get(tet).copied().unwrap_or(ordinal)
+    }
+}
+
+/// The values of a tetrahedron; none where data made by hand are too short.
+fn values(data: &TetData, tet: usize) -> &[f64] {
+    let width = data.components;
+    data.values
+        .get(tet * width..(tet + 1) * width)
+        .unwrap_or_default()
+}
