@@ -21,7 +21,8 @@ use crate::number::require;
 /// volume of each tetrahedron at it and their mean strain, as in the edge-based smoothed finite element method (Nguyen-Thoi,
 /// Liu, Vu-Do and Nguyen-Xuan, Comput. Methods Appl. Mech. Engrg. 198, 2009); a patch is a few tetrahedra
 /// with one mean change of volume, as in the F-bar-patch method (de Souza Neto, Pires and Owen, Int. J. Numer. Methods Engrg. 62,
-/// 2005), here as an energy, so that the stiffness is symmetric.
+/// 2005), here as an energy, so that the stiffness is symmetric. Where tetrahedra have moduli of their own ([`crate::FromMesh`]), edges and
+/// patches have their mean by volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Element {
     /// Tetrahedra of constant strain, each by itself.

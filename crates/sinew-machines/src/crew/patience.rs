@@ -142,8 +142,15 @@ mod tests {
 
     #[test]
     fn late_sweeps_are_put_up_with_as_long_as_the_others_make_up_for_them() {
-        let late =
-            |each: u32, time: f64| move |sweep: u32| if sweep.is_multiple_of(each) { time } else { 0.5 };
+        let late = |each: u32, time: f64| {
+            move |sweep: u32| {
+                if sweep.is_multiple_of(each) {
+                    time
+                } else {
+                    0.5
+                }
+            }
+        };
         assert!(ratio(100_000, late(50, 5.0)) < 0.62);
         let often = ratio(100_000, late(5, 8.0));
         assert!(often < 1.0 + 1.5 * PRICE, "{often}");

@@ -33,7 +33,7 @@ const DATA: TableDescription = TableDescription {
               Every tetrahedron of the region needs one. The tetrahedra of a finer mesh have that of the one they are a part of.",
     keys: &[&NAME],
     needs: Needs::Any,
-    examples: &["{ data = \"stiffness\" }"],
+    examples: &["{ data = \"density\" }"],
 };
 
 const NAME: Key<Text> = Key::required(

@@ -41,8 +41,12 @@ impl Footprint {
         let pattern = blocks * size_of::<u32>() + (cells + 1) * size_of::<usize>();
         let vector = 3 * cells * size_of::<f64>();
         let matrix_bytes = matrices * blocks * BLOCK + pattern + vector;
-        // Corners, tags and region of each tetrahedron; place and tag of each node.
-        let of_mesh = tets * 28 + nodes * 32;
+        let mut regions = body.problem.regions.iter();
+        let takes_data = regions.any(|region| !region.from_mesh.is_empty());
+        let data = mesh.data.iter().filter(|_| takes_data);
+        let data: usize = data.map(|data| data.values.len()).sum();
+        // Corners, tags and region of each tetrahedron; place and tag of each node; data, and what is made of them for the body and for loops.
+        let of_mesh = tets * 28 + nodes * 32 + 3 * data * size_of::<f64>();
         Self {
             nodes,
             tets,
