@@ -21,6 +21,8 @@ pub struct Batch<'a> {
     /// Parts of a step, and those taken of the step under way.
     parts: u32,
     parts_taken: u32,
+    /// Parts of the step under way after which it pauses.
+    pause: u32,
     /// Work of the step under way.
     step_work: StepReport,
     work: StepReport,
@@ -121,6 +123,7 @@ impl<'a> Batch<'a> {
             taken: 0,
             parts: 1,
             parts_taken: 0,
+            pause: u32::MAX,
             step_work: StepReport::default(),
             work: StepReport::default(),
             divergence_limit: f64::INFINITY,
@@ -252,13 +255,14 @@ impl<'a> Batch<'a> {
     /// Whether there are steps left to take.
     #[must_use]
     pub fn goes_on(&self) -> bool {
-        self.taken < self.steps && self.diverged.is_none()
+        self.taken < self.steps && self.parts_taken < self.pause && self.diverged.is_none()
     }
 
-    /// Whether the next step, or part of one, is the last.
+    /// Whether the next step, or part of one, is the last, or the last before a pause.
     #[must_use]
     pub fn is_last(&self) -> bool {
-        self.taken + 1 >= self.steps && self.parts_taken + 1 == self.parts
+        let next = self.parts_taken + 1;
+        self.taken + 1 >= self.steps && next == self.parts || next == self.pause
     }
 
     /// The current step.
@@ -405,16 +409,20 @@ impl<'a> Batch<'a> {
 
     /// Runs `body` on steps that are each cut into `parts` equal parts.
     pub fn in_parts<R>(&mut self, parts: u32, body: impl FnOnce(&mut Self) -> R) -> R {
-        let (dt, whole) = (self.dt, self.parts);
-        self.dt = dt / f64::from(parts);
-        self.parts = whole.saturating_mul(parts);
+        let whole = (self.dt, self.parts, self.pause);
+        self.dt /= f64::from(parts);
+        self.parts = self.parts.saturating_mul(parts);
+        self.parts_taken = self.parts_taken.saturating_mul(parts);
+        self.pause = self.pause.saturating_mul(parts);
         let result = body(self);
-        (self.dt, self.parts) = (dt, whole);
+        (self.dt, self.parts, self.pause) = whole;
+        self.parts_taken /= parts;
         result
     }
 
     /// Runs `body` on the next step, or part of one, alone, cut into equal parts of its own: their number may be another for the next one.
-    pub fn next_in_parts<R>(&mut self, parts: u32, body: impl FnOnce(&mut Self) -> R) -> R {
+    /// It is a trial until [`Batch::keep_trial`] or [`Batch::discard_trial`] is called: it counts as work, but is not taken and not sampled.
+    pub fn try_in_parts<R>(&mut self, parts: u32, body: impl FnOnce(&mut Self) -> R) -> R {
         let whole = (
             self.dt,
             self.steps,
@@ -422,12 +430,10 @@ impl<'a> Batch<'a> {
             self.parts,
             self.parts_taken,
         );
-        let ends_step = self.parts_taken + 1 == self.parts;
-        let watch = if ends_step { None } else { self.watch.take() };
+        let watch = self.watch.take();
         self.dt /= f64::from(parts);
         (self.steps, self.taken, self.parts, self.parts_taken) = (1, 0, parts, 0);
         let result = body(self);
-        let is_taken = self.taken == 1;
         (
             self.dt,
             self.steps,
@@ -435,17 +441,38 @@ impl<'a> Batch<'a> {
             self.parts,
             self.parts_taken,
         ) = whole;
-        if watch.is_some() {
-            self.watch = watch;
-        }
-        if is_taken {
-            self.parts_taken += 1;
-            if ends_step {
-                self.parts_taken = 0;
-                self.taken += 1;
-            }
-        }
+        self.watch = watch;
         result
+    }
+
+    /// Runs `body` on the next `parts` parts of the step under way at most.
+    pub fn next_parts<R>(&mut self, parts: u32, body: impl FnOnce(&mut Self) -> R) -> R {
+        let pause = self.parts_taken.saturating_add(parts);
+        // The end of a step is none.
+        self.pause = if pause < self.parts { pause } else { u32::MAX };
+        let result = body(self);
+        self.pause = u32::MAX;
+        result
+    }
+
+    /// Takes the step of a trial, which led to this state.
+    pub fn keep_trial(&mut self, state: &State) {
+        self.parts_taken += 1;
+        if self.parts_taken == self.parts {
+            self.parts_taken = 0;
+            self.taken += 1;
+            self.sample(state);
+        }
+    }
+
+    /// Forgets a trial but for the work that it cost, so that the same step is taken again.
+    pub fn discard_trial(&mut self) {
+        self.diverged = None;
+        self.work += StepReport {
+            saturated: 0,
+            retaken: 1,
+            ..std::mem::take(&mut self.step_work)
+        };
     }
 
     /// Runs `body` on steps that are each clamped; the guard is given back.

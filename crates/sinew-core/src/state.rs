@@ -10,7 +10,7 @@ use crate::revision::Revision;
 ///
 /// Two states are equal where all that determines the motion is equal; the identity of the loads
 /// does not count.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct State {
     /// Time of `u`.
     pub clock: Clock,
@@ -47,6 +47,36 @@ pub struct StepCut {
     pub stable_step: f64,
     /// The largest trace of a cell's own block over its mass (1/s^2) then; 0 where the law has no such blocks.
     pub stiffest_cell: f64,
+}
+
+impl Clone for State {
+    fn clone(&self) -> Self {
+        let mut clone = Self::new(Vec::new(), Vec::new());
+        clone.clone_from(self);
+        clone
+    }
+
+    /// Takes over another state without allocating where there is room for it.
+    fn clone_from(&mut self, other: &Self) {
+        let Self {
+            clock,
+            u,
+            v,
+            velocity,
+            a,
+            acceleration,
+            internal,
+            loads,
+            start,
+            cut,
+        } = other;
+        self.u.clone_from(u);
+        self.v.clone_from(v);
+        self.a.clone_from(a);
+        self.internal.clone_from(internal);
+        (self.clock, self.loads, self.start, self.cut) = (*clock, *loads, *start, *cut);
+        (self.velocity, self.acceleration) = (*velocity, *acceleration);
+    }
 }
 
 impl PartialEq for State {

@@ -28,6 +28,8 @@ pub struct StepReport {
     pub limiter_hits: u64,
     /// Steps taken again by another formula, because the first one's end has more energy than there was.
     pub fallbacks: u64,
+    /// Steps, or parts of them, taken again in shorter parts, because a law's stiffness grew too much within them.
+    pub retaken: u64,
 }
 
 impl StepReport {
@@ -44,6 +46,7 @@ impl StepReport {
         saturated: 0,
         limiter_hits: 0,
         fallbacks: 0,
+        retaken: 0,
     };
 
     /// Adds the work of a part of the same step.
@@ -67,5 +70,6 @@ impl AddAssign for StepReport {
         self.saturated += other.saturated;
         self.limiter_hits += other.limiter_hits;
         self.fallbacks += other.fallbacks;
+        self.retaken += other.retaken;
     }
 }

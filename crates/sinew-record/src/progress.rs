@@ -78,6 +78,8 @@ pub(crate) struct Work {
     pub(crate) limiter_hits: u64,
     #[serde(default)]
     pub(crate) fallbacks: u64,
+    #[serde(default)]
+    pub(crate) retaken: u64,
 }
 
 impl Work {
@@ -95,5 +97,6 @@ impl Work {
         self.backtracks += of.backtracks;
         self.limiter_hits += of.limiter_hits;
         self.fallbacks += of.fallbacks;
+        self.retaken += of.retaken;
     }
 }

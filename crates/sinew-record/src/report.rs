@@ -175,6 +175,15 @@ fn facts(summary: &Summary<'_>) -> Vec<(&'static str, String)> {
             "velocities were saturated: the motion is bounded, not accurate".to_owned(),
         ));
     }
+    if work.retaken > 0 {
+        facts.push((
+            "current stiffness",
+            format!(
+                "{} times a step was taken again in shorter parts",
+                work.retaken
+            ),
+        ));
+    }
     if work.limiter_hits + work.fallbacks > 0 {
         facts.push((
             "energy limiter",

@@ -15,6 +15,8 @@ pub struct RunEnd {
     pub work: (u64, u64),
     /// Share of velocities that were saturated.
     pub saturated: f64,
+    /// Steps that were taken again in shorter parts.
+    pub retaken: u64,
     /// The largest displacement (m), its time (s) and the tag of its node, among the fields; 0 for an oscillator.
     pub largest: (f64, f64, u64),
     /// What the integrator remarks at the end, one sentence each.

@@ -257,6 +257,7 @@ impl RunFolder {
             frames: progress.frames,
             work: (work.sweeps, work.solves),
             saturated: work.saturated_share(steps, system.dofs()),
+            retaken: work.retaken,
             largest: (seen.value, seen.t, seen.at),
             remarks: integrator.remarks(),
             warnings,

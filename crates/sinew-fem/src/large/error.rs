@@ -10,8 +10,8 @@ pub(super) fn fibres_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
     EvaluationError {
         element: tag,
         reason: format!(
-            "its volume is {volume_ratio:.3} of that at rest, and fibres freed of volume change have no meaning from 0 down: take a shorter \
-             step, or fibres without `split`"
+            "its volume is {volume_ratio:.3} of that at rest, and fibres freed of volume change have no meaning from 0 down: shorter steps \
+             avoid that unless the motion itself leads there, and fibres without `split` go on"
         ),
     }
 }
@@ -22,7 +22,8 @@ pub(super) fn memory_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
     EvaluationError {
         element: tag,
         reason: format!(
-            "its volume is {volume_ratio:.3} of that at rest, and stress that relaxes has no meaning from 0 down: take a shorter step"
+            "its volume is {volume_ratio:.3} of that at rest, and stress that relaxes has no meaning from 0 down: shorter steps \
+             avoid that unless the motion itself leads there"
         ),
     }
 }
@@ -32,8 +33,8 @@ pub(super) fn memory_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
 pub(super) fn refused<L: HyperelasticLaw>(tag: u64, volume_ratio: f64) -> EvaluationError {
     let reason = if volume_ratio.is_finite() {
         format!(
-            "its volume is {volume_ratio:.3} of that at rest, and the law `{}` has no meaning from 0 down: take a shorter step, \
-             or a law for elements that invert, such as `stable-neo-hookean`",
+            "its volume is {volume_ratio:.3} of that at rest, and the law `{}` has no meaning from 0 down: shorter steps avoid that unless \
+             the motion itself leads there, and a law for elements that invert, such as `stable-neo-hookean`, goes on",
             L::ID
         )
     } else {

@@ -107,6 +107,10 @@ const PARTS_BETWEEN_GLANCES: u32 = 4;
 /// Growth of the stiffest cell beyond which its stiffness no longer tells the stable step well enough.
 const MUCH_STIFFER: f64 = 4.0;
 
+/// Change of a cell's velocity in a step, as the share of its size that it moves by in that time, from which on the stiffness is
+/// looked at at once.
+const MUCH_MOTION: f64 = 0.05;
+
 /// Largest number of parts into which the current stiffness may cut what takes two parts at rest: where it takes more, something is wrong, and a
 /// run would not end.
 const MOST_PARTS: u32 = 1000;
@@ -118,6 +122,8 @@ pub struct Substepped {
     parts: Option<(sinew_core::Revision, f64, u32)>,
     /// Own blocks of all cells (N/m).
     blocks: Vec<f64>,
+    /// The state before the step under way.
+    kept: State,
 }
 
 impl Substepped {
@@ -129,6 +135,7 @@ impl Substepped {
             substeps,
             parts: None,
             blocks: Vec::new(),
+            kept: State::at_rest(0),
         }
     }
 
@@ -165,7 +172,8 @@ impl Substepped {
 
 /// Parts by the current stiffness of a law, of what would take two at rest. They are a function of the state alone, in which they
 /// stand: the stable step is found from a fixed vector, after fixed numbers of parts. In between it is taken to shrink as the stiffest cell's own stiffness grows, of which a step has
-/// the square root: what is left is room until the next look. That costs about a force.
+/// the square root: what is left is room until the next look. That costs about a force. A step that turns out to be too long for the
+/// stiffness that it led to, or that the law refuses, is taken again in shorter parts.
 impl Substepped {
     fn run_by_current_stiffness(
         &mut self,
@@ -173,84 +181,206 @@ impl Substepped {
         state: &mut State,
     ) -> Result<(), StepError> {
         while batch.goes_on() {
-            let (cut, sweeps) = self.current_cut(batch, state)?;
-            batch.count(StepReport {
-                sweeps,
-                ..StepReport::default()
-            });
-            let (system, part) = (batch.system(), batch.dt() / f64::from(cut.parts));
-            self.inner.prepare(system, part)?;
-            state.cut = Some(StepCut {
-                taken: cut.taken.saturating_add(cut.parts),
-                ..cut
-            });
-            batch.next_in_parts(cut.parts, |batch| self.inner.run(batch, state))?;
+            let cut = match state.cut {
+                Some(cut) => cut,
+                None => self.first_cut(batch, state)?,
+            };
+            self.take_one(batch, state, cut)?;
+            batch.keep_trial(state);
         }
         Ok(())
     }
 
-    /// The cut of the next step, and the sweeps that it took to find it.
-    fn current_cut(
+    /// The cut of the first step.
+    fn first_cut(&mut self, batch: &mut Batch<'_>, state: &State) -> Result<StepCut, StepError> {
+        let cut = self.look(batch, state)?;
+        let parts = Substeps::parts_of(batch.dt(), cut.stable_step);
+        if parts <= MOST_PARTS {
+            return Ok(StepCut { parts, ..cut });
+        }
+        Err(self.too_stiff(batch.dt(), state))
+    }
+
+    /// Takes the next step, and again in more parts as long as it turns out to be too long.
+    fn take_one(
+        &mut self,
+        batch: &mut Batch<'_>,
+        state: &mut State,
+        mut cut: StepCut,
+    ) -> Result<(), StepError> {
+        self.kept.clone_from(state);
+        loop {
+            let part = batch.dt() / f64::from(cut.parts);
+            self.inner.prepare(batch.system(), part)?;
+            let tried = batch.try_in_parts(cut.parts, |batch| self.try_in(cut, batch, state));
+            let needed = match &tried {
+                Ok(needed) => *needed,
+                Err(StepError::Refused { .. }) => u32::MAX,
+                Err(_) => return tried.map(drop),
+            };
+            if needed <= cut.parts {
+                return Ok(());
+            }
+            // What is left of a motion that was torn apart would need too many.
+            let more = needed.min(cut.parts.saturating_mul(2));
+            if more > MOST_PARTS {
+                return self.end(batch, state, tried.err());
+            }
+            cut.parts = more;
+            state.clone_from(&self.kept);
+            batch.discard_trial();
+        }
+    }
+
+    /// The end of a motion for which the largest number of parts is not enough.
+    fn end(
         &mut self,
         batch: &Batch<'_>,
         state: &State,
-    ) -> Result<(StepCut, u64), StepError> {
-        let (system, dt) = (batch.system(), batch.dt());
-        let before = state.cut.filter(|cut| cut.taken < PARTS_BETWEEN_LOOKS);
-        if let Some(cut) = before {
-            // Whether the last step passed a multiple of them.
-            if cut.taken % PARTS_BETWEEN_GLANCES >= cut.parts {
-                return Ok((cut, 0));
+        refused: Option<StepError>,
+    ) -> Result<(), StepError> {
+        let dt = batch.dt();
+        // As it was set up, for the next motion.
+        self.inner.prepare(batch.system(), dt)?;
+        Err(match refused {
+            Some(StepError::Refused { t, mut source }) => {
+                let too_few = format!(
+                    "; {MOST_PARTS} parts of {dt} s, which takes two at rest, lead there too"
+                );
+                source.reason.push_str(&too_few);
+                StepError::Refused { t, source }
             }
-            let growth = self.stiffest_cell(batch, state)? / cut.stiffest_cell;
-            // Not a number where the law has no such blocks.
-            if growth.is_nan() || growth <= 1.0 {
-                return Ok((cut, 1));
+            _ if batch.diverged().is_some() => return Ok(()),
+            _ => self.too_stiff(dt, state),
+        })
+    }
+
+    fn too_stiff(&self, dt: f64, state: &State) -> StepError {
+        StepError::Inaccurate {
+            integrator: self.id(),
+            t: state.t(),
+            reason: format!(
+                "the current stiffness takes more than {MOST_PARTS} parts of {dt} s, which takes two at rest: elements are squeezed flat, \
+                 fibres are stretched too far, or the displacement is not finite. A dt in seconds has no such bound"
+            ),
+        }
+    }
+
+    /// Takes a step in this cut, and cuts the one after it; the parts that the step itself needed.
+    fn try_in(
+        &mut self,
+        mut cut: StepCut,
+        batch: &mut Batch<'_>,
+        state: &mut State,
+    ) -> Result<u32, StepError> {
+        let parts = cut.parts;
+        let stretches = parts.div_ceil(PARTS_BETWEEN_GLANCES);
+        while batch.goes_on() {
+            let stretch = parts.div_ceil(stretches).min(batch.parts_left() as u32);
+            batch.next_parts(stretch, |batch| self.inner.run(batch, state))?;
+            if batch.diverged().is_some() {
+                return Ok(u32::MAX);
             }
-            if growth <= MUCH_STIFFER {
-                let parts = self.parts_by(dt, cut.stable_step / growth, state)?;
-                let parts = parts.max(cut.parts);
-                return Ok((StepCut { parts, ..cut }, 1));
+            cut.taken = cut.taken.saturating_add(stretch);
+            let needed = self.parts_needed(&mut cut, parts, batch, state)?;
+            if needed > parts {
+                return Ok(needed);
             }
         }
-        let stable_step = match self.inner.stable_step_about(system, Some(state))? {
+        state.cut = Some(cut);
+        Ok(parts)
+    }
+
+    /// Looks at the stiffness after some of `parts` parts, where it is time to, and brings the cut up to date; the parts that the
+    /// step needed.
+    fn parts_needed(
+        &mut self,
+        cut: &mut StepCut,
+        parts: u32,
+        batch: &mut Batch<'_>,
+        state: &State,
+    ) -> Result<u32, StepError> {
+        let (part, dt) = (batch.dt(), batch.dt() * f64::from(parts));
+        let growth = if cut.taken >= PARTS_BETWEEN_LOOKS {
+            f64::INFINITY
+        } else if parts > 2
+            || cut.taken % PARTS_BETWEEN_GLANCES < parts
+            || self.is_thrown(dt, batch.system(), state)
+        {
+            // Not a number where the law has no such blocks.
+            self.stiffest_cell(batch, state)? / cut.stiffest_cell
+        } else {
+            1.0
+        };
+        if growth.is_nan() || growth <= 1.0 {
+            return Ok(parts);
+        }
+        let (stable_step, room) = if growth <= MUCH_STIFFER {
+            (cut.stable_step / growth.sqrt(), growth.sqrt())
+        } else {
+            let before = cut.parts;
+            *cut = self.look(batch, state)?;
+            cut.parts = before;
+            // What grew so much may grow on.
+            let grew = growth.is_finite();
+            (
+                cut.stable_step,
+                if grew { MUCH_STIFFER.sqrt() } else { 1.0 },
+            )
+        };
+        let parts_by = |room: f64| Substeps::parts_of(dt, stable_step / room);
+        if part > stable_step {
+            return Ok(parts_by(room));
+        }
+        cut.parts = cut.parts.max(parts_by(room).min(MOST_PARTS));
+        Ok(parts)
+    }
+
+    /// Whether some cell was accelerated so much since the step of `dt` (s) began that strains, and with them the stiffness, may have changed.
+    fn is_thrown(&self, dt: f64, system: &dyn System, state: &State) -> bool {
+        let Some(scales) = system.scales() else {
+            return false;
+        };
+        let layers = system.layers().count();
+        let cells = state.v.chunks_exact(layers);
+        let cells = cells.zip(self.kept.v.chunks_exact(layers));
+        let mut cells = cells.zip(scales.cell_size);
+        cells.any(|((v, before), size)| {
+            let squares = v.iter().zip(before).map(|(v, before)| (v - before).powi(2));
+            dt * dt * squares.sum::<f64>() > (MUCH_MOTION * size).powi(2)
+        })
+    }
+
+    /// A cut by the stable step about a state.
+    fn look(&mut self, batch: &mut Batch<'_>, state: &State) -> Result<StepCut, StepError> {
+        let stiffest_cell = self.stiffest_cell(batch, state)?;
+        batch.count(StepReport {
+            sweeps: PRODUCTS_OF_ESTIMATE,
+            ..StepReport::default()
+        });
+        let stable_step = match self.inner.stable_step_about(batch.system(), Some(state))? {
             StableStep::Any => f64::INFINITY,
             StableStep::UpTo(limit) => limit,
             StableStep::Unknown => 0.0,
         };
-        let parts = self.parts_by(dt, stable_step, state)?;
-        // Never fewer than before: a leapfrog that changes to and fro between two lengths, each of them stable, may swing up.
-        let parts = parts.max(state.cut.map_or(1, |cut| cut.parts));
-        let cut = StepCut {
-            parts,
+        Ok(StepCut {
+            parts: 1,
             taken: 0,
             stable_step,
-            stiffest_cell: self.stiffest_cell(batch, state)?,
-        };
-        Ok((cut, PRODUCTS_OF_ESTIMATE + 1))
-    }
-
-    fn parts_by(&self, dt: f64, stable_step: f64, state: &State) -> Result<u32, StepError> {
-        let parts = Substeps::parts(dt, stable_step);
-        if parts <= f64::from(MOST_PARTS) {
-            return Ok(parts as u32);
-        }
-        Err(StepError::Inaccurate {
-            integrator: self.id(),
-            t: state.t(),
-            reason: format!(
-                "the current stiffness takes more than {MOST_PARTS} parts of {dt} s, which takes two at rest: elements are squeezed flat, or the \
-                 displacement is not finite"
-            ),
+            stiffest_cell,
         })
     }
 
     /// The largest trace of a cell's own block over its mass (1/s^2); 0 where the law has no such blocks.
-    fn stiffest_cell(&mut self, batch: &Batch<'_>, state: &State) -> Result<f64, StepError> {
+    fn stiffest_cell(&mut self, batch: &mut Batch<'_>, state: &State) -> Result<f64, StepError> {
         let system = batch.system();
         let Some(elastic) = system.as_elastic() else {
             return Ok(0.0);
         };
+        batch.count(StepReport {
+            sweeps: 1,
+            ..StepReport::default()
+        });
         let layers = system.layers().count();
         self.blocks.resize(layers * system.dofs(), 0.0);
         let trial = Trial {

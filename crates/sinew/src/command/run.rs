@@ -174,7 +174,14 @@ pub(crate) fn run_for_comparison(
     }
 }
 
-/// At most fifteen lines about a run.
+/// A line about steps that were taken again, where there were any.
+fn retaken(times: u64) -> Option<String> {
+    (times > 0).then(|| {
+        format!("{times} times a step was taken again in shorter parts, because the body stiffened within it")
+    })
+}
+
+/// At most sixteen lines about a run.
 fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> Vec<String> {
     let (steps, wall) = end.own;
     let own = steps as f64 * simulation.dt();
@@ -205,6 +212,7 @@ fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> Vec<String>
             100.0 * end.saturated
         ));
     }
+    lines.extend(retaken(end.retaken));
     lines.extend(end.remarks.iter().cloned());
     let warnings = end.warnings.iter();
     lines.extend(warnings.map(|warning| format!("warning: {warning}")));
@@ -342,7 +350,9 @@ fn summary(simulation: &Simulation, report: &RunReport) -> String {
             "\nguarded: {share:.3} % of all velocities were saturated; the motion is bounded, not accurate"
         ));
     }
-    text.push('\n');
-    text.push_str(&error_not_known());
+    for line in retaken(work.retaken).into_iter().chain([error_not_known()]) {
+        text.push('\n');
+        text.push_str(&line);
+    }
     text
 }
