@@ -1,5 +1,6 @@
 //! Running an integrator.
 
+use crate::batch::worst_beyond;
 use crate::{
     Batch, Inputs, Integrator, Moment, RecordError, Recorder, State, StepError, StepReport, System,
     Verdict, Watch,
@@ -47,7 +48,7 @@ impl Run {
 pub enum Outcome {
     /// All steps taken.
     Finished,
-    /// A displacement was not finite or passed the limit.
+    /// A displacement was not finite or passed the limit, or the last velocity was not finite.
     Diverged {
         /// Time of the state (s).
         t: f64,
@@ -156,7 +157,12 @@ pub fn simulate_under(
         failed = batch.take(integrator, state).err().map(SimulateError::from);
         report.steps += batch.taken();
         report.work += batch.work();
-        if let Some(dof) = batch.diverged() {
+        let ends = failed.is_none() && report.steps >= run.steps;
+        let diverged = batch.diverged();
+        // Displacements are looked at after each step; of the last one the velocity leads to no other.
+        let last = || worst_beyond(&state.v, f64::INFINITY);
+        let diverged = diverged.or_else(|| ends.then(last).flatten());
+        if let Some(dof) = diverged {
             report.outcome = Outcome::Diverged { t: state.t(), dof };
         }
     }

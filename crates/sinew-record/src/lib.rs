@@ -41,6 +41,7 @@ mod fields;
 mod folder_size;
 mod frame_writer;
 mod frames;
+mod growth;
 #[cfg(feature = "implicit")]
 mod modes;
 mod pace;
@@ -59,6 +60,7 @@ pub use companion::Companion;
 pub use compare::{CompareError, Comparison, Difference, compare};
 pub use error::RecordRunError;
 pub use folder_size::FolderSize;
+pub use growth::EnergyGrowth;
 #[cfg(feature = "implicit")]
 pub use modes::{ModesError, NaturalMode, check_modes_folder, natural_modes, write_modes};
 pub use pace::Pace;

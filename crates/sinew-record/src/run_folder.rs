@@ -221,6 +221,7 @@ impl RunFolder {
         }
         let mut warnings = summary::warnings(&progress.seen);
         warnings.extend(summary::made_energy(simulation, &progress));
+        warnings.extend(simulation.outrun(integrator, &state));
         let wall = begun.elapsed().as_secs_f64();
         let summary = Summary {
             simulation,

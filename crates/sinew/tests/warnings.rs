@@ -204,3 +204,71 @@ fn a_run_of_more_than_a_minute_is_warned_of_before_it_begins() {
     assert_eq!(warning["kind"], "long-run");
     assert!(warning["numbers"]["run_s"].as_f64().unwrap() > 60.0);
 }
+
+/// Fibres that catch a thrown cube: its stable step falls far below that at rest, which this one is half of.
+const CAUGHT: &str = r#"
+[mesh]
+cube = { cells = 4, edge = 0.1 }
+[[region]]
+density = 1000.0
+model = "stable-neo-hookean"
+youngs_modulus = 5000.0
+poissons_ratio = 0.4
+fibres = { direction = [0, 0, 1], k1 = 2000.0, k2 = 20.0 }
+[[fixed]]
+group = "bottom"
+[[initial]]
+velocity = [0, 0, "20*z"]
+[run]
+duration = 0.5
+integrator = "central-difference"
+dt = 0.0005
+[[probe]]
+name = "corner"
+point = [0.1, 0.1, 0.1]
+"#;
+
+#[test]
+fn a_motion_with_energy_from_nothing_is_told_with_and_without_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("caught.toml"), CAUGHT).unwrap();
+    for arguments in [
+        &["run", "caught.toml"][..],
+        &["run", "caught.toml", "--out", "out"],
+    ] {
+        let said = sinew(folder.path(), arguments);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        let mut warnings = said.err.lines();
+        let told = |line: &str| {
+            line.starts_with("warning: the motion has ") && line.ends_with("dt = \"auto\"")
+        };
+        assert!(warnings.any(told), "{arguments:?}: {}", said.err);
+    }
+    let follows = CAUGHT.replace("dt = 0.0005", "dt = \"auto\"");
+    fs::write(folder.path().join("caught.toml"), follows).unwrap();
+    let said = sinew(folder.path(), &["run", "caught.toml"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(!said.err.contains("the motion has"), "{}", said.err);
+}
+
+/// Saint Venant's tissue, stretched and let go in steps of its rest, swings until it tears.
+#[test]
+fn a_step_that_the_body_outran_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = CAUGHT
+        .replace(
+            "fibres = { direction = [0, 0, 1], k1 = 2000.0, k2 = 20.0 }",
+            "",
+        )
+        .replace("stable-neo-hookean", "stvk")
+        .replace("velocity = [0, 0, \"20*z\"]", "velocity = [0, 0, \"30*z\"]")
+        .replace("duration = 0.5", "duration = 1.0")
+        .replace("dt = 0.0005", "dt = 0.0025");
+    fs::write(folder.path().join("torn.toml"), text).unwrap();
+    let said = sinew(folder.path(), &["run", "torn.toml"]);
+    assert_eq!(said.code, Some(1), "{}", said.err);
+    let told = said
+        .err
+        .contains("times the stable step of `central-difference` about the body as it is at t = ");
+    assert!(told, "{}", said.err);
+}

@@ -140,6 +140,13 @@ impl Simulation {
         self.stable_step.get_or_init(found).clone()
     }
 
+    /// A sentence where the scene's step is longer than the stable one about a state of a body that is not linear. Of a linear body's, which
+    /// is the same in all states, its warnings tell.
+    #[must_use]
+    pub fn outrun(&self, integrator: &dyn Stepper, state: &State) -> Option<String> {
+        step::outrun(self, integrator, state)
+    }
+
     /// The steps that cover the duration. A body counts as diverged when a displacement exceeds 100
     /// times its size.
     #[must_use]

@@ -1,9 +1,12 @@
 //! The step of a scene, and the largest stable one of its integrator.
 
-use sinew_core::{Options, StableStep, System};
+use sinew_core::{Options, StableStep, State, System};
+use sinew_integrators::Stepper;
 use sinew_integrators::explicit::{Substepped, Substeps};
 
+use super::Simulation;
 use crate::error::{NoStableStep, StableStepError};
+use crate::number::short;
 use crate::scene::{RunSettings, TimeStep};
 
 /// The largest stable step of the scene's integrator.
@@ -54,5 +57,29 @@ pub(super) fn seconds(
         StableStep::UpTo(_) => Err(NoStableStep::Never { integrator }),
         StableStep::Any => Err(NoStableStep::Any { integrator }),
         StableStep::Unknown => Err(NoStableStep::Unknown { integrator }),
+    }
+}
+
+/// See [`Simulation::outrun`].
+pub(super) fn outrun(
+    simulation: &Simulation,
+    integrator: &dyn Stepper,
+    state: &State,
+) -> Option<String> {
+    let system = simulation.system();
+    if system.as_linear().is_some() {
+        return None;
+    }
+    let dt = simulation.dt();
+    match integrator.stable_step_about(system, Some(state)) {
+        Ok(StableStep::UpTo(limit)) if dt > limit => Some(format!(
+            "dt = {dt} s is {} times the stable step of `{}` about the body as it is at t = {} s, {} s: its fastest motions are wrong; \
+             dt = \"auto\" follows the stiffness",
+            short(dt / limit),
+            integrator.id(),
+            state.t(),
+            short(limit)
+        )),
+        _ => None,
     }
 }

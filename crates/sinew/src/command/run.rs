@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use sinew_core::{OptionError, OptionValue, Outcome, Recorders, RunReport, simulate};
 use sinew_integrators::Stepper;
 use sinew_measure::Forecast;
-use sinew_record::{Companion, Ended, Request, RunEnd, RunFolder};
+use sinew_record::{Companion, Ended, EnergyGrowth, Request, RunEnd, RunFolder};
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
 use sinew_scene::{
     Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Simulation, Warning, WarningKind,
@@ -239,12 +239,18 @@ fn probes_alone(
     let mut state = simulation.initial_state().clone();
     let settings = simulation.run();
     let mut onlooker = Onlooker::new(interruption, settings.steps, simulation.settings().duration);
+    let mut growth = EnergyGrowth::new(simulation);
     let mut recorders = Recorders::new()
         .with_lent(&mut csv)
+        .with_lent(&mut growth)
         .with_lent(&mut onlooker);
     let report = simulate(system, integrator, &mut state, &settings, &mut recorders);
     drop(recorders);
     onlooker.finish();
+    let outrun = simulation.outrun(integrator, &state);
+    for warning in growth.in_words().into_iter().chain(outrun.as_deref()) {
+        complain(&format!("warning: {warning}"));
+    }
     let report = report?;
     // Where the reader of the motion closed its pipe, nobody wants a summary.
     if csv.finish()? == Delivery::Whole {

@@ -1,0 +1,115 @@
+//! Energy that comes from nothing, where no table of energies is written.
+
+use sinew_core::{LoadTime, Moment, Ramp, RecordError, Recorder, State, System, Verdict};
+use sinew_scene::Simulation;
+
+use crate::summary::THERMAL;
+
+/// Most looks at a run.
+const MOST_LOOKS: usize = 16;
+
+/// Steps for each look: a look costs about two forces.
+const STEPS_FOR_A_LOOK: usize = 100;
+
+/// Energy, as a multiple of what start and loads account for, from which on a motion is wrong.
+const FAR_BEYOND: f64 = 2.0;
+
+/// A recorder that looks at the energy of a body of large deformation a few times in a run, and tells where it is far beyond that of the start
+/// and the work of the loads.
+///
+/// Work is added up by component, without signs, and damping is left out: what is told is wrong for certain. Supports that move bring in
+/// work too, and loads that come and go do between two looks, so that such scenes are not looked at.
+#[derive(Debug)]
+pub struct EnergyGrowth {
+    /// None where nothing is looked at.
+    spacing: Option<usize>,
+    /// The last step.
+    end: usize,
+    /// Energy of the start and work so far (J).
+    given: f64,
+    before: Vec<f64>,
+    load: Vec<f64>,
+    load_before: Vec<f64>,
+    grown: Option<String>,
+}
+
+impl EnergyGrowth {
+    /// Looks at a run of this simulation.
+    #[must_use]
+    pub fn new(simulation: &Simulation) -> Self {
+        let end = simulation.run().steps;
+        let looks = (end / STEPS_FOR_A_LOOK).clamp(1, MOST_LOOKS);
+        let can_tell = simulation.system().as_linear().is_none()
+            && simulation.model().body().is_some_and(|body| {
+                let grows = |ramp: &Ramp| matches!(ramp, Ramp::Step | Ramp::Sin2 { .. });
+                let mut loads = body.problem.loads.iter();
+                body.problem.moves.is_empty() && loads.all(|load| grows(&load.ramp))
+            });
+        Self {
+            spacing: can_tell.then(|| end.div_ceil(looks).max(1)),
+            end,
+            given: 0.0,
+            before: Vec::new(),
+            load: Vec::new(),
+            load_before: Vec::new(),
+            grown: None,
+        }
+    }
+
+    /// A sentence about the energy, where there is too much of it.
+    #[must_use]
+    pub fn in_words(&self) -> Option<&str> {
+        self.grown.as_deref()
+    }
+
+    fn look(&mut self, system: &dyn System, state: &State, is_first: bool) {
+        let dofs = state.u.len();
+        self.load.resize(dofs, 0.0);
+        system.external_force(LoadTime::at(state.t()), &state.u, &mut self.load);
+        // Without a finite energy there is none to tell.
+        let energy = system.energy(&state.u, &state.v);
+        let energy = energy.map_or(f64::INFINITY, |energy| energy.total());
+        if is_first {
+            self.given = energy;
+        } else {
+            let moved = state.u.iter().zip(&self.before);
+            let loads = self.load.iter().zip(&self.load_before);
+            self.given += moved
+                .zip(loads)
+                .map(|((u, before), (load, load_before))| {
+                    (u - before).abs() * load.abs().max(load_before.abs())
+                })
+                .sum::<f64>();
+            let is_too_much = !(energy <= FAR_BEYOND * self.given || energy <= THERMAL);
+            if self.grown.is_none() && is_too_much {
+                let has = if energy.is_finite() {
+                    format!("{energy:.3e} J")
+                } else {
+                    "more energy than numbers can tell".to_owned()
+                };
+                self.grown = Some(format!(
+                    "the motion has {has} at t = {} s, where start and loads account for {:.3e} J: it is wrong; take a shorter \
+                     step, or dt = \"auto\"",
+                    state.t(),
+                    self.given
+                ));
+            }
+        }
+        self.before.clone_from(&state.u);
+        std::mem::swap(&mut self.load, &mut self.load_before);
+    }
+}
+
+impl Recorder for EnergyGrowth {
+    fn next(&mut self, step: usize) -> Option<usize> {
+        let spacing = self.spacing?;
+        Some(step.next_multiple_of(spacing).min(self.end.max(step)))
+    }
+
+    fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
+        if self.spacing.is_some() {
+            self.look(moment.system, moment.state, moment.step == 0);
+        }
+        Ok(Verdict::Continue)
+    }
+}
