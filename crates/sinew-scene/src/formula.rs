@@ -46,11 +46,13 @@ const FUNCTIONS: [(&str, Function); 5] = [
 const LONGEST: usize = 1000;
 
 /// A text that is no formula.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("at character {at} of the formula: expected {expected}")]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{found} at character {at} of the formula: expected {expected}")]
 pub struct FormulaError {
     /// Number of the character, from 1 on.
     pub at: usize,
+    /// The word, number or character there, in quotes, or "the end".
+    pub found: String,
     /// What could stand there.
     pub expected: &'static str,
 }
@@ -75,6 +77,7 @@ impl Formula {
         if parser.length > LONGEST {
             return Err(FormulaError {
                 at: LONGEST + 1,
+                found: "more".to_owned(),
                 expected: "an end: formulas have at most 1000 characters",
             });
         }
@@ -168,8 +171,16 @@ impl Parser<'_> {
     }
 
     fn expected(&self, expected: &'static str) -> FormulaError {
+        let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+        let word = self.rest.find(|c| !is_part(c)).unwrap_or(self.rest.len());
+        let one = self.rest.chars().next().map_or(0, char::len_utf8);
+        let found = match &self.rest[..word.max(one)] {
+            "" => "the end".to_owned(),
+            found => format!("`{}`", found.chars().take(40).collect::<String>()),
+        };
         FormulaError {
             at: self.length - self.rest.chars().count() + 1,
+            found,
             expected,
         }
     }
@@ -341,6 +352,26 @@ mod tests {
             ("e", 1),
         ] {
             assert_eq!(Formula::parse(text).unwrap_err().at, at, "{text}");
+        }
+        for (text, words) in [
+            (
+                "2 * sinn(z)",
+                "`sinn` at character 5 of the formula: expected x, y, z, pi, sin, cos, exp, sqrt or abs",
+            ),
+            (
+                "2 * z)",
+                "`)` at character 6 of the formula: expected an operator, a bracket or the end",
+            ),
+            (
+                "2 * ",
+                "the end at character 5 of the formula: expected a number, x, y, z, pi, a function or `(`",
+            ),
+            (
+                "1.2.3 + x",
+                "`1.2.3` at character 1 of the formula: expected a finite number",
+            ),
+        ] {
+            assert_eq!(Formula::parse(text).unwrap_err().to_string(), words);
         }
         let deep = "(".repeat(5000);
         assert_eq!(Formula::parse(&deep).unwrap_err().at, LONGEST + 1);

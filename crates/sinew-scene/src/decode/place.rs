@@ -79,7 +79,8 @@ impl Place {
         Some(self.scene.position(span.start).0)
     }
 
-    fn error(&self, span: Option<Range<usize>>, fault: Fault) -> SceneError {
+    /// An error at these bytes of the scene, or at the table's header.
+    pub(crate) fn error(&self, span: Option<Range<usize>>, fault: Fault) -> SceneError {
         let error = SceneError::new(&self.scene, fault).in_table(&self.name);
         match span.or_else(|| self.header.clone()) {
             Some(span) => error.at(span),

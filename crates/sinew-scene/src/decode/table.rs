@@ -14,6 +14,7 @@ use super::presence::Presence;
 use super::value::{Misfit, kind};
 use super::values::{Inner, Kind, Values};
 use crate::error::{Fault, SceneError, shortened};
+use crate::formula::Formula;
 use crate::nearest::nearest;
 use crate::source::SceneSource;
 
@@ -297,6 +298,7 @@ impl<'a> Table<'a> {
     ) -> SceneError {
         let found = self.written(value);
         let fault = match misfit {
+            Misfit::Formula => return self.no_formula(key, value),
             Misfit::Value => Fault::Value {
                 key: key.to_owned(),
                 found,
@@ -310,6 +312,33 @@ impl<'a> Table<'a> {
             },
         };
         self.place.value_fault(key, fault)
+    }
+
+    /// The error for a list with a text that is no formula, at the character where it ceases to be one.
+    fn no_formula(&self, key: &str, value: &Spanned<DeValue<'_>>) -> SceneError {
+        let mut items = value.get_ref().as_array().into_iter().flatten();
+        let wrong = items.find_map(|item| {
+            let text = item.get_ref().as_str()?;
+            Some((item.span(), text, Formula::parse(text).err()?))
+        });
+        let Some((span, text, error)) = wrong else {
+            return self.misfit(key, value, "formulas".to_owned(), Misfit::Value);
+        };
+        let wrong = text.char_indices().nth(error.at - 1);
+        let (before, length) = wrong.map_or((text.len(), 1), |(before, c)| (before, c.len_utf8()));
+        // Behind the quotation mark, unless the text is written with escapes.
+        let from = span.start + 1;
+        let source = self.scene.text().get(from..).unwrap_or_default();
+        let span = match source.starts_with(text) {
+            true => from + before..from + before + length,
+            false => span,
+        };
+        let fault = Fault::Formula {
+            key: key.to_owned(),
+            text: text.to_owned(),
+            error,
+        };
+        self.place.error(Some(span), fault)
     }
 
     /// A value as the user wrote it, on one line and shortened.

@@ -11,6 +11,8 @@ pub(crate) enum Misfit {
     Type,
     /// The type is right, the value is not.
     Value,
+    /// A text in the value is no formula.
+    Formula,
 }
 
 /// The type of a value in words.
@@ -78,7 +80,12 @@ pub(crate) fn list<T>(
 ) -> Result<Vec<T>, Misfit> {
     let items: &DeArray<'_> = value.as_array().ok_or(Misfit::Type)?;
     let items = items.iter().map(|value| item(value.get_ref()));
-    items.collect::<Result<_, _>>().map_err(|_| Misfit::Value)
+    items
+        .collect::<Result<_, _>>()
+        .map_err(|misfit| match misfit {
+            Misfit::Type => Misfit::Value,
+            other => other,
+        })
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::no_step::NoStableStep;
 use super::words::{did_you_mean, quoted, quoted_or_none, shortened};
+use crate::formula::FormulaError;
 use crate::overrides::OverrideError;
 
 /// Steps of a run, at most: whole numbers beyond are not told apart.
@@ -62,6 +63,16 @@ pub enum Fault {
         expected: String,
         /// The type of the value.
         kind: &'static str,
+    },
+    /// A text that is no formula.
+    #[error("{key}: \"{}\": {error}", shortened(text))]
+    Formula {
+        /// The key.
+        key: String,
+        /// The text.
+        text: String,
+        /// The place in it, and what was expected there.
+        error: FormulaError,
     },
     /// None or several of a set of keys of which exactly one must be given.
     #[error("expected exactly one of {}, found {}", quoted(of), if found.is_empty() { "none".into() } else { quoted(found) })]

@@ -34,7 +34,7 @@ impl Values for Field {
 
     fn read(&self, value: &DeValue<'_>) -> Result<[Formula; 3], Misfit> {
         let items = list(value, |item| match item {
-            DeValue::String(_) => Formula::parse(&text(item)?).map_err(|_| Misfit::Value),
+            DeValue::String(_) => Formula::parse(&text(item)?).map_err(|_| Misfit::Formula),
             _ => Ok(Formula::from(finite(item)?)),
         })?;
         <[Formula; 3]>::try_from(items).map_err(|_| Misfit::Value)

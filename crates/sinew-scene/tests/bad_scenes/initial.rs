@@ -98,7 +98,7 @@ fn a_static_state_of_a_body_that_nothing_holds() {
 fn a_velocity_that_is_no_formula() {
     insta::assert_snapshot!(
         refusal(BODY, "velocity = [0.0, 0.0, 1.0]", "velocity = [0.0, 0.0, \"0.5 * t\"]"),
-        @r#"scene.toml:19: [[initial]] 1: velocity = [0.0, 0.0, "0.5 * t"]: expected [x, y, z] in m/s, each a finite number or a formula of x, y, z in quotes, such as "0.5 * z""#
+        @r#"scene.toml:19: [[initial]] 1: velocity: "0.5 * t": `t` at character 7 of the formula: expected x, y, z, pi, sin, cos, exp, sqrt or abs"#
     );
 }
 
