@@ -73,6 +73,10 @@ pub(crate) struct Work {
     pub(crate) factorizations: u64,
     pub(crate) saturated: u64,
     #[serde(default)]
+    pub(crate) newton_iterations: u64,
+    #[serde(default)]
+    pub(crate) projected_solves: u64,
+    #[serde(default)]
     pub(crate) backtracks: u64,
     #[serde(default)]
     pub(crate) limiter_hits: u64,
@@ -94,6 +98,8 @@ impl Work {
         self.solves += of.solves;
         self.factorizations += of.factorizations;
         self.saturated += of.saturated;
+        self.newton_iterations += of.newton_iterations;
+        self.projected_solves += of.projected_solves;
         self.backtracks += of.backtracks;
         self.limiter_hits += of.limiter_hits;
         self.fallbacks += of.fallbacks;

@@ -19,7 +19,7 @@ pub struct RunEnd {
     pub retaken: u64,
     /// The largest displacement (m), its time (s) and the tag of its node, among the fields; 0 for an oscillator.
     pub largest: (f64, f64, u64),
-    /// What the integrator remarks at the end, one sentence each.
+    /// What the integrator remarks at the end, one sentence each: of a run that went on, since the checkpoint.
     pub remarks: Vec<String>,
     /// What the motion warns of, one sentence each.
     pub warnings: Vec<String>,

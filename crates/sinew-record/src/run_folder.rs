@@ -156,7 +156,7 @@ impl RunFolder {
             seen: progress.seen.clone(),
             largest,
         });
-        let before = progress.steps;
+        let (before, begins_at) = (progress.steps, state.t());
         let mut run = simulation.run();
         run.steps -= before.min(run.steps);
         let (steps, work, ended, (mut progress, largest)) = thread::scope(|scope| {
@@ -223,6 +223,13 @@ impl RunFolder {
         warnings.extend(summary::made_energy(simulation, &progress));
         warnings.extend(simulation.outrun(integrator, &state));
         let wall = begun.elapsed().as_secs_f64();
+        let mut remarks = integrator.remarks();
+        if resumed {
+            // The method has seen no more, and may have counted.
+            for remark in &mut remarks {
+                *remark = format!("since the checkpoint at t = {begins_at} s: {remark}");
+            }
+        }
         let summary = Summary {
             simulation,
             record: &self.record,
@@ -233,6 +240,7 @@ impl RunFolder {
             schedules: &schedules,
             parts: &parts,
             integrator,
+            remarks: &remarks,
             wall,
             resumed,
             warnings: &warnings,
@@ -260,7 +268,7 @@ impl RunFolder {
             saturated: work.saturated_share(steps, system.dofs()),
             retaken: work.retaken,
             largest: (seen.value, seen.t, seen.at),
-            remarks: integrator.remarks(),
+            remarks,
             warnings,
         })
     }

@@ -33,6 +33,8 @@ pub(crate) struct Summary<'a> {
     pub(crate) schedules: &'a Schedules,
     pub(crate) parts: &'a [HeldPart],
     pub(crate) integrator: &'a dyn Stepper,
+    /// What the integrator remarks at the end.
+    pub(crate) remarks: &'a [String],
     /// Wall time (s) of this process.
     pub(crate) wall: f64,
     pub(crate) resumed: bool,
@@ -165,7 +167,7 @@ impl Summary<'_> {
                 "wall_s": self.wall,
                 "went_on_from_a_checkpoint": self.resumed,
                 "computed_by": self.integrator.computed_by(),
-                "remarks": self.integrator.remarks(),
+                "remarks": self.remarks,
                 "system": format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             },
         });

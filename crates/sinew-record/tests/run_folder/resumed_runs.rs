@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use crate::common::{cube, run};
+use crate::common::{build, cube, run};
 use sinew_record::{Companion, Ended, RecordRunError, RunFolder};
 
 /// Interrupts a run at its first look from a step on.
@@ -162,4 +162,55 @@ fn another_mesh_and_a_damaged_checkpoint_are_refused() {
         refused.contains("body.msh is not the file with which the run began"),
         "{refused}"
     );
+}
+
+/// A thrown cube that fibres catch, by a method with more to add.
+fn caught(run: &str) -> String {
+    format!(
+        "[mesh]\ncube = {{ cells = 3, edge = 0.04 }}\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\n\
+         youngs_modulus = 5000.0\npoissons_ratio = 0.4\nfibres = {{ direction = [0, 0, 1], k1 = 2000.0, k2 = 50.0 }}\n\
+         [[fixed]]\ngroup = \"bottom\"\n[[initial]]\nvelocity = [0, 0, \"40*z\"]\n[run]\nduration = 0.1\n{run}\n"
+    )
+}
+
+#[test]
+fn steps_that_are_taken_again_are_counted_across_interruptions() {
+    let place = tempfile::tempdir().unwrap();
+    let simulation = build(&caught(
+        "integrator = \"central-difference\"\ndt = \"auto\"",
+    ));
+    let whole = place.path().join("whole");
+    let end = run(&whole, &simulation, &mut ());
+    assert_eq!(end.ended, Ended::Finished);
+    assert!(end.retaken > 0);
+    let cut = place.path().join("cut");
+    for step in [3, 20] {
+        let mut companion = InterruptAt { step, reached: 0 };
+        run(&cut, &simulation, &mut companion);
+    }
+    assert_eq!(run(&cut, &simulation, &mut ()).retaken, end.retaken);
+    assert!(contents(&cut) == contents(&whole));
+}
+
+#[test]
+fn a_certificate_says_what_it_has_not_seen() {
+    let place = tempfile::tempdir().unwrap();
+    let simulation = build(&caught("integrator = \"cnn-energy\"\ndt = 0.001"));
+    let cut = place.path().join("cut");
+    let mut companion = InterruptAt {
+        step: 60,
+        reached: 0,
+    };
+    let first = run(&cut, &simulation, &mut companion).remarks.concat();
+    assert!(first.starts_with("certificate: "), "{first}");
+    let end = run(&cut, &simulation, &mut ());
+    let steps = end.own.0;
+    assert!(steps <= 40, "{steps}");
+    let said = end.remarks.concat();
+    let since = format!(
+        "since the checkpoint at t = {} s: certificate: ",
+        (100 - steps) as f64 * 1e-3
+    );
+    assert!(said.starts_with(&since), "{said}");
+    assert!(said.contains(&format!("in {steps} steps")), "{said}");
 }
