@@ -121,6 +121,8 @@ const FEWEST_CELLS: usize = 16;
 pub struct Chosen {
     settings: Settings,
     machine: Option<Box<dyn Machine>>,
+    /// Whether no other than the reference machine takes the system, though others were welcome.
+    alone: bool,
 }
 
 impl Chosen {
@@ -130,6 +132,7 @@ impl Chosen {
         Self {
             settings,
             machine: None,
+            alone: false,
         }
     }
 
@@ -187,12 +190,25 @@ impl Machine for Chosen {
 
     fn in_words(&self) -> String {
         let machine = self.machine.as_ref();
-        machine.map_or_else(|| "nothing yet".to_owned(), |machine| machine.in_words())
+        let mut words =
+            machine.map_or_else(|| "nothing yet".to_owned(), |machine| machine.in_words());
+        if self.alone {
+            words.push_str(
+                " by one thread, as no other machine takes stiffness damping of a law, or memory",
+            );
+        }
+        words
     }
 
     fn load(&mut self, program: Arc<Program>, system: &dyn System) {
         let mut machine = self.choose(system);
         machine.load(program, system);
+        self.alone = match system.equations() {
+            Equations::Linear(_) => false,
+            Equations::Forces(law) => {
+                self.settings.kind == Kind::Auto && law.element_forces().is_none()
+            }
+        };
         self.machine = Some(machine);
     }
 
