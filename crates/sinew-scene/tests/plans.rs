@@ -296,7 +296,13 @@ fn plain_loops_are_named_with_their_reason() {
     let tissue = "[mesh]\ncube = { cells = 2, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\n\
                   youngs_modulus = 5000.0\npoissons_ratio = 0.4\nprony = [[0.3, 0.05]]\n[[fixed]]\ngroup = \"bottom\"\n\
                   [run]\nduration = 0.1\nintegrator = \"central-difference\"\ndt = 0.001\n";
-    let said = |text: &str| plan(text).split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = |text: &str| {
+        plan(text)
+            .to_string()
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
     let in_f64 = said(tissue);
     let named = "computed by plain loops in f64 by one thread, as no other machine takes stiffness damping of a law, or memory";
     assert!(in_f64.contains(named), "{in_f64}");
