@@ -4,9 +4,12 @@ mod jacobi;
 mod subspace;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use sinew_core::LinearOperators;
 use sinew_core::vectors::norm;
+use sinew_core::{
+    BlockMatrix, Damping, LinearOperators, LinearSystem, LoadTime, TangentKind, Trial,
+};
 use sinew_fem::Model;
 use sinew_mesh::vtu::{Array, Grid, VtuEncoding};
 use sinew_scene::Simulation;
@@ -49,7 +52,8 @@ impl NaturalMode {
     }
 }
 
-/// The modes of the lowest frequencies of a simulation, multiple ones and those that no load excites included.
+/// The modes of the lowest frequencies of a simulation, multiple ones and those that no load excites included. Those of a body of large
+/// deformation are of small motions about rest, so fast that no stress relaxes.
 ///
 /// # Errors
 /// [`ModesError`] for a system without matrices, a matrix without a factor and an iteration that does not converge.
@@ -57,11 +61,14 @@ pub fn natural_modes(
     simulation: &Simulation,
     count: usize,
 ) -> Result<Vec<NaturalMode>, ModesError> {
-    let linear = simulation
-        .system()
-        .as_linear()
-        .ok_or(ModesError::NoMatrices)?;
-    let operators = linear.operators();
+    let at_rest;
+    let operators = match simulation.system().as_linear() {
+        Some(linear) => linear.operators(),
+        None => {
+            at_rest = operators_at_rest(simulation)?;
+            &at_rest
+        }
+    };
     let force = full_load(operators);
     let mut modes = Vec::new();
     for (eigenvalue, shape) in lowest(operators, count)? {
@@ -87,6 +94,32 @@ pub fn natural_modes(
         mode.of_loads /= whole;
     }
     Ok(modes)
+}
+
+/// The tangent at rest as the matrices of a linear body, with the loads on the body at rest.
+fn operators_at_rest(simulation: &Simulation) -> Result<LinearOperators, ModesError> {
+    let system = simulation.system();
+    let (Some(body), Some(elastic)) = (simulation.model().body(), system.as_elastic()) else {
+        return Err(ModesError::NoMatrices);
+    };
+    let zeros = vec![0.0; system.dofs()];
+    let trial = Trial {
+        load: LoadTime::at(0.0),
+        dt: 0.0,
+        u: &zeros,
+        v: &zeros,
+        internal: &vec![0.0; system.internal_variables()],
+    };
+    let mut stiffness = BlockMatrix::zeros(Arc::clone(elastic.pattern()), system.layers());
+    elastic.tangent(&trial, TangentKind::Exact, &mut stiffness)?;
+    let loads = LinearSystem::operators(&body.model).loads().to_vec();
+    let mass = system.mass().to_vec();
+    Ok(LinearOperators::new(
+        mass,
+        stiffness,
+        Damping::default(),
+        loads,
+    )?)
 }
 
 /// All loads (N) at their full value.
@@ -294,5 +327,28 @@ mod tests {
         assert_eq!(table.lines().count(), 13);
         assert!(out.join("fields/frame-00011.vtu").exists());
         assert_eq!(check_modes_folder(&out, &[]).unwrap(), Tenant::Earlier);
+    }
+
+    /// All hyperelastic laws are the linear one about rest (Bonet and Wood, Nonlinear Continuum Mechanics, section 6.6).
+    #[test]
+    fn large_deformation_has_the_modes_of_the_linear_law_about_rest() {
+        let modes = |model: &str| {
+            let simulation = simulation(&format!(
+                "[mesh]\ncube = {{ cells = 3, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"{model}\"\n\
+                 youngs_modulus = 4000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[[load]]\ngroup = \"top\"\n\
+                 pressure = 10.0\n[run]\nduration = 1.0\nintegrator = \"newmark\"\ndt = 0.01\n"
+            ));
+            natural_modes(&simulation, 6).unwrap()
+        };
+        let expected = modes("linear");
+        for model in ["neo-hookean", "stvk", "corotational", "stable-neo-hookean"] {
+            for (mode, expected) in modes(model).iter().zip(&expected) {
+                let error = mode.omega / expected.omega - 1.0;
+                assert!(error.abs() < 1e-9, "{model}: {error}");
+                // Modes of the same frequency may be mixed otherwise.
+                let along_z = mode.effective_mass[2] - expected.effective_mass[2];
+                assert!(along_z.abs() < 1e-6, "{model}: {along_z}");
+            }
+        }
     }
 }

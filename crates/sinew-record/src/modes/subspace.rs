@@ -1,7 +1,7 @@
 //! The lowest modes, all of them, by iteration of a subspace.
 
-use sinew_core::LinearOperators;
 use sinew_core::vectors::{add_scaled, dot, noise, norm, scale};
+use sinew_core::{EvaluationError, LinearOperators, OperatorError};
 use sinew_integrators::{Combination, Factor, FactorError};
 
 use super::jacobi::eigen;
@@ -13,6 +13,12 @@ pub enum ModesError {
     /// A system that shows no matrices.
     #[error("natural modes need a system with matrices")]
     NoMatrices,
+    /// A law that refuses the state at rest.
+    #[error("no natural modes about rest: {0}")]
+    Refused(#[from] EvaluationError),
+    /// A tangent at rest that makes no system.
+    #[error("no natural modes about rest: {0}")]
+    Operators(#[from] OperatorError),
     /// A stiffness that has no factor.
     #[error("no natural modes: {0}")]
     Factor(#[from] FactorError),

@@ -34,6 +34,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let simulation = scene.build()?;
     let modes = natural_modes(&simulation, usize::from(arguments.count))?;
     say(&table(&modes))?;
+    if simulation.system().as_linear().is_none() {
+        say(
+            "of small motions about rest: loads and deformation change the frequencies of this body",
+        )?;
+    }
     if let Some(path) = &arguments.out {
         write_modes(path, &simulation, &modes)?;
         say(&format!(
