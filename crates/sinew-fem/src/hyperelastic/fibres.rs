@@ -69,7 +69,9 @@ impl Fibres {
             Stiffening::Quadratic { eta } => within("eta", eta, modulus, eta > 0.0)?,
             Stiffening::Exponential { k1, k2, dispersion } => {
                 within("k1", k1, modulus, k1 > 0.0)?;
-                within("k2", k2, "a finite number above 0", k2 > 0.0)?;
+                // Their quotient is a factor of the energy.
+                let has_energy = k2 > 0.0 && (k1 / k2).is_finite();
+                within("k2", k2, "a finite number above 0", has_energy)?;
                 let inside = (0.0..=1.0 / 3.0).contains(&dispersion);
                 within("dispersion", dispersion, "a number from 0 to 1/3", inside)?;
             }
@@ -376,6 +378,7 @@ mod tests {
         assert!(said(Stiffening::Quadratic { eta: 0.0 }).starts_with("eta = 0"));
         assert!(said(exponential(-1.0, 1.0, 0.0)).starts_with("k1 = -1"));
         assert!(said(exponential(1.0, 0.0, 0.0)).starts_with("k2 = 0"));
+        assert!(said(exponential(1000.0, 1e-308, 0.0)).starts_with("k2 = 0.000"));
         assert!(said(exponential(1.0, 1.0, 0.4)).starts_with("dispersion = 0.4"));
     }
 }

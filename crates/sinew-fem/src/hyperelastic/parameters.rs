@@ -90,7 +90,7 @@ impl Parameters {
         let expected = "a finite modulus above 0 Pa";
         within("youngs_modulus", modulus, expected, modulus > 0.0)?;
         // Below 0 Lame's first constant is negative, and the volumetric energy has no minimum.
-        let expected = "a number of 0 or above, and below 0.5";
+        let expected = "a number above -1 and below 0.5, from 0 on for laws of large deformation";
         let inside = (0.0..0.5).contains(&ratio);
         within("poissons_ratio", ratio, expected, inside)?;
         Ok(lame(modulus, ratio))

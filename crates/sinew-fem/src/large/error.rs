@@ -4,14 +4,24 @@ use sinew_core::EvaluationError;
 
 use crate::hyperelastic::HyperelasticLaw;
 
+/// A ratio of volumes in words: to three places, where these say how large it is.
+fn in_words(volume_ratio: f64) -> String {
+    if (1e-3..1e4).contains(&volume_ratio.abs()) || volume_ratio == 0.0 {
+        format!("{volume_ratio:.3}")
+    } else {
+        format!("{volume_ratio:.1e}")
+    }
+}
+
 /// The error for a tetrahedron that fibres freed of volume change are not defined for.
 #[cold]
 pub(super) fn fibres_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
     EvaluationError {
         element: tag,
         reason: format!(
-            "its volume is {volume_ratio:.3} of that at rest, and fibres freed of volume change have no meaning from 0 down: shorter steps \
-             avoid that unless the motion itself leads there, and fibres without `split` go on"
+            "its volume is {} of that at rest, and fibres freed of volume change have no meaning from 0 down: shorter steps \
+             avoid that unless the motion itself leads there, and fibres without `split` go on",
+            in_words(volume_ratio)
         ),
     }
 }
@@ -22,8 +32,9 @@ pub(super) fn memory_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
     EvaluationError {
         element: tag,
         reason: format!(
-            "its volume is {volume_ratio:.3} of that at rest, and stress that relaxes has no meaning from 0 down: shorter steps \
-             avoid that unless the motion itself leads there"
+            "its volume is {} of that at rest, and stress that relaxes has no meaning from 0 down: shorter steps \
+             avoid that unless the motion itself leads there",
+            in_words(volume_ratio)
         ),
     }
 }
@@ -33,8 +44,9 @@ pub(super) fn memory_refused(tag: u64, volume_ratio: f64) -> EvaluationError {
 pub(super) fn refused<L: HyperelasticLaw>(tag: u64, volume_ratio: f64) -> EvaluationError {
     let reason = if volume_ratio.is_finite() {
         format!(
-            "its volume is {volume_ratio:.3} of that at rest, and the law `{}` has no meaning from 0 down: shorter steps avoid that unless \
+            "its volume is {} of that at rest, and the law `{}` has no meaning from 0 down: shorter steps avoid that unless \
              the motion itself leads there, and a law for elements that invert, such as `stable-neo-hookean`, goes on",
+            in_words(volume_ratio),
             L::ID
         )
     } else {

@@ -238,8 +238,8 @@ impl ForceLaw for Model {
         let mut failed = false;
         let mut product = |x: &[f64], out: &mut [f64]| {
             let product = self.product(&trial, Wanted::Stiffest, x, out);
-            failed |= product.is_err();
             self.add_load_product(&trial, (Part::Symmetric, 1.0), x, out);
+            failed |= product.is_err() || !out.iter().all(|value| value.is_finite());
         };
         let largest = |product: &mut dyn FnMut(&[f64], &mut [f64])| match about {
             Some(_) => estimated_largest_eigenvalue(mass, product),

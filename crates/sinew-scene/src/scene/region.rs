@@ -75,7 +75,7 @@ const POISSONS_RATIO: Key<Number> = Key::required(
     "Poisson's ratio: the strain across over the strain along when a bar of the material is pulled. Plain tetrahedra are too \
      stiff from 0.4 on; `element = \"fbar-edge\"` mends that.",
     Number::between(
-        "a number above -1 and below 0.5",
+        "a number above -1 and below 0.5, from 0 on for laws of large deformation",
         Bound::Excluded(-1.0),
         Bound::Excluded(0.5),
     ),

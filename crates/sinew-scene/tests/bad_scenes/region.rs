@@ -185,7 +185,7 @@ fn incompressible() {
     insta::assert_snapshot!(
         refusal(BODY, SPRINGS, "model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.5"),
         @r#"
-    scene.toml:8: [[region]] 1: poissons_ratio = 0.5: expected a number above -1 and below 0.5
+    scene.toml:8: [[region]] 1: poissons_ratio = 0.5: expected a number above -1 and below 0.5, from 0 on for laws of large deformation
     help: 0.5 is incompressible, which a displacement alone cannot describe; soft tissue is usually given 0.45 to 0.499, with element = "fbar-edge"
     "#
     );
@@ -195,7 +195,7 @@ fn incompressible() {
 fn poissons_ratio_too_low() {
     insta::assert_snapshot!(
         refusal(BODY, SPRINGS, "model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = -1"),
-        @"scene.toml:8: [[region]] 1: poissons_ratio = -1: expected a number above -1 and below 0.5"
+        @"scene.toml:8: [[region]] 1: poissons_ratio = -1: expected a number above -1 and below 0.5, from 0 on for laws of large deformation"
     );
 }
 
@@ -203,7 +203,7 @@ fn poissons_ratio_too_low() {
 fn no_poissons_ratio() {
     insta::assert_snapshot!(
         refusal(BODY, SPRINGS, "model = \"linear\"\nyoungs_modulus = 3500.0"),
-        @"scene.toml:4: [[region]] 1: `poissons_ratio` is missing: expected a number above -1 and below 0.5"
+        @"scene.toml:4: [[region]] 1: `poissons_ratio` is missing: expected a number above -1 and below 0.5, from 0 on for laws of large deformation"
     );
 }
 
@@ -328,5 +328,20 @@ fn mooney_and_rivlin_without_their_constants() {
 
 #[test]
 fn a_law_of_large_deformation_that_widens_when_pulled() {
-    insta::assert_snapshot!(refused_law("neo-hookean", "poissons_ratio = -0.1\n"), @r#"scene.toml:4: [[region]] 1: poissons_ratio = -0.1: expected a number of 0 or above, and below 0.5"#);
+    insta::assert_snapshot!(refused_law("neo-hookean", "poissons_ratio = -0.1\n"), @r#"scene.toml:4: [[region]] 1: poissons_ratio = -0.1: expected a number above -1 and below 0.5, from 0 on for laws of large deformation"#);
+}
+
+/// A stiffness beyond what numbers hold limits the step, if in no number.
+#[test]
+fn a_stiffness_beyond_all_numbers() {
+    let scene = "[mesh]\ncube = { cells = 2, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\n\
+                 youngs_modulus = 1e308\npoissons_ratio = 0.4\n[[fixed]]\ngroup = \"bottom\"\n[run]\nduration = 0.1\n\
+                 integrator = \"central-difference\"\ndt = \"auto\"\n";
+    let scene =
+        sinew_scene::Scene::parse(sinew_scene::SceneSource::new("scene.toml", scene)).unwrap();
+    let refused = scene.build().unwrap_err().to_string();
+    assert!(
+        refused.ends_with("cannot tell up to which step it is stable"),
+        "{refused}"
+    );
 }
