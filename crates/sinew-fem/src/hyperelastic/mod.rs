@@ -51,3 +51,4 @@ pub use stable_neo_hookean::StableNeoHookean;
 pub use stable_neo_hookean_log::StableNeoHookeanLog;
 pub use stvk::Stvk;
 pub use tensor::Tensor;
+pub(crate) use tensor::dot;

@@ -241,7 +241,7 @@ fn largest<N: Number>(row: [N; 3]) -> N {
 
 /// The scalar product.
 #[inline(always)]
-pub(super) fn dot<N: Number>(a: [N; 3], b: [N; 3]) -> N {
+pub(crate) fn dot<N: Number>(a: [N; 3], b: [N; 3]) -> N {
     a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
 }
 

@@ -5,15 +5,15 @@ use std::ops::Range;
 
 use sinew_sparse::simd::{Number, Vectors, WithReal};
 
-use super::error::fibres_refused;
+use super::defined::{require_fibres, require_memory};
 use super::fibres::{Directions, RegionFibres};
-use super::kept::{first_below, lanes, load_entries, store_entries};
-use super::memory::{Points, Relaxing, require};
+use super::kept::{load_entries, store_entries};
+use super::memory::{Points, Relaxing};
 use super::region::HyperelasticRegion;
 use super::rest::Rest;
 use crate::hyperelastic::fibres::FibrePoint;
 use crate::hyperelastic::prony::first_piola;
-use crate::hyperelastic::{Deformation, SMALLEST_VOLUME_RATIO, Tensor};
+use crate::hyperelastic::{Deformation, Tensor, dot};
 
 /// The stress beside the law's in the tetrahedra of a chunk, compiled once for all laws.
 pub(super) struct StressBeside<'a, T> {
@@ -55,19 +55,14 @@ impl<T: Vectors> WithReal<T> for StressBeside<'_, T> {
             let (mut stress, mut density) = (Tensor::zero(), N::of(0.0));
             if let (Some(own), Some(directions)) = (&self.region.fibres, self.directions) {
                 let fibres = &own.fibres;
-                let least = N::of(SMALLEST_VOLUME_RATIO);
-                if fibres.is_split() && !N::all_le(least, deformation.volume_ratio) {
-                    let ratios = lanes(deformation.volume_ratio);
-                    let lane = first_below(&ratios);
-                    return Err(fibres_refused(rest.tag(first + lane), ratios[lane]));
-                }
+                require_fibres(own, &deformation, |lane| rest.tag(first + lane))?;
                 let at = fibres.at(&deformation, directions.of::<N>(first));
                 stress = fibres.stress(&at).scaled(factor);
                 if self.with_energy {
                     density = factor * fibres.energy(&at);
                 }
             }
-            require(self.relaxing, &deformation, |lane| rest.tag(first + lane))?;
+            require_memory(self.relaxing, &deformation, |lane| rest.tag(first + lane))?;
             if let Some(carried) = self.relaxing.carried::<N>(Points::Tets, first) {
                 stress = stress + first_piola(&deformation, carried);
                 if self.with_energy {
@@ -93,39 +88,41 @@ pub(super) fn carried_energy<N: Number>(deformation: &Deformation<N>, carried: [
     half.mul_add(diagonal, rxy * xy + ryz * yz + rzx * zx)
 }
 
-/// The tangent of the stress beside the law's in a tetrahedron; nothing where there is none.
-pub(super) struct TangentBeside<'a> {
-    fibres: Option<(&'a RegionFibres, FibrePoint<f64>)>,
+/// The tangent of the stress beside the law's in tetrahedra side by side; nothing where there is none.
+pub(super) struct TangentBeside<'a, N> {
+    fibres: Option<(&'a RegionFibres, FibrePoint<N>)>,
     factor_of_fibres: f64,
     /// R (Pa).
-    carried: Option<Tensor<f64>>,
+    carried: Option<Tensor<N>>,
     is_exact: bool,
 }
 
-impl<'a> TangentBeside<'a> {
+impl<'a, N: Number<Real = f64>> TangentBeside<'a, N> {
     /// The tangent of a kind; idle fibres may count as pulled.
+    #[inline(always)]
     pub(super) fn of(
         region: &'a HyperelasticRegion,
         relaxing: &Relaxing<'_>,
-        tet: usize,
-        deformation: &Deformation<f64>,
+        first: usize,
+        deformation: &Deformation<N>,
         (kind, idle_count): (TangentKind, bool),
     ) -> Self {
         let fibres = region.fibres.as_ref().map(|fibres| {
-            let at = fibres.at(tet, deformation);
+            let at = fibres.at(first, deformation);
             (fibres, if idle_count { at.as_if_pulled() } else { at })
         });
         let is_exact = kind == TangentKind::Exact;
         Self {
             fibres,
             factor_of_fibres: relaxing.factor_of_fibres(),
-            carried: relaxing.carried_tensor(Points::Tets, tet, is_exact),
+            carried: relaxing.carried_tensor(Points::Tets, first, is_exact),
             is_exact,
         }
     }
 
     /// A change of the law's stress with that beside it by a change of F.
-    pub(super) fn with(&self, stress: Tensor<f64>, change: Tensor<f64>) -> Tensor<f64> {
+    #[inline(always)]
+    pub(super) fn with(&self, stress: Tensor<N>, change: Tensor<N>) -> Tensor<N> {
         let mut stress = stress;
         if let Some((RegionFibres { fibres, .. }, at)) = &self.fibres {
             let tangent = if self.is_exact {
@@ -133,7 +130,7 @@ impl<'a> TangentBeside<'a> {
             } else {
                 fibres.semidefinite_tangent(at, change)
             };
-            stress = stress.plus(self.factor_of_fibres, tangent);
+            stress = stress.plus(N::of(self.factor_of_fibres), tangent);
         }
         match self.carried {
             Some(carried) => stress + change * carried,
@@ -142,34 +139,35 @@ impl<'a> TangentBeside<'a> {
     }
 }
 
-/// A node's own block beside the law's in a tetrahedron, for each m^3, without negative eigenvalues. Idle fibres count as pulled: else it would
-/// jump as soon as they are.
-pub(super) fn block_beside(
+/// A node's own block beside the law's in tetrahedra side by side, for each m^3, without negative eigenvalues. Idle fibres count as pulled: else it
+/// would jump as soon as they are.
+#[inline(always)]
+pub(super) fn block_beside<N: Number<Real = f64>>(
     region: &HyperelasticRegion,
     relaxing: &Relaxing<'_>,
-    tet: usize,
-    deformation: &Deformation<f64>,
-    gradient: [f64; 3],
-) -> Tensor<f64> {
-    let mut block = carried_block(relaxing, (Points::Tets, tet), gradient);
+    first: usize,
+    deformation: &Deformation<N>,
+    gradient: [N; 3],
+) -> Tensor<N> {
+    let mut block = carried_block(relaxing, (Points::Tets, first), gradient);
     if let Some(fibres) = &region.fibres {
-        let at = fibres.at(tet, deformation).as_if_pulled();
+        let at = fibres.at(first, deformation).as_if_pulled();
         let own = fibres.fibres.node_block(&at, gradient);
-        block = block.plus(relaxing.factor_of_fibres(), own);
+        block = block.plus(N::of(relaxing.factor_of_fibres()), own);
     }
     block
 }
 
 /// `g . R g`, or 0 where that is less, on the diagonal.
-pub(super) fn carried_block(
+#[inline(always)]
+pub(super) fn carried_block<N: Number<Real = f64>>(
     relaxing: &Relaxing<'_>,
     (points, place): (Points, usize),
-    gradient: [f64; 3],
-) -> Tensor<f64> {
+    gradient: [N; 3],
+) -> Tensor<N> {
     let Some(carried) = relaxing.carried_tensor(points, place, true) else {
         return Tensor::zero();
     };
-    let [x, y, z] = carried.on(gradient);
-    let along = x * gradient[0] + y * gradient[1] + z * gradient[2];
-    Tensor::diagonal(along.max(0.0))
+    let along = dot(carried.on(gradient), gradient);
+    Tensor::diagonal(along.max(N::of(0.0)))
 }

@@ -54,14 +54,21 @@ impl RegionFibres {
         }
     }
 
-    /// The fibres of a tetrahedron at its deformation.
-    pub(super) fn at(&self, tet: usize, deformation: &Deformation<f64>) -> FibrePoint<f64> {
-        self.fibres.at(deformation, self.directions.of(tet))
+    /// The fibres of tetrahedra side by side at their deformation.
+    #[inline(always)]
+    pub(super) fn at<N: Number<Real = f64>>(
+        &self,
+        first: usize,
+        deformation: &Deformation<N>,
+    ) -> FibrePoint<N> {
+        self.fibres.at(deformation, self.directions.of(first))
     }
 
-    /// Whether they are defined for a deformation.
-    pub(super) fn admits(&self, deformation: &Deformation<f64>) -> bool {
-        !self.fibres.is_split() || deformation.volume_ratio >= SMALLEST_VOLUME_RATIO
+    /// Whether they are defined for a deformation, in all lanes.
+    #[inline(always)]
+    pub(super) fn admits<N: Number>(&self, deformation: &Deformation<N>) -> bool {
+        let smallest = N::of(SMALLEST_VOLUME_RATIO);
+        !self.fibres.is_split() || N::all_le(smallest, deformation.volume_ratio)
     }
 }
 

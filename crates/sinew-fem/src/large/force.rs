@@ -9,18 +9,18 @@ use sinew_sparse::simd::{InstructionSet, Number, Real, SharedSlice, Vectors, Wit
 
 use super::beside::{StressBeside, carried_energy};
 use super::chunks::LANES;
-use super::error::refused;
+use super::defined::{require_law, require_memory};
 use super::found::Found;
 use super::gather::Gather;
-use super::kept::{Rows, lanes, load, load_entries, store, store_entries};
-use super::memory::{Past, Points, Relaxing, Remembered, Remembering, require};
+use super::kept::{Rows, load, load_entries, store, store_entries};
+use super::memory::{Past, Points, Relaxing, Remembered, Remembering};
 use super::region::{HyperelasticRegion, Numbers};
 use super::rooms::{RegionRooms, Rooms};
 use super::schedule::{Piece, Task};
 use super::scratch::Places;
 use super::stiffness::times;
 use crate::hyperelastic::prony::{deviatoric, first_piola};
-use crate::hyperelastic::{Deformation, HyperelasticLaw, LawVisitor, SMALLEST_VOLUME_RATIO};
+use crate::hyperelastic::{HyperelasticLaw, LawVisitor};
 
 /// An evaluation of forces.
 #[derive(Clone, Copy, Debug)]
@@ -176,11 +176,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             let own = first - chunk.slots.start;
             let gradient = rest.gradient_of::<N>(first, places.displacement);
             let at = self.law.at(gradient);
-            if !admits::<L, N>(&at.deformation) {
-                return Err(refused_among::<L>(&lanes(at.volume_ratio), |lane| {
-                    rest.tag(first + lane)
-                }));
-            }
+            require_law::<L, N>(&at.deformation, |lane| rest.tag(first + lane))?;
             let volume = rest.volumes::<N>(first);
             let dilation = volume * self.law.dilation(&at);
             dilation.store(&mut dilations[own..]);
@@ -225,24 +221,21 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         found: &mut Found<N>,
     ) -> Result<(), EvaluationError> {
         let (region, rest, places) = (self.region, &*self.numbers.rest, &self.places);
-        let last = region.edges.count().saturating_sub(1);
         let mut remembering = self.remembering();
         let mut sums = [[[T::default(); 4]; 3]; LANES];
         for first in edges.step_by(N::LANES) {
             for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
-                // Room behind the last edge repeats it.
-                let tets = region.edges.range((first + lane).min(last));
+                let tets = region.edges.range(region.edge_at(first + lane));
                 *sum = rows_of(places.gradients, &self.rooms.gradients_at[tets]);
             }
             let volume = N::load(&self.numbers.edge_volumes[first..]);
             let over = N::select_le(volume, N::of(0.0), N::of(0.0), volume.recip());
             let at = self.law.at(load::<N>(&sums).scaled(over));
-            if !admits::<L, N>(&at.deformation) {
-                return Err(refused_among::<L>(&lanes(at.volume_ratio), |lane| {
-                    let tets = region.edges.of((first + lane).min(last));
-                    tets.first().map_or(0, |tet| rest.tag(*tet as usize))
-                }));
-            }
+            let tag = |lane: usize| {
+                let tets = region.edges.of(region.edge_at(first + lane));
+                tets.first().map_or(0, |tet| rest.tag(*tet as usize))
+            };
+            require_law::<L, N>(&at.deformation, tag)?;
             let stiffness = self.numbers.stiffness.as_ref();
             let share = stiffness.map(|stiffness| stiffness.at_edges::<N>(first));
             let mut stress = self.law.stress(&at);
@@ -261,10 +254,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 density = times(share, self.law.energy(&at));
             }
             if self.relaxing.is_there() {
-                require(&self.relaxing, &at.deformation, |lane| {
-                    let tets = region.edges.of((first + lane).min(last));
-                    tets.first().map_or(0, |tet| rest.tag(*tet as usize))
-                })?;
+                require_memory(&self.relaxing, &at.deformation, tag)?;
                 let factor = N::of(self.relaxing.factor);
                 let half = N::of(0.5) * self.law.dilation(&at);
                 let left = N::of(self.relaxing.bulk_left()) * self.law.dilation(&at);
@@ -358,11 +348,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 rest.gradient_of::<N>(first, places.displacement)
             };
             let at = self.law.at(gradient);
-            if !admits::<L, N>(&at.deformation) {
-                return Err(refused_among::<L>(&lanes(at.volume_ratio), |lane| {
-                    rest.tag(first + lane)
-                }));
-            }
+            require_law::<L, N>(&at.deformation, |lane| rest.tag(first + lane))?;
             let dilation = if is_smoothed {
                 N::load(&dilations[own..])
             } else {
@@ -430,34 +416,6 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
 /// A range of a region among that of all regions, in which its own begins at `first`.
 fn from(first: usize, range: &Range<usize>) -> Range<usize> {
     first + range.start..first + range.end
-}
-
-/// Whether a law is defined for a deformation, which is finite, in all lanes.
-#[inline(always)]
-fn admits<L: HyperelasticLaw, N: Number>(deformation: &Deformation<N>) -> bool {
-    let (ratio, largest) = (deformation.volume_ratio, N::Real::LARGEST);
-    N::all_le(N::of(least::<L>(largest)), ratio) && N::all_le(ratio, N::of(largest))
-}
-
-/// The smallest volume ratio that a law is defined for, of numbers of this size.
-const fn least<L: HyperelasticLaw>(largest: f64) -> f64 {
-    if L::DEFINED_WHEN_INVERTED {
-        -largest
-    } else {
-        SMALLEST_VOLUME_RATIO
-    }
-}
-
-/// The error for the first lane that a law is not defined for.
-#[cold]
-#[inline(never)]
-fn refused_among<L: HyperelasticLaw>(
-    ratios: &[f64; LANES],
-    tag: impl Fn(usize) -> u64,
-) -> EvaluationError {
-    let is_refused = |ratio: &f64| !(least::<L>(f64::MAX)..=f64::MAX).contains(ratio);
-    let lane = ratios.iter().position(is_refused).unwrap_or(0);
-    refused::<L>(tag(lane), ratios[lane])
 }
 
 /// The sum of some tensors, all of whose entries are added as one row.

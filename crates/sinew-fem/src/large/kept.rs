@@ -3,7 +3,7 @@
 use sinew_sparse::simd::Number;
 
 use super::chunks::LANES;
-use crate::hyperelastic::{SMALLEST_VOLUME_RATIO, Tensor};
+use crate::hyperelastic::Tensor;
 
 /// A tensor, whose rows end in 0.
 pub(super) type Rows<T> = [[T; 4]; 3];
@@ -64,12 +64,4 @@ pub(super) fn lanes<N: Number>(number: N) -> [f64; LANES] {
         *of_lane = number.lane(lane);
     }
     lanes
-}
-
-/// The first lane of these volume ratios that is not above 0.
-#[cold]
-#[inline(never)]
-pub(super) fn first_below(ratios: &[f64; LANES]) -> usize {
-    let is_below = |ratio: &f64| ratio.is_nan() || *ratio < SMALLEST_VOLUME_RATIO;
-    ratios.iter().position(is_below).unwrap_or(0)
 }

@@ -3,9 +3,9 @@
 use sinew_core::{BlockMatrix, ElementStiffness, EvaluationError, TangentKind};
 
 use super::beside::TangentBeside;
-use super::means::{at_edge, check, means, take_dilation};
+use super::means::{at_edges, means, require, take_dilation};
 use super::memory::{Past, Relaxing};
-use super::product::{EdgeTangent, OwnTangent, left_of_smoothed, left_of_tet};
+use super::product::{EdgeTangent, OwnTangent, left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
 use crate::cells::Cells;
@@ -73,8 +73,8 @@ impl LawVisitor for Tangents<'_, '_> {
         if !region.is_smoothed() {
             for tet in rest.tets() {
                 let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
-                check(region, &law, &relaxing, &at, tet)?;
-                let left = left_of_tet(region, &relaxing, &law, &at, tet);
+                require::<L, f64>(region, &relaxing, &at.deformation, tet)?;
+                let left = left_of_tets(region, &relaxing, &law, &at, tet);
                 let own = OwnTangent::of(&law, &at, left, kind);
                 let beside = beside_of(tet, &at.deformation);
                 sum.average.of(std::iter::once(region.tet(tet)));
@@ -82,9 +82,9 @@ impl LawVisitor for Tangents<'_, '_> {
             }
             return Ok(());
         }
-        means(region, scratch, &law, &relaxing)?;
+        means::<f64, L>(region, scratch, &law, &relaxing, false)?;
         for tet in rest.tets() {
-            let at = law.at(scratch.gradients[tet]);
+            let at = law.at(scratch.gradient(tet));
             let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
             let left = left_of_smoothed(region, &relaxing, &law, &at, (tet, dilation));
             let own = OwnTangent::of(&law, &at, left, kind);
@@ -93,7 +93,7 @@ impl LawVisitor for Tangents<'_, '_> {
             sum.add(1.0, |change| beside.with(own.on(change), change));
         }
         for (edge, average) in region.edge_averages().iter().enumerate() {
-            let at = at_edge(region, &law, region.edges.of(edge), scratch, &relaxing)?;
+            let at = at_edges::<f64, L>(region, &law, edge, &scratch.gradients, &relaxing)?;
             let tangent = EdgeTangent::of(&law, &at, (region, &relaxing, edge), kind);
             sum.average.clone_from(average);
             sum.add(region.edge_share / 6.0, |change| tangent.on(change));

@@ -1,53 +1,105 @@
-//! Means over patches and edges, one by one, as tangents take them.
+//! Means over patches and edges, as tangents take them.
 
 use sinew_core::EvaluationError;
+use sinew_sparse::simd::Number;
 
-use super::error::{fibres_refused, refused};
-use super::memory::{Relaxing, require};
+use super::chunks::LANES;
+use super::defined::{require_fibres, require_law, require_memory};
+use super::kept::{Rows, load, store};
+use super::memory::Relaxing;
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
-use crate::hyperelastic::{HyperelasticLaw, Point};
+use crate::hyperelastic::{Deformation, HyperelasticLaw, Point, Tensor};
 use crate::smoothing::Average;
 
-/// Takes the gradient of the displacement in each tetrahedron and the mean dilation of each patch.
-pub(super) fn means<L: HyperelasticLaw>(
+/// Takes the gradient of the displacement in each tetrahedron and the mean dilation of each patch; with those of the change, where it is
+/// asked for.
+#[inline(always)]
+pub(super) fn means<N: Number<Real = f64>, L: HyperelasticLaw>(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
     law: &L,
     relaxing: &Relaxing<'_>,
+    with_change: bool,
 ) -> Result<(), EvaluationError> {
-    for patch in 0..region.patches.count() {
-        let tets = region.patches.of(patch);
-        let mut sum = 0.0;
-        for tet in tets {
-            let tet = *tet as usize;
-            let gradient = region.rest.gradient_of::<f64>(tet, &scratch.displacement);
-            scratch.gradients[tet] = gradient;
-            let at = law.at(gradient);
-            check(region, law, relaxing, &at, tet)?;
-            sum += region.rest.volume(tet) * law.dilation(&at);
+    let rest = &region.rest;
+    for first in (0..rest.count()).step_by(N::LANES) {
+        let side_by_side = first..first + N::LANES;
+        let gradient = rest.gradient_of::<N>(first, &scratch.displacement);
+        store(gradient, &mut scratch.gradients[side_by_side.clone()]);
+        let at = law.at(gradient);
+        require::<L, N>(region, relaxing, &at.deformation, first)?;
+        let [dilations, changes] = &mut scratch.dilations_of_tets;
+        let volume = rest.volumes::<N>(first);
+        (volume * law.dilation(&at)).store(&mut dilations[first..]);
+        if with_change {
+            let change = rest.gradient_of::<N>(first, &scratch.change);
+            store(change, &mut scratch.changes[side_by_side]);
+            let change = law.dilation_gradient(&at).contracted(change);
+            (volume * change).store(&mut changes[first..]);
         }
-        scratch.dilations[patch] = [sum / region.patch_volumes[patch], 0.0];
+    }
+    let mean = |patch: usize, of_tets: &[f64]| {
+        let tets = region.patches.of(patch).iter();
+        let sum: f64 = tets.map(|tet| of_tets[*tet as usize]).sum();
+        sum / region.patch_volumes[patch]
+    };
+    let [dilations, changes] = &scratch.dilations_of_tets;
+    for (patch, means) in (0..region.patches.count()).zip(&mut scratch.dilations) {
+        let change = if with_change {
+            mean(patch, changes)
+        } else {
+            0.0
+        };
+        *means = [mean(patch, dilations), change];
     }
     Ok(())
 }
 
-/// The mean deformation at an edge with these tetrahedra.
+/// The mean deformation at edges side by side.
 #[inline(always)]
-pub(super) fn at_edge<L: HyperelasticLaw>(
+pub(super) fn at_edges<N: Number<Real = f64>, L: HyperelasticLaw>(
     region: &HyperelasticRegion,
     law: &L,
-    tets: &[u32],
-    scratch: &Scratch,
+    first: usize,
+    gradients: &[Rows<f64>],
     relaxing: &Relaxing<'_>,
-) -> Result<Point<f64, L::Own<f64>>, EvaluationError> {
-    let at = law.at(region.mean_tensor(tets, |tet| scratch.gradients[tet]));
-    let first = || tets.first().map_or(0, |tet| region.rest.tag(*tet as usize));
-    if !is_defined(law, &at) {
-        return Err(refused::<L>(first(), at.volume_ratio));
-    }
-    require(relaxing, &at.deformation, |_| first())?;
+) -> Result<Point<N, L::Own<N>>, EvaluationError> {
+    let at = law.at(mean_at_edges::<N>(region, first, gradients));
+    let tag = |lane: usize| {
+        let tets = region.edges.of(region.edge_at(first + lane));
+        tets.first().map_or(0, |tet| region.rest.tag(*tet as usize))
+    };
+    require_law::<L, N>(&at.deformation, tag)?;
+    require_memory(relaxing, &at.deformation, tag)?;
     Ok(at)
+}
+
+/// The mean of tensors over the tetrahedra at edges side by side.
+#[inline(always)]
+pub(super) fn mean_at_edges<N: Number<Real = f64>>(
+    region: &HyperelasticRegion,
+    first: usize,
+    of_tets: &[Rows<f64>],
+) -> Tensor<N> {
+    let mut sums = [[[0.0; 4]; 3]; LANES];
+    for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
+        for tet in region.edges.of(region.edge_at(first + lane)) {
+            let volume = region.rest.volume(*tet as usize);
+            add(sum, volume, &of_tets[*tet as usize]);
+        }
+    }
+    let volumes = N::from_lanes(|lane| region.edge_volumes[region.edge_at(first + lane)]);
+    load::<N>(&sums).scaled(volumes.recip())
+}
+
+/// `sum += factor tensor`.
+#[inline(always)]
+pub(super) fn add(sum: &mut Rows<f64>, factor: f64, tensor: &Rows<f64>) {
+    let entries = sum.as_flattened_mut().iter_mut();
+    for (sum, entry) in entries.zip(tensor.as_flattened()) {
+        *sum += factor * entry;
+    }
 }
 
 /// Takes the derivative of a patch's mean dilation by the displacement of each of its nodes, in the place of a mean gradient.
@@ -60,34 +112,25 @@ pub(super) fn take_dilation<L: HyperelasticLaw>(
 ) {
     out.of(region.patches.of(patch).iter().map(|tet| {
         let tet = *tet as usize;
-        let normal = law.dilation_gradient(&law.at(scratch.gradients[tet]));
+        let normal = law.dilation_gradient(&law.at(scratch.gradient(tet)));
         let (nodes, volume, gradients) = region.tet(tet);
         (nodes, volume, gradients.map(|gradient| normal.on(gradient)))
     }));
 }
 
-/// Refuses a tetrahedron that the law or the fibres are not defined for.
+/// Refuses tetrahedra side by side that the law, the fibres or the memory are not defined for.
 #[inline(always)]
-pub(super) fn check<L: HyperelasticLaw>(
+pub(super) fn require<L: HyperelasticLaw, N: Number>(
     region: &HyperelasticRegion,
-    law: &L,
     relaxing: &Relaxing<'_>,
-    at: &Point<f64, L::Own<f64>>,
-    tet: usize,
+    deformation: &Deformation<N>,
+    first: usize,
 ) -> Result<(), EvaluationError> {
-    if !is_defined(law, at) {
-        return Err(refused::<L>(region.rest.tag(tet), at.volume_ratio));
-    }
-    require(relaxing, &at.deformation, |_| region.rest.tag(tet))?;
+    let tag = |lane: usize| region.rest.tag(first + lane);
+    require_law::<L, N>(deformation, tag)?;
+    require_memory(relaxing, deformation, tag)?;
     match &region.fibres {
-        Some(fibres) if !fibres.admits(&at.deformation) => {
-            Err(fibres_refused(region.rest.tag(tet), at.volume_ratio))
-        }
-        _ => Ok(()),
+        Some(own) => require_fibres(own, deformation, tag),
+        None => Ok(()),
     }
-}
-
-#[inline(always)]
-fn is_defined<L: HyperelasticLaw>(law: &L, at: &Point<f64, L::Own<f64>>) -> bool {
-    law.admits(&at.deformation) && at.volume_ratio.is_finite()
 }

@@ -6,11 +6,8 @@
 
 use std::ops::Range;
 
-use sinew_core::EvaluationError;
 use sinew_sparse::simd::{Number, Real, SharedSlice};
 
-use super::error::memory_refused;
-use super::kept::{first_below, lanes};
 use crate::hyperelastic::prony::{Symmetric, Term, TermStep, relaxing, second_piola};
 use crate::hyperelastic::{Bulk, Deformation, SMALLEST_VOLUME_RATIO, Tensor, semidefinite};
 use crate::tissue::{Memory, ViscousPart};
@@ -186,13 +183,22 @@ impl<'a, T: Real> Relaxing<'a, T> {
     }
 
     /// What is left of a share of the local energy, and of the derivatives of the dilational one.
-    pub(super) fn left_of(&self, share: f64, bulk: Bulk<f64>, dilation: f64) -> (f64, Bulk<f64>) {
-        let (factor, left) = (self.factor_of_dilation(), share * self.bulk_left());
+    #[inline(always)]
+    pub(super) fn left_of<N: Number>(
+        &self,
+        share: N,
+        bulk: Bulk<N>,
+        dilation: N,
+    ) -> (N, Bulk<N>) {
+        if !self.is_there() {
+            return (share, bulk);
+        }
+        let (factor, left) = (N::of(self.factor_of_dilation()), share * N::of(self.bulk_left()));
         let bulk = Bulk {
             stress: factor * bulk.stress + left * dilation,
             modulus: factor * bulk.modulus + left,
         };
-        (self.factor * share, bulk)
+        (N::of(self.factor) * share, bulk)
     }
 
     /// R (Pa) at points side by side; `None` where nothing is remembered.
@@ -230,14 +236,15 @@ impl<'a, T: Real> Relaxing<'a, T> {
 }
 
 impl Relaxing<'_> {
-    /// R (Pa) at a point as a tensor, without negative eigenvalues unless it is wanted exactly.
-    pub(super) fn carried_tensor(
+    /// R (Pa) at points side by side as tensors, without negative eigenvalues unless it is wanted exactly.
+    #[inline(always)]
+    pub(super) fn carried_tensor<N: Number<Real = f64>>(
         &self,
         points: Points,
         place: usize,
         is_exact: bool,
-    ) -> Option<Tensor<f64>> {
-        let carried = tensor(self.carried::<f64>(points, place)?);
+    ) -> Option<Tensor<N>> {
+        let carried = tensor(self.carried::<N>(points, place)?);
         Some(if is_exact {
             carried
         } else {
@@ -324,21 +331,7 @@ fn add<N: Number>(sum: &mut Symmetric<N>, factor: N, term: Symmetric<N>) {
     }
 }
 
-fn tensor([xx, yy, zz, xy, yz, zx]: Symmetric<f64>) -> Tensor<f64> {
-    Tensor([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
-}
-
-/// Refuses what memory is not defined for.
 #[inline(always)]
-pub(super) fn require<N: Number, T: Real>(
-    relaxing: &Relaxing<'_, T>,
-    deformation: &Deformation<N>,
-    tag: impl Fn(usize) -> u64,
-) -> Result<(), EvaluationError> {
-    if relaxing.admits(deformation) {
-        return Ok(());
-    }
-    let ratios = lanes(deformation.volume_ratio);
-    let lane = first_below(&ratios);
-    Err(memory_refused(tag(lane), ratios[lane]))
+fn tensor<N: Number>([xx, yy, zz, xy, yz, zx]: Symmetric<N>) -> Tensor<N> {
+    Tensor([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
 }

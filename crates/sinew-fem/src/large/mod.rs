@@ -2,6 +2,7 @@
 
 mod beside;
 mod chunks;
+mod defined;
 mod error;
 mod fibres;
 mod force;
@@ -204,7 +205,7 @@ impl LargeDeformation {
     ) -> Result<(), EvaluationError> {
         scratch.corners.resize(4 * self.slots, [0.0; 4]);
         for region in &self.all.regions {
-            product::product(region, scratch, past, wanted)?;
+            product::product(region, scratch, past, wanted, self.set)?;
         }
         self.all
             .gather
@@ -240,7 +241,7 @@ impl LargeDeformation {
         mut add: impl FnMut(u32, [[f64; 3]; 3]),
     ) -> Result<(), EvaluationError> {
         let mut regions = self.all.regions.iter();
-        regions.try_for_each(|region| node_blocks::add(region, scratch, past, &mut add))
+        regions.try_for_each(|region| node_blocks::add(region, scratch, past, self.set, &mut add))
     }
 
     /// The Cauchy stress (Pa) of a tetrahedron of the mesh, in the order of [`crate::stress`], with the displacement (m) of each node; `None`

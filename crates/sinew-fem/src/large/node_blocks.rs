@@ -1,27 +1,32 @@
 //! Own blocks of the tangent, positive semidefinite in any state.
 
 use sinew_core::EvaluationError;
+use sinew_sparse::simd::{InstructionSet, Number, Vectors, WithReal};
 
 use super::beside::{block_beside, carried_block};
-use super::means::{at_edge, check, means, take_dilation};
+use super::chunks::LANES;
+use super::kept::{load, store};
+use super::means::{at_edges, means, require, take_dilation};
 use super::memory::{Past, Points, Relaxing};
-use super::product::{left_of_smoothed, left_of_tet};
+use super::product::{left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
 use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Point, Tensor};
 use crate::smoothing::Average;
 
-/// Calls `add` with each node and parts of its block (N/m).
+/// Calls `add` with each node and parts of its block (N/m), which are computed by these instructions.
 pub(super) fn add(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
     past: Past<'_>,
+    set: InstructionSet,
     add: &mut impl FnMut(u32, [[f64; 3]; 3]),
 ) -> Result<(), EvaluationError> {
     region.law.with_law(Blocks {
         region,
         scratch,
         relaxing: Relaxing::of(region.memory.as_ref(), past),
+        set,
         add,
     })
 }
@@ -30,62 +35,110 @@ struct Blocks<'a, F> {
     region: &'a HyperelasticRegion,
     scratch: &'a mut Scratch,
     relaxing: Relaxing<'a>,
+    set: InstructionSet,
     add: &'a mut F,
 }
 
 impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
     type Output = Result<(), EvaluationError>;
 
-    fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+    fn visit<L: HyperelasticLaw>(mut self, law: L) -> Self::Output {
+        let sweep = Sweep {
+            blocks: &mut self,
+            law,
+        };
+        f64::with_vectors_or_numbers(sweep.blocks.set, sweep)?;
+        if self.region.is_smoothed() {
+            self.at_edges_and_patches(&law)?;
+        }
+        Ok(())
+    }
+}
+
+/// The loop over tetrahedra, for one law.
+struct Sweep<'a, 'b, L, F> {
+    blocks: &'a mut Blocks<'b, F>,
+    law: L,
+}
+
+impl<L: HyperelasticLaw, F: FnMut(u32, [[f64; 3]; 3])> WithReal<f64> for Sweep<'_, '_, L, F> {
+    type Output = Result<(), EvaluationError>;
+
+    #[inline(always)]
+    fn run<N: Number<Real = f64>>(self) -> Self::Output {
+        let Blocks {
+            region,
+            scratch,
+            relaxing,
+            add,
+            ..
+        } = self.blocks;
+        let (rest, law) = (&region.rest, &self.law);
+        let is_smoothed = region.is_smoothed();
+        if is_smoothed {
+            means::<N, L>(region, scratch, law, relaxing, false)?;
+            let has_beside = region.fibres.is_some() || relaxing.is_there();
+            if region.edge_share == 1.0 && !has_beside {
+                return Ok(());
+            }
+        }
+        let mut lanes = [[[0.0; 4]; 3]; LANES];
+        for first in (0..rest.count()).step_by(N::LANES) {
+            let gradient = if is_smoothed {
+                load::<N>(&scratch.gradients[first..])
+            } else {
+                rest.gradient_of::<N>(first, &scratch.displacement)
+            };
+            let at = law.at(gradient);
+            let left = if is_smoothed {
+                let patch = |lane: usize| region.patch_of[first + lane] as usize;
+                let dilation = N::from_lanes(|lane| scratch.dilations[patch(lane)][0]);
+                left_of_smoothed(region, relaxing, law, &at, (first, dilation))
+            } else {
+                require::<L, N>(region, relaxing, &at.deformation, first)?;
+                left_of_tets(region, relaxing, law, &at, first)
+            };
+            let gradients = rest.all_gradients::<N>(first);
+            for (vertex, gradient) in gradients.into_iter().enumerate() {
+                let beside = block_beside(region, relaxing, first, &at.deformation, gradient);
+                let block = own_block(law, &at, left, gradient) + beside;
+                store(block.scaled(rest.volumes(first)), &mut lanes);
+                let nodes = rest.side_by_side(vertex, first..first + N::LANES);
+                for (node, block) in nodes.iter().zip(&lanes) {
+                    add(*node, block.map(|[x, y, z, _]| [x, y, z]));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<F: FnMut(u32, [[f64; 3]; 3])> Blocks<'_, F> {
+    /// Adds what belongs to means, where they are taken.
+    fn at_edges_and_patches<L: HyperelasticLaw>(self, law: &L) -> Result<(), EvaluationError> {
         let Self {
             region,
             scratch,
             relaxing,
             add,
+            ..
         } = self;
-        let (rest, lambda) = (&region.rest, law.lame().0);
-        if !region.is_smoothed() {
-            for tet in rest.tets() {
-                let at = law.at(rest.gradient_of::<f64>(tet, &scratch.displacement));
-                check(region, &law, &relaxing, &at, tet)?;
-                let left = left_of_tet(region, &relaxing, &law, &at, tet);
-                for (node, gradient) in rest.nodes(tet).into_iter().zip(rest.all_gradients(tet)) {
-                    let beside = block_beside(region, &relaxing, tet, &at.deformation, gradient);
-                    let block = own_block(&law, &at, left, gradient) + beside;
-                    add(node, block.scaled(rest.volume(tet)).0);
-                }
-            }
-            return Ok(());
-        }
-        means(region, scratch, &law, &relaxing)?;
-        let share = 1.0 - region.edge_share;
-        let has_beside = region.fibres.is_some() || relaxing.is_there();
-        for tet in rest.tets().filter(|_| share > 0.0 || has_beside) {
-            let at = law.at(scratch.gradients[tet]);
-            let [dilation, _] = scratch.dilations[region.patch_of[tet] as usize];
-            let left = left_of_smoothed(region, &relaxing, &law, &at, (tet, dilation));
-            for (node, gradient) in rest.nodes(tet).into_iter().zip(rest.all_gradients(tet)) {
-                let beside = block_beside(region, &relaxing, tet, &at.deformation, gradient);
-                let block = own_block(&law, &at, left, gradient) + beside;
-                add(node, block.scaled(rest.volume(tet)).0);
-            }
-        }
         for (edge, average) in region.edge_averages().iter().enumerate() {
-            let at = at_edge(region, &law, region.edges.of(edge), scratch, &relaxing)?;
-            let stiffness = region.stiffness_at_edge(edge);
+            let at = at_edges::<f64, L>(region, law, edge, &scratch.gradients, &relaxing)?;
+            let stiffness = region.stiffness_at_edges(edge);
             let left = relaxing.left_of(stiffness, Bulk::none(), law.dilation(&at));
             let volume = region.edge_share / 6.0 * average.volume;
             for (node, gradient) in average.nodes.iter().zip(&average.gradients) {
                 let carried = carried_block(&relaxing, (Points::Edges, edge), *gradient);
-                let block = own_block(&law, &at, left, *gradient) + carried;
+                let block = own_block(law, &at, left, *gradient) + carried;
                 add(*node, block.scaled(volume).0);
             }
         }
-        let lambda = relaxing.factor_of_dilation() * lambda;
+        let lambda = relaxing.factor_of_dilation() * law.lame().0;
         let mut average = Average::default();
         for patch in 0..region.patches.count() {
             let lambda = region.stiffness_of_patch(patch) * lambda;
-            take_dilation(region, &law, patch, scratch, &mut average);
+            take_dilation(region, law, patch, scratch, &mut average);
             for (node, gradient) in average.nodes.iter().zip(&average.gradients) {
                 let block = Tensor::outer(*gradient, *gradient);
                 add(*node, block.scaled(lambda * average.volume).0);
@@ -95,15 +148,16 @@ impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
     }
 }
 
-/// A node's own block, for each m^3, of a share of the local energy and of the dilational one; nothing without a share, as the stress of a patch
+/// The own blocks of nodes, for each m^3, of a share of the local energy and of the dilational one; nothing without a share, as the stress of a patch
 /// alone has none.
-fn own_block<L: HyperelasticLaw>(
+#[inline(always)]
+fn own_block<N: Number, L: HyperelasticLaw>(
     law: &L,
-    at: &Point<f64, L::Own<f64>>,
-    (share, bulk): (f64, Bulk<f64>),
-    gradient: [f64; 3],
-) -> Tensor<f64> {
-    if share == 0.0 {
+    at: &Point<N, L::Own<N>>,
+    (share, bulk): (N, Bulk<N>),
+    gradient: [N; 3],
+) -> Tensor<N> {
+    if N::all_le(share, N::of(0.0)) {
         return Tensor::zero();
     }
     let bulk = Bulk {

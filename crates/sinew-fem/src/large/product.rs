@@ -1,9 +1,12 @@
 //! Products of the tangent with a change of the displacement, without a matrix.
 
 use sinew_core::{EvaluationError, TangentKind};
+use sinew_sparse::simd::{InstructionSet, Number, Vectors, WithReal};
 
 use super::beside::TangentBeside;
-use super::means::{at_edge, check, means};
+use super::chunks::LANES;
+use super::kept::{load, store};
+use super::means::{add, at_edges, mean_at_edges, means, require};
 use super::memory::{Past, Points, Relaxing};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
@@ -21,12 +24,13 @@ pub(crate) enum Wanted {
     Stiffest,
 }
 
-/// Writes the change of the forces at the corners of a region's tetrahedra.
+/// Writes the change of the forces at the corners of a region's tetrahedra, by these instructions.
 pub(super) fn product(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
     past: Past<'_>,
     wanted: Wanted,
+    set: InstructionSet,
 ) -> Result<(), EvaluationError> {
     region.law.with_law(Products {
         region,
@@ -36,6 +40,7 @@ pub(super) fn product(
             Wanted::Kind(_) | Wanted::Stiffest => Relaxing::of(region.memory.as_ref(), past),
         },
         wanted,
+        set,
     })
 }
 
@@ -44,6 +49,7 @@ struct Products<'a> {
     scratch: &'a mut Scratch,
     relaxing: Relaxing<'a>,
     wanted: Wanted,
+    set: InstructionSet,
 }
 
 impl LawVisitor for Products<'_> {
@@ -61,98 +67,123 @@ impl LawVisitor for Products<'_> {
                 }
             }
         };
-        if self.region.is_smoothed() {
-            self.smoothed(law, kind)
+        let set = self.set;
+        let sweep = Sweep {
+            products: self,
+            law,
+            kind,
+        };
+        f64::with_vectors_or_numbers(set, sweep)
+    }
+}
+
+/// All loops over a region, for one law and one kind of tangent.
+struct Sweep<'a, L> {
+    products: Products<'a>,
+    law: L,
+    kind: TangentKind,
+}
+
+impl<L: HyperelasticLaw> WithReal<f64> for Sweep<'_, L> {
+    type Output = Result<(), EvaluationError>;
+
+    #[inline(always)]
+    fn run<N: Number<Real = f64>>(self) -> Self::Output {
+        if self.products.region.is_smoothed() {
+            self.smoothed::<N>()
         } else {
-            self.plain(law, kind)
+            self.plain::<N>()
         }
     }
 }
 
-impl Products<'_> {
-    fn plain<L: HyperelasticLaw>(self, law: L, kind: TangentKind) -> Result<(), EvaluationError> {
-        let (region, relaxing) = (self.region, self.relaxing);
-        let rest = &region.rest;
-        let corners = &mut self.scratch.corners[4 * region.first..];
-        for tet in rest.tets() {
-            let at = law.at(rest.gradient_of::<f64>(tet, &self.scratch.displacement));
-            check(region, &law, &relaxing, &at, tet)?;
-            let change = rest.gradient_of::<f64>(tet, &self.scratch.change);
-            let left = left_of_tet(region, &relaxing, &law, &at, tet);
-            let own = OwnTangent::of(&law, &at, left, kind);
-            let how = (kind, self.wanted == Wanted::Stiffest);
-            let beside = TangentBeside::of(region, &relaxing, tet, &at.deformation, how);
-            let stress = beside.with(own.on(change), change);
-            rest.forces(tet, stress, &mut corners[4 * tet..]);
-        }
-        Ok(())
-    }
-
-    fn smoothed<L: HyperelasticLaw>(
-        self,
-        law: L,
-        kind: TangentKind,
-    ) -> Result<(), EvaluationError> {
-        let Self {
+impl<L: HyperelasticLaw> Sweep<'_, L> {
+    #[inline(always)]
+    fn plain<N: Number<Real = f64>>(self) -> Result<(), EvaluationError> {
+        let Products {
             region,
             scratch,
             relaxing,
             wanted,
-        } = self;
-        let (rest, lambda) = (&region.rest, law.lame().0);
-        means(region, scratch, &law, &relaxing)?;
-        for patch in 0..region.patches.count() {
-            let tets = region.patches.of(patch);
-            for tet in tets {
-                let tet = *tet as usize;
-                scratch.changes[tet] = rest.gradient_of::<f64>(tet, &scratch.change);
-            }
-            let [change] = region.mean(tets, |tet| {
-                let at = law.at(scratch.gradients[tet]);
-                [law.dilation_gradient(&at).contracted(scratch.changes[tet])]
-            });
-            scratch.dilations[patch][1] = change;
-        }
-        for edge in 0..region.edges.count() {
-            let tets = region.edges.of(edge);
-            let at = at_edge(region, &law, tets, scratch, &relaxing)?;
-            let change = region.mean_tensor(tets, |tet| scratch.changes[tet]);
-            let tangent = EdgeTangent::of(&law, &at, (region, &relaxing, edge), kind);
-            scratch.at_edges[edge] = tangent.on(change);
-        }
+            ..
+        } = self.products;
+        let (rest, law) = (&region.rest, self.law);
+        let how = (self.kind, wanted == Wanted::Stiffest);
         let corners = &mut scratch.corners[4 * region.first..];
-        for tet in rest.tets() {
-            let at = law.at(scratch.gradients[tet]);
-            let patch = region.patch_of[tet] as usize;
-            let [dilation, change] = scratch.dilations[patch];
-            let left = left_of_smoothed(region, &relaxing, &law, &at, (tet, dilation));
+        for first in (0..rest.count()).step_by(N::LANES) {
+            let at = law.at(rest.gradient_of::<N>(first, &scratch.displacement));
+            require::<L, N>(region, &relaxing, &at.deformation, first)?;
+            let change = rest.gradient_of::<N>(first, &scratch.change);
+            let left = left_of_tets(region, &relaxing, &law, &at, first);
+            let own = OwnTangent::of(&law, &at, left, self.kind);
+            let beside = TangentBeside::of(region, &relaxing, first, &at.deformation, how);
+            let stress = beside.with(own.on(change), change);
+            rest.forces(first, stress, &mut corners[4 * first..]);
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn smoothed<N: Number<Real = f64>>(self) -> Result<(), EvaluationError> {
+        let Products {
+            region,
+            scratch,
+            relaxing,
+            wanted,
+            ..
+        } = self.products;
+        let (rest, law, kind) = (&region.rest, self.law, self.kind);
+        let how = (kind, wanted == Wanted::Stiffest);
+        means::<N, L>(region, scratch, &law, &relaxing, true)?;
+        for first in (0..region.edges.count()).step_by(N::LANES) {
+            let at = at_edges::<N, L>(region, &law, first, &scratch.gradients, &relaxing)?;
+            let change = mean_at_edges::<N>(region, first, &scratch.changes);
+            let tangent = EdgeTangent::of(&law, &at, (region, &relaxing, first), kind);
+            let to = &mut scratch.at_edges[first..first + N::LANES];
+            store(tangent.on(change), to);
+        }
+        let lambda = relaxing.factor_of_dilation() * law.lame().0;
+        let corners = &mut scratch.corners[4 * region.first..];
+        for first in (0..rest.count()).step_by(N::LANES) {
+            let at = law.at(load(&scratch.gradients[first..]));
+            let change = load(&scratch.changes[first..]);
+            let patch = |lane: usize| region.patch_of[first + lane] as usize;
+            let dilation = N::from_lanes(|lane| scratch.dilations[patch(lane)][0]);
+            let dilation_change = N::from_lanes(|lane| {
+                region.stiffness_of_patch(patch(lane)) * scratch.dilations[patch(lane)][1]
+            });
+            let left = left_of_smoothed(region, &relaxing, &law, &at, (first, dilation));
             let own = OwnTangent::of(&law, &at, left, kind);
-            let mut stress = own.on(scratch.changes[tet]);
-            let lambda = lambda * region.stiffness_of_patch(patch);
-            let of_patch = relaxing.factor_of_dilation() * lambda * change;
+            let mut stress = own.on(change);
+            let of_patch = N::of(lambda) * dilation_change;
             stress = stress.plus(of_patch, law.dilation_gradient(&at));
-            for edge in region.edges_of.get(tet).into_iter().flatten() {
-                stress = stress.plus(region.edge_share / 6.0, scratch.at_edges[*edge as usize]);
+            if !region.edges_of.is_empty() {
+                let mut sums = [[[0.0; 4]; 3]; LANES];
+                for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
+                    for edge in region.edges_of[first + lane] {
+                        add(sum, 1.0, &scratch.at_edges[edge as usize]);
+                    }
+                }
+                stress = stress.plus(N::of(region.edge_share / 6.0), load(&sums));
             }
-            let how = (kind, wanted == Wanted::Stiffest);
-            let beside = TangentBeside::of(region, &relaxing, tet, &at.deformation, how);
-            stress = beside.with(stress, scratch.changes[tet]);
-            rest.forces(tet, stress, &mut corners[4 * tet..]);
+            let beside = TangentBeside::of(region, &relaxing, first, &at.deformation, how);
+            stress = beside.with(stress, change);
+            rest.forces(first, stress, &mut corners[4 * first..]);
         }
         Ok(())
     }
 }
 
-/// What is left of the energy of a tetrahedron that is averaged with no other.
+/// What is left of the energy of tetrahedra side by side that are averaged with no other.
 #[inline(always)]
-pub(super) fn left_of_tet<L: HyperelasticLaw>(
+pub(super) fn left_of_tets<N: Number<Real = f64>, L: HyperelasticLaw>(
     region: &HyperelasticRegion,
     relaxing: &Relaxing<'_>,
     law: &L,
-    at: &Point<f64, L::Own<f64>>,
-    tet: usize,
-) -> (f64, Bulk<f64>) {
-    let stiffness = region.stiffness_of_tet(tet);
+    at: &Point<N, L::Own<N>>,
+    first: usize,
+) -> (N, Bulk<N>) {
+    let stiffness = region.stiffness_of_tets::<N>(first);
     let Bulk { stress, modulus } = law.own_bulk(at);
     let bulk = Bulk {
         stress: stiffness * stress,
@@ -161,67 +192,72 @@ pub(super) fn left_of_tet<L: HyperelasticLaw>(
     relaxing.left_of(stiffness, bulk, law.dilation(at))
 }
 
-/// What is left of a tetrahedron's own share of the local energy, and of the dilational one by the mean dilation of its patch, whose own modulus
-/// is added elsewhere.
+/// What is left of the own share that tetrahedra side by side have of the local energy, and of the dilational one by the mean dilation of their patches,
+/// whose own modulus is added elsewhere.
 #[inline(always)]
-pub(super) fn left_of_smoothed<L: HyperelasticLaw>(
+pub(super) fn left_of_smoothed<N: Number<Real = f64>, L: HyperelasticLaw>(
     region: &HyperelasticRegion,
     relaxing: &Relaxing<'_>,
     law: &L,
-    at: &Point<f64, L::Own<f64>>,
-    (tet, mean_dilation): (usize, f64),
-) -> (f64, Bulk<f64>) {
-    let patch = region.patch_of[tet] as usize;
+    at: &Point<N, L::Own<N>>,
+    (first, mean_dilation): (usize, N),
+) -> (N, Bulk<N>) {
+    let stiffness = N::from_lanes(|lane| {
+        let patch = region.patch_of[first + lane] as usize;
+        region.stiffness_of_patch(patch)
+    });
     let bulk = Bulk {
-        stress: region.stiffness_of_patch(patch) * law.lame().0 * mean_dilation,
-        modulus: 0.0,
+        stress: stiffness * N::of(law.lame().0) * mean_dilation,
+        modulus: N::of(0.0),
     };
-    let share = (1.0 - region.edge_share) * region.stiffness_of_tet(tet);
+    let share = N::of(1.0 - region.edge_share) * region.stiffness_of_tets(first);
     relaxing.left_of(share, bulk, law.dilation(at))
 }
 
 /// The tangent of a share of the local energy, and of the dilational one.
-pub(super) struct OwnTangent<'a, L: HyperelasticLaw> {
+pub(super) struct OwnTangent<'a, N: Number, L: HyperelasticLaw> {
     law: &'a L,
-    at: &'a Point<f64, L::Own<f64>>,
+    at: &'a Point<N, L::Own<N>>,
     /// The tangent for each share, where there is one.
-    linearised: Option<(f64, Linearised<'a, f64, L>)>,
+    linearised: Option<(N, Linearised<'a, N, L>)>,
     /// First derivative of the dilational energy (Pa), where there is no share.
-    bulk_stress: f64,
+    bulk_stress: N,
 }
 
-impl<'a, L: HyperelasticLaw> OwnTangent<'a, L> {
+impl<'a, N: Number, L: HyperelasticLaw> OwnTangent<'a, N, L> {
+    #[inline(always)]
     pub(super) fn of(
         law: &'a L,
-        at: &'a Point<f64, L::Own<f64>>,
-        (share, bulk): (f64, Bulk<f64>),
+        at: &'a Point<N, L::Own<N>>,
+        (share, bulk): (N, Bulk<N>),
         kind: TangentKind,
     ) -> Self {
-        if share > 0.0 {
-            let bulk = Bulk {
-                stress: bulk.stress / share,
-                modulus: bulk.modulus / share,
-            };
-            Self {
-                law,
-                at,
-                linearised: Some((share, Linearised::of(law, at, bulk, kind))),
-                bulk_stress: 0.0,
-            }
-        } else {
+        let none = N::of(0.0);
+        if N::all_le(share, none) {
             // Alone the stress of the patch gives nothing definite: what is not exact does without it.
             let is_exact = kind == TangentKind::Exact;
-            Self {
+            return Self {
                 law,
                 at,
                 linearised: None,
-                bulk_stress: if is_exact { bulk.stress } else { 0.0 },
-            }
+                bulk_stress: if is_exact { bulk.stress } else { none },
+            };
+        }
+        let bulk = Bulk {
+            stress: bulk.stress / share,
+            modulus: bulk.modulus / share,
+        };
+        Self {
+            law,
+            at,
+            linearised: Some((share, Linearised::of(law, at, bulk, kind))),
+            bulk_stress: none,
         }
     }
 
     /// The change of the stress by a change of F.
-    pub(super) fn on(&self, change: Tensor<f64>) -> Tensor<f64> {
+    #[inline(always)]
+    pub(super) fn on(&self, change: Tensor<N>) -> Tensor<N> {
         match &self.linearised {
             Some((share, linearised)) => linearised.on(change).scaled(*share),
             None => self
@@ -232,31 +268,33 @@ impl<'a, L: HyperelasticLaw> OwnTangent<'a, L> {
     }
 }
 
-/// The tangent of the local energy at the mean deformation of an edge.
-pub(super) struct EdgeTangent<'a, L: HyperelasticLaw> {
-    own: OwnTangent<'a, L>,
+/// The tangent of the local energy at the mean deformation of edges side by side.
+pub(super) struct EdgeTangent<'a, N: Number, L: HyperelasticLaw> {
+    own: OwnTangent<'a, N, L>,
     /// R (Pa).
-    carried: Option<Tensor<f64>>,
+    carried: Option<Tensor<N>>,
 }
 
-impl<'a, L: HyperelasticLaw> EdgeTangent<'a, L> {
+impl<'a, N: Number<Real = f64>, L: HyperelasticLaw> EdgeTangent<'a, N, L> {
+    #[inline(always)]
     pub(super) fn of(
         law: &'a L,
-        at: &'a Point<f64, L::Own<f64>>,
-        (region, relaxing, edge): (&HyperelasticRegion, &Relaxing<'_>, usize),
+        at: &'a Point<N, L::Own<N>>,
+        (region, relaxing, first): (&HyperelasticRegion, &Relaxing<'_>, usize),
         kind: TangentKind,
     ) -> Self {
-        let stiffness = region.stiffness_at_edge(edge);
+        let stiffness = region.stiffness_at_edges(first);
         let left = relaxing.left_of(stiffness, Bulk::none(), law.dilation(at));
         let is_exact = kind == TangentKind::Exact;
         Self {
             own: OwnTangent::of(law, at, left, kind),
-            carried: relaxing.carried_tensor(Points::Edges, edge, is_exact),
+            carried: relaxing.carried_tensor(Points::Edges, first, is_exact),
         }
     }
 
     /// The change of the stress by a change of F.
-    pub(super) fn on(&self, change: Tensor<f64>) -> Tensor<f64> {
+    #[inline(always)]
+    pub(super) fn on(&self, change: Tensor<N>) -> Tensor<N> {
         let own = self.own.on(change);
         match self.carried {
             Some(carried) => own + change * carried,

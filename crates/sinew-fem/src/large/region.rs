@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use sinew_mesh::TetMesh;
-use sinew_sparse::simd::Real;
+use sinew_sparse::simd::{Number, Real};
 
 use super::chunks::{Chunk, LANES, Slot};
 use super::fibres::{Directions, RegionFibres};
@@ -147,19 +147,22 @@ impl HyperelasticRegion {
         }
     }
 
-    /// What energies of the law are multiplied by in a tetrahedron.
-    pub(super) fn stiffness_of_tet(&self, tet: usize) -> f64 {
+    /// What energies of the law are multiplied by in tetrahedra side by side.
+    #[inline(always)]
+    pub(super) fn stiffness_of_tets<N: Number<Real = f64>>(&self, first: usize) -> N {
         let stiffness = self.stiffness.as_ref();
-        stiffness.map_or(1.0, |stiffness| stiffness.of_tet(tet))
+        stiffness.map_or(N::of(1.0), |stiffness| stiffness.of_tets(first))
     }
 
-    /// [`Self::stiffness_of_tet`] at the mean deformation of an edge.
-    pub(super) fn stiffness_at_edge(&self, edge: usize) -> f64 {
+    /// [`Self::stiffness_of_tets`] at the mean deformation of edges side by side.
+    #[inline(always)]
+    pub(super) fn stiffness_at_edges<N: Number<Real = f64>>(&self, first: usize) -> N {
         let stiffness = self.stiffness.as_ref();
-        stiffness.map_or(1.0, |stiffness| stiffness.at_edge(edge))
+        stiffness.map_or(N::of(1.0), |stiffness| stiffness.at_edges(first))
     }
 
-    /// [`Self::stiffness_of_tet`] at the mean dilation of a patch.
+    /// [`Self::stiffness_of_tets`] at the mean dilation of a patch.
+    #[inline(always)]
     pub(super) fn stiffness_of_patch(&self, patch: usize) -> f64 {
         let stiffness = self.stiffness.as_ref();
         stiffness.map_or(1.0, |stiffness| stiffness.of_patch(patch))
@@ -199,6 +202,12 @@ impl HyperelasticRegion {
             };
             (0..self.edges.count()).map(average).collect()
         })
+    }
+
+    /// An edge by its place among vectors of edges: room behind the last one repeats it.
+    #[inline(always)]
+    pub(super) fn edge_at(&self, place: usize) -> usize {
+        place.min(self.edges.count().saturating_sub(1))
     }
 
     /// Whether tetrahedra take any mean with others.

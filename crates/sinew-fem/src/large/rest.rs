@@ -1,5 +1,6 @@
 //! Tetrahedra at rest, as loops over deformed ones read them.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use sinew_mesh::TetMesh;
@@ -82,13 +83,6 @@ impl Rest {
         (0..self.count()).filter(|tet| self.is_taken(*tet))
     }
 
-    /// The gradients (1/m) of all four shape functions.
-    pub(super) fn all_gradients(&self, tet: usize) -> [[f64; 3]; 4] {
-        let [b, c, d] = self.gradients::<f64>(tet);
-        let first = std::array::from_fn(|axis| -(b[axis] + c[axis] + d[axis]));
-        [first, b, c, d]
-    }
-
     /// [`Rest::gradient_of`] for a function of the node, in one tetrahedron.
     pub(super) fn gradient_by(&self, tet: usize, field: impl Fn(u32) -> [f64; 3]) -> Tensor<f64> {
         let [a, b, c, d] = self.nodes(tet).map(field);
@@ -137,6 +131,20 @@ impl<T: Real> Rest<T> {
             side_by_side(c, first),
             side_by_side(d, first),
         ]
+    }
+
+    /// The gradients (1/m) of all four shape functions of tetrahedra side by side.
+    #[inline(always)]
+    pub(super) fn all_gradients<N: Number<Real = T>>(&self, first: usize) -> [[N; 3]; 4] {
+        let [b, c, d] = self.gradients(first);
+        let none = [N::of(0.0); 3];
+        let a = difference(difference(difference(none, b), c), d);
+        [a, b, c, d]
+    }
+
+    /// One of the four nodes of some tetrahedra.
+    pub(super) fn side_by_side(&self, vertex: usize, tets: Range<usize>) -> &[u32] {
+        &self.nodes[vertex][tets]
     }
 
     /// The gradient, in tetrahedra side by side, of a field (m) that is given at all mesh nodes: row i, column j is the derivative of component

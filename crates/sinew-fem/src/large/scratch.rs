@@ -2,7 +2,7 @@
 
 use sinew_sparse::simd::{Aligned, Real, Shared, SharedSlice};
 
-use super::kept::Rows;
+use super::kept::{Rows, load};
 use super::region::HyperelasticRegion;
 use super::rooms::Rooms;
 use crate::hyperelastic::Tensor;
@@ -21,11 +21,13 @@ pub(crate) struct Scratch {
     /// What force loops keep.
     pub(super) kept: Kept<f64>,
     /// Gradient of the displacement in each tetrahedron of a region, where means are taken.
-    pub(super) gradients: Vec<Tensor<f64>>,
+    pub(super) gradients: Vec<Rows<f64>>,
     /// Gradient of its change.
-    pub(super) changes: Vec<Tensor<f64>>,
-    /// Stress (Pa), or its change, at each edge.
-    pub(super) at_edges: Vec<Tensor<f64>>,
+    pub(super) changes: Vec<Rows<f64>>,
+    /// Change of the stress (Pa) at each edge, then room to fill a vector.
+    pub(super) at_edges: Vec<Rows<f64>>,
+    /// Dilation of each tetrahedron times its volume (m^3), and its change.
+    pub(super) dilations_of_tets: [Vec<f64>; 2],
     /// Mean dilation of each patch, and its change.
     pub(super) dilations: Vec<[f64; 2]>,
 }
@@ -143,11 +145,17 @@ impl Scratch {
             corners: Vec::new(),
             sums: vec![[0.0; 4]; taken],
             kept: Kept::new(regions, rooms, 1),
-            gradients: vec![Tensor::zero(); smoothed],
-            changes: vec![Tensor::zero(); smoothed],
-            at_edges: vec![Tensor::zero(); most(|region| region.edges.count())],
+            gradients: vec![[[0.0; 4]; 3]; smoothed],
+            changes: vec![[[0.0; 4]; 3]; smoothed],
+            at_edges: vec![[[0.0; 4]; 3]; most(|region| region.edge_volumes.len())],
+            dilations_of_tets: [vec![0.0; smoothed], vec![0.0; smoothed]],
             dilations: vec![[0.0; 2]; most(|region| region.patches.count())],
         }
+    }
+
+    /// The gradient of the displacement in a tetrahedron of a region, where means are taken.
+    pub(super) fn gradient(&self, tet: usize) -> Tensor<f64> {
+        load(&self.gradients[tet..])
     }
 
     /// The places of an evaluation in f64, which nobody else uses meanwhile.

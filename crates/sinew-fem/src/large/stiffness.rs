@@ -49,16 +49,6 @@ impl Stiffness {
             patches: rounded(&self.patches),
         }
     }
-
-    /// That at an edge.
-    pub(super) fn at_edge(&self, edge: usize) -> f64 {
-        self.edges[edge]
-    }
-
-    /// That of a tetrahedron.
-    pub(super) fn of_tet(&self, tet: usize) -> f64 {
-        self.tets[tet]
-    }
 }
 
 impl<T: Real> Stiffness<T> {

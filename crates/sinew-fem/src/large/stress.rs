@@ -1,7 +1,7 @@
 //! Stresses of deformed tetrahedra.
 
 use super::memory::{Past, Points, Relaxing};
-use super::product::{left_of_smoothed, left_of_tet};
+use super::product::{left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
 use crate::hyperelastic::prony::first_piola;
 use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Point};
@@ -53,7 +53,7 @@ impl<U: Fn(u32) -> [f64; 3]> LawVisitor for Cauchy<'_, U> {
                 });
                 left_of_smoothed(region, &relaxing, &law, &at, (tet, dilation))
             }
-            None => left_of_tet(region, &relaxing, &law, &at, tet),
+            None => left_of_tets(region, &relaxing, &law, &at, tet),
         };
         let stress_at = |at: &Point<f64, L::Own<f64>>, (share, bulk): (f64, Bulk<f64>)| {
             let local = law.stress(at).scaled(share);
@@ -64,7 +64,7 @@ impl<U: Fn(u32) -> [f64; 3]> LawVisitor for Cauchy<'_, U> {
             let edge = *edge as usize;
             let at = law.at(region.mean_tensor(region.edges.of(edge), gradient));
             is_defined &= is_possible(&at);
-            let stiffness = region.stiffness_at_edge(edge);
+            let stiffness = region.stiffness_at_edges::<f64>(edge);
             let left = relaxing.left_of(stiffness, Bulk::none(), law.dilation(&at));
             let mut own = stress_at(&at, left);
             if let Some(carried) = relaxing.carried::<f64>(Points::Edges, edge) {
