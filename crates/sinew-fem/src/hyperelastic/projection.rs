@@ -23,18 +23,43 @@ impl<'a, N: Number, L: HyperelasticLaw> Linearised<'a, N, L> {
     #[inline(always)]
     #[must_use]
     pub fn of(law: &'a L, at: &'a Point<N, L::Own<N>>, bulk: Bulk<N>, kind: TangentKind) -> Self {
-        let freezes = || law.frozen_tangent(at, Tensor::zero()).is_some();
-        let is_projected = match kind {
-            TangentKind::Exact => false,
-            TangentKind::Projected => true,
-            TangentKind::Frozen => !freezes(),
-        };
         let exact = |change| law.tangent_with(at, bulk, change);
         Self {
             law,
             at,
             bulk,
-            projection: is_projected.then(|| Projection::of(at.gradient, exact)),
+            projection: Self::projects(law, kind).then(|| Projection::of(at.gradient, exact)),
+            is_exact: kind == TangentKind::Exact,
+        }
+    }
+
+    /// Whether the tangent of a kind is a projection: a law without a rotation has no other that is semidefinite.
+    #[inline(always)]
+    pub(crate) fn projects(law: &L, kind: TangentKind) -> bool {
+        let freezes = || {
+            let at = law.at(Tensor::<f64>::zero());
+            law.frozen_tangent(&at, Tensor::zero()).is_some()
+        };
+        match kind {
+            TangentKind::Exact => false,
+            TangentKind::Projected => true,
+            TangentKind::Frozen => !freezes(),
+        }
+    }
+
+    /// [`Self::of`] without a projection: the exact tangent, or the frozen one of a law that has it.
+    #[inline(always)]
+    pub(crate) fn as_it_is(
+        law: &'a L,
+        at: &'a Point<N, L::Own<N>>,
+        bulk: Bulk<N>,
+        kind: TangentKind,
+    ) -> Self {
+        Self {
+            law,
+            at,
+            bulk,
+            projection: None,
             is_exact: kind == TangentKind::Exact,
         }
     }
@@ -46,12 +71,11 @@ impl<'a, N: Number, L: HyperelasticLaw> Linearised<'a, N, L> {
         if let Some(projection) = &self.projection {
             return projection.on(change);
         }
-        let exact = || self.law.tangent_with(self.at, self.bulk, change);
-        if self.is_exact {
-            return exact();
-        }
-        let frozen = self.law.frozen_tangent_with(self.at, self.bulk, change);
-        frozen.unwrap_or_else(exact)
+        let frozen = match self.is_exact {
+            true => None,
+            false => self.law.frozen_tangent_with(self.at, self.bulk, change),
+        };
+        frozen.unwrap_or_else(|| self.law.tangent_with(self.at, self.bulk, change))
     }
 }
 

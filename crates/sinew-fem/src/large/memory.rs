@@ -184,16 +184,14 @@ impl<'a, T: Real> Relaxing<'a, T> {
 
     /// What is left of a share of the local energy, and of the derivatives of the dilational one.
     #[inline(always)]
-    pub(super) fn left_of<N: Number>(
-        &self,
-        share: N,
-        bulk: Bulk<N>,
-        dilation: N,
-    ) -> (N, Bulk<N>) {
+    pub(super) fn left_of<N: Number>(&self, share: N, bulk: Bulk<N>, dilation: N) -> (N, Bulk<N>) {
         if !self.is_there() {
             return (share, bulk);
         }
-        let (factor, left) = (N::of(self.factor_of_dilation()), share * N::of(self.bulk_left()));
+        let (factor, left) = (
+            N::of(self.factor_of_dilation()),
+            share * N::of(self.bulk_left()),
+        );
         let bulk = Bulk {
             stress: factor * bulk.stress + left * dilation,
             modulus: factor * bulk.modulus + left,

@@ -20,7 +20,7 @@ pub(super) fn add(
     scratch: &mut Scratch,
     past: Past<'_>,
     set: InstructionSet,
-    add: &mut impl FnMut(u32, [[f64; 3]; 3]),
+    add: &mut dyn FnMut(u32, [[f64; 3]; 3]),
 ) -> Result<(), EvaluationError> {
     region.law.with_law(Blocks {
         region,
@@ -31,23 +31,24 @@ pub(super) fn add(
     })
 }
 
-struct Blocks<'a, F> {
+struct Blocks<'a> {
     region: &'a HyperelasticRegion,
     scratch: &'a mut Scratch,
     relaxing: Relaxing<'a>,
     set: InstructionSet,
-    add: &'a mut F,
+    add: &'a mut dyn FnMut(u32, [[f64; 3]; 3]),
 }
 
-impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
+impl LawVisitor for Blocks<'_> {
     type Output = Result<(), EvaluationError>;
 
     fn visit<L: HyperelasticLaw>(mut self, law: L) -> Self::Output {
-        let sweep = Sweep {
-            blocks: &mut self,
-            law,
-        };
-        f64::with_vectors_or_numbers(sweep.blocks.set, sweep)?;
+        let (set, blocks) = (self.set, &mut self);
+        if blocks.region.has_beside() {
+            Sweep::<L, true> { blocks, law }.run::<f64>()?;
+        } else {
+            f64::with_vectors_or_numbers(set, Sweep::<L, false> { blocks, law })?;
+        }
         if self.region.is_smoothed() {
             self.at_edges_and_patches(&law)?;
         }
@@ -55,17 +56,24 @@ impl<F: FnMut(u32, [[f64; 3]; 3])> LawVisitor for Blocks<'_, F> {
     }
 }
 
-/// The loop over tetrahedra, for one law.
-struct Sweep<'a, 'b, L, F> {
-    blocks: &'a mut Blocks<'b, F>,
+/// The loop over tetrahedra, for one law. `ALL` is whether it knows what stands beside the law, which is compiled for plain numbers only.
+struct Sweep<'a, 'b, L, const ALL: bool> {
+    blocks: &'a mut Blocks<'b>,
     law: L,
 }
 
-impl<L: HyperelasticLaw, F: FnMut(u32, [[f64; 3]; 3])> WithReal<f64> for Sweep<'_, '_, L, F> {
+impl<L: HyperelasticLaw, const ALL: bool> WithReal<f64> for Sweep<'_, '_, L, ALL> {
     type Output = Result<(), EvaluationError>;
 
     #[inline(always)]
     fn run<N: Number<Real = f64>>(self) -> Self::Output {
+        if !ALL && N::LANES == 1 {
+            return Sweep::<L, true> {
+                blocks: self.blocks,
+                law: self.law,
+            }
+            .run::<f64>();
+        }
         let Blocks {
             region,
             scratch,
@@ -77,8 +85,7 @@ impl<L: HyperelasticLaw, F: FnMut(u32, [[f64; 3]; 3])> WithReal<f64> for Sweep<'
         let is_smoothed = region.is_smoothed();
         if is_smoothed {
             means::<N, L>(region, scratch, law, relaxing, false)?;
-            let has_beside = region.fibres.is_some() || relaxing.is_there();
-            if region.edge_share == 1.0 && !has_beside {
+            if region.edge_share == 1.0 && !ALL {
                 return Ok(());
             }
         }
@@ -100,8 +107,11 @@ impl<L: HyperelasticLaw, F: FnMut(u32, [[f64; 3]; 3])> WithReal<f64> for Sweep<'
             };
             let gradients = rest.all_gradients::<N>(first);
             for (vertex, gradient) in gradients.into_iter().enumerate() {
-                let beside = block_beside(region, relaxing, first, &at.deformation, gradient);
-                let block = own_block(law, &at, left, gradient) + beside;
+                let mut block = own_block(law, &at, left, gradient);
+                if ALL {
+                    let at = &at.deformation;
+                    block = block + block_beside(region, relaxing, first, at, gradient);
+                }
                 store(block.scaled(rest.volumes(first)), &mut lanes);
                 let nodes = rest.side_by_side(vertex, first..first + N::LANES);
                 for (node, block) in nodes.iter().zip(&lanes) {
@@ -113,7 +123,7 @@ impl<L: HyperelasticLaw, F: FnMut(u32, [[f64; 3]; 3])> WithReal<f64> for Sweep<'
     }
 }
 
-impl<F: FnMut(u32, [[f64; 3]; 3])> Blocks<'_, F> {
+impl Blocks<'_> {
     /// Adds what belongs to means, where they are taken.
     fn at_edges_and_patches<L: HyperelasticLaw>(self, law: &L) -> Result<(), EvaluationError> {
         let Self {

@@ -68,28 +68,36 @@ impl LawVisitor for Products<'_> {
             }
         };
         let set = self.set;
-        let sweep = Sweep {
+        let projects = Linearised::<f64, L>::projects(&law, kind);
+        let sweep = Sweep::<L, false> {
             products: self,
             law,
             kind,
         };
-        f64::with_vectors_or_numbers(set, sweep)
+        if sweep.products.region.has_beside() || projects {
+            sweep.of_all().run::<f64>()
+        } else {
+            f64::with_vectors_or_numbers(set, sweep)
+        }
     }
 }
 
-/// All loops over a region, for one law and one kind of tangent.
-struct Sweep<'a, L> {
+/// All loops over a region, for one law and one kind of tangent. `ALL` is whether they know projections and what stands beside the law: this
+/// is compiled for plain numbers only, as it would double what there is to compile.
+struct Sweep<'a, L, const ALL: bool> {
     products: Products<'a>,
     law: L,
     kind: TangentKind,
 }
 
-impl<L: HyperelasticLaw> WithReal<f64> for Sweep<'_, L> {
+impl<L: HyperelasticLaw, const ALL: bool> WithReal<f64> for Sweep<'_, L, ALL> {
     type Output = Result<(), EvaluationError>;
 
     #[inline(always)]
     fn run<N: Number<Real = f64>>(self) -> Self::Output {
-        if self.products.region.is_smoothed() {
+        if !ALL && N::LANES == 1 {
+            self.of_all().run::<f64>()
+        } else if self.products.region.is_smoothed() {
             self.smoothed::<N>()
         } else {
             self.plain::<N>()
@@ -97,7 +105,15 @@ impl<L: HyperelasticLaw> WithReal<f64> for Sweep<'_, L> {
     }
 }
 
-impl<L: HyperelasticLaw> Sweep<'_, L> {
+impl<'a, L: HyperelasticLaw, const ALL: bool> Sweep<'a, L, ALL> {
+    fn of_all(self) -> Sweep<'a, L, true> {
+        Sweep {
+            products: self.products,
+            law: self.law,
+            kind: self.kind,
+        }
+    }
+
     #[inline(always)]
     fn plain<N: Number<Real = f64>>(self) -> Result<(), EvaluationError> {
         let Products {
@@ -115,9 +131,12 @@ impl<L: HyperelasticLaw> Sweep<'_, L> {
             require::<L, N>(region, &relaxing, &at.deformation, first)?;
             let change = rest.gradient_of::<N>(first, &scratch.change);
             let left = left_of_tets(region, &relaxing, &law, &at, first);
-            let own = OwnTangent::of(&law, &at, left, self.kind);
-            let beside = TangentBeside::of(region, &relaxing, first, &at.deformation, how);
-            let stress = beside.with(own.on(change), change);
+            let own = OwnTangent::among::<ALL>(&law, &at, left, self.kind);
+            let mut stress = own.on(change);
+            if ALL {
+                let beside = TangentBeside::of(region, &relaxing, first, &at.deformation, how);
+                stress = beside.with(stress, change);
+            }
             rest.forces(first, stress, &mut corners[4 * first..]);
         }
         Ok(())
@@ -138,7 +157,7 @@ impl<L: HyperelasticLaw> Sweep<'_, L> {
         for first in (0..region.edges.count()).step_by(N::LANES) {
             let at = at_edges::<N, L>(region, &law, first, &scratch.gradients, &relaxing)?;
             let change = mean_at_edges::<N>(region, first, &scratch.changes);
-            let tangent = EdgeTangent::of(&law, &at, (region, &relaxing, first), kind);
+            let tangent = EdgeTangent::among::<ALL>(&law, &at, (region, &relaxing, first), kind);
             let to = &mut scratch.at_edges[first..first + N::LANES];
             store(tangent.on(change), to);
         }
@@ -153,7 +172,7 @@ impl<L: HyperelasticLaw> Sweep<'_, L> {
                 region.stiffness_of_patch(patch(lane)) * scratch.dilations[patch(lane)][1]
             });
             let left = left_of_smoothed(region, &relaxing, &law, &at, (first, dilation));
-            let own = OwnTangent::of(&law, &at, left, kind);
+            let own = OwnTangent::among::<ALL>(&law, &at, left, kind);
             let mut stress = own.on(change);
             let of_patch = N::of(lambda) * dilation_change;
             stress = stress.plus(of_patch, law.dilation_gradient(&at));
@@ -166,8 +185,10 @@ impl<L: HyperelasticLaw> Sweep<'_, L> {
                 }
                 stress = stress.plus(N::of(region.edge_share / 6.0), load(&sums));
             }
-            let beside = TangentBeside::of(region, &relaxing, first, &at.deformation, how);
-            stress = beside.with(stress, change);
+            if ALL {
+                let beside = TangentBeside::of(region, &relaxing, first, &at.deformation, how);
+                stress = beside.with(stress, change);
+            }
             rest.forces(first, stress, &mut corners[4 * first..]);
         }
         Ok(())
@@ -225,8 +246,18 @@ pub(super) struct OwnTangent<'a, N: Number, L: HyperelasticLaw> {
 }
 
 impl<'a, N: Number, L: HyperelasticLaw> OwnTangent<'a, N, L> {
-    #[inline(always)]
     pub(super) fn of(
+        law: &'a L,
+        at: &'a Point<N, L::Own<N>>,
+        left: (N, Bulk<N>),
+        kind: TangentKind,
+    ) -> Self {
+        Self::among::<true>(law, at, left, kind)
+    }
+
+    /// The tangent of a kind, which is not projected unless all kinds are among those to choose from.
+    #[inline(always)]
+    fn among<const ALL: bool>(
         law: &'a L,
         at: &'a Point<N, L::Own<N>>,
         (share, bulk): (N, Bulk<N>),
@@ -247,10 +278,15 @@ impl<'a, N: Number, L: HyperelasticLaw> OwnTangent<'a, N, L> {
             stress: bulk.stress / share,
             modulus: bulk.modulus / share,
         };
+        let linearised = if ALL {
+            Linearised::of(law, at, bulk, kind)
+        } else {
+            Linearised::as_it_is(law, at, bulk, kind)
+        };
         Self {
             law,
             at,
-            linearised: Some((share, Linearised::of(law, at, bulk, kind))),
+            linearised: Some((share, linearised)),
             bulk_stress: none,
         }
     }
@@ -276,8 +312,18 @@ pub(super) struct EdgeTangent<'a, N: Number, L: HyperelasticLaw> {
 }
 
 impl<'a, N: Number<Real = f64>, L: HyperelasticLaw> EdgeTangent<'a, N, L> {
-    #[inline(always)]
     pub(super) fn of(
+        law: &'a L,
+        at: &'a Point<N, L::Own<N>>,
+        place: (&HyperelasticRegion, &Relaxing<'_>, usize),
+        kind: TangentKind,
+    ) -> Self {
+        Self::among::<true>(law, at, place, kind)
+    }
+
+    /// As [`OwnTangent::among`].
+    #[inline(always)]
+    fn among<const ALL: bool>(
         law: &'a L,
         at: &'a Point<N, L::Own<N>>,
         (region, relaxing, first): (&HyperelasticRegion, &Relaxing<'_>, usize),
@@ -287,8 +333,12 @@ impl<'a, N: Number<Real = f64>, L: HyperelasticLaw> EdgeTangent<'a, N, L> {
         let left = relaxing.left_of(stiffness, Bulk::none(), law.dilation(at));
         let is_exact = kind == TangentKind::Exact;
         Self {
-            own: OwnTangent::of(law, at, left, kind),
-            carried: relaxing.carried_tensor(Points::Edges, first, is_exact),
+            own: OwnTangent::among::<ALL>(law, at, left, kind),
+            carried: if ALL {
+                relaxing.carried_tensor(Points::Edges, first, is_exact)
+            } else {
+                None
+            },
         }
     }
 

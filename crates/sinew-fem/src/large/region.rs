@@ -210,6 +210,11 @@ impl HyperelasticRegion {
         place.min(self.edges.count().saturating_sub(1))
     }
 
+    /// Whether there is stress beside the law's: that of fibres, or what is left of earlier stress.
+    pub(super) fn has_beside(&self) -> bool {
+        self.fibres.is_some() || self.memory.is_some()
+    }
+
     /// Whether tetrahedra take any mean with others.
     pub(super) fn is_smoothed(&self) -> bool {
         !self.patch_of.is_empty()

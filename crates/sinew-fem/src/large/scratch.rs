@@ -81,14 +81,12 @@ impl<T: Real> Kept<T> {
         with: T,
     ) -> Self {
         let smoothed = || regions.iter().filter(|region| region.is_smoothed());
-        let has_beside =
-            |region: &HyperelasticRegion| region.fibres.is_some() || region.memory.is_some();
         let keep = regions
             .iter()
-            .filter(|region| region.is_smoothed() || has_beside(region));
+            .filter(|region| region.is_smoothed() || region.has_beside());
         let chunks = keep.flat_map(|region| &region.chunks);
         let gradients = 9 * chunks.map(|chunk| chunk.slots.len()).max().unwrap_or(0);
-        let beside = if regions.iter().any(has_beside) {
+        let beside = if regions.iter().any(HyperelasticRegion::has_beside) {
             gradients
         } else {
             0
