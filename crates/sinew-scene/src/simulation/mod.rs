@@ -144,7 +144,7 @@ impl Simulation {
     /// is the same in all states, its warnings tell.
     #[must_use]
     pub fn outrun(&self, integrator: &dyn Stepper, state: &State) -> Option<String> {
-        step::outrun(self, integrator, state)
+        step::outrun(self.system(), self.dt, integrator, state)
     }
 
     /// The steps that cover the duration. A body counts as diverged when a displacement exceeds 100

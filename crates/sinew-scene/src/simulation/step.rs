@@ -4,7 +4,6 @@ use sinew_core::{Options, StableStep, State, System};
 use sinew_integrators::Stepper;
 use sinew_integrators::explicit::{Substepped, Substeps};
 
-use super::Simulation;
 use crate::error::{NoStableStep, StableStepError};
 use crate::number::short;
 use crate::scene::{RunSettings, TimeStep};
@@ -60,17 +59,16 @@ pub(super) fn seconds(
     }
 }
 
-/// See [`Simulation::outrun`].
+/// What is to be said where a step (s) is beyond the stable one of the deformed body.
 pub(super) fn outrun(
-    simulation: &Simulation,
+    system: &dyn System,
+    dt: f64,
     integrator: &dyn Stepper,
     state: &State,
 ) -> Option<String> {
-    let system = simulation.system();
     if system.as_linear().is_some() {
         return None;
     }
-    let dt = simulation.dt();
     match integrator.stable_step_about(system, Some(state)) {
         Ok(StableStep::UpTo(limit)) if dt > limit => Some(format!(
             "dt = {dt} s is {} times the stable step of `{}` about the body as it is at t = {} s, {} s: its fastest motions are wrong; \
