@@ -26,7 +26,8 @@ pub enum StaticError {
     },
     /// The equilibrium of a nonlinear law could be followed from the undeformed body to a share of the load only.
     #[error(
-        "the equilibrium was followed up to {:.2} % of the load; beyond that none was found: {source}",
+        "the equilibrium was followed up to {:.2} % of the load; beyond that none was found: {source}. Where a body gives way, a run from rest \
+         under the load with [damping] shows where it settles",
         100.0 * share
     )]
     Unreached {

@@ -77,6 +77,25 @@ impl StepEquations<'_> {
         }
     }
 
+    /// Writes the net force (N) into the residual, from the elastic one, which is known; only the tangent of stiffness damping takes another sweep.
+    fn net_force(&self, point: &mut Point, work: &mut StepReport) -> Result<(), EvaluationError> {
+        let (trial, system, damping) = (self.trial(), self.step.system, self.law.damping());
+        let net = &mut point.residual;
+        if damping.stiffness != 0.0 {
+            work.sweeps += 1;
+            return system.net_force(&trial, net);
+        }
+        system.external_force(trial.load, trial.u, net);
+        let forces = net.iter_mut().zip(&point.elastic);
+        for (((net, elastic), mass), v) in forces.zip(system.mass()).zip(trial.v) {
+            *net -= elastic + damping.mass * mass * v;
+        }
+        if let Some(extra) = &damping.extra {
+            extra.subtract_product(trial.v, net);
+        }
+        Ok(())
+    }
+
     /// Sets x so that the displacement is the state's moved on by its velocity for a time (s), as far as x moves it.
     fn begin_at(&self, after: f64, x: &mut [f64]) {
         let reach = self.unknown.reach();
@@ -98,11 +117,9 @@ impl Equations for StepEquations<'_> {
         work: &mut StepReport,
     ) -> Result<(), EvaluationError> {
         self.place(&point.x);
-        work.sweeps += 1;
-        let deformed = self.law.elastic_force(&self.trial(), &mut point.elastic)?;
         *work += StepReport::ONE_FORCE;
-        let trial = self.trial();
-        self.step.system.net_force(&trial, &mut point.residual)?;
+        let deformed = self.law.elastic_force(&self.trial(), &mut point.elastic)?;
+        self.net_force(point, work)?;
         let Unknown {
             of_forces: c,
             of_last_inertia: m,
