@@ -1,6 +1,6 @@
 //! Energy that comes from nothing, where no table of energies is written.
 
-use sinew_core::{LoadTime, Moment, Ramp, RecordError, Recorder, State, System, Verdict};
+use sinew_core::{Energy, LoadTime, Moment, Ramp, RecordError, Recorder, State, System, Verdict};
 use sinew_scene::Simulation;
 
 use crate::summary::THERMAL;
@@ -68,7 +68,7 @@ impl EnergyGrowth {
         system.external_force(LoadTime::at(state.t()), &state.u, &mut self.load);
         // Without a finite energy there is none to tell.
         let energy = system.energy(&state.u, &state.v);
-        let energy = energy.map_or(f64::INFINITY, |energy| energy.total());
+        let energy = energy.map_or(f64::INFINITY, Energy::total);
         if is_first {
             self.given = energy;
         } else {
