@@ -18,7 +18,6 @@ use super::region::{HyperelasticRegion, Numbers};
 use super::rooms::{RegionRooms, Rooms};
 use super::schedule::{Piece, Task};
 use super::scratch::Places;
-use super::stiffness::times;
 use crate::hyperelastic::prony::{deviatoric, first_piola};
 use crate::hyperelastic::{HyperelasticLaw, LawVisitor};
 
@@ -221,6 +220,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         found: &mut Found<N>,
     ) -> Result<(), EvaluationError> {
         let (region, rest, places) = (self.region, &*self.numbers.rest, &self.places);
+        let stiffness = self.numbers.stiffness.as_deref();
         let mut remembering = self.remembering();
         let mut sums = [[[T::default(); 4]; 3]; LANES];
         for first in edges.step_by(N::LANES) {
@@ -236,11 +236,9 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                 tets.first().map_or(0, |tet| rest.tag(*tet as usize))
             };
             require_law::<L, N>(&at.deformation, tag)?;
-            let stiffness = self.numbers.stiffness.as_ref();
-            let share = stiffness.map(|stiffness| stiffness.at_edges::<N>(first));
             let mut stress = self.law.stress(&at);
-            if let Some(share) = share {
-                stress = stress.scaled(share);
+            if let Some(stiffness) = stiffness {
+                stress = stress.scaled(stiffness.at_edges(first));
             }
             if let Some(remembering) = &mut remembering {
                 if remembering.is_deviatoric() {
@@ -251,14 +249,19 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             }
             let mut density = N::of(0.0);
             if self.with_energy {
-                density = times(share, self.law.energy(&at));
+                density = self.law.energy(&at);
+                if let Some(stiffness) = stiffness {
+                    density = stiffness.at_edges::<N>(first) * density;
+                }
             }
             if self.relaxing.is_there() {
                 require_memory(&self.relaxing, &at.deformation, tag)?;
                 let factor = N::of(self.relaxing.factor);
                 let half = N::of(0.5) * self.law.dilation(&at);
-                let left = N::of(self.relaxing.bulk_left()) * self.law.dilation(&at);
-                let left = times(share, left);
+                let mut left = N::of(self.relaxing.bulk_left()) * self.law.dilation(&at);
+                if let Some(stiffness) = stiffness {
+                    left = stiffness.at_edges::<N>(first) * left;
+                }
                 let gradient = self.law.dilation_gradient(&at);
                 stress = stress.scaled(factor).plus(left, gradient);
                 density = half.mul_add(left, factor * density);
@@ -339,6 +342,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             )
         };
         let (kept, beside) = kept.split_at(places.gradients_of_chunk);
+        let stiffness = self.numbers.stiffness.as_deref();
         let mut sums = [[[T::default(); 4]; 3]; LANES];
         for first in slots.clone().step_by(N::LANES) {
             let own = first - slots.start;
@@ -354,12 +358,7 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             } else {
                 self.law.dilation(&at)
             };
-            let stiffness = self.numbers.stiffness.as_ref();
-            let share = stiffness.map(|stiffness| stiffness.of_tets::<N>(first));
             let mut bulk = N::of(lambda) * dilation;
-            if !is_smoothed {
-                bulk = times(share, bulk);
-            }
             if self.with_energy {
                 found.note(first, at.volume_ratio, rest);
                 let mut density = N::of(own_share) * self.law.energy(&at);
@@ -368,15 +367,21 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
                     let left = N::of(own_share * self.relaxing.bulk_left());
                     density = left.mul_add(half, N::of(self.relaxing.factor) * density);
                 }
-                density = times(share, density);
                 if !is_smoothed {
                     density = (N::of(0.5) * dilation).mul_add(bulk, density);
+                }
+                if let Some(stiffness) = stiffness {
+                    density = stiffness.of_tets::<N>(first) * density;
                 }
                 found.energy = rest.volumes::<N>(first).mul_add(density, found.energy);
             }
             let mut stress = self.law.stress(&at);
-            if let Some(share) = share {
+            if let Some(stiffness) = stiffness {
+                let share = stiffness.of_tets::<N>(first);
                 stress = stress.scaled(share);
+                if !is_smoothed {
+                    bulk = share * bulk;
+                }
             }
             if let Some(remembering) = &mut remembering {
                 stress = stress.scaled(N::of(own_share));
@@ -393,7 +398,10 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
             }
             if is_relaxing {
                 stress = stress.scaled(N::of(self.relaxing.factor));
-                let left = times(share, N::of(own_share * self.relaxing.bulk_left()));
+                let mut left = N::of(own_share * self.relaxing.bulk_left());
+                if let Some(stiffness) = stiffness {
+                    left = stiffness.of_tets::<N>(first) * left;
+                }
                 bulk = left.mul_add(self.law.dilation(&at), bulk);
             }
             if has_edges {

@@ -70,12 +70,3 @@ impl<T: Real> Stiffness<T> {
         self.patches[patch]
     }
 }
-
-/// A number times a share, where there is one.
-#[inline(always)]
-pub(super) fn times<N: Number>(share: Option<N>, number: N) -> N {
-    match share {
-        Some(share) => share * number,
-        None => number,
-    }
-}
