@@ -97,10 +97,8 @@ impl<L: HyperelasticLaw, const ALL: bool> WithReal<f64> for Sweep<'_, L, ALL> {
     fn run<N: Number<Real = f64>>(self) -> Self::Output {
         if !ALL && N::LANES == 1 {
             self.of_all().run::<f64>()
-        } else if self.products.region.is_smoothed() {
-            self.smoothed::<N>()
         } else {
-            self.plain::<N>()
+            self.tets::<N>()
         }
     }
 }
@@ -114,36 +112,34 @@ impl<'a, L: HyperelasticLaw, const ALL: bool> Sweep<'a, L, ALL> {
         }
     }
 
+    /// Takes the means, where there are any, and the change of the stress at their edges.
     #[inline(always)]
-    fn plain<N: Number<Real = f64>>(self) -> Result<(), EvaluationError> {
+    fn means<N: Number<Real = f64>>(&mut self) -> Result<(), EvaluationError> {
         let Products {
             region,
             scratch,
             relaxing,
-            wanted,
             ..
-        } = self.products;
-        let (rest, law) = (&region.rest, self.law);
-        let how = (self.kind, wanted == Wanted::Stiffest);
-        let corners = &mut scratch.corners[4 * region.first..];
-        for first in (0..rest.count()).step_by(N::LANES) {
-            let at = law.at(rest.gradient_of::<N>(first, &scratch.displacement));
-            require::<L, N>(region, &relaxing, &at.deformation, first)?;
-            let change = rest.gradient_of::<N>(first, &scratch.change);
-            let left = left_of_tets(region, &relaxing, &law, &at, first);
-            let own = OwnTangent::among::<ALL>(&law, &at, left, self.kind);
-            let mut stress = own.on(change);
-            if ALL {
-                let beside = TangentBeside::of(region, &relaxing, first, &at.deformation, how);
-                stress = beside.with(stress, change);
-            }
-            rest.forces(first, stress, &mut corners[4 * first..]);
+        } = &mut self.products;
+        means::<N, L>(region, scratch, &self.law, relaxing, true)?;
+        for first in (0..region.edges.count()).step_by(N::LANES) {
+            let at = at_edges::<N, L>(region, &self.law, first, &scratch.gradients, relaxing)?;
+            let change = mean_at_edges::<N>(region, first, &scratch.changes);
+            let place = (*region, &*relaxing, first);
+            let tangent = EdgeTangent::among::<ALL>(&self.law, &at, place, self.kind);
+            let to = &mut scratch.at_edges[first..first + N::LANES];
+            store(tangent.on(change), to);
         }
         Ok(())
     }
 
+    /// Writes the change of the forces.
     #[inline(always)]
-    fn smoothed<N: Number<Real = f64>>(self) -> Result<(), EvaluationError> {
+    fn tets<N: Number<Real = f64>>(mut self) -> Result<(), EvaluationError> {
+        let is_smoothed = self.products.region.is_smoothed();
+        if is_smoothed {
+            self.means::<N>()?;
+        }
         let Products {
             region,
             scratch,
@@ -152,30 +148,36 @@ impl<'a, L: HyperelasticLaw, const ALL: bool> Sweep<'a, L, ALL> {
             ..
         } = self.products;
         let (rest, law, kind) = (&region.rest, self.law, self.kind);
-        let how = (kind, wanted == Wanted::Stiffest);
-        means::<N, L>(region, scratch, &law, &relaxing, true)?;
-        for first in (0..region.edges.count()).step_by(N::LANES) {
-            let at = at_edges::<N, L>(region, &law, first, &scratch.gradients, &relaxing)?;
-            let change = mean_at_edges::<N>(region, first, &scratch.changes);
-            let tangent = EdgeTangent::among::<ALL>(&law, &at, (region, &relaxing, first), kind);
-            let to = &mut scratch.at_edges[first..first + N::LANES];
-            store(tangent.on(change), to);
-        }
         let lambda = relaxing.factor_of_dilation() * law.lame().0;
         let corners = &mut scratch.corners[4 * region.first..];
         for first in (0..rest.count()).step_by(N::LANES) {
-            let at = law.at(load(&scratch.gradients[first..]));
-            let change = load(&scratch.changes[first..]);
-            let patch = |lane: usize| region.patch_of[first + lane] as usize;
-            let dilation = N::from_lanes(|lane| scratch.dilations[patch(lane)][0]);
-            let dilation_change = N::from_lanes(|lane| {
-                region.stiffness_of_patch(patch(lane)) * scratch.dilations[patch(lane)][1]
-            });
-            let left = left_of_smoothed(region, &relaxing, &law, &at, (first, dilation));
+            let (gradient, change): (Tensor<N>, Tensor<N>) = if is_smoothed {
+                (
+                    load(&scratch.gradients[first..]),
+                    load(&scratch.changes[first..]),
+                )
+            } else {
+                (
+                    rest.gradient_of(first, &scratch.displacement),
+                    rest.gradient_of(first, &scratch.change),
+                )
+            };
+            let at = law.at(gradient);
+            let mut dilation_change = N::of(0.0);
+            let left = if is_smoothed {
+                let patch = |lane: usize| region.patch_of[first + lane] as usize;
+                let dilation = N::from_lanes(|lane| scratch.dilations[patch(lane)][0]);
+                dilation_change = N::from_lanes(|lane| {
+                    region.stiffness_of_patch(patch(lane)) * scratch.dilations[patch(lane)][1]
+                });
+                left_of_smoothed(region, &relaxing, &law, &at, (first, dilation))
+            } else {
+                require::<L, N>(region, &relaxing, &at.deformation, first)?;
+                left_of_tets(region, &relaxing, &law, &at, first)
+            };
             let own = OwnTangent::among::<ALL>(&law, &at, left, kind);
-            let mut stress = own.on(change);
             let of_patch = N::of(lambda) * dilation_change;
-            stress = stress.plus(of_patch, law.dilation_gradient(&at));
+            let mut stress = own.on(change).plus(of_patch, law.dilation_gradient(&at));
             if !region.edges_of.is_empty() {
                 let mut sums = [[[0.0; 4]; 3]; LANES];
                 for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
@@ -186,6 +188,7 @@ impl<'a, L: HyperelasticLaw, const ALL: bool> Sweep<'a, L, ALL> {
                 stress = stress.plus(N::of(region.edge_share / 6.0), load(&sums));
             }
             if ALL {
+                let how = (kind, wanted == Wanted::Stiffest);
                 let beside = TangentBeside::of(region, &relaxing, first, &at.deformation, how);
                 stress = beside.with(stress, change);
             }
