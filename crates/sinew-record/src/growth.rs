@@ -3,7 +3,7 @@
 use sinew_core::{Energy, LoadTime, Moment, Ramp, RecordError, Recorder, State, System, Verdict};
 use sinew_scene::Simulation;
 
-use crate::summary::THERMAL;
+use crate::made_energy::{THERMAL, has_stored_energy, remedy};
 
 /// Most looks at a run.
 const MOST_LOOKS: usize = 16;
@@ -18,7 +18,7 @@ const FAR_BEYOND: f64 = 2.0;
 /// and the work of the loads.
 ///
 /// Work is added up by component, without signs, and damping is left out: what is told is wrong for certain. Supports that move bring in
-/// work too, and loads that come and go do between two looks, so that such scenes are not looked at.
+/// work too, loads that come and go do between two looks, and what a deformed start stored in a memory comes back, so that such scenes are not looked at.
 #[derive(Debug)]
 pub struct EnergyGrowth {
     /// None where nothing is looked at.
@@ -30,6 +30,7 @@ pub struct EnergyGrowth {
     before: Vec<f64>,
     load: Vec<f64>,
     load_before: Vec<f64>,
+    remedy: &'static str,
     grown: Option<String>,
 }
 
@@ -44,7 +45,8 @@ impl EnergyGrowth {
                 let grows = |ramp: &Ramp| matches!(ramp, Ramp::Step | Ramp::Sin2 { .. });
                 let mut loads = body.problem.loads.iter();
                 body.problem.moves.is_empty() && loads.all(|load| grows(&load.ramp))
-            });
+            })
+            && !has_stored_energy(simulation);
         Self {
             spacing: can_tell.then(|| end.div_ceil(looks).max(1)),
             end,
@@ -52,6 +54,7 @@ impl EnergyGrowth {
             before: Vec::new(),
             load: Vec::new(),
             load_before: Vec::new(),
+            remedy: remedy(simulation),
             grown: None,
         }
     }
@@ -88,10 +91,10 @@ impl EnergyGrowth {
                     "more energy than numbers can tell".to_owned()
                 };
                 self.grown = Some(format!(
-                    "the motion has {has} at t = {} s, where start and loads account for {:.3e} J: it is wrong; take a shorter \
-                     step, or dt = \"auto\"",
+                    "the motion has {has} at t = {} s, where start and loads account for {:.3e} J: it is wrong; {}",
                     state.t(),
-                    self.given
+                    self.given,
+                    self.remedy
                 ));
             }
         }

@@ -42,6 +42,7 @@ mod folder_size;
 mod frame_writer;
 mod frames;
 mod growth;
+mod made_energy;
 #[cfg(feature = "implicit")]
 mod modes;
 mod pace;

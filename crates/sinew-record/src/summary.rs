@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 use sinew_integrators::Stepper;
 use sinew_scene::{Simulation, options_json};
 
+use crate::made_energy::{THERMAL, has_stored_energy, remedy};
 use crate::progress::{Largest, Progress, Seen};
 use crate::recorder::Schedules;
 use crate::request::Record;
@@ -81,16 +82,14 @@ pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
 /// Share of the largest energy beyond which a motion is wrong whose balance has so much too much.
 const MADE_ENERGY: f64 = 0.1;
 
-/// Energy (J) of a degree of freedom in a body at room temperature: what is below is no motion.
-pub(crate) const THERMAL: f64 = 4e-21;
-
 /// A warning where a motion of large deformation has more energy than it was given. What a method takes is no such sign.
 pub(crate) fn made_energy(simulation: &Simulation, progress: &Progress) -> Option<String> {
     let [most, made] = progress.balance;
-    let is_large = simulation.system().as_linear().is_none();
-    (is_large && made > MADE_ENERGY * most && made > THERMAL).then(|| {
+    let is_known = simulation.system().as_linear().is_none() && !has_stored_energy(simulation);
+    (is_known && made > MADE_ENERGY * most && made > THERMAL).then(|| {
         format!(
-            "the motion has {made:.3e} J more than it was given, of {most:.3e} J at most: its fastest part is wrong; take a shorter step, or dt = \"auto\""
+            "the motion has {made:.3e} J more than it was given, of {most:.3e} J at most: its fastest part is wrong; {}",
+            remedy(simulation)
         )
     })
 }

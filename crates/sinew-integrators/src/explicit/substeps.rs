@@ -107,8 +107,8 @@ const PARTS_BETWEEN_GLANCES: u32 = 4;
 /// Growth of the stiffest cell beyond which its stiffness no longer tells the stable step well enough.
 const MUCH_STIFFER: f64 = 4.0;
 
-/// Change of a cell's velocity in a step, as the share of its size that it moves by in that time, from which on the stiffness is
-/// looked at at once.
+/// Change of a cell's velocity in a step, as the share of its size that it moves by in that time, or motion against a neighbour in it, from which on
+/// the stiffness is looked at at once.
 const MUCH_MOTION: f64 = 0.05;
 
 /// Largest number of parts into which the current stiffness may cut what takes two parts at rest: where it takes more, something is wrong, and a
@@ -336,19 +336,45 @@ impl Substepped {
         Ok(parts)
     }
 
-    /// Whether some cell was accelerated so much since the step of `dt` (s) began that strains, and with them the stiffness, may have changed.
+    /// Whether some cell was accelerated, or moved against a neighbour, so much since the step of `dt` (s) began that strains, and with them the
+    /// stiffness, may have changed.
     fn is_thrown(&self, dt: f64, system: &dyn System, state: &State) -> bool {
         let Some(scales) = system.scales() else {
             return false;
         };
         let layers = system.layers().count();
-        let cells = state.v.chunks_exact(layers);
-        let cells = cells.zip(self.kept.v.chunks_exact(layers));
-        let mut cells = cells.zip(scales.cell_size);
-        cells.any(|((v, before), size)| {
-            let squares = v.iter().zip(before).map(|(v, before)| (v - before).powi(2));
-            dt * dt * squares.sum::<f64>() > (MUCH_MOTION * size).powi(2)
-        })
+        let squares = |now: &[f64], before: &[f64]| -> f64 {
+            let change = now.iter().zip(before).map(|(now, before)| now - before);
+            change.map(|change| change.powi(2)).sum()
+        };
+        let cells = |now: &[f64], before: &[f64], factor: f64| {
+            let cells = now.chunks_exact(layers).zip(before.chunks_exact(layers));
+            let mut cells = cells.zip(scales.cell_size);
+            cells.any(|((now, before), size)| {
+                factor * factor * squares(now, before) > (MUCH_MOTION * size).powi(2)
+            })
+        };
+        if cells(&state.v, &self.kept.v, dt) {
+            return true;
+        }
+        // Few motions get so far that neighbours have to be compared.
+        if !cells(&state.u, &self.kept.u, 1.0) {
+            return false;
+        }
+        let Some(elastic) = system.as_elastic() else {
+            return false;
+        };
+        let pattern = elastic.pattern();
+        let moved = |dof: usize| state.u[dof] - self.kept.u[dof];
+        (0..pattern.cells())
+            .zip(scales.cell_size)
+            .any(|(cell, size)| {
+                pattern.neighbours(cell).iter().any(|other| {
+                    let [own, other] = [cell, *other as usize].map(|cell| layers * cell);
+                    let apart = (0..layers).map(|layer| moved(own + layer) - moved(other + layer));
+                    apart.map(|apart| apart.powi(2)).sum::<f64>() > (MUCH_MOTION * size).powi(2)
+                })
+            })
     }
 
     /// A cut by the stable step about a state.

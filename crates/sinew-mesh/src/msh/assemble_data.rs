@@ -1,5 +1,7 @@
 //! Brings values under tags into the order of points and cells.
 
+use std::ops::Range;
+
 use super::data::{Holder, RawData};
 use super::fault::Fault;
 use super::remarks::Remarks;
@@ -50,7 +52,8 @@ pub(super) fn add(
             }
             Holder::Elements => {
                 let blocks = cell_values(&data, &mesh.cells, &elements, &mut rows);
-                rows.remark(&data, "cells", elements.cells, remarks);
+                let cells = rows.leave_out_other_types(&mesh.cells);
+                rows.remark(&data, "cells", cells, remarks);
                 mesh.cell_data.push(CellData {
                     name: data.name,
                     step: data.step,
@@ -61,7 +64,8 @@ pub(super) fn add(
             }
             Holder::ElementNodes => {
                 let blocks = cell_node_values(&data, &mesh.cells, &elements, &mut rows)?;
-                rows.remark(&data, "cells", elements.cells, remarks);
+                let cells = rows.leave_out_other_types(&mesh.cells);
+                rows.remark(&data, "cells", cells, remarks);
                 mesh.cell_node_data.push(CellNodeData {
                     name: data.name,
                     step: data.step,
@@ -164,6 +168,26 @@ impl RowCount {
             self.first_unknown = tag;
         }
         self.unknown += 1;
+    }
+
+    /// Leaves out cells of types of which none has a value, such as triangles beside tetrahedra that have; returns how many are left.
+    fn leave_out_other_types(&mut self, cells: &[CellBlock]) -> usize {
+        let (mut begin, mut ranges) = (0, Vec::with_capacity(cells.len()));
+        for block in cells {
+            ranges.push((block.kind, begin..begin + block.len()));
+            begin += block.len();
+        }
+        let has_values = |range: &Range<usize>| self.given[range.clone()].contains(&true);
+        let with_values = ranges.iter().filter(|(_, range)| has_values(range));
+        let kinds: Vec<CellType> = with_values.map(|(kind, _)| *kind).collect();
+        let mut left = begin;
+        for (kind, range) in ranges {
+            if !kinds.is_empty() && !kinds.contains(&kind) {
+                left -= range.len();
+                self.given[range].fill(true);
+            }
+        }
+        left
     }
 
     fn remark(&self, data: &RawData, holders: &str, total: usize, remarks: &mut Remarks) {
