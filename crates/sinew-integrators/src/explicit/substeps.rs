@@ -111,6 +111,10 @@ const MUCH_STIFFER: f64 = 4.0;
 /// the stiffness is looked at at once.
 const MUCH_MOTION: f64 = 0.05;
 
+/// Most motion of a cell against a neighbour in a part, as a share of its size: with more, strains pass by within a part, and energy comes from
+/// nothing although each part is stable.
+const MOST_MOTION: f64 = 0.15;
+
 /// Largest number of parts into which the current stiffness may cut what takes two parts at rest: where it takes more, something is wrong, and a
 /// run would not end.
 const MOST_PARTS: u32 = 1000;
@@ -287,6 +291,10 @@ impl Substepped {
                 return Ok(needed);
             }
         }
+        let motion = self.motion(batch.system(), state);
+        if motion > MOST_MOTION * f64::from(parts) {
+            return Ok(whole(motion / MOST_MOTION));
+        }
         state.cut = Some(cut);
         Ok(parts)
     }
@@ -343,38 +351,34 @@ impl Substepped {
             return false;
         };
         let layers = system.layers().count();
-        let squares = |now: &[f64], before: &[f64]| -> f64 {
-            let change = now.iter().zip(before).map(|(now, before)| now - before);
-            change.map(|change| change.powi(2)).sum()
+        let velocities = [&*state.v, &*self.kept.v];
+        largest_share(velocities, scales.cell_size, layers) * dt > MUCH_MOTION
+            || self.motion(system, state) > MUCH_MOTION
+    }
+
+    /// The largest motion of a cell against a neighbour since the step began, over its size; 0 where none moved by more than [`MUCH_MOTION`] of
+    /// its size at all, as in most steps.
+    fn motion(&self, system: &dyn System, state: &State) -> f64 {
+        let (Some(scales), Some(elastic)) = (system.scales(), system.as_elastic()) else {
+            return 0.0;
         };
-        let cells = |now: &[f64], before: &[f64], factor: f64| {
-            let cells = now.chunks_exact(layers).zip(before.chunks_exact(layers));
-            let mut cells = cells.zip(scales.cell_size);
-            cells.any(|((now, before), size)| {
-                factor * factor * squares(now, before) > (MUCH_MOTION * size).powi(2)
-            })
-        };
-        if cells(&state.v, &self.kept.v, dt) {
-            return true;
+        let layers = system.layers().count();
+        let sizes = scales.cell_size;
+        if largest_share([&*state.u, &*self.kept.u], sizes, layers) <= MUCH_MOTION {
+            return 0.0;
         }
-        // Few motions get so far that neighbours have to be compared.
-        if !cells(&state.u, &self.kept.u, 1.0) {
-            return false;
-        }
-        let Some(elastic) = system.as_elastic() else {
-            return false;
-        };
         let pattern = elastic.pattern();
         let moved = |dof: usize| state.u[dof] - self.kept.u[dof];
-        (0..pattern.cells())
-            .zip(scales.cell_size)
-            .any(|(cell, size)| {
-                pattern.neighbours(cell).iter().any(|other| {
-                    let [own, other] = [cell, *other as usize].map(|cell| layers * cell);
-                    let apart = (0..layers).map(|layer| moved(own + layer) - moved(other + layer));
-                    apart.map(|apart| apart.powi(2)).sum::<f64>() > (MUCH_MOTION * size).powi(2)
-                })
-            })
+        let of_cell = |cell: usize| {
+            let neighbours = pattern.neighbours(cell).iter();
+            let squares = neighbours.map(|other| {
+                let [own, other] = [cell, *other as usize].map(|cell| layers * cell);
+                let apart = (0..layers).map(|layer| moved(own + layer) - moved(other + layer));
+                apart.map(|apart| apart.powi(2)).sum::<f64>()
+            });
+            squares.fold(0.0, f64::max).sqrt() / sizes[cell]
+        };
+        (0..pattern.cells()).map(of_cell).fold(0.0, f64::max)
     }
 
     /// A cut by the stable step about a state.
@@ -431,6 +435,16 @@ impl Substepped {
         });
         Ok(stiffness.fold(0.0, f64::max))
     }
+}
+
+/// The largest difference of two vectors in a cell over its size.
+fn largest_share([now, before]: [&[f64]; 2], sizes: &[f64], layers: usize) -> f64 {
+    let cells = now.chunks_exact(layers).zip(before.chunks_exact(layers));
+    let shares = cells.zip(sizes).map(|((now, before), size)| {
+        let change = now.iter().zip(before).map(|(now, before)| now - before);
+        change.map(|change| change.powi(2)).sum::<f64>() / (size * size)
+    });
+    shares.fold(0.0, f64::max).sqrt()
 }
 
 impl Stepper for Substepped {
