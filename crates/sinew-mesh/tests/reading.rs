@@ -423,8 +423,8 @@ mod data {
         let told: Vec<String> = mesh.warnings.iter().map(|w| w.message.clone()).collect();
         insta::assert_snapshot!(told.join("\n"), @r#"
         $ElementData: "fibre": rows for tags that the mesh does not have, skipped: 1 (first: tag 77)
-        $ElementData: "fibre": 2 of 3 cells have no value; they are NaN
-        $ElementNodeData: "corner": 2 of 3 cells have no value; they are NaN
+        $ElementData: "fibre": 1 of 2 cells have no value; they are NaN
+        $ElementNodeData: "corner": 1 of 2 cells have no value; they are NaN
         "#);
     }
 

@@ -177,14 +177,17 @@ impl RowCount {
             ranges.push((block.kind, begin..begin + block.len()));
             begin += block.len();
         }
-        let has_values = |range: &Range<usize>| self.given[range.clone()].contains(&true);
+        let given = |range: &Range<usize>| self.given.get(range.clone());
+        let has_values = |range| given(range).is_some_and(|given| given.contains(&true));
         let with_values = ranges.iter().filter(|(_, range)| has_values(range));
         let kinds: Vec<CellType> = with_values.map(|(kind, _)| *kind).collect();
         let mut left = begin;
         for (kind, range) in ranges {
             if !kinds.is_empty() && !kinds.contains(&kind) {
                 left -= range.len();
-                self.given[range].fill(true);
+                if let Some(given) = self.given.get_mut(range) {
+                    given.fill(true);
+                }
             }
         }
         left
