@@ -2,7 +2,7 @@
 
 use sinew_mesh::TetDataError;
 
-/// The names of the mesh's data ([`TetMesh::data`]) that give properties of a region for each of its tetrahedra.
+/// The names of the mesh's data ([`sinew_mesh::TetMesh::data`]) that give properties of a region for each of its tetrahedra.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FromMesh {
     /// What Young's modulus of the law is multiplied by: with 1 Pa there, the data are moduli (Pa).
