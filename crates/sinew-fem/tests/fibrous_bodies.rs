@@ -5,15 +5,15 @@
 mod common;
 
 use common::{
-    at, at_most, body, build, dot, elastic, held, max_abs, moved, product, relative_difference,
-    uneven_cube, waves,
+    ELEMENTS, at, at_most, body, build, dot, elastic, held, max_abs, moved, product,
+    relative_difference, uneven_cube, waves,
 };
 use sinew_core::{
     BlockMatrix, ElasticLaw, ElementStiffness, Elements, ForceLaw, Layers, System, TangentKind,
 };
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
-use sinew_fem::{Cause, Element, FibreFamily, Law, Model, Problem, Tissue};
+use sinew_fem::{Cause, FibreFamily, Law, Model, Problem, Tissue};
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
 
@@ -30,20 +30,6 @@ const PARALLEL: Stiffening = Stiffening::Exponential {
     k2: 2.0,
     dispersion: 0.0,
 };
-
-const ELEMENTS: [Element; 4] = [
-    Element::P1,
-    Element::Fbar { patch: Some(12) },
-    edges(0.9),
-    edges(1.0),
-];
-
-const fn edges(edge_share: f64) -> Element {
-    Element::FbarEdge {
-        edge_share,
-        patch: None,
-    }
-}
 
 /// E = 3500 Pa, nu = .45.
 fn with_fibres(id: &'static str, fibres: Fibres, direction: [f64; 3]) -> Problem {

@@ -5,7 +5,7 @@
 mod common;
 
 use common::{
-    at, at_most, body, build, dot, elastic, held, jitter, linear, max_abs, product,
+    at, at_most, body, build, dot, edges, elastic, held, jitter, linear, max_abs, product,
     relative_difference, stiffness_times, uneven_cube, waves,
 };
 use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, System, TangentKind};
@@ -24,13 +24,6 @@ const ELEMENTS: [Element; 5] = [
     edges(0.9),
     edges(1.0),
 ];
-
-const fn edges(edge_share: f64) -> Element {
-    Element::FbarEdge {
-        edge_share,
-        patch: None,
-    }
-}
 
 fn law(id: &'static str) -> Law {
     Law::Hyperelastic {

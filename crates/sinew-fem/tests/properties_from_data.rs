@@ -6,8 +6,9 @@
 mod common;
 
 use common::{
-    at, at_most, body, build, dot, elastic, equilibrium, held, held_along, linear, load, max_abs,
-    moved, on_cells, product, relative_difference, springs, stiffness_times, uneven_cube, waves,
+    ELEMENTS, at, at_most, body, build, dot, elastic, equilibrium, held, held_along, linear, load,
+    max_abs, moved, on_cells, product, relative_difference, springs, stiffness_times, uneven_cube,
+    waves,
 };
 use sinew_core::{
     BlockMatrix, ElasticLaw, Inputs, Layers, LinearSystem, LoadTime, State, System, TangentKind,
@@ -22,20 +23,6 @@ use sinew_fem::{
 };
 use sinew_mesh::structured::{self, Split};
 use sinew_mesh::{Group, GroupMembers, TetData, TetMesh};
-
-const ELEMENTS: [Element; 4] = [
-    Element::P1,
-    Element::Fbar { patch: Some(12) },
-    edges(0.9),
-    edges(1.0),
-];
-
-const fn edges(edge_share: f64) -> Element {
-    Element::FbarEdge {
-        edge_share,
-        patch: None,
-    }
-}
 
 fn large(id: &'static str, youngs_modulus: f64, nu: f64) -> Law {
     let mut parameters = Parameters::new(youngs_modulus, nu);

@@ -5,7 +5,8 @@
 mod common;
 
 use common::{
-    at_most, body, build, dot, held, max_abs, moved, relative_difference, uneven_cube, waves,
+    ELEMENTS, at_most, body, build, dot, held, max_abs, moved, relative_difference, uneven_cube,
+    waves,
 };
 use sinew_core::{
     BlockMatrix, ElasticLaw, ForceLaw, Inputs, Layers, LoadTime, State, System, TangentKind, Trial,
@@ -18,20 +19,6 @@ use sinew_fem::{
 };
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
-
-const ELEMENTS: [Element; 4] = [
-    Element::P1,
-    Element::Fbar { patch: Some(12) },
-    edges(0.9),
-    edges(1.0),
-];
-
-const fn edges(edge_share: f64) -> Element {
-    Element::FbarEdge {
-        edge_share,
-        patch: None,
-    }
-}
 
 fn series(pairs: &[(f64, f64)], part: ViscousPart) -> Memory {
     let terms = pairs.iter().map(|&(share, time)| Term { share, time });

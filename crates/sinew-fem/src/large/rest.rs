@@ -83,6 +83,17 @@ impl Rest {
         (0..self.count()).filter(|tet| self.is_taken(*tet))
     }
 
+    /// The mean over some tetrahedra by volume.
+    pub(super) fn mean(&self, tets: &[u32], of: impl Fn(usize) -> f64) -> f64 {
+        let (mut sum, mut volumes) = (0.0, 0.0);
+        for tet in tets {
+            let volume = self.volume(*tet as usize);
+            sum += volume * of(*tet as usize);
+            volumes += volume;
+        }
+        sum / volumes
+    }
+
     /// [`Rest::gradient_of`] for a function of the node, in one tetrahedron.
     pub(super) fn gradient_by(&self, tet: usize, field: impl Fn(u32) -> [f64; 3]) -> Tensor<f64> {
         let [a, b, c, d] = self.nodes(tet).map(field);

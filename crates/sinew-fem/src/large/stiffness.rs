@@ -20,17 +20,10 @@ pub(super) struct Stiffness<T = f64> {
 impl Stiffness {
     /// By that of each tetrahedron; sets have the mean of theirs by volume.
     pub(super) fn new(tets: &[f64], rest: &Rest, [edges, patches]: [&Sets; 2]) -> Self {
-        let mean = |sets: &Sets, set: usize| {
-            let (mut sum, mut volumes) = (0.0, 0.0);
-            for tet in sets.of(set) {
-                let volume = rest.volume(*tet as usize);
-                sum += volume * tets[*tet as usize];
-                volumes += volume;
-            }
-            sum / volumes
+        let means = |sets: &Sets| -> Vec<f64> {
+            let mean = |set| rest.mean(sets.of(set), |tet| tets[tet]);
+            (0..sets.count()).map(mean).collect()
         };
-        let means =
-            |sets: &Sets| -> Vec<f64> { (0..sets.count()).map(|set| mean(sets, set)).collect() };
         let mut of_edges = means(edges);
         of_edges.resize(edges.count().next_multiple_of(LANES), 0.0);
         Self {

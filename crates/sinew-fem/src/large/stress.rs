@@ -48,8 +48,8 @@ impl<U: Fn(u32) -> [f64; 3]> LawVisitor for Cauchy<'_, U> {
         let mut is_defined = is_possible(&at);
         let left = match region.patch_of.get(tet) {
             Some(patch) => {
-                let [dilation] = region.mean(region.patches.of(*patch as usize), |tet| {
-                    [law.dilation(&law.at(gradient(tet)))]
+                let dilation = rest.mean(region.patches.of(*patch as usize), |tet| {
+                    law.dilation(&law.at(gradient(tet)))
                 });
                 left_of_smoothed(region, &relaxing, &law, &at, (tet, dilation))
             }

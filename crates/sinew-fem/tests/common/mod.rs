@@ -269,3 +269,19 @@ pub(crate) fn product(model: &Model, kind: TangentKind, u: &[f64], w: &[f64]) ->
     made.unwrap_or_else(|error| panic!("{error}"));
     out
 }
+
+/// An element of each kind.
+pub(crate) const ELEMENTS: [Element; 4] = [
+    Element::P1,
+    Element::Fbar { patch: Some(12) },
+    edges(0.9),
+    edges(1.0),
+];
+
+/// `fbar-edge` with patches of the default size.
+pub(crate) const fn edges(edge_share: f64) -> Element {
+    Element::FbarEdge {
+        edge_share,
+        patch: None,
+    }
+}

@@ -279,6 +279,7 @@ impl Substepped {
     ) -> Result<u32, StepError> {
         let parts = cut.parts;
         let stretches = parts.div_ceil(PARTS_BETWEEN_GLANCES);
+        let mut motion = 0.0;
         while batch.goes_on() {
             let stretch = parts.div_ceil(stretches).min(batch.parts_left() as u32);
             batch.next_parts(stretch, |batch| self.inner.run(batch, state))?;
@@ -286,12 +287,16 @@ impl Substepped {
                 return Ok(u32::MAX);
             }
             cut.taken = cut.taken.saturating_add(stretch);
-            let needed = self.parts_needed(&mut cut, parts, batch, state)?;
+            motion = if batch.goes_on() {
+                0.0
+            } else {
+                self.motion(batch.system(), state)
+            };
+            let needed = self.parts_needed(&mut cut, parts, motion, (batch, state))?;
             if needed > parts {
                 return Ok(needed);
             }
         }
-        let motion = self.motion(batch.system(), state);
         if motion > MOST_MOTION * f64::from(parts) {
             return Ok(whole(motion / MOST_MOTION));
         }
@@ -299,21 +304,22 @@ impl Substepped {
         Ok(parts)
     }
 
-    /// Looks at the stiffness after some of `parts` parts, where it is time to, and brings the cut up to date; the parts that the
-    /// step needed.
+    /// Looks at the stiffness after some of `parts` parts, where it is time to or the motion of cells against their neighbours was large, and brings the
+    /// cut up to date; the parts that the step needed.
     fn parts_needed(
         &mut self,
         cut: &mut StepCut,
         parts: u32,
-        batch: &mut Batch<'_>,
-        state: &State,
+        motion: f64,
+        (batch, state): (&mut Batch<'_>, &State),
     ) -> Result<u32, StepError> {
         let (part, dt) = (batch.dt(), batch.dt() * f64::from(parts));
         let growth = if cut.taken >= PARTS_BETWEEN_LOOKS {
             f64::INFINITY
         } else if parts > 2
             || cut.taken % PARTS_BETWEEN_GLANCES < parts
-            || self.is_thrown(dt, batch.system(), state)
+            || motion > MUCH_MOTION
+            || self.is_accelerated(dt, batch.system(), state)
         {
             // Not a number where the law has no such blocks.
             self.stiffest_cell(batch, state)? / cut.stiffest_cell
@@ -344,16 +350,14 @@ impl Substepped {
         Ok(parts)
     }
 
-    /// Whether some cell was accelerated, or moved against a neighbour, so much since the step of `dt` (s) began that strains, and with them the
-    /// stiffness, may have changed.
-    fn is_thrown(&self, dt: f64, system: &dyn System, state: &State) -> bool {
+    /// Whether some cell was accelerated so much since the step of `dt` (s) began that strains, and with them the stiffness, may have changed.
+    fn is_accelerated(&self, dt: f64, system: &dyn System, state: &State) -> bool {
         let Some(scales) = system.scales() else {
             return false;
         };
         let layers = system.layers().count();
         let velocities = [&*state.v, &*self.kept.v];
         largest_share(velocities, scales.cell_size, layers) * dt > MUCH_MOTION
-            || self.motion(system, state) > MUCH_MOTION
     }
 
     /// The largest motion of a cell against a neighbour since the step began, over its size; 0 where none moved by more than [`MUCH_MOTION`] of

@@ -52,7 +52,7 @@ pub(super) fn add(
             }
             Holder::Elements => {
                 let blocks = cell_values(&data, &mesh.cells, &elements, &mut rows);
-                let cells = rows.leave_out_other_types(&mesh.cells);
+                let cells = rows.leave_out_other_types(&mesh.cells, &elements);
                 rows.remark(&data, "cells", cells, remarks);
                 mesh.cell_data.push(CellData {
                     name: data.name,
@@ -64,7 +64,7 @@ pub(super) fn add(
             }
             Holder::ElementNodes => {
                 let blocks = cell_node_values(&data, &mesh.cells, &elements, &mut rows)?;
-                let cells = rows.leave_out_other_types(&mesh.cells);
+                let cells = rows.leave_out_other_types(&mesh.cells, &elements);
                 rows.remark(&data, "cells", cells, remarks);
                 mesh.cell_node_data.push(CellNodeData {
                     name: data.name,
@@ -171,17 +171,16 @@ impl RowCount {
     }
 
     /// Leaves out cells of types of which none has a value, such as triangles beside tetrahedra that have; returns how many are left.
-    fn leave_out_other_types(&mut self, cells: &[CellBlock]) -> usize {
-        let (mut begin, mut ranges) = (0, Vec::with_capacity(cells.len()));
-        for block in cells {
-            ranges.push((block.kind, begin..begin + block.len()));
-            begin += block.len();
-        }
+    fn leave_out_other_types(&mut self, cells: &[CellBlock], elements: &ElementIndex) -> usize {
+        let blocks = cells.iter().zip(&elements.starts);
+        let ranges: Vec<(CellType, Range<usize>)> = blocks
+            .map(|(block, start)| (block.kind, *start..*start + block.len()))
+            .collect();
         let given = |range: &Range<usize>| self.given.get(range.clone());
         let has_values = |range| given(range).is_some_and(|given| given.contains(&true));
         let with_values = ranges.iter().filter(|(_, range)| has_values(range));
         let kinds: Vec<CellType> = with_values.map(|(kind, _)| *kind).collect();
-        let mut left = begin;
+        let mut left = elements.cells;
         for (kind, range) in ranges {
             if !kinds.is_empty() && !kinds.contains(&kind) {
                 left -= range.len();
