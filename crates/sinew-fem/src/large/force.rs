@@ -82,6 +82,7 @@ impl<T: Vectors> LawVisitor for Forces<'_, T> {
             set,
             with_energy,
         } = *self.evaluation;
+        assert!(places.hold(rooms));
         let of_part = self.part * places.chunk..(self.part + 1) * places.chunk;
         let region = &regions[self.piece.region];
         let relaxing = match remembered {
@@ -110,7 +111,8 @@ impl<T: Vectors> LawVisitor for Forces<'_, T> {
 /// All loops over a region, for one law.
 ///
 /// The proof of all blocks below is the schedule: a task reads what its part did before or any part in a pass before, and
-/// nobody writes what another part of the pass reads ([`super::schedule::Schedule`]).
+/// nobody writes what another part of the pass reads ([`super::schedule::Schedule`]). Places of gradients, edges and corners are within rooms that
+/// were given away, and these within the arrays ([`Places::hold`]).
 struct Sweep<'a, T, L> {
     region: &'a HyperelasticRegion,
     numbers: &'a Numbers<T>,
@@ -224,8 +226,9 @@ impl<T: Vectors, L: HyperelasticLaw> Sweep<'_, T, L> {
         let mut remembering = self.remembering();
         let mut sums = [[[T::default(); 4]; 3]; LANES];
         for first in edges.step_by(N::LANES) {
-            for (lane, sum) in sums.iter_mut().enumerate().take(N::LANES) {
-                let tets = region.edges.range(region.edge_at(first + lane));
+            let starts = &self.rooms.starts_at[first..=first + N::LANES];
+            for (sum, range) in sums.iter_mut().zip(starts.windows(2)) {
+                let tets = range[0] as usize..range[1] as usize;
                 *sum = rows_of(places.gradients, &self.rooms.gradients_at[tets]);
             }
             let volume = N::load(&self.numbers.edge_volumes[first..]);
@@ -431,7 +434,7 @@ fn from(first: usize, range: &Range<usize>) -> Range<usize> {
 fn rows_of<T: Real>(all: SharedSlice<'_, Rows<T>>, places: &[u32]) -> Rows<T> {
     let mut sums = [[T::default(); 4]; 3];
     for place in places {
-        // SAFETY: see `Sweep`.
+        // SAFETY: see `Sweep`, which alone calls it.
         let other = unsafe { all.get(*place as usize) };
         let entries = sums.as_flattened_mut().iter_mut();
         for (sum, entry) in entries.zip(other.as_flattened()) {

@@ -16,6 +16,8 @@ pub(super) struct Gather {
     starts: Vec<u32>,
     /// Corners: four times the tetrahedron's place, and the vertex.
     corners: Vec<u32>,
+    /// Places of corners; all `corners` are below.
+    room: usize,
 }
 
 impl Gather {
@@ -31,6 +33,7 @@ impl Gather {
         let mut free = ends.clone();
         let mut of_nodes = vec![0; ends[count] as usize];
         let mut last_places = vec![0; count];
+        let places = tets.clone().count();
         for (tet, nodes) in (0..).zip(tets) {
             for (vertex, node) in (0..).zip(nodes.into_iter().flatten()) {
                 let place = &mut free[node as usize];
@@ -53,6 +56,7 @@ impl Gather {
             nodes,
             starts,
             corners,
+            room: 4 * places,
         }
     }
 
@@ -77,7 +81,7 @@ impl Gather {
     /// is at a place of its own.
     ///
     /// # Safety
-    /// Nobody else uses the sums of these nodes meanwhile, or writes forces at their corners.
+    /// The places are below the count of `at_corners`. Nobody else uses the sums of these nodes meanwhile, or writes forces at their corners.
     #[inline(always)]
     pub(super) unsafe fn sum<T: Real>(
         &self,
@@ -110,8 +114,9 @@ impl Gather {
 
     /// [`Gather::sum`] for all nodes, with four corners for each place of a tetrahedron.
     pub(super) fn sum_all(&self, at_corners: &mut [[f64; 4]], out: &mut [[f64; 4]]) {
+        assert!(self.room <= at_corners.len());
         let (at_corners, out) = (SharedSlice::of(at_corners), SharedSlice::of(out));
-        // SAFETY: both are borrowed for this call alone.
+        // SAFETY: both are borrowed for this call alone, and there is room for all places.
         unsafe { self.sum(0..self.nodes.len(), &self.corners, at_corners, out) }
     }
 }

@@ -113,8 +113,8 @@ impl<L: HyperelasticLaw, const ALL: bool> WithReal<f64> for Sweep<'_, '_, L, ALL
                     block = block + block_beside(region, relaxing, first, at, gradient);
                 }
                 store(block.scaled(rest.volumes(first)), &mut lanes);
-                let nodes = rest.side_by_side(vertex, first..first + N::LANES);
-                for (node, block) in nodes.iter().zip(&lanes) {
+                let nodes = rest.nodes_from(vertex, first);
+                for (node, block) in nodes.iter().zip(&lanes[..N::LANES]) {
                     add(*node, block.map(|[x, y, z, _]| [x, y, z]));
                 }
             }

@@ -220,24 +220,6 @@ impl HyperelasticRegion {
         !self.patch_of.is_empty()
     }
 
-    /// The mean over a set by volume.
-    #[inline(always)]
-    pub(super) fn mean<const K: usize>(
-        &self,
-        tets: &[u32],
-        of: impl Fn(usize) -> [f64; K],
-    ) -> [f64; K] {
-        let (mut sum, mut volumes) = ([0.0; K], 0.0);
-        for tet in tets {
-            let volume = self.rest.volume(*tet as usize);
-            for (sum, value) in sum.iter_mut().zip(of(*tet as usize)) {
-                *sum += volume * value;
-            }
-            volumes += volume;
-        }
-        sum.map(|sum| sum / volumes)
-    }
-
     /// The mean of tensors over a set by volume.
     #[inline(always)]
     pub(super) fn mean_tensor(

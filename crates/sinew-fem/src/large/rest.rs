@@ -1,79 +1,84 @@
 //! Tetrahedra at rest, as loops over deformed ones read them.
 
-use std::ops::Range;
+#![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
+
 use std::sync::Arc;
 
 use sinew_mesh::TetMesh;
 use sinew_sparse::simd::{Aligned, Number, Real};
 
-use super::chunks::Slot;
+use super::chunks::{LANES, Slot};
 use crate::hyperelastic::Tensor;
 use crate::tetra;
 
-/// The tetrahedra of a region at rest, each quantity in an array of its own so that neighbours in memory fill a vector;
-/// "side by side" are as many as the number has lanes.
+/// The tetrahedra of a region at rest, in blocks of so many as the widest vector has lanes, so that a loop reads few streams of memory;
+/// "side by side" are as many as the number has lanes, all in one block.
 #[derive(Debug)]
 pub(crate) struct Rest<T = f64> {
-    /// The four mesh nodes.
-    nodes: Arc<[Vec<u32>; 4]>,
-    /// Gradients (1/m) of the shape functions of the last three vertices; the first has minus their sum.
-    gradients: [[Aligned<T>; 3]; 3],
-    /// Volumes (m^3).
-    volumes: Aligned<T>,
+    nodes: Arc<Nodes>,
+    shapes: Aligned<Shapes<T>>,
     /// Tags in the mesh, for messages.
     tags: Arc<Vec<u64>>,
 }
 
+/// The mesh nodes of all tetrahedra.
+#[derive(Debug)]
+struct Nodes {
+    /// The four nodes, vertex by vertex, of each block.
+    blocks: Aligned<[[u32; LANES]; 4]>,
+    /// Number of mesh nodes: all nodes are below.
+    count: usize,
+}
+
+/// Gradients (1/m) of the shape functions of the last three vertices, component by component, and the volumes (m^3), of a block. The first shape function has
+/// minus the sum of the others' gradients.
+type Shapes<T> = [[T; LANES]; 10];
+
+/// Place of the volumes among [`Shapes`].
+const VOLUMES: usize = 9;
+
 impl Rest {
-    /// The tetrahedra of a mesh at these places, none of which is flat.
+    /// The tetrahedra of a mesh at these places, none of which is flat: places for whole blocks.
     pub(super) fn of(mesh: &TetMesh, slots: &[Slot]) -> Self {
-        let with_room = || Vec::with_capacity(slots.len());
-        let mut nodes: [Vec<u32>; 4] = std::array::from_fn(|_| Vec::with_capacity(slots.len()));
-        let mut gradients: [[Vec<f64>; 3]; 3] =
-            std::array::from_fn(|_| std::array::from_fn(|_| with_room()));
-        let (mut volumes, mut tags) = (with_room(), Vec::with_capacity(slots.len()));
-        for slot in slots {
-            let tet = slot.tet as usize;
-            let of_tet = mesh.tets[tet];
-            let vertices = tetra::vertices(&mesh.points, of_tet);
-            let [_, others @ ..] = tetra::gradients(&vertices).unwrap_or_default();
-            for (all, node) in nodes.iter_mut().zip(of_tet) {
-                all.push(node);
-            }
-            for (all, gradient) in gradients.iter_mut().zip(others) {
-                for (all, component) in all.iter_mut().zip(gradient) {
-                    all.push(component);
+        let count = slots.len() / LANES;
+        let mut nodes = Aligned::filled([[0; LANES]; 4], count);
+        let mut shapes = Aligned::filled([[0.0; LANES]; 10], count);
+        let blocks = slots.chunks_exact(LANES);
+        for ((slots, nodes), shapes) in blocks.zip(nodes.iter_mut()).zip(shapes.iter_mut()) {
+            for (lane, slot) in slots.iter().enumerate() {
+                let tet = slot.tet as usize;
+                let of_tet = mesh.tets[tet];
+                for (nodes, node) in nodes.iter_mut().zip(of_tet) {
+                    nodes[lane] = node;
+                }
+                let vertices = tetra::vertices(&mesh.points, of_tet);
+                let [_, others @ ..] = tetra::gradients(&vertices).unwrap_or_default();
+                for (entries, entry) in shapes.iter_mut().zip(others.as_flattened()) {
+                    entries[lane] = *entry;
+                }
+                if !slot.is_padding {
+                    shapes[VOLUMES][lane] = mesh.volume(tet);
                 }
             }
-            let volume = if slot.is_padding {
-                0.0
-            } else {
-                mesh.volume(tet)
-            };
-            volumes.push(volume);
-            tags.push(mesh.tet_tags[tet]);
         }
+        let tags = slots.iter().map(|slot| mesh.tet_tags[slot.tet as usize]);
         Self {
-            nodes: Arc::new(nodes),
-            gradients: gradients.map(|of| of.map(|values| Aligned::from(&values[..]))),
-            volumes: Aligned::from(&volumes[..]),
-            tags: Arc::new(tags),
+            nodes: Arc::new(Nodes {
+                blocks: nodes,
+                count: mesh.points.len(),
+            }),
+            shapes,
+            tags: Arc::new(tags.collect()),
         }
     }
 
     /// The same in another precision.
     pub(super) fn rounded<T: Real>(&self) -> Rest<T> {
-        let rounded = |values: &Aligned<f64>| {
-            let values: Vec<T> = values.iter().map(|value| T::of(*value)).collect();
-            Aligned::from(&values[..])
-        };
+        let rounded = |shapes: &Shapes<f64>| shapes.map(|entries| entries.map(T::of));
+        let shapes: Vec<Shapes<T>> = self.shapes.iter().map(rounded).collect();
         Rest {
             nodes: Arc::clone(&self.nodes),
-            gradients: self
-                .gradients
-                .each_ref()
-                .map(|of| of.each_ref().map(rounded)),
-            volumes: rounded(&self.volumes),
+            shapes: Aligned::from(&shapes[..]),
             tags: Arc::clone(&self.tags),
         }
     }
@@ -105,17 +110,17 @@ impl Rest {
 impl<T: Real> Rest<T> {
     /// Number of places.
     pub(super) fn count(&self) -> usize {
-        self.volumes.len()
+        self.tags.len()
     }
 
     /// Whether a place is taken by a tetrahedron, not by padding.
     pub(super) fn is_taken(&self, tet: usize) -> bool {
-        self.volumes[tet] > T::default()
+        self.volume(tet) > T::default()
     }
 
     /// The four nodes of a tetrahedron.
     pub(super) fn nodes(&self, tet: usize) -> [u32; 4] {
-        [0, 1, 2, 3].map(|vertex| self.nodes[vertex][tet])
+        self.nodes.blocks[tet / LANES].map(|nodes| nodes[tet % LANES])
     }
 
     pub(super) fn tag(&self, tet: usize) -> u64 {
@@ -124,23 +129,23 @@ impl<T: Real> Rest<T> {
 
     /// The volume (m^3); 0 for padding.
     pub(super) fn volume(&self, tet: usize) -> T {
-        self.volumes[tet]
+        self.shapes[tet / LANES][VOLUMES][tet % LANES]
     }
 
     /// The volumes (m^3) of tetrahedra side by side.
     #[inline(always)]
     pub(super) fn volumes<N: Number<Real = T>>(&self, first: usize) -> N {
-        N::load(&self.volumes[first..])
+        N::load(&self.shapes[first / LANES][VOLUMES][first % LANES..])
     }
 
     /// The gradients (1/m) of the shape functions of the last three vertices, of tetrahedra side by side.
     #[inline(always)]
     fn gradients<N: Number<Real = T>>(&self, first: usize) -> [[N; 3]; 3] {
-        let [b, c, d] = &self.gradients;
+        let (block, lane) = (&self.shapes[first / LANES], first % LANES);
         [
-            side_by_side(b, first),
-            side_by_side(c, first),
-            side_by_side(d, first),
+            gradient(block, 0, lane),
+            gradient(block, 3, lane),
+            gradient(block, 6, lane),
         ]
     }
 
@@ -153,9 +158,9 @@ impl<T: Real> Rest<T> {
         [a, b, c, d]
     }
 
-    /// One of the four nodes of some tetrahedra.
-    pub(super) fn side_by_side(&self, vertex: usize, tets: Range<usize>) -> &[u32] {
-        &self.nodes[vertex][tets]
+    /// One of the four nodes of the tetrahedra from one to the end of its block.
+    pub(super) fn nodes_from(&self, vertex: usize, first: usize) -> &[u32] {
+        &self.nodes.blocks[first / LANES][vertex][first % LANES..]
     }
 
     /// The gradient, in tetrahedra side by side, of a field (m) that is given at all mesh nodes: row i, column j is the derivative of component
@@ -166,11 +171,18 @@ impl<T: Real> Rest<T> {
         first: usize,
         field: &[[T; 4]],
     ) -> Tensor<N> {
-        let [a, b, c, d] = &*self.nodes;
-        let a = N::gather_rows(field, &a[first..]);
-        let b = N::gather_rows(field, &b[first..]);
-        let c = N::gather_rows(field, &c[first..]);
-        let d = N::gather_rows(field, &d[first..]);
+        assert!(self.nodes.count <= field.len());
+        let [a, b, c, d] = &self.nodes.blocks[first / LANES];
+        let lane = first % LANES;
+        // SAFETY: all nodes are below the number of mesh nodes.
+        let [a, b, c, d] = unsafe {
+            [
+                N::gather_rows(field, &a[lane..]),
+                N::gather_rows(field, &b[lane..]),
+                N::gather_rows(field, &c[lane..]),
+                N::gather_rows(field, &d[lane..]),
+            ]
+        };
         let edges = [difference(b, a), difference(c, a), difference(d, a)];
         Tensor::from_columns(edges) * Tensor(self.gradients(first))
     }
@@ -197,12 +209,13 @@ impl<T: Real> Rest<T> {
 
 // Functions, since a closure is not always inlined where vectors need it.
 
+/// A gradient whose components begin at an entry of a block.
 #[inline(always)]
-fn side_by_side<N: Number>([x, y, z]: &[Aligned<N::Real>; 3], first: usize) -> [N; 3] {
+fn gradient<N: Number>(block: &Shapes<N::Real>, entry: usize, lane: usize) -> [N; 3] {
     [
-        N::load(&x[first..]),
-        N::load(&y[first..]),
-        N::load(&z[first..]),
+        N::load(&block[entry][lane..]),
+        N::load(&block[entry + 1][lane..]),
+        N::load(&block[entry + 2][lane..]),
     ]
 }
 

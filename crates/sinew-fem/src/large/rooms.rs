@@ -28,6 +28,8 @@ pub(super) struct RegionRooms {
     pub(super) corners: Vec<u32>,
     /// The first edge of each vector of edges.
     pub(super) edges: Vec<u32>,
+    /// Where the gradients at each edge begin in `gradients_at`, and the end of the last, again and again to fill a vector.
+    pub(super) starts_at: Vec<u32>,
     /// The gradient of each tetrahedron at each edge, as the edges' sets have them.
     pub(super) gradients_at: Vec<u32>,
     /// The six edges of each tetrahedron.
@@ -201,6 +203,10 @@ impl RegionRooms {
         let gradients_at = sets.map(|tet| gradient(*tet)).collect();
         let edges_of = region.edges_of.iter().map(|edges| edges.map(edge));
         (self.edges_of, self.gradients_at) = (edges_of.collect(), gradients_at);
+        let vectors = region.edges.count().next_multiple_of(LANES);
+        self.starts_at = region.edges.starts().to_vec();
+        self.starts_at
+            .resize(vectors + 1, self.gradients_at.len() as u32);
     }
 }
 

@@ -67,6 +67,15 @@ pub(super) struct Places<'a, T> {
     pub(super) at_edges: SharedSlice<'a, Rows<T>>,
 }
 
+impl<T: Copy> Places<'_, T> {
+    /// Whether all rooms are within them.
+    pub(super) fn hold(&self, rooms: &Rooms) -> bool {
+        rooms.gradients_count <= self.gradients.count()
+            && rooms.edges_count <= self.at_edges.count()
+            && rooms.corners_count <= self.corners.count()
+    }
+}
+
 impl<T: Real> Kept<T> {
     /// Room for regions that are worked on in so many parts.
     pub(super) fn new(regions: &[HyperelasticRegion], rooms: &Rooms, parts: usize) -> Self {

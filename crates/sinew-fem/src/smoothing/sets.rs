@@ -53,6 +53,11 @@ impl Sets {
         &self.tets[self.range(set)]
     }
 
+    /// Where the members of each set begin in lists that have a number for each member of each set, and the end of the last.
+    pub(crate) fn starts(&self) -> &[u32] {
+        &self.starts
+    }
+
     /// The place of a set's tetrahedra in lists that have a number for each member of each set.
     pub(crate) fn range(&self, set: usize) -> Range<usize> {
         self.starts[set] as usize..self.starts[set + 1] as usize

@@ -1,5 +1,7 @@
 //! Numbers that formulas are written over.
 
+#![allow(unsafe_code, reason = "a kernel; ARCHITECTURE.md names it")]
+
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -41,8 +43,12 @@ pub trait Number:
     /// Writes the lanes to the beginning of a slice, which has room for them.
     fn store(self, to: &mut [Self::Real]);
 
-    /// The first three numbers of each of some rows: lane by lane those at `places`, of which there is one for each lane.
-    fn gather_rows(from: &[[Self::Real; 4]], places: &[u32]) -> [Self; 3];
+    /// The first three numbers of each of some rows: lane by lane those at `places`, of which there is one for each lane. That they are within `from` is
+    /// not checked: with a check before each row, compilers keep all places on the stack meanwhile.
+    ///
+    /// # Safety
+    /// All places are below the length of `from`.
+    unsafe fn gather_rows(from: &[[Self::Real; 4]], places: &[u32]) -> [Self; 3];
 
     /// The first three numbers of each of some rows, `stride` rows apart from the first.
     fn load_rows(from: &[[Self::Real; 4]], stride: usize) -> [Self; 3];
@@ -165,7 +171,7 @@ macro_rules! scalar {
             }
 
             #[inline(always)]
-            fn gather_rows(from: &[[Self; 4]], places: &[u32]) -> [Self; 3] {
+            unsafe fn gather_rows(from: &[[Self; 4]], places: &[u32]) -> [Self; 3] {
                 Self::load_rows(&from[places[0] as usize..], 1)
             }
 

