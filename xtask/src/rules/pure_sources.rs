@@ -16,6 +16,7 @@ pub(super) const PURE: &[&str] = &[
     "crates/sinew-cnn/src",
     "crates/sinew-machines/src",
     "crates/sinew-integrators/src",
+    "crates/sinew-tools/src",
 ];
 
 /// Modules of the standard library that reach outside the program.

@@ -1,0 +1,156 @@
+//! Position and rotation of a rigid body.
+
+use crate::rotation::{self, Matrix};
+use crate::vector::{add, between, scaled, sub};
+
+/// Where a tool's own frame stands in the world: `world = position + rotation own`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    position: [f64; 3],
+    rotation: Matrix,
+}
+
+impl Pose {
+    /// A pose from the position (m) of the own origin and a rotation vector (rad), the axis times the angle.
+    #[must_use]
+    pub fn new(position: [f64; 3], rotation_vector: [f64; 3]) -> Self {
+        Self {
+            position,
+            rotation: rotation::matrix(rotation_vector),
+        }
+    }
+
+    /// The pose in which the own frame is that of the world.
+    #[must_use]
+    pub fn identity() -> Self {
+        Self {
+            position: [0.0; 3],
+            rotation: rotation::IDENTITY,
+        }
+    }
+
+    /// The position (m) of the own origin.
+    #[must_use]
+    pub fn position(&self) -> [f64; 3] {
+        self.position
+    }
+
+    /// The rotation's matrix by its rows; its columns are the own axes in the world.
+    #[must_use]
+    pub fn rotation(&self) -> [[f64; 3]; 3] {
+        self.rotation
+    }
+
+    /// The rotation vector (rad), with an angle of at most pi; at pi one of the two axes.
+    #[must_use]
+    pub fn rotation_vector(&self) -> [f64; 3] {
+        rotation::vector(&self.rotation)
+    }
+
+    /// The place in the world (m) of a point of the own frame.
+    #[must_use]
+    pub fn to_world(&self, point: [f64; 3]) -> [f64; 3] {
+        add(self.position, self.turned(point))
+    }
+
+    /// The place in the own frame (m) of a point of the world.
+    #[must_use]
+    pub fn to_own(&self, point: [f64; 3]) -> [f64; 3] {
+        self.turned_back(sub(point, self.position))
+    }
+
+    /// A vector of the own frame as it is in the world, without the position.
+    #[must_use]
+    pub fn turned(&self, vector: [f64; 3]) -> [f64; 3] {
+        rotation::times(&self.rotation, vector)
+    }
+
+    /// A vector of the world as it is in the own frame.
+    #[must_use]
+    pub fn turned_back(&self, vector: [f64; 3]) -> [f64; 3] {
+        rotation::times(&rotation::transposed(&self.rotation), vector)
+    }
+
+    /// The pose in the world of a part whose pose in this frame is `part`.
+    #[must_use]
+    pub fn then(&self, part: &Self) -> Self {
+        Self {
+            position: self.to_world(part.position),
+            rotation: rotation::product(&self.rotation, &part.rotation),
+        }
+    }
+
+    /// This pose with its position moved by a vector of the world (m).
+    pub(crate) fn moved(&self, by: [f64; 3]) -> Self {
+        Self {
+            position: add(self.position, by),
+            rotation: self.rotation,
+        }
+    }
+
+    /// The shortest rotation vector (rad, in the world) that turns this pose into `after`.
+    pub(crate) fn turn_to(&self, after: &Self) -> [f64; 3] {
+        if self.rotation == after.rotation {
+            return [0.0; 3];
+        }
+        let back = rotation::transposed(&self.rotation);
+        rotation::vector(&rotation::product(&after.rotation, &back))
+    }
+
+    /// The pose at this share of the way to `after`, to which `turn` is the turn.
+    pub(crate) fn on_the_way(&self, after: &Self, turn: [f64; 3], share: f64) -> Self {
+        if share <= 0.0 {
+            return *self;
+        }
+        if share >= 1.0 {
+            return *after;
+        }
+        let turned = rotation::matrix(scaled(turn, share));
+        Self {
+            position: between(self.position, after.position, share),
+            rotation: rotation::product(&turned, &self.rotation),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+    use crate::vector::length;
+
+    fn close(a: [f64; 3], b: [f64; 3]) -> bool {
+        length(sub(a, b)) < 1e-15
+    }
+
+    #[test]
+    fn a_part_is_where_its_tool_carries_it() {
+        let tool = Pose::new([1.0, 0.0, 0.0], [0.0, 0.0, FRAC_PI_2]);
+        let part = Pose::new([0.5, 0.0, 0.0], [FRAC_PI_2, 0.0, 0.0]);
+        let world = tool.then(&part);
+        assert!(close(world.position(), [1.0, 0.5, 0.0]));
+        // z of the part is -y of the tool, which is x of the world.
+        assert!(close(world.turned([0.0, 0.0, 1.0]), [1.0, 0.0, 0.0]));
+        assert_eq!(Pose::identity().then(&part), part);
+    }
+
+    #[test]
+    fn a_pose_half_way_is_turned_by_half() {
+        let before = Pose::new([0.0; 3], [0.3, 0.0, 0.0]);
+        let after = Pose::new([0.2, 0.0, 0.0], [0.7, 0.0, 0.0]);
+        let turn = before.turn_to(&after);
+        assert!(close(turn, [0.4, 0.0, 0.0]));
+        let middle = before.on_the_way(&after, turn, 0.5);
+        assert!(close(middle.position(), [0.1, 0.0, 0.0]));
+        assert!(close(middle.rotation_vector(), [0.5, 0.0, 0.0]));
+        assert_eq!(before.on_the_way(&after, turn, 0.0), before);
+        assert_eq!(before.on_the_way(&after, turn, 1.0), after);
+    }
+
+    #[test]
+    fn equal_rotations_have_no_turn_between_them() {
+        let before = Pose::new([0.0; 3], [0.3, 0.4, -1.0]);
+        assert_eq!(before.turn_to(&before.moved([1.0, 0.0, 0.0])), [0.0; 3]);
+    }
+}

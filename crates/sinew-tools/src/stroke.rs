@@ -1,0 +1,138 @@
+//! The motion of a part of a tool over a step, and what it meets.
+
+use crate::pose::Pose;
+use crate::shape::{Convex, Part, Touch};
+use crate::vector::{between, length, sub};
+
+/// The largest turn (rad) of a tool in one pass: the chord of a path then leaves it by at most turn^2/8 of its distance.
+const LARGEST_TURN: f64 = 0.1;
+
+/// The longest way of a round tool in one pass, in radii: normals of the first contact still fit the contact at the end.
+const LONGEST_WAY: f64 = 0.5;
+
+const MOST_PASSES: f64 = 1000.0;
+
+/// The motion of one part of a tool over a step: straight for the tool's origin, and a steady turn about it by the shortest
+/// way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stroke {
+    part: Part,
+    before: Pose,
+    after: Pose,
+    /// The turn of the tool over the step (rad, in the world).
+    turn: [f64; 3],
+    passes: u32,
+}
+
+impl Stroke {
+    /// The motion of a part of a tool that has these poses before and after the step.
+    #[must_use]
+    pub fn new(part: &Part, before: Pose, after: Pose) -> Self {
+        let turn = before.turn_to(&after);
+        let mut stroke = Self {
+            part: *part,
+            before,
+            after,
+            turn,
+            passes: 1,
+        };
+        let turns = length(turn) / LARGEST_TURN;
+        let ways = stroke.longest_way() / LONGEST_WAY;
+        let passes = turns.max(ways).ceil().clamp(1.0, MOST_PASSES);
+        stroke.passes = passes as u32;
+        stroke
+    }
+
+    /// The equal passes in which this stroke should be taken: of at most .1 rad each, and of at most half a radius for any point
+    /// of a round part; at least 1, at most 1000.
+    #[must_use]
+    pub fn passes(&self) -> u32 {
+        self.passes
+    }
+
+    /// The pose of the part in the world at a share of the step.
+    #[must_use]
+    pub fn pose_at(&self, share: f64) -> Pose {
+        let tool = self.before.on_the_way(&self.after, self.turn, share);
+        tool.then(&self.part.pose)
+    }
+
+    /// The first contact of a node that moves straight from `from` to `to` (m, in the world) over the step.
+    ///
+    /// The share is that of the step; point and normal are in the part's own frame, [`Self::pose_at`] takes them to the
+    /// world. In that frame the way of the node is straight where the tool does not turn; elsewhere it is followed by as
+    /// many straight pieces as there are passes.
+    #[must_use]
+    pub fn first_contact(&self, from: [f64; 3], to: [f64; 3]) -> Option<Touch> {
+        let pieces = if self.turns() { self.passes } else { 1 };
+        let mut start = self.pose_at(0.0).to_own(from);
+        for piece in 1..=pieces {
+            let (share, node) = if piece == pieces {
+                (1.0, to)
+            } else {
+                let share = f64::from(piece) / f64::from(pieces);
+                (share, between(from, to, share))
+            };
+            let end = self.pose_at(share).to_own(node);
+            if let Some(touch) = self.part.convex.first_contact(start, end) {
+                let share = (f64::from(piece - 1) + touch.share) / f64::from(pieces);
+                return Some(Touch { share, ..touch });
+            }
+            start = end;
+        }
+        None
+    }
+
+    /// A box (m, lowest and highest corner) that contains the part during the whole step; none for a plane.
+    #[must_use]
+    pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
+        let arc = self.largest_arc()?;
+        let ends = [self.pose_at(0.0), self.pose_at(1.0)];
+        let [first, last] = ends.map(|pose| half_sizes(&self.part.convex, &pose));
+        let (first, last) = (first?, last?);
+        let [start, end] = ends.map(|pose| pose.position());
+        let low = [0, 1, 2].map(|axis| (start[axis] - first[axis]).min(end[axis] - last[axis]));
+        let high = [0, 1, 2].map(|axis| (start[axis] + first[axis]).max(end[axis] + last[axis]));
+        // A point at distance r from the centre of a steady turn by an angle a is never farther than r a^2/8 from where it would
+        // be on a straight way.
+        let bulge = arc * length(self.turn) / 8.0;
+        Some([
+            low.map(|value| value - bulge),
+            high.map(|value| value + bulge),
+        ])
+    }
+
+    fn turns(&self) -> bool {
+        self.turn != [0.0; 3]
+    }
+
+    /// How far any point of a bounded part is carried (m) by the turn about the tool's origin, at most.
+    fn largest_arc(&self) -> Option<f64> {
+        let reach = self.part.convex.reach()?;
+        Some(length(self.turn) * (length(self.part.pose.position()) + reach))
+    }
+
+    /// How far any point of a round part moves at most, in its smallest radii; 0 for parts with flat faces.
+    fn longest_way(&self) -> f64 {
+        let way = length(sub(self.after.position(), self.before.position()));
+        let arc = self.largest_arc();
+        let radius = self.part.convex.smallest_radius();
+        arc.zip(radius)
+            .map_or(0.0, |(arc, radius)| (way + arc) / radius)
+    }
+}
+
+/// Half the sizes (m) of the box along the world's axes about a shape; none for a plane.
+fn half_sizes(convex: &Convex, pose: &Pose) -> Option<[f64; 3]> {
+    let rotation = pose.rotation();
+    match *convex {
+        Convex::Sphere { radius } => Some([radius; 3]),
+        Convex::Capsule { radius, length } => {
+            Some(rotation.map(|[_, _, z]| radius + z.abs() * length / 2.0))
+        }
+        Convex::Plane => None,
+        Convex::Cuboid { size: [a, b, c] } => {
+            Some(rotation.map(|[x, y, z]| (x.abs() * a + y.abs() * b + z.abs() * c) / 2.0))
+        }
+    }
+}
