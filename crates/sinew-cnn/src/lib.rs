@@ -39,7 +39,7 @@ pub use machine::{FollowedLoad, Machine, ReferenceMachine, StepTime};
 pub use majorant::{Blend, DampingShare, GammaRule, Majorant};
 pub use power_iteration::largest_eigenvalue;
 pub use program::{
-    Clamp, Forces, LoadAt, Loads, Moments, OwnTerm, Physics, Product, Program, Quotient, Register,
+    CellInertia, Clamp, Forces, LoadAt, Loads, Moments, OwnTerm, Physics, Product, Program, Quotient, Register,
     Sweep, Term, Traffic, Update, Weight, When,
 };
 pub use saturation::{Saturation, SaturationError};

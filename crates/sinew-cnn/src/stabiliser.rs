@@ -240,6 +240,12 @@ impl Solution {
         }
     }
 
+    /// Whether it is one division by the blocks.
+    #[must_use]
+    pub fn is_single(&self) -> bool {
+        self.sweeps.len() == 1 && self.terms.is_empty()
+    }
+
     fn scaled(mut self, by: f64) -> Self {
         self.terms.iter_mut().for_each(|(_, weight)| *weight *= by);
         self.of_q *= by;

@@ -3,7 +3,7 @@
 use crate::guard::Guarding;
 use crate::system::loads_revision;
 use crate::{
-    Acceleration, Inputs, LoadTime, Revision, SetupError, State, StepError, StepReport,
+    Acceleration, Contact, Inertia, Inputs, LoadTime, Meeting, Revision, SetupError, State, StepError, StepReport,
     SynchroniseError, System, Trial, VelocityTime, Watch,
 };
 
@@ -193,6 +193,12 @@ impl<'a> Batch<'a> {
                 system: internal,
             });
         }
+        state
+            .contact
+            .resize(self.contact().map_or(0, Contact::kept), 0.0);
+        if let Some(contact) = self.contact() {
+            contact.begin(state);
+        }
         if let Some(dof) = self.inputs.highest_dof()
             && dof as usize >= dofs
         {
@@ -284,6 +290,34 @@ impl<'a> Batch<'a> {
     /// Counts work that belongs to no step.
     pub fn count(&mut self, work: StepReport) {
         self.work += work;
+    }
+
+    /// What touches the system.
+    #[must_use]
+    pub fn contact(&self) -> Option<&'a dyn Contact> {
+        self.system.contact()
+    }
+
+    /// Lets what touches the system push cells of a trial state, before [`Batch::end_step`]; `pushed` are the cells that it
+    /// did push afterwards. `kick` is the time (s) by which a change of velocity is divided in an acceleration that the state keeps.
+    pub fn meet(
+        &self,
+        state: &mut State,
+        inertia: Inertia<'_>,
+        kick: Option<f64>,
+        pushed: &mut Vec<u32>,
+    ) {
+        pushed.clear();
+        if let Some(contact) = self.contact() {
+            let meeting = Meeting {
+                inputs: self.inputs,
+                dt: self.dt,
+                mass: self.system.mass(),
+                inertia,
+                kick,
+            };
+            contact.meet(&meeting, state, pushed);
+        }
     }
 
     /// Brings a staggered velocity to the displacement's time, for methods whose own is not

@@ -25,6 +25,7 @@ mod bytes;
 mod changes;
 mod channel_record;
 mod clock;
+mod contact;
 pub mod closed_form;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
@@ -72,6 +73,7 @@ pub use batch::{Batch, Step, Stepped, worst_beyond};
 pub use bytes::BytesError;
 pub use channel_record::{Between, InputError};
 pub use clock::Clock;
+pub use contact::{Contact, Inertia, Meeting};
 pub use elastic_law::{Deformed, ElasticLaw, TangentKind};
 pub use element_forces::{ElementForces, ElementPrecision, ElementSweep, SweepShape, sweep_alone};
 pub use elements::{ElementStiffness, Elements, element_omegas_squared};

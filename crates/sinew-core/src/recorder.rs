@@ -60,6 +60,9 @@ impl Moment<'_> {
             internal: &self.state.internal,
         };
         self.system.net_force(&trial, out)?;
+        if let Some(contact) = self.system.contact() {
+            contact.add_forces(self.state, out);
+        }
         for (force, mass) in out.iter_mut().zip(self.system.mass()) {
             *force /= mass;
         }

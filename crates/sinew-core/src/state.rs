@@ -27,6 +27,8 @@ pub struct State {
     /// Internal variables of laws with memory, in an order that the system knows; empty for
     /// elastic ones.
     pub internal: Vec<f64>,
+    /// What contact keeps from step to step, in an order which it knows ([`crate::Contact`]); empty where nothing touches the body.
+    pub contact: Vec<f64>,
     /// Identity of the matrices and the loads under which the last step was taken.
     pub loads: Option<[Revision; 2]>,
     /// Start of the motion, where a guarded method bounds velocities by its energy; `None` until
@@ -66,6 +68,7 @@ impl Clone for State {
             a,
             acceleration,
             internal,
+            contact,
             loads,
             start,
             cut,
@@ -74,6 +77,7 @@ impl Clone for State {
         self.v.clone_from(v);
         self.a.clone_from(a);
         self.internal.clone_from(internal);
+        self.contact.clone_from(contact);
         (self.clock, self.loads, self.start, self.cut) = (*clock, *loads, *start, *cut);
         (self.velocity, self.acceleration) = (*velocity, *acceleration);
     }
@@ -89,6 +93,7 @@ impl PartialEq for State {
             a,
             acceleration,
             internal,
+            contact,
             loads: _,
             start,
             cut,
@@ -101,7 +106,8 @@ impl PartialEq for State {
                 &other.start,
                 &other.cut,
             )
-            && (u, v, a, internal) == (&other.u, &other.v, &other.a, &other.internal)
+            && (u, v, a) == (&other.u, &other.v, &other.a)
+            && (internal, contact) == (&other.internal, &other.contact)
     }
 }
 
@@ -155,6 +161,7 @@ impl State {
             a: Vec::new(),
             acceleration: Acceleration::None,
             internal: Vec::new(),
+            contact: Vec::new(),
             loads: None,
             start: None,
             cut: None,

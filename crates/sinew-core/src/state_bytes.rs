@@ -2,10 +2,10 @@
 
 use crate::bytes::{BytesError, Kind, Reader, Writer};
 use crate::system::loads_revision;
-use crate::{Acceleration, Clock, Start, State, StepCut, System, VelocityTime};
+use crate::{Acceleration, Clock, Contact, Start, State, StepCut, System, VelocityTime};
 
 const KIND: Kind = Kind {
-    name: b"sinew state v3\r\n",
+    name: b"sinew state v4\r\n",
     words: "state",
 };
 
@@ -65,7 +65,13 @@ impl State {
         out.count(self.cut.map_or(0, |cut| cut.taken.into()));
         out.number(self.cut.map_or(0.0, |cut| cut.stable_step));
         out.number(self.cut.map_or(0.0, |cut| cut.stiffest_cell));
-        for vector in [&self.u, &self.v, &self.a, &self.internal] {
+        for vector in [
+            &self.u,
+            &self.v,
+            &self.a,
+            &self.internal,
+            &self.contact,
+        ] {
             out.count(vector.len() as u64);
             vector.iter().for_each(|value| out.number(*value));
         }
@@ -114,7 +120,8 @@ impl State {
         let mut vector = || -> Result<Vec<f64>, BytesError> {
             (0..rest.count_of(8)?).map(|_| rest.number()).collect()
         };
-        let (u, v, a, internal) = (vector()?, vector()?, vector()?, vector()?);
+        let (u, v, a) = (vector()?, vector()?, vector()?);
+        let (internal, contact) = (vector()?, vector()?);
         rest.end()?;
 
         let fits = |what, state, system| match state == system {
@@ -133,6 +140,10 @@ impl State {
         }
         let variables = system.internal_variables();
         fits("internal variables", internal.len(), variables)?;
+        let kept = system.contact().map_or(0, Contact::kept);
+        if !contact.is_empty() {
+            fits("numbers of contact", contact.len(), kept)?;
+        }
         if fingerprint != system.fingerprint() {
             return Err(StateBytesError::OtherSystem);
         }
@@ -144,6 +155,7 @@ impl State {
             a,
             acceleration,
             internal,
+            contact,
             start: has_start.then(|| Start {
                 system: system.revision(),
                 energy,

@@ -33,6 +33,16 @@ pub enum SetupError {
         /// Reason and remedy.
         reason: String,
     },
+    /// Contact, with steps that cannot be pushed in closed form.
+    #[error("`{integrator}`: {reason}; take {methods}")]
+    Contact {
+        /// Integrator id.
+        integrator: &'static str,
+        /// What is in the way.
+        reason: &'static str,
+        /// Methods that can.
+        methods: String,
+    },
     /// A precision that rounds more than the error asked for.
     #[error(
         "`{integrator}`: f32 may be off by {expected:.0e}, more than the tolerance of {asked:e}; take \

@@ -64,6 +64,9 @@ impl State {
             internal: &self.internal,
         };
         system.net_force(&trial, out)?;
+        if let Some(contact) = system.contact() {
+            contact.add_forces(self, out);
+        }
         let acceleration = out.iter_mut().zip(system.mass());
         for ((value, mass), v) in acceleration.zip(&self.v) {
             *value = v + dt / 2.0 * *value / mass;

@@ -2,6 +2,7 @@
 
 use sinew_sparse::Layers;
 
+use crate::contact::Contact;
 use crate::elastic_law::ElasticLaw;
 use crate::element_forces::ElementForces;
 use crate::elements::Elements;
@@ -69,6 +70,11 @@ pub trait System: Send + Sync {
     /// The largest stiffness of any material against compression, `lambda + 2 mu`, over the smallest of any against shear,
     /// mu, where the system knows them: what rounding a stiffness costs grows with it.
     fn stiffness_contrast(&self) -> Option<f64> {
+        None
+    }
+
+    /// What touches it from outside, where anything does; its cells have three layers then.
+    fn contact(&self) -> Option<&dyn Contact> {
         None
     }
 

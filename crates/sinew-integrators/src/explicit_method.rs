@@ -104,7 +104,7 @@ impl<E: Explicit> Scheme for E {
 
 /// Imports for the file of an explicit method.
 pub(crate) mod prelude {
-    pub(crate) use sinew_cnn::{LoadAt, Loads, Physics, Program, Register, Sweep};
+    pub(crate) use sinew_cnn::{CellInertia, LoadAt, Loads, Physics, Program, Register, Sweep};
     pub(crate) use sinew_core::spectrum::Spectrum;
     pub(crate) use sinew_core::{
         EnergyBehaviour, Needs, OptionError, Options, Properties, StableStep, VelocityTime,

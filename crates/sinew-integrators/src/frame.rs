@@ -10,6 +10,7 @@ use sinew_core::{
 
 use sinew_machines::{Chosen, Kind, PrecisionName, Settings};
 
+use crate::contact::methods_with_contact;
 use crate::numerical_dissipation::NumericalDissipation;
 use crate::rounding::f32_rounding;
 use crate::scheme::{Scheme, StepByHand, Steps};
@@ -188,6 +189,7 @@ impl<M: Scheme> Integrator for Frame<M> {
     }
 
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
+        self.check_contact(batch)?;
         let needed = self.scheme.properties().changing_loads.needed();
         let Some(refused) = first_refused(needed, batch, state) else {
             return self.ready.run(batch, state);
@@ -259,6 +261,29 @@ impl<M: Scheme> Frame<M> {
                 reason: format!("no machine runs these steps: {reason}; leave `machine` out"),
             }),
         }
+    }
+
+    /// Refuses contact with steps that it cannot push.
+    fn check_contact(&self, batch: &Batch<'_>) -> Result<(), SetupError> {
+        if batch.contact().is_none() {
+            return Ok(());
+        }
+        let reason = match &self.ready {
+            Ready::Program(loaded) if loaded.program.inertia().is_some() => {
+                if batch.guarding().is_none() {
+                    return Ok(());
+                }
+                "tools do work that the limits of saturation = \"auto\" do not know"
+            }
+            _ => {
+                "tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity"
+            }
+        };
+        Err(SetupError::Contact {
+            integrator: M::ID,
+            reason,
+            methods: methods_with_contact(),
+        })
     }
 
     /// Refuses an error that rounding exceeds, and rounding that leaves nothing of a motion.

@@ -13,6 +13,7 @@
 //! ```
 
 pub mod cnn;
+mod contact;
 pub mod explicit;
 mod explicit_method;
 mod exponential;

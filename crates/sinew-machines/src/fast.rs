@@ -50,6 +50,8 @@ struct Loaded<T> {
     /// The sweep under way.
     current: Current<T>,
     work: Work,
+    /// Cells that were pushed in the last step.
+    pushed: Vec<u32>,
 }
 
 /// What threads do.
@@ -221,6 +223,9 @@ impl<T: ElementPrecision> Machine for FastMachine<T> {
         if program.acceleration != Acceleration::None {
             state.a.resize(state.u.len(), 0.0);
         }
+        if let Some(contact) = batch.contact() {
+            own(loaded).pushed.reserve(contact.cells().len());
+        }
         let (layout, set) = (&*self.layout, self.set);
         let chunks = own(loaded).chunks();
         let (loaded, patience) = (&*loaded, &mut self.patience);
@@ -306,6 +311,7 @@ impl<T: ElementPrecision> Loaded<T> {
             forces: Forces::new::<T>(operators, positions),
             elements: elements.map(|elements| (elements, table[registers + ELEMENTS] as usize)),
             work: Work::Cells,
+            pushed: Vec::new(),
             followed: FollowedLoad::of(&program),
             current: Current {
                 part: Part::Entry,
@@ -419,6 +425,7 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
             } else {
                 (Part::Step, &program.step)
             };
+            let kick = program.kick(batch.dt(), starts);
             starts = false;
             let (step, is_last) = (batch.step(), batch.is_last());
             let mut work = StepReport::default();
@@ -450,7 +457,19 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
                 acceleration,
             };
             written = is_last || exceeded || batch.looks_at_steps();
-            if written {
+            if let (Some(contact), Some(inertia)) = (batch.contact(), program.inertia()) {
+                let mut loaded = write(self.loaded);
+                match written {
+                    true => loaded.show(self.layout, state),
+                    false => loaded.show_cells(self.layout, contact.cells(), state),
+                }
+                let kick = kick.filter(|_| is_last);
+                batch.meet(state, inertia, kick, &mut loaded.pushed);
+                loaded.take_pushed(self.layout, state);
+                if !written {
+                    loaded.show_watched(self.layout, batch.watched(), state);
+                }
+            } else if written {
                 write(self.loaded).show(self.layout, state);
             } else if !batch.watched().is_empty() {
                 write(self.loaded).show_watched(self.layout, batch.watched(), state);
@@ -668,6 +687,52 @@ impl<T: ElementPrecision> Loaded<T> {
                 let of_layer = values.iter_mut().skip(layer).step_by(layers);
                 for (cell, value) in of_layer.enumerate() {
                     *value = from[layout.numbering.position(cell as u32)].to_f64();
+                }
+            }
+        }
+    }
+
+    /// Writes u and v of some cells.
+    fn show_cells(&mut self, layout: &Layout<T>, cells: &[u32], state: &mut State) {
+        let layers = self.fields.layers();
+        for (register, values) in [&mut state.u, &mut state.v].into_iter().enumerate() {
+            let field = self.field(register);
+            for layer in 0..layers {
+                let from = self.fields.layer(field, layer);
+                for cell in cells {
+                    let value = from[layout.numbering.position(*cell)].to_f64();
+                    values[*cell as usize * layers + layer] = value;
+                }
+            }
+        }
+    }
+
+    /// Takes u and v of the cells that were pushed, and what follows from them.
+    fn take_pushed(&mut self, layout: &Layout<T>, state: &State) {
+        let layers = self.fields.layers();
+        let program = Arc::clone(&self.program);
+        for (register, values) in [&state.u, &state.v].into_iter().enumerate() {
+            let field = self.field(register);
+            for layer in 0..layers {
+                let to = self.fields.layer(field, layer);
+                for cell in &self.pushed {
+                    let value = values[*cell as usize * layers + layer];
+                    to[layout.numbering.position(*cell)] = T::of(value);
+                }
+            }
+        }
+        for update in &program.entry {
+            for layer in 0..layers {
+                for at in 0..self.pushed.len() {
+                    let position = layout.numbering.position(self.pushed[at]);
+                    let mut sum = T::of(0.0);
+                    for term in &update.terms {
+                        let field = self.field(term.register.index());
+                        let value = self.fields.layer(field, layer)[position];
+                        sum = sum + T::of(self.followed.weight(term.weight)) * value;
+                    }
+                    let field = self.field(update.target.index());
+                    self.fields.layer(field, layer)[position] = sum;
                 }
             }
         }

@@ -25,6 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod contact;
 mod motion;
 mod pose;
 mod rotation;
@@ -34,6 +35,7 @@ mod swept_box;
 mod table;
 mod vector;
 
+pub use contact::{Depth, Grasp, Tool, ToolReport, Tools, ToolsError, TouchedCell};
 pub use motion::Motion;
 pub use pose::Pose;
 pub use shape::{Convex, Nearest, Part, Shape, ShapeError, Touch};

@@ -18,6 +18,14 @@ pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
 /// The point at this share of the way from `a` to `b`; exactly `a` wherever `b` is the same.
 pub(crate) fn between(a: Vector, b: Vector, share: f64) -> Vector {
     add(a, scaled(sub(b, a), share))

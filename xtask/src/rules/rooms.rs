@@ -17,7 +17,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
         &["sinew-core", "sinew-cnn", "sinew-sparse"],
     ),
     ("sinew-draw", &[]),
-    ("sinew-tools", &[]),
+    ("sinew-tools", &["sinew-core", "sinew-sparse"]),
     ("sinew-testkit", &["sinew-core", "sinew-fem", "sinew-mesh"]),
     (
         "sinew-integrators",

@@ -22,6 +22,8 @@ pub struct ReferenceMachine {
     /// rho, then q.
     q: Vec<f64>,
     followed: FollowedLoad,
+    /// Cells that were pushed in the last step.
+    pushed: Vec<u32>,
 }
 
 impl Machine for ReferenceMachine {
@@ -39,6 +41,8 @@ impl Machine for ReferenceMachine {
             register.resize(dofs, 0.0);
         }
         self.followed = FollowedLoad::of(&program);
+        self.pushed
+            .reserve(system.contact().map_or(0, |contact| contact.cells().len()));
         self.program = Some(program);
     }
 
@@ -72,6 +76,7 @@ impl ReferenceMachine {
             } else {
                 &program.step
             };
+            let kick = program.kick(batch.dt(), starts);
             starts = false;
             let (step, is_last) = (batch.step(), batch.is_last());
             let mut work = StepReport::default();
@@ -83,6 +88,14 @@ impl ReferenceMachine {
             } else {
                 Acceleration::None
             };
+            if let Some(inertia) = program.inertia() {
+                let kick = kick.filter(|_| is_last);
+                batch.meet(state, inertia, kick, &mut self.pushed);
+                if !self.pushed.is_empty() {
+                    self.cells(program, batch.system(), state)
+                        .enter(&program.entry);
+                }
+            }
             let stepped = Stepped {
                 work,
                 velocity: program.velocity,

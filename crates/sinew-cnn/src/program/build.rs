@@ -18,6 +18,7 @@ impl Program {
             velocity,
             acceleration: Acceleration::None,
             blocks: None,
+            inertia: None,
             limits: None,
             repeats: 1,
             moments: None,

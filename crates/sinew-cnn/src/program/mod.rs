@@ -13,7 +13,7 @@ mod work;
 
 use std::sync::Arc;
 
-use sinew_core::{Acceleration, VelocityTime};
+use sinew_core::{Acceleration, Inertia, VelocityTime};
 
 pub use physics::Physics;
 pub use sweep::{
@@ -59,6 +59,8 @@ pub struct Program {
     pub acceleration: Acceleration,
     /// P^-1, one block for each cell, of sweeps with [`Quotient::Blocks`].
     pub blocks: Option<Arc<CellBlocks>>,
+    /// The matrix P of a step that is `P (v+ - v-) = dt F`, `u+ = u + dt v+`; `None` for other steps, which nothing can touch.
+    pub inertia: Option<CellInertia>,
     /// Limits (m/s) of [`Clamp::Vector`], one for each cell.
     pub limits: Option<Arc<[f64]>>,
     /// Number of times a step is made for one step of the caller.
@@ -75,6 +77,15 @@ struct Source {
     u: Register,
     v: Register,
     beta: f64,
+}
+
+/// The matrix P that a step divides forces by, of one block for each cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CellInertia {
+    /// So many times the lumped mass.
+    Mass(f64),
+    /// The inverse of [`Program::blocks`].
+    Blocks,
 }
 
 /// Linear functionals of the change of a load's factor r over a step: number i is `sum over j of
@@ -101,6 +112,27 @@ impl Program {
             repeats: self.repeats.saturating_mul(times),
             ..self
         }
+    }
+
+    /// The matrix P of a step, as contact needs it.
+    #[must_use]
+    pub fn inertia(&self) -> Option<Inertia<'_>> {
+        match self.inertia? {
+            CellInertia::Mass(factor) => Some(Inertia::Mass(factor)),
+            CellInertia::Blocks => {
+                let blocks = self.blocks.as_ref()?;
+                Some(Inertia::InverseBlocks(blocks.entries()))
+            }
+        }
+    }
+
+    /// The time (s) by which a change of velocity is divided in the acceleration that a step of `dt` (s) keeps; `starts` in a first step
+    /// from a velocity at the displacement's time.
+    #[must_use]
+    pub fn kick(&self, dt: f64, starts: bool) -> Option<f64> {
+        let halves = starts && self.velocity != VelocityTime::Same;
+        let time = if halves { dt / 2.0 } else { dt };
+        (self.acceleration == Acceleration::Kick).then_some(time)
     }
 
     /// Name of a register.

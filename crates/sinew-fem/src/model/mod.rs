@@ -24,7 +24,7 @@ pub use with_memory::WithMemory;
 
 use std::sync::Arc;
 
-use sinew_core::{Damping, LinearOperators};
+use sinew_core::{Contact, Damping, LinearOperators};
 use sinew_mesh::TetMesh;
 
 use crate::assembly::{Assembled, assemble};
@@ -67,6 +67,8 @@ pub struct Model {
     /// Source of each load of the operators.
     load_items: Vec<Item>,
     report: ModelReport,
+    /// What touches it.
+    contact: Option<Arc<dyn Contact>>,
 }
 
 impl Model {
@@ -227,8 +229,18 @@ impl Model {
             motions,
             load_items: loads.items,
             report,
+            contact: None,
         };
         resting.in_motion()
+    }
+
+    /// The same, touched from outside.
+    #[must_use]
+    pub fn with_contact(self, contact: Arc<dyn Contact>) -> Self {
+        Self {
+            contact: Some(contact),
+            ..self
+        }
     }
 
     /// Mesh node (0-based) of each cell, increasing.

@@ -1,7 +1,7 @@
 //! The traits by which integrators see a model.
 
 use sinew_core::{
-    ElementStiffness, Elements, Energy, Equations, Inputs, Layers, LinearOperators, LinearSystem,
+    Contact, ElementStiffness, Elements, Energy, Equations, Inputs, Layers, LinearOperators, LinearSystem,
     LoadTime, Revision, Scales, State, System, element_omegas_squared,
 };
 
@@ -54,6 +54,10 @@ impl System for Model {
             fill(&mut scratch.displacement, displacement);
             let _ = large.remember(scratch, dt, internal);
         });
+    }
+
+    fn contact(&self) -> Option<&dyn Contact> {
+        self.contact.as_deref()
     }
 
     fn looks_at_steps(&self) -> bool {

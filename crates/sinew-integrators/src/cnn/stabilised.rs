@@ -3,7 +3,7 @@
 use std::ops::Bound;
 
 use sinew_cnn::{
-    Blend, DampingShare, GammaRule, Inner, LoadAt, Loads, Physics, Program, Register, Stabiliser,
+    Blend, CellInertia, DampingShare, GammaRule, Inner, LoadAt, Loads, Physics, Program, Register, Stabiliser,
     Sweep,
 };
 use sinew_core::{
@@ -276,6 +276,7 @@ fn program(stabiliser: &Stabiliser, physics: &Physics, dt: f64) -> Program {
 
     let force = program.net_force(physics, u, v, LoadAt::Around).scaled(dt);
     if let Some(solution) = stabiliser.sweeps(&mut program, force) {
+        program.inertia = solution.is_single().then_some(CellInertia::Blocks);
         let kick = solution.added_to(a.becomes([]), 1.0 / dt);
         let next = solution.added_to(v.becomes([(v, 1.0)]), 1.0);
         program.step = solution.then([kick.in_last_step(), next, u.plus(dt, v)]);

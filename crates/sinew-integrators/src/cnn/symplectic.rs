@@ -36,6 +36,7 @@ impl Explicit for CnnSymplectic {
 
     fn program(&self, physics: &Physics, dt: f64) -> Program {
         let mut program = Program::new(VelocityTime::Same);
+        program.inertia = Some(CellInertia::Mass(1.0));
         let mut sweep = program.net_force(physics, U, V, LoadAt::StartOf);
         sweep.updates = vec![V.plus_q(dt)];
         sweep

@@ -39,6 +39,7 @@ impl Explicit for CentralDifference {
         let first = V.becomes([(V, kept)]).and_q(dt / 2.0 * implicit);
         let kick = V.plus_q(dt * implicit);
         let mut program = Program::new(VelocityTime::MiddleOfStep);
+        program.inertia = Some(CellInertia::Mass(1.0 + alpha * dt / 2.0));
         let start = program.net_force(physics, U, V, LoadAt::From);
         let force = program.net_force(physics, U, V, LoadAt::Around);
         program.start.push(start.then(first).then(U.plus(dt, V)));

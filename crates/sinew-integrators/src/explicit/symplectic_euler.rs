@@ -23,6 +23,7 @@ impl Explicit for SymplecticEuler {
 
     fn program(&self, physics: &Physics, dt: f64) -> Program {
         let mut program = Program::new(VelocityTime::Same);
+        program.inertia = Some(CellInertia::Mass(1.0));
         let force = program.net_force(physics, U, V, LoadAt::StartOf);
         program
             .step

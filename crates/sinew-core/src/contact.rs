@@ -1,0 +1,71 @@
+//! Contact of a body with what touches it from outside, such as rigid tools.
+
+use std::fmt::Debug;
+
+use crate::{Inputs, State};
+
+/// What touches a body from outside and pushes cells back after each step.
+///
+/// A step that ends in `P (v+ - v-) = dt F`, `u+ = u + dt v+` with P of one block for each cell leads to a trial state; forces lambda of contact at
+/// cells then change it by `dt P^-1 lambda` (m/s) and `dt^2 P^-1 lambda` (m), which is the step's own response to them: no
+/// stiffness is added, and the stable step stays as it is. What contact remembers stands in [`State::contact`].
+pub trait Contact: Debug + Send + Sync {
+    /// The cells whose displacement and velocity it reads after each step.
+    fn cells(&self) -> &[u32];
+
+    /// Numbers that it keeps in [`State::contact`].
+    fn kept(&self) -> usize;
+
+    /// Takes note of where a motion goes on from: called before each batch, with [`State::contact`] as it was left, or of zeros.
+    fn begin(&self, state: &mut State);
+
+    /// Changes u and v of a trial state and what it keeps, and adds the cells that it pushed to `pushed`.
+    fn meet(&self, meeting: &Meeting<'_>, state: &mut State, pushed: &mut Vec<u32>);
+
+    /// Adds the forces (N) of the last step to those on all degrees of freedom.
+    fn add_forces(&self, state: &State, out: &mut [f64]);
+}
+
+/// A step that led to a trial state, whose clock still shows the beginning.
+#[derive(Clone, Copy, Debug)]
+pub struct Meeting<'a> {
+    /// Inputs from outside.
+    pub inputs: &'a Inputs,
+    /// Its length (s).
+    pub dt: f64,
+    /// Lumped masses (kg) of all degrees of freedom.
+    pub mass: &'a [f64],
+    /// The matrix P.
+    pub inertia: Inertia<'a>,
+    /// The time (s) by which a change of velocity is divided in an acceleration that the state keeps; `None` where it keeps none.
+    pub kick: Option<f64>,
+}
+
+/// The matrix P that a step divides forces by, one block for each cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Inertia<'a> {
+    /// So many times the lumped mass.
+    Mass(f64),
+    /// The blocks of `P^-1` (1/kg), row by row.
+    InverseBlocks(&'a [f64]),
+}
+
+impl Meeting<'_> {
+    /// The block of `P^-1` (1/kg) of a cell of three layers.
+    #[must_use]
+    pub fn inverse_block(&self, cell: usize) -> [[f64; 3]; 3] {
+        let mut block = [[0.0; 3]; 3];
+        match self.inertia {
+            Inertia::Mass(factor) => {
+                for (axis, row) in block.iter_mut().enumerate() {
+                    row[axis] = 1.0 / (factor * self.mass[3 * cell + axis]);
+                }
+            }
+            Inertia::InverseBlocks(blocks) => {
+                let entries = &blocks[9 * cell..9 * cell + 9];
+                block.as_flattened_mut().copy_from_slice(entries);
+            }
+        }
+        block
+    }
+}

@@ -1,0 +1,51 @@
+//! What tools keep from step to step, as numbers in a state.
+
+use crate::vector::Vector;
+
+/// Numbers of a tool.
+pub(super) const OF_TOOL: usize = 9;
+
+/// Numbers of a touched cell.
+pub(super) const OF_CELL: usize = 6;
+
+/// Numbers of a cell that may be held.
+pub(super) const OF_HELD: usize = 4;
+
+/// What contact did in the last step, and what the next one goes on from; by rows of numbers.
+pub(super) struct Record<'a> {
+    /// Of each tool the force (N) and torque (N m) on it, its work (J) so far, its contacts, and the passes of its stroke.
+    pub(super) tools: &'a mut [[f64; OF_TOOL]],
+    /// Of each cell its displacement (m) and the force (N) on it.
+    pub(super) cells: &'a mut [[f64; OF_CELL]],
+    /// Of each cell the tool that holds it, from 1 on, or 0, and the place (m) in that tool's frame; empty where no tool holds.
+    pub(super) held: &'a mut [[f64; OF_HELD]],
+}
+
+/// Numbers of a record.
+pub(super) fn numbers(tools: usize, cells: usize, holds: bool) -> usize {
+    let held = if holds { OF_HELD } else { 0 };
+    tools * OF_TOOL + cells * (OF_CELL + held)
+}
+
+impl<'a> Record<'a> {
+    /// The record in these numbers, as many as [`numbers`] says.
+    pub(super) fn of(numbers: &'a mut [f64], tools: usize, cells: usize) -> Self {
+        let (of_tools, rest) = numbers.split_at_mut(tools * OF_TOOL);
+        let (of_cells, of_held) = rest.split_at_mut(cells * OF_CELL);
+        Self {
+            tools: of_tools.as_chunks_mut().0,
+            cells: of_cells.as_chunks_mut().0,
+            held: of_held.as_chunks_mut().0,
+        }
+    }
+}
+
+/// The displacement (m) of a cell before the step.
+pub(super) fn displacement([x, y, z, ..]: &[f64; OF_CELL]) -> Vector {
+    [*x, *y, *z]
+}
+
+/// The force (N) on a cell.
+pub(super) fn force([.., x, y, z]: &[f64; OF_CELL]) -> Vector {
+    [*x, *y, *z]
+}

@@ -1,0 +1,151 @@
+//! Room for a meeting of tools and cells, used again by the next.
+
+use super::node::{Compliance, Constraint, MOST};
+use super::tool::Tool;
+use crate::pose::Pose;
+use crate::stroke::Stroke;
+use crate::vector::{Vector, add, scaled, sub};
+
+/// Every tool during a step.
+#[derive(Debug)]
+pub(super) struct Room {
+    pub(super) steps: Vec<ToolStep>,
+}
+
+/// A tool during a step.
+#[derive(Debug)]
+pub(super) struct ToolStep {
+    before: Pose,
+    pub(super) after: Pose,
+    /// The pose before the step before, and the length (s) of that step.
+    earlier: Option<(Pose, f64)>,
+    friction: f64,
+    strokes: Vec<(Stroke, Option<[Vector; 2]>)>,
+}
+
+impl Room {
+    pub(super) fn of(tools: &[Tool]) -> Self {
+        let step = |tool: &Tool| ToolStep {
+            before: Pose::identity(),
+            after: Pose::identity(),
+            earlier: None,
+            friction: tool.friction,
+            strokes: Vec::with_capacity(tool.shape.parts().len()),
+        };
+        Self {
+            steps: tools.iter().map(step).collect(),
+        }
+    }
+}
+
+impl ToolStep {
+    /// Takes a step of `dt` (s) from `t` (s) on, after one of length `last` (s) where there was one.
+    pub(super) fn take(&mut self, tool: &Tool, t: f64, dt: f64, last: Option<f64>) {
+        self.before = tool.motion.at(t);
+        self.after = tool.motion.at(t + dt);
+        self.earlier = last.map(|last| (tool.motion.at(t - last), last));
+        self.strokes.clear();
+        let strokes = tool.shape.parts().iter().map(|part| {
+            let stroke = Stroke::new(part, self.before, self.after);
+            (stroke, stroke.bounds())
+        });
+        self.strokes.extend(strokes);
+    }
+
+    /// Passes of its stroke.
+    pub(super) fn passes(&self) -> f64 {
+        let passes = self.strokes.iter().map(|(stroke, _)| stroke.passes());
+        f64::from(passes.max().unwrap_or(1))
+    }
+
+    /// The velocity (m/s) of the tool at a place (m) after the step: the mean of this step's and the last one's. With it the work of contact is what the
+    /// energy of the staggered step needs.
+    pub(super) fn velocity(&self, place: Vector, dt: f64) -> Vector {
+        let own = self.after.to_own(place);
+        let middle = self.before.to_world(own);
+        let now = scaled(sub(self.after.to_world(own), middle), 1.0 / dt);
+        match &self.earlier {
+            Some((earlier, last)) => {
+                let before = scaled(sub(middle, earlier.to_world(own)), 1.0 / last);
+                scaled(add(now, before), 0.5)
+            }
+            None => now,
+        }
+    }
+}
+
+/// What a node met in a step.
+pub(super) struct Met {
+    pub(super) count: usize,
+    pub(super) tools: [usize; MOST],
+    constraints: [Constraint; MOST],
+    /// The forces (N) on the node.
+    pub(super) forces: [Vector; MOST],
+}
+
+impl Met {
+    /// Nothing yet.
+    pub(super) fn none() -> Self {
+        let nothing = Constraint {
+            normal: [0.0; 3],
+            gap: 0.0,
+            stick: [0.0; 3],
+            friction: 0.0,
+        };
+        Self {
+            count: 0,
+            tools: [0; MOST],
+            constraints: [nothing; MOST],
+            forces: [[0.0; 3]; MOST],
+        }
+    }
+
+    /// Finds what a node meets on its way (m) among some tools, one bit each.
+    pub(super) fn touches(&mut self, steps: &[ToolStep], tools: u64, (from, to): (Vector, Vector)) {
+        let near = |[low, high]: &[Vector; 2]| {
+            (0..3).all(|axis| {
+                from[axis].min(to[axis]) <= high[axis] && from[axis].max(to[axis]) >= low[axis]
+            })
+        };
+        for (number, step) in steps.iter().enumerate() {
+            if tools >> number & 1 == 0 {
+                continue;
+            }
+            for (stroke, bounds) in &step.strokes {
+                if self.count == MOST || !bounds.as_ref().is_none_or(near) {
+                    continue;
+                }
+                if let Some(touch) = stroke.first_contact(from, to) {
+                    let end = stroke.pose_at(1.0);
+                    let stick = sub(end.to_world(touch.point), to);
+                    let normal = end.turned(touch.normal);
+                    self.tools[self.count] = number;
+                    self.constraints[self.count] = Constraint {
+                        normal,
+                        gap: -crate::vector::dot(normal, stick),
+                        stick,
+                        friction: step.friction,
+                    };
+                    self.count += 1;
+                }
+            }
+        }
+    }
+
+    /// Computes the forces.
+    pub(super) fn solve(&mut self, compliance: &Compliance) {
+        compliance.solve(&self.constraints[..self.count], &mut self.forces);
+    }
+
+    /// Leaves the node to a tool that holds it by this force (N).
+    pub(super) fn hold(&mut self, tool: usize, force: Vector) {
+        (self.count, self.tools[0], self.forces[0]) = (1, tool, force);
+    }
+
+    /// The tools that push the node, one bit each.
+    pub(super) fn pushing(&self) -> u64 {
+        let met = self.tools[..self.count].iter().zip(&self.forces);
+        let pushing = met.filter(|(_, force)| **force != [0.0; 3]);
+        pushing.fold(0, |all, (tool, _)| all | 1 << tool)
+    }
+}

@@ -1,0 +1,89 @@
+//! Tools and the cells that they may touch.
+
+use crate::motion::Motion;
+use crate::shape::Shape;
+
+/// A rigid tool.
+#[derive(Clone, Debug)]
+pub struct Tool {
+    /// Its name, unique among the tools of a body.
+    pub name: String,
+    /// Its shape.
+    pub shape: Shape,
+    /// Where it is at any time.
+    pub motion: Motion,
+    /// Coefficient of Coulomb's friction.
+    pub friction: f64,
+    /// The cells that it may touch, by their places among the touched cells of [`crate::Tools`], increasing.
+    pub cells: Vec<u32>,
+    /// When it holds what it touches; `None` where it never does.
+    pub grasp: Option<Grasp>,
+}
+
+/// A time during which a tool holds what it touches: a cell that it pushes then goes with it until the end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grasp {
+    /// Its beginning (s).
+    pub from: f64,
+    /// Its end (s).
+    pub to: f64,
+}
+
+/// A cell at the surface of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TouchedCell {
+    /// Its number in the system.
+    pub cell: u32,
+    /// Its position at rest (m).
+    pub rest: [f64; 3],
+    /// Whether it moves in x, y and z.
+    pub free: [bool; 3],
+}
+
+/// Tools that do not fit together, or to their cells.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ToolsError {
+    /// More tools than one body can meet.
+    #[error("{count} tools: expected at most {most}")]
+    TooMany {
+        /// Their number.
+        count: usize,
+        /// The largest number.
+        most: usize,
+    },
+    /// Two tools of one name.
+    #[error("two tools are named \"{name}\": expected a name of its own for each")]
+    SameName {
+        /// The name.
+        name: String,
+    },
+    /// A coefficient of friction that is none.
+    #[error("\"{name}\": friction = {friction}: expected a finite number, 0 or above")]
+    Friction {
+        /// The tool.
+        name: String,
+        /// The coefficient.
+        friction: f64,
+    },
+    /// A time of grasp that does not go forward.
+    #[error("\"{name}\": grasp from {from} s to {to} s: expected an end after the beginning")]
+    Grasp {
+        /// The tool.
+        name: String,
+        /// The beginning (s).
+        from: f64,
+        /// The end (s).
+        to: f64,
+    },
+    /// A place beyond the touched cells.
+    #[error("\"{name}\" may touch cell {place} of {cells}: expected a place below their number")]
+    NoCell {
+        /// The tool.
+        name: String,
+        /// The place.
+        place: u32,
+        /// Number of touched cells.
+        cells: usize,
+    },
+}
