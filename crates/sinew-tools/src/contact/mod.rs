@@ -167,7 +167,9 @@ impl Contact for Tools {
             kept[3..].fill(0.0);
             let mut met = Met::none();
             met.touches(&room.steps, *tools, (from, to));
-            let holder = held.as_ref().and_then(|held| (held[0] as usize).checked_sub(1));
+            let holder = held
+                .as_ref()
+                .and_then(|held| (held[0] as usize).checked_sub(1));
             let holder = holder.filter(|tool| {
                 let grasp = self.tools[*tool].grasp;
                 grasp.is_some_and(|grasp| t + dt <= grasp.to)

@@ -131,9 +131,8 @@ impl Compliance {
         let none = usize::MAX;
         let singles = (0..count).map(|a| [a, none, none]);
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b, none]));
-        let triples = (0..count).flat_map(|a| {
-            (a + 1..count).flat_map(move |b| (b + 1..count).map(move |c| [a, b, c]))
-        });
+        let triples = (0..count)
+            .flat_map(|a| (a + 1..count).flat_map(move |b| (b + 1..count).map(move |c| [a, b, c])));
         if scale > 0.0 {
             let _found = singles.chain(pairs).chain(triples).any(&mut attempt);
         }
@@ -232,7 +231,10 @@ mod tests {
         let (moved, _) = total(&compliance([false, true, true]), &[constraint]);
         assert_eq!(moved[0], 0.0);
         assert!((dot(constraint.normal, moved) - 0.01).abs() < 1e-16);
-        let (moved, forces) = total(&compliance([false, true, true]), &[plane([1.0, 0.0, 0.0], -0.01)]);
+        let (moved, forces) = total(
+            &compliance([false, true, true]),
+            &[plane([1.0, 0.0, 0.0], -0.01)],
+        );
         assert_eq!((moved, forces[0]), ([0.0; 3], [0.0; 3]));
     }
 
@@ -276,7 +278,10 @@ mod tests {
 
     #[test]
     fn between_closing_jaws_the_violation_is_not_made_worse() {
-        let jaws = [plane([0.0, 0.0, 1.0], -0.01), plane([0.0, 0.0, -1.0], -0.002)];
+        let jaws = [
+            plane([0.0, 0.0, 1.0], -0.01),
+            plane([0.0, 0.0, -1.0], -0.002),
+        ];
         let (moved, _) = total(&compliance([true; 3]), &jaws);
         let worst = jaws
             .iter()

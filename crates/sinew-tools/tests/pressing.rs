@@ -1,0 +1,436 @@
+//! Bodies that tools press on, against closed forms and the laws of motion.
+
+#![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test ends where something fails")]
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use sinew_core::{
+    Inputs, LinearSystem, OptionValue, Options, Run, StableStep, State, System, simulate, vectors,
+};
+use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Rayleigh, Region, Tissue};
+use sinew_mesh::structured::{Split, block};
+use sinew_tools::{Convex, Grasp, Motion, Pose, Row, Shape, Table, Tool, Tools, TouchedCell};
+
+/// Young's modulus (Pa) and density (kg/m^3).
+const E: f64 = 3500.0;
+const DENSITY: f64 = 1060.0;
+
+/// A block of linear tissue whose nodes tools may touch.
+struct Pressed {
+    model: Model,
+    tools: Arc<Tools>,
+}
+
+#[derive(Clone, Copy)]
+struct Block {
+    size: [f64; 3],
+    cells: [usize; 3],
+    nu: f64,
+    damping: Rayleigh,
+    is_held: bool,
+    gravity: Option<[f64; 3]>,
+}
+
+impl Block {
+    fn of(size: [f64; 3], cells: [usize; 3]) -> Self {
+        Self {
+            size,
+            cells,
+            nu: 0.0,
+            damping: Rayleigh::default(),
+            is_held: true,
+            gravity: None,
+        }
+    }
+
+    fn with_mass_damping(mut self, mass: f64) -> Self {
+        self.damping.mass = mass;
+        self
+    }
+
+    fn problem(&self) -> Problem {
+        let bottom = Fixed {
+            on: "bottom".into(),
+            axes: [true; 3],
+        };
+        Problem {
+            regions: vec![Region {
+                group: None,
+                density: DENSITY,
+                law: Law::Linear {
+                    youngs_modulus: E,
+                    poissons_ratio: self.nu,
+                },
+                element: Element::P1,
+                tissue: Tissue::default(),
+                from_mesh: FromMesh::default(),
+            }],
+            damping: self.damping,
+            fixed: if self.is_held {
+                vec![bottom]
+            } else {
+                Vec::new()
+            },
+            gravity: self.gravity,
+            ..Problem::default()
+        }
+    }
+
+    /// The block with tools that may touch all of its nodes that move.
+    fn with(&self, tools: Vec<Tool>) -> Pressed {
+        let mesh = block(self.cells, self.size, Split::Kuhn).unwrap();
+        let model = Model::build(&mesh, &self.problem()).unwrap();
+        let pinned = model.pinned().as_chunks::<3>().0;
+        let cells = (0..).zip(model.nodes()).zip(pinned);
+        let cells = cells.map(|((cell, node), held)| TouchedCell {
+            cell,
+            rest: mesh.points[*node as usize],
+            free: held.map(|held| !held),
+        });
+        let cells: Vec<TouchedCell> = cells.collect();
+        let all: Vec<u32> = (0..cells.len() as u32).collect();
+        let tools = tools.into_iter().map(|tool| Tool {
+            cells: all.clone(),
+            ..tool
+        });
+        let tools = Arc::new(Tools::new(tools.collect(), cells).unwrap());
+        Pressed {
+            model: model.with_contact(tools.clone()),
+            tools,
+        }
+    }
+}
+
+impl Pressed {
+    fn at_rest(&self) -> State {
+        State::at_rest(self.model.dofs())
+    }
+
+    fn run(&self, state: &mut State, method: &str, dt: f64, steps: usize) {
+        self.run_with(state, (method, Options::new()), dt, steps);
+    }
+
+    fn run_with(&self, state: &mut State, method: (&str, Options), dt: f64, steps: usize) {
+        let mut integrator = sinew_integrators::build(method.0, &method.1).unwrap();
+        let run = Run {
+            dt,
+            steps,
+            divergence_limit: f64::INFINITY,
+        };
+        simulate(&self.model, &mut *integrator, state, &run, &mut ()).unwrap();
+    }
+
+    fn stable_step(&self) -> f64 {
+        let integrator = sinew_integrators::build("central-difference", &Options::new()).unwrap();
+        match integrator.stable_step(&self.model).unwrap() {
+            StableStep::UpTo(step) => step,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn force(&self, state: &State) -> [f64; 3] {
+        self.tools.report(state, 0).force
+    }
+
+    /// The mean velocity (m/s) along an axis, by mass, and the mass (kg).
+    fn mean_velocity(&self, state: &State, axis: usize) -> (f64, f64) {
+        let all = state.v.iter().zip(self.model.mass());
+        let along = all.skip(axis).step_by(3);
+        let (momentum, mass) = along.fold((0.0, 0.0), |(p, m), (v, of)| (p + v * of, m + of));
+        (momentum / mass, mass)
+    }
+}
+
+fn tool(convex: Convex, motion: Motion) -> Tool {
+    Tool {
+        name: "probe".to_owned(),
+        shape: Shape::of(convex),
+        motion,
+        friction: 0.0,
+        cells: Vec::new(),
+        grasp: None,
+    }
+}
+
+/// Straight lines between positions (m) at times (s).
+fn through(rows: &[(f64, [f64; 3])], rotation_vector: [f64; 3]) -> Motion {
+    let rows = rows.iter().map(|(t, position)| Row {
+        t: *t,
+        position: *position,
+        rotation_vector,
+    });
+    Motion::Table(Table::new(rows.collect()).unwrap())
+}
+
+/// The rotation of a plate that faces down.
+const DOWN: [f64; 3] = [PI, 0.0, 0.0];
+
+#[test]
+fn a_plate_on_a_bar_presses_with_e_a_d_over_l() {
+    let (length, area, depth) = (0.1, 4e-4, 0.002);
+    let bar = Block::of([0.02, 0.02, length], [2, 2, 8]).with_mass_damping(60.0);
+    let down = [(0.0, [0.0, 0.0, length]), (0.1, [0.0, 0.0, length - depth])];
+    let pressed = bar.with(vec![tool(Convex::Plane, through(&down, DOWN))]);
+    let mut state = pressed.at_rest();
+    let dt = 0.5 * pressed.stable_step();
+    pressed.run(&mut state, "symplectic-euler", dt, (1.3 / dt) as usize);
+    let expected = E * area * depth / length;
+    let [x, y, z] = pressed.force(&state);
+    assert!((z / expected - 1.0).abs() < 1e-10, "{z} {expected}");
+    assert!(x.abs().max(y.abs()) < 1e-10 * expected);
+    let report = pressed.tools.report(&state, 0);
+    assert_eq!(report.contacts, 9);
+    // About the tool's origin, which is above a corner of the bar.
+    assert!((report.torque[0] / (0.01 * expected) - 1.0).abs() < 1e-9);
+    assert!((report.torque[1] / (-0.01 * expected) - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_settled_force_is_that_of_every_method_and_step() {
+    let mut cube = Block::of([0.06; 3], [5; 3]).with_mass_damping(40.0);
+    cube.nu = 0.45;
+    let down = [(0.0, [0.03, 0.03, 0.0725]), (0.2, [0.03, 0.03, 0.067])];
+    let ball = tool(Convex::sphere(0.012).unwrap(), through(&down, [0.0; 3]));
+    let pressed = cube.with(vec![ball]);
+    let settled = |method: &str, dt: f64, time: f64| {
+        let mut state = pressed.at_rest();
+        pressed.run(&mut state, method, dt, (time / dt) as usize);
+        pressed.force(&state)[2]
+    };
+    let expected = settled("central-difference", 0.5e-3, 1.6);
+    assert!(expected > 0.01);
+    for (method, dt, time) in [
+        ("central-difference", 1e-3, 1.6),
+        ("symplectic-euler", 1e-3, 1.6),
+        ("cnn-symplectic", 0.7e-3, 1.6),
+        ("cnn-stabilised", 0.5e-3, 1.6),
+        // What is added to the mass makes it slower.
+        ("cnn-stabilised", 5e-3, 8.0),
+    ] {
+        let force = settled(method, dt, time);
+        assert!(
+            (force / expected - 1.0).abs() < 1e-6,
+            "{method} {dt}: {force} {expected}"
+        );
+    }
+}
+
+#[test]
+fn momentum_changes_by_the_impulse_of_the_tool() {
+    let mut cube = Block::of([0.04; 3], [3; 3]);
+    cube.is_held = false;
+    let below = Pose::new([0.0, 0.0, -0.003], [0.0; 3]);
+    let pressed = cube.with(vec![tool(Convex::Plane, Motion::Held(below))]);
+    let mut state = pressed.at_rest();
+    let falling = state.v.iter_mut().skip(2).step_by(3);
+    falling.for_each(|v| *v = -0.5);
+    let (before, mass) = pressed.mean_velocity(&state, 2);
+    let (mut impulse, dt) = (0.0, 1e-3);
+    for _ in 0..200 {
+        pressed.run(&mut state, "symplectic-euler", dt, 1);
+        impulse -= dt * pressed.force(&state)[2];
+    }
+    assert!(impulse > -1.5 * before * mass, "it bounces");
+    let change = mass * (pressed.mean_velocity(&state, 2).0 - before);
+    assert!((change / impulse - 1.0).abs() < 1e-12, "{change} {impulse}");
+}
+
+/// `(v' (M - dt^2/4 K) v + u' K u)/2` of central difference's step, u being the mean of both displacements.
+fn staggered_energy(model: &Model, before: &State, after: &State, dt: f64) -> f64 {
+    let matrix = model.operators().stiffness();
+    let quadratic = |x: &[f64]| {
+        let mut out = vec![0.0; x.len()];
+        matrix.multiply(x, &mut out);
+        vectors::dot(x, &out)
+    };
+    let both = before.u.iter().zip(&after.u);
+    let mean: Vec<f64> = both.map(|(a, b)| 0.5 * (a + b)).collect();
+    let moving = after.v.iter().zip(model.mass());
+    let kinetic: f64 = moving.map(|(v, m)| m * v * v).sum();
+    0.5 * (kinetic - dt * dt / 4.0 * quadratic(&after.v) + quadratic(&mean))
+}
+
+#[test]
+fn energy_never_rises_by_more_than_the_work_of_a_plate() {
+    let cube = Block::of([0.06; 3], [4; 3]);
+    let (top, deep) = (0.0601, 0.05);
+    let rows = [
+        (0.0, [0.0, 0.0, top]),
+        (0.05, [0.0, 0.0, deep]),
+        (0.1, [0.0, 0.0, deep]),
+        (0.15, [0.0, 0.0, top]),
+    ];
+    let pressed = cube.with(vec![tool(Convex::Plane, through(&rows, DOWN))]);
+    for share in [0.05, 0.5, 0.95] {
+        let dt = share * pressed.stable_step();
+        let mut state = pressed.at_rest();
+        let (mut last, mut largest, mut rise): (Option<f64>, f64, f64) = (None, 0.0, 0.0);
+        for _ in 0..(0.3 / dt) as usize {
+            let before = state.clone();
+            pressed.run(&mut state, "central-difference", dt, 1);
+            let energy = staggered_energy(&pressed.model, &before, &state, dt);
+            let left = energy - pressed.tools.work(&state);
+            rise = rise.max(last.map_or(0.0, |last| left - last));
+            last = Some(left);
+            largest = largest.max(energy);
+        }
+        assert!(largest > 1e-4, "the plate presses: {largest}");
+        assert!(rise <= 1e-12 * largest, "{share}: {rise} of {largest}");
+    }
+}
+
+#[test]
+fn machines_threads_and_batches_lead_to_the_same_motion() {
+    let mut cube = Block::of([0.06; 3], [8; 3]);
+    cube.damping = Rayleigh {
+        mass: 5.0,
+        stiffness: 2e-4,
+    };
+    let down = [(0.0, [0.03, 0.03, 0.0725]), (0.1, [0.028, 0.031, 0.066])];
+    let mut ball = tool(Convex::sphere(0.012).unwrap(), through(&down, [0.0; 3]));
+    ball.friction = 0.3;
+    let pressed = cube.with(vec![ball]);
+    let dt = 0.8e-3;
+    for id in ["central-difference", "symplectic-euler", "cnn-stabilised"] {
+        let method = |machine: &str, threads: f64| {
+            let options = Options::new().with("machine", OptionValue::Text(machine.into()));
+            match machine {
+                "reference" => (id, options),
+                _ => (id, options.with("threads", OptionValue::Number(threads))),
+            }
+        };
+        let mut expected = pressed.at_rest();
+        pressed.run_with(&mut expected, method("reference", 1.0), dt, 120);
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let size = largest(&mut expected.u.iter().map(|u| u.abs()));
+        assert!(size > 1e-3 && pressed.tools.report(&expected, 0).contacts > 3);
+        let mut one = pressed.at_rest();
+        pressed.run_with(&mut one, method("general", 1.0), dt, 120);
+        let pairs = one.u.iter().zip(&expected.u);
+        let off = largest(&mut pairs.map(|(a, b)| (a - b).abs()));
+        assert!(off < 1e-11 * size, "{id}: {off}");
+        for machine in ["general", "reference"] {
+            let (mut whole, mut cut) = (pressed.at_rest(), pressed.at_rest());
+            pressed.run_with(&mut whole, method(machine, 3.0), dt, 60);
+            for steps in [1, 7, 52] {
+                pressed.run_with(&mut cut, method(machine, 1.0), dt, steps);
+            }
+            assert!(whole == cut, "{id} {machine}");
+        }
+    }
+}
+
+#[test]
+fn a_block_on_an_incline_sticks_and_slides_as_coulomb_says() {
+    let friction: f64 = 0.3;
+    for (angle, slides) in [(15.0_f64, false), (19.0, true), (25.0, true)] {
+        let (sin, cos) = angle.to_radians().sin_cos();
+        let mut cube = Block::of([0.02; 3], [2; 3]);
+        cube.damping.stiffness = 2e-3;
+        cube.is_held = false;
+        cube.gravity = Some([9.81 * sin, 0.0, -9.81 * cos]);
+        let mut plane = tool(Convex::Plane, Motion::Held(Pose::identity()));
+        plane.friction = friction;
+        let pressed = cube.with(vec![plane]);
+        let mut state = pressed.at_rest();
+        let dt = 2e-4;
+        // It settles on its support first.
+        pressed.run(&mut state, "symplectic-euler", dt, 3000);
+        let ((before, _), t) = (pressed.mean_velocity(&state, 0), state.t());
+        pressed.run(&mut state, "symplectic-euler", dt, 2000);
+        let (after, _) = pressed.mean_velocity(&state, 0);
+        if slides {
+            let acceleration = (after - before) / (state.t() - t);
+            let expected = 9.81 * (sin - friction * cos);
+            assert!(
+                (acceleration / expected - 1.0).abs() < 0.01,
+                "{angle}: {acceleration} {expected}"
+            );
+        } else {
+            assert!(after.abs() < 1e-5, "{angle}: {after}");
+        }
+    }
+}
+
+#[test]
+fn what_is_seized_goes_with_the_tool_and_is_let_go() {
+    let cube = Block::of([0.04; 3], [4; 3]).with_mass_damping(20.0);
+    let rows = [
+        (0.0, [0.02, 0.02, 0.05]),
+        (0.1, [0.02, 0.02, 0.047]),
+        (0.3, [0.025, 0.02, 0.055]),
+    ];
+    let jaw = Convex::cuboid([0.012, 0.012, 0.02]).unwrap();
+    let mut jaw = tool(jaw, through(&rows, [0.0; 3]));
+    jaw.grasp = Some(Grasp {
+        from: 0.1,
+        to: 0.35,
+    });
+    let pressed = cube.with(vec![jaw]);
+    let mut state = pressed.at_rest();
+    let dt = 1e-3;
+    pressed.run(&mut state, "symplectic-euler", dt, 110);
+    let pulled = pressed.tools.report(&state, 0);
+    assert!(pulled.contacts >= 1);
+    let forces: Vec<[f64; 3]> = pressed.tools.forces(&state).collect();
+    let held: Vec<usize> = (0..forces.len())
+        .filter(|place| forces[*place] != [0.0; 3])
+        .collect();
+    let at = |state: &State, place: usize| {
+        let cell = pressed.tools.touched_cells()[place];
+        let first = 3 * cell.cell as usize;
+        [0, 1, 2].map(|axis| cell.rest[axis] + state.u[first + axis])
+    };
+    let places: Vec<[f64; 3]> = held.iter().map(|place| at(&state, *place)).collect();
+    pressed.run(&mut state, "symplectic-euler", dt, 200);
+    let moved = pressed.tools.report(&state, 0);
+    for (place, before) in held.iter().zip(&places) {
+        let after = at(&state, *place);
+        for axis in 0..3 {
+            let expected = before[axis] + moved.position[axis] - pulled.position[axis];
+            assert!((after[axis] - expected).abs() < 1e-15);
+        }
+    }
+    assert!(moved.force[2] < -1e-3, "it pulls: {:?}", moved.force);
+    pressed.run(&mut state, "symplectic-euler", dt, 100);
+    assert_eq!(pressed.tools.report(&state, 0).contacts, 0);
+}
+
+#[test]
+fn a_motion_goes_on_from_bytes_with_the_same_bits() {
+    let cube = Block::of([0.04; 3], [4; 3]).with_mass_damping(2.0);
+    let rows = [(0.0, [0.02, 0.02, 0.055]), (0.1, [0.022, 0.02, 0.047])];
+    let mut jaw = tool(Convex::sphere(0.01).unwrap(), through(&rows, [0.0; 3]));
+    jaw.friction = 0.2;
+    jaw.grasp = Some(Grasp {
+        from: 0.07,
+        to: 0.2,
+    });
+    let pressed = cube.with(vec![jaw]);
+    let mut whole = pressed.at_rest();
+    pressed.run(&mut whole, "cnn-stabilised", 3e-3, 60);
+    let mut part = pressed.at_rest();
+    pressed.run(&mut part, "cnn-stabilised", 3e-3, 30);
+    let bytes = part.to_bytes(&pressed.model);
+    let mut part = State::from_bytes(&bytes, &pressed.model).unwrap();
+    pressed.run(&mut part, "cnn-stabilised", 3e-3, 30);
+    assert!(whole == part);
+    assert!(pressed.tools.report(&whole, 0).work != 0.0);
+}
+
+#[test]
+fn methods_that_cannot_be_pushed_refuse_and_name_those_that_can() {
+    let cube = Block::of([0.04; 3], [2; 3]);
+    let held = Motion::Held(Pose::new([0.0, 0.0, 1.0], [0.0; 3]));
+    let pressed = cube.with(vec![tool(Convex::sphere(0.01).unwrap(), held)]);
+    for method in ["forward-euler", "rk4", "modified-leapfrog", "cnn"] {
+        let mut integrator = sinew_integrators::build(method, &Options::new()).unwrap();
+        let mut state = pressed.at_rest();
+        let stepped = integrator.step_under(&pressed.model, Inputs::none(), &mut state, 1e-4);
+        let message = stepped.unwrap_err().to_string();
+        let names_others = message.contains(method) && message.contains("symplectic-euler");
+        assert!(names_others, "{message}");
+    }
+}
