@@ -68,7 +68,8 @@ fn through_the_seam(
     let share = (centre[2] - from[2]) / motion[2];
     let [x, y, _] = add(from, scaled(motion, share));
     let (from_axis, normal) = length_and_direction([x, y, 0.0], [1.0, 0.0, 0.0]);
-    (share >= 0.0 && from_axis <= radius * (1.0 + ROUNDING)).then(|| Touch {
+    let is_approach = x * motion[0] + y * motion[1] < 0.0;
+    (is_approach && share >= 0.0 && from_axis <= radius * (1.0 + ROUNDING)).then(|| Touch {
         share,
         point: add(centre, scaled(normal, radius)),
         normal,
