@@ -17,8 +17,10 @@ const MOST_PASSES: f64 = 1000.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     part: Part,
-    before: Pose,
-    after: Pose,
+    /// The tool's poses before and after.
+    tool: [Pose; 2],
+    /// The part's own poses then.
+    ends: [Pose; 2],
     /// The turn of the tool over the step (rad, in the world).
     turn: [f64; 3],
     passes: u32,
@@ -31,8 +33,8 @@ impl Stroke {
         let turn = before.turn_to(&after);
         let mut stroke = Self {
             part: *part,
-            before,
-            after,
+            tool: [before, after],
+            ends: [before.then(&part.pose), after.then(&part.pose)],
             turn,
             passes: 1,
         };
@@ -53,7 +55,15 @@ impl Stroke {
     /// The pose of the part in the world at a share of the step.
     #[must_use]
     pub fn pose_at(&self, share: f64) -> Pose {
-        let tool = self.before.on_the_way(&self.after, self.turn, share);
+        let [start, end] = self.ends;
+        if share <= 0.0 {
+            return start;
+        }
+        if share >= 1.0 {
+            return end;
+        }
+        let [before, after] = &self.tool;
+        let tool = before.on_the_way(after, self.turn, share);
         tool.then(&self.part.pose)
     }
 
@@ -87,10 +97,9 @@ impl Stroke {
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
         let arc = self.largest_arc()?;
-        let ends = [self.pose_at(0.0), self.pose_at(1.0)];
-        let [first, last] = ends.map(|pose| half_sizes(&self.part.convex, &pose));
+        let [first, last] = self.ends.map(|pose| half_sizes(&self.part.convex, &pose));
         let (first, last) = (first?, last?);
-        let [start, end] = ends.map(|pose| pose.position());
+        let [start, end] = self.ends.map(|pose| pose.position());
         let low = [0, 1, 2].map(|axis| (start[axis] - first[axis]).min(end[axis] - last[axis]));
         let high = [0, 1, 2].map(|axis| (start[axis] + first[axis]).max(end[axis] + last[axis]));
         // A point at distance r from the centre of a steady turn by an angle a is never farther than r a^2/8 from where it would
@@ -114,7 +123,8 @@ impl Stroke {
 
     /// How far any point of a round part moves at most, in its smallest radii; 0 for parts with flat faces.
     fn longest_way(&self) -> f64 {
-        let way = length(sub(self.after.position(), self.before.position()));
+        let [before, after] = self.tool.map(|pose| pose.position());
+        let way = length(sub(after, before));
         let arc = self.largest_arc();
         let radius = self.part.convex.smallest_radius();
         arc.zip(radius)

@@ -203,3 +203,23 @@ fn a_way_that_ends_before_the_surface_is_no_contact_and_one_that_ends_on_it_is()
         assert_eq!(share, 1.0, "{convex:?}");
     }
 }
+
+/// A touch that is too flat for the surface to tell is a contact as long as it goes inwards.
+#[test]
+fn the_flattest_way_in_from_the_surface_is_a_contact_at_once() {
+    for (convex, top) in [
+        (Convex::sphere(0.5).unwrap(), 0.5),
+        (Convex::capsule(0.5, 2.0).unwrap(), 1.5),
+        (Convex::cuboid([1.0, 1.0, 3.0]).unwrap(), 1.5),
+    ] {
+        let from = [0.0, 0.0, top * (1.0 + 1e-13)];
+        let inwards = convex.first_contact(from, [0.1, 0.0, from[2] - 1e-14]);
+        assert_eq!(inwards.unwrap().share, 0.0, "{convex:?}");
+        for up in [0.0, 1e-14] {
+            let away = convex.first_contact(from, [0.1, 0.0, from[2] + up]);
+            assert_eq!(away, None, "{convex:?}");
+            let on_it = convex.first_contact([0.0, 0.0, top], [0.1, 0.0, top + up]);
+            assert_eq!(on_it, None, "{convex:?}");
+        }
+    }
+}

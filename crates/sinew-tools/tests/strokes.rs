@@ -76,7 +76,10 @@ proptest! {
         let shape = Shape::several(parts.to_vec()).unwrap();
         let [low, high] = swept_box(&shape, &before, &after).unwrap();
         for part in parts {
-            let pose = Stroke::new(&part, before, after).pose_at(share);
+            let stroke = Stroke::new(&part, before, after);
+            prop_assert_eq!(stroke.pose_at(0.0), before.then(&part.pose));
+            prop_assert_eq!(stroke.pose_at(1.0), after.then(&part.pose));
+            let pose = stroke.pose_at(share);
             let unit = size(&part.convex);
             let corners = [aim, [1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [0.0, 0.0, -1.0]];
             for corner in corners {
@@ -204,7 +207,7 @@ fn passes_are_counted_by_way_and_by_turn() {
 
 #[test]
 fn a_bar_that_swings_meets_a_node_where_its_face_arrives() {
-    // Along x, its lower face at y = -.01, swinging about the origin by a quarter turn; a node at 45 degrees and .2 m.
+    // Along x, its lower face at y = -.01, swinging about the origin by a quarter turn; a node at 45 degrees and .3 m.
     let bar = Part {
         convex: Convex::cuboid([0.4, 0.02, 0.02]).unwrap(),
         pose: upright([0.2, 0.0, 0.0]),
@@ -214,11 +217,11 @@ fn a_bar_that_swings_meets_a_node_where_its_face_arrives() {
         upright([0.0; 3]),
         Pose::new([0.0; 3], [0.0, 0.0, FRAC_PI_2]),
     );
-    let node = [0.2 * FRAC_PI_4.cos(), 0.2 * FRAC_PI_4.sin(), 0.0];
+    let node = [0.3 * FRAC_PI_4.cos(), 0.3 * FRAC_PI_4.sin(), 0.0];
     let touch = stroke.first_contact(node, node).unwrap();
-    let expected = (FRAC_PI_4 - (0.01_f64 / 0.2).asin()) / FRAC_PI_2;
+    let expected = (FRAC_PI_4 - (0.01_f64 / 0.3).asin()) / FRAC_PI_2;
     assert_eq!(stroke.passes(), 16);
-    // The chord of a sixteenth leaves the arc by (.098)^2/8 of .2 m at most.
+    // The chord of a sixteenth leaves the arc by (.098)^2/8 of .3 m at most.
     assert!(
         (touch.share - expected).abs() < 2e-3,
         "{touch:?} {expected}"

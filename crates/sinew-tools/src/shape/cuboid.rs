@@ -51,7 +51,7 @@ pub(super) fn first_contact(
         let along = place * speed.signum();
         leaves = leaves.min((half[axis] - along) / speed.abs());
         let gap = -half[axis] - along;
-        if gap < -tolerance {
+        if gap < 0.0 {
             continue;
         }
         let enters = if gap <= tolerance {
