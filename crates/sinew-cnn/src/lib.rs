@@ -39,8 +39,8 @@ pub use machine::{FollowedLoad, Machine, ReferenceMachine, StepTime};
 pub use majorant::{Blend, DampingShare, GammaRule, Majorant};
 pub use power_iteration::largest_eigenvalue;
 pub use program::{
-    CellInertia, Clamp, Forces, LoadAt, Loads, Moments, OwnTerm, Physics, Product, Program, Quotient, Register,
-    Sweep, Term, Traffic, Update, Weight, When,
+    CellInertia, Clamp, Forces, LoadAt, Loads, Moments, OwnTerm, Physics, Product, Program,
+    Quotient, Register, Sweep, Term, Traffic, Update, Weight, When,
 };
 pub use saturation::{Saturation, SaturationError};
 pub use stabiliser::{Inner, Solution, Stabiliser};

@@ -3,8 +3,8 @@
 use crate::guard::Guarding;
 use crate::system::loads_revision;
 use crate::{
-    Acceleration, Contact, Inertia, Inputs, LoadTime, Meeting, Revision, SetupError, State, StepError, StepReport,
-    SynchroniseError, System, Trial, VelocityTime, Watch,
+    Acceleration, Contact, Inertia, Inputs, LoadTime, Meeting, Revision, SetupError, State,
+    StepError, StepReport, SynchroniseError, System, Trial, VelocityTime, Watch,
 };
 
 /// Steps to take, and the work around each: sizes are checked, the clock is kept, a guard

@@ -25,10 +25,10 @@ mod bytes;
 mod changes;
 mod channel_record;
 mod clock;
-mod contact;
 pub mod closed_form;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
+mod contact;
 mod derived;
 mod elastic_law;
 mod element_forces;

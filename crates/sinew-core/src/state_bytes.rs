@@ -65,13 +65,7 @@ impl State {
         out.count(self.cut.map_or(0, |cut| cut.taken.into()));
         out.number(self.cut.map_or(0.0, |cut| cut.stable_step));
         out.number(self.cut.map_or(0.0, |cut| cut.stiffest_cell));
-        for vector in [
-            &self.u,
-            &self.v,
-            &self.a,
-            &self.internal,
-            &self.contact,
-        ] {
+        for vector in [&self.u, &self.v, &self.a, &self.internal, &self.contact] {
             out.count(vector.len() as u64);
             vector.iter().for_each(|value| out.number(*value));
         }

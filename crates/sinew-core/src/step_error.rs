@@ -41,7 +41,7 @@ pub enum SetupError {
         /// What is in the way.
         reason: &'static str,
         /// Methods that can.
-        methods: String,
+        methods: &'static str,
     },
     /// A precision that rounds more than the error asked for.
     #[error(

@@ -10,7 +10,7 @@ use sinew_core::{
 
 use sinew_machines::{Chosen, Kind, PrecisionName, Settings};
 
-use crate::contact::methods_with_contact;
+use crate::contact::METHODS_WITH_CONTACT;
 use crate::numerical_dissipation::NumericalDissipation;
 use crate::rounding::f32_rounding;
 use crate::scheme::{Scheme, StepByHand, Steps};
@@ -282,7 +282,7 @@ impl<M: Scheme> Frame<M> {
         Err(SetupError::Contact {
             integrator: M::ID,
             reason,
-            methods: methods_with_contact(),
+            methods: METHODS_WITH_CONTACT,
         })
     }
 

@@ -51,6 +51,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-cnn",
             "sinew-machines",
             "sinew-sparse",
+            "sinew-tools",
             "sinew-integrators",
             "sinew-scene",
             "sinew-measure",

@@ -9,6 +9,7 @@ use sinew_measure::{CaseError, MeasureError};
 use sinew_mesh::structured::StructuredError;
 use sinew_mesh::{MshFileError, TetMeshError, UnknownGroup};
 use sinew_sparse::AssemblyError;
+use sinew_tools::{ShapeError, TableError, ToolsError};
 
 use crate::tissue::TissueError;
 
@@ -49,6 +50,15 @@ pub enum VerifyError {
     /// Matrices.
     #[error(transparent)]
     Operators(#[from] OperatorError),
+    /// Tools that do not fit together.
+    #[error(transparent)]
+    Tools(#[from] ToolsError),
+    /// The shape of a tool.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// The motion of a tool.
+    #[error(transparent)]
+    Motion(#[from] TableError),
     /// The assembly of a matrix.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),

@@ -12,6 +12,7 @@ pub(crate) mod modes;
 mod motion;
 mod page;
 pub(crate) mod places;
+mod pressed;
 mod quadrature;
 mod quasi_static;
 pub(crate) mod reference;

@@ -1,8 +1,8 @@
 //! The traits by which integrators see a model.
 
 use sinew_core::{
-    Contact, ElementStiffness, Elements, Energy, Equations, Inputs, Layers, LinearOperators, LinearSystem,
-    LoadTime, Revision, Scales, State, System, element_omegas_squared,
+    Contact, ElementStiffness, Elements, Energy, Equations, Inputs, Layers, LinearOperators,
+    LinearSystem, LoadTime, Revision, Scales, State, System, element_omegas_squared,
 };
 
 use super::Model;

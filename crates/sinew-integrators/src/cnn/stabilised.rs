@@ -3,8 +3,8 @@
 use std::ops::Bound;
 
 use sinew_cnn::{
-    Blend, CellInertia, DampingShare, GammaRule, Inner, LoadAt, Loads, Physics, Program, Register, Stabiliser,
-    Sweep,
+    Blend, CellInertia, DampingShare, GammaRule, Inner, LoadAt, Loads, Physics, Program, Register,
+    Stabiliser, Sweep,
 };
 use sinew_core::{
     Acceleration, EnergyBehaviour, Fact, Needs, OptionError, OptionValue, Options, Properties,

@@ -2,8 +2,8 @@
 
 use sinew_core::State;
 
-use super::Tools;
 use super::record::{OF_CELL, OF_TOOL, force};
+use super::tools::Tools;
 use crate::vector::{Vector, add};
 
 /// A tool after a step.

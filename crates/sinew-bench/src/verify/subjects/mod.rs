@@ -4,12 +4,14 @@ mod affine;
 mod bent_beam;
 mod bonded_block;
 mod cantilever;
+mod contact;
 mod cook;
 mod energy;
 mod fibres;
 mod free_cube;
 mod hanging_bar;
 mod held_cube;
+mod hertz;
 mod hyperelastic;
 mod incompressible;
 mod large_motion;
@@ -45,4 +47,6 @@ pub(super) const SUBJECTS: &[Subject] = &[
     large_motion::SUBJECT,
     incompressible::SUBJECT,
     tissue_laws::SUBJECT,
+    hertz::SUBJECT,
+    contact::SUBJECT,
 ];
