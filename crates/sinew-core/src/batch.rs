@@ -196,9 +196,6 @@ impl<'a> Batch<'a> {
         state
             .contact
             .resize(self.contact().map_or(0, Contact::kept), 0.0);
-        if let Some(contact) = self.contact() {
-            contact.begin(state);
-        }
         if let Some(dof) = self.inputs.highest_dof()
             && dof as usize >= dofs
         {

@@ -16,10 +16,8 @@ pub trait Contact: Debug + Send + Sync {
     /// Numbers that it keeps in [`State::contact`].
     fn kept(&self) -> usize;
 
-    /// Takes note of where a motion goes on from: called before each batch, with [`State::contact`] as it was left, or of zeros.
-    fn begin(&self, state: &mut State);
-
-    /// Changes u and v of a trial state and what it keeps, and adds the cells that it pushed to `pushed`.
+    /// Changes u and v of a trial state and what it keeps in [`State::contact`], which is zeros before the first step, and adds the cells that it pushed
+    /// to `pushed`.
     fn meet(&self, meeting: &Meeting<'_>, state: &mut State, pushed: &mut Vec<u32>);
 
     /// Adds the forces (N) of the last step to those on all degrees of freedom.

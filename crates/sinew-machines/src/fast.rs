@@ -50,6 +50,8 @@ struct Loaded<T> {
     /// The sweep under way.
     current: Current<T>,
     work: Work,
+    /// Positions of the cells that contact reads.
+    touched: Vec<u32>,
     /// Cells that were pushed in the last step.
     pushed: Vec<u32>,
 }
@@ -224,7 +226,7 @@ impl<T: ElementPrecision> Machine for FastMachine<T> {
             state.a.resize(state.u.len(), 0.0);
         }
         if let Some(contact) = batch.contact() {
-            own(loaded).pushed.reserve(contact.cells().len());
+            own(loaded).touch(&self.layout, contact.cells());
         }
         let (layout, set) = (&*self.layout, self.set);
         let chunks = own(loaded).chunks();
@@ -311,6 +313,7 @@ impl<T: ElementPrecision> Loaded<T> {
             forces: Forces::new::<T>(operators, positions),
             elements: elements.map(|elements| (elements, table[registers + ELEMENTS] as usize)),
             work: Work::Cells,
+            touched: Vec::new(),
             pushed: Vec::new(),
             followed: FollowedLoad::of(&program),
             current: Current {
@@ -461,7 +464,7 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
                 let mut loaded = write(self.loaded);
                 match written {
                     true => loaded.show(self.layout, state),
-                    false => loaded.show_cells(self.layout, contact.cells(), state),
+                    false => loaded.show_touched(contact.cells(), state),
                 }
                 let kick = kick.filter(|_| is_last);
                 batch.meet(state, inertia, kick, &mut loaded.pushed);
@@ -692,15 +695,24 @@ impl<T: ElementPrecision> Loaded<T> {
         }
     }
 
-    /// Writes u and v of some cells.
-    fn show_cells(&mut self, layout: &Layout<T>, cells: &[u32], state: &mut State) {
+    /// Finds the cells that contact reads.
+    fn touch(&mut self, layout: &Layout<T>, cells: &[u32]) {
+        self.touched.clear();
+        let positions = cells.iter().map(|cell| layout.numbering.position(*cell));
+        self.touched
+            .extend(positions.map(|position| position as u32));
+        self.pushed.reserve(cells.len());
+    }
+
+    /// Writes u and v of the cells that contact reads.
+    fn show_touched(&mut self, cells: &[u32], state: &mut State) {
         let layers = self.fields.layers();
         for (register, values) in [&mut state.u, &mut state.v].into_iter().enumerate() {
             let field = self.field(register);
             for layer in 0..layers {
                 let from = self.fields.layer(field, layer);
-                for cell in cells {
-                    let value = from[layout.numbering.position(*cell)].to_f64();
+                for (cell, position) in cells.iter().zip(&self.touched) {
+                    let value = from[*position as usize].to_f64();
                     values[*cell as usize * layers + layer] = value;
                 }
             }

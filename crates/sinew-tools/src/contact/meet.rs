@@ -5,11 +5,11 @@ use std::sync::PoisonError;
 use sinew_core::{Contact, Meeting, State};
 
 use super::node::Compliance;
-use super::record::{self, OF_TOOL, Record, displacement};
+use super::record::{self, CONTACTS, FORCE, OF_HELD, PASSES, Record, TORQUE, WORK};
 use super::report::displacement_of;
-use super::room::Met;
+use super::room::{Met, ToolStep, is_near};
 use super::tools::Tools;
-use crate::vector::{add, cross, dot, sub};
+use crate::vector::{Vector, add, cross, dot, scaled, sub};
 
 impl Contact for Tools {
     fn cells(&self) -> &[u32] {
@@ -20,102 +20,40 @@ impl Contact for Tools {
         record::numbers(self.tools.len(), self.cells.len(), self.holds)
     }
 
-    fn begin(&self, state: &mut State) {
-        let State { u, contact, .. } = state;
-        let record = Record::of(contact, self.tools.len(), self.cells.len());
-        for (cell, kept) in self.numbers.iter().zip(record.cells) {
-            kept[..3].copy_from_slice(&displacement_of(u, *cell));
-        }
-    }
-
     fn meet(&self, meeting: &Meeting<'_>, state: &mut State, pushed: &mut Vec<u32>) {
         let mut room = self.room.lock().unwrap_or_else(PoisonError::into_inner);
-        let room = &mut *room;
-        let (t, dt) = (state.t(), meeting.dt);
-        let last = state.clock.last_step();
-        for (tool, step) in self.tools.iter().zip(&mut room.steps) {
-            step.take(tool, t, dt, last);
-        }
+        room.take(&self.tools, state, meeting.dt);
+        let step = Step {
+            tools: self,
+            steps: &room.steps,
+            meeting,
+            end: state.t() + meeting.dt,
+        };
         let State {
             u, v, a, contact, ..
         } = state;
-        let record = Record::of(contact, self.tools.len(), self.cells.len());
+        let mut record = Record::of(contact, self.tools.len(), self.cells.len());
+        record.forget_last_step();
         for (numbers, step) in record.tools.iter_mut().zip(&room.steps) {
-            let work = numbers[6];
-            *numbers = [0.0; OF_TOOL];
-            (numbers[6], numbers[8]) = (work, step.passes());
+            numbers[PASSES] = step.passes();
         }
-        let mut held = record.held.iter_mut();
-        for ((touched, tools), kept) in self.cells.iter().zip(&self.tools_at).zip(record.cells) {
-            let held = held.next();
-            let from = add(touched.rest, displacement(kept));
-            let led = displacement_of(u, touched.cell);
-            let to = add(touched.rest, led);
-            kept[3..].fill(0.0);
-            let mut met = Met::none();
-            met.touches(&room.steps, *tools, (from, to));
-            let holder = held
-                .as_ref()
-                .and_then(|held| (held[0] as usize).checked_sub(1));
-            let holder = holder.filter(|tool| {
-                let grasp = self.tools[*tool].grasp;
-                grasp.is_some_and(|grasp| t + dt <= grasp.to)
-            });
-            if met.count > 0 || holder.is_some() {
-                let inverse = meeting.inverse_block(touched.cell as usize);
-                let compliance = Compliance::new(inverse, touched.free, dt);
-                let mut moved = [0.0; 3];
-                if let (Some(tool), Some(held)) = (holder, &held) {
-                    let place = room.steps[tool].after.to_world([held[1], held[2], held[3]]);
-                    met.hold(tool, compliance.force(sub(place, to)));
-                } else {
-                    met.solve(&compliance);
-                }
-                let arm = |tool: usize, moved| {
-                    let at = add(to, moved);
-                    sub(at, room.steps[tool].after.position())
-                };
-                for force in &met.forces[..met.count] {
-                    moved = add(moved, compliance.displacement(*force));
-                }
-                for (tool, force) in met.tools[..met.count].iter().zip(&met.forces) {
-                    if *force == [0.0; 3] {
-                        continue;
-                    }
-                    let numbers = &mut record.tools[*tool];
-                    let torque = cross(arm(*tool, moved), *force);
-                    for axis in 0..3 {
-                        numbers[axis] -= force[axis];
-                        numbers[3 + axis] -= torque[axis];
-                        kept[3 + axis] += force[axis];
-                    }
-                    let velocity = room.steps[*tool].velocity(add(to, moved), dt);
-                    numbers[6] += dt * dot(*force, velocity);
-                    numbers[7] += 1.0;
-                }
-                if moved != [0.0; 3] {
-                    pushed.push(touched.cell);
-                    let first = 3 * touched.cell as usize;
-                    for axis in 0..3 {
-                        u[first + axis] += moved[axis];
-                        v[first + axis] += moved[axis] / dt;
-                        if let (Some(kick), Some(a)) = (meeting.kick, a.get_mut(first + axis)) {
-                            *a += moved[axis] / dt / kick;
-                        }
-                    }
-                }
-                if let (None, Some(held)) = (holder, held) {
-                    let pushing = met.pushing();
-                    *held = match self.taker(pushing, t + dt) {
-                        Some(tool) => {
-                            let [x, y, z] = room.steps[tool].after.to_own(add(to, moved));
-                            [(tool + 1) as f64, x, y, z]
-                        }
-                        None => [0.0; 4],
-                    };
+        for (place, touched) in self.cells.iter().enumerate() {
+            let to = add(touched.rest, displacement_of(u, touched.cell));
+            let from = sub(to, scaled(displacement_of(v, touched.cell), meeting.dt));
+            let moved = step.meet(place, (from, to), &mut record);
+            if moved == [0.0; 3] {
+                continue;
+            }
+            pushed.push(touched.cell);
+            let first = 3 * touched.cell as usize;
+            for axis in 0..3 {
+                let change = moved[axis] / meeting.dt;
+                u[first + axis] += moved[axis];
+                v[first + axis] += change;
+                if let (Some(kick), Some(a)) = (meeting.kick, a.get_mut(first + axis)) {
+                    *a += change / kick;
                 }
             }
-            kept[..3].copy_from_slice(&displacement_of(u, touched.cell));
         }
     }
 
@@ -126,5 +64,89 @@ impl Contact for Tools {
                 out[first + axis] += force[axis];
             }
         }
+    }
+}
+
+/// A step of all tools.
+struct Step<'a> {
+    tools: &'a Tools,
+    steps: &'a [ToolStep],
+    meeting: &'a Meeting<'a>,
+    /// Its end (s).
+    end: f64,
+}
+
+impl Step<'_> {
+    /// The displacement (m) by which a cell is pushed that a step took from one place (m) to another.
+    fn meet(&self, place: usize, (from, to): (Vector, Vector), record: &mut Record<'_>) -> Vector {
+        let holder = self.holder(record.held.get(place));
+        let tools = self.tools.tools_at[place];
+        if holder.is_none() && !is_near(self.steps, tools, (from, to)) {
+            if let Some(held) = record.held.get_mut(place) {
+                *held = [0.0; OF_HELD];
+            }
+            return [0.0; 3];
+        }
+        let touched = &self.tools.cells[place];
+        let inverse = self.meeting.inverse_block(touched.cell as usize);
+        let compliance = Compliance::new(inverse, touched.free, self.meeting.dt);
+        let mut met = Met::none();
+        match (holder, record.held.get(place)) {
+            (Some(tool), Some([_, x, y, z])) => {
+                let place = self.steps[tool].after.to_world([*x, *y, *z]);
+                met.hold(tool, compliance.force(sub(place, to)));
+            }
+            _ => {
+                met.touches(self.steps, tools, (from, to));
+                met.solve(&compliance);
+            }
+        }
+        let moved = met.sum(|force| compliance.displacement(force));
+        let end = add(to, moved);
+        for (tool, force) in met.pushing() {
+            self.count(tool, force, end, record, place);
+        }
+        if let (None, Some(held)) = (holder, record.held.get_mut(place)) {
+            let taker = met.pushing().find(|(tool, _)| self.holds(*tool));
+            *held = taker.map_or([0.0; OF_HELD], |(tool, _)| {
+                let [x, y, z] = self.steps[tool].after.to_own(end);
+                [(tool + 1) as f64, x, y, z]
+            });
+        }
+        moved
+    }
+
+    /// Whether a tool holds what it touches in this step.
+    fn holds(&self, tool: usize) -> bool {
+        let grasp = self.tools.tools[tool].grasp;
+        grasp.is_some_and(|grasp| (grasp.from..=grasp.to).contains(&self.end))
+    }
+
+    /// The tool that has hold of a cell.
+    fn holder(&self, held: Option<&[f64; OF_HELD]>) -> Option<usize> {
+        let tool = (held?[0] as usize).checked_sub(1)?;
+        self.holds(tool).then_some(tool)
+    }
+
+    /// Counts a force (N) of a tool on a cell that ends at a place (m).
+    fn count(
+        &self,
+        tool: usize,
+        force: Vector,
+        end: Vector,
+        record: &mut Record<'_>,
+        place: usize,
+    ) {
+        let step = &self.steps[tool];
+        let numbers = &mut record.tools[tool];
+        let torque = cross(sub(end, step.after.position()), force);
+        for axis in 0..3 {
+            numbers[FORCE + axis] -= force[axis];
+            numbers[TORQUE + axis] -= torque[axis];
+            record.cells[place][axis] += force[axis];
+        }
+        let dt = self.meeting.dt;
+        numbers[WORK] += dt * dot(force, step.velocity(end, dt));
+        numbers[CONTACTS] += 1.0;
     }
 }

@@ -1,21 +1,26 @@
 //! What tools keep from step to step, as numbers in a state.
 
-use crate::vector::Vector;
-
 /// Numbers of a tool.
 pub(super) const OF_TOOL: usize = 9;
 
+/// Their places: the force (N) and the torque (N m) on it, its work (J) so far, its contacts, and the passes of its stroke.
+pub(super) const FORCE: usize = 0;
+pub(super) const TORQUE: usize = 3;
+pub(super) const WORK: usize = 6;
+pub(super) const CONTACTS: usize = 7;
+pub(super) const PASSES: usize = 8;
+
 /// Numbers of a touched cell.
-pub(super) const OF_CELL: usize = 6;
+pub(super) const OF_CELL: usize = 3;
 
 /// Numbers of a cell that may be held.
 pub(super) const OF_HELD: usize = 4;
 
-/// What contact did in the last step, and what the next one goes on from; by rows of numbers.
+/// What contact did in the last step, and what it holds, by rows of numbers.
 pub(super) struct Record<'a> {
-    /// Of each tool the force (N) and torque (N m) on it, its work (J) so far, its contacts, and the passes of its stroke.
+    /// Of each tool.
     pub(super) tools: &'a mut [[f64; OF_TOOL]],
-    /// Of each cell its displacement (m) and the force (N) on it.
+    /// Of each cell the force (N) on it.
     pub(super) cells: &'a mut [[f64; OF_CELL]],
     /// Of each cell the tool that holds it, from 1 on, or 0, and the place (m) in that tool's frame; empty where no tool holds.
     pub(super) held: &'a mut [[f64; OF_HELD]],
@@ -38,14 +43,14 @@ impl<'a> Record<'a> {
             held: of_held.as_chunks_mut().0,
         }
     }
-}
 
-/// The displacement (m) of a cell before the step.
-pub(super) fn displacement([x, y, z, ..]: &[f64; OF_CELL]) -> Vector {
-    [*x, *y, *z]
-}
-
-/// The force (N) on a cell.
-pub(super) fn force([.., x, y, z]: &[f64; OF_CELL]) -> Vector {
-    [*x, *y, *z]
+    /// Forgets the last step but for the work so far.
+    pub(super) fn forget_last_step(&mut self) {
+        for numbers in self.tools.iter_mut() {
+            let work = numbers[WORK];
+            *numbers = [0.0; OF_TOOL];
+            numbers[WORK] = work;
+        }
+        self.cells.as_flattened_mut().fill(0.0);
+    }
 }

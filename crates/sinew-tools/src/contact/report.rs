@@ -2,7 +2,7 @@
 
 use sinew_core::State;
 
-use super::record::{OF_CELL, OF_TOOL, force};
+use super::record::{CONTACTS, FORCE, OF_CELL, OF_TOOL, PASSES, TORQUE, WORK};
 use super::tools::Tools;
 use crate::vector::{Vector, add};
 
@@ -44,11 +44,11 @@ impl Tools {
         ToolReport {
             position: pose.position(),
             rotation_vector: pose.rotation_vector(),
-            force: [numbers[0], numbers[1], numbers[2]],
-            torque: [numbers[3], numbers[4], numbers[5]],
-            work: numbers[6],
-            contacts: numbers[7] as usize,
-            passes: numbers[8] as u32,
+            force: [0, 1, 2].map(|axis| numbers[FORCE + axis]),
+            torque: [0, 1, 2].map(|axis| numbers[TORQUE + axis]),
+            work: numbers[WORK],
+            contacts: numbers[CONTACTS] as usize,
+            passes: numbers[PASSES] as u32,
         }
     }
 
@@ -63,7 +63,7 @@ impl Tools {
     pub fn forces<'s>(&self, state: &'s State) -> impl Iterator<Item = [f64; 3]> + 's {
         let cells = self.tools.len() * OF_TOOL..self.first_held();
         let numbers = state.contact.get(cells).unwrap_or_default();
-        numbers.as_chunks::<OF_CELL>().0.iter().map(force)
+        numbers.as_chunks::<OF_CELL>().0.iter().copied()
     }
 
     /// The cell that is nearest to a tool, or deepest in it, at a time (s) with the displacement `u` (m); `None` where the tool may touch none.

@@ -1,10 +1,12 @@
 //! Room for a meeting of tools and cells, used again by the next.
 
+use sinew_core::State;
+
 use super::node::{Compliance, Constraint, MOST};
 use super::tool::Tool;
 use crate::pose::Pose;
 use crate::stroke::Stroke;
-use crate::vector::{Vector, add, scaled, sub};
+use crate::vector::{Vector, add, dot, scaled, sub};
 
 /// Every tool during a step.
 #[derive(Debug)]
@@ -20,7 +22,38 @@ pub(super) struct ToolStep {
     /// The pose before the step before, and the length (s) of that step.
     earlier: Option<(Pose, f64)>,
     friction: f64,
-    strokes: Vec<(Stroke, Option<[Vector; 2]>)>,
+    strokes: Vec<(Stroke, Near)>,
+}
+
+/// Where nodes can meet a part.
+#[derive(Clone, Copy, Debug)]
+enum Near {
+    /// Ways that meet a box (m).
+    Box([Vector; 2]),
+    /// Ways that end below a plane: by a point (m) and its normal.
+    Below(Vector, Vector),
+}
+
+impl Near {
+    fn of(stroke: &Stroke) -> Self {
+        match stroke.bounds() {
+            Some(bounds) => Self::Box(bounds),
+            None => {
+                let end = stroke.pose_at(1.0);
+                Self::Below(end.position(), end.turned([0.0, 0.0, 1.0]))
+            }
+        }
+    }
+
+    #[inline]
+    fn is_met(&self, (from, to): (Vector, Vector)) -> bool {
+        match self {
+            Self::Box([low, high]) => (0..3).all(|axis| {
+                from[axis].min(to[axis]) <= high[axis] && from[axis].max(to[axis]) >= low[axis]
+            }),
+            Self::Below(point, normal) => dot(*normal, sub(to, *point)) < 0.0,
+        }
+    }
 }
 
 impl Room {
@@ -36,22 +69,34 @@ impl Room {
             steps: tools.iter().map(step).collect(),
         }
     }
+
+    /// Takes a step of `dt` (s) from a state on.
+    pub(super) fn take(&mut self, tools: &[Tool], state: &State, dt: f64) {
+        let (t, last) = (state.t(), state.clock.last_step());
+        for (tool, step) in tools.iter().zip(&mut self.steps) {
+            step.before = tool.motion.at(t);
+            step.after = tool.motion.at(t + dt);
+            step.earlier = last.map(|last| (tool.motion.at(t - last), last));
+            step.strokes.clear();
+            let strokes = tool.shape.parts().iter().map(|part| {
+                let stroke = Stroke::new(part, step.before, step.after);
+                (stroke, Near::of(&stroke))
+            });
+            step.strokes.extend(strokes);
+        }
+    }
+}
+
+/// Whether a way (m) may meet any of some tools, one bit each.
+#[inline]
+pub(super) fn is_near(steps: &[ToolStep], tools: u64, way: (Vector, Vector)) -> bool {
+    let mut steps = steps.iter().enumerate();
+    steps.any(|(number, step)| {
+        tools >> number & 1 == 1 && step.strokes.iter().any(|(_, near)| near.is_met(way))
+    })
 }
 
 impl ToolStep {
-    /// Takes a step of `dt` (s) from `t` (s) on, after one of length `last` (s) where there was one.
-    pub(super) fn take(&mut self, tool: &Tool, t: f64, dt: f64, last: Option<f64>) {
-        self.before = tool.motion.at(t);
-        self.after = tool.motion.at(t + dt);
-        self.earlier = last.map(|last| (tool.motion.at(t - last), last));
-        self.strokes.clear();
-        let strokes = tool.shape.parts().iter().map(|part| {
-            let stroke = Stroke::new(part, self.before, self.after);
-            (stroke, stroke.bounds())
-        });
-        self.strokes.extend(strokes);
-    }
-
     /// Passes of its stroke.
     pub(super) fn passes(&self) -> f64 {
         let passes = self.strokes.iter().map(|(stroke, _)| stroke.passes());
@@ -76,11 +121,11 @@ impl ToolStep {
 
 /// What a node met in a step.
 pub(super) struct Met {
-    pub(super) count: usize,
-    pub(super) tools: [usize; MOST],
+    count: usize,
+    tools: [usize; MOST],
     constraints: [Constraint; MOST],
     /// The forces (N) on the node.
-    pub(super) forces: [Vector; MOST],
+    forces: [Vector; MOST],
 }
 
 impl Met {
@@ -102,17 +147,12 @@ impl Met {
 
     /// Finds what a node meets on its way (m) among some tools, one bit each.
     pub(super) fn touches(&mut self, steps: &[ToolStep], tools: u64, (from, to): (Vector, Vector)) {
-        let near = |[low, high]: &[Vector; 2]| {
-            (0..3).all(|axis| {
-                from[axis].min(to[axis]) <= high[axis] && from[axis].max(to[axis]) >= low[axis]
-            })
-        };
         for (number, step) in steps.iter().enumerate() {
             if tools >> number & 1 == 0 {
                 continue;
             }
-            for (stroke, bounds) in &step.strokes {
-                if self.count == MOST || !bounds.as_ref().is_none_or(near) {
+            for (stroke, near) in &step.strokes {
+                if self.count == MOST || !near.is_met((from, to)) {
                     continue;
                 }
                 if let Some(touch) = stroke.first_contact(from, to) {
@@ -122,7 +162,7 @@ impl Met {
                     self.tools[self.count] = number;
                     self.constraints[self.count] = Constraint {
                         normal,
-                        gap: -crate::vector::dot(normal, stick),
+                        gap: -dot(normal, stick),
                         stick,
                         friction: step.friction,
                     };
@@ -142,10 +182,16 @@ impl Met {
         (self.count, self.tools[0], self.forces[0]) = (1, tool, force);
     }
 
-    /// The tools that push the node, one bit each.
-    pub(super) fn pushing(&self) -> u64 {
+    /// The tools that push the node, with their forces (N).
+    pub(super) fn pushing(&self) -> impl Iterator<Item = (usize, Vector)> {
         let met = self.tools[..self.count].iter().zip(&self.forces);
         let pushing = met.filter(|(_, force)| **force != [0.0; 3]);
-        pushing.fold(0, |all, (tool, _)| all | 1 << tool)
+        pushing.map(|(tool, force)| (*tool, *force))
+    }
+
+    /// The sum of what follows from each force (N).
+    pub(super) fn sum(&self, of: impl Fn(Vector) -> Vector) -> Vector {
+        let forces = self.pushing();
+        forces.fold([0.0; 3], |sum, (_, force)| add(sum, of(force)))
     }
 }

@@ -92,15 +92,4 @@ impl Tools {
     pub(super) fn first_held(&self) -> usize {
         record::numbers(self.tools.len(), self.cells.len(), false)
     }
-
-    /// The tool, by its number, that takes hold of a touched cell in a step that ends at `end` (s).
-    pub(super) fn taker(&self, touching: u64, end: f64) -> Option<usize> {
-        let tools = self.tools.iter().enumerate();
-        let mut takers = tools.filter(|(number, tool)| {
-            let grasp = tool.grasp;
-            let holds = grasp.is_some_and(|grasp| (grasp.from..=grasp.to).contains(&end));
-            touching >> number & 1 == 1 && holds
-        });
-        takers.next().map(|(number, _)| number)
-    }
 }
