@@ -59,9 +59,9 @@ pub use probe_rows::{ProbeRowError, ProbeRows};
 pub use proposal::propose;
 pub use reference::{scene_reference, scene_schema};
 pub use scene::{
-    Body, Choice, Initial, Instants, Members, MeshChanges, MeshSource, Motion, Oscillator,
-    OutputSettings, ProbeAt, ProbePoint, Quantity, Rotation, RunSettings, Scene, Selected, Subject,
-    TimeStep, Way,
+    Body, Choice, Grasp, Initial, Instants, Members, MeshChanges, MeshSource, Motion, Oscillator,
+    OutputSettings, ProbeAt, ProbePoint, Quantity, Rotation, RunSettings, Scene, Selected,
+    StartsInside, Subject, TimeStep, Tool, ToolPart, ToolPath, ToolShape, ToolStart, Way,
 };
 pub use simulation::{
     BodyModel, Footprint, HeldPlace, LoadRemedy, MotionTableError, MotionTableFault, NearestNode,

@@ -174,11 +174,22 @@ impl<'a> Table<'a> {
         value: &'a Spanned<DeValue<'a>>,
         description: &'static TableDescription,
     ) -> Result<Vec<Table<'a>>, SceneError> {
-        let expected = format!("a list of tables, each under its own [[{key}]]");
+        let (name, expected, several) = match self.place.name() {
+            "" => {
+                let own = format!("[[{key}]]");
+                let expected = format!("a list of tables, each under its own {own}");
+                (own.clone(), expected, own)
+            }
+            outer => (
+                format!("{outer} {key}"),
+                "a list of tables".to_owned(),
+                "a list of tables".to_owned(),
+            ),
+        };
         let items = match value.get_ref() {
             DeValue::Array(items) => items,
             DeValue::Table(_) => {
-                let reason = format!("is one table: write [[{key}]], as there may be several");
+                let reason = format!("is one table: write {several}, as there may be several");
                 return Err(self
                     .place
                     .value_fault(key, Fault::Misplaced { key, reason }));
@@ -189,7 +200,7 @@ impl<'a> Table<'a> {
             let DeValue::Table(entries) = item.get_ref() else {
                 return Err(self.misfit(key, item, expected.clone(), Misfit::Type));
             };
-            let name = format!("[[{key}]] {}", index + 1);
+            let name = format!("{name} {}", index + 1);
             Self::new(self.scene, name, Some(item.span()), entries, description).closed()
         };
         items.iter().enumerate().map(table).collect()

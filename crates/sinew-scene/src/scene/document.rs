@@ -12,6 +12,7 @@ use super::output::OUTPUT;
 use super::probe::PROBE;
 use super::region::REGION;
 use super::run::RUN;
+use super::tool::TOOL;
 use crate::decode::{Condition, Inner, Key, Needs, Optional, TableDescription, Text, Vector};
 
 /// The whole scene.
@@ -27,6 +28,7 @@ pub(crate) const DOCUMENT: TableDescription = TableDescription {
         &DAMPING_TABLE,
         &SUPPORTS,
         &MOTIONS,
+        &TOOLS,
         &LOADS,
         &GRAVITY_VECTOR,
         &INITIAL_STATES,
@@ -91,6 +93,14 @@ pub(super) const MOTIONS: Key<Inner, Optional> = Key::optional(
     "Parts whose motion is given.",
     Inner::several("tables [[move]]", &MOVE),
     "nothing is moved",
+)
+.only(OF_A_BODY);
+
+pub(super) const TOOLS: Key<Inner, Optional> = Key::optional(
+    "tool",
+    "Rigid tools that press on the body.",
+    Inner::several("tables [[tool]]", &TOOL),
+    "nothing touches the body",
 )
 .only(OF_A_BODY);
 

@@ -20,6 +20,8 @@ mod region;
 mod run;
 mod selected;
 mod tissue;
+mod tool;
+mod tool_shape;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -30,7 +32,7 @@ use toml::de::DeTable;
 pub(crate) use document::DOCUMENT;
 use document::{
     DAMPING_TABLE, GRAVITY_VECTOR, INITIAL_STATES, LOADS, MESH_TABLE, MOTIONS, OSCILLATOR_TABLE,
-    OUTPUT_TABLE, PROBES, REGIONS, RUN_TABLE, SUPPORTS, TITLE,
+    OUTPUT_TABLE, PROBES, REGIONS, RUN_TABLE, SUPPORTS, TITLE, TOOLS,
 };
 pub use initial::Initial;
 use keys::GRAVITY;
@@ -43,6 +45,8 @@ pub(crate) use run::{INTEGRATOR, RUN};
 pub use run::{RunSettings, TimeStep};
 use selected::Selections;
 pub use selected::{Choice, Members, Selected};
+pub use tool::{Grasp, StartsInside, Tool, ToolPath, ToolStart};
+pub use tool_shape::{ToolPart, ToolShape};
 
 use crate::decode::{Place, Table};
 use crate::error::{Fault, SceneError};
@@ -79,6 +83,8 @@ pub struct Body {
     pub problem: Problem,
     /// Parts that are moved.
     pub motions: Vec<Motion>,
+    /// Rigid tools that press on it.
+    pub tools: Vec<Tool>,
     /// The name of each load of `problem`, if it has one.
     pub load_names: Vec<Option<String>>,
     /// Its state at t = 0.
@@ -99,6 +105,7 @@ pub(crate) struct Places {
     pub(crate) damping: Option<Place>,
     pub(crate) fixed: Vec<Place>,
     pub(crate) motions: Vec<Place>,
+    pub(crate) tools: Vec<Place>,
     pub(crate) loads: Vec<Place>,
     pub(crate) initial: Vec<Place>,
     pub(crate) probes: Vec<Place>,
@@ -207,13 +214,22 @@ impl Scene {
         let source = self.source();
         let mut files = vec![source.path().to_owned()];
         if let Subject::Body(body) = &self.subject {
-            let Body { mesh, motions, .. } = &**body;
+            let Body {
+                mesh,
+                motions,
+                tools,
+                ..
+            } = &**body;
             if let MeshSource::File(written) = mesh {
                 files.push(source.resolve(written));
             }
             files.extend(motions.iter().filter_map(|motion| match &motion.way {
                 Way::Table(written) => Some(source.resolve(written)),
                 Way::Displacement(..) | Way::Velocity(_) => None,
+            }));
+            files.extend(tools.iter().filter_map(|tool| match &tool.path {
+                ToolPath::Table(written) => Some(source.resolve(written)),
+                ToolPath::Hold(_) | ToolPath::Velocity(..) => None,
             }));
         }
         files
@@ -230,19 +246,18 @@ impl Scene {
             let file = mesh.get_ref().as_table()?.get(mesh::FILE.name)?;
             file.get_ref().as_str()
         });
-        let motions = document.get_ref().get(MOTIONS.name);
-        let motions = motions.and_then(|motions| motions.get_ref().as_array());
-        let motions = motions.into_iter().flat_map(|motions| motions.iter());
-        let tables = motions.filter_map(|motion| {
-            motion
-                .get_ref()
-                .as_table()?
-                .get(motion::TABLE.name)?
-                .get_ref()
-                .as_str()
-        });
+        let of_list = |list: &str, key: &str| -> Vec<&str> {
+            let tables = document.get_ref().get(list);
+            let tables = tables.and_then(|tables| tables.get_ref().as_array());
+            let tables = tables.into_iter().flat_map(|tables| tables.iter());
+            let named = tables
+                .filter_map(|table| table.get_ref().as_table()?.get(key)?.get_ref().as_str());
+            named.collect()
+        };
+        let motions = of_list(MOTIONS.name, motion::TABLE.name);
+        let tools = of_list(TOOLS.name, tool::TABLE.name);
         let source = SceneSource::new(path, "");
-        let named = file.into_iter().chain(tables);
+        let named = file.into_iter().chain(motions).chain(tools);
         let named = named.map(|written| source.resolve(Path::new(written)));
         std::iter::once(path.to_owned()).chain(named).collect()
     }
@@ -257,6 +272,7 @@ impl Scene {
             damping: None,
             fixed: Vec::new(),
             motions: Vec::new(),
+            tools: Vec::new(),
             loads: Vec::new(),
             initial: Vec::new(),
             probes: Vec::new(),
@@ -318,6 +334,7 @@ impl Body {
         let (fixed, fixed_places) = fixed::read_all(document.tables(&SUPPORTS)?, &mut selections)?;
         let (motions, motion_places) =
             motion::read_all(document.tables(&MOTIONS)?, &mut selections)?;
+        let (tools, tool_places) = tool::read_all(document.tables(&TOOLS)?)?;
         let is_large = regions.iter().any(|region| region.law.is_hyperelastic());
         let loads = load::read_all(document.tables(&LOADS)?, is_large, &mut selections)?;
         let gravity = document.read(&GRAVITY_VECTOR)?;
@@ -331,6 +348,7 @@ impl Body {
         places.damping = damping_table.map(Table::into_place);
         places.fixed = fixed_places;
         places.motions = motion_places;
+        places.tools = tool_places;
         places.loads = loads.places;
         places.initial = initial_places;
         places.probes = probe_places;
@@ -347,6 +365,7 @@ impl Body {
                 gravity,
             },
             motions,
+            tools,
             load_names: loads.names,
             initial,
             probes,

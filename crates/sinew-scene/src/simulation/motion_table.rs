@@ -1,14 +1,32 @@
-//! Tables of positions in CSV files.
+//! Tables of positions and of poses in CSV files.
 
 use std::path::{Path, PathBuf};
 
-const COLUMNS: [&str; 4] = ["t_s", "x_m", "y_m", "z_m"];
+/// Columns of a table of positions.
+const POSITIONS: [&str; 4] = ["t_s", "x_m", "y_m", "z_m"];
+
+/// Columns of a table of poses.
+const POSES: [&str; 7] = ["t_s", "x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"];
 
 /// Positions relative to rest (m) over time (s).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct MotionTable {
     pub(super) times: Vec<f64>,
     pub(super) positions: Vec<[f64; 3]>,
+}
+
+/// Places (m) and rotation vectors (rad) over time (s).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct PoseTable {
+    pub(super) times: Vec<f64>,
+    pub(super) positions: Vec<[f64; 3]>,
+    pub(super) rotations: Vec<[f64; 3]>,
+}
+
+/// Rows of numbers, as many in each as there are columns.
+struct Rows {
+    columns: &'static [&'static str],
+    rows: Vec<Vec<f64>>,
 }
 
 /// A table of positions that cannot be used: its file, its line, and what is wrong.
@@ -48,16 +66,20 @@ pub enum MotionTableFault {
     #[error("cannot be read: {0}")]
     Unreadable(#[from] std::io::Error),
     /// Other columns than those of a table of positions.
-    #[error("the first line is {found:?}: expected the names of the columns, t_s,x_m,y_m,z_m")]
+    #[error("the first line is {found:?}: expected the names of the columns, {expected}")]
     Header {
         /// The line, shortened.
         found: String,
+        /// The lines that fit, in words.
+        expected: String,
     },
     /// A row with more or fewer numbers than columns.
-    #[error("expected 4 numbers, t_s,x_m,y_m,z_m, found {found}")]
+    #[error("expected {} numbers, {}, found {found}", columns.len(), columns.join(","))]
     Count {
         /// How many there are.
         found: usize,
+        /// The names of the columns.
+        columns: &'static [&'static str],
     },
     /// An entry that is not a finite number.
     #[error("{column} is {found:?}: expected a finite number")]
@@ -91,72 +113,132 @@ pub enum MotionTableFault {
 impl MotionTable {
     /// Reads a table for a motion along `axes`.
     pub(super) fn read(path: &Path, axes: [bool; 3]) -> Result<Self, MotionTableError> {
-        let error = |line, fault| MotionTableError {
-            path: path.to_owned(),
-            line,
-            fault,
-        };
-        let text = std::fs::read_to_string(path).map_err(|source| error(None, source.into()))?;
-        Self::parse(&text, axes).map_err(|(line, fault)| error(Some(line), fault))
+        read(path, |text| Self::parse(text, axes))
     }
 
     /// The table of a text, or the line that is at fault.
     fn parse(text: &str, axes: [bool; 3]) -> Result<Self, (usize, MotionTableFault)> {
-        // Spreadsheets begin a file with a mark of its byte order.
-        let text = text.trim_start_matches('\u{feff}').trim_end();
-        let mut lines = (1..).zip(text.lines());
-        let header = lines.next().map_or("", |(_, line)| line);
-        if !header.split(',').map(str::trim).eq(COLUMNS) {
-            let found = shortened(header);
-            return Err((1, MotionTableFault::Header { found }));
-        }
-        let mut table = Self::default();
-        for (line, row) in lines {
-            let [t, position @ ..] = numbers(row).map_err(|fault| (line, fault))?;
-            if let Some(&last) = table.times.last()
-                && t <= last
-            {
-                return Err((line, MotionTableFault::Order { t, last }));
-            }
+        let rows = Rows::parse(text, &[&POSITIONS])?;
+        let table = Self {
+            times: rows.times(),
+            positions: rows.vectors(1),
+        };
+        for (line, position) in (2..).zip(&table.positions) {
             let unnamed = |axis: &usize| !axes[*axis] && position[*axis] != 0.0;
             if let Some(axis) = (0..3).find(unnamed) {
                 let fault = MotionTableFault::UnnamedAxis {
-                    column: COLUMNS[axis + 1],
+                    column: POSITIONS[axis + 1],
                     found: position[axis],
                 };
                 return Err((line, fault));
             }
-            table.times.push(t);
-            table.positions.push(position);
-        }
-        if table.times.is_empty() {
-            return Err((1, MotionTableFault::NoRows));
         }
         Ok(table)
     }
 }
 
-fn numbers(row: &str) -> Result<[f64; 4], MotionTableFault> {
+impl PoseTable {
+    /// Reads a table; without columns of rotations nothing is turned.
+    pub(super) fn read(path: &Path) -> Result<Self, MotionTableError> {
+        read(path, Self::parse)
+    }
+
+    /// The table of a text, or the line that is at fault.
+    fn parse(text: &str) -> Result<Self, (usize, MotionTableFault)> {
+        let rows = Rows::parse(text, &[&POSITIONS, &POSES])?;
+        Ok(Self {
+            times: rows.times(),
+            positions: rows.vectors(1),
+            rotations: match rows.columns.len() == POSES.len() {
+                true => rows.vectors(4),
+                false => vec![[0.0; 3]; rows.rows.len()],
+            },
+        })
+    }
+}
+
+/// Reads a file and makes a table of its text.
+fn read<T>(
+    path: &Path,
+    parse: impl FnOnce(&str) -> Result<T, (usize, MotionTableFault)>,
+) -> Result<T, MotionTableError> {
+    let error = |line, fault| MotionTableError {
+        path: path.to_owned(),
+        line,
+        fault,
+    };
+    let text = std::fs::read_to_string(path).map_err(|source| error(None, source.into()))?;
+    parse(&text).map_err(|(line, fault)| error(Some(line), fault))
+}
+
+impl Rows {
+    /// The rows of a text with one of these sets of columns, or the line that is at fault.
+    fn parse(
+        text: &str,
+        accepted: &[&'static [&'static str]],
+    ) -> Result<Self, (usize, MotionTableFault)> {
+        // Spreadsheets begin a file with a mark of its byte order.
+        let text = text.trim_start_matches('\u{feff}').trim_end();
+        let mut lines = (1..).zip(text.lines());
+        let header = lines.next().map_or("", |(_, line)| line);
+        let fits = |columns: &&&'static [&'static str]| {
+            let names = header.split(',').map(str::trim);
+            names.eq(columns.iter().copied())
+        };
+        let Some(columns) = accepted.iter().find(fits) else {
+            let expected: Vec<String> = accepted.iter().map(|names| names.join(",")).collect();
+            let fault = MotionTableFault::Header {
+                found: shortened(header),
+                expected: expected.join(" or "),
+            };
+            return Err((1, fault));
+        };
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        for (line, row) in lines {
+            let row = numbers(row, columns).map_err(|fault| (line, fault))?;
+            let t = row[0];
+            if let Some(last) = rows.last().map(|last| last[0])
+                && t <= last
+            {
+                return Err((line, MotionTableFault::Order { t, last }));
+            }
+            rows.push(row);
+        }
+        if rows.is_empty() {
+            return Err((1, MotionTableFault::NoRows));
+        }
+        Ok(Self { columns, rows })
+    }
+
+    fn times(&self) -> Vec<f64> {
+        self.rows.iter().map(|row| row[0]).collect()
+    }
+
+    /// The vectors of three columns from this one on.
+    fn vectors(&self, first: usize) -> Vec<[f64; 3]> {
+        let vector = |row: &Vec<f64>| std::array::from_fn(|axis| row[first + axis]);
+        self.rows.iter().map(vector).collect()
+    }
+}
+
+fn numbers(row: &str, columns: &'static [&'static str]) -> Result<Vec<f64>, MotionTableFault> {
     let entries: Vec<&str> = row.split(',').map(str::trim).collect();
-    if entries.len() != COLUMNS.len() {
+    if entries.len() != columns.len() {
         let found = if row.trim().is_empty() {
             0
         } else {
             entries.len()
         };
-        return Err(MotionTableFault::Count { found });
+        return Err(MotionTableFault::Count { found, columns });
     }
-    let mut numbers = [0.0; 4];
-    for ((number, entry), column) in numbers.iter_mut().zip(entries).zip(COLUMNS) {
-        *number = match entry.parse::<f64>() {
-            Ok(number) if number.is_finite() => number,
-            _ => {
-                let found = shortened(entry);
-                return Err(MotionTableFault::NotANumber { column, found });
-            }
-        };
-    }
-    Ok(numbers)
+    let number = |(entry, column): (&str, &&'static str)| match entry.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => {
+            let found = shortened(entry);
+            Err(MotionTableFault::NotANumber { column, found })
+        }
+    };
+    entries.into_iter().zip(columns).map(number).collect()
 }
 
 /// Enough of a text to recognise it.
@@ -221,6 +303,37 @@ mod tests {
         assert_eq!(
             fault(""),
             "1: there is no row below the names of the columns: expected at least one"
+        );
+    }
+    #[test]
+    fn poses_have_rotations_or_none() {
+        let table = PoseTable::parse("t_s,x_m,y_m,z_m\n0,1,2,3\n").unwrap();
+        assert_eq!(table.rotations, [[0.0; 3]]);
+        let text = "t_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n0,1,2,3,4,5,6\n1,0,0,0,0,0,7\n";
+        let table = PoseTable::parse(text).unwrap();
+        assert_eq!(table.times, [0.0, 1.0]);
+        assert_eq!(table.positions, [[1.0, 2.0, 3.0], [0.0; 3]]);
+        assert_eq!(table.rotations, [[4.0, 5.0, 6.0], [0.0, 0.0, 7.0]]);
+    }
+
+    #[test]
+    fn faults_of_poses_name_the_columns_that_are_expected() {
+        let fault = |text: &str| {
+            let (line, fault) = PoseTable::parse(text).unwrap_err();
+            format!("{line}: {fault}")
+        };
+        assert_eq!(
+            fault("t_s,x_m,z_m\n0,0,0"),
+            "1: the first line is \"t_s,x_m,z_m\": expected the names of the columns, t_s,x_m,y_m,z_m or \
+             t_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad"
+        );
+        assert_eq!(
+            fault("t_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n0,0,0,0,0,0,0\n1,0,0,0"),
+            "3: expected 7 numbers, t_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad, found 4"
+        );
+        assert_eq!(
+            fault("t_s,x_m,y_m,z_m\n0,0,0,NaN"),
+            "2: z_m is \"NaN\": expected a finite number"
         );
     }
 }

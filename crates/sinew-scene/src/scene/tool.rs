@@ -1,0 +1,321 @@
+//! `[[tool]]`: rigid tools that press on the body.
+
+use std::path::PathBuf;
+
+use super::region::taken;
+use super::tool_shape::{self, SHAPE, ToolPart};
+use crate::decode::value::Misfit;
+use crate::decode::{
+    Condition, Flag, Inner, Key, Kind, Needs, Number, Optional, Or, Place, Shape, Table,
+    TableDescription, Text, Values, Vector, Words,
+};
+use crate::error::{Fault, SceneError};
+
+/// A rigid tool that presses on the body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tool {
+    /// Its name, with which its columns in tables begin.
+    pub name: String,
+    /// The shapes that it is made of.
+    pub parts: Vec<ToolPart>,
+    /// The way it moves.
+    pub path: ToolPath,
+    /// Coefficient of Coulomb's friction.
+    pub friction: f64,
+    /// The group whose nodes it can touch; `None` for the surface of the body.
+    pub touches: Option<String>,
+    /// What happens where it begins inside the body.
+    pub starts_inside: StartsInside,
+    /// The time for which it seizes what it touches.
+    pub grasp: Option<Grasp>,
+}
+
+/// The way that a tool moves.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ToolPath {
+    /// It stays at a place.
+    Hold(ToolStart),
+    /// It goes from a place at this velocity (m/s), without turning.
+    Velocity(ToolStart, [f64; 3]),
+    /// Poses over time in a CSV file: its path as written, relative to the scene's folder.
+    Table(PathBuf),
+}
+
+/// The place of a tool at t = 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToolStart {
+    /// The place (m) of its own origin.
+    pub position: [f64; 3],
+    /// Its rotation vector (rad).
+    pub rotation: [f64; 3],
+}
+
+/// What happens where a tool begins inside the body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StartsInside {
+    /// The scene is refused.
+    Refuse,
+    /// The first step pushes the tissue out.
+    Push,
+}
+
+/// The time for which a tool seizes what it touches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grasp {
+    /// Its beginning (s).
+    pub from: f64,
+    /// Its end (s).
+    pub to: f64,
+}
+
+pub(super) const TOOL: TableDescription = TableDescription {
+    name: "tool",
+    meaning: "A rigid tool that presses on the body: no node that it can touch gets into it. The forces that hold it back are in `tools.csv`.",
+    keys: &[
+        &NAME,
+        &SHAPE_OF_TOOL,
+        &SHAPES,
+        &START,
+        &ROTATION,
+        &TABLE,
+        &VELOCITY,
+        &HOLD,
+        &FRICTION,
+        &TOUCHES,
+        &STARTS_INSIDE,
+        &GRASP,
+    ],
+    needs: Needs::OneOf(&[TABLE.name, VELOCITY.name, HOLD.name]),
+    examples: &[
+        "[[tool]]\nname = \"probe\"\nshape = { sphere = { radius = 0.006 } }\nstart = [0.05, 0.05, 0.12]\nvelocity = [0.0, 0.0, -0.01]\n\
+         friction = 0.2\n",
+        "[[tool]]\nname = \"plate\"\nshape = { plane = {} }\nstart = [0.1, 0.1, 0.21]\nrotation = [3.141592653589793, 0.0, 0.0]\n\
+         hold = true\ntouches = \"top\"\nstarts_inside = \"push\"\n",
+        "[[tool]]\nname = \"grasper\"\nshapes = [{ capsule = { radius = 0.003, length = 0.02 }, at = [0.0, 0.01, 0.0] }, \
+         { capsule = { radius = 0.003, length = 0.02 }, at = [0.0, -0.01, 0.0] }]\ntable = \"grasper.csv\"\ngrasp = { from = 0.4, to = 1.2 }\n",
+    ],
+};
+
+const NAME: Key<Text> = Key::required(
+    "name",
+    "A name of its own, with which its columns in tables begin.",
+    Text {
+        expected: "a name made of letters, digits, `-` and `_`",
+        pattern: Some("^[^ -,./:-@\\[-^`{-~]+$"),
+        except: None,
+        fits: is_plain,
+    },
+);
+
+const SHAPE_OF_TOOL: Key<Inner> = Key::required(
+    "shape",
+    "The shape of the tool.",
+    Inner::one("a table such as { sphere = { radius = 0.006 } }", &SHAPE),
+)
+.only(&[Condition::without(
+    "shapes",
+    "does not go with `shapes`, which stand in its place",
+)]);
+
+const SHAPES: Key<Inner, Optional> = Key::optional(
+    "shapes",
+    "The shapes of a tool that is made of several.",
+    Inner::several(
+        "a list of tables such as [{ sphere = { radius = 0.006 } }]",
+        &SHAPE,
+    ),
+    "see `shape`",
+);
+
+const START: Key<Vector> = Key::required(
+    "start",
+    "The place of the tool's own origin at t = 0.",
+    Vector::finite("[x, y, z] in m, all finite"),
+)
+.unit("m")
+.only(&[NOT_TABLE]);
+
+const ROTATION: Key<Vector, Or<[f64; 3]>> = Key::or(
+    "rotation",
+    "Rotation about the tool's own origin at t = 0: the axis times the angle.",
+    Vector::finite("[rx, ry, rz] in rad, all finite"),
+    [0.0; 3],
+)
+.unit("rad")
+.only(&[NOT_TABLE]);
+
+const NOT_TABLE: Condition = Condition::without(
+    "table",
+    "does not go with `table`, in which places and rotations stand",
+);
+
+pub(super) const TABLE: Key<Text> = Key::required(
+    "table",
+    "CSV file with the columns `t_s`, `x_m`, `y_m`, `z_m` and, for a tool that turns, `rx_rad`, `ry_rad`, `rz_rad`: places of the tool's own \
+     origin and rotation vectors over time, with straight lines between the rows; the first row holds before, the last one after. \
+     Its path is relative to the scene's folder.",
+    Text::any("the path of a CSV file, seen from the scene"),
+);
+
+const VELOCITY: Key<Vector> = Key::required(
+    "velocity",
+    "Velocity from t = 0 on; the tool does not turn.",
+    Vector::finite("[x, y, z] in m/s, all finite"),
+)
+.unit("m/s");
+
+const HOLD: Key<True> = Key::required("hold", "The tool stays where it is.", True);
+
+const FRICTION: Key<Number, Or<f64>> = Key::or(
+    "friction",
+    "Coefficient of Coulomb's friction between tool and tissue.",
+    Number::zero_or_above("a finite coefficient, 0 or above"),
+    0.0,
+);
+
+const TOUCHES: Key<Text, Optional> = Key::optional(
+    "touches",
+    "What it can touch: the nodes of the body's surface, or those of a group of the mesh.",
+    Text::any("\"surface\" or the name of a group"),
+    "\"surface\"",
+);
+
+/// The word for all nodes of the body's surface.
+const SURFACE: &str = "surface";
+
+const STARTS_INSIDE: Key<Words<StartsInside>, Or<StartsInside>> = Key::or(
+    "starts_inside",
+    "What happens where nodes are inside the tool at t = 0: the scene is refused, or the first step pushes them out.",
+    Words(&[
+        ("refuse", StartsInside::Refuse),
+        ("push", StartsInside::Push),
+    ]),
+    StartsInside::Refuse,
+);
+
+const GRASP: Key<Inner, Optional> = Key::optional(
+    "grasp",
+    "The time for which the tool holds the nodes that it touches as it begins.",
+    Inner::one("a table such as { from = 0.4, to = 1.2 }", &GRASPS),
+    "it seizes nothing",
+);
+
+const GRASPS: TableDescription = TableDescription {
+    name: "grasp",
+    meaning: "The time for which a tool holds what it touches.",
+    keys: &[&FROM, &TO],
+    needs: Needs::Any,
+    examples: &["{ from = 0.4, to = 1.2 }"],
+};
+
+const FROM: Key<Number> = Key::required(
+    "from",
+    "The time at which the tool seizes.",
+    Number::zero_or_above("a finite time, 0 s or above"),
+)
+.unit("s");
+
+const TO: Key<Number> = Key::required(
+    "to",
+    "The time, later than `from`, at which it lets go.",
+    Number::above_zero("a finite time above 0 s"),
+)
+.unit("s");
+
+/// `true`, as the only way to say what another key would contradict.
+#[derive(Debug, Clone, Copy)]
+struct True;
+
+impl Kind for True {
+    fn expected(&self) -> String {
+        "true".to_owned()
+    }
+
+    fn shape(&self) -> Shape {
+        Flag.shape()
+    }
+}
+
+impl Values for True {
+    type Read = ();
+
+    fn read(&self, value: &toml::de::DeValue<'_>) -> Result<(), Misfit> {
+        match Flag.read(value)? {
+            true => Ok(()),
+            false => Err(Misfit::Value),
+        }
+    }
+}
+
+pub(super) fn read_all(tables: Vec<Table<'_>>) -> Result<(Vec<Tool>, Vec<Place>), SceneError> {
+    let (mut tools, mut places): (Vec<Tool>, Vec<Place>) = Default::default();
+    for table in tables {
+        let tool = read(&table)?;
+        if let Some(first) = tools.iter().position(|other| other.name == tool.name) {
+            return Err(taken(table.place(), NAME.name, &tool.name, &places[first]));
+        }
+        tools.push(tool);
+        places.push(table.into_place());
+    }
+    Ok((tools, places))
+}
+
+fn read(table: &Table<'_>) -> Result<Tool, SceneError> {
+    let path = table.exactly_one()?;
+    table.check_conditions()?;
+    let path = match path {
+        key if key == TABLE.name => ToolPath::Table(table.read(&TABLE)?.into()),
+        key if key == VELOCITY.name => ToolPath::Velocity(start(table)?, table.read(&VELOCITY)?),
+        _ => {
+            table.read(&HOLD)?;
+            ToolPath::Hold(start(table)?)
+        }
+    };
+    Ok(Tool {
+        name: table.read(&NAME)?,
+        parts: parts(table)?,
+        path,
+        friction: table.read(&FRICTION)?,
+        touches: table.read(&TOUCHES)?.filter(|name| name != SURFACE),
+        starts_inside: table.read(&STARTS_INSIDE)?,
+        grasp: table.table(&GRASP)?.as_ref().map(grasp).transpose()?,
+    })
+}
+
+fn start(table: &Table<'_>) -> Result<ToolStart, SceneError> {
+    Ok(ToolStart {
+        position: table.read(&START)?,
+        rotation: table.read(&ROTATION)?,
+    })
+}
+
+fn parts(table: &Table<'_>) -> Result<Vec<ToolPart>, SceneError> {
+    if !table.has(SHAPES.name) {
+        let shape = table.table(&SHAPE_OF_TOOL)?;
+        return Ok(vec![tool_shape::read(&shape)?]);
+    }
+    let shapes = table.tables(&SHAPES)?;
+    if shapes.is_empty() {
+        return Err(table.missing(SHAPES.name, SHAPES.values.expected()));
+    }
+    shapes.iter().map(tool_shape::read).collect()
+}
+
+fn grasp(table: &Table<'_>) -> Result<Grasp, SceneError> {
+    let (from, to) = (table.read(&FROM)?, table.read(&TO)?);
+    if to <= from {
+        let fault = Fault::Value {
+            key: TO.name.to_owned(),
+            found: format!("{to:?}"),
+            expected: format!("a time after `from`, {from:?} s"),
+        };
+        return Err(table.place().value_fault(TO.name, fault));
+    }
+    Ok(Grasp { from, to })
+}
+
+/// Whether a name can head columns of a CSV file and stand in a key.
+fn is_plain(name: &str) -> bool {
+    let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_');
+    name.chars().all(plain)
+}
