@@ -66,6 +66,6 @@ pub use scene::{
 pub use simulation::{
     BodyModel, Footprint, HeldPlace, LoadRemedy, MotionTableError, MotionTableFault, NearestNode,
     Probe, ProbeNode, Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad,
-    SceneModel, SelectedPart, Simulation, UnresolvedLoad, Warning, WarningKind,
+    SceneModel, SelectedPart, Simulation, ToolFault, UnresolvedLoad, Warning, WarningKind,
 };
 pub use source::SceneSource;

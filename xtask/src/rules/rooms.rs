@@ -25,7 +25,13 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
     ),
     (
         "sinew-scene",
-        &["sinew-core", "sinew-mesh", "sinew-fem", "sinew-integrators"],
+        &[
+            "sinew-core",
+            "sinew-mesh",
+            "sinew-fem",
+            "sinew-integrators",
+            "sinew-tools",
+        ],
     ),
     (
         "sinew-measure",
@@ -40,6 +46,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-fem",
             "sinew-integrators",
             "sinew-scene",
+            "sinew-tools",
         ],
     ),
     (

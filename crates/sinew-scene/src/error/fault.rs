@@ -134,6 +134,9 @@ pub enum Fault {
     /// A table of positions that cannot be used.
     #[error(transparent)]
     MotionTable(#[from] crate::simulation::MotionTableError),
+    /// A tool that does not fit the body, or cannot be.
+    #[error(transparent)]
+    Tool(#[from] crate::simulation::ToolFault),
     /// A mesh that is not a body of tetrahedra.
     #[error(transparent)]
     Tetrahedra(#[from] sinew_mesh::TetMeshError),

@@ -7,6 +7,7 @@ use super::fault::Fault;
 use super::words::quoted;
 use crate::nearest::nearest;
 use crate::scene::keys::AT_THE_TOP;
+use crate::simulation::ToolFault;
 
 /// The hint that follows from a fault, if there is one.
 pub(super) fn following_from(fault: &Fault) -> Option<String> {
@@ -30,6 +31,11 @@ pub(super) fn following_from(fault: &Fault) -> Option<String> {
                     .to_owned(),
             )
         }
+        Fault::Tool(ToolFault::Inside { .. }) => Some(
+            "move it away, or say starts_inside = \"push\": the first step pushes the tissue out"
+                .to_owned(),
+        ),
+        Fault::Tool(ToolFault::Within { .. }) => Some("move it out of the body".to_owned()),
         Fault::NoStableStep(_) => Some(
             "give dt in s; `sinew plan --tolerance` finds one that is accurate enough".to_owned(),
         ),

@@ -5,6 +5,7 @@ mod matrices;
 mod oscillator;
 mod run;
 mod section;
+mod tools;
 
 use std::fmt;
 

@@ -250,8 +250,8 @@ impl Scene {
             let tables = document.get_ref().get(list);
             let tables = tables.and_then(|tables| tables.get_ref().as_array());
             let tables = tables.into_iter().flat_map(|tables| tables.iter());
-            let named = tables
-                .filter_map(|table| table.get_ref().as_table()?.get(key)?.get_ref().as_str());
+            let named =
+                tables.filter_map(|table| table.get_ref().as_table()?.get(key)?.get_ref().as_str());
             named.collect()
         };
         let motions = of_list(MOTIONS.name, motion::TABLE.name);

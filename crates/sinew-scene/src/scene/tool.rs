@@ -296,7 +296,12 @@ fn parts(table: &Table<'_>) -> Result<Vec<ToolPart>, SceneError> {
     }
     let shapes = table.tables(&SHAPES)?;
     if shapes.is_empty() {
-        return Err(table.missing(SHAPES.name, SHAPES.values.expected()));
+        let fault = Fault::Value {
+            key: SHAPES.name.to_owned(),
+            found: "[]".to_owned(),
+            expected: SHAPES.values.expected(),
+        };
+        return Err(table.place().value_fault(SHAPES.name, fault));
     }
     shapes.iter().map(tool_shape::read).collect()
 }

@@ -60,7 +60,10 @@ const SPHERE: Key<Inner> = Key::required(
 const CAPSULE: Key<Inner> = Key::required(
     "capsule",
     "A rod along z with round ends, the place in its middle.",
-    Inner::one("a table such as { radius = 0.003, length = 0.02 }", &CAPSULES),
+    Inner::one(
+        "a table such as { radius = 0.003, length = 0.02 }",
+        &CAPSULES,
+    ),
 );
 
 const PLANE: Key<Inner> = Key::required(

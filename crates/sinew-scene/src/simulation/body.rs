@@ -39,6 +39,7 @@ pub(super) fn build(
         selected,
         problem,
         model,
+        tools: None,
     })
 }
 

@@ -9,7 +9,7 @@ use super::Simulation;
 use super::body;
 use super::mesh::{self, MeshAndWarnings};
 use super::model::SceneModel;
-use super::{probe, start, step};
+use super::{probe, start, step, tool};
 use crate::error::{Fault, MOST_STEPS, SceneError};
 use crate::scene::{Body, Oscillator, Places, Scene, Subject};
 
@@ -40,6 +40,7 @@ impl Scene {
                 let mesh = make_mesh(body, self.places())?;
                 let model = body::build(body, mesh, self.places())?;
                 let initial = start::state(body, self.places(), &model)?;
+                let model = tool::added_to(model, body, self.places(), &initial)?;
                 let probes = probe::of_body(&body.probes, self.places(), &model)?;
                 (SceneModel::Body(Box::new(model)), initial, probes)
             }

@@ -14,6 +14,7 @@ mod refined;
 mod selected;
 mod start;
 mod step;
+mod tool;
 mod warnings;
 
 use std::sync::OnceLock;
@@ -29,6 +30,7 @@ pub use probe::{NearestNode, Probe, ProbeNode};
 pub use reaction::{HeldPlace, Reaction, ReactionError, ReactionOf};
 pub use refined::RefinementError;
 pub use selected::SelectedPart;
+pub use tool::ToolFault;
 
 pub use warnings::{Warning, WarningKind};
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use sinew_core::{LinearModel, System};
 use sinew_mesh::{TetMesh, UnknownGroup};
+use sinew_tools::Tools;
 
 use super::selected::SelectedPart;
 
@@ -29,6 +30,8 @@ pub struct BodyModel {
     pub problem: sinew_fem::Problem,
     /// The system to integrate.
     pub model: sinew_fem::Model,
+    /// The tools that touch it, of which the model knows; `None` where the scene has none.
+    pub tools: Option<Arc<Tools>>,
 }
 
 impl SceneModel {

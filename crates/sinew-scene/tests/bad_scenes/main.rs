@@ -23,6 +23,7 @@ mod run;
 mod scenes;
 mod support;
 mod tissue;
+mod tool;
 
 use common::{build, try_build};
 use sinew_scene::{Fault, Scene, SceneError};
@@ -57,6 +58,7 @@ fn the_scenes_are_good_before_they_are_changed() {
         scenes::DOTTED,
         scenes::MOVED,
         scenes::PLACED,
+        scenes::TOUCHED,
         scenes::OSCILLATOR,
     ] {
         build(text);
@@ -141,6 +143,7 @@ fn a_scene_spoilt_anywhere_gives_a_plan_or_one_line_with_file_and_line() {
         scenes::DOTTED,
         scenes::MOVED,
         scenes::PLACED,
+        scenes::TOUCHED,
         scenes::OSCILLATOR,
     ]
     .into_iter()

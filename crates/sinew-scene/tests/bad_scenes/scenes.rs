@@ -102,6 +102,36 @@ integrator = "newmark"
 dt = 0.02
 "#;
 
+/// A cube on which a probe comes down, and that a grasper holds from the side.
+pub(crate) const TOUCHED: &str = r#"[mesh]
+cube = { cells = 2, edge = 0.2 }
+[[region]]
+density = 1060.0
+model = "linear"
+youngs_modulus = 3500.0
+poissons_ratio = 0.3
+[[fixed]]
+group = "bottom"
+[[tool]]
+name = "probe"
+shape = { sphere = { radius = 0.11 } }
+start = [0.1, 0.1, 0.32]
+velocity = [0.0, 0.0, -0.01]
+friction = 0.2
+[[tool]]
+name = "jaws"
+shapes = [{ capsule = { radius = 0.1, length = 0.02 } }, { box = { size = [0.2, 0.2, 0.2] }, at = [0.0, 0.0, 0.0] }]
+start = [0.1, -0.2, 0.1]
+hold = true
+touches = "sides"
+starts_inside = "push"
+grasp = { from = 0.4, to = 1.2 }
+[run]
+duration = 1.0
+integrator = "symplectic-euler"
+dt = 0.001
+"#;
+
 pub(crate) const OSCILLATOR: &str = r#"[oscillator]
 mass = 0.1
 stiffness = 100.0

@@ -57,6 +57,8 @@ fn used(body: &Body) -> Vec<&str> {
     let regions = problem.regions.iter();
     let regions = regions.filter_map(|region| region.group.as_deref());
     let motions = body.motions.iter().map(|motion| motion.group.as_str());
+    let tools = body.tools.iter();
+    let tools = tools.filter_map(|tool| tool.touches.as_deref());
     let initial = body.initial.iter().filter_map(|initial| match initial {
         Initial::Displacement { group, .. }
         | Initial::Velocity { group, .. }
@@ -67,6 +69,6 @@ fn used(body: &Body) -> Vec<&str> {
         ProbeAt::Mean(group) => Some(group.as_str()),
         ProbeAt::Point(_) | ProbeAt::Group(_) => None,
     });
-    let on = on.chain(regions).chain(motions).chain(initial);
+    let on = on.chain(regions).chain(motions).chain(tools).chain(initial);
     on.chain(probes).collect()
 }

@@ -9,6 +9,7 @@ mod parts;
 mod probes;
 mod size;
 mod step;
+mod tools;
 mod warning;
 
 pub use warning::{Warning, WarningKind};
@@ -18,7 +19,7 @@ use super::model::BodyModel;
 use crate::scene::{Body, Subject};
 
 impl Simulation {
-    /// Warnings about the scene's mesh, materials, initial state, motions, steps, loads and probes, in this order. Costs
+    /// Warnings about the scene's mesh, materials, initial state, motions, tools, steps, loads and probes, in this order. Costs
     /// no more than [`Simulation::stable_step`].
     #[must_use]
     pub fn warnings(&self) -> Vec<Warning> {
@@ -32,6 +33,7 @@ impl Simulation {
             warnings.extend(material::weak_laws(body));
             warnings.extend(initial::held(body, built));
             warnings.extend(motions::warnings(body, built));
+            warnings.extend(tools::warnings(self, built));
         }
         warnings.extend(step::unstable(self));
         warnings.extend(loads::warnings(self));

@@ -7,7 +7,7 @@ use crate::simulation::Probe;
 use crate::simulation::model::BodyModel;
 
 pub(super) fn warnings(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<Warning> {
-    if body.probes.is_empty() {
+    if body.probes.is_empty() && body.tools.is_empty() {
         let what = "the scene has no [[probe]]: a run writes its times only";
         let mend = "name a node whose motion is wanted: [[probe]] with name and point";
         return vec![Warning::new(WarningKind::NoProbe, what, mend)];

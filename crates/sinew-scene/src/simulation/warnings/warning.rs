@@ -91,6 +91,12 @@ pub enum WarningKind {
     MotionJumps,
     /// A load on components that are moved.
     LoadOnMoved,
+    /// A tool in which nodes are at t = 0.
+    ToolInside,
+    /// A tool that is thin against the triangles of the surface.
+    SmallTool,
+    /// A tool that goes farther than the body is large in a step.
+    FastTool,
     /// A load or motion that changes before or after the run only.
     OutsideRun,
     /// A step beyond the stable one, or one about which nothing is known.
@@ -129,6 +135,9 @@ impl WarningKind {
             Self::HeldInitial => "held-initial",
             Self::MotionJumps => "motion-jumps",
             Self::LoadOnMoved => "load-on-moved",
+            Self::ToolInside => "tool-inside",
+            Self::SmallTool => "small-tool",
+            Self::FastTool => "fast-tool",
             Self::OutsideRun => "outside-run",
             Self::UnstableStep => "unstable-step",
             Self::ClampedNetwork => "clamped-network",

@@ -1,0 +1,288 @@
+//! Rigid tools and the nodes that they may touch.
+
+use std::sync::Arc;
+
+use sinew_core::{State, System};
+use sinew_fem::{FieldError, Model, On};
+use sinew_mesh::TetMesh;
+use sinew_tools::{
+    Convex, Grasp, Motion, Part, Pose, Row, Shape, ShapeError, Table, TableError, Tools,
+    ToolsError, TouchedCell,
+};
+
+use super::model::BodyModel;
+use super::motion_table::PoseTable;
+use crate::decode::Place;
+use crate::error::SceneError;
+use crate::number::short;
+use crate::scene::{Body, Places, StartsInside, Tool, ToolPath, ToolShape, ToolStart};
+
+/// Share of the body's size by which a node may lie inside a tool that begins on its surface.
+const ROUNDING: f64 = 1e-9;
+
+/// A fault of a tool.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ToolFault {
+    /// A node inside the tool at t = 0.
+    #[error("the tool begins inside the body: node {node} is {} m deep in it", short(*depth))]
+    Inside {
+        /// Tag of the deepest node.
+        node: u64,
+        /// Its depth (m).
+        depth: f64,
+    },
+    /// A tool inside the body without a node in it that could be pushed out.
+    #[error(
+        "the tool begins inside the body, in tetrahedron {tet}, and holds no node that it could push out"
+    )]
+    Within {
+        /// Tag of the tetrahedron that holds the middle of the tool.
+        tet: u64,
+    },
+    /// A tool for which all nodes are held or moved.
+    #[error("the tool can touch no node: all {nodes} are held or moved")]
+    NothingToTouch {
+        /// Number of the nodes.
+        nodes: usize,
+    },
+    /// An impossible shape.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// An impossible table of poses.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// Tools that do not fit together.
+    #[error(transparent)]
+    Tools(#[from] ToolsError),
+    /// A state in which the places of nodes are not known.
+    #[error(transparent)]
+    Places(#[from] FieldError),
+}
+
+/// Lets the tools of a scene touch a body, which begins in the state `initial`.
+pub(super) fn added_to(
+    built: BodyModel,
+    body: &Body,
+    places: &Places,
+    initial: &State,
+) -> Result<BodyModel, SceneError> {
+    if body.tools.is_empty() {
+        return Ok(built);
+    }
+    let mut nodes_of = Vec::new();
+    for (index, tool) in body.tools.iter().enumerate() {
+        let place = places.of(&places.tools, index);
+        nodes_of.push(nodes(tool, &built, place)?);
+    }
+    let mut touched: Vec<u32> = nodes_of.iter().flatten().copied().collect();
+    touched.sort_unstable();
+    touched.dedup();
+    let mut tools = Vec::new();
+    for (index, (tool, nodes)) in body.tools.iter().zip(&nodes_of).enumerate() {
+        let place = places.of(&places.tools, index);
+        let among = nodes.iter().map(|node| touched.binary_search(node));
+        tools.push(sinew_tools::Tool {
+            name: tool.name.clone(),
+            shape: shape(tool).map_err(|error| place.fault(ToolFault::from(error).into()))?,
+            motion: motion(tool, place)?,
+            friction: tool.friction,
+            cells: among.flatten().map(|place| place as u32).collect(),
+            grasp: tool.grasp.map(|grasp| Grasp {
+                from: grasp.from,
+                to: grasp.to,
+            }),
+        });
+    }
+    let cells = touched
+        .iter()
+        .filter_map(|node| cell(&built.model, *node))
+        .collect();
+    let tools = Tools::new(tools, cells).map_err(|error| {
+        let last = places.of(&places.tools, body.tools.len() - 1);
+        last.fault(ToolFault::from(error).into())
+    })?;
+    for (index, tool) in body.tools.iter().enumerate() {
+        let place = places.of(&places.tools, index);
+        let key = match tool.path {
+            ToolPath::Table(_) => "table",
+            ToolPath::Hold(_) | ToolPath::Velocity(..) => "start",
+        };
+        check_start(&tools, index, tool, &built, initial)
+            .map_err(|fault| place.value_fault(key, fault.into()))?;
+    }
+    let tools = Arc::new(tools);
+    Ok(BodyModel {
+        model: built
+            .model
+            .with_contact(Arc::clone(&tools) as Arc<dyn sinew_core::Contact>),
+        tools: Some(tools),
+        ..built
+    })
+}
+
+/// The nodes that a tool may touch: those that move freely in at least one direction, and are not moved in another.
+fn nodes(tool: &Tool, built: &BodyModel, place: &Place) -> Result<Vec<u32>, SceneError> {
+    let mesh = &built.mesh;
+    let mut nodes = match &tool.touches {
+        None => mesh.boundary(None).into_flattened(),
+        Some(name) => {
+            let group = mesh.group(name);
+            let group = group.map_err(|error| place.value_fault("touches", error.into()))?;
+            mesh.group_nodes(group)
+        }
+    };
+    nodes.sort_unstable();
+    nodes.dedup();
+    let all = nodes.len();
+    let moved = moved_nodes(built);
+    nodes.retain(|node| built.model.cell_of_node(*node).is_some());
+    nodes.retain(|node| moved.binary_search(node).is_err());
+    match nodes.is_empty() {
+        true => {
+            let fault = ToolFault::NothingToTouch { nodes: all };
+            Err(place.value_fault("touches", fault.into()))
+        }
+        false => Ok(nodes),
+    }
+}
+
+/// The nodes of which some component is moved, increasing: where they are is no matter of the degrees of freedom alone.
+fn moved_nodes(built: &BodyModel) -> Vec<u32> {
+    let mut moved = Vec::new();
+    for motion in &built.problem.moves {
+        match &motion.on {
+            On::Group(name) => {
+                let group = built.mesh.group(name);
+                moved.extend(group.map_or_else(|_| Vec::new(), |g| built.mesh.group_nodes(g)));
+            }
+            On::Nodes(nodes) => moved.extend_from_slice(nodes),
+            On::Triangles(triangles) => moved.extend(triangles.iter().flatten()),
+        }
+    }
+    moved.sort_unstable();
+    moved.dedup();
+    moved
+}
+
+fn cell(model: &Model, node: u32) -> Option<TouchedCell> {
+    let cell = model.cell_of_node(node)?;
+    let first = 3 * cell as usize;
+    Some(TouchedCell {
+        cell,
+        rest: model.mesh().points[node as usize],
+        free: [0, 1, 2].map(|axis| !model.pinned()[first + axis]),
+    })
+}
+
+fn shape(tool: &Tool) -> Result<Shape, ShapeError> {
+    let parts = tool.parts.iter().map(|part| {
+        let convex = match part.shape {
+            ToolShape::Sphere { radius } => Convex::sphere(radius)?,
+            ToolShape::Capsule { radius, length } => Convex::capsule(radius, length)?,
+            ToolShape::Plane => Convex::Plane,
+            ToolShape::Box { size } => Convex::cuboid(size)?,
+        };
+        let pose = Pose::new(part.at, part.rotation);
+        Ok(Part { convex, pose })
+    });
+    Shape::several(parts.collect::<Result<_, _>>()?)
+}
+
+fn motion(tool: &Tool, place: &Place) -> Result<Motion, SceneError> {
+    let pose = |start: &ToolStart| Pose::new(start.position, start.rotation);
+    Ok(match &tool.path {
+        ToolPath::Hold(start) => Motion::Held(pose(start)),
+        ToolPath::Velocity(start, velocity) => Motion::Steady {
+            start: pose(start),
+            velocity: *velocity,
+        },
+        ToolPath::Table(written) => {
+            let fault = |fault| place.value_fault("table", fault);
+            let path = place.scene().resolve(written);
+            let poses = PoseTable::read(&path).map_err(|error| fault(error.into()))?;
+            let rows = poses.times.iter().zip(poses.positions).zip(poses.rotations);
+            let rows = rows.map(|((t, position), rotation_vector)| Row {
+                t: *t,
+                position,
+                rotation_vector,
+            });
+            let table = Table::new(rows.collect());
+            Motion::Table(table.map_err(|error| fault(ToolFault::from(error).into()))?)
+        }
+    })
+}
+
+/// How deep a tool begins in the body: tag and depth (m) of the deepest node, where one is deeper than by a rounding.
+pub(super) fn inside(
+    tools: &Tools,
+    index: usize,
+    built: &BodyModel,
+    initial: &State,
+) -> Option<(u64, f64)> {
+    let deepest = tools.deepest(&initial.u, initial.t(), index)?;
+    let size = built.model.extent().unwrap_or(0.0);
+    if deepest.gap >= -ROUNDING * size {
+        return None;
+    }
+    let cell = tools.touched_cells()[deepest.place].cell;
+    let node = built.model.nodes()[cell as usize];
+    Some((built.mesh.node_tags[node as usize], -deepest.gap))
+}
+
+fn check_start(
+    tools: &Tools,
+    index: usize,
+    tool: &Tool,
+    built: &BodyModel,
+    initial: &State,
+) -> Result<(), ToolFault> {
+    if let Some((node, depth)) = inside(tools, index, built, initial) {
+        return match tool.starts_inside {
+            StartsInside::Refuse => Err(ToolFault::Inside { node, depth }),
+            StartsInside::Push => Ok(()),
+        };
+    }
+    let found = &tools.tools()[index];
+    let pose = found.motion.at(initial.t());
+    let parts = found.shape.parts().iter();
+    let bounded = parts.filter(|part| part.convex != Convex::Plane);
+    let middles: Vec<[f64; 3]> = bounded
+        .map(|part| pose.then(&part.pose).position())
+        .collect();
+    let mut u = vec![[0.0; 3]; built.mesh.points.len()];
+    built
+        .model
+        .displacements_at(initial.t(), &initial.u, &mut u)?;
+    match holds_one(&built.mesh, &u, &middles) {
+        Some(tet) => Err(ToolFault::Within { tet }),
+        None => Ok(()),
+    }
+}
+
+/// Tag of the tetrahedron that holds one of these points (m), with displacements (m) of all nodes.
+fn holds_one(mesh: &TetMesh, u: &[[f64; 3]], points: &[[f64; 3]]) -> Option<u64> {
+    let places = mesh.points.iter().zip(u);
+    let places: Vec<[f64; 3]> = places
+        .map(|(point, u)| std::array::from_fn(|axis| point[axis] + u[axis]))
+        .collect();
+    let is_near = |point: &[f64; 3]| {
+        (0..3).all(|axis| {
+            let along = || places.iter().map(|place| place[axis]);
+            along().any(|x| x <= point[axis]) && along().any(|x| x >= point[axis])
+        })
+    };
+    let near: Vec<[f64; 3]> = points.iter().copied().filter(is_near).collect();
+    if near.is_empty() {
+        return None;
+    }
+    let deformed = TetMesh {
+        points: places,
+        ..mesh.clone()
+    };
+    near.into_iter().find_map(|point| {
+        let (tet, shares) = deformed.tet_at(point)?;
+        let is_inside = shares.iter().all(|share| *share >= -ROUNDING);
+        is_inside.then(|| mesh.tet_tags[tet as usize])
+    })
+}

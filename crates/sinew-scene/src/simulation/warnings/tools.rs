@@ -1,0 +1,95 @@
+//! What a user of tools may not expect.
+
+use sinew_core::System;
+use sinew_tools::{Convex, Motion, Tools};
+
+use super::{Warning, WarningKind};
+use crate::number::{length, short};
+use crate::simulation::Simulation;
+use crate::simulation::model::BodyModel;
+use crate::simulation::tool::inside;
+
+pub(super) fn warnings(simulation: &Simulation, built: &BodyModel) -> Vec<Warning> {
+    let Some(tools) = &built.tools else {
+        return Vec::new();
+    };
+    let edge = longest_edge(built);
+    let mut warnings = Vec::new();
+    for (index, tool) in tools.tools().iter().enumerate() {
+        let name = &tool.name;
+        let start = inside(tools, index, built, simulation.initial_state());
+        warnings.extend(start.map(|(node, depth)| {
+            let what = format!(
+                "tool `{name}` begins inside the body: the first step pushes node {node} out of it by {} m",
+                short(depth)
+            );
+            Warning::new(WarningKind::ToolInside, what, "").with(&[("depth_m", depth)])
+        }));
+        let width = smallest_width(tools, index);
+        if width < edge {
+            let what = format!(
+                "tool `{name}` is as thin as {} m, less than the longest edge of the surface, {} m: it touches nodes alone, and may \
+                 pass between them",
+                short(width),
+                short(edge)
+            );
+            let warning = Warning::new(
+                WarningKind::SmallTool,
+                what,
+                "refine the mesh where it presses",
+            );
+            warnings.push(warning.with(&[("radius_m", width), ("edge_m", edge)]));
+        }
+        let way = highest_speed(&tool.motion) * simulation.dt();
+        let size = built.model.extent().unwrap_or(f64::INFINITY);
+        if way > size {
+            let what = format!(
+                "tool `{name}` goes {} m in a step, farther than the body is large, {} m",
+                short(way),
+                short(size)
+            );
+            let warning = Warning::new(WarningKind::FastTool, what, "is its velocity in m/s?");
+            warnings.push(warning.with(&[("way_m", way), ("body_m", size)]));
+        }
+    }
+    warnings
+}
+
+/// The smallest radius (m) of a tool's parts, or half the smallest edge of a box.
+fn smallest_width(tools: &Tools, index: usize) -> f64 {
+    let parts = tools.tools()[index].shape.parts().iter();
+    let widths = parts.map(|part| match part.convex {
+        Convex::Cuboid { size, .. } => size.into_iter().fold(f64::INFINITY, f64::min) / 2.0,
+        convex => convex.smallest_radius().unwrap_or(f64::INFINITY),
+    });
+    widths.fold(f64::INFINITY, f64::min)
+}
+
+/// The highest speed (m/s) of a tool's origin.
+fn highest_speed(motion: &Motion) -> f64 {
+    match motion {
+        Motion::Held(_) => 0.0,
+        Motion::Steady { velocity, .. } => length(*velocity),
+        Motion::Table(table) => {
+            let speeds = table.rows().windows(2).map(|rows| {
+                let way =
+                    std::array::from_fn(|axis| rows[1].position[axis] - rows[0].position[axis]);
+                length(way) / (rows[1].t - rows[0].t)
+            });
+            speeds.fold(0.0, f64::max)
+        }
+    }
+}
+
+/// The longest edge (m) of the body's surface.
+fn longest_edge(built: &BodyModel) -> f64 {
+    let points = &built.mesh.points;
+    let mut longest = 0.0_f64;
+    for [a, b, c] in built.mesh.boundary(None) {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            let (from, to) = (points[from as usize], points[to as usize]);
+            longest = longest.max(length(std::array::from_fn(|axis| to[axis] - from[axis])));
+        }
+    }
+    longest
+}
