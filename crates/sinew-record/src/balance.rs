@@ -6,6 +6,7 @@ use sinew_core::{Acceleration, Damping, ElasticLaw, LinearOperators, LoadTime, M
 use sinew_fem::Model;
 use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
 use sinew_scene::{SceneModel, Simulation};
+use sinew_tools::Tools;
 
 use crate::error::RecordRunError;
 use crate::schedule::Schedule;
@@ -20,6 +21,8 @@ pub(crate) struct Energies {
     pub(crate) loads: f64,
     /// Work of supports in motion since the beginning.
     pub(crate) supports: f64,
+    /// Work of tools since the beginning, where there are tools.
+    pub(crate) tools: Option<f64>,
     /// Energy that damping took since the beginning.
     pub(crate) damped: f64,
     /// Energy that the method took since the beginning, where its closed form is known.
@@ -98,6 +101,15 @@ impl<'a> Balance<'a> {
         self.simulation.system().internal_variables() > 0
     }
 
+    /// Whether tools do work.
+    pub(crate) fn has_tools(&self) -> bool {
+        self.tools().is_some()
+    }
+
+    fn tools(&self) -> Option<&'a Tools> {
+        self.simulation.model().body()?.tools.as_deref()
+    }
+
     /// Whether it is known what the method takes.
     pub(crate) fn knows_method(&self) -> bool {
         self.form.is_some()
@@ -165,15 +177,18 @@ impl<'a> Balance<'a> {
             damped,
             method,
         } = self.sums;
+        let tools = self.tools().map(|tools| tools.work(moment.state));
+        let given = first + loads + supports + tools.unwrap_or(0.0);
         Ok(Energies {
             t,
             kinetic,
             elastic,
             loads,
             supports,
+            tools,
             damped,
             method: self.form.map(|_| method),
-            remainder: kinetic + elastic - first - loads - supports + damped + method,
+            remainder: kinetic + elastic - given + damped + method,
         })
     }
 

@@ -1,12 +1,13 @@
 //! Fields over the body at an instant.
 
-use sinew_core::Moment;
+use sinew_core::{Moment, System};
 use sinew_fem::{Model, stress};
 use sinew_mesh::CellType;
 use sinew_mesh::vtu::{Array, Grid, VtuEncoding};
 use sinew_scene::OutputSettings;
 use sinew_scene::output::OwnedFolder;
 
+use crate::contact_fields::ContactFields;
 use crate::error::RecordRunError;
 use crate::frames::{self, frame_name};
 use crate::progress::Seen;
@@ -27,6 +28,8 @@ pub(crate) struct Snapshot {
     pub(crate) a: Vec<f64>,
     /// Internal variables.
     pub(crate) internal: Vec<f64>,
+    /// Forces (N) of contact; empty where nothing touches the body.
+    pub(crate) contact: Vec<f64>,
 }
 
 impl Snapshot {
@@ -44,6 +47,11 @@ impl Snapshot {
         self.internal.clone_from(&state.internal);
         self.v.clear();
         self.v.extend_from_slice(v);
+        self.contact.clear();
+        if let Some(contact) = moment.system.contact() {
+            self.contact.resize(v.len(), 0.0);
+            contact.add_forces(state, &mut self.contact);
+        }
         if has_acceleration {
             self.a.resize(v.len(), 0.0);
             moment.acceleration(v, &mut self.a)?;
@@ -79,6 +87,8 @@ pub(crate) struct Fields<'a> {
     v: Vec<[f64; 3]>,
     /// Accelerations; empty where none are asked for.
     a: Vec<[f64; 3]>,
+    /// None where nothing touches the body.
+    contact: Option<ContactFields>,
     tets: Tets,
     /// Region of each tetrahedron, counted from 1.
     regions: Vec<u8>,
@@ -104,6 +114,7 @@ impl<'a> Fields<'a> {
             u: of_nodes(true),
             v: of_nodes(true),
             a: of_nodes(settings.acceleration),
+            contact: model.contact().map(|_| ContactFields::new(nodes)),
             tets: Tets::default(),
             regions: model.region_of().iter().map(number).collect(),
             stressed: !springs,
@@ -134,17 +145,22 @@ impl<'a> Fields<'a> {
             v,
             a,
             internal,
+            contact,
         } = snapshot;
         self.model.displacements_at(*t, u, &mut self.u)?;
         self.model.velocities_at(*t, v, &mut self.v)?;
         if self.settings.acceleration {
             self.model.accelerations_at(*t, a, &mut self.a)?;
         }
+        if let Some(fields) = &mut self.contact {
+            fields.take(self.model, surface, contact, &self.u);
+        }
         self.deform(*t, internal, seen)?;
         let grid = if self.settings.surface_only {
-            let of = |field: &[[f64; 3]]| {
-                let nodes = surface.nodes.iter();
-                singles(nodes.flat_map(|node| field[*node as usize]))
+            let of = |field: &[f64], components: usize| {
+                let nodes = surface.nodes.iter().map(|node| *node as usize);
+                let of_node = |node| &field[components * node..][..components];
+                singles(nodes.flat_map(of_node).copied())
             };
             Grid {
                 points: &surface.points,
@@ -153,7 +169,7 @@ impl<'a> Fields<'a> {
                 cell_data: Vec::new(),
             }
         } else {
-            let of = |field: &[[f64; 3]]| singles(field.iter().flatten().copied());
+            let of = |field: &[f64], _: usize| singles(field.iter().copied());
             Grid {
                 point_data: self.point_data(&of),
                 cell_data: self.cell_data(),
@@ -167,14 +183,18 @@ impl<'a> Fields<'a> {
         frames::write(folder, &frame_name(*frame), &grid, encoding)
     }
 
-    /// The fields at points, each as `of` picks and rounds it.
-    fn point_data(&self, of: &dyn Fn(&[[f64; 3]]) -> Vec<f32>) -> Vec<Array<'_>> {
-        let mut fields = vec![
-            Array::of_singles("displacement", 3, of(&self.u)),
-            Array::of_singles("velocity", 3, of(&self.v)),
-        ];
+    /// The fields at points, each with its number of components as `of` picks and rounds it.
+    fn point_data(&self, of: &dyn Fn(&[f64], usize) -> Vec<f32>) -> Vec<Array<'_>> {
+        let vector =
+            |name, field: &[[f64; 3]]| Array::of_singles(name, 3, of(field.as_flattened(), 3));
+        let mut fields = vec![vector("displacement", &self.u), vector("velocity", &self.v)];
         if self.settings.acceleration {
-            fields.push(Array::of_singles("acceleration", 3, of(&self.a)));
+            fields.push(vector("acceleration", &self.a));
+        }
+        if let Some(contact) = &self.contact {
+            fields.push(vector("contact_force", &contact.forces));
+            let pressures = of(&contact.pressures, 1);
+            fields.push(Array::of_singles("contact_pressure", 1, pressures));
         }
         fields
     }

@@ -4,6 +4,7 @@ use sinew_scene::{ProbeRows, Simulation};
 
 use crate::recorder::Schedules;
 use crate::surface::Surface;
+use crate::tool_rows::ToolRows;
 
 /// Bytes of a frame's text.
 const TEXT: usize = 2000;
@@ -30,6 +31,8 @@ impl FolderSize {
     pub fn of(simulation: &Simulation) -> Self {
         let schedules = Schedules::of(simulation);
         let probes = schedules.probes.count() * ProbeRows::new(simulation).columns().len();
+        let tools = ToolRows::of(simulation);
+        let tools = tools.map_or(0, |tools| schedules.probes.count() * tools.columns().len());
         // Time, six energies and perhaps that of the method; then six numbers for each support.
         let supports = simulation.held_parts().map_or(0, |parts| parts.len());
         let energies = schedules.energy.count() * (8 + 1 + 6 * supports);
@@ -37,7 +40,7 @@ impl FolderSize {
             frames: schedules.fields.map_or(0, |fields| fields.count()),
             frame_bytes: frame_bytes(simulation),
             is_compressed: simulation.scene().output().compress,
-            table_bytes: (probes + energies) * NUMBER,
+            table_bytes: (probes + tools + energies) * NUMBER,
         }
     }
 
@@ -56,7 +59,8 @@ fn frame_bytes(simulation: &Simulation) -> usize {
     let (output, mesh) = (simulation.scene().output(), &body.mesh);
     let (double, single, index) = (size_of::<f64>(), size_of::<f32>(), size_of::<u32>());
     let vectors = 2 + usize::from(output.acceleration);
-    let point = 3 * double + vectors * 3 * single;
+    let contact = if body.tools.is_some() { 4 * single } else { 0 };
+    let point = 3 * double + vectors * 3 * single + contact;
     // The end of its list of nodes, and its type.
     let of_cell = size_of::<i64>() + 1;
     if output.surface_only {

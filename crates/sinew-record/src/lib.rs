@@ -6,11 +6,12 @@
 //!
 //! | file | content |
 //! | --- | --- |
-//! | `fields.pvd`, `fields/` | displacement, velocity, strain, stress at the instants that `[output]` asks for |
+//! | `fields.pvd`, `fields/` | displacement, velocity, strain, stress, forces and pressures of tools at the instants that `[output]` asks for |
 //! | `surface.vtu` | the boundary at rest, with the groups of triangles on it |
 //! | `probes.csv` | displacements (m) of the probes |
 //! | `energy.csv` | the balance of energy (J) |
 //! | `reactions.csv` | forces (N) and moments (N m) of supports and moved parts |
+//! | `tools.csv` | where tools are, forces (N) and torques (N m) on them, their work (J) and contacts |
 //! | `summary.json` | how it ended, extremes, work, warnings, and all that is needed to repeat it |
 //! | `report.html` | warnings, pictures of the body, curves |
 //! | `run.json`, `scene.toml` | what was run |
@@ -35,6 +36,7 @@ mod balance;
 mod checkpoint;
 mod companion;
 mod compare;
+mod contact_fields;
 mod csv;
 mod error;
 mod fields;
@@ -56,6 +58,7 @@ mod schedule;
 mod summary;
 mod surface;
 mod tables;
+mod tool_rows;
 
 pub use companion::Companion;
 pub use compare::{CompareError, Comparison, Difference, compare};

@@ -28,6 +28,7 @@ pub(crate) struct Lengths {
     pub(crate) probes: u64,
     pub(crate) energy: u64,
     pub(crate) reactions: u64,
+    pub(crate) tools: u64,
 }
 
 /// Extremes of the motion, seen at the instants of the fields.

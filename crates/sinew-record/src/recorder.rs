@@ -15,6 +15,7 @@ use crate::pace::Pace;
 use crate::progress::{Lengths, Progress};
 use crate::schedule::Schedule;
 use crate::tables::{self, Reactions};
+use crate::tool_rows::{self, ToolRows};
 
 /// Most rows of a table, where the scene does not ask for more.
 const MOST_ROWS: usize = 10_000;
@@ -58,6 +59,7 @@ pub(crate) struct Tables {
     probes: GrowingFile,
     energy: GrowingFile,
     reactions: Option<GrowingFile>,
+    tools: Option<GrowingFile>,
 }
 
 impl Tables {
@@ -67,6 +69,7 @@ impl Tables {
         lengths: Lengths,
         balance: &Balance<'_>,
         reactions: Option<&Reactions<'_>>,
+        tools: Option<&ToolRows<'_>>,
         simulation: &Simulation,
     ) -> Result<Self, RecordRunError> {
         let open = |name: &str, length: u64, head: &dyn Fn() -> String| {
@@ -81,20 +84,26 @@ impl Tables {
                 tables::probes_head(simulation)
             })?,
             energy: open(tables::ENERGY, lengths.energy, &|| {
-                tables::energy_head(balance.knows_method(), balance.has_memory())
+                let method = balance.knows_method();
+                tables::energy_head(balance.has_tools(), method, balance.has_memory())
             })?,
             reactions: reactions
                 .map(|reactions| open(tables::REACTIONS, lengths.reactions, &|| reactions.head()))
+                .transpose()?,
+            tools: tools
+                .map(|tools| open(tool_rows::NAME, lengths.tools, &|| tools.head()))
                 .transpose()?,
         })
     }
 
     pub(crate) fn secure(&mut self) -> Result<Lengths, RecordRunError> {
         let reactions = self.reactions.as_mut().map(GrowingFile::secure);
+        let tools = self.tools.as_mut().map(GrowingFile::secure);
         Ok(Lengths {
             probes: self.probes.secure()?,
             energy: self.energy.secure()?,
             reactions: reactions.transpose()?.unwrap_or(0),
+            tools: tools.transpose()?.unwrap_or(0),
         })
     }
 }
@@ -109,6 +118,7 @@ pub(crate) struct RunRecorder<'a> {
     pub(crate) probes: ProbeRows<'a>,
     pub(crate) balance: Balance<'a>,
     pub(crate) reactions: Option<Reactions<'a>>,
+    pub(crate) tools: Option<ToolRows<'a>>,
     /// None for an oscillator.
     pub(crate) frames: Option<FrameWriter<'a>>,
     pub(crate) progress: Progress,
@@ -162,6 +172,12 @@ impl RunRecorder<'_> {
         if self.probes.need_moments() && self.schedules.probes.is_due(step) {
             let row = self.probes.of_moment(moment)?;
             self.tables.probes.push(row)?;
+        }
+        if let (Some(tools), Some(file)) = (&self.tools, &mut self.tables.tools)
+            && self.schedules.probes.is_due(step)
+        {
+            tools.row(&mut self.line, moment.state);
+            file.push(&self.line)?;
         }
         self.progress.steps = step;
         self.pace.look(step);
@@ -236,7 +252,7 @@ impl Recorder for RunRecorder<'_> {
         let fields = self.schedules.fields.and_then(|fields| fields.next(step));
         let energy = self.schedules.energy.next(step);
         let end = self.simulation.run().steps;
-        let probes = match self.probes.need_moments() {
+        let probes = match self.probes.need_moments() || self.tools.is_some() {
             true => self.schedules.probes.next(step),
             false => None,
         };

@@ -14,6 +14,7 @@ use crate::run_end::Ended;
 use crate::summary::Summary;
 use crate::surface::Surface;
 use crate::tables;
+use crate::tool_rows;
 use curves::plot;
 
 pub(crate) const NAME: &str = "report.html";
@@ -103,6 +104,21 @@ pub(crate) fn page(
                     Some(axis.to_owned())
                 },
             );
+            plot.svg()
+        });
+        beside::figures(&mut page, &drawn.collect::<Vec<_>>());
+    }
+    if let Some(rows) = read(tool_rows::NAME)? {
+        page.section("tools", "Forces on tools");
+        let body = simulation.model().body();
+        let tools = body.and_then(|body| body.tools.as_deref());
+        let tools = tools.into_iter().flat_map(|tools| tools.tools());
+        let drawn = tools.map(|tool| {
+            let begin = format!("{}_force_", tool.name);
+            let plot = plot(&rows, &tool.name, "force [N]", |column| {
+                let axis = column.strip_prefix(&begin)?.strip_suffix("_N")?;
+                Some(axis.to_owned())
+            });
             plot.svg()
         });
         beside::figures(&mut page, &drawn.collect::<Vec<_>>());

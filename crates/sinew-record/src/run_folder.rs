@@ -26,6 +26,7 @@ use crate::run_end::{Ended, RunEnd};
 use crate::summary::{self, Summary};
 use crate::surface::{self, Surface};
 use crate::tables::{self, Reactions};
+use crate::tool_rows::{self, ToolRows};
 
 /// The kind of result, in manifests and messages.
 const KIND: &str = "run";
@@ -71,6 +72,9 @@ impl RunFolder {
         .to_vec();
         if !simulation.held_parts()?.is_empty() {
             names.push(tables::REACTIONS.to_owned());
+        }
+        if ToolRows::of(simulation).is_some() {
+            names.push(tool_rows::NAME.to_owned());
         }
         if let Some(fields) = schedules.fields {
             names.extend([frames::SERIES, surface::NAME].map(str::to_owned));
@@ -143,11 +147,13 @@ impl RunFolder {
         let parts = reactions
             .as_ref()
             .map_or_else(Vec::new, |reactions| reactions.parts.clone());
+        let tools = ToolRows::of(simulation);
         let tables = Tables::open(
             &self.folder,
             progress.lengths,
             &balance,
             reactions.as_ref(),
+            tools.as_ref(),
             simulation,
         )?;
         let body = simulation.model().body();
@@ -179,6 +185,7 @@ impl RunFolder {
                 probes: ProbeRows::new(simulation),
                 balance,
                 reactions,
+                tools,
                 frames,
                 progress,
                 before,

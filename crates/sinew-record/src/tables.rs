@@ -35,26 +35,22 @@ pub(crate) fn probes_head(simulation: &Simulation) -> String {
     text
 }
 
-/// The line of column names; what the method takes has one where it is known, and what memory takes is part of the remainder.
-pub(crate) fn energy_head(knows_method: bool, has_memory: bool) -> String {
+/// The line of column names; the work of tools has one where there are tools, what the method takes where it is known, and what memory takes is part of the remainder.
+pub(crate) fn energy_head(has_tools: bool, knows_method: bool, has_memory: bool) -> String {
+    let tools = if has_tools { "work_of_tools_J," } else { "" };
     let method = if knows_method { "method_J," } else { "" };
     let memory = if has_memory { "memory_and_" } else { "" };
     format!(
-        "t_s,kinetic_J,elastic_J,work_of_loads_J,work_of_supports_J,damped_J,{method}{memory}remainder_J\n"
+        "t_s,kinetic_J,elastic_J,work_of_loads_J,work_of_supports_J,{tools}damped_J,{method}{memory}remainder_J\n"
     )
 }
 
 pub(crate) fn energy_row(out: &mut String, row: &Energies) {
     out.clear();
     push(out, row.t);
-    let columns = [
-        row.kinetic,
-        row.elastic,
-        row.loads,
-        row.supports,
-        row.damped,
-    ];
-    for value in columns.into_iter().chain(row.method).chain([row.remainder]) {
+    let columns = [row.kinetic, row.elastic, row.loads, row.supports];
+    let columns = columns.into_iter().chain(row.tools).chain([row.damped]);
+    for value in columns.chain(row.method).chain([row.remainder]) {
         out.push(',');
         push(out, value);
     }
@@ -62,7 +58,7 @@ pub(crate) fn energy_row(out: &mut String, row: &Energies) {
 }
 
 /// A number that reads back with the same bits.
-fn push(out: &mut String, value: f64) {
+pub(crate) fn push(out: &mut String, value: f64) {
     // Writing to a string does not fail.
     let _ = write!(out, "{value:?}");
 }

@@ -10,6 +10,7 @@ use std::path::Path;
 pub use outcome::{CompareError, Comparison, Difference};
 
 use crate::tables::{ENERGY, PROBES, REACTIONS};
+use crate::tool_rows;
 
 /// Compares the results in two folders: tables at the times of the first (those of the second between its rows on
 /// straight lines), displacements and velocities of frames at equal times. Bodies of other shape and probes at other places are
@@ -25,7 +26,7 @@ pub fn compare(one: &Path, other: &Path) -> Result<Comparison, CompareError> {
         }
     }
     let mut comparison = Comparison::default();
-    for name in [PROBES, ENERGY, REACTIONS] {
+    for name in [PROBES, ENERGY, REACTIONS, tool_rows::NAME] {
         tables::compare(&mut comparison, name, one, other)?;
     }
     frames::compare(&mut comparison, one, other)?;

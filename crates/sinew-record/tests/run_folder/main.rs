@@ -8,3 +8,4 @@ mod common;
 mod comparisons;
 mod resumed_runs;
 mod tables_and_fields;
+mod tools;

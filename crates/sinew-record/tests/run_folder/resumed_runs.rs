@@ -48,7 +48,7 @@ fn contents(path: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-const SCENES: [&str; 4] = [
+const SCENES: [&str; 5] = [
     "[[fixed]]\ngroup = \"sides\"\n[[load]]\ngroup = \"top\"\npressure = 100.0\n[damping]\nmass = 2.0\n[run]\n\
      duration = 0.3\nintegrator = \"central-difference\"\ndt = 0.001\n[output]\nfields = { frames = 7 }\n",
     "gravity = [0.0, 0.0, -9.81]\n[[fixed]]\ngroup = \"bottom\"\n[[move]]\ngroup = \"top\"\ndisplacement = [0.0, 0.0, 0.01]\n\
@@ -58,6 +58,10 @@ const SCENES: [&str; 4] = [
      integrator = \"propagator\"\nkind = \"two-step\"\ndt = 0.003\n[output]\nprobes = { frames = 11 }\nsurface_only = true\n",
     "[[fixed]]\ngroup = \"sides\"\n[[load]]\ngroup = \"top\"\npressure = 300.0\n[run]\nduration = 0.3\n\
      integrator = \"cnn\"\nsaturation = 0.4\ndt = 0.002\nprecision = \"f32\"\n",
+    "[[fixed]]\ngroup = \"bottom\"\n[[tool]]\nname = \"probe\"\nshape = { sphere = { radius = 0.05 } }\nstart = [0.05, 0.05, 0.151]\n\
+     velocity = [0.05, 0.0, -0.2]\nfriction = 0.3\ngrasp = { from = 0.05, to = 0.11 }\n[[tool]]\nname = \"wall\"\nshape = { plane = {} }\n\
+     start = [0.099, 0.0, 0.0]\nrotation = [0.0, -1.5707963267948966, 0.0]\nhold = true\nstarts_inside = \"push\"\n[run]\nduration = 0.15\n\
+     integrator = \"central-difference\"\ndt = 0.001\n",
 ];
 
 #[test]

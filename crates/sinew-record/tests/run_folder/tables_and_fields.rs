@@ -9,7 +9,7 @@ use sinew_record::{FolderSize, Request, RunFolder};
 use crate::common::{cube, run, table};
 
 /// An array of a frame.
-fn singles(path: &Path, name: &str) -> Vec<f32> {
+pub(crate) fn singles(path: &Path, name: &str) -> Vec<f32> {
     let numbers = read_appended_array(&fs::read(path).unwrap(), name).unwrap();
     numbers.into_iter().map(|number| number as f32).collect()
 }

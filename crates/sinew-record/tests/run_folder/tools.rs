@@ -1,0 +1,140 @@
+//! What is written of tools.
+
+use std::fs;
+use std::path::Path;
+
+use sinew_record::FolderSize;
+use sinew_scene::{Scene, Simulation};
+
+use crate::common::{run, table};
+use crate::tables_and_fields::singles;
+
+/// Young's modulus times area over length (N/m) of the bar.
+const STIFFNESS: f64 = 3000.0 * 0.1 * 0.1 / 0.1;
+
+/// A bar that stands on its bottom and does not widen; a plate comes down on it by 5 mm within 0.1 s and stays, by a table in `folder`.
+fn pressed(folder: &Path, duration: f64, more: &str) -> Simulation {
+    let pi = std::f64::consts::PI;
+    let rows = format!(
+        "t_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n0,0.05,0.05,0.1,{pi},0,0\n0.1,0.05,0.05,0.095,{pi},0,0\n"
+    );
+    fs::write(folder.join("plate.csv"), rows).unwrap();
+    let text = format!(
+        "[mesh]\ncube = {{ cells = 3, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\nyoungs_modulus = 3000.0\n\
+         poissons_ratio = 0.0\n[damping]\nmass = 50.0\n[[fixed]]\ngroup = \"bottom\"\naxes = \"z\"\n[[fixed]]\nwhere = {{ nodes = [1] }}\n\
+         [[tool]]\nname = \"plate\"\nshape = {{ plane = {{}} }}\ntable = \"plate.csv\"\n\
+         [run]\nduration = {duration}\nintegrator = \"symplectic-euler\"\ndt = 0.0005\n{more}"
+    );
+    let path = folder.join("scene.toml");
+    fs::write(&path, text).unwrap();
+    let mut simulation = Scene::load(&path).unwrap().build().unwrap();
+    simulation.end_at_duration();
+    simulation
+}
+
+/// A row at t = 0 and one for each step; once at rest the force is E A d/L, and the node's gap is none.
+#[test]
+fn a_plate_feels_hookes_law() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("out");
+    run(&out, &pressed(place.path(), 1.5, ""), &mut ());
+    let text = fs::read_to_string(out.join("tools.csv")).unwrap();
+    let head = text.lines().find(|line| !line.starts_with('#')).unwrap();
+    let expected = "t_s,plate_x_m,plate_y_m,plate_z_m,plate_rx_rad,plate_ry_rad,plate_rz_rad,plate_force_x_N,plate_force_y_N,\
+                    plate_force_z_N,plate_torque_x_Nm,plate_torque_y_Nm,plate_torque_z_Nm,plate_work_J,plate_contacts,plate_gap_m,plate_passes";
+    assert_eq!(head, expected);
+    let rows = table(&out.join("tools.csv"));
+    let t = &rows["t_s"];
+    assert_eq!((t.len(), t[0], t[3000]), (3001, 0.0, 1.5));
+    for (name, column) in &rows {
+        let is_of_pose = ["t_s", "_x_m", "_y_m", "_z_m", "_rad"];
+        if !is_of_pose.iter().any(|end| name.ends_with(end)) {
+            assert_eq!(column[0].abs(), 0.0, "{name}");
+        }
+    }
+    for (t, z) in t.iter().zip(&rows["plate_z_m"]) {
+        let expected = 0.1 - 0.05 * t.min(0.1);
+        assert!((z - expected).abs() < 1e-15, "{t} {z}");
+    }
+    let last = |name: &str| *rows[name].last().unwrap();
+    let force = STIFFNESS * 0.005;
+    assert!((last("plate_force_z_N") / force - 1.0).abs() < 1e-9);
+    assert_eq!(last("plate_contacts"), 16.0);
+    assert!(rows["plate_gap_m"].iter().all(|gap| *gap > -1e-15));
+    // The plate's own origin is above the middle of the bar.
+    assert!(last("plate_torque_x_Nm").abs() < 1e-9 * force);
+}
+
+/// What goes in is the work of the plate: it stands in the bar, was damped, or was lost where nodes met the plate.
+#[test]
+fn the_work_of_tools_is_part_of_the_balance() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("out");
+    run(&out, &pressed(place.path(), 0.5, ""), &mut ());
+    let (energy, rows) = (
+        table(&out.join("energy.csv")),
+        table(&out.join("tools.csv")),
+    );
+    assert_eq!(energy["work_of_tools_J"], rows["plate_work_J"]);
+    let work = energy["work_of_tools_J"].last().unwrap();
+    assert!(*work > 0.5 * STIFFNESS * 0.005 * 0.005);
+    let remainder = &energy["remainder_J"];
+    let largest = remainder.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+    assert!(largest < 0.01 * work, "{largest:e} of {work:e}");
+}
+
+/// The pressure under the plate is E d/L wherever it touches, at edges and corners too, and its forces sum up to what the plate feels.
+#[test]
+fn fields_have_forces_and_pressures_of_contact() {
+    let place = tempfile::tempdir().unwrap();
+    for (name, more) in [("body", ""), ("surface", "surface_only = true\n")] {
+        let out = place.path().join(name);
+        let more = format!("[output]\nfields = {{ frames = 1 }}\n{more}");
+        let simulation = pressed(place.path(), 1.5, &more);
+        run(&out, &simulation, &mut ());
+        let last = out.join("fields/frame-00001.vtu");
+        let of = |name: &str| -> Vec<f64> {
+            let numbers = singles(&last, name).into_iter();
+            numbers.map(f64::from).collect()
+        };
+        let (forces, pressures) = (of("contact_force"), of("contact_pressure"));
+        assert_eq!(forces.len(), 3 * pressures.len());
+        let sum: f64 = forces.as_chunks::<3>().0.iter().map(|force| force[2]).sum();
+        assert!((sum / (-STIFFNESS * 0.005) - 1.0).abs() < 1e-6);
+        let pressed = pressures.iter().filter(|pressure| **pressure > 0.0);
+        assert_eq!(pressed.clone().count(), 16);
+        for pressure in pressed {
+            assert!(
+                (pressure / (3000.0 * 0.05) - 1.0).abs() < 1e-6,
+                "{pressure}"
+            );
+        }
+        let first = singles(&out.join("fields/frame-00000.vtu"), "contact_pressure");
+        assert!(first.iter().all(|pressure| *pressure == 0.0));
+    }
+}
+
+#[test]
+fn rows_come_as_often_as_those_of_probes_and_their_size_is_told_before() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("out");
+    let simulation = pressed(
+        place.path(),
+        0.1,
+        "[output]\nprobes = { frames = 40 }\nfields = { frames = 2 }\n",
+    );
+    let size = FolderSize::of(&simulation);
+    run(&out, &simulation, &mut ());
+    let rows = table(&out.join("tools.csv"));
+    assert_eq!(rows["t_s"].len(), 41);
+    assert_eq!(table(&out.join("probes.csv"))["t_s"], rows["t_s"]);
+    let bytes = |name: &str| fs::metadata(out.join(name)).unwrap().len() as f64;
+    let tables = ["probes.csv", "energy.csv", "reactions.csv", "tools.csv"];
+    let tables: f64 = tables.into_iter().map(bytes).sum();
+    let ratio = tables / size.table_bytes as f64;
+    assert!((0.5..2.0).contains(&ratio), "{ratio}");
+    let text = bytes("fields/frame-00001.vtu") - size.frame_bytes as f64;
+    assert!((500.0..3000.0).contains(&text), "{text}");
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("Forces on tools"));
+}
