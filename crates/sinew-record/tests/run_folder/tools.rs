@@ -12,16 +12,24 @@ use crate::tables_and_fields::singles;
 /// Young's modulus times area over length (N/m) of the bar.
 const STIFFNESS: f64 = 3000.0 * 0.1 * 0.1 / 0.1;
 
-/// A bar that stands on its bottom and does not widen; a plate comes down on it by 5 mm within 0.1 s and stays, by a table in `folder`.
+/// The height (m) of the plate: down by 5 mm within 0.1 s, with a soft beginning and end, so that little is lost where nodes meet it.
+fn height(t: f64) -> f64 {
+    let share = (t / 0.1).min(1.0);
+    0.1 - 0.005 * (std::f64::consts::FRAC_PI_2 * share).sin().powi(2)
+}
+
+/// A bar that is held at its bottom and does not widen, and a plate that comes down on it, by a table in `folder`.
 fn pressed(folder: &Path, duration: f64, more: &str) -> Simulation {
     let pi = std::f64::consts::PI;
-    let rows = format!(
-        "t_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n0,0.05,0.05,0.1,{pi},0,0\n0.1,0.05,0.05,0.095,{pi},0,0\n"
-    );
+    let mut rows = "t_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n".to_owned();
+    for row in 0..=100 {
+        let t = f64::from(row) / 1000.0;
+        rows.push_str(&format!("{t},0.05,0.05,{},{pi},0,0\n", height(t)));
+    }
     fs::write(folder.join("plate.csv"), rows).unwrap();
     let text = format!(
         "[mesh]\ncube = {{ cells = 3, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\nyoungs_modulus = 3000.0\n\
-         poissons_ratio = 0.0\n[damping]\nmass = 50.0\n[[fixed]]\ngroup = \"bottom\"\naxes = \"z\"\n[[fixed]]\nwhere = {{ nodes = [1] }}\n\
+         poissons_ratio = 0.0\n[damping]\nmass = 38.0\n[[fixed]]\ngroup = \"bottom\"\n\
          [[tool]]\nname = \"plate\"\nshape = {{ plane = {{}} }}\ntable = \"plate.csv\"\n\
          [run]\nduration = {duration}\nintegrator = \"symplectic-euler\"\ndt = 0.0005\n{more}"
     );
@@ -32,12 +40,12 @@ fn pressed(folder: &Path, duration: f64, more: &str) -> Simulation {
     simulation
 }
 
-/// A row at t = 0 and one for each step; once at rest the force is E A d/L, and the node's gap is none.
+/// A row at t = 0 and one for each step; once at rest the force is E A d/L, and no node is inside the plate at any time.
 #[test]
 fn a_plate_feels_hookes_law() {
     let place = tempfile::tempdir().unwrap();
     let out = place.path().join("out");
-    run(&out, &pressed(place.path(), 1.5, ""), &mut ());
+    run(&out, &pressed(place.path(), 2.0, ""), &mut ());
     let text = fs::read_to_string(out.join("tools.csv")).unwrap();
     let head = text.lines().find(|line| !line.starts_with('#')).unwrap();
     let expected = "t_s,plate_x_m,plate_y_m,plate_z_m,plate_rx_rad,plate_ry_rad,plate_rz_rad,plate_force_x_N,plate_force_y_N,\
@@ -45,16 +53,16 @@ fn a_plate_feels_hookes_law() {
     assert_eq!(head, expected);
     let rows = table(&out.join("tools.csv"));
     let t = &rows["t_s"];
-    assert_eq!((t.len(), t[0], t[3000]), (3001, 0.0, 1.5));
+    assert_eq!((t.len(), t[0], t[4000]), (4001, 0.0, 2.0));
     for (name, column) in &rows {
-        let is_of_pose = ["t_s", "_x_m", "_y_m", "_z_m", "_rad"];
-        if !is_of_pose.iter().any(|end| name.ends_with(end)) {
+        let are_not_zero = ["t_s", "_x_m", "_y_m", "_z_m", "_rad", "_gap_m"];
+        if !are_not_zero.iter().any(|end| name.ends_with(end)) {
             assert_eq!(column[0].abs(), 0.0, "{name}");
         }
     }
     for (t, z) in t.iter().zip(&rows["plate_z_m"]) {
-        let expected = 0.1 - 0.05 * t.min(0.1);
-        assert!((z - expected).abs() < 1e-15, "{t} {z}");
+        // Rows lie on the way every 1 ms, steps half way between.
+        assert!((z - height(*t)).abs() < 1e-6, "{t} {z}");
     }
     let last = |name: &str| *rows[name].last().unwrap();
     let force = STIFFNESS * 0.005;
@@ -79,8 +87,12 @@ fn the_work_of_tools_is_part_of_the_balance() {
     let work = energy["work_of_tools_J"].last().unwrap();
     assert!(*work > 0.5 * STIFFNESS * 0.005 * 0.005);
     let remainder = &energy["remainder_J"];
-    let largest = remainder.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-    assert!(largest < 0.01 * work, "{largest:e} of {work:e}");
+    let most = remainder.iter().copied().fold(0.0, f64::max);
+    let least = remainder.iter().copied().fold(0.0, f64::min);
+    assert!(
+        most < 0.01 * work && least > -0.01 * work,
+        "{least:e} to {most:e} of {work:e}"
+    );
 }
 
 /// The pressure under the plate is E d/L wherever it touches, at edges and corners too, and its forces sum up to what the plate feels.
@@ -90,7 +102,7 @@ fn fields_have_forces_and_pressures_of_contact() {
     for (name, more) in [("body", ""), ("surface", "surface_only = true\n")] {
         let out = place.path().join(name);
         let more = format!("[output]\nfields = {{ frames = 1 }}\n{more}");
-        let simulation = pressed(place.path(), 1.5, &more);
+        let simulation = pressed(place.path(), 2.0, &more);
         run(&out, &simulation, &mut ());
         let last = out.join("fields/frame-00001.vtu");
         let of = |name: &str| -> Vec<f64> {

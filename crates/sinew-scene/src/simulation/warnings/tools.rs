@@ -28,8 +28,8 @@ pub(super) fn warnings(simulation: &Simulation, built: &BodyModel) -> Vec<Warnin
         let width = smallest_width(tools, index);
         if width < edge {
             let what = format!(
-                "tool `{name}` is as thin as {} m, less than the longest edge of the surface, {} m: it touches nodes alone, and may \
-                 pass between them",
+                "tool `{name}` has a radius or half a thickness of {} m, below the longest edge of the surface, {} m: it touches \
+                 nodes alone, and may pass between them",
                 short(width),
                 short(edge)
             );

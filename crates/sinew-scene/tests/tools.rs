@@ -1,0 +1,134 @@
+//! Scenes in which rigid tools press on a body.
+
+#![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use std::fs;
+
+use common::build;
+use sinew_core::System;
+use sinew_scene::{Scene, Simulation};
+
+fn scene(tools: &str) -> String {
+    format!(
+        "[mesh]\ncube = {{ cells = 2, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\nyoungs_modulus = 3500.0\n\
+         poissons_ratio = 0.0\n[[fixed]]\ngroup = \"bottom\"\n{tools}[run]\nduration = 0.1\nintegrator = \"symplectic-euler\"\ndt = 0.001\n"
+    )
+}
+
+const BALL: &str = "[[tool]]\nname = \"ball\"\nshape = { sphere = { radius = 0.08 } }\n";
+
+fn ball(more: &str) -> String {
+    scene(&format!("{BALL}{more}"))
+}
+
+/// The warnings of a simulation, one line each.
+fn said(simulation: &Simulation) -> Vec<String> {
+    let warnings = simulation.warnings();
+    warnings.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn a_body_knows_its_tools_and_one_without_is_untouched() {
+    let simulation = build(&ball("start = [0.05, 0.05, 0.2]\nhold = true\n"));
+    let body = simulation.model().body().unwrap();
+    assert!(body.model.contact().is_some());
+    // Nodes on the surface, but for the 9 of the bottom, which are held.
+    let tools = body.tools.as_ref().unwrap();
+    assert_eq!(tools.touched_cells().len(), 27 - 1 - 9);
+    let untouched = build(&scene(""));
+    let body = untouched.model().body().unwrap();
+    assert!(body.model.contact().is_none() && body.tools.is_none());
+}
+
+#[test]
+fn a_group_is_all_that_a_tool_touches() {
+    let text = ball("start = [0.05, 0.05, 0.2]\nhold = true\ntouches = \"top\"\n");
+    let simulation = build(&text);
+    let tools = simulation.model().body().unwrap().tools.clone().unwrap();
+    assert_eq!(tools.touched_cells().len(), 9);
+    assert!(tools.touched_cells().iter().all(|cell| cell.rest[2] == 0.1));
+}
+
+/// Where a node is that is moved in one direction is no matter of its degrees of freedom, so tools leave it out.
+#[test]
+fn moved_nodes_and_held_directions_are_told_apart() {
+    let text = ball(
+        "start = [0.05, 0.05, 0.2]\nhold = true\n[[fixed]]\nwhere = { below = { x = 0.0 } }\naxes = \"x\"\n[[move]]\n\
+         where = { above = { x = 0.1, z = 0.05 } }\naxes = \"x\"\nvelocity = [0.1, 0.0, 0.0]\n",
+    );
+    let simulation = build(&text);
+    let tools = simulation.model().body().unwrap().tools.clone().unwrap();
+    assert_eq!(tools.touched_cells().len(), 27 - 1 - 9 - 6);
+    for cell in tools.touched_cells() {
+        assert_eq!(cell.free, [cell.rest[0] > 0.0, true, true]);
+    }
+}
+
+#[test]
+fn a_table_moves_and_turns_a_tool_and_is_an_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("press.toml");
+    fs::write(
+        folder.path().join("ball.csv"),
+        "t_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n0.1,0.05,0.05,0.2,0,0,0\n0.2,0.05,0.05,0.1,0,0,1\n",
+    )
+    .unwrap();
+    fs::write(&path, ball("table = \"ball.csv\"\n")).unwrap();
+    let scene = Scene::load(&path).unwrap();
+    let files = [path.clone(), folder.path().join("ball.csv")];
+    assert_eq!(scene.input_files(), files);
+    assert_eq!(Scene::input_files_of(&path), files);
+    let simulation = scene.build().unwrap();
+    let tools = simulation.model().body().unwrap().tools.clone().unwrap();
+    for (t, z, turned) in [(0.0, 0.2, 0.0), (0.15, 0.15, 0.5), (1.0, 0.1, 1.0)] {
+        let pose = tools.tools()[0].motion.at(t);
+        assert!((pose.position()[2] - z).abs() < 1e-15);
+        assert!((pose.rotation_vector()[2] - turned).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn a_plan_says_what_tools_do() {
+    let tools = format!(
+        "{BALL}start = [0.05, 0.05, 0.2]\nvelocity = [0.0, 0.0, -0.1]\nfriction = 0.2\ngrasp = {{ from = 0.01, to = 0.05 }}\n\
+         [[tool]]\nname = \"hand\"\nshapes = [{{ box = {{ size = [0.2, 0.2, 0.2] }} }}, {{ plane = {{}} }}]\nstart = [0.0, 0.0, -0.2]\n\
+         hold = true\ntouches = \"top\"\nstarts_inside = \"push\"\n"
+    );
+    let plan = build(&scene(&tools)).plan().to_string();
+    let lines: Vec<&str> = plan.lines().collect();
+    let at = lines.iter().position(|line| line.starts_with("tools"));
+    let at = at.unwrap();
+    insta::assert_snapshot!(lines[at..at + 4].join("\n"), @r"
+    tools       `ball`: sphere of radius 0.08 m from [0.05, 0.05, 0.2] m at [0, 0, -0.1] m/s; touches
+                  the surface, 17 nodes, friction 0.2, seizes from 0.01 s to 0.05 s
+                `hand`: box of [0.2, 0.2, 0.2] m and plane held at [0, 0, -0.2] m; touches `top`, 9
+                  nodes, pushes out what is inside at t = 0
+    ");
+}
+
+#[test]
+fn thin_fast_and_pushing_tools_are_warned_about() {
+    let thin = ball("start = [0.05, 0.05, 0.2]\nhold = true\n").replace("0.08", "0.01");
+    let fast = ball("start = [0.05, 0.05, 0.2]\nvelocity = [0.0, 0.0, -200.0]\n");
+    let pushing = ball("start = [0.05, 0.05, 0.17]\nhold = true\nstarts_inside = \"push\"\n");
+    insta::assert_snapshot!(said(&build(&thin)).join("\n"), @"tool `ball` has a radius or half a thickness of 0.01 m, below the longest edge of the surface, 0.07071 m: it touches nodes alone, and may pass between them; refine the mesh where it presses");
+    insta::assert_snapshot!(said(&build(&fast)).join("\n"), @"tool `ball` goes 0.2 m in a step, farther than the body is large, 0.1 m; is its velocity in m/s?");
+    insta::assert_snapshot!(said(&build(&pushing)).join("\n"), @"tool `ball` begins inside the body: the first step pushes node 23 out of it by 0.01 m");
+    let still = ball("start = [0.05, 0.05, 0.18]\nhold = true\n");
+    assert!(said(&build(&still)).is_empty());
+}
+
+/// A ball whose lowest point lies on a node begins outside, whatever rounding makes of it.
+#[test]
+fn a_tool_that_begins_on_the_surface_is_not_inside() {
+    for radius in [0.01, 0.03, 0.07, 0.11] {
+        let text = ball(&format!(
+            "start = [0.05, 0.05, {}]\nhold = true\n",
+            0.1 + radius
+        ));
+        build(&text.replace("0.08", &radius.to_string()));
+    }
+}
