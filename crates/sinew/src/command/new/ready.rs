@@ -8,12 +8,12 @@ use sinew_scene::{Scene, SceneSource};
 use super::scene_file::{new_file, written};
 use crate::command::Failure;
 
-/// A ready scene, with its mesh.
+/// A ready scene, with what it reads.
 struct Ready {
     name: &'static str,
     scene: &'static str,
-    /// File name and contents of its mesh.
-    mesh: Option<(&'static str, &'static [u8])>,
+    /// Name and contents of the file beside it: a mesh, or the table of a tool.
+    file: Option<(&'static str, &'static [u8])>,
 }
 
 macro_rules! scene {
@@ -22,7 +22,7 @@ macro_rules! scene {
     };
 }
 
-macro_rules! mesh {
+macro_rules! file {
     ($file:literal) => {
         include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/ready/", $file))
     };
@@ -33,72 +33,87 @@ const READY: &[Ready] = &[
     Ready {
         name: "held-cube",
         scene: scene!("held-cube.toml"),
-        mesh: Some(("paper-cube-mirrored.msh", mesh!("paper-cube-mirrored.msh"))),
+        file: Some(("paper-cube-mirrored.msh", file!("paper-cube-mirrored.msh"))),
     },
     Ready {
         name: "organ",
         scene: scene!("organ.toml"),
-        mesh: Some(("organ.msh", mesh!("organ.msh"))),
+        file: Some(("organ.msh", file!("organ.msh"))),
     },
     Ready {
         name: "organ-pressed",
         scene: scene!("organ-pressed.toml"),
-        mesh: Some(("organ.msh", mesh!("organ.msh"))),
+        file: Some(("organ.msh", file!("organ.msh"))),
     },
     Ready {
         name: "organ-fibres",
         scene: scene!("organ-fibres.toml"),
-        mesh: Some(("organ.msh", mesh!("organ.msh"))),
+        file: Some(("organ.msh", file!("organ.msh"))),
     },
     Ready {
         name: "muscle",
         scene: scene!("muscle.toml"),
-        mesh: Some(("muscle.msh", mesh!("muscle.msh"))),
+        file: Some(("muscle.msh", file!("muscle.msh"))),
     },
     Ready {
         name: "creep",
         scene: scene!("creep.toml"),
-        mesh: None,
+        file: None,
     },
     Ready {
         name: "twisted-column",
         scene: scene!("twisted-column.toml"),
-        mesh: None,
+        file: None,
     },
     Ready {
         name: "beam",
         scene: scene!("beam.toml"),
-        mesh: Some(("beam.msh", mesh!("beam.msh"))),
+        file: Some(("beam.msh", file!("beam.msh"))),
     },
     Ready {
         name: "vessel",
         scene: scene!("vessel.toml"),
-        mesh: Some(("vessel.msh", mesh!("vessel.msh"))),
+        file: Some(("vessel.msh", file!("vessel.msh"))),
     },
     Ready {
         name: "layers",
         scene: scene!("layers.toml"),
-        mesh: Some(("layers.msh", mesh!("layers.msh"))),
+        file: Some(("layers.msh", file!("layers.msh"))),
+    },
+    Ready {
+        name: "press",
+        scene: scene!("press.toml"),
+        file: Some(("press.csv", file!("press.csv"))),
+    },
+    Ready {
+        name: "needle-push",
+        scene: scene!("needle-push.toml"),
+        file: Some(("needle-push.csv", file!("needle-push.csv"))),
+    },
+    Ready {
+        name: "retract",
+        scene: scene!("retract.toml"),
+        file: Some(("retract.csv", file!("retract.csv"))),
     },
     Ready {
         name: "needle",
         scene: scene!("needle.toml"),
-        mesh: Some(("needle.msh", mesh!("needle.msh"))),
+        file: Some(("needle.msh", file!("needle.msh"))),
     },
     Ready {
         name: "inclusion",
         scene: scene!("inclusion.toml"),
-        mesh: None,
+        file: None,
     },
     Ready {
         name: "incision",
         scene: scene!("incision.toml"),
-        mesh: Some(("incision.msh", mesh!("incision.msh"))),
+        file: Some(("incision.msh", file!("incision.msh"))),
     },
     Ready {
         name: "slivers",
         scene: scene!("slivers.toml"),
-        mesh: Some(("slivers.msh", mesh!("slivers.msh"))),
+        file: Some(("slivers.msh", file!("slivers.msh"))),
     },
 ];
 
@@ -111,21 +126,21 @@ pub(super) fn list() -> Result<(), Failure> {
         let scene = Scene::parse(SceneSource::new(*name, *scene))?;
         say(&format!("{name:<12} {}", scene.title()))?;
     }
-    Ok(say("`sinew new --ready NAME` writes one, with its mesh")?)
+    Ok(say("`sinew new --ready NAME` writes one, with what it reads")?)
 }
 
-/// Writes a scene to `out`, and its mesh beside it.
+/// Writes a scene to `out`, and what it reads beside it.
 pub(super) fn write(name: &str, out: &Path) -> Result<(), Failure> {
     let ready = READY.iter().find(|ready| ready.name == name);
-    let Some(Ready { scene, mesh, .. }) = ready else {
+    let Some(Ready { scene, file, .. }) = ready else {
         return Err(Failure::NotReady {
             name: name.to_owned(),
             known: READY.iter().map(|ready| ready.name).collect(),
         });
     };
     let destination = new_file(out, &[])?;
-    if let Some((file, bytes)) = mesh {
-        let beside = out.with_file_name(file);
+    if let Some((name, bytes)) = file {
+        let beside = out.with_file_name(name);
         // One that is there already may be used by other scenes, and stays.
         if std::fs::read(&beside).ok().as_deref() != Some(*bytes) {
             // A reader that closed its pipe is no error.
