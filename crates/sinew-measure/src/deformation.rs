@@ -34,7 +34,7 @@ impl<'a> DeformationWatch<'a> {
         let zeros = || vec![0.0; system.dofs()];
         Some(Self {
             law: system.as_elastic()?,
-            knows_energy: body.problem.moves.is_empty(),
+            knows_energy: body.problem.moves.is_empty() && body.tools.is_none(),
             smallest_volume_ratio: f64::INFINITY,
             last: None,
             allowed: 0.0,

@@ -107,7 +107,7 @@ impl<'a> Balance<'a> {
     }
 
     fn tools(&self) -> Option<&'a Tools> {
-        self.simulation.model().body()?.tools.as_deref()
+        self.simulation.model().tools().map(|tools| &**tools)
     }
 
     /// Whether it is known what the method takes.

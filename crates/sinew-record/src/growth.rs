@@ -1,7 +1,10 @@
 //! Energy that comes from nothing, where no table of energies is written.
 
+use std::sync::Arc;
+
 use sinew_core::{Energy, LoadTime, Moment, Ramp, RecordError, Recorder, State, System, Verdict};
 use sinew_scene::Simulation;
+use sinew_tools::Tools;
 
 use crate::made_energy::{THERMAL, has_stored_energy, remedy};
 
@@ -15,9 +18,9 @@ const STEPS_FOR_A_LOOK: usize = 100;
 const FAR_BEYOND: f64 = 2.0;
 
 /// A recorder that looks at the energy of a body of large deformation a few times in a run, and tells where it is far beyond that of the start
-/// and the work of the loads.
+/// and the work of loads and tools.
 ///
-/// Work is added up by component, without signs, and damping is left out: what is told is wrong for certain. Supports that move bring in
+/// Work of loads is added up by component, without signs, and damping is left out: what is told is wrong for certain. Supports that move bring in
 /// work too, loads that come and go do between two looks, and what a deformed start stored in a memory comes back, so that such scenes are not looked at.
 #[derive(Debug)]
 pub struct EnergyGrowth {
@@ -30,6 +33,9 @@ pub struct EnergyGrowth {
     before: Vec<f64>,
     load: Vec<f64>,
     load_before: Vec<f64>,
+    tools: Option<Arc<Tools>>,
+    /// Work of tools so far (J).
+    work_of_tools: f64,
     remedy: &'static str,
     grown: Option<String>,
 }
@@ -54,6 +60,8 @@ impl EnergyGrowth {
             before: Vec::new(),
             load: Vec::new(),
             load_before: Vec::new(),
+            tools: simulation.model().tools().cloned(),
+            work_of_tools: 0.0,
             remedy: remedy(simulation),
             grown: None,
         }
@@ -72,6 +80,8 @@ impl EnergyGrowth {
         // Without a finite energy there is none to tell.
         let energy = system.energy(&state.u, &state.v);
         let energy = energy.map_or(f64::INFINITY, Energy::total);
+        let tools = self.tools.as_ref();
+        let work_of_tools = tools.map_or(0.0, |tools| tools.work(state));
         if is_first {
             self.given = energy;
         } else {
@@ -83,6 +93,7 @@ impl EnergyGrowth {
                     (u - before).abs() * load.abs().max(load_before.abs())
                 })
                 .sum::<f64>();
+            self.given += (work_of_tools - self.work_of_tools).abs();
             let is_too_much = !(energy <= FAR_BEYOND * self.given || energy <= THERMAL);
             if self.grown.is_none() && is_too_much {
                 let has = if energy.is_finite() {
@@ -91,13 +102,17 @@ impl EnergyGrowth {
                     "more energy than numbers can tell".to_owned()
                 };
                 self.grown = Some(format!(
-                    "the motion has {has} at t = {} s, where start and loads account for {:.3e} J: it is wrong; {}",
+                    "the motion has {has} at t = {} s, where {} account for {:.3e} J: it is wrong; {}",
                     state.t(),
+                    self.tools
+                        .as_ref()
+                        .map_or("start and loads", |_| "start, loads and tools"),
                     self.given,
                     self.remedy
                 ));
             }
         }
+        self.work_of_tools = work_of_tools;
         self.before.clone_from(&state.u);
         std::mem::swap(&mut self.load, &mut self.load_before);
     }

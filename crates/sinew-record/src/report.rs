@@ -110,9 +110,8 @@ pub(crate) fn page(
     }
     if let Some(rows) = read(tool_rows::NAME)? {
         page.section("tools", "Forces on tools");
-        let body = simulation.model().body();
-        let tools = body.and_then(|body| body.tools.as_deref());
-        let tools = tools.into_iter().flat_map(|tools| tools.tools());
+        let tools = simulation.model().tools().into_iter();
+        let tools = tools.flat_map(|tools| tools.tools());
         let drawn = tools.map(|tool| {
             let begin = format!("{}_force_", tool.name);
             let plot = plot(&rows, &tool.name, "force [N]", |column| {

@@ -132,6 +132,9 @@ impl Summary<'_> {
         let parts = self.parts.iter().map(
             |part| json!({ "columns": part.name, "by": part.by, "moment_about_m": part.centre }),
         );
+        let tools = simulation.model().tools().into_iter();
+        let tools = tools.flat_map(|tools| tools.tools());
+        let tools = tools.map(|tool| json!({ "columns": tool.name, "nodes": tool.cells.len() }));
         let json = json!({
             "title": simulation.scene().title(),
             "outcome": outcome,
@@ -156,6 +159,7 @@ impl Summary<'_> {
             "warnings": record.warnings.iter().chain(self.warnings).collect::<Vec<_>>(),
             "regions": regions,
             "reactions": parts.collect::<Vec<_>>(),
+            "tools": tools.collect::<Vec<_>>(),
             "rows_apart_in_steps": {
                 "probes": self.schedules.probes.spacing(),
                 "energy_and_reactions": self.schedules.energy.spacing(),

@@ -18,7 +18,7 @@ pub(crate) struct ToolRows<'a> {
 impl<'a> ToolRows<'a> {
     /// `None` where there is no tool.
     pub(crate) fn of(simulation: &'a Simulation) -> Option<Self> {
-        let tools = simulation.model().body()?.tools.as_deref()?;
+        let tools = simulation.model().tools()?;
         Some(Self { tools })
     }
 

@@ -10,9 +10,9 @@ use crate::error::SceneError;
 pub struct OutputSettings {
     /// Instants of the fields of the whole body.
     pub fields: Instants,
-    /// Instants of the rows of probes and reactions; every step, as far as a table has room, where none are given.
+    /// Instants of the rows of probes and tools; every step, as far as a table has room, where none are given.
     pub probes: Option<Instants>,
-    /// Instants of the rows of energies; every step up to 10,000 of them; at the instants of the fields for bodies of more than 30,000 degrees of freedom where none are given.
+    /// Instants of the rows of energies and reactions; every step up to 10,000 of them; at the instants of the fields for bodies of more than 30,000 degrees of freedom where none are given.
     pub energy: Option<Instants>,
     /// Wall time (s) after which a run writes a checkpoint.
     pub checkpoint: f64,
@@ -81,14 +81,14 @@ const FIELDS: Key<Inner, Usual> = Key::usual(
 
 const PROBES: Key<Inner, Optional> = Key::optional(
     "probes",
-    "Instants at which probes and reactions get a row in their tables.",
+    "Instants at which probes and tools get a row in their tables.",
     Inner::one("a table such as { every = 0.001 }", &INSTANTS),
     "every step up to 10,000 of them, beyond that 10,000 evenly spaced ones",
 );
 
 const ENERGY: Key<Inner, Optional> = Key::optional(
     "energy",
-    "Instants at which energies get a row in their table.",
+    "Instants at which energies and reactions get a row in their tables.",
     Inner::one("a table such as { frames = 200 }", &INSTANTS),
     "every step up to 10,000 of them; at the instants of the fields for bodies of more than 30,000 degrees of freedom",
 );

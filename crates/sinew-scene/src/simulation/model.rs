@@ -52,6 +52,12 @@ impl SceneModel {
             Self::Oscillator(_) => None,
         }
     }
+
+    /// The tools that touch a body, where there are any.
+    #[must_use]
+    pub fn tools(&self) -> Option<&Arc<Tools>> {
+        self.body()?.tools.as_ref()
+    }
 }
 
 impl BodyModel {
