@@ -356,3 +356,46 @@ fn the_incision_hangs_on_its_bottom_by_its_weight_alone() {
     assert!(x.abs() + y.abs() < 2e-5 * z, "{x} {y} {z}");
     assert!(probe(&simulation, &state, 0)[0] > 1e-5, "the cut opens");
 }
+
+/// What a tool and the support give and take is in balance once the cube lies still under the ball, and no node is in it.
+#[test]
+fn the_ball_presses_on_the_cube_as_the_cube_on_its_bottom() {
+    let simulation = ready("press");
+    let state = end(&simulation);
+    let tools = body(&simulation).tools.as_ref().unwrap();
+    let ball = tools.report(&state, 0);
+    let [x, y, z] = ball.force;
+    let [_, _, bottom] = reaction(&simulation, &state, 0);
+    assert!(z > 1.0 && x.hypot(y) < 0.01 * z);
+    is_near(bottom, z, 0.02);
+    let deepest = tools.deepest(&state.u, state.t(), 0).unwrap();
+    assert!(deepest.gap > -1e-15 && ball.contacts >= 5);
+    let [_, _, top] = probe(&simulation, &state, 0);
+    assert!((top + 0.015).abs() < 1e-15, "{top}");
+}
+
+#[test]
+fn the_needle_dents_the_block_and_lets_it_go() {
+    let simulation = ready("needle-push");
+    let state = end(&simulation);
+    let tools = body(&simulation).tools.as_ref().unwrap();
+    let needle = tools.report(&state, 0);
+    assert_eq!(needle.contacts, 0);
+    // What it did and did not get back was damped.
+    assert!(needle.work > 0.0);
+    let [_, _, beside] = probe(&simulation, &state, 0);
+    assert!(beside.abs() < 1e-3, "{beside}");
+}
+
+#[test]
+fn the_jaw_lets_go_of_the_tissue_that_it_lifted() {
+    let simulation = ready("retract");
+    let tools = body(&simulation).tools.as_ref().unwrap();
+    let state = end(&simulation);
+    let jaw = tools.report(&state, 0);
+    assert_eq!(jaw.contacts, 0);
+    // Half of K u . u at the least, by which it pulled the tissue up.
+    assert!(jaw.work > 1e-3, "{}", jaw.work);
+    let [x, _, z] = probe(&simulation, &state, 0);
+    assert!(x.hypot(z) < 3e-3, "{x} {z}");
+}
