@@ -15,6 +15,7 @@ mod selected;
 mod start;
 mod step;
 mod tool;
+mod tool_fault;
 mod warnings;
 
 use std::sync::OnceLock;
@@ -30,7 +31,7 @@ pub use probe::{NearestNode, Probe, ProbeNode};
 pub use reaction::{HeldPlace, Reaction, ReactionError, ReactionOf};
 pub use refined::RefinementError;
 pub use selected::SelectedPart;
-pub use tool::ToolFault;
+pub use tool_fault::ToolFault;
 
 pub use warnings::{Warning, WarningKind};
 

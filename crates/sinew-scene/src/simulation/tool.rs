@@ -3,62 +3,21 @@
 use std::sync::Arc;
 
 use sinew_core::{State, System};
-use sinew_fem::{FieldError, Model, On};
+use sinew_fem::{Model, On};
 use sinew_mesh::TetMesh;
 use sinew_tools::{
-    Convex, Grasp, Motion, Part, Pose, Row, Shape, ShapeError, Table, TableError, Tools,
-    ToolsError, TouchedCell,
+    Convex, Grasp, Motion, Part, Pose, Row, Shape, ShapeError, Table, Tools, TouchedCell,
 };
 
 use super::model::BodyModel;
 use super::motion_table::PoseTable;
+use super::tool_fault::ToolFault;
 use crate::decode::Place;
 use crate::error::SceneError;
-use crate::number::short;
 use crate::scene::{Body, Places, StartsInside, Tool, ToolPath, ToolShape, ToolStart};
 
 /// Share of the body's size by which a node may lie inside a tool that begins on its surface.
 const ROUNDING: f64 = 1e-9;
-
-/// A fault of a tool.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ToolFault {
-    /// A node inside the tool at t = 0.
-    #[error("the tool begins inside the body: node {node} is {} m deep in it", short(*depth))]
-    Inside {
-        /// Tag of the deepest node.
-        node: u64,
-        /// Its depth (m).
-        depth: f64,
-    },
-    /// A tool inside the body without a node in it that could be pushed out.
-    #[error(
-        "the tool begins inside the body, in tetrahedron {tet}, and holds no node that it could push out"
-    )]
-    Within {
-        /// Tag of the tetrahedron that holds the middle of the tool.
-        tet: u64,
-    },
-    /// A tool for which all nodes are held or moved.
-    #[error("the tool can touch no node: all {nodes} are held or moved")]
-    NothingToTouch {
-        /// Number of the nodes.
-        nodes: usize,
-    },
-    /// An impossible shape.
-    #[error(transparent)]
-    Shape(#[from] ShapeError),
-    /// An impossible table of poses.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// Tools that do not fit together.
-    #[error(transparent)]
-    Tools(#[from] ToolsError),
-    /// A state in which the places of nodes are not known.
-    #[error(transparent)]
-    Places(#[from] FieldError),
-}
 
 /// Lets the tools of a scene touch a body, which begins in the state `initial`.
 pub(super) fn added_to(

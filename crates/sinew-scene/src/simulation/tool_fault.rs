@@ -1,0 +1,46 @@
+//! What is wrong with a tool.
+
+use sinew_fem::FieldError;
+use sinew_tools::{ShapeError, TableError, ToolsError};
+
+use crate::number::short;
+
+/// A fault of a tool.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ToolFault {
+    /// A node inside the tool at t = 0.
+    #[error("the tool begins inside the body: node {node} is {} m deep in it", short(*depth))]
+    Inside {
+        /// Tag of the deepest node.
+        node: u64,
+        /// Its depth (m).
+        depth: f64,
+    },
+    /// A tool inside the body without a node in it that could be pushed out.
+    #[error(
+        "the tool begins inside the body, in tetrahedron {tet}, and holds no node that it could push out"
+    )]
+    Within {
+        /// Tag of the tetrahedron that holds the middle of the tool.
+        tet: u64,
+    },
+    /// A tool for which all nodes are held or moved.
+    #[error("the tool can touch no node: all {nodes} are held or moved")]
+    NothingToTouch {
+        /// Number of the nodes.
+        nodes: usize,
+    },
+    /// An impossible shape.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// An impossible table of poses.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// Tools that do not fit together.
+    #[error(transparent)]
+    Tools(#[from] ToolsError),
+    /// A state in which the places of nodes are not known.
+    #[error(transparent)]
+    Places(#[from] FieldError),
+}
