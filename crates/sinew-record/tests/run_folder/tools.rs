@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use sinew_record::FolderSize;
+use sinew_core::simulate;
+use sinew_record::{EnergyGrowth, FolderSize};
 use sinew_scene::{Scene, Simulation};
 
 use crate::common::{run, table};
@@ -149,4 +150,29 @@ fn rows_come_as_often_as_those_of_probes_and_their_size_is_told_before() {
     assert!((500.0..3000.0).contains(&text), "{text}");
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(page.contains("Forces on tools"));
+}
+
+/// Nothing but a plate gives this body energy, many times what it began with.
+#[test]
+fn the_work_of_tools_is_no_energy_from_nothing() {
+    let place = tempfile::tempdir().unwrap();
+    pressed(place.path(), 0.5, "");
+    let path = place.path().join("scene.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("\"linear\"", "\"neo-hookean\"")).unwrap();
+    let simulation = Scene::load(&path).unwrap().build().unwrap();
+    let mut growth = EnergyGrowth::new(&simulation);
+    let mut state = simulation.initial_state().clone();
+    let mut integrator = simulation.integrator().unwrap();
+    let system = simulation.system();
+    simulate(
+        system,
+        &mut *integrator,
+        &mut state,
+        &simulation.run(),
+        &mut growth,
+    )
+    .unwrap();
+    assert!(system.energy(&state.u, &state.v).unwrap().total() > 1e-3);
+    assert_eq!(growth.in_words(), None);
 }
