@@ -120,6 +120,72 @@ impl<M: Scheme> Integrator for Frame<M> {
     }
 
     fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
+        let work = self.set_up(system, dt)?;
+        self.check_contact(system, false)?;
+        Ok(work)
+    }
+
+    fn stable_step_about(
+        &self,
+        system: &dyn System,
+        state: Option<&State>,
+    ) -> Result<StableStep, SetupError> {
+        self.check_needs(system)?;
+        self.scheme.stable_step(system, state)
+    }
+
+    fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
+        self.check_contact(batch.system(), batch.guarding().is_some())?;
+        let needed = self.scheme.properties().changing_loads.needed();
+        let Some(refused) = first_refused(needed, batch, state) else {
+            return self.ready.run(batch, state);
+        };
+        let before = ((refused - state.t()) / batch.dt() + 1e-9).floor();
+        batch.at_most(before.max(0.0) as usize, |batch| {
+            self.ready.run(batch, state)
+        })?;
+        if !batch.goes_on() {
+            return Ok(());
+        }
+        Err(StepError::Inaccurate {
+            integrator: M::ID,
+            t: state.t(),
+            reason: format!(
+                "a load changes at t = {refused} s, and is not {} of {} s; {}",
+                needed.describe(),
+                batch.dt(),
+                self.scheme.load_remedy()
+            ),
+        })
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let mut facts = self.scheme.facts();
+        if let Ready::ByHand(steps) = &self.ready {
+            facts.extend(steps.facts());
+        }
+        facts
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let mut remarks = self.scheme.remarks();
+        if let Ready::ByHand(steps) = &self.ready {
+            remarks.extend(steps.remarks());
+        }
+        remarks
+    }
+
+    fn kernel(&self) -> Option<String> {
+        match &self.ready {
+            Ready::Program(loaded) => Some(loaded.machine.kernel()),
+            Ready::Not | Ready::ByHand(_) => None,
+        }
+    }
+}
+
+impl<M: Scheme> Frame<M> {
+    /// Sets up for a system and a step; what is known of the same ones is kept.
+    fn set_up(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
         let same = if self.scheme.depends_on_loads() {
             self.prepared.is_for_loads(system, dt)
         } else {
@@ -179,65 +245,6 @@ impl<M: Scheme> Integrator for Frame<M> {
         })
     }
 
-    fn stable_step_about(
-        &self,
-        system: &dyn System,
-        state: Option<&State>,
-    ) -> Result<StableStep, SetupError> {
-        self.check_needs(system)?;
-        self.scheme.stable_step(system, state)
-    }
-
-    fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
-        self.check_contact(batch)?;
-        let needed = self.scheme.properties().changing_loads.needed();
-        let Some(refused) = first_refused(needed, batch, state) else {
-            return self.ready.run(batch, state);
-        };
-        let before = ((refused - state.t()) / batch.dt() + 1e-9).floor();
-        batch.at_most(before.max(0.0) as usize, |batch| {
-            self.ready.run(batch, state)
-        })?;
-        if !batch.goes_on() {
-            return Ok(());
-        }
-        Err(StepError::Inaccurate {
-            integrator: M::ID,
-            t: state.t(),
-            reason: format!(
-                "a load changes at t = {refused} s, and is not {} of {} s; {}",
-                needed.describe(),
-                batch.dt(),
-                self.scheme.load_remedy()
-            ),
-        })
-    }
-
-    fn facts(&self) -> Vec<Fact> {
-        let mut facts = self.scheme.facts();
-        if let Ready::ByHand(steps) = &self.ready {
-            facts.extend(steps.facts());
-        }
-        facts
-    }
-
-    fn remarks(&self) -> Vec<String> {
-        let mut remarks = self.scheme.remarks();
-        if let Ready::ByHand(steps) = &self.ready {
-            remarks.extend(steps.remarks());
-        }
-        remarks
-    }
-
-    fn kernel(&self) -> Option<String> {
-        match &self.ready {
-            Ready::Program(loaded) => Some(loaded.machine.kernel()),
-            Ready::Not | Ready::ByHand(_) => None,
-        }
-    }
-}
-
-impl<M: Scheme> Frame<M> {
     fn check_needs(&self, system: &dyn System) -> Result<(), SetupError> {
         let needs = self.scheme.properties().needs;
         needs
@@ -264,13 +271,13 @@ impl<M: Scheme> Frame<M> {
     }
 
     /// Refuses contact with steps that it cannot push.
-    fn check_contact(&self, batch: &Batch<'_>) -> Result<(), SetupError> {
-        if batch.contact().is_none() {
+    fn check_contact(&self, system: &dyn System, is_guarded: bool) -> Result<(), SetupError> {
+        if system.contact().is_none() {
             return Ok(());
         }
         let reason = match &self.ready {
             Ready::Program(loaded) if loaded.program.inertia().is_some() => {
-                if batch.guarding().is_none() {
+                if !is_guarded {
                     return Ok(());
                 }
                 "tools do work that the limits of saturation = \"auto\" do not know"

@@ -126,7 +126,9 @@ pub(super) fn list() -> Result<(), Failure> {
         let scene = Scene::parse(SceneSource::new(*name, *scene))?;
         say(&format!("{name:<12} {}", scene.title()))?;
     }
-    Ok(say("`sinew new --ready NAME` writes one, with what it reads")?)
+    Ok(say(
+        "`sinew new --ready NAME` writes one, with what it reads",
+    )?)
 }
 
 /// Writes a scene to `out`, and what it reads beside it.
