@@ -23,6 +23,7 @@ impl Contact for Tools {
     fn meet(&self, meeting: &Meeting<'_>, state: &mut State, pushed: &mut Vec<u32>) {
         let mut room = self.room.lock().unwrap_or_else(PoisonError::into_inner);
         room.take(&self.tools, state, meeting.dt);
+        room.look(&self.places, state, meeting.dt, self.holds);
         let step = Step {
             tools: self,
             steps: &room.steps,
@@ -37,7 +38,9 @@ impl Contact for Tools {
         for (numbers, step) in record.tools.iter_mut().zip(&room.steps) {
             numbers[PASSES] = step.passes();
         }
-        for (place, touched) in self.cells.iter().enumerate() {
+        for place in &room.near {
+            let place = *place as usize;
+            let touched = &self.cells[place];
             let to = add(touched.rest, displacement_of(u, touched.cell));
             let from = sub(to, scaled(displacement_of(v, touched.cell), meeting.dt));
             let moved = step.meet(place, (from, to), &mut record);

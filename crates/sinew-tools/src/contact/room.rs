@@ -12,6 +12,10 @@ use crate::vector::{Vector, add, dot, scaled, sub};
 #[derive(Debug)]
 pub(super) struct Room {
     pub(super) steps: Vec<ToolStep>,
+    /// A box (m) outside of which no way meets any tool; `None` where a tool has no bounds.
+    bounds: Option<[Vector; 2]>,
+    /// Places of the cells that may meet a tool in the step.
+    pub(super) near: Vec<u32>,
 }
 
 /// A tool during a step.
@@ -45,6 +49,13 @@ impl Near {
         }
     }
 
+    fn bounds(&self) -> Option<[Vector; 2]> {
+        match self {
+            Self::Box(bounds) => Some(*bounds),
+            Self::Below(..) => None,
+        }
+    }
+
     #[inline]
     fn is_met(&self, (from, to): (Vector, Vector)) -> bool {
         match self {
@@ -57,7 +68,8 @@ impl Near {
 }
 
 impl Room {
-    pub(super) fn of(tools: &[Tool]) -> Self {
+    /// Room for tools, and so many cells.
+    pub(super) fn of(tools: &[Tool], cells: usize) -> Self {
         let step = |tool: &Tool| ToolStep {
             before: Pose::identity(),
             after: Pose::identity(),
@@ -67,6 +79,8 @@ impl Room {
         };
         Self {
             steps: tools.iter().map(step).collect(),
+            bounds: None,
+            near: Vec::with_capacity(cells),
         }
     }
 
@@ -84,7 +98,44 @@ impl Room {
             });
             step.strokes.extend(strokes);
         }
+        let strokes = self.steps.iter().flat_map(|step| &step.strokes);
+        let bounds = strokes.map(|(_, near)| near.bounds());
+        self.bounds = bounds
+            .reduce(|all, next| Some(union(all?, next?)))
+            .unwrap_or_default();
     }
+
+    /// Lists the cells that may meet a tool, all where that is not known of a tool or `all` are asked for: this is done for each cell in each step, and little
+    /// else is.
+    pub(super) fn look(&mut self, cells: &[(u32, Vector)], state: &State, dt: f64, all: bool) {
+        self.near.clear();
+        let Some([low, high]) = self.bounds.filter(|_| !all) else {
+            self.near.extend(0..cells.len() as u32);
+            return;
+        };
+        let (u, v) = (state.u.as_chunks::<3>().0, state.v.as_chunks::<3>().0);
+        for (place, (cell, rest)) in (0..).zip(cells) {
+            let (u, v) = (&u[*cell as usize], &v[*cell as usize]);
+            let mut is_near = true;
+            for axis in 0..3 {
+                let to = rest[axis] + u[axis];
+                let from = to - dt * v[axis];
+                is_near &= from.min(to) <= high[axis];
+                is_near &= from.max(to) >= low[axis];
+            }
+            if is_near {
+                self.near.push(place);
+            }
+        }
+    }
+}
+
+/// The smallest box around two.
+fn union([low, high]: [Vector; 2], [other_low, other_high]: [Vector; 2]) -> [Vector; 2] {
+    [
+        [0, 1, 2].map(|axis| low[axis].min(other_low[axis])),
+        [0, 1, 2].map(|axis| high[axis].max(other_high[axis])),
+    ]
 }
 
 /// Whether a way (m) may meet any of some tools, one bit each.

@@ -16,6 +16,8 @@ pub struct Tools {
     pub(super) cells: Vec<TouchedCell>,
     /// The numbers of `cells`.
     pub(super) numbers: Vec<u32>,
+    /// The same with the positions at rest (m), for the look at all of them.
+    pub(super) places: Vec<(u32, [f64; 3])>,
     /// The tools that may touch each cell, one bit each.
     pub(super) tools_at: Vec<u64>,
     /// Whether any tool ever holds.
@@ -69,7 +71,8 @@ impl Tools {
         Ok(Self {
             numbers: cells.iter().map(|cell| cell.cell).collect(),
             holds: tools.iter().any(|tool| tool.grasp.is_some()),
-            room: Mutex::new(Room::of(&tools)),
+            places: cells.iter().map(|cell| (cell.cell, cell.rest)).collect(),
+            room: Mutex::new(Room::of(&tools, cells.len())),
             tools,
             cells,
             tools_at,
