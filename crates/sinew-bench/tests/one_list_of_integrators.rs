@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// Lists of runs, which are about certain methods.
 const LISTS: [&str; 13] = [
-    "sinew-integrators/src/contact.rs",
+    "sinew-bench/src/verify/pressed.rs",
     "sinew-bench/src/kernels/laps.rs",
     "sinew-bench/src/scale/methods.rs",
     "sinew-bench/src/scale/newmark.rs",

@@ -20,8 +20,8 @@ pub trait Contact: Debug + Send + Sync {
     /// to `pushed`.
     fn meet(&self, meeting: &Meeting<'_>, state: &mut State, pushed: &mut Vec<u32>);
 
-    /// Adds the forces (N) of the last step to those on all degrees of freedom.
-    fn add_forces(&self, state: &State, out: &mut [f64]);
+    /// Adds the forces (N) of the last step to those on all degrees of freedom, with or without those in directions that are held.
+    fn add_forces(&self, state: &State, with_held: bool, out: &mut [f64]);
 }
 
 /// A step that led to a trial state, whose clock still shows the beginning.

@@ -61,7 +61,7 @@ impl Moment<'_> {
         };
         self.system.net_force(&trial, out)?;
         if let Some(contact) = self.system.contact() {
-            contact.add_forces(self.state, out);
+            contact.add_forces(self.state, false, out);
         }
         for (force, mass) in out.iter_mut().zip(self.system.mass()) {
             *force /= mass;

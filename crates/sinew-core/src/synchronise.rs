@@ -65,7 +65,7 @@ impl State {
         };
         system.net_force(&trial, out)?;
         if let Some(contact) = system.contact() {
-            contact.add_forces(self, out);
+            contact.add_forces(self, false, out);
         }
         let acceleration = out.iter_mut().zip(system.mass());
         for ((value, mass), v) in acceleration.zip(&self.v) {

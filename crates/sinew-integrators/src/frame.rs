@@ -280,7 +280,11 @@ impl<M: Scheme> Frame<M> {
                 if !is_guarded {
                     return Ok(());
                 }
-                "tools do work that the limits of saturation = \"auto\" do not know"
+                return Err(SetupError::Contact {
+                    integrator: M::ID,
+                    reason: "tools do work that the limits of a guard do not know",
+                    methods: "saturation = \"off\", or leave it out",
+                });
             }
             _ => {
                 "tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity"

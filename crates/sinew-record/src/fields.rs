@@ -50,7 +50,7 @@ impl Snapshot {
         self.contact.clear();
         if let Some(contact) = moment.system.contact() {
             self.contact.resize(v.len(), 0.0);
-            contact.add_forces(state, &mut self.contact);
+            contact.add_forces(state, true, &mut self.contact);
         }
         if has_acceleration {
             self.a.resize(v.len(), 0.0);

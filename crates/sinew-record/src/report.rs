@@ -5,8 +5,8 @@ mod body;
 mod curves;
 
 use sinew_draw::Page;
+use sinew_scene::Quantity;
 use sinew_scene::output::OwnedFolder;
-use sinew_scene::{Quantity, Simulation};
 
 use crate::csv::Table;
 use crate::error::RecordRunError;
@@ -36,10 +36,8 @@ pub(crate) fn page(
         page.warning(warning);
     }
     page.facts(facts(summary));
-    let how = Simulation::HOW_TO_KNOW_THE_ERROR;
-    page.paragraph(&format!(
-        "The error of this run is not known: {how} for the scene."
-    ));
+    let how = simulation.how_to_know_the_error();
+    page.paragraph(&format!("The error of this run is not known: {how}."));
     if let Some(surface) = surface {
         body::section(&mut page, summary, surface, largest);
     }

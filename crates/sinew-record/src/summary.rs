@@ -153,7 +153,7 @@ impl Summary<'_> {
             "steps": self.steps,
             "integrator": settings.integrator,
             "options": options_json(&simulation.options()),
-            "error": format!("not known: {}", Simulation::HOW_TO_KNOW_THE_ERROR),
+            "error": format!("not known: {}", simulation.how_to_know_the_error()),
             "extremes": extremes,
             "work": work,
             "warnings": record.warnings.iter().chain(self.warnings).collect::<Vec<_>>(),

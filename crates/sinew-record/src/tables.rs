@@ -149,6 +149,7 @@ impl<'a> Reactions<'a> {
         let (t, u) = (moment.state.t(), &moment.state.u);
         let with_memory = body.model.with_memory(&moment.state.internal);
         with_memory.reactions(t, u, v, &mut self.forces)?;
+        body.subtract_contact(moment.state, &mut self.forces);
         body.model.displacements_at(t, u, &mut self.u)?;
         out.clear();
         push(out, t);

@@ -49,7 +49,7 @@ impl<'a> ToolRows<'a> {
             let _ = writeln!(
                 text,
                 "# {name}: force and torque about its own origin are those on the tool, means over the step before; work is done on the body; \
-                 the gap is that of its deepest node"
+                 the gap is that of its deepest node; passes are the pieces in which its stroke is followed"
             );
         }
         text.push_str(&self.columns().join(","));

@@ -132,3 +132,39 @@ fn a_tool_that_begins_on_the_surface_is_not_inside() {
         build(&text.replace("0.08", &radius.to_string()));
     }
 }
+
+/// What a plate that leans presses along a held axis goes into the support of that axis.
+#[test]
+fn supports_bear_what_tools_push_into_held_directions() {
+    let text = scene(
+        "[damping]\nmass = 60.0\n[[fixed]]\ngroup = \"top\"\naxes = \"x\"\n[[tool]]\nname = \"plate\"\nshape = { plane = {} }\n\
+         start = [0.0, 0.0, 0.097]\nrotation = [0.0, 2.9, 0.0]\nhold = true\nstarts_inside = \"push\"\n",
+    );
+    let simulation = build(&text.replace("duration = 0.1", "duration = 1.5"));
+    let folder = tempfile::tempdir().unwrap();
+    let (state, ..) = common::run(&simulation, folder.path());
+    let tools = simulation.model().tools().unwrap();
+    let force = tools.report(&state, 0).force;
+    assert!(
+        force[0].abs() > 0.1 * force[2].abs() && force[2] > 0.01,
+        "{force:?}"
+    );
+    let reactions = simulation.reactions(&state).unwrap();
+    for axis in [0, 2] {
+        let supports: f64 = reactions.iter().map(|part| part.force[axis]).sum();
+        assert!(
+            (supports / force[axis] - 1.0).abs() < 1e-6,
+            "{supports} {force:?}"
+        );
+    }
+}
+
+/// Otherwise a plate through a moved or held top would be silence.
+#[test]
+fn a_tool_that_passes_through_nodes_it_does_not_meet_is_warned_about() {
+    let plate = "[[tool]]\nname = \"plate\"\nshape = { plane = {} }\nstart = [0.0, 0.0, 0.101]\nrotation = [3.141592653589793, 0.0, 0.0]\n\
+                 velocity = [0.0, 0.0, -0.05]\n";
+    let moved = "[[move]]\ngroup = \"top\"\naxes = \"x\"\nvelocity = [0.01, 0.0, 0.0]\n";
+    insta::assert_snapshot!(said(&build(&scene(&format!("{moved}{plate}")))).join("\n"), @"tool `plate` passes through node 19 at t = 0.02031 s, which is held or moved: tools meet nodes that move by themselves alone; leave room between the tool and what is held");
+    assert!(said(&build(&scene(plate))).is_empty());
+}

@@ -283,3 +283,30 @@ fn methods_that_cannot_be_pushed_refuse_and_name_those_that_can() {
         assert!(names_others, "{message}");
     }
 }
+
+#[test]
+fn a_node_that_one_ball_pushes_into_another_is_outside_of_both() {
+    let cube = Block::of([0.02; 3], [2; 3]).with_mass_damping(20.0);
+    let ball = |name: &str, x: f64| {
+        let start = Pose::new([x, 0.01, 0.023], [0.0; 3]);
+        let velocity = [0.0, 0.0, -0.05];
+        let motion = Motion::Steady { start, velocity };
+        sinew_tools::Tool {
+            name: name.to_owned(),
+            ..tool(Convex::sphere(0.005).unwrap(), motion)
+        }
+    };
+    let pressed = cube.with(vec![ball("left", 0.00567), ball("right", 0.01433)]);
+    let mut state = pressed.at_rest();
+    let mut both = 0;
+    for _ in 0..100 {
+        pressed.run(&mut state, "symplectic-euler", 1e-3, 1);
+        for tool in 0..2 {
+            let deepest = pressed.tools.deepest(&state.u, state.t(), tool).unwrap();
+            assert!(deepest.gap > -1e-15, "{} at {}", deepest.gap, state.t());
+        }
+        let touching = (0..2).filter(|tool| pressed.tools.report(&state, *tool).contacts > 0);
+        both += usize::from(touching.count() == 2);
+    }
+    assert!(both > 10, "{both} steps in which both touch");
+}

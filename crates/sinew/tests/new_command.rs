@@ -91,7 +91,8 @@ fn every_ready_scene_is_listed_and_written_with_its_mesh() {
     let files = fs::read_dir(ready)
         .unwrap()
         .map(|entry| entry.unwrap().path());
-    let mut files: Vec<String> = files
+    let scenes = files.filter(|path| path.extension().is_some_and(|end| end == "toml"));
+    let mut files: Vec<String> = scenes
         .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
         .collect();
     files.sort();

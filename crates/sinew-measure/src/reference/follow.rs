@@ -76,6 +76,9 @@ pub(crate) fn follow_by(
     start: &State,
     times: &[f64],
 ) -> Result<Track, ReferenceError> {
+    if system.contact().is_some() {
+        return Err(ReferenceError::Contact);
+    }
     let track = match course {
         Course::Extrapolated => return by_extrapolation(system, start, times),
         Course::Taylor(pace) => {

@@ -63,6 +63,11 @@ pub enum ReferenceError {
     /// The system is not linear.
     #[error("a reference solution needs the matrices of a linear system")]
     NotLinear,
+    /// Tools touch the body.
+    #[error(
+        "there is no reference solution with tools yet, so that no error can be measured: compare runs in steps of half the length"
+    )]
+    Contact,
     /// A method's solutions do not come together in any of the steps that were tried.
     #[error("no reference solution: `{method}` does not converge in any of the steps tried")]
     NotConverged {

@@ -70,7 +70,8 @@ pub struct Grasp {
 
 pub(super) const TOOL: TableDescription = TableDescription {
     name: "tool",
-    meaning: "A rigid tool that presses on the body: no node that it can touch gets into it. The forces that hold it back are in `tools.csv`.",
+    meaning: "A rigid tool that presses on the body: no node that it can touch gets into it. It meets nodes of the surface that move by themselves; those that are held, and those of which `[[move]]` moves a component, it does not. \
+              The forces that hold it back are in `tools.csv`.",
     keys: &[
         &NAME,
         &SHAPE_OF_TOOL,

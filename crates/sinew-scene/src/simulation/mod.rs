@@ -125,7 +125,13 @@ impl Simulation {
     }
 
     /// What measures the error of a run, as a sentence goes on after "not known: ".
-    pub const HOW_TO_KNOW_THE_ERROR: &'static str = "`sinew plan --tolerance` measures it";
+    #[must_use]
+    pub fn how_to_know_the_error(&self) -> &'static str {
+        match self.system().contact() {
+            None => "`sinew plan --tolerance` measures it",
+            Some(_) => "runs in steps of half the length tell it",
+        }
+    }
 
     /// Whether steps are cut by the current stiffness: dt = "auto" on a body that is not linear.
     #[must_use]

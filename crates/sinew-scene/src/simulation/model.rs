@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use sinew_core::{LinearModel, System};
+use sinew_core::{LinearModel, State, System};
 use sinew_mesh::{TetMesh, UnknownGroup};
 use sinew_tools::Tools;
 
@@ -61,6 +61,19 @@ impl SceneModel {
 }
 
 impl BodyModel {
+    /// Takes off the forces (N) of supports on all nodes what tools push into held directions in a state: the supports bear it.
+    pub fn subtract_contact(&self, state: &State, reactions: &mut [[f64; 3]]) {
+        let Some(tools) = &self.tools else {
+            return;
+        };
+        for (cell, force) in tools.touched_cells().iter().zip(tools.forces(state)) {
+            let node = self.model.nodes()[cell.cell as usize] as usize;
+            for axis in (0..3).filter(|axis| !cell.free[*axis]) {
+                reactions[node][axis] -= force[axis];
+            }
+        }
+    }
+
     /// The cells of the nodes of a group, or of the whole body where no group is named, and the number
     /// of these nodes including held ones.
     pub(crate) fn cells_of(&self, group: Option<&str>) -> Result<(Vec<u32>, usize), UnknownGroup> {

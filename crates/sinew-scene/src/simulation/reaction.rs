@@ -108,6 +108,7 @@ impl Simulation {
         let mut forces = vec![[0.0; 3]; built.mesh.points.len()];
         let body = built.model.with_memory(&state.internal);
         body.reactions(state.t(), &state.u, &v, &mut forces)?;
+        built.subtract_contact(state, &mut forces);
         let parts = self.held_parts()?.into_iter();
         Ok(parts
             .map(|HeldPlace { by, on, nodes }| {

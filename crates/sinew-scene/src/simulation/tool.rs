@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use sinew_core::{State, System};
 use sinew_fem::{Model, On};
-use sinew_mesh::TetMesh;
+use sinew_mesh::{TetMesh, UnknownGroup};
 use sinew_tools::{
     Convex, Grasp, Motion, Part, Pose, Row, Shape, ShapeError, Table, Tools, TouchedCell,
 };
@@ -82,28 +82,32 @@ pub(super) fn added_to(
 
 /// The nodes that a tool may touch: those that move freely in at least one direction, and are not moved in another.
 fn nodes(tool: &Tool, built: &BodyModel, place: &Place) -> Result<Vec<u32>, SceneError> {
+    let (met, unmet) =
+        nodes_of(tool, built).map_err(|error| place.value_fault("touches", error.into()))?;
+    if met.is_empty() {
+        let fault = ToolFault::NothingToTouch { nodes: unmet.len() };
+        return Err(place.value_fault("touches", fault.into()));
+    }
+    Ok(met)
+}
+
+/// The nodes of a tool's surface or group that it meets, and those that it does not, since they are held or moved.
+pub(super) fn nodes_of(
+    tool: &Tool,
+    built: &BodyModel,
+) -> Result<(Vec<u32>, Vec<u32>), UnknownGroup> {
     let mesh = &built.mesh;
     let mut nodes = match &tool.touches {
         None => mesh.boundary(None).into_flattened(),
-        Some(name) => {
-            let group = mesh.group(name);
-            let group = group.map_err(|error| place.value_fault("touches", error.into()))?;
-            mesh.group_nodes(group)
-        }
+        Some(name) => mesh.group_nodes(mesh.group(name)?),
     };
     nodes.sort_unstable();
     nodes.dedup();
-    let all = nodes.len();
     let moved = moved_nodes(built);
-    nodes.retain(|node| built.model.cell_of_node(*node).is_some());
-    nodes.retain(|node| moved.binary_search(node).is_err());
-    match nodes.is_empty() {
-        true => {
-            let fault = ToolFault::NothingToTouch { nodes: all };
-            Err(place.value_fault("touches", fault.into()))
-        }
-        false => Ok(nodes),
-    }
+    let is_met = |node: &u32| {
+        built.model.cell_of_node(*node).is_some() && moved.binary_search(node).is_err()
+    };
+    Ok(nodes.into_iter().partition(is_met))
 }
 
 /// The nodes of which some component is moved, increasing: where they are is no matter of the degrees of freedom alone.

@@ -60,10 +60,10 @@ impl Contact for Tools {
         }
     }
 
-    fn add_forces(&self, state: &State, out: &mut [f64]) {
+    fn add_forces(&self, state: &State, with_held: bool, out: &mut [f64]) {
         for (touched, force) in self.cells.iter().zip(self.forces(state)) {
             let first = 3 * touched.cell as usize;
-            for axis in (0..3).filter(|axis| touched.free[*axis]) {
+            for axis in (0..3).filter(|axis| with_held || touched.free[*axis]) {
                 out[first + axis] += force[axis];
             }
         }
@@ -100,8 +100,12 @@ impl Step<'_> {
                 met.hold(tool, compliance.force(sub(place, to)));
             }
             _ => {
-                met.touches(self.steps, tools, (from, to));
-                met.solve(&compliance);
+                // What one surface pushes back may meet another there.
+                let mut end = to;
+                while met.touches(self.steps, tools, (from, to), end) {
+                    met.solve(&compliance);
+                    end = add(to, met.sum(|force| compliance.displacement(force)));
+                }
             }
         }
         let moved = met.sum(|force| compliance.displacement(force));

@@ -5,6 +5,10 @@ use crate::vector::{Vector, add, dot, length, scaled, sub};
 /// Most constraints at a node that are solved together; more are left to the next step.
 pub(super) const MOST: usize = 8;
 
+/// Share of a node's largest response below which it counts as held in the direction of a normal: a normal that is all but along a held axis leaves 1e-3 of itself, and would
+/// have to be answered with a force a million times as large.
+const HELD: f64 = 1e-6;
+
 /// What a node would move by under forces within a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Compliance {
@@ -80,18 +84,23 @@ impl Compliance {
             if size > 0.0 {
                 let direction = add(normal, scaled(along, friction / size));
                 let response = dot(normal, self.displacement(direction));
-                if response > 0.0 {
+                if self.moves(response) {
                     return scaled(direction, -gap / response);
                 }
             }
         }
         let response = dot(normal, self.displacement(normal));
-        if response > 0.0 {
+        if self.moves(response) {
             scaled(normal, -gap / response)
         } else {
-            // Held in the direction of the normal.
             [0.0; 3]
         }
+    }
+
+    /// Whether a node with this response (m/N) to a unit force moves in the direction of that force.
+    fn moves(&self, response: f64) -> bool {
+        let own = [0, 1, 2].map(|axis| self.block[axis][axis]);
+        response > HELD * own.into_iter().fold(0.0, f64::max)
     }
 
     /// Writes the force (N) of each constraint: at one exactly, with friction; at several exactly too, without it.
@@ -155,6 +164,9 @@ impl Compliance {
             };
             wanted[i] = -own.gap;
             let response = self.displacement(own.normal);
+            if !self.moves(dot(own.normal, response)) {
+                return None;
+            }
             for (entry, b) in matrix[i].iter_mut().zip(active) {
                 *entry = constraints.get(b).map_or(0.0, |b| dot(b.normal, response));
             }
@@ -231,11 +243,13 @@ mod tests {
         let (moved, _) = total(&compliance([false, true, true]), &[constraint]);
         assert_eq!(moved[0], 0.0);
         assert!((dot(constraint.normal, moved) - 0.01).abs() < 1e-16);
-        let (moved, forces) = total(
-            &compliance([false, true, true]),
-            &[plane([1.0, 0.0, 0.0], -0.01)],
-        );
-        assert_eq!((moved, forces[0]), ([0.0; 3], [0.0; 3]));
+        for normal in [[1.0, 0.0, 0.0], [-1.0, 1e-16, 1e-16], [1.0, 1e-4, 0.0]] {
+            let along = [plane(normal, -0.01), plane(normal, -0.02)];
+            for constraints in [&along[..1], &along] {
+                let (moved, forces) = total(&compliance([false, true, true]), constraints);
+                assert_eq!((moved, forces[0]), ([0.0; 3], [0.0; 3]));
+            }
+        }
     }
 
     #[test]

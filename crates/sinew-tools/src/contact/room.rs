@@ -173,7 +173,8 @@ impl ToolStep {
 /// What a node met in a step.
 pub(super) struct Met {
     count: usize,
-    tools: [usize; MOST],
+    /// Tool and part of each surface.
+    parts: [(usize, usize); MOST],
     constraints: [Constraint; MOST],
     /// The forces (N) on the node.
     forces: [Vector; MOST],
@@ -190,27 +191,36 @@ impl Met {
         };
         Self {
             count: 0,
-            tools: [0; MOST],
+            parts: [(0, 0); MOST],
             constraints: [nothing; MOST],
             forces: [[0.0; 3]; MOST],
         }
     }
 
-    /// Finds what a node meets on its way (m) among some tools, one bit each.
-    pub(super) fn touches(&mut self, steps: &[ToolStep], tools: u64, (from, to): (Vector, Vector)) {
+    /// Finds what a node meets on its way (m) to where it is pushed, among some tools, one bit each, and has not met before; whether there is anything new.
+    /// The gap is taken where the step led it.
+    pub(super) fn touches(
+        &mut self,
+        steps: &[ToolStep],
+        tools: u64,
+        (from, to): (Vector, Vector),
+        end: Vector,
+    ) -> bool {
+        let before = self.count;
         for (number, step) in steps.iter().enumerate() {
             if tools >> number & 1 == 0 {
                 continue;
             }
-            for (stroke, near) in &step.strokes {
-                if self.count == MOST || !near.is_met((from, to)) {
+            for (part, (stroke, near)) in step.strokes.iter().enumerate() {
+                let is_known = self.parts[..before].contains(&(number, part));
+                if self.count == MOST || is_known || !near.is_met((from, end)) {
                     continue;
                 }
-                if let Some(touch) = stroke.first_contact(from, to) {
-                    let end = stroke.pose_at(1.0);
-                    let stick = sub(end.to_world(touch.point), to);
-                    let normal = end.turned(touch.normal);
-                    self.tools[self.count] = number;
+                if let Some(touch) = stroke.first_contact(from, end) {
+                    let last = stroke.pose_at(1.0);
+                    let stick = sub(last.to_world(touch.point), to);
+                    let normal = last.turned(touch.normal);
+                    self.parts[self.count] = (number, part);
                     self.constraints[self.count] = Constraint {
                         normal,
                         gap: -dot(normal, stick),
@@ -221,6 +231,7 @@ impl Met {
                 }
             }
         }
+        self.count > before
     }
 
     /// Computes the forces.
@@ -230,14 +241,14 @@ impl Met {
 
     /// Leaves the node to a tool that holds it by this force (N).
     pub(super) fn hold(&mut self, tool: usize, force: Vector) {
-        (self.count, self.tools[0], self.forces[0]) = (1, tool, force);
+        (self.count, self.parts[0], self.forces[0]) = (1, (tool, 0), force);
     }
 
     /// The tools that push the node, with their forces (N).
     pub(super) fn pushing(&self) -> impl Iterator<Item = (usize, Vector)> {
-        let met = self.tools[..self.count].iter().zip(&self.forces);
+        let met = self.parts[..self.count].iter().zip(&self.forces);
         let pushing = met.filter(|(_, force)| **force != [0.0; 3]);
-        pushing.map(|(tool, force)| (*tool, *force))
+        pushing.map(|((tool, _), force)| (*tool, *force))
     }
 
     /// The sum of what follows from each force (N).

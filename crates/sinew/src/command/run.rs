@@ -20,8 +20,8 @@ use super::scene_with::Values;
 pub(crate) const LONG: f64 = 60.0;
 
 /// What no run knows of itself.
-fn error_not_known() -> String {
-    let how = Simulation::HOW_TO_KNOW_THE_ERROR;
+fn error_not_known(simulation: &Simulation) -> String {
+    let how = simulation.how_to_know_the_error();
     format!("the error of this run is not known: {how}")
 }
 
@@ -216,7 +216,7 @@ fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> Vec<String>
     lines.extend(end.remarks.iter().cloned());
     let warnings = end.warnings.iter();
     lines.extend(warnings.map(|warning| format!("warning: {warning}")));
-    lines.push(error_not_known());
+    lines.push(error_not_known(simulation));
     lines.push(format!(
         "{}: report.html, fields.pvd for ParaView, tables, summary.json",
         path.display()
@@ -356,7 +356,10 @@ fn summary(simulation: &Simulation, report: &RunReport) -> String {
             "\nguarded: {share:.3} % of all velocities were saturated; the motion is bounded, not accurate"
         ));
     }
-    for line in retaken(work.retaken).into_iter().chain([error_not_known()]) {
+    for line in retaken(work.retaken)
+        .into_iter()
+        .chain([error_not_known(simulation)])
+    {
         text.push('\n');
         text.push_str(&line);
     }

@@ -5,9 +5,10 @@ use sinew_tools::{Convex, Motion, Tools};
 
 use super::{Warning, WarningKind};
 use crate::number::{length, short};
+use crate::scene::Subject;
 use crate::simulation::Simulation;
 use crate::simulation::model::BodyModel;
-use crate::simulation::tool::inside;
+use crate::simulation::tool::{inside, nodes_of};
 
 pub(super) fn warnings(simulation: &Simulation, built: &BodyModel) -> Vec<Warning> {
     let Some(tools) = &built.tools else {
@@ -25,6 +26,7 @@ pub(super) fn warnings(simulation: &Simulation, built: &BodyModel) -> Vec<Warnin
             );
             Warning::new(WarningKind::ToolInside, what, "").with(&[("depth_m", depth)])
         }));
+        warnings.extend(unmet(simulation, built, index));
         let width = smallest_width(tools, index);
         if width < edge {
             let what = format!(
@@ -53,6 +55,49 @@ pub(super) fn warnings(simulation: &Simulation, built: &BodyModel) -> Vec<Warnin
         }
     }
     warnings
+}
+
+/// Instants at which a tool is looked for in nodes that it does not meet.
+const LOOKS: u32 = 64;
+
+/// A warning of nodes that are held or moved, and that a tool passes through.
+fn unmet(simulation: &Simulation, built: &BodyModel, index: usize) -> Option<Warning> {
+    let Subject::Body(body) = simulation.scene().subject() else {
+        return None;
+    };
+    let (_, nodes) = nodes_of(&body.tools[index], built).ok()?;
+    let tool = &built.tools.as_ref()?.tools()[index];
+    let size = built.model.extent().unwrap_or(0.0);
+    let mut u = vec![[0.0; 3]; built.mesh.points.len()];
+    for look in 0..=LOOKS {
+        let t = simulation.settings().duration * f64::from(look) / f64::from(LOOKS);
+        let pose = tool.motion.at(t);
+        let still = &simulation.initial_state().u;
+        built.model.displacements_at(t, still, &mut u).ok()?;
+        let is_inside = |node: &&u32| {
+            let (point, u) = (built.mesh.points[**node as usize], u[**node as usize]);
+            let at = std::array::from_fn(|axis| point[axis] + u[axis]);
+            tool.shape.parts().iter().any(|part| {
+                let own = pose.then(&part.pose).to_own(at);
+                part.convex.nearest(own).distance < -1e-9 * size
+            })
+        };
+        if let Some(node) = nodes.iter().find(is_inside) {
+            let what = format!(
+                "tool `{}` passes through node {} at t = {} s, which is held or moved: tools meet nodes that move by themselves alone",
+                tool.name,
+                built.mesh.node_tags[*node as usize],
+                short(t)
+            );
+            let warning = Warning::new(
+                WarningKind::UnmetNodes,
+                what,
+                "leave room between the tool and what is held",
+            );
+            return Some(warning.with(&[("t_s", t)]));
+        }
+    }
+    None
 }
 
 /// The smallest radius (m) of a tool's parts, or half the smallest edge of a box.

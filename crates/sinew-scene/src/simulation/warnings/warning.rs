@@ -93,6 +93,8 @@ pub enum WarningKind {
     LoadOnMoved,
     /// A tool in which nodes are at t = 0.
     ToolInside,
+    /// A tool that passes through nodes which it does not meet.
+    UnmetNodes,
     /// A tool that is thin against the triangles of the surface.
     SmallTool,
     /// A tool that goes farther than the body is large in a step.
@@ -136,6 +138,7 @@ impl WarningKind {
             Self::MotionJumps => "motion-jumps",
             Self::LoadOnMoved => "load-on-moved",
             Self::ToolInside => "tool-inside",
+            Self::UnmetNodes => "unmet-nodes",
             Self::SmallTool => "small-tool",
             Self::FastTool => "fast-tool",
             Self::OutsideRun => "outside-run",
