@@ -121,7 +121,7 @@ impl<M: Scheme> Integrator for Frame<M> {
 
     fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
         let work = self.set_up(system, dt)?;
-        self.check_contact(system, false)?;
+        self.check_contact(system)?;
         Ok(work)
     }
 
@@ -135,7 +135,7 @@ impl<M: Scheme> Integrator for Frame<M> {
     }
 
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
-        self.check_contact(batch.system(), batch.guarding().is_some())?;
+        self.check_contact(batch.system())?;
         let needed = self.scheme.properties().changing_loads.needed();
         let Some(refused) = first_refused(needed, batch, state) else {
             return self.ready.run(batch, state);
@@ -271,28 +271,17 @@ impl<M: Scheme> Frame<M> {
     }
 
     /// Refuses contact with steps that it cannot push.
-    fn check_contact(&self, system: &dyn System, is_guarded: bool) -> Result<(), SetupError> {
-        if system.contact().is_none() {
+    fn check_contact(&self, system: &dyn System) -> Result<(), SetupError> {
+        let can_be_pushed = match &self.ready {
+            Ready::Program(loaded) => loaded.program.inertia().is_some(),
+            Ready::Not | Ready::ByHand(_) => false,
+        };
+        if can_be_pushed || system.contact().is_none() {
             return Ok(());
         }
-        let reason = match &self.ready {
-            Ready::Program(loaded) if loaded.program.inertia().is_some() => {
-                if !is_guarded {
-                    return Ok(());
-                }
-                return Err(SetupError::Contact {
-                    integrator: M::ID,
-                    reason: "tools do work that the limits of a guard do not know",
-                    methods: "saturation = \"off\", or leave it out",
-                });
-            }
-            _ => {
-                "tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity"
-            }
-        };
         Err(SetupError::Contact {
             integrator: M::ID,
-            reason,
+            reason: "tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity",
             methods: METHODS_WITH_CONTACT,
         })
     }

@@ -229,6 +229,7 @@ impl RunFolder {
         let mut warnings = summary::warnings(&progress.seen);
         warnings.extend(summary::made_energy(simulation, &progress));
         warnings.extend(simulation.outrun(integrator, &state));
+        warnings.extend(simulation.left_in_tools(&state));
         let wall = begun.elapsed().as_secs_f64();
         let mut remarks = integrator.remarks();
         if resumed {

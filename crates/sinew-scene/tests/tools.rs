@@ -168,3 +168,22 @@ fn a_tool_that_passes_through_nodes_it_does_not_meet_is_warned_about() {
     insta::assert_snapshot!(said(&build(&scene(&format!("{moved}{plate}")))).join("\n"), @"tool `plate` passes through node 19 at t = 0.02031 s, which is held or moved: tools meet nodes that move by themselves alone; leave room between the tool and what is held");
     assert!(said(&build(&scene(plate))).is_empty());
 }
+
+/// A plate that comes down on a top which is held against it goes through, and the run says so.
+#[test]
+fn a_tool_that_leaves_nodes_in_it_is_told() {
+    let plate = "[[fixed]]\ngroup = \"top\"\naxes = \"z\"\n[[tool]]\nname = \"plate\"\nshape = { plane = {} }\nstart = [0.0, 0.0, 0.101]\n\
+                 rotation = [3.141592653589793, 0.0, 0.0]\nvelocity = [0.0, 0.0, -0.05]\n";
+    let simulation = build(&scene(plate));
+    let folder = tempfile::tempdir().unwrap();
+    let (state, ..) = common::run(&simulation, folder.path());
+    insta::assert_snapshot!(simulation.left_in_tools(&state).join("\n"), @"tool `plate` left a node up to 0.004 m in it: one that is held in that direction, or has no room between its surfaces");
+    assert_eq!(
+        simulation.model().tools().unwrap().report(&state, 0).force,
+        [0.0; 3]
+    );
+    let free = plate.replacen("axes = \"z\"", "axes = \"x\"", 1);
+    let simulation = build(&scene(&free));
+    let (state, ..) = common::run(&simulation, folder.path());
+    assert!(simulation.left_in_tools(&state).is_empty());
+}

@@ -36,6 +36,7 @@ pub use tool_fault::ToolFault;
 pub use warnings::{Warning, WarningKind};
 
 use crate::error::StableStepError;
+use crate::number::short;
 use crate::scene::{RunSettings, Scene};
 
 /// A scene that is ready to run: files read, matrices assembled, step chosen.
@@ -154,6 +155,26 @@ impl Simulation {
     #[must_use]
     pub fn outrun(&self, integrator: &dyn Stepper, state: &State) -> Option<String> {
         step::outrun(self.system(), self.dt, integrator, state)
+    }
+
+    /// A sentence for each tool that had to leave a node in it, up to this state.
+    #[must_use]
+    pub fn left_in_tools(&self, state: &State) -> Vec<String> {
+        let Some(tools) = self.model().tools() else {
+            return Vec::new();
+        };
+        let size = self.system().extent().unwrap_or(0.0);
+        let deep = |index| tools.report(state, index).depth;
+        let names = tools.tools().iter().map(|tool| &tool.name).enumerate();
+        let deep = names.map(|(index, name)| (name, deep(index)));
+        let left = deep.filter(|(_, depth)| *depth > tool::ROUNDING * size);
+        let said = left.map(|(name, depth)| {
+            format!(
+                "tool `{name}` left a node up to {} m in it: one that is held in that direction, or has no room between its surfaces",
+                short(depth)
+            )
+        });
+        said.collect()
     }
 
     /// The steps that cover the duration. A body counts as diverged when a displacement exceeds 100

@@ -17,7 +17,7 @@ use crate::error::SceneError;
 use crate::scene::{Body, Places, StartsInside, Tool, ToolPath, ToolShape, ToolStart};
 
 /// Share of the body's size by which a node may lie inside a tool that begins on its surface.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Lets the tools of a scene touch a body, which begins in the state `initial`.
 pub(super) fn added_to(

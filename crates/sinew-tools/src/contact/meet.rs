@@ -5,7 +5,7 @@ use std::sync::PoisonError;
 use sinew_core::{Contact, Meeting, State};
 
 use super::node::Compliance;
-use super::record::{self, CONTACTS, FORCE, OF_HELD, PASSES, Record, TORQUE, WORK};
+use super::record::{self, CONTACTS, DEPTH, FORCE, OF_HELD, PASSES, Record, TORQUE, WORK};
 use super::report::displacement_of;
 use super::room::{Met, ToolStep, is_near};
 use super::tools::Tools;
@@ -105,6 +105,10 @@ impl Step<'_> {
                 while met.touches(self.steps, tools, (from, to), end) {
                     met.solve(&compliance);
                     end = add(to, met.sum(|force| compliance.displacement(force)));
+                }
+                for (tool, depth) in met.depths(sub(end, to)) {
+                    let deepest = &mut record.tools[tool][DEPTH];
+                    *deepest = deepest.max(depth);
                 }
             }
         }

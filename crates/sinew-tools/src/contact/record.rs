@@ -1,14 +1,16 @@
 //! What tools keep from step to step, as numbers in a state.
 
 /// Numbers of a tool.
-pub(super) const OF_TOOL: usize = 9;
+pub(super) const OF_TOOL: usize = 10;
 
-/// Their places: the force (N) and the torque (N m) on it, its work (J) so far, its contacts, and the passes of its stroke.
+/// Their places: the force (N) and the torque (N m) on it, its work (J) and how deep (m) it had to leave a node in it so far, its contacts, and the passes
+/// of its stroke.
 pub(super) const FORCE: usize = 0;
 pub(super) const TORQUE: usize = 3;
 pub(super) const WORK: usize = 6;
-pub(super) const CONTACTS: usize = 7;
-pub(super) const PASSES: usize = 8;
+pub(super) const DEPTH: usize = 7;
+pub(super) const CONTACTS: usize = 8;
+pub(super) const PASSES: usize = 9;
 
 /// Numbers of a touched cell.
 pub(super) const OF_CELL: usize = 3;
@@ -44,12 +46,12 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// Forgets the last step but for the work so far.
+    /// Forgets the last step but for what has been since the motion began.
     pub(super) fn forget_last_step(&mut self) {
         for numbers in self.tools.iter_mut() {
-            let work = numbers[WORK];
+            let (work, depth) = (numbers[WORK], numbers[DEPTH]);
             *numbers = [0.0; OF_TOOL];
-            numbers[WORK] = work;
+            (numbers[WORK], numbers[DEPTH]) = (work, depth);
         }
         self.cells.as_flattened_mut().fill(0.0);
     }

@@ -2,7 +2,7 @@
 
 use sinew_core::State;
 
-use super::record::{CONTACTS, FORCE, OF_CELL, OF_TOOL, PASSES, TORQUE, WORK};
+use super::record::{CONTACTS, DEPTH, FORCE, OF_CELL, OF_TOOL, PASSES, TORQUE, WORK};
 use super::tools::Tools;
 use crate::vector::{Vector, add};
 
@@ -19,6 +19,8 @@ pub struct ToolReport {
     pub torque: [f64; 3],
     /// The work (J) that it did on the body since the motion began.
     pub work: f64,
+    /// How deep (m) it had to leave a node in it since the motion began: one that is held in the direction of the contact, or has no room between surfaces.
+    pub depth: f64,
     /// Number of cells that it pushed, or held.
     pub contacts: usize,
     /// Passes that its stroke takes, so that normals of the first contact stay meaningful.
@@ -47,6 +49,7 @@ impl Tools {
             force: [0, 1, 2].map(|axis| numbers[FORCE + axis]),
             torque: [0, 1, 2].map(|axis| numbers[TORQUE + axis]),
             work: numbers[WORK],
+            depth: numbers[DEPTH],
             contacts: numbers[CONTACTS] as usize,
             passes: numbers[PASSES] as u32,
         }

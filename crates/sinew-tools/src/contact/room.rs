@@ -251,6 +251,12 @@ impl Met {
         pushing.map(|((tool, _), force)| (*tool, *force))
     }
 
+    /// How deep (m) the node is left in each surface by a displacement (m).
+    pub(super) fn depths(&self, moved: Vector) -> impl Iterator<Item = (usize, f64)> {
+        let met = self.parts[..self.count].iter().zip(&self.constraints);
+        met.map(move |((tool, _), surface)| (*tool, -(surface.gap + dot(surface.normal, moved))))
+    }
+
     /// The sum of what follows from each force (N).
     pub(super) fn sum(&self, of: impl Fn(Vector) -> Vector) -> Vector {
         let forces = self.pushing();

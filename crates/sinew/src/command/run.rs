@@ -248,7 +248,14 @@ fn probes_alone(
     drop(recorders);
     onlooker.finish();
     let outrun = simulation.outrun(integrator, &state);
-    for warning in growth.in_words().into_iter().chain(outrun.as_deref()) {
+    let left = simulation.left_in_tools(&state);
+    let left = left.iter().map(String::as_str);
+    for warning in growth
+        .in_words()
+        .into_iter()
+        .chain(outrun.as_deref())
+        .chain(left)
+    {
         complain(&format!("warning: {warning}"));
     }
     let report = report?;

@@ -152,6 +152,13 @@ impl Integrator for Guarded {
             return Ok(StepReport::default());
         }
         self.prepared.forget();
+        if system.contact().is_some() {
+            return Err(SetupError::Contact {
+                integrator: self.inner.id(),
+                reason: "tools do work that the limits of a guard do not know",
+                methods: "saturation = \"off\", or leave it out",
+            });
+        }
         Prepared::check(self.inner.id(), system, dt)?;
         self.limits.prepare(self.inner.id(), system, self.guard)?;
         self.cut(system, dt)?;
