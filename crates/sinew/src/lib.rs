@@ -34,7 +34,7 @@
 pub use {
     sinew_cnn as cnn, sinew_core as core, sinew_fem as fem, sinew_integrators as integrators,
     sinew_machines as machines, sinew_measure as measure, sinew_mesh as mesh, sinew_scene as scene,
-    sinew_sparse as sparse,
+    sinew_sparse as sparse, sinew_tools as tools,
 };
 
 /// The items that most programs need.

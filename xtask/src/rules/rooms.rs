@@ -74,6 +74,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-fem",
             "sinew-cnn",
             "sinew-machines",
+            "sinew-tools",
             "sinew-integrators",
             "sinew-scene",
             "sinew-measure",
