@@ -719,17 +719,19 @@ impl<T: ElementPrecision> Loaded<T> {
         }
     }
 
-    /// Takes u and v of the cells that were pushed, and what follows from them.
-    fn take_pushed(&mut self, layout: &Layout<T>, state: &State) {
+    /// Takes u and v of the cells that were pushed, rounds them in the state, too, and takes what follows from them.
+    fn take_pushed(&mut self, layout: &Layout<T>, state: &mut State) {
         let layers = self.fields.layers();
         let program = Arc::clone(&self.program);
-        for (register, values) in [&state.u, &state.v].into_iter().enumerate() {
+        for (register, values) in [&mut state.u, &mut state.v].into_iter().enumerate() {
             let field = self.field(register);
             for layer in 0..layers {
                 let to = self.fields.layer(field, layer);
                 for cell in &self.pushed {
-                    let value = values[*cell as usize * layers + layer];
-                    to[layout.numbering.position(*cell)] = T::of(value);
+                    let value = &mut values[*cell as usize * layers + layer];
+                    let rounded = T::of(*value);
+                    to[layout.numbering.position(*cell)] = rounded;
+                    *value = rounded.to_f64();
                 }
             }
         }

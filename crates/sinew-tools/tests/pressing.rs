@@ -160,6 +160,17 @@ fn machines_threads_and_batches_lead_to_the_same_motion() {
         let pairs = one.u.iter().zip(&expected.u);
         let off = largest(&mut pairs.map(|(a, b)| (a - b).abs()));
         assert!(off < 1e-11 * size, "{id}: {off}");
+        let single = Options::new().with("precision", OptionValue::Text("f32".into()));
+        let mut rounded = pressed.at_rest();
+        pressed.run_with(&mut rounded, (id, single.clone()), dt, 120);
+        let pairs = rounded.u.iter().zip(&expected.u);
+        let off = largest(&mut pairs.map(|(a, b)| (a - b).abs()));
+        assert!(off < 1e-4 * size, "{id}: {off}");
+        let mut again = pressed.at_rest();
+        for steps in [1, 19, 100] {
+            pressed.run_with(&mut again, (id, single.clone()), dt, steps);
+        }
+        assert!(rounded == again, "{id} in f32");
         for machine in ["general", "reference"] {
             let (mut whole, mut cut) = (pressed.at_rest(), pressed.at_rest());
             pressed.run_with(&mut whole, method(machine, 3.0), dt, 60);
