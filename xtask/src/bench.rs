@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use sinew_bench::hands::HandsBench;
 use sinew_bench::hard::HardBench;
 use sinew_bench::kernels::KernelBench;
 use sinew_bench::nonlinear::NonlinearBench;
@@ -59,9 +60,13 @@ pub(crate) struct Arguments {
     /// elements; exits with 1 if a mark is not passed; about a quarter of an hour
     #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "kernels", "beside"])]
     nonlinear: bool,
+    /// Measure methods on scenes in which tools press, draw and lift tissue instead: errors of motion, of force and of the mesh, cost, energy;
+    /// exits with 1 if a mark is not passed
+    #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "kernels", "nonlinear", "beside"])]
+    hands: bool,
     /// Measure methods on cubes from 10 to 60 cells a side instead: error, time, set-up and memory over size, and
     /// the largest scene in real time; about 15 minutes
-    #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "kernels", "nonlinear", "beside"])]
+    #[arg(long, conflicts_with_all = ["scenes", "integrators", "steps", "hard", "kernels", "nonlinear", "hands", "beside"])]
     scale: bool,
     /// Run another program in turn with ours and print the ratios of CPU time, nothing else: scipy (installed by pip into
     /// target/) with our cheapest methods on the peers' cube, or CHOLMOD (skipped where it is not installed) with our
@@ -79,6 +84,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.nonlinear {
         return run_nonlinear(arguments);
+    }
+    if arguments.hands {
+        return run_hands(arguments);
     }
     if arguments.scale {
         return run_scale(arguments);
@@ -136,6 +144,18 @@ fn run_hard(arguments: &Arguments) -> Result<(), Failure> {
 /// Measures large deformations.
 fn run_nonlinear(arguments: &Arguments) -> Result<(), Failure> {
     let bench = NonlinearBench {
+        scenes: root().join("scenes"),
+        quick: arguments.quick,
+    };
+    let files = (bench.input_files(), bench.output_files());
+    measure(arguments, files, |show| {
+        bench.run(revision(&root()), machine(), show)
+    })
+}
+
+/// Measures scenes with tools.
+fn run_hands(arguments: &Arguments) -> Result<(), Failure> {
+    let bench = HandsBench {
         scenes: root().join("scenes"),
         quick: arguments.quick,
     };
@@ -261,6 +281,8 @@ fn kind(arguments: &Arguments) -> &'static str {
         ["bench-kernels", "bench-kernels-quick"]
     } else if arguments.nonlinear {
         ["bench-nonlinear", "bench-nonlinear-quick"]
+    } else if arguments.hands {
+        ["bench-hands", "bench-hands-quick"]
     } else if arguments.scale {
         ["bench-scale", "bench-scale-quick"]
     } else if arguments.scenes.is_empty() {
@@ -407,6 +429,7 @@ mod tests {
             of(|arguments| arguments.hard = true),
             of(|arguments| arguments.kernels = true),
             of(|arguments| arguments.nonlinear = true),
+            of(|arguments| arguments.hands = true),
             of(|arguments| arguments.scale = true),
         ]
         .concat();

@@ -91,6 +91,7 @@ fn steps(root: &Path) -> std::io::Result<Vec<Step>> {
         "quick large deformations",
         "xtask bench --nonlinear --quick --out target/ci-nonlinear",
     ));
+    steps.push(Step::new("live page in Chromium", "xtask live-test"));
     steps.push(Step::new("commands of the README", "xtask readme"));
     steps.push(Step::new("archive, tried elsewhere", "xtask dist"));
     steps.push(Step::new(
@@ -169,7 +170,10 @@ fn run_step(step: &Step) -> Result<(), Failure> {
         .args(&step.arguments)
         .current_dir(root())
         .env("RUSTDOCFLAGS", "-D warnings")
-        .env("PROPTEST_RNG_SEED", SEED_OF_CASES);
+        .env("PROPTEST_RNG_SEED", SEED_OF_CASES)
+        // Nobody debugs these hundreds of programs or builds them a second time: four fifths of their size is for that.
+        .env("CARGO_INCREMENTAL", "0")
+        .env("CARGO_PROFILE_DEV_DEBUG", "none");
     let own_target = step.is_packaging.then(new_target);
     if let Some(target) = &own_target {
         command.arg("--target-dir").arg(target);

@@ -1,5 +1,5 @@
 //! Repository chores:
-//! `cargo xtask bench | verify | native | memory | reproduce | meshes | compare | laws | docs | reference | readme | dist | rules | ci`.
+//! `cargo xtask bench | verify | native | memory | reproduce | meshes | compare | laws | live-test | docs | reference | readme | dist | rules | ci`.
 
 mod bench;
 mod beside;
@@ -10,6 +10,7 @@ mod docs;
 mod failure;
 mod generated;
 mod laws;
+mod live_test;
 mod memory;
 mod meshes;
 mod native;
@@ -57,6 +58,8 @@ enum Chore {
     Compare,
     /// Compare stresses and tangents of all laws with energies in 50 digits; pip installs mpmath into target/.
     Laws,
+    /// Try the live page in Chromium without a window: a hand, strangers, speed; skipped where there is no Chromium.
+    LiveTest(live_test::Arguments),
     /// Bring the README's table and pictures up to the last bench and the last hard bench.
     Docs,
     /// Write the reference and the JSON schema of scenes into docs.
@@ -81,6 +84,7 @@ fn main() -> ExitCode {
         Chore::Meshes => meshes::run(),
         Chore::Compare => compare::run(),
         Chore::Laws => laws::run(),
+        Chore::LiveTest(arguments) => live_test::run(&arguments),
         Chore::Docs => docs::run(),
         Chore::Reference => reference::run(),
         Chore::Readme => readme::run(),

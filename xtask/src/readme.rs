@@ -11,7 +11,20 @@ use crate::repository::root;
 
 /// Commands that take too long, or need what not every computer has, with the reason. With `--help` behind it, which reads
 /// all options before it and then ends, each still fails where an option is gone.
-const NOT_RUN: [(&str, &str); 10] = [
+const NOT_RUN: [(&str, &str); 14] = [
+    (
+        "cargo run --release -p sinew -- live scenes/ready/press.toml",
+        "serves until it is interrupted",
+    ),
+    (
+        "cargo run --release -p sinew -- run scene.toml --replay session.log --out again",
+        "repeats a session that a hand has driven",
+    ),
+    (
+        "cargo xtask bench --hands",
+        "minutes, and wants a quiet computer",
+    ),
+    ("cargo xtask live-test", "a step of `ci`"),
     ("cargo xtask bench", "minutes; `ci` has the quick bench"),
     ("cargo xtask verify", "a step of `ci`"),
     ("cargo test --workspace", "minutes; a step of `ci`"),

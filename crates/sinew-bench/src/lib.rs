@@ -5,12 +5,14 @@
 
 mod bench;
 pub mod beside;
+pub mod hands;
 pub mod hard;
 pub mod kernels;
 mod machine;
 mod median;
 pub mod nonlinear;
 pub mod peers;
+mod planned;
 mod pressed;
 pub mod report;
 pub mod reproduce;

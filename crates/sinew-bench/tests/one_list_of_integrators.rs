@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Lists of runs, which are about certain methods.
-const LISTS: [&str; 13] = [
+const LISTS: [&str; 15] = [
     "sinew-bench/src/verify/pressed.rs",
     "sinew-bench/src/kernels/laps.rs",
     "sinew-bench/src/scale/methods.rs",
@@ -17,9 +17,11 @@ const LISTS: [&str; 13] = [
     "sinew-bench/src/hard/checks/",
     "sinew-bench/src/hard/large/",
     "sinew-bench/src/nonlinear/methods.rs",
+    "sinew-bench/src/planned/methods.rs",
     "sinew-bench/src/reproduce/",
     "sinew-bench/src/verify/subjects/",
     "sinew-bench/src/verify/quasi_static.rs",
+    "sinew/src/command/live.rs",
 ];
 
 fn sources(folder: &Path, into: &mut Vec<PathBuf>) {

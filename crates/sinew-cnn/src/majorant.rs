@@ -133,7 +133,10 @@ impl Majorant {
         let gamma = match rule {
             GammaRule::Power if operators.damping().extra.is_none() => {
                 let found = |_: &LinearOperators| GammaOfStiffness(gamma(rule, matrix, &diagonal));
-                operators.derived(found).0
+                match operators.element_bounds() {
+                    Some(bounds) => bounds.block_factor,
+                    None => operators.derived(found).0,
+                }
             }
             _ => gamma(rule, matrix, &diagonal),
         };

@@ -312,6 +312,7 @@ impl<'a> Batch<'a> {
                 mass: self.system.mass(),
                 inertia,
                 kick,
+                is_staggered: true,
             };
             contact.meet(&meeting, state, pushed);
         }

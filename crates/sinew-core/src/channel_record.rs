@@ -1,6 +1,7 @@
 //! The values that a channel is given over time.
 
 use crate::ramp::Ramp;
+use crate::scaling::Scaling;
 
 /// Values given to a channel so far.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,28 +91,64 @@ impl Record {
         }
     }
 
-    /// Adds a value.
-    pub(crate) fn set(&mut self, channel: u32, t: f64, value: f64) -> Result<(), InputError> {
+    /// Lines without a beginning, which are 0 until there is a point.
+    pub(crate) fn open_line() -> Self {
+        Self {
+            value: Ramp::Table {
+                times: Vec::new(),
+                values: Vec::new(),
+            },
+            rate: empty(),
+        }
+    }
+
+    /// Factors of a ramp, none yet.
+    pub(crate) fn scaling(of: Ramp) -> Self {
+        Self {
+            value: Ramp::Scaled(Box::new(of), Scaling::default()),
+            rate: empty(),
+        }
+    }
+
+    /// Times (s) and values so far.
+    pub(crate) fn course(&self) -> (&[f64], &[f64]) {
+        match &self.value {
+            Ramp::Hold { times, values } | Ramp::Table { times, values } => (times, values),
+            Ramp::Scaled(_, Scaling { times, factors }) => (times, factors),
+            _ => (&[], &[]),
+        }
+    }
+
+    /// Refuses a value that cannot follow those so far.
+    pub(crate) fn check(&self, channel: u32, t: f64, value: f64) -> Result<(), InputError> {
         check_finite(channel, t, value)?;
+        let (times, values) = self.course();
+        let (Some(last), Some(from)) = (times.last().copied(), values.last()) else {
+            return Ok(());
+        };
+        if t <= last {
+            return Err(InputError::Order { channel, t, last });
+        }
+        let is_line = matches!(self.value, Ramp::Table { .. });
+        if is_line && !((value - from) / (t - last)).is_finite() {
+            return Err(InputError::Slope { channel, t, last });
+        }
+        Ok(())
+    }
+
+    /// Adds a value that [`Record::check`] lets pass.
+    pub(crate) fn add(&mut self, t: f64, value: f64) {
         // A value that holds has no rate but at its jumps.
         let is_line = matches!(self.value, Ramp::Table { .. });
         let Some((times, values)) = points(&mut self.value) else {
-            return Ok(());
+            return;
         };
         let before = times.last().copied().zip(values.last().copied());
-        if let Some((last, _)) = before
-            && t <= last
-        {
-            return Err(InputError::Order { channel, t, last });
-        }
         if is_line
             && let Some((rate_times, rates)) = points(&mut self.rate)
             && let Some((last, from)) = before
         {
             let slope = (value - from) / (t - last);
-            if !slope.is_finite() {
-                return Err(InputError::Slope { channel, t, last });
-            }
             // The line's slope in the place of the 0 that followed the last point.
             if rate_times.last() == Some(&last) {
                 rate_times.pop();
@@ -122,7 +159,6 @@ impl Record {
         }
         times.push(t);
         values.push(value);
-        Ok(())
     }
 
     /// Forgets the values before the one that holds, or the line that passes, at `t` (s).
@@ -156,6 +192,7 @@ fn empty() -> Ramp {
 fn points(ramp: &mut Ramp) -> Option<(&mut Vec<f64>, &mut Vec<f64>)> {
     match ramp {
         Ramp::Hold { times, values } | Ramp::Table { times, values } => Some((times, values)),
+        Ramp::Scaled(_, Scaling { times, factors }) => Some((times, factors)),
         _ => None,
     }
 }

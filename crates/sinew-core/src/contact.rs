@@ -20,6 +20,12 @@ pub trait Contact: Debug + Send + Sync {
     /// to `pushed`.
     fn meet(&self, meeting: &Meeting<'_>, state: &mut State, pushed: &mut Vec<u32>);
 
+    /// The impulse (N s) that each thing which touches the body has received from it since the motion began.
+    fn impulses(&self, state: &State) -> Vec<[f64; 3]>;
+
+    /// The work (J) that they did on the body since the motion began.
+    fn work(&self, state: &State) -> f64;
+
     /// Adds the forces (N) of the last step to those on all degrees of freedom, with or without those in directions that are held.
     fn add_forces(&self, state: &State, with_held: bool, out: &mut [f64]);
 }
@@ -37,6 +43,8 @@ pub struct Meeting<'a> {
     pub inertia: Inertia<'a>,
     /// The time (s) by which a change of velocity is divided in an acceleration that the state keeps; `None` where it keeps none.
     pub kick: Option<f64>,
+    /// Whether velocities hold in the middle of steps, so that what touches works at the mean of its own velocities in this step and the last, and not at that in this step.
+    pub is_staggered: bool,
 }
 
 /// The matrix P that a step divides forces by, one block for each cell.

@@ -3,7 +3,7 @@
 use crate::channel_record::{Between, InputError, Record, check_finite};
 use crate::force_record::{ForceInputError, ForceRecord};
 use crate::load::Load;
-use crate::ramp::{Channel, Ramp};
+use crate::ramp::{Channel, Ramp, RampError};
 
 /// Inputs that a caller gives while a simulation runs: forces of a hand, factors of loads,
 /// positions of supports.
@@ -58,6 +58,22 @@ impl Inputs {
         })
     }
 
+    /// Adds a channel of lines that is 0 until it is given a value, which then holds before its time as well.
+    pub fn add_open_line(&mut self) -> Channel {
+        self.push(Record::open_line())
+    }
+
+    /// Adds a channel of factors of a ramp, each of which holds from its time on; 1 before the first. What follows the channel gets the ramp times
+    /// the factor: a load that is turned up and down, beside its own course over time.
+    ///
+    /// # Errors
+    /// [`RampError`] for a ramp that follows an input or has a factor already, or has an impossible parameter.
+    pub fn add_factor_of(&mut self, ramp: Ramp) -> Result<Channel, RampError> {
+        let record = Record::scaling(ramp);
+        record.value.check()?;
+        Ok(self.push(record))
+    }
+
     /// Adds a channel of lines that begins with a value at `t` (s).
     pub(crate) fn add_line_from(&mut self, t: f64, value: f64) -> Result<Channel, InputError> {
         let channel = self.channels.len() as u32;
@@ -77,11 +93,30 @@ impl Inputs {
     /// [`InputError`] for numbers that are not finite, times that do not rise, lines too steep for a
     /// finite slope and channels of other inputs; nothing is recorded then.
     pub fn set(&mut self, channel: Channel, t: f64, value: f64) -> Result<(), InputError> {
-        let number = channel.0;
-        let Some(record) = self.channels.get_mut(number as usize) else {
-            return Err(InputError::NoChannel { channel: number });
-        };
-        record.set(number, t, value)
+        self.set_all(t, &[(channel, value)])
+    }
+
+    /// Gives several channels their values at the same time, all or none.
+    ///
+    /// # Errors
+    /// As [`Inputs::set`].
+    pub fn set_all(&mut self, t: f64, values: &[(Channel, f64)]) -> Result<(), InputError> {
+        for (Channel(number), value) in values {
+            let record = self.channels.get(*number as usize);
+            let record = record.ok_or(InputError::NoChannel { channel: *number })?;
+            record.check(*number, t, *value)?;
+        }
+        for (Channel(number), value) in values {
+            self.channels[*number as usize].add(t, *value);
+        }
+        Ok(())
+    }
+
+    /// Times (s) and values of a channel that are on record; none where it was given none, or there is no such channel.
+    #[must_use]
+    pub fn course(&self, channel: Channel) -> (&[f64], &[f64]) {
+        let record = self.channels.get(channel.0 as usize);
+        record.map_or((&[], &[]), Record::course)
     }
 
     /// Replaces the forces that act from outside by these from `t` (s) on: (degree of freedom,
@@ -101,6 +136,15 @@ impl Inputs {
         self.forces.forget_before(t);
         for record in &mut self.channels {
             record.forget_before(t);
+        }
+    }
+
+    /// As [`Inputs::forget_before`], the values of these channels only.
+    pub fn forget_channels_before(&mut self, channels: &[Channel], t: f64) {
+        for Channel(number) in channels {
+            if let Some(record) = self.channels.get_mut(*number as usize) {
+                record.forget_before(t);
+            }
         }
     }
 
@@ -309,6 +353,35 @@ mod tests {
         };
         assert_eq!(inputs.set(channel, 0.1, 2.0), Err(refused));
         assert!(inputs.set(channel, f64::NAN, 2.0).is_err());
+    }
+
+    #[test]
+    fn an_open_line_begins_with_its_first_value() {
+        let mut inputs = Inputs::new();
+        let line = inputs.add_open_line();
+        let at = |inputs: &Inputs, t: f64| inputs.value_of(line).value(t);
+        assert_eq!(
+            (at(&inputs, 1.0), inputs.course(line)),
+            (0.0, (&[][..], &[][..]))
+        );
+        inputs.set(line, 1.0, 4.0).unwrap();
+        assert_eq!([0.0, 1.0, 2.0].map(|t| at(&inputs, t)), [4.0; 3]);
+        inputs.set(line, 2.0, 6.0).unwrap();
+        assert_eq!([0.0, 1.5, 3.0].map(|t| at(&inputs, t)), [4.0, 5.0, 6.0]);
+        assert_eq!(inputs.course(line), (&[1.0, 2.0][..], &[4.0, 6.0][..]));
+    }
+
+    #[test]
+    fn several_channels_are_set_together_or_not_at_all() {
+        let mut inputs = Inputs::new();
+        let [a, b] = [(); 2].map(|()| inputs.add_open_line());
+        inputs.set_all(0.1, &[(a, 1.0), (b, 2.0)]).unwrap();
+        let before = inputs.clone();
+        for wrong in [f64::NAN, 1e308] {
+            assert!(inputs.set_all(0.2, &[(a, 1.0), (b, wrong)]).is_err());
+        }
+        assert!(inputs.set_all(0.2, &[(a, 1.0), (Channel(2), 1.0)]).is_err());
+        assert_eq!(inputs, before);
     }
 
     #[test]

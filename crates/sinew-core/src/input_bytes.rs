@@ -4,7 +4,8 @@ use crate::bytes::{BytesError, Kind, Reader, Writer};
 use crate::channel_record::{Between, InputError};
 use crate::force_record::ForceInputError;
 use crate::input::Inputs;
-use crate::ramp::Ramp;
+use crate::ramp::{Ramp, RampError};
+use crate::ramp_bytes;
 
 const KIND: Kind = Kind {
     name: b"sinew input v1\r\n",
@@ -21,6 +22,9 @@ pub enum InputBytesError {
     /// A channel's value that [`Inputs::set`] refuses.
     #[error(transparent)]
     Channel(#[from] InputError),
+    /// A ramp that [`Inputs::add_factor_of`] refuses.
+    #[error(transparent)]
+    Ramp(#[from] RampError),
     /// Forces that [`Inputs::set_forces`] refuses.
     #[error(transparent)]
     Forces(#[from] ForceInputError),
@@ -37,9 +41,13 @@ impl Inputs {
             let (flag, times, values) = match course {
                 Ramp::Table { times, values } => (1, &times[..], &values[..]),
                 Ramp::Hold { times, values } => (0, &times[..], &values[..]),
+                Ramp::Scaled(_, scaling) => (2, &scaling.times[..], &scaling.factors[..]),
                 _ => (0, &[][..], &[][..]),
             };
             out.flags([flag, 0, 0, 0]);
+            if let Ramp::Scaled(of, _) = course {
+                ramp_bytes::write(of, &mut out);
+            }
             out.count(times.len() as u64);
             for (t, value) in times.iter().zip(values) {
                 out.number(*t);
@@ -72,11 +80,14 @@ impl Inputs {
         let mut inputs = Self::new();
         for _ in 0..rest.count_of(12)? {
             let flags = rest.flags()?;
+            let scaled = (flags == [2, 0, 0, 0]).then(|| ramp_bytes::read(&mut rest));
+            let scaled = scaled.transpose()?;
             let (count, mut known) = (rest.count_of(16)?, 0);
             let channel = match flags {
                 [0, 0, 0, 0] => inputs.add_channel(Between::Hold),
-                // Lines have a beginning.
-                [1, 0, 0, 0] if count > 0 => {
+                [2, 0, 0, 0] if let Some(ramp) = scaled => inputs.add_factor_of(ramp)?,
+                [1, 0, 0, 0] if count == 0 => inputs.add_open_line(),
+                [1, 0, 0, 0] => {
                     known = 1;
                     inputs.add_line_from(rest.number()?, rest.number()?)?
                 }
@@ -121,6 +132,7 @@ mod tests {
             inputs.add_channel(Between::Line),
         );
         inputs.add_channel(Between::Line);
+        inputs.add_open_line();
         for (t, value) in [
             (0.1, 1.0 / 3.0),
             (0.3, -0.2),
@@ -130,6 +142,20 @@ mod tests {
             inputs.set(line, t, value).unwrap();
         }
         inputs.set(hold, 0.5, -0.0).unwrap();
+        for ramp in [
+            Ramp::Step,
+            Ramp::Sin2 { rise: 0.3 },
+            Ramp::Pulse { from: 0.1, to: 0.4 },
+            Ramp::Linear,
+            Ramp::Table {
+                times: vec![0.1, 0.5],
+                values: vec![-1.0, 1.0 / 3.0],
+            },
+        ] {
+            let scaled = inputs.add_factor_of(ramp).unwrap();
+            inputs.set(scaled, 0.15, 1.0 / 7.0).unwrap();
+            inputs.set(scaled, 0.2, 0.0).unwrap();
+        }
         for (t, entries) in [
             (-0.1, &[(7, 0.1), (3, -2.0)][..]),
             (0.016, &[(0, 1e-300)]),
@@ -151,7 +177,7 @@ mod tests {
             assert_eq!(read, written);
             assert_eq!(read.to_bytes(), bytes);
             assert_eq!(read.highest_dof(), written.highest_dof());
-            for channel in (0..3).map(crate::Channel) {
+            for channel in (0..9).map(crate::Channel) {
                 for ramp in [Ramp::Input(channel), Ramp::InputRate(channel)] {
                     for t in [0.05, 0.1, 0.2, 0.35, 0.45, 0.6] {
                         let when = LoadTime::at(t);
@@ -222,7 +248,7 @@ mod tests {
         ));
         let mut out = Writer::new(KIND);
         out.count(1);
-        out.flags([2, 0, 0, 0]);
+        out.flags([3, 0, 0, 0]);
         out.count(0);
         out.count(0);
         assert!(matches!(

@@ -179,6 +179,12 @@ impl Ramp {
             | Window::Line { from, to, .. }
             | Window::Hat { from, to } => (from, to),
         };
+        let slack = Clock::ROUNDING * from.abs().max(to.abs());
+        if let Self::Scaled(of, scaling) = self
+            && scaling.instant_between(from + slack, to - slack).is_none()
+        {
+            return scaling.at(0.5 * (from + to)) * of.factor(when);
+        }
         // All windows of a leapfrog count as long, so that its first is not taken otherwise than the next.
         let length = match window {
             Window::Hat { .. } => 2.0 * (t - from).max(to - t),
@@ -237,6 +243,10 @@ impl Ramp {
             _ => {}
         }
         let slack = Clock::ROUNDING * from.abs().max(to.abs());
+        if let Self::Scaled(of, scaling) = self {
+            let jump = scaling.instant_between(from + slack, to - slack);
+            return jump.is_none() && of.is_smooth_in_steps(from, to, length);
+        }
         self.breakpoint_between(from + slack, to - slack).is_none()
     }
 
@@ -261,6 +271,7 @@ impl Ramp {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scaling::Scaling;
 
     fn pulse(from: f64, to: f64) -> Ramp {
         Ramp::Pulse { from, to }
@@ -274,6 +285,12 @@ mod tests {
         }
     }
 
+    /// A ramp with these factors from these instants (s) on.
+    fn scaled(ramp: Ramp, factors: &[(f64, f64)]) -> Ramp {
+        let (times, factors) = factors.iter().copied().unzip();
+        Ramp::Scaled(Box::new(ramp), Scaling { times, factors })
+    }
+
     /// Ramps that come and go within 0..1, with the time integral of each.
     fn transient() -> Vec<(Ramp, f64)> {
         vec![
@@ -283,6 +300,9 @@ mod tests {
             (triangle(0.211, 0.219), 0.004),
             (triangle(0.2, 0.6), 0.2),
             (triangle(0.0, 0.102), 0.051),
+            (scaled(pulse(0.3, 0.7), &[(0.45, 2.5)]), 0.775),
+            (scaled(triangle(0.2, 0.6), &[(0.4, 0.0)]), 0.1),
+            (scaled(pulse(0.3, 0.7), &[(0.41, -1.0), (0.43, 1.0)]), 0.36),
         ]
     }
 
@@ -316,6 +336,31 @@ mod tests {
             for (window, found) in sums.into_iter().enumerate() {
                 let off = (found / impulse - 1.0).abs();
                 assert!(off < 1e-12, "{ramp:?}, window {window}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_factor_that_stays_changes_nothing_but_the_size() {
+        let dt = 0.05;
+        for ramp in [Ramp::Step, Ramp::Sin2 { rise: 0.4 }, pulse(0.31, 0.7)] {
+            let whole = scaled(ramp.clone(), &[]);
+            let driven = scaled(ramp.clone(), &[(0.3, 2.5)]);
+            for n in 0..20 {
+                let t = f64::from(n) * dt;
+                for when in [
+                    LoadTime::start_of(t, dt),
+                    LoadTime::within(t, dt, 0.3),
+                    LoadTime::around(t, dt, dt),
+                    LoadTime::smooth_in(t, t, dt),
+                    LoadTime::at(t),
+                ] {
+                    let of = ramp.factor(when);
+                    assert_eq!(whole.factor(when), of, "{ramp:?} {when:?}");
+                    if when.span().0 > 0.29 {
+                        assert_eq!(driven.factor(when), 2.5 * of, "{ramp:?} {when:?}");
+                    }
+                }
             }
         }
     }

@@ -1,11 +1,16 @@
 //! Linear systems: M, D, K on one pattern, and loads.
 
+mod cut_rows;
+
+pub use cut_rows::CutRows;
+
 use std::sync::Arc;
 
 use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern};
 
 use crate::changes::Changes;
 use crate::derived::Derived;
+use crate::element_bounds::ElementBounds;
 use crate::elements::ElementStiffness;
 use crate::energy::Energy;
 use crate::input::Inputs;
@@ -95,6 +100,8 @@ struct Matrices {
     mass: Vec<f64>,
     stiffness: Arc<BlockMatrix>,
     damping: Damping,
+    /// Bounds that are taken for eigenvalues.
+    bounds: Option<ElementBounds>,
     revision: Revision,
     changes: Changes,
     derived: Derived,
@@ -141,6 +148,7 @@ impl LinearOperators {
                 mass,
                 stiffness: Arc::new(stiffness),
                 damping,
+                bounds: None,
                 revision: Revision::new(),
                 changes: Changes::default(),
                 derived: Derived::default(),
@@ -181,11 +189,29 @@ impl LinearOperators {
         })
     }
 
+    /// These matrices with bounds that are taken where the largest eigenvalues of `M^-1 K` and `blockdiag(K)^-1 K` would be estimated: those of
+    /// elements hold after cuts, and cost nothing after them. They are believed.
+    #[must_use]
+    pub fn with_element_bounds(mut self, bounds: ElementBounds) -> Self {
+        let matrices = Arc::make_mut(&mut self.matrices);
+        matrices.bounds = Some(bounds);
+        matrices.revision = Revision::new();
+        matrices.changes = Changes::default();
+        matrices.derived = Derived::default();
+        self
+    }
+
+    /// Bounds that are taken for eigenvalues, where there are any.
+    #[must_use]
+    pub fn element_bounds(&self) -> Option<ElementBounds> {
+        self.matrices.bounds
+    }
+
     /// Adds element matrices to K, and masses (kg) by degree of freedom: a cut takes an element's
     /// matrix away, a burn makes it stiffer. A velocity that stays between two instants is then carried
     /// over the change by a step of order 1, unless [`crate::State::synchronise`] brings it to the
     /// displacement's time before. Costs as much as the rows it changes while no other
-    /// clone shares the matrices, and a copy of them otherwise; this clone has a new revision afterwards.
+    /// clone shares the matrices, and a copy of them otherwise; this clone has a new revision afterwards, and no bounds by elements.
     ///
     /// # Errors
     /// [`OperatorError`] where cells are no neighbours, a size does not fit or a degree of freedom does
@@ -225,6 +251,7 @@ impl LinearOperators {
             cells.push(dof / layers as u32);
         }
         matrices.changes.push(matrices.revision, cells);
+        matrices.bounds = None;
         matrices.revision = Revision::new();
         matrices.derived = Derived::default();
         Ok(())

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use crate::scaling::Scaling;
+
 /// Number of an input channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Channel(pub u32);
@@ -46,6 +48,8 @@ pub enum Ramp {
     Input(Channel),
     /// Time derivative (1/s) of an input.
     InputRate(Channel),
+    /// Another ramp that follows no input, times a factor.
+    Scaled(Box<Ramp>, Scaling),
 }
 
 /// Reasons for which a ramp is refused.
@@ -83,6 +87,12 @@ pub enum RampError {
         /// The ramp in words.
         of: String,
     },
+    /// A factor of an input, or of what has one.
+    #[error("a factor of a ramp {of}: expected that of one whose value is known")]
+    FactorOf {
+        /// The ramp in words.
+        of: String,
+    },
 }
 
 /// Change at a breakpoint that counts as rounding, relative to the value's total variation.
@@ -105,24 +115,20 @@ impl Ramp {
             }),
             Self::Linear | Self::Input(_) | Self::InputRate(_) => Ok(()),
             Self::Rate(of) => match **of {
-                Self::Rate(_) | Self::Input(_) | Self::InputRate(_) => {
+                Self::Rate(_) | Self::Input(_) | Self::InputRate(_) | Self::Scaled(..) => {
                     Err(RampError::RateOf { of: of.describe() })
                 }
                 _ => of.check(),
             },
-            Self::Table { times, values } | Self::Hold { times, values } => {
-                if times.len() != values.len() || times.is_empty() {
-                    return Err(RampError::TableLengths {
-                        times: times.len(),
-                        values: values.len(),
-                    });
+            Self::Scaled(of, Scaling { times, factors }) => match **of {
+                Self::Input(_) | Self::InputRate(_) | Self::Scaled(..) => {
+                    Err(RampError::FactorOf { of: of.describe() })
                 }
-                let bad = (0..times.len()).find(|&i| {
-                    !times[i].is_finite()
-                        || !values[i].is_finite()
-                        || (i > 0 && times[i] <= times[i - 1])
-                });
-                bad.map_or(Ok(()), |index| Err(RampError::TableEntry { index }))
+                _ if times.is_empty() && factors.is_empty() => of.check(),
+                _ => of.check().and_then(|()| check_points(times, factors)),
+            },
+            Self::Table { times, values } | Self::Hold { times, values } => {
+                check_points(times, values)
             }
         }
     }
@@ -149,6 +155,7 @@ impl Ramp {
             Self::Rate(of) => format!("by the rate of a factor {}", of.describe()),
             Self::Input(channel) => format!("by input {}", channel.0),
             Self::InputRate(channel) => format!("by the rate of input {}", channel.0),
+            Self::Scaled(of, _) => format!("{}, times a factor", of.describe()),
         }
     }
 
@@ -190,7 +197,10 @@ impl Ramp {
             (Self::Table { times, values }, 0 | 1) => {
                 match times.partition_point(|&time| time <= at) {
                     next if next == 0 || next == times.len() => match order {
-                        0 => values[next.saturating_sub(1)],
+                        // A record that was given nothing has no value.
+                        0 => values
+                            .get(next.saturating_sub(1))
+                            .map_or(0.0, |value| *value),
                         _ => 0.0,
                     },
                     next => {
@@ -210,6 +220,7 @@ impl Ramp {
             (Self::Linear, 0) if at >= 0.0 => t,
             (Self::Linear, 1) => f64::from(at >= 0.0),
             (Self::Rate(of), _) => of.derivative_of_piece(order + 1, at, t),
+            (Self::Scaled(of, scaling), _) => scaling.at(at) * of.derivative_of_piece(order, at, t),
             _ => 0.0,
         }
     }
@@ -239,7 +250,7 @@ impl Ramp {
         match self {
             Self::Step | Self::Sin2 { .. } => 1.0,
             Self::Pulse { .. } => 2.0,
-            Self::Linear | Self::Input(_) | Self::InputRate(_) => f64::INFINITY,
+            Self::Linear | Self::Input(_) | Self::InputRate(_) | Self::Scaled(..) => f64::INFINITY,
             Self::Rate(of) => of.variation_of_rate(),
             Self::Table { values, .. } | Self::Hold { values, .. } => {
                 let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
@@ -264,7 +275,7 @@ impl Ramp {
                 }
                 sum
             }
-            Self::Rate(_) | Self::Input(_) | Self::InputRate(_) => f64::INFINITY,
+            Self::Rate(_) | Self::Input(_) | Self::InputRate(_) | Self::Scaled(..) => f64::INFINITY,
         }
     }
 
@@ -274,7 +285,7 @@ impl Ramp {
     pub fn impulse(&self) -> f64 {
         match self {
             Self::Step | Self::Sin2 { .. } | Self::Linear => f64::INFINITY,
-            Self::Input(_) | Self::InputRate(_) => f64::INFINITY,
+            Self::Input(_) | Self::InputRate(_) | Self::Scaled(..) => f64::INFINITY,
             // The way that a value goes is the integral of its rate's size.
             Self::Rate(of) => of.variation(),
             Self::Pulse { from, to } => to - from,
@@ -307,6 +318,13 @@ impl Ramp {
     /// The first breakpoint (s) after `from` and before `to` (s). Allocates nothing.
     #[must_use]
     pub fn breakpoint_between(&self, from: f64, to: f64) -> Option<f64> {
+        if let Self::Scaled(of, scaling) = self {
+            let (of, own) = (
+                of.breakpoint_between(from, to),
+                scaling.instant_between(from, to),
+            );
+            return of.into_iter().chain(own).reduce(f64::min);
+        }
         let next = self.at_breakpoints(|points| {
             points
                 .get(points.partition_point(|time| *time <= from))
@@ -324,6 +342,13 @@ impl Ramp {
             Self::Linear => look(&[0.0]),
             Self::Rate(of) => of.at_breakpoints(look),
             Self::Input(_) | Self::InputRate(_) => look(&[]),
+            Self::Scaled(of, scaling) => {
+                let mut all = of.breakpoints();
+                all.extend(&scaling.times);
+                all.sort_by(f64::total_cmp);
+                all.dedup();
+                look(&all)
+            }
         }
     }
 
@@ -340,6 +365,7 @@ impl Ramp {
             }
             Self::Rate(of) => of.is_linear_between(t0, t1),
             Self::Input(_) | Self::InputRate(_) => true,
+            Self::Scaled(of, _) => of.is_constant_between(t0, t1),
         }
     }
 
@@ -347,7 +373,11 @@ impl Ramp {
     /// breakpoint lies between them.
     #[must_use]
     pub fn is_linear_between(&self, t0: f64, t1: f64) -> bool {
-        matches!(self, Self::Table { .. } | Self::Linear) || self.is_constant_between(t0, t1)
+        match self {
+            Self::Table { .. } | Self::Linear => true,
+            Self::Scaled(of, _) => of.is_linear_between(t0, t1),
+            _ => self.is_constant_between(t0, t1),
+        }
     }
 
     /// Writes the derivatives of order 0, 1, 2, .. just after time `t`, as many as `out` holds
@@ -357,6 +387,20 @@ impl Ramp {
             *derivative = self.derivative_of_piece(order, t, t);
         }
     }
+}
+
+/// Refuses lists that are no course over time.
+fn check_points(times: &[f64], values: &[f64]) -> Result<(), RampError> {
+    if times.len() != values.len() || times.is_empty() {
+        return Err(RampError::TableLengths {
+            times: times.len(),
+            values: values.len(),
+        });
+    }
+    let bad = (0..times.len()).find(|&i| {
+        !times[i].is_finite() || !values[i].is_finite() || (i > 0 && times[i] <= times[i - 1])
+    });
+    bad.map_or(Ok(()), |index| Err(RampError::TableEntry { index }))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Recorders, which see states while a simulation runs.
 
-use crate::{EvaluationError, Inputs, State, StepReport, System, Trial};
+use crate::{EvaluationError, Inputs, LoadTime, State, StepReport, System, Trial};
 
 /// Whether a simulation goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +53,7 @@ impl Moment<'_> {
     /// [`EvaluationError`] when the system refuses the state.
     pub fn acceleration(&self, v: &[f64], out: &mut [f64]) -> Result<(), EvaluationError> {
         let trial = Trial {
-            load: self.state.t().into(),
+            load: LoadTime::at(self.state.t()).under(self.inputs),
             dt: 0.0,
             u: &self.state.u,
             v,

@@ -18,7 +18,7 @@ pub fn critical_step(operators: &LinearOperators) -> f64 {
 /// The fastest motions of a linear system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spectrum {
-    /// Largest undamped angular frequency (rad/s).
+    /// Largest undamped angular frequency (rad/s), or the bound of it that the matrices have.
     pub omega_max: f64,
     /// Largest eigenvalue of M^-1 (D - alpha M) (1/s).
     pub damping_max: f64,
@@ -41,7 +41,10 @@ impl Spectrum {
         let stiffness = operators.stiffness();
         let damping = operators.damping();
         let mass = operators.mass();
-        let eigenvalue = largest_eigenvalue(mass, |x, out| stiffness.multiply(x, out));
+        let eigenvalue = match operators.element_bounds() {
+            Some(bounds) => bounds.omega_max * bounds.omega_max,
+            None => largest_eigenvalue(mass, |x, out| stiffness.multiply(x, out)),
+        };
         let damping_max = match &damping.extra {
             None => damping.stiffness * eigenvalue,
             Some(extra) => largest_eigenvalue(mass, |x, out| {

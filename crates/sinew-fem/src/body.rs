@@ -14,7 +14,7 @@ use crate::smoothing::{Smoothing, nodes_of};
 use crate::{Problem, Region};
 
 /// A mesh under its supports: the common part of models with other materials and loads.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Body {
     pub(crate) edges: usize,
     /// Longest edge of the bounding box (m).

@@ -55,6 +55,31 @@ impl Cells {
         })
     }
 
+    /// Appends a node that is held as another one is.
+    pub(crate) fn push_copy(&mut self, of: u32) {
+        let node = self.cell_of_node.len() as u32;
+        let held: [bool; 3] = std::array::from_fn(|axis| self.free_dof(of, axis).is_none());
+        if held != [false; 3] {
+            self.held_nodes.push(node);
+            self.held_components += held.iter().filter(|held| **held).count();
+        }
+        if held == [true; 3] {
+            self.cell_of_node.push(HELD);
+        } else {
+            self.cell_of_node.push(self.nodes.len() as u32);
+            self.nodes.push(node);
+            self.pinned.extend(held);
+        }
+    }
+
+    /// Makes room for so many further nodes.
+    pub(crate) fn reserve(&mut self, nodes: usize) {
+        self.nodes.reserve(nodes);
+        self.pinned.reserve(3 * nodes);
+        self.cell_of_node.reserve(nodes);
+        self.held_nodes.reserve(nodes);
+    }
+
     /// The first node that supports hold or move in other directions than these.
     pub(crate) fn first_held_otherwise(
         &self,

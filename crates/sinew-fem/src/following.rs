@@ -68,6 +68,14 @@ impl FollowingPressure {
         })
     }
 
+    /// The same, with another factor over time.
+    pub(crate) fn with_ramp(&self, ramp: Ramp) -> Self {
+        Self {
+            ramp,
+            ..self.clone()
+        }
+    }
+
     /// The factor at a time.
     pub(crate) fn factor(&self, when: LoadTime<'_>) -> f64 {
         self.ramp.factor(when)

@@ -96,6 +96,8 @@ mod border;
 mod by_tet;
 mod cells;
 mod check;
+mod cut;
+mod cut_model;
 mod element;
 mod elements;
 mod error;
@@ -103,6 +105,7 @@ mod following;
 mod from_mesh;
 mod graph;
 pub mod hyperelastic;
+mod in_place;
 mod large;
 mod law;
 mod loads;
@@ -130,12 +133,14 @@ mod vector_error;
 mod volumes;
 
 pub use body::smoothed_blocks;
+pub use cut_model::{CutModel, CutModelError, CutReport};
 pub use element::Element;
 pub use error::{Cause, FemError, Item};
 pub use from_mesh::{DataError, FromMesh};
 pub use law::{Law, SpringRule};
 pub use model::{
-    DeformedTet, FieldError, Model, ModelLoads, NodalForces, SupportMotion, WithMemory,
+    CutStateError, DeformedTet, FieldError, Model, ModelLoads, NodalForces, NodesCarried,
+    SupportMotion, WithMemory,
 };
 pub use on::On;
 pub use problem::{Course, Fixed, LoadKind, LoadSpec, Moving, Problem, Rayleigh, Region};

@@ -111,7 +111,7 @@ fn assemble(
     match load.kind {
         LoadKind::Traction(traction) => {
             for triangle in on.triangles(mesh).map_err(FemError::at(item))?.iter() {
-                let share = area_vector(mesh, triangle).norm() / 3.0 * Vector3::from(traction);
+                let share = share_of_corner(mesh, triangle, Spread::Traction(traction));
                 nodal.extend(triangle.map(|node| (node, share)));
             }
         }
@@ -120,7 +120,7 @@ fn assemble(
                 .outward_faces(&on.triangles(mesh).map_err(FemError::at(item))?)
                 .map_err(FemError::at(item))?;
             for (triangle, _) in &outward {
-                let share = area_vector(mesh, triangle) * (-pressure / 3.0);
+                let share = share_of_corner(mesh, triangle, Spread::Pressure(pressure));
                 nodal.extend(triangle.map(|node| (node, share)));
             }
             if matches!(load.kind, LoadKind::FollowingPressure(_)) {
@@ -142,7 +142,7 @@ fn assemble(
     }
     Ok(Parts {
         following,
-        ..gather(cells, &nodal, load.ramp.clone())
+        ..gather(cells, &nodal, load.ramp.clone(), item)
     })
 }
 
@@ -150,10 +150,10 @@ fn assemble(
 fn gravity(cells: &Cells, masses: &[f64], gravity: [f64; 3]) -> Parts {
     let weights = masses.iter().map(|mass| Vector3::from(gravity) * *mass);
     let nodal: Vec<(u32, Vector3<f64>)> = (0..).zip(weights).collect();
-    gather(cells, &nodal, Ramp::Step)
+    gather(cells, &nodal, Ramp::Step, Item::Gravity)
 }
 
-fn gather(cells: &Cells, nodal: &[(u32, Vector3<f64>)], ramp: Ramp) -> Parts {
+fn gather(cells: &Cells, nodal: &[(u32, Vector3<f64>)], ramp: Ramp, item: Item) -> Parts {
     let mut force = vec![0.0; cells.pinned.len()];
     let mut loaded = vec![false; cells.pinned.len()];
     let nothing_asked = nodal.iter().all(|(_, share)| *share == Vector3::zeros());
@@ -194,6 +194,7 @@ fn gather(cells: &Cells, nodal: &[(u32, Vector3<f64>)], ramp: Ramp) -> Parts {
         acting: acting.into(),
     };
     let held = (!held.is_empty()).then(|| HeldLoad {
+        item,
         ramp: ramp.clone(),
         forces: held.into_iter().collect(),
     });
@@ -202,6 +203,24 @@ fn gather(cells: &Cells, nodal: &[(u32, Vector3<f64>)], ramp: Ramp) -> Parts {
         held,
         following: None,
         facts,
+    }
+}
+
+/// What a load spreads over triangles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Spread {
+    /// Force over area (Pa).
+    Traction([f64; 3]),
+    /// Force over area (Pa), against the normal of triangles that are seen counter-clockwise from outside.
+    Pressure(f64),
+}
+
+/// The force (N) on each corner of a triangle.
+pub(crate) fn share_of_corner(mesh: &TetMesh, triangle: &[u32; 3], spread: Spread) -> Vector3<f64> {
+    let area = area_vector(mesh, triangle);
+    match spread {
+        Spread::Traction(traction) => area.norm() / 3.0 * Vector3::from(traction),
+        Spread::Pressure(pressure) => area * (-pressure / 3.0),
     }
 }
 

@@ -166,6 +166,20 @@ impl Material {
         }
     }
 
+    /// Lame's constants (Pa) of a tetrahedron by itself, where a linear law and they are all that its stiffness follows from.
+    pub(crate) fn lame_of_plain(&self, tet: usize) -> Option<[f64; 2]> {
+        match self.kind {
+            Kind::Continuum {
+                lame: (lambda, mu),
+                element: Element::P1,
+            } => {
+                let share = self.shares.of(tet);
+                Some([share * lambda, share * mu])
+            }
+            _ => None,
+        }
+    }
+
     /// The stiffness of some of its tetrahedra together over that of the stiffest.
     pub(crate) fn share_of(&self, mesh: &TetMesh, tets: &[u32]) -> f64 {
         self.shares.mean(mesh, tets)
@@ -229,6 +243,27 @@ impl Material {
                 share * youngs_modulus,
                 *rule,
             )),
+        }
+    }
+
+    /// The largest frequency (1/s) at which a tetrahedron with these vertices (m) and this density (kg/m^3) would swing its own mass, at small
+    /// strain and without fibres or what acts on averages; `None` where it is flat.
+    pub(crate) fn frequency(
+        &self,
+        tet: usize,
+        vertices: &[[f64; 3]; 4],
+        density: f64,
+    ) -> Option<f64> {
+        let share = self.shares.of(tet);
+        match &self.kind {
+            Kind::Continuum { .. } | Kind::Hyperelastic { .. } => {
+                let (lambda, mu) = self.lame().unwrap_or_default();
+                tetra::largest_frequency(vertices, [share * lambda, share * mu], density)
+            }
+            Kind::Springs {
+                youngs_modulus,
+                rule,
+            } => springs::largest_frequency(vertices, share * youngs_modulus, *rule, density),
         }
     }
 

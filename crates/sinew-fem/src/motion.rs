@@ -8,12 +8,15 @@ use crate::error::{Cause, FemError, Item};
 use crate::number::require_finite;
 use crate::{Course, Moving, Problem};
 
-/// Everything that is moved, by the places of [`Problem::moves`].
+/// Everything that is moved, by the places of [`Problem::moves`], and what was frozen.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Motions {
     parts: Vec<MovedPart>,
     /// The nodes that are moved, increasing, with the part that moves each component.
     nodes: Vec<(u32, [Option<u32>; 3])>,
+    /// Nodes that are held away from where they are at rest, increasing, with a constant course along each axis. They belong to pieces of which
+    /// every node is such a one, so that nothing that moves feels them.
+    frozen: Vec<(u32, [Course; 3])>,
 }
 
 /// The nodes that share one motion.
@@ -75,7 +78,36 @@ impl Motions {
         Ok(Self {
             parts,
             nodes: nodes.collect(),
+            frozen: Vec::new(),
         })
+    }
+
+    /// Holds nodes, increasing, at these displacements (m): each piece of the body as a whole, or not at all.
+    pub(crate) fn freeze(&mut self, frozen: &[(u32, [f64; 3])]) {
+        let held = |(node, displacement): &(u32, [f64; 3])| {
+            let along = |axis: usize| Course {
+                displacement: std::array::from_fn(
+                    |i| if i == axis { displacement[i] } else { 0.0 },
+                ),
+                ramp: Ramp::Step,
+            };
+            (*node, [0, 1, 2].map(along))
+        };
+        self.frozen = frozen.iter().map(held).collect();
+    }
+
+    /// The courses of a component of a node; none where it is held at rest or moves by itself.
+    pub(crate) fn courses(&self, node: u32, axis: usize) -> &[Course] {
+        if let Some(part) = self.part_of(node, axis) {
+            return self.parts.get(part).map_or(&[], |part| &part.courses);
+        }
+        let frozen = self.frozen(node).and_then(|courses| courses.get(axis));
+        frozen.map_or(&[], std::slice::from_ref)
+    }
+
+    fn frozen(&self, node: u32) -> Option<&[Course; 3]> {
+        let place = self.frozen.binary_search_by_key(&node, |(node, _)| *node);
+        Some(&self.frozen.get(place.ok()?)?.1)
     }
 
     pub(crate) fn is_empty(&self) -> bool {
@@ -109,11 +141,16 @@ impl Motions {
     /// A field (number `order` of displacement, velocity and acceleration) at a node; 0 in components that are
     /// not moved.
     pub(crate) fn field(&self, at: &MotionsAt, order: usize, node: u32) -> [f64; 3] {
-        if self.nodes.is_empty() {
+        if self.nodes.is_empty() && self.frozen.is_empty() {
             return [0.0; 3];
         }
         match self.nodes.binary_search_by_key(&node, |(node, _)| *node) {
-            Err(_) => [0.0; 3],
+            Err(_) => match self.frozen(node) {
+                Some(courses) if order == 0 => {
+                    std::array::from_fn(|axis| courses[axis].displacement[axis])
+                }
+                _ => [0.0; 3],
+            },
             Ok(found) => std::array::from_fn(|axis| {
                 let part = self.nodes[found].1[axis];
                 let motion = part.and_then(|part| at.of(part));

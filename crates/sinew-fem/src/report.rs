@@ -52,19 +52,23 @@ pub struct ModelReport {
 impl ModelReport {
     /// The part that materials and loads do not change.
     pub(crate) fn of_body(mesh: &TetMesh, body: &Body) -> Self {
-        let mesh_dofs = 3 * mesh.points.len();
-        let held_components = body.cells.held_components;
-        Self {
-            nodes: mesh.points.len(),
-            tets: mesh.tets.len(),
-            edges: body.edges,
-            mesh_dofs,
-            held_components,
-            free_dofs: mesh_dofs - held_components,
-            blocks: body.pattern.blocks(),
+        let mut report = Self {
             notes: mesh.notes.clone(),
             ..Self::default()
-        }
+        };
+        report.count(mesh, body);
+        report
+    }
+
+    /// Counts nodes, edges, degrees of freedom and blocks.
+    pub(crate) fn count(&mut self, mesh: &TetMesh, body: &Body) {
+        self.nodes = mesh.points.len();
+        self.tets = mesh.tets.len();
+        self.edges = body.edges;
+        self.mesh_dofs = 3 * self.nodes;
+        self.held_components = body.cells.held_components;
+        self.free_dofs = self.mesh_dofs - self.held_components;
+        self.blocks = body.pattern.blocks();
     }
 }
 

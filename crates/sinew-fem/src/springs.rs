@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix6, SMatrix, Vector3, Vector6};
 use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern};
 
 use crate::SpringRule;
@@ -130,6 +130,20 @@ pub(crate) fn stiffness(
         }
     }
     matrix
+}
+
+/// The largest frequency (1/s) at which the springs of a tetrahedron with these vertices (m) and this density (kg/m^3) would swing its own mass;
+/// `None` where it is flat.
+pub(crate) fn largest_frequency(
+    vertices: &[[f64; 3]; 4],
+    youngs_modulus: f64,
+    rule: SpringRule,
+    density: f64,
+) -> Option<f64> {
+    let quarter = density * tetra::signed_volume(vertices) / 4.0;
+    let matrix = stiffness(vertices, &[0, 1, 2, 3], youngs_modulus, rule);
+    let matrix = SMatrix::<f64, 12, 12>::from_row_slice(&matrix);
+    (quarter > 0.0).then(|| (matrix.symmetric_eigenvalues().max() / quarter).sqrt())
 }
 
 /// One spring for each edge, in increasing order of their nodes.

@@ -6,6 +6,7 @@ use sinew_core::Ramp;
 
 use crate::body::Body;
 use crate::border::Border;
+use crate::error::Item;
 use crate::motion::Motions;
 use crate::network::Dashpot;
 use crate::parts::Parts;
@@ -13,6 +14,8 @@ use crate::parts::Parts;
 /// The part of a load that falls on held components: `ramp(t)` times `forces`.
 #[derive(Clone, Debug)]
 pub(crate) struct HeldLoad {
+    /// The load, or gravity.
+    pub(crate) item: Item,
     pub(crate) ramp: Ramp,
     /// (node, force (N)), nodes increasing; components that move are zero.
     pub(crate) forces: Vec<(u32, [f64; 3])>,
@@ -50,6 +53,11 @@ impl Supports {
             dashpots: at_supports.copied().collect(),
             border: OnceLock::new(),
         }
+    }
+
+    /// Forgets the rows of held nodes, which have changed.
+    pub(crate) fn forget_border(&mut self) {
+        self.border = OnceLock::new();
     }
 
     /// The rows of the `held` nodes.

@@ -83,13 +83,18 @@ pub(crate) fn displacement_gradient(
 /// `None` when the vertices lie in one plane.
 #[must_use]
 pub fn stiffness(vertices: &[[f64; 3]; 4], lambda: f64, mu: f64) -> Option<[f64; 144]> {
-    let volume = edge_matrix(vertices).determinant().abs() / 6.0;
-    let gradients = gradients(vertices)?;
+    let (volume, gradients) = volume_and_gradients(vertices)?;
     let mut matrix = [0.0; 144];
     for (ga, rows) in gradients.iter().zip(matrix.as_chunks_mut::<36>().0) {
         stiffness_rows(volume, [lambda, mu], ga, &gradients, rows);
     }
     Some(matrix)
+}
+
+/// Volume (m^3) and gradients (1/m) of the shape functions; `None` when the vertices lie in one plane.
+pub(crate) fn volume_and_gradients(vertices: &[[f64; 3]; 4]) -> Option<(f64, [[f64; 3]; 4])> {
+    let volume = edge_matrix(vertices).determinant().abs() / 6.0;
+    Some((volume, gradients(vertices)?))
 }
 
 /// Writes the three rows of a stiffness matrix (N/m) at the node whose shape function has the gradient `ga`, all nodes of a
@@ -114,6 +119,41 @@ pub(crate) fn stiffness_rows(
             }
         }
     }
+}
+
+/// The largest frequency (1/s) at which an isotropic linear elastic tetrahedron of this density (kg/m^3) would swing its own lumped mass, a quarter at
+/// each vertex. No body of such tetrahedra, cut along any of their faces, has a larger one (Irons and Treharne 1971: eigenvalues of a sum of
+/// element matrices are bounded by those of the elements).
+///
+/// In the axes of S, the sum of the gradients' dyads with eigenvalues d, shapes of normal strain and of shear decouple, and the largest
+/// eigenvalue is that of `2 mu diag(d) + lambda sqrt(d) sqrt(d)'`: the largest root of a cubic in the invariants of S.
+///
+/// `None` when the vertices lie in one plane.
+#[must_use]
+pub fn largest_frequency(
+    vertices: &[[f64; 3]; 4],
+    [lambda, mu]: [f64; 2],
+    density: f64,
+) -> Option<f64> {
+    let gradients = gradients_of(edge_matrix(vertices))?;
+    let sum = gradients.transpose() * gradients;
+    let trace = sum.trace();
+    let second = (trace * trace - sum.norm_squared()) / 2.0;
+    let a = (2.0 * mu + lambda) * trace;
+    let b = 4.0 * mu * (mu + lambda) * second;
+    let c = 4.0 * mu * mu * (2.0 * mu + 3.0 * lambda) * sum.determinant();
+    // All roots are real and none is negative, so Newton's method comes down from their sum without passing the largest.
+    let mut root = a;
+    for _ in 0..100 {
+        let value = ((root - a) * root + b) * root - c;
+        let slope = (3.0 * root - 2.0 * a) * root + b;
+        let next = root - value / slope;
+        if next.is_nan() || next >= root {
+            break;
+        }
+        root = next;
+    }
+    Some((4.0 / density * root).sqrt())
 }
 
 #[cfg(test)]
@@ -173,6 +213,20 @@ mod tests {
         }
         let flat = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
         assert_eq!(super::gradients(&flat), None);
+    }
+
+    #[test]
+    fn the_largest_frequency_is_that_of_the_matrix_over_the_lumped_mass() {
+        for (poissons_ratio, density) in [(0.0, 1.0), (0.25, 1060.0), (0.49, 900.0)] {
+            let (lambda, mu) = lame(3500.0, poissons_ratio);
+            let matrix = stiffness(&SKEW, lambda, mu).unwrap();
+            let matrix = nalgebra::SMatrix::<f64, 12, 12>::from_row_slice(&matrix);
+            let quarter = density * signed_volume(&SKEW) / 4.0;
+            let expected = (matrix.symmetric_eigenvalues().max() / quarter).sqrt();
+            let found = largest_frequency(&SKEW, [lambda, mu], density).unwrap();
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        }
+        assert_eq!(largest_frequency(&[[0.0; 3]; 4], [1.0; 2], 1.0), None);
     }
 
     #[test]

@@ -120,6 +120,9 @@ impl<M: Scheme> Integrator for Frame<M> {
     }
 
     fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
+        if self.scheme.refuses_contact() && system.contact().is_some() {
+            return Err(Self::no_contact());
+        }
         let work = self.set_up(system, dt)?;
         self.check_contact(system)?;
         Ok(work)
@@ -274,16 +277,21 @@ impl<M: Scheme> Frame<M> {
     fn check_contact(&self, system: &dyn System) -> Result<(), SetupError> {
         let can_be_pushed = match &self.ready {
             Ready::Program(loaded) => loaded.program.inertia().is_some(),
-            Ready::Not | Ready::ByHand(_) => false,
+            Ready::ByHand(steps) => steps.meets_contact(),
+            Ready::Not => false,
         };
         if can_be_pushed || system.contact().is_none() {
             return Ok(());
         }
-        Err(SetupError::Contact {
+        Err(Self::no_contact())
+    }
+
+    fn no_contact() -> SetupError {
+        SetupError::Contact {
             integrator: M::ID,
             reason: "tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity",
             methods: METHODS_WITH_CONTACT,
-        })
+        }
     }
 
     /// Refuses an error that rounding exceeds, and rounding that leaves nothing of a motion.

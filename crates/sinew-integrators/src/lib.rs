@@ -45,7 +45,7 @@ pub use method::{ConservedEnergy, Method};
 pub use numerical_dissipation::{NumericalDissipation, StepEnd};
 pub use option_help::{OptionDefault, OptionHelp, OptionLabel};
 pub use option_kind::OptionKind;
-pub use registry::{Entry, build, entries, entry, ids};
+pub use registry::{Entry, build, entries, entry, ids, with_threads};
 pub use rounding::LEAST_F32_ROUNDING;
 pub use scheme::{Scheme, SetUp, StepByHand, Steps};
 pub use stepper::Stepper;

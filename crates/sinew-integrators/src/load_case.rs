@@ -40,7 +40,7 @@ impl LoadCase {
             Ramp::Step | Ramp::Sin2 { .. } | Ramp::Pulse { .. } => 1.0,
             // Half of what it rises and falls by.
             Ramp::Rate(_) => 0.5 * self.ramp.variation(),
-            Ramp::Linear | Ramp::Input(_) | Ramp::InputRate(_) => 1.0,
+            Ramp::Linear | Ramp::Input(_) | Ramp::InputRate(_) | Ramp::Scaled(..) => 1.0,
         }
     }
 }

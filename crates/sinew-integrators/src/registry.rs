@@ -1,6 +1,6 @@
 //! Integrators by name.
 
-use sinew_core::{Fact, OptionError, Options};
+use sinew_core::{Fact, OptionError, OptionValue, Options};
 use sinew_machines::Settings;
 
 use crate::explicit::{GuardOption, Guarded, Substepped, Substeps};
@@ -142,6 +142,22 @@ impl Entry {
     }
 }
 
+/// Options with the largest number of threads that is asked for, or else the options' own, or else as many as help. Methods whose
+/// steps no machine takes have none, and refuse one that is asked for.
+#[must_use]
+pub fn with_threads(id: &str, options: &Options, threads: Option<&OptionValue>) -> Options {
+    const KEY: &str = "threads";
+    let mut options = options.clone();
+    match threads {
+        Some(threads) => options.insert(KEY, threads.clone()),
+        None if options.get(KEY).is_none() && entry(id).is_some_and(|entry| entry.programs) => {
+            options.insert(KEY, OptionValue::Text("auto".to_owned()));
+        }
+        None => {}
+    }
+    options
+}
+
 /// Every integrator, explicit ones first.
 #[must_use]
 pub fn entries() -> Vec<Entry> {
@@ -181,8 +197,6 @@ pub fn build(id: &str, options: &Options) -> Result<Box<dyn Stepper>, OptionErro
 
 #[cfg(test)]
 mod tests {
-    use sinew_core::OptionValue;
-
     use super::*;
 
     fn refusal(id: &str, options: Options) -> String {

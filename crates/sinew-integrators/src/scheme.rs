@@ -43,6 +43,11 @@ pub trait Scheme: Send + Sized + 'static {
         false
     }
 
+    /// Whether tools can push none of its steps, whatever its set-up finds: on a body with tools none is made, which may take long.
+    fn refuses_contact(&self) -> bool {
+        false
+    }
+
     /// Whether its steps stay the same where the values of some rows change: the steps of a program that
     /// holds nothing but numbers.
     fn survives_change_of_rows(&self) -> bool {
@@ -130,6 +135,11 @@ impl<S> SetUp<S> {
 pub trait StepByHand: Send {
     /// Whether the velocity stays in the middle of the last step.
     fn is_staggered(&self) -> bool {
+        false
+    }
+
+    /// Whether the steps let what touches the system push its cells.
+    fn meets_contact(&self) -> bool {
         false
     }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use sinew_core::Run;
-use sinew_scene::{Scene, SceneError, SceneModel, Simulation};
+use sinew_scene::{CuttingError, Scene, SceneError, SceneModel, Simulation};
 
 use crate::cpu_time::thread_cpu_time;
 use crate::number;
@@ -73,6 +73,23 @@ pub enum CaseError {
     /// The scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A body that may be cut.
+    #[error(
+        "{case}: the body is cut while it moves ([cutting]), and no reference follows that: let the strokes end by t = 0, where they cut it before it \
+         moves, or take the table out to measure the motion of the whole body"
+    )]
+    Cut {
+        /// Id of the case.
+        case: String,
+    },
+    /// A cut before the motion that cannot be made.
+    #[error("{case}: {source}")]
+    Cutting {
+        /// Id of the case.
+        case: String,
+        /// The error.
+        source: CuttingError,
+    },
     /// The reference.
     #[error("{case}: {source}")]
     Reference {
@@ -87,6 +104,7 @@ pub enum CaseError {
 pub(crate) fn course(simulation: &Simulation, pace: Pace) -> Course {
     match simulation.model() {
         _ if simulation.system().as_linear().is_none() => Course::Extrapolated,
+        _ if simulation.system().contact().is_some() => Course::Extrapolated,
         SceneModel::Body(body) if body.mesh.tets.len() >= LARGE => Course::Faber,
         SceneModel::Body(_) | SceneModel::Oscillator(_) => Course::Taylor(pace),
     }
@@ -112,7 +130,7 @@ impl Case {
     /// A case from a built scene.
     ///
     /// # Errors
-    /// [`CaseError::Reference`].
+    /// [`CaseError`].
     pub fn new(id: impl Into<String>, simulation: Simulation) -> Result<Self, CaseError> {
         let span = Span::of(&simulation);
         Self::over(id, simulation, span)
@@ -121,7 +139,7 @@ impl Case {
     /// A case of a part of a built scene, for where a reference of all of it costs too much.
     ///
     /// # Errors
-    /// [`CaseError::Reference`].
+    /// [`CaseError`].
     pub fn over(
         id: impl Into<String>,
         simulation: Simulation,
@@ -134,7 +152,7 @@ impl Case {
     /// over sizes.
     ///
     /// # Errors
-    /// [`CaseError::Reference`].
+    /// [`CaseError`].
     pub fn with_affordable_reference(
         id: impl Into<String>,
         simulation: Simulation,
@@ -146,7 +164,7 @@ impl Case {
     /// As [`Case::over`], with a reference at a pace.
     ///
     /// # Errors
-    /// [`CaseError::Reference`].
+    /// [`CaseError`].
     pub(crate) fn at_pace(
         pace: Pace,
         id: impl Into<String>,
@@ -163,6 +181,13 @@ impl Case {
         simulation: Simulation,
         span: Span,
     ) -> Result<Self, CaseError> {
+        if simulation.is_cut_later() {
+            return Err(CaseError::Cut { case: id });
+        }
+        let simulation = match simulation.cut_beforehand() {
+            Ok(simulation) => simulation,
+            Err(source) => return Err(CaseError::Cutting { case: id, source }),
+        };
         let times = span.instants();
         let before = thread_cpu_time();
         let samples = follow_by(

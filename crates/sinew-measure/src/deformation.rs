@@ -13,9 +13,11 @@ pub(crate) struct DeformationWatch<'a> {
     /// Whether all energy comes from the start and from loads: no part of the body is moved.
     knows_energy: bool,
     smallest_volume_ratio: f64,
+    /// Work (J) of what touches the body, until the last step.
+    work_of_contact: f64,
     /// Displacement (m) and load (N) at the last step, none before the first.
     last: Option<(f64, Vec<f64>)>,
-    /// Energy of the start and work of loads since (J).
+    /// Energy of the start and work of loads and tools since (J).
     allowed: f64,
     largest_allowed: f64,
     rise: f64,
@@ -34,7 +36,8 @@ impl<'a> DeformationWatch<'a> {
         let zeros = || vec![0.0; system.dofs()];
         Some(Self {
             law: system.as_elastic()?,
-            knows_energy: body.problem.moves.is_empty() && body.tools.is_none(),
+            knows_energy: body.problem.moves.is_empty(),
+            work_of_contact: 0.0,
             smallest_volume_ratio: f64::INFINITY,
             last: None,
             allowed: 0.0,
@@ -76,6 +79,9 @@ impl<'a> DeformationWatch<'a> {
                     moment.system.external_force(end, at, &mut self.force);
                     self.allowed += 0.5 * (dot(&self.force, &state.u) - dot(&self.force, u));
                 }
+                let contact = moment.system.contact();
+                let work = contact.map_or(0.0, |contact| contact.work(state));
+                self.allowed += work - std::mem::replace(&mut self.work_of_contact, work);
                 *t = state.t();
                 u.copy_from_slice(&state.u);
             }

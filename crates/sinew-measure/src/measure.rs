@@ -134,6 +134,10 @@ pub fn measure_with(
         error_is_below: error
             .filter(|error| *error < track.least_error())
             .map(|_| track.least_error()),
+        force_error: match diverged_at {
+            None if system.contact().is_some() => finite(comparison.of_impulses.relative()),
+            _ => None,
+        },
         expected_error: match (diverged_at, &comparison.history) {
             (None, Some(history)) => {
                 let expected = history.expected_over(case.whole().duration);
@@ -213,6 +217,10 @@ struct Comparison<'a> {
     /// Steps after which the last state came.
     reached: usize,
     norm: ErrorNorm,
+    /// Of the impulses between two instants.
+    of_impulses: ErrorNorm,
+    /// Impulses (N s) at the last instant, of the run and of the reference.
+    impulses: [Vec<f64>; 2],
     /// Present where the error beyond the last instant is asked for.
     history: Option<ErrorHistory>,
     /// Present for bodies that follow a force law.
@@ -231,11 +239,36 @@ impl<'a> Comparison<'a> {
             step: 0,
             reached: 0,
             norm: ErrorNorm::default(),
+            of_impulses: ErrorNorm::default(),
+            impulses: [Vec::new(), Vec::new()],
             history: None,
             deformation: None,
             max_u: 0.0,
             late: LateRange::new(dofs),
         }
+    }
+}
+
+impl Comparison<'_> {
+    /// Compares what has been received since the last instant: the mean forces of that time.
+    fn compare_impulses(&mut self, moment: &Moment<'_>) {
+        let reference = self.track.impulses.get(self.step / self.stride);
+        let (Some(contact), Some(reference)) = (moment.system.contact(), reference) else {
+            return;
+        };
+        let now = [
+            contact.impulses(moment.state).into_flattened(),
+            reference.clone(),
+        ];
+        let since = [0, 1].map(|which| {
+            let before = self.impulses[which].iter().chain(std::iter::repeat(&0.0));
+            let pairs = now[which].iter().zip(before);
+            pairs
+                .map(|(now, before)| now - before)
+                .collect::<Vec<f64>>()
+        });
+        self.of_impulses.include(&since[0], &since[1]);
+        self.impulses = now;
     }
 }
 
@@ -252,6 +285,7 @@ impl Recorder for Comparison<'_> {
             && let Some(reference) = self.track.displacements.get(self.step / self.stride)
         {
             self.norm.include(&state.u, reference);
+            self.compare_impulses(moment);
             if let Some(history) = &mut self.history {
                 history.include(state.t(), &state.u, reference);
             }

@@ -100,6 +100,9 @@ pub struct Row {
     /// a hundred times its own error. `error` is then the difference from it and no figure to quote.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_is_below: Option<f64>,
+    /// Relative L2 error (fraction) of the forces on tools, means over the time between two instants; of bodies that tools touch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_error: Option<f64>,
     /// Relative L2 error to expect over the whole scene (fraction), with phase errors that grow on
     /// and without loads that change later, never less than the measured one; only where a first part
     /// of the scene was compared.

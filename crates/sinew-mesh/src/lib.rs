@@ -60,7 +60,7 @@ pub use msh::{
 pub use physical_tags::PhysicalTags;
 pub use selection::{Condition, Selection, SelectionError};
 pub use tet_mesh::{
-    AddGroupError, Group, GroupMembers, RefineError, SurfaceError, TetData, TetDataError, TetMesh,
-    TetMeshError, UnknownGroup,
+    AddGroupError, BoundarySurface, CutBody, CutMesh, Group, GroupMembers, MovedNode, RefineError,
+    Split, SplitFollower, SurfaceError, TetData, TetDataError, TetMesh, TetMeshError, UnknownGroup,
 };
 pub use warning::{Position, Warning};

@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 use sinew_core::vectors::{dot, weighted_dot};
-use sinew_core::{Acceleration, Damping, ElasticLaw, LinearOperators, LoadTime, Moment, Trial};
+use sinew_core::{
+    Acceleration, Contact, Damping, ElasticLaw, Inputs, LinearOperators, LoadTime, Moment, State,
+    Trial,
+};
 use sinew_fem::Model;
 use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
 use sinew_scene::{SceneModel, Simulation};
@@ -23,6 +26,8 @@ pub(crate) struct Energies {
     pub(crate) supports: f64,
     /// Work of tools since the beginning, where there are tools.
     pub(crate) tools: Option<f64>,
+    /// Energy that cuts brought in since the beginning, where the body may be cut: less than 0 for what was taken away.
+    pub(crate) cuts: Option<f64>,
     /// Energy that damping took since the beginning.
     pub(crate) damped: f64,
     /// Energy that the method took since the beginning, where its closed form is known.
@@ -40,6 +45,7 @@ pub(crate) struct Sums {
     supports: f64,
     damped: f64,
     method: f64,
+    pub(crate) cuts: f64,
 }
 
 /// Motion at the last row: time (s), displacement (m) and velocity (m/s) of the degrees of freedom, and the acceleration
@@ -80,8 +86,12 @@ struct Nodes {
 }
 
 impl<'a> Balance<'a> {
-    /// Begins with rows at these steps of the method.
-    pub(crate) fn new(simulation: &'a Simulation, method: &dyn Stepper, rows: Schedule) -> Self {
+    /// Begins with rows at these steps of the method; of several methods, or steps of several lengths, with `None`.
+    pub(crate) fn new(
+        simulation: &'a Simulation,
+        method: Option<&dyn Stepper>,
+        rows: Schedule,
+    ) -> Self {
         let mut balance = Self {
             simulation,
             sums: Sums::default(),
@@ -90,8 +100,12 @@ impl<'a> Balance<'a> {
             form: None,
         };
         // The form is that of one step of free degrees of freedom.
-        if rows.is_every_step() && balance.moved_body().is_none() && balance.operators().is_some() {
-            balance.form = method.numerical_dissipation();
+        if !simulation.is_cut()
+            && rows.is_every_step()
+            && balance.moved_body().is_none()
+            && balance.operators().is_some()
+        {
+            balance.form = method.and_then(Stepper::numerical_dissipation);
         }
         balance
     }
@@ -106,6 +120,11 @@ impl<'a> Balance<'a> {
         self.tools().is_some()
     }
 
+    /// Whether the body may be cut.
+    pub(crate) fn has_cuts(&self) -> bool {
+        self.simulation.is_cut()
+    }
+
     fn tools(&self) -> Option<&'a Tools> {
         self.simulation.model().tools().map(|tools| &**tools)
     }
@@ -118,9 +137,35 @@ impl<'a> Balance<'a> {
     /// Goes on after a row that was written by an earlier run.
     pub(crate) fn resumed(mut self, sums: Sums, last: LastRow) -> Result<Self, RecordRunError> {
         self.sums = sums;
-        self.nodes = self.nodes(&last)?;
+        self.nodes = self.nodes(&last, Inputs::none())?;
         self.last = Some(last);
         Ok(self)
+    }
+
+    /// Goes on after the body became another one, with the state that was carried over, and what that brought in (J).
+    pub(crate) fn after_change(
+        self,
+        mut sums: Sums,
+        state: &State,
+        energy: f64,
+    ) -> Result<Self, RecordRunError> {
+        sums.cuts += energy;
+        let t = state.t();
+        let mut v = vec![0.0; state.u.len()];
+        state.velocity_at_t(self.simulation.system(), Inputs::none(), &mut v)?;
+        let internal = match self.moved_body() {
+            Some(_) => state.internal.clone(),
+            None => Vec::new(),
+        };
+        let row = LastRow {
+            t,
+            before: t,
+            u: state.u.clone(),
+            v,
+            a: Vec::new(),
+            internal,
+        };
+        self.resumed(sums, row)
     }
 
     fn operators(&self) -> Option<&'a LinearOperators> {
@@ -151,19 +196,20 @@ impl<'a> Balance<'a> {
                 None => Vec::new(),
             },
         };
-        let nodes = self.nodes(&here)?;
-        let (kinetic, elastic) = self.stored(&here, nodes.as_ref())?;
+        let inputs = moment.inputs;
+        let nodes = self.nodes(&here, inputs)?;
+        let (kinetic, elastic) = self.stored(&here, nodes.as_ref(), inputs)?;
         if let Some(last) = &self.last {
             if let (Some(before), Some(after)) = (&self.nodes, &nodes) {
                 let ends = [&before.u[..], &after.u];
                 self.sums.loads += work([&before.loads, &after.loads], ends);
                 self.sums.supports += work([&before.supports, &after.supports], ends);
-                self.sums.damped += self.damped(last, &here, Some(ends))?;
+                self.sums.damped += self.damped([last, &here], Some(ends), inputs)?;
             } else {
-                let (before, after) = self.loads_at_ends(last, &here);
+                let (before, after) = self.loads_at_ends(last, &here, inputs);
                 self.sums.loads += work([&before, &after], [&last.u, &here.u]);
-                self.sums.damped += self.damped(last, &here, None)?;
-                self.sums.method += self.taken_by_method(last, &here);
+                self.sums.damped += self.damped([last, &here], None, inputs)?;
+                self.sums.method += self.taken_by_method(last, &here, inputs);
             }
         } else {
             self.sums.first = kinetic + elastic;
@@ -176,9 +222,10 @@ impl<'a> Balance<'a> {
             supports,
             damped,
             method,
+            cuts,
         } = self.sums;
         let tools = self.tools().map(|tools| tools.work(moment.state));
-        let given = first + loads + supports + tools.unwrap_or(0.0);
+        let given = first + loads + supports + tools.unwrap_or(0.0) + cuts;
         Ok(Energies {
             t,
             kinetic,
@@ -186,6 +233,7 @@ impl<'a> Balance<'a> {
             loads,
             supports,
             tools,
+            cuts: self.has_cuts().then_some(cuts),
             damped,
             method: self.form.map(|_| method),
             remainder: kinetic + elastic - given + damped + method,
@@ -206,21 +254,21 @@ impl<'a> Balance<'a> {
     }
 
     /// The energy (J) that the method takes in a step between two rows, 0 where that is not known.
-    fn taken_by_method(&self, last: &LastRow, here: &LastRow) -> f64 {
+    fn taken_by_method(&self, last: &LastRow, here: &LastRow, inputs: &Inputs) -> f64 {
         let (Some(form), Some(operators)) = (self.form, self.operators()) else {
             return 0.0;
         };
         let dt = here.t - last.t;
         let [before, after] = form
             .loads_at_ends(last.t, dt)
-            .map(|when| self.loads_at(when, &here.u));
+            .map(|when| self.loads_at(when.under(inputs), &here.u));
         // The step begins with the acceleration of the last one and what the loads are other than at the end of that.
         let known = match last.before < last.t {
             true => {
                 let [_, end] = form.loads_at_ends(last.before, last.t - last.before);
-                self.loads_at(end, &last.u)
+                self.loads_at(end.under(inputs), &last.u)
             }
-            false => self.loads_at(last.t.into(), &last.u),
+            false => self.loads_at(LoadTime::at(last.t).under(inputs), &last.u),
         };
         let change = before.iter().zip(&known).zip(operators.mass());
         let change = change.map(|((load, known), mass)| (load - known) / mass);
@@ -241,8 +289,14 @@ impl<'a> Balance<'a> {
     }
 
     /// Loads (N) of the degrees of freedom at two rows, whose mean has the impulse of the loads between them, jumps included.
-    fn loads_at_ends(&self, last: &LastRow, here: &LastRow) -> (Vec<f64>, Vec<f64>) {
-        let [from, to] = LoadTime::at_both_ends(last.t, here.t - last.t, 0.5);
+    fn loads_at_ends(
+        &self,
+        last: &LastRow,
+        here: &LastRow,
+        inputs: &Inputs,
+    ) -> (Vec<f64>, Vec<f64>) {
+        let ends = LoadTime::at_both_ends(last.t, here.t - last.t, 0.5);
+        let [from, to] = ends.map(|when| when.under(inputs));
         (self.loads_at(from, &last.u), self.loads_at(to, &here.u))
     }
 
@@ -254,16 +308,17 @@ impl<'a> Balance<'a> {
     }
 
     /// All nodes at a row, where some are moved.
-    fn nodes(&self, row: &LastRow) -> Result<Option<Nodes>, RecordRunError> {
+    fn nodes(&self, row: &LastRow, inputs: &Inputs) -> Result<Option<Nodes>, RecordRunError> {
         let Some(model) = self.moved_body() else {
             return Ok(None);
         };
         let mut u = vec![[0.0; 3]; model.mesh().points.len()];
         let (mut loads, mut supports) = (u.clone(), u.clone());
-        model.displacements_at(row.t, &row.u, &mut u)?;
-        model.load_forces(row.t, &u, &mut loads)?;
+        let when = LoadTime::at(row.t).under(inputs);
+        model.displacements_at(when, &row.u, &mut u)?;
+        model.load_forces(when, &u, &mut loads)?;
         let body = model.with_memory(&row.internal);
-        body.reactions(row.t, &row.u, &row.v, &mut supports)?;
+        body.reactions(when, &row.u, &row.v, &mut supports)?;
         Ok(Some(Nodes {
             u: u.into_flattened(),
             loads: loads.into_flattened(),
@@ -272,7 +327,12 @@ impl<'a> Balance<'a> {
     }
 
     /// Kinetic and elastic energy.
-    fn stored(&self, row: &LastRow, nodes: Option<&Nodes>) -> Result<(f64, f64), RecordRunError> {
+    fn stored(
+        &self,
+        row: &LastRow,
+        nodes: Option<&Nodes>,
+        inputs: &Inputs,
+    ) -> Result<(f64, f64), RecordRunError> {
         let (Some(model), Some(nodes)) = (self.moved_body(), nodes) else {
             let energy = match self.simulation.model() {
                 SceneModel::Body(_) => self.simulation.system().energy(&row.u, &row.v),
@@ -285,7 +345,7 @@ impl<'a> Balance<'a> {
             }));
         };
         let mut v = vec![[0.0; 3]; model.mesh().points.len()];
-        model.velocities_at(row.t, &row.v, &mut v)?;
+        model.velocities_at(LoadTime::at(row.t).under(inputs), &row.v, &mut v)?;
         let moving = v.iter().zip(model.node_masses());
         let kinetic = moving.map(|(v, mass)| 0.5 * mass * v.iter().map(|v| v * v).sum::<f64>());
         let elastic = model.elastic_energy(nodes.u.as_chunks::<3>().0)?;
@@ -296,9 +356,9 @@ impl<'a> Balance<'a> {
     /// nodes have these displacements (m) then, with all its nodes.
     fn damped(
         &self,
-        last: &LastRow,
-        here: &LastRow,
+        [last, here]: [&LastRow; 2],
         nodes: Option<[&[f64]; 2]>,
+        inputs: &Inputs,
     ) -> Result<f64, RecordRunError> {
         let (span, system) = (here.t - last.t, self.simulation.system());
         let Some(damping) = system.as_elastic().map(ElasticLaw::damping) else {
@@ -321,7 +381,7 @@ impl<'a> Balance<'a> {
                 operators.subtract_damping(&own, &mut force);
                 -dot(&force, &own)
             }
-            None => self.power_of_damping(damping, [last, here], &own)?,
+            None => self.power_of_damping(damping, [last, here], &own, inputs)?,
         };
         let (Some(model), Some([u_before, u_after])) = (self.moved_body(), nodes) else {
             return Ok(span * free);
@@ -339,9 +399,10 @@ impl<'a> Balance<'a> {
             }
         }
         let still = vec![[0.0; 3]; w.len()];
+        let when = LoadTime::at(here.t).under(inputs);
         let rows = |v: &[[f64; 3]]| -> Result<Vec<[f64; 3]>, RecordRunError> {
             let mut out = vec![[0.0; 3]; w.len()];
-            model.moving_reactions(here.t, [&still, v, &still], &mut out)?;
+            model.moving_reactions(when, [&still, v, &still], &mut out)?;
             Ok(out)
         };
         // Without motion they are the loads alone.
@@ -362,6 +423,7 @@ impl<'a> Balance<'a> {
         damping: &Damping,
         [last, here]: [&LastRow; 2],
         velocity: &[f64],
+        inputs: &Inputs,
     ) -> Result<f64, RecordRunError> {
         let system = self.simulation.system();
         if damping.stiffness == 0.0 {
@@ -377,7 +439,7 @@ impl<'a> Balance<'a> {
         let force = |v: &[f64]| -> Result<Vec<f64>, RecordRunError> {
             let mut force = vec![0.0; u.len()];
             let trial = Trial {
-                load: LoadTime::at(0.5 * (last.t + here.t)),
+                load: LoadTime::at(0.5 * (last.t + here.t)).under(inputs),
                 dt: 0.0,
                 u: &u,
                 v,

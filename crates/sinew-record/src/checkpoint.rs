@@ -1,9 +1,11 @@
 //! The file from which a run goes on.
 
+use std::cell::RefCell;
+
 use sha2::{Digest, Sha256};
 use sinew_core::State;
-use sinew_scene::Simulation;
 use sinew_scene::output::OwnedFolder;
+use sinew_scene::{Cutter, Simulation};
 
 use crate::balance::LastRow;
 use crate::error::RecordRunError;
@@ -14,15 +16,17 @@ use crate::request;
 pub(crate) const NAME: &str = "checkpoint.bin";
 
 /// The first line, with the version of what follows.
-const HEAD: &str = "sinew checkpoint 2";
+const HEAD: &str = "sinew checkpoint 3";
 
 /// Bytes of the checksum at its end.
 const CHECKSUM: usize = 32;
 
-/// Everything from which a run goes on: a line of JSON, then the state as `sinew-core` writes it, then numbers.
+/// Everything from which a run goes on: a line of JSON, then what cuts left of the body, the state as `sinew-core` writes it, and numbers.
 #[derive(Debug)]
 pub(crate) struct Checkpoint {
     pub(crate) progress: Progress,
+    /// The scene on the body as cuts left it; `None` where it is whole.
+    pub(crate) cut: Option<Simulation>,
     pub(crate) state: State,
     /// The motion at the last row of energies.
     pub(crate) row: LastRow,
@@ -33,22 +37,23 @@ pub(crate) struct Checkpoint {
 impl Checkpoint {
     pub(crate) fn write(
         folder: &OwnedFolder,
-        simulation: &Simulation,
         progress: &Progress,
-        state: &State,
+        (simulation, cutter, state): (&Simulation, Option<&RefCell<Cutter>>, &State),
         row: &LastRow,
         largest: &[f64],
     ) -> Result<(), RecordRunError> {
         let state = state.to_bytes(simulation.system());
+        let cuts = cutter.map_or_else(Vec::new, |cutter| cutter.borrow().to_bytes());
         let times = [row.t, row.before];
         let lists: [&[f64]; 6] = [&times, &row.u, &row.v, &row.a, &row.internal, largest];
         let json = serde_json::to_string(progress).map_err(|error| unusable(folder, &error))?;
-        let mut bytes = format!("{HEAD}\n{json}\n{}", state.len());
+        let mut bytes = format!("{HEAD}\n{json}\n{} {}", cuts.len(), state.len());
         for list in lists {
             bytes.push_str(&format!(" {}", list.len()));
         }
         bytes.push('\n');
         let mut bytes = bytes.into_bytes();
+        bytes.extend(cuts);
         bytes.extend(state);
         let numbers = lists.into_iter().flatten();
         bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
@@ -61,6 +66,7 @@ impl Checkpoint {
     pub(crate) fn read(
         folder: &OwnedFolder,
         simulation: &Simulation,
+        cutter: Option<&RefCell<Cutter>>,
     ) -> Result<Option<Self>, RecordRunError> {
         let Some(bytes) = folder.read(NAME)? else {
             return Ok(None);
@@ -81,12 +87,18 @@ impl Checkpoint {
             .map_err(|error| unusable(folder, &error))?;
         let sizes = str::from_utf8(lines.next().unwrap_or_default()).map_err(|_| damaged())?;
         let sizes: Result<Vec<usize>, _> = sizes.split(' ').map(str::parse).collect();
-        let [size, counts @ ..] = &sizes.map_err(|_| damaged())?[..] else {
+        let [cuts, size, counts @ ..] = &sizes.map_err(|_| damaged())?[..] else {
             return Err(damaged());
         };
         let rest = lines.next().unwrap_or_default();
+        let (cuts, rest) = rest.split_at_checked(*cuts).ok_or_else(damaged)?;
+        let cut = match cutter {
+            Some(cutter) => cutter.borrow_mut().restore(cuts, simulation)?,
+            None => None,
+        };
         let (state, rest) = rest.split_at_checked(*size).ok_or_else(damaged)?;
-        let state = State::from_bytes(state, simulation.system()).map_err(|source| {
+        let system = cut.as_ref().unwrap_or(simulation).system();
+        let state = State::from_bytes(state, system).map_err(|source| {
             let folder = folder.path().to_owned();
             RecordRunError::Checkpoint { folder, source }
         })?;
@@ -110,6 +122,7 @@ impl Checkpoint {
         }
         Ok(Some(Self {
             progress,
+            cut,
             state,
             row: LastRow {
                 t: t[0],

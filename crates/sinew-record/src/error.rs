@@ -6,7 +6,8 @@ use sinew_core::{EvaluationError, OptionError, SetupError, SimulateError, StateB
 use sinew_fem::FieldError;
 use sinew_mesh::vtu::WriteVtuError;
 use sinew_scene::output::OutputError;
-use sinew_scene::{ProbeRowError, ReactionError, SceneError};
+use sinew_scene::{CuttingError, DrivenLoadError, ProbeRowError, ReactionError, SceneError};
+use sinew_session::{InputFileError, ReplayError};
 
 /// A reason for which a run leaves no result, or cannot go on.
 #[derive(Debug, thiserror::Error)]
@@ -33,6 +34,9 @@ pub enum RecordRunError {
     /// A field that cannot be written.
     #[error(transparent)]
     Field(#[from] FieldError),
+    /// A body that cannot be cut.
+    #[error(transparent)]
+    Cutting(#[from] CuttingError),
     /// Supports without reactions.
     #[error(transparent)]
     Reaction(#[from] ReactionError),
@@ -67,11 +71,18 @@ pub enum RecordRunError {
         path: PathBuf,
     },
     /// An input that cannot be read.
-    #[error("{}: {source}; the run that is to go on reads it", path.display())]
-    NoInput {
-        /// The input.
-        path: PathBuf,
-        /// The system's reason.
-        source: std::io::Error,
+    #[error("{0}; the run reads it")]
+    NoInput(#[from] InputFileError),
+    /// A session that is repeated, whose folder a run is to go on with.
+    #[error("{} holds a session that was repeated by its log, with which no run can go on: repeat it again, by `sinew run --replay`", folder.display())]
+    Replay {
+        /// The folder.
+        folder: PathBuf,
     },
+    /// A session that cannot be repeated.
+    #[error(transparent)]
+    Session(#[from] ReplayError),
+    /// Loads that cannot be driven.
+    #[error(transparent)]
+    Driven(#[from] DrivenLoadError),
 }

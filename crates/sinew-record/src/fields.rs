@@ -2,8 +2,8 @@
 
 use sinew_core::{Moment, System};
 use sinew_fem::{Model, stress};
-use sinew_mesh::CellType;
 use sinew_mesh::vtu::{Array, Grid, VtuEncoding};
+use sinew_mesh::{BoundarySurface, CellType};
 use sinew_scene::OutputSettings;
 use sinew_scene::output::OwnedFolder;
 
@@ -11,7 +11,6 @@ use crate::contact_fields::ContactFields;
 use crate::error::RecordRunError;
 use crate::frames::{self, frame_name};
 use crate::progress::Seen;
-use crate::surface::Surface;
 
 /// The motion of the degrees of freedom at an instant, as a frame shows it.
 #[derive(Debug, Default)]
@@ -134,7 +133,7 @@ impl<'a> Fields<'a> {
     pub(crate) fn write(
         &mut self,
         folder: &OwnedFolder,
-        surface: &Surface,
+        surface: &BoundarySurface,
         snapshot: &Snapshot,
         seen: &mut Seen,
     ) -> Result<(), RecordRunError> {

@@ -3,7 +3,6 @@
 use sinew_scene::{ProbeRows, Simulation};
 
 use crate::recorder::Schedules;
-use crate::surface::Surface;
 use crate::tool_rows::ToolRows;
 
 /// Bytes of a frame's text.
@@ -64,7 +63,7 @@ fn frame_bytes(simulation: &Simulation) -> usize {
     // The end of its list of nodes, and its type.
     let of_cell = size_of::<i64>() + 1;
     if output.surface_only {
-        let surface = Surface::of(mesh);
+        let surface = mesh.boundary_surface();
         let triangle = 3 * index + of_cell;
         return surface.points.len() * point + surface.triangles.len() * triangle;
     }

@@ -5,13 +5,12 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::Scope;
 
 use sinew_core::{Moment, vectors};
-use sinew_mesh::TetMesh;
+use sinew_mesh::{BoundarySurface, TetMesh};
 use sinew_scene::output::OwnedFolder;
 
 use crate::error::RecordRunError;
 use crate::fields::{Fields, Snapshot};
 use crate::progress::Seen;
-use crate::surface::Surface;
 
 /// Snapshots in use: one that is written, and one that is taken meanwhile.
 const SNAPSHOTS: usize = 2;
@@ -38,8 +37,9 @@ pub(crate) struct FrameWriter<'a> {
 pub(crate) struct FrameJob<'a> {
     pub(crate) folder: &'a OwnedFolder,
     pub(crate) mesh: &'a TetMesh,
-    pub(crate) surface: &'a Surface,
+    pub(crate) surface: &'a BoundarySurface,
     pub(crate) fields: Fields<'a>,
+    pub(crate) is_cut: bool,
     pub(crate) seen: &'a Mutex<SeenInFrames>,
 }
 
@@ -58,7 +58,8 @@ impl FrameJob<'_> {
             }
         }
         let tag = || self.mesh.node_tags[node];
-        if seen.displacement.see(most, snapshot.t, tag) {
+        // Of a body that was cut the last frame is kept: its surface was another one in earlier ones.
+        if seen.displacement.see(most, snapshot.t, tag) || self.is_cut {
             let nodes = self.surface.nodes.iter();
             largest.clear();
             largest.extend(nodes.flat_map(|node| displacements[*node as usize]));

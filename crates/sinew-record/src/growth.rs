@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use sinew_core::{Energy, LoadTime, Moment, Ramp, RecordError, Recorder, State, System, Verdict};
+use sinew_core::{
+    Contact, Energy, LoadTime, Moment, Ramp, RecordError, Recorder, State, System, Verdict,
+};
 use sinew_scene::Simulation;
 use sinew_tools::Tools;
 

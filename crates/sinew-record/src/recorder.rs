@@ -1,10 +1,11 @@
 //! The recorder of a run: writes what is due after each step.
 
+use std::cell::RefCell;
 use std::time::Instant;
 
 use sinew_core::{Moment, RecordError, Recorder, StepReport, Verdict};
 use sinew_scene::output::{GrowingFile, OwnedFolder};
-use sinew_scene::{Instants, ProbeRows, Simulation};
+use sinew_scene::{Cutter, Instants, ProbeRows, Simulation};
 
 use crate::balance::Balance;
 use crate::checkpoint::Checkpoint;
@@ -26,6 +27,8 @@ const SMALL: usize = 30_000;
 /// What is written when.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Schedules {
+    /// Steps of the run.
+    pub(crate) steps: usize,
     pub(crate) probes: Schedule,
     pub(crate) energy: Schedule,
     /// None for an oscillator.
@@ -34,8 +37,12 @@ pub(crate) struct Schedules {
 
 impl Schedules {
     pub(crate) fn of(simulation: &Simulation) -> Self {
-        let (output, dt) = (simulation.scene().output(), simulation.dt());
-        let steps = simulation.run().steps;
+        Self::of_steps(simulation, simulation.run().steps, simulation.dt())
+    }
+
+    /// Those of a number of steps, of this length (s) on average.
+    pub(crate) fn of_steps(simulation: &Simulation, steps: usize, dt: f64) -> Self {
+        let output = simulation.scene().output();
         let asked = |instants: Option<Instants>| match instants {
             Some(instants) => Schedule::at(instants, steps, dt),
             None => Schedule::at_most(MOST_ROWS, steps),
@@ -47,6 +54,7 @@ impl Schedules {
         };
         let body = simulation.model().body();
         Self {
+            steps,
             probes: asked(output.probes),
             energy: asked(energy),
             fields: body.map(|_| Schedule::at(output.fields, steps, dt)),
@@ -84,8 +92,7 @@ impl Tables {
                 tables::probes_head(simulation)
             })?,
             energy: open(tables::ENERGY, lengths.energy, &|| {
-                let method = balance.knows_method();
-                tables::energy_head(balance.has_tools(), method, balance.has_memory())
+                tables::energy_head(balance)
             })?,
             reactions: reactions
                 .map(|reactions| open(tables::REACTIONS, lengths.reactions, &|| reactions.head()))
@@ -113,6 +120,8 @@ pub(crate) struct RunRecorder<'a> {
     pub(crate) simulation: &'a Simulation,
     pub(crate) folder: &'a OwnedFolder,
     pub(crate) companion: &'a mut dyn Companion,
+    /// What cuts the body, where something does.
+    pub(crate) cutter: Option<&'a RefCell<Cutter>>,
     pub(crate) schedules: Schedules,
     pub(crate) tables: Tables,
     pub(crate) probes: ProbeRows<'a>,
@@ -122,10 +131,12 @@ pub(crate) struct RunRecorder<'a> {
     /// None for an oscillator.
     pub(crate) frames: Option<FrameWriter<'a>>,
     pub(crate) progress: Progress,
+    /// Times (s) of the frames written since it began.
+    pub(crate) frame_times: Vec<f64>,
+    /// Whether it leaves checkpoints.
+    pub(crate) saves: bool,
     /// Steps that an earlier run had taken.
     pub(crate) before: usize,
-    /// Whether the state after that many steps was recorded then.
-    pub(crate) resumed: bool,
     /// Steps whose rows of probes have come.
     pub(crate) watched: usize,
     pub(crate) pace: Pace,
@@ -176,16 +187,16 @@ impl RunRecorder<'_> {
         if let (Some(tools), Some(file)) = (&self.tools, &mut self.tables.tools)
             && self.schedules.probes.is_due(step)
         {
-            tools.row(&mut self.line, moment.state);
+            tools.row(&mut self.line, moment);
             file.push(&self.line)?;
         }
         self.progress.steps = step;
         self.pace.look(step);
-        let last = step == self.simulation.run().steps;
+        let last = step == self.schedules.steps;
         self.companion.progress(step, moment.state.t());
         let stop = self.companion.is_interrupted() && !last;
         let due = self.saved.elapsed().as_secs_f64() >= self.simulation.scene().output().checkpoint;
-        if stop || (due && !last) {
+        if self.saves && (stop || (due && !last)) {
             self.save(moment)?;
         }
         Ok(if stop {
@@ -202,6 +213,19 @@ impl RunRecorder<'_> {
         let has_acceleration = self.simulation.scene().output().acceleration;
         frames.write(self.progress.frames, moment, &self.v, has_acceleration)?;
         self.progress.frames += 1;
+        self.frame_times.push(moment.state.t());
+        Ok(())
+    }
+
+    /// Brings the balance up to a moment, of which no row needs to be due: the last one of this body.
+    pub(crate) fn close_balance(&mut self, moment: &Moment<'_>) -> Result<(), RecordRunError> {
+        let t = moment.state.t();
+        if self.balance.last.as_ref().is_some_and(|last| last.t >= t) {
+            return Ok(());
+        }
+        self.v.resize(moment.state.u.len(), 0.0);
+        moment.velocity(&mut self.v)?;
+        self.balance.row(moment, &self.v)?;
         Ok(())
     }
 
@@ -223,14 +247,8 @@ impl RunRecorder<'_> {
         let (mut progress, largest) = self.settle()?;
         let row = self.balance.last.clone().unwrap_or_default();
         progress.work.add(moment.work);
-        Checkpoint::write(
-            self.folder,
-            self.simulation,
-            &progress,
-            moment.state,
-            &row,
-            &largest,
-        )?;
+        let moving = (self.simulation, self.cutter, moment.state);
+        Checkpoint::write(self.folder, &progress, moving, &row, &largest)?;
         self.saved = Instant::now();
         Ok(())
     }
@@ -245,13 +263,10 @@ fn failed(t: f64, error: RecordRunError) -> RecordError {
 
 impl Recorder for RunRecorder<'_> {
     fn next(&mut self, step: usize) -> Option<usize> {
-        let mut step = self.before + step;
-        if self.resumed && step == self.before {
-            step += 1;
-        }
+        let step = self.before + step;
         let fields = self.schedules.fields.and_then(|fields| fields.next(step));
         let energy = self.schedules.energy.next(step);
-        let end = self.simulation.run().steps;
+        let end = self.schedules.steps;
         let probes = match self.probes.need_moments() || self.tools.is_some() {
             true => self.schedules.probes.next(step),
             false => None,
@@ -277,8 +292,7 @@ impl Recorder for RunRecorder<'_> {
     fn watched(&mut self, t: f64, u: &[f64]) -> Result<Verdict, RecordError> {
         let step = self.watched;
         self.watched += 1;
-        let known = self.resumed && step == self.before;
-        if !known && self.schedules.probes.is_due(step) {
+        if self.schedules.probes.is_due(step) {
             let row = self.probes.of_watched(t, u);
             let written = self.tables.probes.push(row);
             written.map_err(|error| failed(t, error.into()))?;

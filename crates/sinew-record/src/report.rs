@@ -5,14 +5,15 @@ mod body;
 mod curves;
 
 use sinew_draw::Page;
+use sinew_mesh::BoundarySurface;
 use sinew_scene::Quantity;
 use sinew_scene::output::OwnedFolder;
 
 use crate::csv::Table;
+use crate::cut_words::words_of_cuts;
 use crate::error::RecordRunError;
 use crate::run_end::Ended;
 use crate::summary::Summary;
-use crate::surface::Surface;
 use crate::tables;
 use crate::tool_rows;
 use curves::plot;
@@ -22,7 +23,7 @@ pub(crate) const NAME: &str = "report.html";
 /// The page. It says nothing of the computer, so that it is the same wherever the run was taken.
 pub(crate) fn page(
     summary: &Summary<'_>,
-    surface: Option<&Surface>,
+    surface: Option<&BoundarySurface>,
     largest: &[f64],
     folder: &OwnedFolder,
 ) -> Result<String, RecordRunError> {
@@ -36,8 +37,7 @@ pub(crate) fn page(
         page.warning(warning);
     }
     page.facts(facts(summary));
-    let how = simulation.how_to_know_the_error();
-    page.paragraph(&format!("The error of this run is not known: {how}."));
+    page.paragraph("The error of this run is not known: `sinew plan --tolerance` measures it.");
     if let Some(surface) = surface {
         body::section(&mut page, summary, surface, largest);
     }
@@ -181,6 +181,9 @@ fn facts(summary: &Summary<'_>) -> Vec<(&'static str, String)> {
                 seen.rotation.value.to_degrees()
             ),
         ));
+    }
+    if let Some(cuts) = summary.cuts {
+        facts.push(("cut", words_of_cuts(&cuts.totals, cuts.pieces)));
     }
     if work.saturated > 0 {
         facts.push((

@@ -1,12 +1,11 @@
 //! What was run: all that is needed to run it again.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use sinew_scene::output::OwnedFolder;
 use sinew_scene::{Scene, SceneSource};
+use sinew_session::InputFile;
 
 use crate::error::RecordRunError;
 
@@ -44,13 +43,9 @@ pub(crate) struct Record {
     pub(crate) warnings: Vec<String>,
     /// Values that the command line set in the scene.
     values: Vec<String>,
-}
-
-/// A file that a run reads.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct InputFile {
-    pub(crate) path: PathBuf,
-    pub(crate) sha256: String,
+    /// The log of the session that was repeated, beside this file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) log: Option<String>,
 }
 
 impl Record {
@@ -59,15 +54,16 @@ impl Record {
         let scene_path = absolute(scene.source().path());
         // The scene itself is kept as a text.
         let others = scene.input_files().into_iter().skip(1);
-        let inputs = others.map(|path| InputFile::of(absolute(&path)));
+        let inputs = others.map(|path| Ok(InputFile::of(absolute(&path))?));
         Ok(Self {
             version: VERSION,
             sinew: env!("CARGO_PKG_VERSION").to_owned(),
             scene: scene_path,
-            inputs: inputs.collect::<Result<_, _>>()?,
+            inputs: inputs.collect::<Result<_, RecordRunError>>()?,
             threads: request.threads.clone(),
             warnings: request.warnings.clone(),
             values: request.values.clone(),
+            log: None,
         })
     }
 
@@ -88,6 +84,10 @@ impl Record {
             let reason = format!("it is of version {}, expected {VERSION}", record.version);
             return Err(unusable(folder, NAME, &reason));
         }
+        if record.log.is_some() {
+            let folder = folder.path().to_owned();
+            return Err(RecordRunError::Replay { folder });
+        }
         for input in &record.inputs {
             if InputFile::of(input.path.clone())? != *input {
                 let path = input.path.clone();
@@ -98,18 +98,6 @@ impl Record {
         let text = String::from_utf8(text).map_err(|error| unusable(folder, SCENE, &error))?;
         let scene = Scene::parse(SceneSource::new(&record.scene, text))?;
         Ok((record, scene))
-    }
-}
-
-impl InputFile {
-    fn of(path: PathBuf) -> Result<Self, RecordRunError> {
-        let content = fs::read(&path).map_err(|source| RecordRunError::NoInput {
-            path: path.clone(),
-            source,
-        })?;
-        let digest = Sha256::digest(&content);
-        let sha256 = digest.iter().map(|byte| format!("{byte:02x}")).collect();
-        Ok(Self { path, sha256 })
     }
 }
 

@@ -1,5 +1,7 @@
 //! How a run ended.
 
+use sinew_scene::CutTotals;
+
 /// The end of a run, in short.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunEnd {
@@ -19,6 +21,8 @@ pub struct RunEnd {
     pub retaken: u64,
     /// The largest displacement (m), its time (s) and the tag of its node, among the fields; 0 for an oscillator.
     pub largest: (f64, f64, u64),
+    /// What was cut, and the pieces in the end, where the body may be cut.
+    pub cuts: Option<(CutTotals, usize)>,
     /// What the integrator remarks at the end, one sentence each: of a run that went on, since the checkpoint.
     pub remarks: Vec<String>,
     /// What the motion warns of, one sentence each.

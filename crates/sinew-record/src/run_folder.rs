@@ -1,16 +1,18 @@
 //! The folder of a run.
 
+use std::cell::RefCell;
 use std::path::Path;
 use std::sync::Mutex;
 use std::thread;
 use std::time::Instant;
 
-use sinew_core::{Outcome, RecordError, SimulateError, StepError, StepReport, System, simulate};
+use sinew_core::{State, StepReport};
 use sinew_integrators::Stepper;
+use sinew_mesh::BoundarySurface;
 use sinew_scene::output::{OutputError, OwnedFolder, Tenant};
-use sinew_scene::{ProbeRows, Scene, Simulation};
+use sinew_scene::{Cutter, ProbeRows, Scene, Simulation};
 
-use crate::balance::Balance;
+use crate::balance::{Balance, LastRow};
 use crate::checkpoint::{self, Checkpoint};
 use crate::companion::Companion;
 use crate::error::RecordRunError;
@@ -23,9 +25,10 @@ use crate::recorder::{RunRecorder, Schedules, Tables};
 use crate::report;
 use crate::request::{self, Record, Request};
 use crate::run_end::{Ended, RunEnd};
-use crate::summary::{self, Summary};
-use crate::surface::{self, Surface};
-use crate::tables::{self, Reactions};
+use crate::stretch;
+use crate::summary::{self, CutRecord, Summary};
+use crate::surface;
+use crate::tables::{self, HeldPart, Reactions};
 use crate::tool_rows::{self, ToolRows};
 
 /// The kind of result, in manifests and messages.
@@ -36,6 +39,57 @@ const KIND: &str = "run";
 pub struct RunFolder {
     folder: OwnedFolder,
     record: Record,
+}
+
+/// What a recorder begins with.
+pub(crate) struct Beginning<'a> {
+    pub(crate) schedules: Schedules,
+    pub(crate) balance: Balance<'a>,
+    pub(crate) progress: Progress,
+    /// Displacements (m) of the surface where it was largest so far.
+    pub(crate) largest: Vec<f64>,
+    pub(crate) resumed: bool,
+    pub(crate) saves: bool,
+    /// What cuts the body, where something does.
+    pub(crate) cutter: Option<&'a RefCell<Cutter>>,
+}
+
+/// What a balance of energy goes on from.
+enum From {
+    Beginning,
+    /// The last row before a checkpoint.
+    Row(LastRow),
+    /// A change of the body that brought in this energy (J).
+    Change(f64),
+}
+
+/// What a recorder leaves.
+pub(crate) struct Recorded {
+    pub(crate) progress: Progress,
+    largest: Vec<f64>,
+    parts: Vec<HeldPart>,
+    surface: Option<BoundarySurface>,
+    /// Times (s) of the frames that it wrote.
+    pub(crate) times: Vec<f64>,
+}
+
+/// The end of a run that is recorded.
+pub(crate) struct End<'a> {
+    /// Steps of an earlier process, and of this one.
+    pub(crate) steps: (usize, usize),
+    pub(crate) work: StepReport,
+    pub(crate) ended: Ended,
+    pub(crate) state: &'a State,
+    pub(crate) integrator: &'a dyn Stepper,
+    pub(crate) remarks: Vec<String>,
+    /// A warning where the step is too long for the body as it is in the end.
+    pub(crate) outrun: Option<String>,
+    /// Times (s) of all frames.
+    pub(crate) times: &'a [f64],
+    pub(crate) resumed: bool,
+    pub(crate) begun: Instant,
+    /// What was cut, where the body may be cut.
+    pub(crate) cuts: Option<CutRecord>,
 }
 
 impl RunFolder {
@@ -58,7 +112,18 @@ impl RunFolder {
     ) -> Result<Self, RecordRunError> {
         let scene = simulation.scene();
         let record = Record::of(scene, request)?;
-        let schedules = Schedules::of(simulation);
+        Self::claim(path, simulation, record, &Schedules::of(simulation), &[])
+    }
+
+    /// Makes the folder, with files beside those of a run.
+    pub(crate) fn claim(
+        path: &Path,
+        simulation: &Simulation,
+        record: Record,
+        schedules: &Schedules,
+        others: &[&str],
+    ) -> Result<Self, RecordRunError> {
+        let scene = simulation.scene();
         let mut names: Vec<String> = [
             request::NAME,
             request::SCENE,
@@ -70,6 +135,7 @@ impl RunFolder {
         ]
         .map(str::to_owned)
         .to_vec();
+        names.extend(others.iter().map(|name| (*name).to_owned()));
         if !simulation.held_parts()?.is_empty() {
             names.push(tables::REACTIONS.to_owned());
         }
@@ -121,28 +187,114 @@ impl RunFolder {
         companion: &mut dyn Companion,
     ) -> Result<RunEnd, RecordRunError> {
         let begun = Instant::now();
-        let system = simulation.system();
-        integrator.prepare(system, simulation.dt())?;
-        let checkpoint = Checkpoint::read(&self.folder, simulation)?;
+        let cutter = simulation.cutter()?.map(RefCell::new);
+        let cutter = cutter.as_ref();
+        let mass = cutter.map(|cutter| cutter.borrow().mass());
+        let checkpoint = Checkpoint::read(&self.folder, simulation, cutter)?;
         self.folder.remove(summary::NAME)?;
         let resumed = checkpoint.is_some();
         let schedules = Schedules::of(simulation);
-        let balance = Balance::new(simulation, integrator, schedules.energy);
-        let (mut state, progress, largest, balance) = match checkpoint {
-            Some(Checkpoint {
-                progress,
-                state,
-                row,
-                largest,
-            }) => {
-                let balance = balance.resumed(progress.energy, row)?;
-                (state, progress, largest, balance)
-            }
-            None => {
-                let state = simulation.initial_state().clone();
-                (state, Progress::default(), Vec::new(), balance)
-            }
+        let mut state = simulation.initial_state().clone();
+        let mut progress = Progress::default();
+        // The scene on the body as cuts left it.
+        let mut cut: Option<Simulation> = None;
+        let (mut largest, mut from, mut steps) = (Vec::new(), From::Beginning, 0);
+        if let Some(checkpoint) = checkpoint {
+            state = checkpoint.state;
+            progress = checkpoint.progress;
+            cut = checkpoint.cut;
+            largest = checkpoint.largest;
+            from = From::Row(checkpoint.row);
+        }
+        let begins_on = cut.as_ref().unwrap_or(simulation);
+        integrator.prepare(begins_on.system(), simulation.dt())?;
+        let (before, begins_at) = (progress.steps, state.t());
+        let mut run = simulation.run();
+        run.steps -= before.min(run.steps);
+        let (last, recorded) = loop {
+            let now = cut.as_ref().unwrap_or(simulation);
+            let balance = Balance::new(now, Some(integrator), schedules.energy);
+            let is_seen = !matches!(from, From::Beginning);
+            let balance = match std::mem::replace(&mut from, From::Beginning) {
+                From::Beginning => balance,
+                From::Row(row) => balance.resumed(progress.energy, row)?,
+                From::Change(energy) => balance.after_change(progress.energy, &state, energy)?,
+            };
+            let beginning = Beginning {
+                schedules,
+                balance,
+                progress: progress.clone(),
+                largest: std::mem::take(&mut largest),
+                resumed: is_seen,
+                saves: true,
+                cutter,
+            };
+            let (mut stretch, recorded) = self.record(now, beginning, companion, |recorder| {
+                stretch::take(
+                    now,
+                    cutter,
+                    integrator,
+                    &mut state,
+                    &run,
+                    (recorder, is_seen),
+                )
+            })?;
+            run.steps -= stretch.steps.min(run.steps);
+            steps += stretch.steps;
+            let Some(change) = stretch.change.take() else {
+                break (stretch, recorded);
+            };
+            progress = recorded.progress;
+            progress.steps = before + steps;
+            progress.work.add(stretch.work);
+            from = From::Change(change.energy);
+            cut = Some(change.simulation);
         };
+        let simulation = cut.as_ref().unwrap_or(simulation);
+        let times = frame_times(&schedules, recorded.progress.frames, simulation.dt());
+        let mut remarks = integrator.remarks();
+        if resumed {
+            // The method has seen no more, and may have counted.
+            for remark in &mut remarks {
+                *remark = format!("since the checkpoint at t = {begins_at} s: {remark}");
+            }
+        }
+        let outrun = simulation.outrun(integrator, &state);
+        let end = End {
+            steps: (before, steps),
+            work: last.work,
+            ended: last.ended,
+            state: &state,
+            integrator,
+            remarks,
+            outrun,
+            times: &times,
+            resumed,
+            begun,
+            cuts: cutter
+                .zip(mass)
+                .map(|(cutter, mass)| CutRecord::of(&cutter.borrow(), mass)),
+        };
+        self.complete(simulation, &schedules, recorded, end)
+    }
+
+    /// Has a run recorded, which `drive` takes.
+    pub(crate) fn record<R>(
+        &self,
+        simulation: &Simulation,
+        beginning: Beginning<'_>,
+        companion: &mut dyn Companion,
+        drive: impl FnOnce(&mut RunRecorder<'_>) -> Result<R, RecordRunError>,
+    ) -> Result<(R, Recorded), RecordRunError> {
+        let Beginning {
+            schedules,
+            balance,
+            progress,
+            largest,
+            resumed,
+            saves,
+            cutter,
+        } = beginning;
         let reactions = Reactions::of(simulation)?;
         let parts = reactions
             .as_ref()
@@ -157,21 +309,20 @@ impl RunFolder {
             simulation,
         )?;
         let body = simulation.model().body();
-        let surface = body.map(|body| Surface::of(&body.mesh));
+        let surface = body.map(|body| body.mesh.boundary_surface());
         let seen = Mutex::new(SeenInFrames {
             seen: progress.seen.clone(),
             largest,
         });
-        let (before, begins_at) = (progress.steps, state.t());
-        let mut run = simulation.run();
-        run.steps -= before.min(run.steps);
-        let (steps, work, ended, (mut progress, largest)) = thread::scope(|scope| {
+        let before = progress.steps;
+        let (driven, progress, largest, times) = thread::scope(|scope| {
             let frames = body.zip(surface.as_ref()).map(|(body, surface)| {
                 let job = FrameJob {
                     folder: &self.folder,
                     mesh: &body.mesh,
                     surface,
                     fields: Fields::new(&body.model, *simulation.scene().output()),
+                    is_cut: body.cut.is_some(),
                     seen: &seen,
                 };
                 FrameWriter::start(scope, job)
@@ -180,6 +331,7 @@ impl RunFolder {
                 simulation,
                 folder: &self.folder,
                 companion,
+                cutter,
                 schedules,
                 tables,
                 probes: ProbeRows::new(simulation),
@@ -188,56 +340,69 @@ impl RunFolder {
                 tools,
                 frames,
                 progress,
+                frame_times: Vec::new(),
+                saves,
                 before,
-                resumed,
-                watched: before,
+                watched: before + usize::from(resumed),
                 pace: Pace::new(before),
                 saved: Instant::now(),
                 line: String::new(),
                 v: Vec::new(),
                 work: StepReport::default(),
             };
-            let simulated = simulate(system, integrator, &mut state, &run, &mut recorder);
-            let (steps, work, ended) = match simulated {
-                Ok(report) => {
-                    let ended = match report.outcome {
-                        Outcome::Finished => Ended::Finished,
-                        Outcome::Diverged { t, dof } => Ended::Diverged {
-                            t,
-                            place: system.cell_name(dof),
-                        },
-                        Outcome::Stopped => Ended::Interrupted { t: state.t() },
-                    };
-                    (report.steps, report.work, ended)
-                }
-                Err(error) => {
-                    // Steps are known by the time they reached; work since the last record is not.
-                    let steps = (state.t() / simulation.dt()).floor() as usize;
-                    let (t, reason) = refusal(error, system)?;
-                    let ended = Ended::Refused { t, reason };
-                    (steps.saturating_sub(before), recorder.work, ended)
-                }
-            };
-            Ok::<_, RecordRunError>((steps, work, ended, recorder.settle()?))
+            let driven = drive(&mut recorder)?;
+            let (progress, largest) = recorder.settle()?;
+            Ok::<_, RecordRunError>((driven, progress, largest, recorder.frame_times))
         })?;
+        let recorded = Recorded {
+            progress,
+            largest,
+            parts,
+            surface,
+            times,
+        };
+        Ok((driven, recorded))
+    }
+
+    /// Writes what stands in the folder of a run that has come to an end.
+    pub(crate) fn complete(
+        &self,
+        simulation: &Simulation,
+        schedules: &Schedules,
+        recorded: Recorded,
+        end: End<'_>,
+    ) -> Result<RunEnd, RecordRunError> {
+        let Recorded {
+            mut progress,
+            largest,
+            parts,
+            surface,
+            ..
+        } = recorded;
+        let End {
+            steps: (before, steps),
+            work,
+            ended,
+            state,
+            integrator,
+            remarks,
+            outrun,
+            times,
+            resumed,
+            begun,
+            cuts,
+        } = end;
+        let system = simulation.system();
         progress.work.add(work);
-        if let (Some(surface), Some(body)) = (&surface, body) {
-            surface.write(&self.folder, &body.mesh)?;
-            let times = frame_times(&schedules, progress.frames, simulation.dt());
-            frames::write_series(&self.folder, &times)?;
+        if let (Some(surface), Some(body)) = (&surface, simulation.model().body()) {
+            surface::write(surface, &self.folder, &body.mesh)?;
+            frames::write_series(&self.folder, times)?;
         }
         let mut warnings = summary::warnings(&progress.seen);
         warnings.extend(summary::made_energy(simulation, &progress));
-        warnings.extend(simulation.outrun(integrator, &state));
-        warnings.extend(simulation.left_in_tools(&state));
+        warnings.extend(outrun);
+        warnings.extend(simulation.left_by_tools(state));
         let wall = begun.elapsed().as_secs_f64();
-        let mut remarks = integrator.remarks();
-        if resumed {
-            // The method has seen no more, and may have counted.
-            for remark in &mut remarks {
-                *remark = format!("since the checkpoint at t = {begins_at} s: {remark}");
-            }
-        }
         let summary = Summary {
             simulation,
             record: &self.record,
@@ -245,13 +410,14 @@ impl RunFolder {
             steps: before + steps,
             t: state.t(),
             progress: &progress,
-            schedules: &schedules,
+            schedules,
             parts: &parts,
             integrator,
             remarks: &remarks,
             wall,
             resumed,
             warnings: &warnings,
+            cuts: cuts.as_ref(),
         };
         let page = report::page(&summary, surface.as_ref(), &largest, &self.folder)?;
         self.folder.write(report::NAME, page.as_bytes())?;
@@ -276,33 +442,15 @@ impl RunFolder {
             saturated: work.saturated_share(steps, system.dofs()),
             retaken: work.retaken,
             largest: (seen.value, seen.t, seen.at),
+            cuts: cuts.map(|cuts| (cuts.totals, cuts.pieces)),
             remarks,
             warnings,
         })
     }
-}
 
-/// Time (s) and reason of a refusal, by a law or by a method that found no equilibrium.
-///
-/// # Errors
-/// Any other error, as it is.
-fn refusal(error: SimulateError, system: &dyn System) -> Result<(f64, String), RecordRunError> {
-    match error {
-        SimulateError::Step(StepError::Inaccurate { t, .. }) if system.as_linear().is_none() => {
-            Ok((t, error.to_string()))
-        }
-        SimulateError::Step(StepError::Refused { t, source }) => Ok((t, source.to_string())),
-        SimulateError::Step(StepError::NotConverged { t, .. }) => Ok((t, error.to_string())),
-        SimulateError::Record(RecordError { t, source }) => {
-            match source.downcast::<RecordRunError>() {
-                Ok(cause) => match *cause {
-                    RecordRunError::State(refused) => Ok((t, refused.to_string())),
-                    other => Err(other),
-                },
-                Err(source) => Err(SimulateError::Record(RecordError { t, source }).into()),
-            }
-        }
-        other => Err(other.into()),
+    /// The open folder.
+    pub(crate) fn folder(&self) -> &OwnedFolder {
+        &self.folder
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use sinew_integrators::Stepper;
-use sinew_scene::{Simulation, options_json};
+use sinew_scene::{CutTotals, Cutter, Simulation, options_json};
 
 use crate::made_energy::{THERMAL, has_stored_energy, remedy};
 use crate::progress::{Largest, Progress, Seen};
@@ -41,6 +41,53 @@ pub(crate) struct Summary<'a> {
     pub(crate) resumed: bool,
     /// What the motion itself warns of.
     pub(crate) warnings: &'a [String],
+    /// What was cut, where the body may be cut.
+    pub(crate) cuts: Option<&'a CutRecord>,
+}
+
+/// What was cut in a run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CutRecord {
+    pub(crate) totals: CutTotals,
+    /// Mass (kg) of the body in the beginning and in the end.
+    mass: [f64; 2],
+    /// Pieces of the body in the end.
+    pub(crate) pieces: usize,
+}
+
+impl CutRecord {
+    /// What a cutter did to a body that had this mass (kg).
+    pub(crate) fn of(cutter: &Cutter, mass: f64) -> Self {
+        Self {
+            totals: *cutter.totals(),
+            mass: [mass, cutter.mass()],
+            pieces: cutter.pieces(),
+        }
+    }
+
+    fn to_json(self) -> Value {
+        let CutTotals {
+            report,
+            changes,
+            blade_work,
+        } = self.totals;
+        let energy = report.energy_gained;
+        json!({
+            "changes_of_the_body": changes,
+            "area_at_rest_m2": report.area,
+            "faces": report.faces,
+            "new_nodes": report.new_nodes,
+            "moved_nodes": report.moved_nodes,
+            "mass_gained_by_moved_nodes_kg": report.mass_gained,
+            "removed_tetrahedra": report.removed_tets,
+            "removed_mass_kg": report.removed_mass,
+            "frozen_tetrahedra": report.frozen_tets,
+            "kinetic_energy_gained_J": energy.map(|energy| energy.kinetic),
+            "elastic_energy_gained_J": energy.map(|energy| energy.elastic),
+            "work_of_the_blade_J": blade_work,
+            "pieces_at_the_end": self.pieces,
+        })
+    }
 }
 
 /// What a motion warns of: deformations beyond small-strain theory.
@@ -153,8 +200,10 @@ impl Summary<'_> {
             "steps": self.steps,
             "integrator": settings.integrator,
             "options": options_json(&simulation.options()),
-            "error": format!("not known: {}", simulation.how_to_know_the_error()),
+            "error": "not known: `sinew plan --tolerance` measures it",
             "extremes": extremes,
+            "mass_kg": self.cuts.map(|cuts| json!({ "start": cuts.mass[0], "end": cuts.mass[1] })),
+            "cuts": self.cuts.map(|cuts| cuts.to_json()),
             "work": work,
             "warnings": record.warnings.iter().chain(self.warnings).collect::<Vec<_>>(),
             "regions": regions,

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use sinew_core::Moment;
+use sinew_core::{LoadTime, Moment};
 use sinew_fem::On;
-use sinew_scene::{HeldPlace, ProbeRows, ReactionOf, Simulation};
+use sinew_scene::{ProbeRows, ReactionOf, Simulation};
 
-use crate::balance::Energies;
+use crate::balance::{Balance, Energies};
 use crate::error::RecordRunError;
 
 pub(crate) const PROBES: &str = "probes.csv";
@@ -35,13 +35,16 @@ pub(crate) fn probes_head(simulation: &Simulation) -> String {
     text
 }
 
-/// The line of column names; the work of tools has one where there are tools, what the method takes where it is known, and what memory takes is part of the remainder.
-pub(crate) fn energy_head(has_tools: bool, knows_method: bool, has_memory: bool) -> String {
-    let tools = if has_tools { "work_of_tools_J," } else { "" };
-    let method = if knows_method { "method_J," } else { "" };
-    let memory = if has_memory { "memory_and_" } else { "" };
+/// The line of column names; the work of tools has one where there are tools, the energy of cuts where there may be cuts, what the method takes where it is known,
+/// and what memory takes is part of the remainder.
+pub(crate) fn energy_head(balance: &Balance<'_>) -> String {
+    let column = |is_there: bool, name: &'static str| if is_there { name } else { "" };
+    let tools = column(balance.has_tools(), "work_of_tools_J,");
+    let cuts = column(balance.has_cuts(), "of_cuts_J,");
+    let method = column(balance.knows_method(), "method_J,");
+    let memory = column(balance.has_memory(), "memory_and_");
     format!(
-        "t_s,kinetic_J,elastic_J,work_of_loads_J,work_of_supports_J,{tools}damped_J,{method}{memory}remainder_J\n"
+        "t_s,kinetic_J,elastic_J,work_of_loads_J,work_of_supports_J,{tools}{cuts}damped_J,{method}{memory}remainder_J\n"
     )
 }
 
@@ -49,7 +52,8 @@ pub(crate) fn energy_row(out: &mut String, row: &Energies) {
     out.clear();
     push(out, row.t);
     let columns = [row.kinetic, row.elastic, row.loads, row.supports];
-    let columns = columns.into_iter().chain(row.tools).chain([row.damped]);
+    let columns = columns.into_iter().chain(row.tools).chain(row.cuts);
+    let columns = columns.chain([row.damped]);
     for value in columns.chain(row.method).chain([row.remainder]) {
         out.push(',');
         push(out, value);
@@ -93,20 +97,11 @@ impl<'a> Reactions<'a> {
         let parts: Vec<HeldPart> = simulation
             .held_parts()?
             .into_iter()
-            .map(|HeldPlace { by, on, nodes }| {
-                let count = nodes.len().max(1) as f64;
-                let sum = |axis: usize| -> f64 {
-                    let points = nodes
-                        .iter()
-                        .map(|(node, _)| body.mesh.points[*node as usize]);
-                    points.map(|point| point[axis]).sum()
-                };
-                HeldPart {
-                    name: column_name(by, &on),
-                    by: format!("{by} on {on}"),
-                    centre: [0, 1, 2].map(|axis| sum(axis) / count),
-                    nodes,
-                }
+            .map(|held| HeldPart {
+                name: column_name(held.by, &held.on),
+                by: format!("{} on {}", held.by, held.on),
+                nodes: held.nodes,
+                centre: held.centre,
             })
             .collect();
         let nodes = body.mesh.points.len();
@@ -147,10 +142,11 @@ impl<'a> Reactions<'a> {
             return Ok(());
         };
         let (t, u) = (moment.state.t(), &moment.state.u);
+        let when = LoadTime::at(t).under(moment.inputs);
         let with_memory = body.model.with_memory(&moment.state.internal);
-        with_memory.reactions(t, u, v, &mut self.forces)?;
+        with_memory.reactions(when, u, v, &mut self.forces)?;
         body.subtract_contact(moment.state, &mut self.forces);
-        body.model.displacements_at(t, u, &mut self.u)?;
+        body.model.displacements_at(when, u, &mut self.u)?;
         out.clear();
         push(out, t);
         for part in &self.parts {

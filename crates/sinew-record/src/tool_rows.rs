@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use sinew_core::State;
+use sinew_core::Moment;
 use sinew_scene::Simulation;
 use sinew_tools::{Motion, Tool, Tools};
 
@@ -25,7 +25,7 @@ impl<'a> ToolRows<'a> {
     /// The names of the columns.
     pub(crate) fn columns(&self) -> Vec<String> {
         let mut columns = vec!["t_s".to_owned()];
-        for tool in self.tools.tools() {
+        for (index, tool) in self.tools.tools().iter().enumerate() {
             let mut add = |part: &str, unit: &str| {
                 let axes = ["x", "y", "z"];
                 columns.extend(axes.map(|axis| format!("{}_{part}{axis}_{unit}", tool.name)));
@@ -37,7 +37,11 @@ impl<'a> ToolRows<'a> {
             add("force_", "N");
             add("torque_", "Nm");
             let single = ["work_J", "contacts", "gap_m", "passes"];
-            columns.extend(single.map(|name| format!("{}_{name}", tool.name)));
+            let of_bodies = ["hand_work_J", "energy_J"];
+            let of_bodies = of_bodies.into_iter().filter(|_| tool.body.is_some());
+            let residual = self.tools.links(index).then_some("residual");
+            let all = single.into_iter().chain(of_bodies).chain(residual);
+            columns.extend(all.map(|name| format!("{}_{name}", tool.name)));
         }
         columns
     }
@@ -45,26 +49,41 @@ impl<'a> ToolRows<'a> {
     /// Lines that say what is in the columns, and the line of their names.
     pub(crate) fn head(&self) -> String {
         let mut text = String::new();
-        for Tool { name, .. } in self.tools.tools() {
+        for (index, Tool { name, body, .. }) in self.tools.tools().iter().enumerate() {
             let _ = writeln!(
                 text,
                 "# {name}: force and torque about its own origin are those on the tool, means over the step before; work is done on the body; \
                  the gap is that of its deepest node; passes are the pieces in which its stroke is followed"
             );
+            if body.is_some() {
+                let _ = writeln!(
+                    text,
+                    "# {name}: a body on a coupling; the hand's work is done on its path, and its energy is kinetic and of the coupling, in the middle of the step before, or at its end where the method's \
+                     velocities hold there"
+                );
+            }
+            if self.tools.links(index) {
+                let _ = writeln!(
+                    text,
+                    "# {name}: the residual is what the iteration for its contacts left, a share of the largest displacement by a contact"
+                );
+            }
         }
         text.push_str(&self.columns().join(","));
         text.push('\n');
         text
     }
 
-    pub(crate) fn row(&self, out: &mut String, state: &State) {
+    pub(crate) fn row(&self, out: &mut String, moment: &Moment<'_>) {
         out.clear();
+        let Moment { state, inputs, .. } = moment;
         tables::push(out, state.t());
         for (index, tool) in self.tools.tools().iter().enumerate() {
             let report = self.tools.report(state, index);
-            let gap = self.tools.deepest(&state.u, state.t(), index);
-            let rotation = turns(tool).then_some(report.rotation_vector);
-            let vectors = [Some(report.position), rotation];
+            let pose = self.tools.pose(state, inputs, index);
+            let gap = self.tools.deepest(&state.u, &pose, index);
+            let rotation = turns(tool).then(|| pose.rotation_vector());
+            let vectors = [Some(pose.position()), rotation];
             let vectors = vectors.into_iter().flatten();
             let vectors = vectors.chain([report.force, report.torque]).flatten();
             for value in vectors.chain([report.work]) {
@@ -74,15 +93,27 @@ impl<'a> ToolRows<'a> {
             let _ = write!(out, ",{},", report.contacts);
             tables::push(out, gap.map_or(f64::INFINITY, |depth| depth.gap));
             let _ = write!(out, ",{}", report.passes);
+            let body = self.tools.body_report(state, inputs, index);
+            let body = body.map(|body| [body.hand_work, body.energy]);
+            let residual = self.tools.links(index).then_some(report.residual);
+            for value in body.into_iter().flatten().chain(residual) {
+                out.push(',');
+                tables::push(out, value);
+            }
         }
         out.push('\n');
     }
 }
 
-/// Whether a tool is turned at some time.
+/// Whether a tool may be turned at some time.
 fn turns(tool: &Tool) -> bool {
-    match &tool.motion {
+    tool.body.is_some() || is_turned(&tool.motion)
+}
+
+fn is_turned(motion: &Motion) -> bool {
+    match motion {
         Motion::Held(_) | Motion::Steady { .. } => false,
+        Motion::Steered(..) => true,
         Motion::Table(table) => table
             .rows()
             .iter()

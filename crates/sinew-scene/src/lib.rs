@@ -59,13 +59,16 @@ pub use probe_rows::{ProbeRowError, ProbeRows};
 pub use proposal::propose;
 pub use reference::{scene_reference, scene_schema};
 pub use scene::{
-    Body, Choice, Grasp, Initial, Instants, Members, MeshChanges, MeshSource, Motion, Oscillator,
-    OutputSettings, ProbeAt, ProbePoint, Quantity, Rotation, RunSettings, Scene, Selected,
-    StartsInside, Subject, TimeStep, Tool, ToolPart, ToolPath, ToolShape, ToolStart, Way,
+    Blade, Body, Choice, Cutting, Grasp, Initial, Instants, LoosePieces, Members, MeshChanges,
+    MeshSource, Motion, Oscillator, OutputSettings, ProbeAt, ProbePoint, Quantity, Rotation,
+    RunSettings, Scene, Selected, StartsInside, Subject, TimeStep, Tool, ToolBody, ToolPart,
+    ToolPath, ToolShape, ToolStart, Way,
 };
 pub use simulation::{
-    BodyModel, Footprint, HeldPlace, LoadRemedy, MotionTableError, MotionTableFault, NearestNode,
-    Probe, ProbeNode, Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad,
-    SceneModel, SelectedPart, Simulation, ToolFault, UnresolvedLoad, Warning, WarningKind,
+    BodyChange, BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint,
+    HeldPlace, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe, ProbeNode,
+    Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad, SceneModel, Seen,
+    SelectedPart, Simulation, Stretch, StretchError, ToolFault, UnresolvedLoad, Warning,
+    WarningKind,
 };
 pub use source::SceneSource;

@@ -31,6 +31,19 @@ impl<'a> ProbeCsv<'a> {
         }
     }
 
+    /// Goes on with the rows of another body, whose probes are the same.
+    #[must_use]
+    pub fn with_rows<'b>(self, rows: ProbeRows<'b>) -> ProbeCsv<'b> {
+        let output = self.output;
+        ProbeCsv { rows, output }
+    }
+
+    /// Its output without its rows, from which [`ProbeCsv::with_rows`] goes on.
+    #[must_use]
+    pub fn without_rows(self) -> ProbeCsv<'static> {
+        self.with_rows(ProbeRows::of(&[], None))
+    }
+
     /// Completes the output; see [`Output::finish`].
     ///
     /// # Errors
@@ -106,6 +119,7 @@ mod tests {
             node: None,
             nodes,
             tets: Vec::new(),
+            is_gone: false,
             place: String::new(),
         };
         let along_y = Course {

@@ -158,7 +158,10 @@ impl<'a> ProbeRows<'a> {
                     }
                 }
                 (Quantity::Stress, Some(model)) => {
-                    let mut mean = [0.0; 6];
+                    let mut mean = match probe.is_gone {
+                        true => [f64::NAN; 6],
+                        false => [0.0; 6],
+                    };
                     let model = model.with_memory(&moment.state.internal);
                     for (tet, share) in &probe.tets {
                         let stress = model.tet_stress(t, u, *tet as usize)?;

@@ -128,6 +128,7 @@ fn the_papers_cube() {
         mesh: MeshSource::File("../meshes/paper-cube.msh".into()),
         mesh_changes: MeshChanges::default(),
         motions: Vec::new(),
+        cutting: None,
         tools: Vec::new(),
         problem: Problem {
             regions: vec![Region {

@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sinew_core::State;
+use sinew_core::{Inputs, State};
 use sinew_fem::Law;
 use sinew_mesh::GroupMembers;
 use sinew_scene::{BodyModel, Scene, Simulation, WarningKind};
@@ -172,9 +172,7 @@ fn the_column_winds_up_by_more_than_half_a_turn_and_keeps_its_energy() {
     let system = simulation.system();
     let energy = |state: &State| {
         let mut v = vec![0.0; state.v.len()];
-        state
-            .velocity_at_t(system, sinew_core::Inputs::none(), &mut v)
-            .unwrap();
+        state.velocity_at_t(system, Inputs::none(), &mut v).unwrap();
         let energy = system.energy(&state.u, &v).unwrap();
         [energy.kinetic, energy.elastic]
     };
@@ -368,10 +366,26 @@ fn the_ball_presses_on_the_cube_as_the_cube_on_its_bottom() {
     let [_, _, bottom] = reaction(&simulation, &state, 0);
     assert!(z > 1.0 && x.hypot(y) < 0.01 * z);
     is_near(bottom, z, 0.02);
-    let deepest = tools.deepest(&state.u, state.t(), 0).unwrap();
+    let deepest = tools
+        .deepest(&state.u, &tools.pose(&state, Inputs::none(), 0), 0)
+        .unwrap();
     assert!(deepest.gap > -1e-15 && ball.contacts >= 5);
     let [_, _, top] = probe(&simulation, &state, 0);
     assert!((top + 0.015).abs() < 1e-15, "{top}");
+}
+
+/// Two springs of 100 N/m one after the other, the bar and the coupling.
+#[test]
+fn the_hand_feels_the_bar_and_its_own_spring_in_series() {
+    let simulation = ready("handle");
+    let state = end(&simulation);
+    let tools = body(&simulation).tools.as_ref().unwrap();
+    let plate = tools.report(&state, 0);
+    is_near(plate.force[2], 0.004 * 50.0, 1e-6);
+    let pose = tools.pose(&state, Inputs::none(), 0);
+    assert!((pose.position()[2] - 0.078).abs() < 1e-8);
+    let [_, _, top] = probe(&simulation, &state, 0);
+    assert!((top + 0.002).abs() < 1e-8, "{top}");
 }
 
 #[test]
@@ -398,4 +412,49 @@ fn the_jaw_lets_go_of_the_tissue_that_it_lifted() {
     assert!(jaw.work > 1e-3, "{}", jaw.work);
     let [x, _, z] = probe(&simulation, &state, 0);
     assert!(x.hypot(z) < 3e-3, "{x} {z}");
+}
+
+/// Before the cut the strip has the stress of its law with nu = 0, P = mu (l - 1/l); after it the slit is open and the strip softer.
+#[test]
+fn the_strip_is_pulled_as_its_law_says_and_its_slit_opens() {
+    let simulation = ready("slit");
+    let mass = body(&simulation).model.report().mass;
+    let steps = simulation.run().steps;
+    let mut run = common::CutRun::new(simulation);
+    // The blade begins in the middle of the duration.
+    run.advance(steps / 2);
+    let (stretch, mu) = (1.1, 3500.0 / 2.0);
+    let pull = mu * (stretch - 1.0 / stretch) * 0.04 * 0.01;
+    let force = |run: &common::CutRun| reaction(&run.simulation, &run.state, 3)[0];
+    is_near(force(&run), pull, 1e-3);
+    assert_eq!(run.cutter.borrow().totals().changes, 0);
+    run.advance(steps - steps / 2);
+    let after = force(&run) / pull;
+    assert!(
+        (0.2..0.8).contains(&after),
+        "{after} {:?} {}",
+        run.cutter.borrow().totals(),
+        run.state.t()
+    );
+    let totals = *run.cutter.borrow().totals();
+    // From an edge to the middle, through all of the thickness, as the mesh has it.
+    is_near(totals.report.area, 0.02 * 0.01, 0.3);
+    is_near(totals.blade_work, 50.0 * totals.report.area, 1e-12);
+    is_near(run.cutter.borrow().mass(), mass, 1e-12);
+    // Both lips at the edge, of which one has the probe, are apart by more than half of what the ends are pulled.
+    let cut = body(&run.simulation);
+    let mut places = vec![[0.0; 3]; cut.mesh.points.len()];
+    let (t, u) = (run.state.t(), &run.state.u);
+    cut.model.positions(t, u, &mut places).unwrap();
+    let from = cut.cut.as_ref().unwrap();
+    let own = run.simulation.probes()[0].nodes[0].index;
+    let origin = from.cut.origins[own as usize];
+    let copies = (0..)
+        .zip(&from.cut.origins)
+        .filter(|(_, other)| **other == origin);
+    let x: Vec<f64> = copies
+        .map(|(node, _): (usize, _)| places[node][0])
+        .collect();
+    assert_eq!(x.len(), 2);
+    assert!((x[0] - x[1]).abs() > 0.004, "{x:?}");
 }

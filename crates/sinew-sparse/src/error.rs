@@ -26,6 +26,12 @@ pub enum AssemblyError {
         /// Column cell.
         column: u32,
     },
+    /// A row whose columns do not increase, or that lacks its own cell.
+    #[error("the columns of row {row} must increase, the row's own cell among them")]
+    Row {
+        /// Row cell.
+        row: u32,
+    },
     /// The element matrix has the wrong number of entries.
     #[error("the element matrix has {found} entries, expected {expected} (row-major)")]
     ElementSize {

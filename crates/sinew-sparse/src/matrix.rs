@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::error::AssemblyError;
 use crate::pattern::Pattern;
+use crate::rows_of_cells::RowsOfCells;
 
 /// Degrees of freedom of a cell, that is, layers of the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -34,18 +35,30 @@ impl Layers {
 /// A square matrix of dense blocks on a [`Pattern`].
 ///
 /// Rows and columns are cells; each stored block has `layers` x `layers` entries, row-major.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// Two are equal that have equal blocks on equal patterns.
+#[derive(Clone, Debug)]
 pub struct BlockMatrix {
     pattern: Arc<Pattern>,
     layers: Layers,
+    /// Entries of the block at each position of the pattern.
     values: Vec<f64>,
+}
+
+impl PartialEq for BlockMatrix {
+    fn eq(&self, other: &Self) -> bool {
+        let mut rows = 0..self.pattern.cells();
+        self.layers == other.layers
+            && self.pattern.cells() == other.pattern.cells()
+            && rows.all(|row| self.row_blocks(row).eq(other.row_blocks(row)))
+    }
 }
 
 impl BlockMatrix {
     /// The zero matrix on `pattern`.
     #[must_use]
     pub fn zeros(pattern: Arc<Pattern>, layers: Layers) -> Self {
-        let values = vec![0.0; pattern.blocks() * layers.block_len()];
+        let values = vec![0.0; pattern.positions() * layers.block_len()];
         Self {
             pattern,
             layers,
@@ -167,6 +180,63 @@ impl BlockMatrix {
             }
         }
         Ok(())
+    }
+
+    /// Takes over rows, whose matrix is to be symmetric afterwards as it was. Returns whether all rows were laid out anew, which makes room
+    /// for a tenth more cells: without it nothing is allocated.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Row`] and [`AssemblyError::CellOutOfRange`] where rows have other columns than they may; nothing is changed then.
+    pub fn take_rows(&mut self, rows: &RowsOfCells) -> Result<bool, AssemblyError> {
+        let len = self.layers.block_len();
+        let cells = rows.check(&self.pattern, len)?;
+        let appended = cells - self.pattern.cells();
+        let moved = rows.iter();
+        let moved = moved.filter(|row| !self.pattern.fits(row.cell as usize, row.columns.len()));
+        let needed = moved.map(|row| row.columns.len()).sum();
+        let has_room = self.values.capacity() - self.values.len() >= needed * len
+            && Arc::get_mut(&mut self.pattern)
+                .is_some_and(|pattern| pattern.has_room(appended, needed));
+        if !has_room {
+            *self = self.packed(appended, needed);
+        }
+        let pattern = Arc::make_mut(&mut self.pattern);
+        for row in rows.iter() {
+            let start = pattern.set_row(row.cell as usize, row.columns) * len;
+            let end = start + row.entries.len();
+            if end > self.values.len() {
+                self.values.resize(end, 0.0);
+            }
+            self.values[start..end].copy_from_slice(row.entries);
+        }
+        Ok(!has_room)
+    }
+
+    /// The same matrix on a pattern of its own, with room for a tenth more cells: [`BlockMatrix::take_rows`] allocates nothing until it is
+    /// used up.
+    #[must_use]
+    pub fn with_room(&self) -> Self {
+        self.packed(0, 0)
+    }
+
+    /// The same with room for at least so many cells and blocks.
+    fn packed(&self, cells: usize, blocks: usize) -> Self {
+        let spare = self.pattern.cells() / 10 + 16;
+        let (cells, blocks) = (
+            cells + spare,
+            blocks + spare * self.pattern.blocks_of_new_cell(),
+        );
+        let len = self.layers.block_len();
+        let mut values = Vec::with_capacity((self.pattern.blocks() + blocks) * len);
+        for row in 0..self.pattern.cells() {
+            let range = self.pattern.row(row);
+            values.extend_from_slice(&self.values[range.start * len..range.end * len]);
+        }
+        Self {
+            pattern: Arc::new(self.pattern.packed(cells, blocks)),
+            layers: self.layers,
+            values,
+        }
     }
 
     fn position(&self, row: u32, column: u32) -> Result<usize, AssemblyError> {

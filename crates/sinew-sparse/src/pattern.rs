@@ -6,14 +6,30 @@ use crate::incidence::Incidence;
 /// A symmetric neighbourhood relation on cells, each cell being its own neighbour.
 ///
 /// Neighbours of a cell are listed in increasing order, so equal graphs give equal patterns
-/// in any order of the elements they came from.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// in any order of the elements they came from, and are equal wherever their rows lie.
+#[derive(Clone, Debug)]
 pub struct Pattern {
-    row_start: Vec<usize>,
+    /// Position of each row's first block.
+    starts: Vec<usize>,
+    /// Blocks of each row.
+    counts: Vec<u32>,
+    /// Column of the block at each position; what rows have left behind is not looked at.
     columns: Vec<u32>,
     /// Place of the cell itself among its neighbours.
     diagonal: Vec<u32>,
+    /// Blocks of all rows.
+    blocks: usize,
 }
+
+impl PartialEq for Pattern {
+    fn eq(&self, other: &Self) -> bool {
+        let mut cells = 0..self.cells();
+        self.cells() == other.cells()
+            && cells.all(|cell| self.neighbours(cell) == other.neighbours(cell))
+    }
+}
+
+impl Eq for Pattern {}
 
 impl Pattern {
     /// The pattern in which two cells are neighbours when some element has both.
@@ -84,21 +100,77 @@ impl Pattern {
 
     /// A pattern without rows, and with room for `cells` of them and `blocks` blocks.
     fn with_room(cells: usize, blocks: usize) -> Self {
-        let mut row_start = Vec::with_capacity(cells + 1);
-        row_start.push(0);
         Self {
-            row_start,
+            starts: Vec::with_capacity(cells),
+            counts: Vec::with_capacity(cells),
             columns: Vec::with_capacity(blocks),
             diagonal: Vec::with_capacity(cells),
+            blocks: 0,
         }
     }
 
     /// Ends the row of a cell, whose columns were added in increasing order.
     fn end_row(&mut self, cell: u32) {
-        let start = self.row_start[self.diagonal.len()];
+        let start = self.blocks;
         let before = self.columns[start..].partition_point(|other| *other < cell);
         self.diagonal.push(before as u32);
-        self.row_start.push(self.columns.len());
+        self.starts.push(start);
+        self.counts.push((self.columns.len() - start) as u32);
+        self.blocks = self.columns.len();
+    }
+
+    /// The same pattern with its rows one after the other, and room for so many further cells and blocks.
+    pub(crate) fn packed(&self, cells: usize, blocks: usize) -> Self {
+        let mut packed = Self::with_room(self.cells() + cells, self.blocks + blocks);
+        for cell in 0..self.cells() {
+            packed.columns.extend(self.neighbours(cell));
+            packed.end_row(cell as u32);
+        }
+        packed
+    }
+
+    /// Whether so many cells and positions of blocks can be appended without asking for memory.
+    pub(crate) fn has_room(&self, cells: usize, blocks: usize) -> bool {
+        let has = |capacity: usize, len: usize, more: usize| capacity - len >= more;
+        has(self.starts.capacity(), self.starts.len(), cells)
+            && has(self.counts.capacity(), self.counts.len(), cells)
+            && has(self.diagonal.capacity(), self.diagonal.len(), cells)
+            && has(self.columns.capacity(), self.columns.len(), blocks)
+    }
+
+    /// Positions that a cell which is split off takes: those of its own row, and of neighbours' rows that become longer.
+    pub(crate) fn blocks_of_new_cell(&self) -> usize {
+        2 * self.blocks.div_ceil(self.cells().max(1)) + 4
+    }
+
+    /// Whether a row of so many blocks takes the place of a cell's.
+    pub(crate) fn fits(&self, cell: usize, blocks: usize) -> bool {
+        self.counts
+            .get(cell)
+            .is_some_and(|count| blocks <= *count as usize)
+    }
+
+    /// Gives a cell, or the one after the last, these neighbours: increasing, itself among them. A row that has become longer goes
+    /// behind all others. Returns the position of its first block.
+    pub(crate) fn set_row(&mut self, cell: usize, neighbours: &[u32]) -> usize {
+        let fits = self.fits(cell, neighbours.len());
+        if cell == self.cells() {
+            self.starts.push(0);
+            self.counts.push(0);
+            self.diagonal.push(0);
+        }
+        let count = &mut self.counts[cell];
+        self.blocks = self.blocks + neighbours.len() - *count as usize;
+        *count = neighbours.len() as u32;
+        self.diagonal[cell] = neighbours.partition_point(|other| (*other as usize) < cell) as u32;
+        let start = &mut self.starts[cell];
+        if fits {
+            self.columns[*start..*start + neighbours.len()].copy_from_slice(neighbours);
+        } else {
+            *start = self.columns.len();
+            self.columns.extend_from_slice(neighbours);
+        }
+        *start
     }
 
     /// Number of cells.
@@ -110,6 +182,11 @@ impl Pattern {
     /// Number of stored blocks: the sizes of all neighbourhoods together.
     #[must_use]
     pub fn blocks(&self) -> usize {
+        self.blocks
+    }
+
+    /// Number of positions at which blocks are or have been.
+    pub(crate) fn positions(&self) -> usize {
         self.columns.len()
     }
 
@@ -121,8 +198,8 @@ impl Pattern {
 
     /// Positions of the blocks of row `cell` in storage order.
     pub(crate) fn row(&self, cell: usize) -> std::ops::Range<usize> {
-        match self.row_start.get(cell..cell + 2) {
-            Some(&[start, end]) => start..end,
+        match (self.starts.get(cell), self.counts.get(cell)) {
+            (Some(start), Some(count)) => *start..*start + *count as usize,
             _ => 0..0,
         }
     }

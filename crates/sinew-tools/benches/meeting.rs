@@ -113,6 +113,8 @@ impl Lap {
                 friction: 0.2,
                 cells: (0..cells.len() as u32).collect(),
                 grasp: None,
+                body: None,
+                triangles: Vec::new(),
             };
             Arc::new(Tools::new(vec![ball], cells).expect("they fit"))
         });

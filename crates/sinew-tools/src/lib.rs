@@ -2,17 +2,18 @@
 //! point first meets them.
 //!
 //! A [`Shape`] is a union of [`Convex`] shapes, each with a [`Pose`] in the tool's own frame. A [`Motion`] says where that
-//! frame is at any time. A [`Stroke`] is the motion of one part over a step: it finds the first contact of a node
+//! frame is at any time, unless a [`Steering`] does while the simulation runs. A [`Stroke`] is the motion of one part over a step: it finds the first contact of a node
 //! however far both move, so that nothing passes through anything. [`swept_box`] tells which nodes need to be looked at.
 //!
 //! ```
+//! use sinew_core::Inputs;
 //! use sinew_tools::{Convex, Motion, Pose, Shape, Stroke, swept_box};
 //!
 //! // A ball of 5 mm moves down on a node at 30 m/s: 30 mm in a step of 1 ms.
 //! let shape = Shape::of(Convex::sphere(0.005)?);
 //! let start = Pose::new([0.0, 0.0, 0.02], [0.0; 3]);
 //! let motion = Motion::Steady { start, velocity: [0.0, 0.0, -30.0] };
-//! let (before, after) = (motion.at(0.0), motion.at(0.001));
+//! let (before, after) = (motion.at(0.0, Inputs::none()), motion.at(0.001, Inputs::none()));
 //! let node = [0.0, 0.0, 0.0];
 //!
 //! let [low, high] = swept_box(&shape, &before, &after).ok_or("a ball is bounded")?;
@@ -30,15 +31,24 @@ mod motion;
 mod pose;
 mod rotation;
 mod shape;
+mod steering;
 mod stroke;
+mod surface_pressures;
 mod swept_box;
 mod table;
-mod vector;
+mod triangle;
+pub mod vector;
 
-pub use contact::{Depth, Grasp, Tool, ToolReport, Tools, ToolsError, TouchedCell};
+pub use contact::{
+    BodyReport, Corner, Depth, Grasp, Tool, ToolBody, ToolBodyError, ToolReport, Tools, ToolsError,
+    TouchedCell, TouchedTriangle,
+};
 pub use motion::Motion;
 pub use pose::Pose;
 pub use shape::{Convex, Nearest, Part, Shape, ShapeError, Touch};
+pub use steering::Steering;
 pub use stroke::Stroke;
+pub use surface_pressures::SurfacePressures;
 pub use swept_box::swept_box;
 pub use table::{Row, Table, TableError};
+pub use triangle::nearest_of_triangle;

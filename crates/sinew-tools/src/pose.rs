@@ -1,7 +1,7 @@
 //! Position and rotation of a rigid body.
 
 use crate::rotation::{self, Matrix};
-use crate::vector::{add, between, scaled, sub};
+use crate::vector::{add, between, length, scaled, sub};
 
 /// Where a tool's own frame stands in the world: `world = position + rotation own`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +18,13 @@ impl Pose {
             position,
             rotation: rotation::matrix(rotation_vector),
         }
+    }
+
+    /// Whether a rotation vector (rad) is one whose angle is known: finite, and at most 1e6, beyond which rounding of the vector takes more than the digits
+    /// of a path.
+    #[must_use]
+    pub fn knows(rotation_vector: [f64; 3]) -> bool {
+        rotation_vector.iter().all(|angle| angle.is_finite()) && length(rotation_vector) <= 1e6
     }
 
     /// The pose in which the own frame is that of the world.
@@ -88,6 +95,14 @@ impl Pose {
         }
     }
 
+    /// This pose with its position moved by a vector (m) and turned about it by a rotation vector (rad), both of the world.
+    pub(crate) fn advanced(&self, along: [f64; 3], about: [f64; 3]) -> Self {
+        Self {
+            position: add(self.position, along),
+            rotation: rotation::product(&rotation::matrix(about), &self.rotation),
+        }
+    }
+
     /// The shortest rotation vector (rad, in the world) that turns this pose into `after`.
     ///
     /// Exactly 0 between equal rotations, for `R R'` is symmetric to the last bit.
@@ -111,7 +126,6 @@ mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     use super::*;
-    use crate::vector::length;
 
     fn close(a: [f64; 3], b: [f64; 3]) -> bool {
         length(sub(a, b)) < 1e-15
@@ -126,6 +140,14 @@ mod tests {
         // z of the part is -y of the tool, which is x of the world.
         assert!(close(world.turned([0.0, 0.0, 1.0]), [1.0, 0.0, 0.0]));
         assert_eq!(Pose::identity().then(&part), part);
+    }
+
+    #[test]
+    fn rotations_beyond_a_million_are_not_known() {
+        assert!(Pose::knows([0.0, 1e6, 0.0]) && Pose::knows([0.0; 3]));
+        for bad in [[1e6, 1.0, 1e4], [f64::NAN, 0.0, 0.0], [f64::INFINITY; 3]] {
+            assert!(!Pose::knows(bad), "{bad:?}");
+        }
     }
 
     #[test]

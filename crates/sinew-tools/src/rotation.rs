@@ -1,6 +1,6 @@
 //! Rotations as matrices, by their rows, and as vectors (rad): the axis times the angle.
 
-use crate::vector::{Vector, dot, length, scaled};
+use crate::vector::{Vector, add, cross, dot, length, scaled};
 
 pub(crate) type Matrix = [Vector; 3];
 
@@ -72,6 +72,21 @@ pub(crate) fn vector(matrix: &Matrix) -> Vector {
     }
     let angle = 2.0 * size.atan2(real);
     imaginary.map(|value| value / size * angle)
+}
+
+/// The spin (rad/s) of what turns by a rotation vector that changes at a rate (rad/s): `I + (1 - cos a)/a^2 W + (a - sin a)/a^3 W^2` times the rate.
+pub(crate) fn spin(vector: Vector, rate: Vector) -> Vector {
+    let angle = length(vector);
+    let second = sine_over_angle(angle / 2.0).powi(2) / 2.0;
+    // The difference loses its digits where its share of the whole does not matter.
+    let third = if angle < 1e-3 {
+        1.0 / 6.0
+    } else {
+        (1.0 - sine_over_angle(angle)) / (angle * angle)
+    };
+    let across = cross(vector, rate);
+    let back = scaled(cross(vector, across), third);
+    add(rate, add(scaled(across, second), back))
 }
 
 pub(crate) fn times(matrix: &Matrix, vector: Vector) -> Vector {

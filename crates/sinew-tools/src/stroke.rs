@@ -1,7 +1,7 @@
 //! The motion of a part of a tool over a step, and what it meets.
 
 use crate::pose::Pose;
-use crate::shape::{Convex, Part, Touch};
+use crate::shape::{Convex, Hull, Part, Touch, Triangle, TriangleTouch};
 use crate::vector::{between, length, sub};
 
 /// The largest turn (rad) of a tool in one pass: the chord of a path then leaves it by at most turn^2/8 of its distance.
@@ -91,6 +91,38 @@ impl Stroke {
             start = end;
         }
         None
+    }
+
+    /// The first contact of a triangle whose corners move straight (m, in the world) over the step; point and normal are in the part's own frame. None for a plane.
+    pub(crate) fn first_triangle(&self, from: &Triangle, to: &Triangle) -> Option<TriangleTouch> {
+        let hull = Hull::of(&self.part.convex)?;
+        let pieces = if self.turns() { self.passes } else { 1 };
+        let own = |share: f64, corners: &Triangle| {
+            let pose = self.pose_at(share);
+            corners.map(|corner| pose.to_own(corner))
+        };
+        let mut start = own(0.0, from);
+        for piece in 1..=pieces {
+            let share = f64::from(piece) / f64::from(pieces);
+            let corners = match piece == pieces {
+                true => *to,
+                false => [0, 1, 2].map(|corner| between(from[corner], to[corner], share)),
+            };
+            let end = own(share, &corners);
+            if let Some(touch) = hull.first_contact(&start, &end) {
+                let share = (f64::from(piece - 1) + touch.share) / f64::from(pieces);
+                return Some(TriangleTouch { share, ..touch });
+            }
+            start = end;
+        }
+        None
+    }
+
+    /// The contact with a triangle that is in the part (m, in the world) at the end of the step by more than a rounding; point and normal are in the part's own frame.
+    pub(crate) fn triangle_at_end(&self, corners: &Triangle) -> Option<TriangleTouch> {
+        let pose = self.pose_at(1.0);
+        let own = corners.map(|corner| pose.to_own(corner));
+        Hull::of(&self.part.convex)?.overlap(&own)
     }
 
     /// A box (m, lowest and highest corner) that contains the part during the whole step; none for a plane.

@@ -3,6 +3,7 @@
 use crate::pose::Pose;
 use crate::shape::Shape;
 use crate::stroke::Stroke;
+use crate::vector::Vector;
 
 /// A box (m, lowest and highest corner) that contains a tool during a whole step, from the pose before to the pose after;
 /// none for a tool with a plane.
@@ -10,11 +11,18 @@ use crate::stroke::Stroke;
 /// A node that moves straight meets the tool only if the box about its own way meets this one.
 #[must_use]
 pub fn swept_box(shape: &Shape, before: &Pose, after: &Pose) -> Option<[[f64; 3]; 2]> {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for part in shape.parts() {
-        let [part_low, part_high] = Stroke::new(part, *before, *after).bounds()?;
-        low = [0, 1, 2].map(|axis| low[axis].min(part_low[axis]));
-        high = [0, 1, 2].map(|axis| high[axis].max(part_high[axis]));
-    }
-    Some([low, high])
+    let parts = shape.parts().iter();
+    around(parts.map(|part| Stroke::new(part, *before, *after).bounds()))
+}
+
+/// The smallest box (m) around some; none where there is none of one of them, or no box at all.
+pub(crate) fn around(mut boxes: impl Iterator<Item = Option<[Vector; 2]>>) -> Option<[Vector; 2]> {
+    let first = boxes.next()??;
+    boxes.try_fold(first, |[low, high], next| {
+        let [other_low, other_high] = next?;
+        Some([
+            [0, 1, 2].map(|axis| low[axis].min(other_low[axis])),
+            [0, 1, 2].map(|axis| high[axis].max(other_high[axis])),
+        ])
+    })
 }

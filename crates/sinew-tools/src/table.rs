@@ -1,7 +1,8 @@
 //! Poses that a tool takes one after the other.
 
 use crate::pose::Pose;
-use crate::vector::between;
+use crate::rotation;
+use crate::vector::{between, length, scaled, sub};
 
 /// The pose at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +43,14 @@ pub enum TableError {
         /// The number.
         value: f64,
     },
+    /// A row with a rotation that is too large to be known.
+    #[error("row {row}: a rotation of {angle} rad: expected at most 1e6")]
+    Rotation {
+        /// Number of the row (1-based).
+        row: usize,
+        /// The angle (rad).
+        angle: f64,
+    },
     /// A row whose time does not come after that of the row before.
     #[error("row {row}: t = {t} s does not come after t = {last} s of the row before")]
     Order {
@@ -59,7 +68,7 @@ impl Table {
     ///
     /// # Errors
     ///
-    /// No row, a number that is not finite, or a time that does not come after the last one.
+    /// No row, a number that is not finite, a rotation beyond 1e6 rad, or a time that does not come after the last one.
     pub fn new(rows: Vec<Row>) -> Result<Self, TableError> {
         if rows.is_empty() {
             return Err(TableError::Empty);
@@ -70,6 +79,10 @@ impl Table {
             let mut numbers = [entry.t].into_iter().chain(numbers.copied());
             if let Some(value) = numbers.find(|value| !value.is_finite()) {
                 return Err(TableError::NotFinite { row, value });
+            }
+            if !Pose::knows(entry.rotation_vector) {
+                let angle = length(entry.rotation_vector);
+                return Err(TableError::Rotation { row, angle });
             }
             let t = entry.t;
             if let Some(last) = last.filter(|last| t <= *last) {
@@ -84,6 +97,23 @@ impl Table {
     #[must_use]
     pub fn rows(&self) -> &[Row] {
         &self.rows
+    }
+
+    /// The velocity (m/s) of the origin and the spin (rad/s) right after time `t` (s).
+    #[must_use]
+    pub fn velocity(&self, t: f64) -> [[f64; 3]; 2] {
+        let next = self.rows.partition_point(|row| row.t <= t);
+        let (Some(last), Some(next)) = (next.checked_sub(1), self.rows.get(next)) else {
+            return [[0.0; 3]; 2];
+        };
+        let last = &self.rows[last];
+        let rate = |from: [f64; 3], to: [f64; 3]| scaled(sub(to, from), 1.0 / (next.t - last.t));
+        let share = (t - last.t) / (next.t - last.t);
+        let turned = between(last.rotation_vector, next.rotation_vector, share);
+        [
+            rate(last.position, next.position),
+            rotation::spin(turned, rate(last.rotation_vector, next.rotation_vector)),
+        ]
     }
 
     /// The pose at time `t` (s).
@@ -107,7 +137,6 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
-    use crate::vector::{length, sub};
 
     fn row(t: f64, x: f64, angle: f64) -> Row {
         Row {

@@ -1,24 +1,35 @@
 //! Vectors of three coordinates.
 
-pub(crate) type Vector = [f64; 3];
+/// Three coordinates.
+pub type Vector = [f64; 3];
 
-pub(crate) fn add(a: Vector, b: Vector) -> Vector {
+/// The sum of two vectors.
+#[must_use]
+pub fn add(a: Vector, b: Vector) -> Vector {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-pub(crate) fn sub(a: Vector, b: Vector) -> Vector {
+/// The difference `a - b`.
+#[must_use]
+pub fn sub(a: Vector, b: Vector) -> Vector {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-pub(crate) fn scaled(a: Vector, factor: f64) -> Vector {
+/// A vector times a number.
+#[must_use]
+pub fn scaled(a: Vector, factor: f64) -> Vector {
     a.map(|value| value * factor)
 }
 
-pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
+/// The scalar product.
+#[must_use]
+pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
+/// The vector product.
+#[must_use]
+pub fn cross(a: Vector, b: Vector) -> Vector {
     [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -27,12 +38,14 @@ pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
 }
 
 /// The point at this share of the way from `a` to `b`; exactly `a` wherever `b` is the same.
-pub(crate) fn between(a: Vector, b: Vector, share: f64) -> Vector {
+#[must_use]
+pub fn between(a: Vector, b: Vector, share: f64) -> Vector {
     add(a, scaled(sub(b, a), share))
 }
 
 /// The length of a vector, also of one whose squares are too small for f64.
-pub(crate) fn length(a: Vector) -> f64 {
+#[must_use]
+pub fn length(a: Vector) -> f64 {
     let squares = dot(a, a);
     if squares > 1e-280 && squares.is_finite() {
         return squares.sqrt();
@@ -48,7 +61,8 @@ pub(crate) fn length(a: Vector) -> f64 {
 }
 
 /// The length of a vector and its direction, which is `otherwise` where there is none.
-pub(crate) fn length_and_direction(a: Vector, otherwise: Vector) -> (f64, Vector) {
+#[must_use]
+pub fn length_and_direction(a: Vector, otherwise: Vector) -> (f64, Vector) {
     let length = length(a);
     if length < f64::MIN_POSITIVE {
         return (length, otherwise);

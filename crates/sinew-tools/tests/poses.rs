@@ -9,6 +9,7 @@ use std::f64::consts::{PI, TAU};
 
 use common::{add, dot, length, poses, scaled, sub, vectors};
 use proptest::prelude::*;
+use sinew_core::Inputs;
 use sinew_tools::{Motion, Pose, Row, Table};
 
 /// A unit vector along a random one.
@@ -106,7 +107,7 @@ proptest! {
         let table = Table::new([0.0, 0.3, 1.1, 2.0].map(row).to_vec()).unwrap();
         let expected = row(t.clamp(0.0, 2.0));
         let expected = Pose::new(expected.position, expected.rotation_vector);
-        let found = Motion::Table(table).at(t);
+        let found = Motion::Table(table).at(t, Inputs::none());
         for point in [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]] {
             let difference = sub(found.to_world(point), expected.to_world(point));
             prop_assert!(length(difference) < 1e-13);

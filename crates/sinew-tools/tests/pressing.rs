@@ -4,13 +4,14 @@
 #![allow(clippy::unwrap_used, reason = "a test ends where something fails")]
 
 #[path = "common/pressed.rs"]
+#[allow(dead_code, reason = "other tests use more of it")]
 mod pressed;
 
 use std::f64::consts::PI;
 
-use pressed::{Block, E, through, tool};
-use sinew_core::{Inputs, LinearSystem, OptionValue, Options, State, System, vectors};
-use sinew_fem::{Model, Rayleigh};
+use pressed::{Block, E, staggered_energy, through, tool};
+use sinew_core::{Contact, Inputs, OptionValue, Options, State};
+use sinew_fem::Rayleigh;
 use sinew_tools::{Convex, Grasp, Motion, Pose};
 
 /// The rotation of a plate that faces down.
@@ -84,21 +85,6 @@ fn momentum_changes_by_the_impulse_of_the_tool() {
     assert!(impulse > -1.5 * before * mass, "it bounces");
     let change = mass * (pressed.mean_velocity(&state, 2).0 - before);
     assert!((change / impulse - 1.0).abs() < 1e-12, "{change} {impulse}");
-}
-
-/// `(v' (M - dt^2/4 K) v + u' K u)/2` of central difference's step, u being the mean of both displacements.
-fn staggered_energy(model: &Model, before: &State, after: &State, dt: f64) -> f64 {
-    let matrix = model.operators().stiffness();
-    let quadratic = |x: &[f64]| {
-        let mut out = vec![0.0; x.len()];
-        matrix.multiply(x, &mut out);
-        vectors::dot(x, &out)
-    };
-    let both = before.u.iter().zip(&after.u);
-    let mean: Vec<f64> = both.map(|(a, b)| 0.5 * (a + b)).collect();
-    let moving = after.v.iter().zip(model.mass());
-    let kinetic: f64 = moving.map(|(v, m)| m * v * v).sum();
-    0.5 * (kinetic - dt * dt / 4.0 * quadratic(&after.v) + quadratic(&mean))
 }
 
 #[test]
@@ -232,7 +218,8 @@ fn what_is_seized_goes_with_the_tool_and_is_let_go() {
     let mut state = pressed.at_rest();
     let dt = 1e-3;
     pressed.run(&mut state, "symplectic-euler", dt, 110);
-    let pulled = pressed.tools.report(&state, 0);
+    let place = |state: &State| pressed.tools.pose(state, Inputs::none(), 0).position();
+    let (pulled, begins) = (pressed.tools.report(&state, 0), place(&state));
     assert!(pulled.contacts >= 1);
     let forces: Vec<[f64; 3]> = pressed.tools.forces(&state).collect();
     let held: Vec<usize> = (0..forces.len())
@@ -245,11 +232,11 @@ fn what_is_seized_goes_with_the_tool_and_is_let_go() {
     };
     let places: Vec<[f64; 3]> = held.iter().map(|place| at(&state, *place)).collect();
     pressed.run(&mut state, "symplectic-euler", dt, 200);
-    let moved = pressed.tools.report(&state, 0);
+    let (moved, ends) = (pressed.tools.report(&state, 0), place(&state));
     for (place, before) in held.iter().zip(&places) {
         let after = at(&state, *place);
         for axis in 0..3 {
-            let expected = before[axis] + moved.position[axis] - pulled.position[axis];
+            let expected = before[axis] + ends[axis] - begins[axis];
             assert!((after[axis] - expected).abs() < 1e-15);
         }
     }
@@ -313,7 +300,8 @@ fn a_node_that_one_ball_pushes_into_another_is_outside_of_both() {
     for _ in 0..100 {
         pressed.run(&mut state, "symplectic-euler", 1e-3, 1);
         for tool in 0..2 {
-            let deepest = pressed.tools.deepest(&state.u, state.t(), tool).unwrap();
+            let pose = pressed.tools.pose(&state, Inputs::none(), tool);
+            let deepest = pressed.tools.deepest(&state.u, &pose, tool).unwrap();
             assert!(deepest.gap > -1e-15, "{} at {}", deepest.gap, state.t());
         }
         let touching = (0..2).filter(|tool| pressed.tools.report(&state, *tool).contacts > 0);

@@ -9,6 +9,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use common::{add, bounded_shapes, dot, length, poses, scaled, shapes, size, sub, vectors};
 use proptest::prelude::*;
+use sinew_core::Inputs;
 use sinew_tools::{Convex, Motion, Part, Pose, Shape, Stroke, swept_box};
 
 fn part(convex: Convex) -> Part {
@@ -144,11 +145,11 @@ fn crossing(velocity: f64, dt: f64, offset: [f64; 2], phase: f64) -> (bool, bool
     };
     let node = [0.0, offset[0], offset[1]];
     let (mut is_met, mut is_seen) = (false, false);
-    let mut before = motion.at(0.0);
+    let mut before = motion.at(0.0, Inputs::none());
     let mut step = 0;
     while before.position()[0] < 0.006 {
         step += 1;
-        let after = motion.at(f64::from(step) * dt);
+        let after = motion.at(f64::from(step) * dt, Inputs::none());
         let touch = Stroke::new(&part(convex), before, after).first_contact(node, node);
         is_met |= touch.is_some();
         is_seen |= convex.nearest(after.to_own(node)).distance < 0.0;

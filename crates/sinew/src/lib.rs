@@ -2,7 +2,7 @@
 //!
 //! Each crate also works alone. The default feature `cli` builds the `sinew` command; a program that does not
 //! need it depends on `sinew = { version = "..", default-features = false }`, which leaves out the command's
-//! libraries, and adds the features `implicit` (implicit methods) and `rayon` (threads) where it wants them.
+//! libraries, and adds the features `implicit` (implicit methods), `rayon` (threads) and `haptics` (devices with force feedback) where it wants them.
 //!
 //! ```
 //! use sinew::prelude::*;
@@ -32,10 +32,14 @@
 //! ```
 
 pub use {
-    sinew_cnn as cnn, sinew_core as core, sinew_fem as fem, sinew_integrators as integrators,
-    sinew_machines as machines, sinew_measure as measure, sinew_mesh as mesh, sinew_scene as scene,
-    sinew_sparse as sparse, sinew_tools as tools,
+    sinew_cnn as cnn, sinew_core as core, sinew_cutting as cutting, sinew_fem as fem,
+    sinew_integrators as integrators, sinew_machines as machines, sinew_measure as measure,
+    sinew_mesh as mesh, sinew_scene as scene, sinew_session as session, sinew_sparse as sparse,
+    sinew_tools as tools,
 };
+
+#[cfg(feature = "haptics")]
+pub use sinew_haptics as haptics;
 
 /// The items that most programs need.
 pub mod prelude {

@@ -34,6 +34,9 @@ enum Command {
     /// Find natural frequencies, mode shapes and the modes that the loads of a scene excite.
     #[cfg(feature = "implicit")]
     Modes(command::modes::Arguments),
+    /// Press on a scene by hand: a page in a browser of this computer, in real time.
+    #[cfg(feature = "live")]
+    Live(command::live::Arguments),
     /// Write a first scene for a mesh, or one of the ready scenes.
     New(command::new::Arguments),
     /// Inspect, check, convert and refine mesh files.
@@ -58,6 +61,8 @@ fn main() -> ExitCode {
         Command::Converge(arguments) => command::converge::run(&arguments),
         #[cfg(feature = "implicit")]
         Command::Modes(arguments) => command::modes::run(&arguments),
+        #[cfg(feature = "live")]
+        Command::Live(arguments) => command::live::run(&arguments),
         Command::New(arguments) => command::new::run(&arguments),
         Command::Mesh(arguments) => command::mesh::run(&arguments),
         Command::Integrators => command::integrators::run(),

@@ -40,7 +40,7 @@ pub(super) const LIGHT: &[Light] = &[
 const HEAVY: &[&str] = &["faer", "nalgebra", "rayon"];
 
 /// Libraries of the `sinew` command, which the library of that name must not bring along.
-const COMMAND: &[&str] = &["clap", "comfy-table", "annotate-snippets"];
+const COMMAND: &[&str] = &["clap", "comfy-table", "annotate-snippets", "axum", "tokio"];
 
 /// Checks the trees of the light crates, without what their tests need.
 pub(super) fn check(root: &Path, crates: &[Light]) -> Result<Vec<Breach>, RuleError> {

@@ -10,7 +10,10 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
     ("sinew-sparse", &[]),
     ("sinew-mesh", &[]),
     ("sinew-core", &["sinew-sparse"]),
-    ("sinew-fem", &["sinew-core", "sinew-mesh", "sinew-sparse"]),
+    (
+        "sinew-fem",
+        &["sinew-core", "sinew-mesh", "sinew-sparse", "sinew-cutting"],
+    ),
     ("sinew-cnn", &["sinew-core", "sinew-sparse"]),
     (
         "sinew-machines",
@@ -18,6 +21,8 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
     ),
     ("sinew-draw", &[]),
     ("sinew-tools", &["sinew-core", "sinew-sparse"]),
+    ("sinew-cutting", &["sinew-mesh"]),
+    ("sinew-haptics", &["sinew-core", "sinew-tools"]),
     ("sinew-testkit", &["sinew-core", "sinew-fem", "sinew-mesh"]),
     (
         "sinew-integrators",
@@ -31,11 +36,21 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-fem",
             "sinew-integrators",
             "sinew-tools",
+            "sinew-cutting",
         ],
     ),
     (
         "sinew-measure",
         &["sinew-core", "sinew-integrators", "sinew-scene"],
+    ),
+    (
+        "sinew-session",
+        &[
+            "sinew-core",
+            "sinew-integrators",
+            "sinew-scene",
+            "sinew-tools",
+        ],
     ),
     (
         "sinew-record",
@@ -46,7 +61,21 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-fem",
             "sinew-integrators",
             "sinew-scene",
+            "sinew-session",
             "sinew-tools",
+            "sinew-cutting",
+        ],
+    ),
+    (
+        "sinew-live",
+        &[
+            "sinew-core",
+            "sinew-mesh",
+            "sinew-fem",
+            "sinew-tools",
+            "sinew-integrators",
+            "sinew-scene",
+            "sinew-session",
         ],
     ),
     (
@@ -59,6 +88,8 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-machines",
             "sinew-sparse",
             "sinew-tools",
+            "sinew-haptics",
+            "sinew-cutting",
             "sinew-integrators",
             "sinew-scene",
             "sinew-measure",
@@ -75,10 +106,14 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-cnn",
             "sinew-machines",
             "sinew-tools",
+            "sinew-haptics",
+            "sinew-cutting",
             "sinew-integrators",
             "sinew-scene",
             "sinew-measure",
+            "sinew-session",
             "sinew-record",
+            "sinew-live",
             "sinew-draw",
         ],
     ),
@@ -96,8 +131,12 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
 ];
 
 /// Libraries that only one crate may name.
-pub(super) const PRIVATE: &[(&str, &str)] =
-    &[("faer", "sinew-integrators"), ("nalgebra", "sinew-fem")];
+pub(super) const PRIVATE: &[(&str, &str)] = &[
+    ("faer", "sinew-integrators"),
+    ("nalgebra", "sinew-fem"),
+    ("axum", "sinew-live"),
+    ("tokio", "sinew-live"),
+];
 
 /// Checks that every crate has a room and depends on no other than it may.
 pub(super) fn check(packages: &[Package]) -> Vec<Breach> {

@@ -1,37 +1,7 @@
 //! The list of large deformations: their scenes, methods and steps.
 
-use sinew_measure::MethodChoice;
-
-use super::materials::Material;
 use super::methods;
-
-/// A scene with its runs.
-pub(super) struct NonlinearCase {
-    /// Id of the case.
-    pub(super) id: &'static str,
-    /// The scene's file, from the folder of scenes.
-    pub(super) scene: &'static str,
-    pub(super) methods: Vec<MethodChoice>,
-    /// Steps (s), which divide the time between the scene's instants.
-    pub(super) steps: &'static [f64],
-    /// Laws and elements in the place of the scene's; empty for its own.
-    pub(super) materials: Vec<Material>,
-    /// What is to be said of it besides.
-    pub(super) remarks: &'static [&'static str],
-    /// Finer meshes by which the error of the scene's own is estimated.
-    pub(super) finer: Option<FinerMeshes>,
-}
-
-/// Two finer meshes of a scene.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FinerMeshes {
-    /// What the scene changes to have them, the coarser one first.
-    pub(super) meshes: [&'static str; 2],
-    /// Cells along an edge of the finer over those of the coarser.
-    pub(super) ratio: f64,
-    /// Whether the motion is so violent that a method of order 4 is needed to follow it.
-    pub(super) is_violent: bool,
-}
+use crate::planned::{FinerMeshes, Material, PlannedCase};
 
 const CUBE: FinerMeshes = FinerMeshes {
     meshes: ["mesh.cube.cells=12", "mesh.cube.cells=18"],
@@ -50,10 +20,11 @@ const OF_SOFA: &[&str] = &[
 ];
 
 /// The cases, in the order of the report.
-pub(super) fn all(quick: bool) -> Vec<NonlinearCase> {
-    let case = |id, scene, steps, finer| NonlinearCase {
+pub(super) fn all(quick: bool) -> Vec<PlannedCase> {
+    let case = |id, scene, steps, finer| PlannedCase {
         id,
         scene,
+        values: &[],
         methods: methods::all(),
         steps,
         materials: Vec::new(),
@@ -91,7 +62,7 @@ pub(super) fn all(quick: bool) -> Vec<NonlinearCase> {
             &[5e-3, 1e-2, 2e-3, 1e-3, 5e-4, 2.5e-4],
             CUBE,
         ),
-        NonlinearCase {
+        PlannedCase {
             methods: methods::few(),
             materials: Material::all(),
             ..case(
@@ -124,12 +95,12 @@ pub(super) fn all(quick: bool) -> Vec<NonlinearCase> {
                 is_violent: false,
             },
         ),
-        NonlinearCase {
+        PlannedCase {
             methods: methods::of_large_bodies(),
             finer: None,
             ..case("organ-pressed", "ready/organ-pressed.toml", &[2e-2], CUBE)
         },
-        NonlinearCase {
+        PlannedCase {
             methods: methods::of_sofa(),
             remarks: OF_SOFA,
             finer: None,

@@ -164,10 +164,7 @@ impl Comparison {
             },
             figure: ratio.is_finite().then_some(ratio),
             by: format!("{} beside {}", ours.words("fbar-edge"), plain.words("p1")),
-            verdict: match ratio <= LIMIT {
-                true => MarkVerdict::Pass,
-                false => MarkVerdict::Fail,
-            },
+            verdict: MarkVerdict::of(ratio <= LIMIT),
             note: format!(
                 "static deflection and first frequency (lumped mass) against 10-node tetrahedra, {} cells an edge; neo-hookean, {SHARE} of \
                  each one's stable step, laps in turn",

@@ -2,7 +2,8 @@
 
 use sinew_measure::Row;
 
-use super::{equal_error, methods};
+use super::equal_error;
+use crate::planned::{energy, is_yardstick};
 use crate::report::{number, percent};
 use crate::results::{Mark, MarkVerdict};
 
@@ -34,7 +35,7 @@ fn at(row: &Row) -> String {
 fn energy_never_rises(rows: &[Row]) -> Mark {
     let own = rows
         .iter()
-        .filter(|row| row.integrator == methods::energy("trap", 4).integrator);
+        .filter(|row| row.integrator == energy("trap", 4).integrator);
     let rises = own.filter_map(|row| Some((row.energy_rise?, row)));
     let worst = rises.clone().max_by(|a, b| a.0.total_cmp(&b.0));
     let asked = mark(
@@ -52,23 +53,14 @@ fn energy_never_rises(rows: &[Row]) -> Mark {
         measured: number::short(rise),
         figure: Some(rise),
         by: format!("the worst of {} runs: {}", rises.count(), at(row)),
-        verdict: match rise <= ROUNDING {
-            true => MarkVerdict::Pass,
-            false => MarkVerdict::Fail,
-        },
+        verdict: MarkVerdict::of(rise <= ROUNDING),
         ..asked
     }
 }
 
 /// Central difference whose parts follow the stiffness comes to the end everywhere.
 fn steps_follow_the_stiffness(rows: &[Row]) -> Mark {
-    let yardstick = methods::yardstick();
-    let own: Vec<&Row> = rows
-        .iter()
-        .filter(|row| {
-            row.integrator == yardstick.integrator && row.options.contains_key("substeps")
-        })
-        .collect();
+    let own: Vec<&Row> = rows.iter().filter(|row| is_yardstick(row)).collect();
     let worst = own.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
     let asked = mark(
         "steps by the current stiffness come to the end",
@@ -86,10 +78,7 @@ fn steps_follow_the_stiffness(rows: &[Row]) -> Mark {
         },
         figure: figure.is_finite().then_some(figure),
         by: format!("the worst of {} runs: {}", own.len(), at(worst)),
-        verdict: match figure <= asked.limit.unwrap_or_default() {
-            true => MarkVerdict::Pass,
-            false => MarkVerdict::Fail,
-        },
+        verdict: MarkVerdict::of(figure <= asked.limit.unwrap_or_default()),
         ..asked
     }
 }

@@ -1,16 +1,9 @@
 //! The methods that large deformations are given to.
 
-use sinew_core::{OptionValue, Options};
+use sinew_core::OptionValue;
 use sinew_measure::MethodChoice;
 
-/// Central difference whose parts of a step follow the stiffness: the method to which costs are compared.
-pub(super) fn yardstick() -> MethodChoice {
-    with(
-        "central-difference",
-        "substeps",
-        OptionValue::Text("auto".into()),
-    )
-}
+use crate::planned::{energy, with, yardstick};
 
 /// The methods of a quick run, and of runs that compare bodies.
 pub(super) fn few() -> Vec<MethodChoice> {
@@ -69,19 +62,4 @@ fn variants(id: &str) -> Vec<MethodChoice> {
         ],
         _ => Vec::new(),
     }
-}
-
-/// Sweeps that lower a step's energy, of a kind and at this many a step.
-pub(super) fn energy(kind: &str, sweeps: u32) -> MethodChoice {
-    let mut method = MethodChoice::new("cnn-energy");
-    method.options = Options::new()
-        .with("kind", OptionValue::Text(kind.into()))
-        .with_number("sweeps", f64::from(sweeps));
-    method
-}
-
-fn with(id: &str, key: &'static str, value: OptionValue) -> MethodChoice {
-    let mut method = MethodChoice::new(id);
-    method.options = method.options.with(key, value);
-    method
 }

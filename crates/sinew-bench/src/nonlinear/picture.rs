@@ -10,7 +10,7 @@ use sinew_measure::{Case, CaseError, Effort, MeasureError, measure};
 use sinew_mesh::GroupMembers;
 use sinew_scene::Scene;
 
-use super::methods;
+use crate::planned::yardstick;
 use crate::report::{number, percent};
 
 /// The scene, from the folder of scenes, and the step (s) of central difference.
@@ -42,7 +42,7 @@ pub enum PictureError {
 pub fn picture(scenes: &Path) -> Result<String, PictureError> {
     let simulation = Scene::load(scenes.join(SCENE)).and_then(Scene::build);
     let mut case = Case::new("twist", simulation.map_err(CaseError::from)?)?;
-    let method = methods::yardstick();
+    let method = yardstick();
     let row = measure(&mut case, &method, STEP, Effort::UNTIMED)?;
 
     let simulation = case.simulation();

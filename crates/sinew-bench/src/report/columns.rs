@@ -130,8 +130,15 @@ static COLUMNS: [Column; 13] = [
     },
 ];
 
-/// Figures that only hard cases or large deformations have.
-static OTHER_COLUMNS: [Column; 7] = [
+/// Figures that only hard cases, large deformations or tools have.
+static OTHER_COLUMNS: [Column; 8] = [
+    Column {
+        head: "force err.",
+        unit: "%",
+        explained: "relative L2 error of the forces on tools, means over the time between two of the instants compared",
+        cell: |row| share(row.force_error),
+        key: Some(|row| row.force_error.unwrap_or(f64::INFINITY)),
+    },
     Column {
         head: "mesh error",
         unit: "%",

@@ -38,6 +38,15 @@ pub enum MarkVerdict {
 }
 
 impl MarkVerdict {
+    /// Whether what was asked holds.
+    #[must_use]
+    pub fn of(holds: bool) -> Self {
+        match holds {
+            true => Self::Pass,
+            false => Self::Fail,
+        }
+    }
+
     /// The word that tables show.
     #[must_use]
     pub fn word(self) -> &'static str {

@@ -1,9 +1,12 @@
 //! Reasons for which a figure cannot be computed.
 
+use std::convert::Infallible;
+
 use sinew_core::{EvaluationError, OperatorError, OptionError, StepError};
 use sinew_fem::hyperelastic::LawError;
 use sinew_fem::hyperelastic::closed_forms::ClosedFormError;
-use sinew_fem::{FemError, FieldError};
+use sinew_fem::{CutModelError, FemError, FieldError};
+use sinew_haptics::{CouplingError, ToolStepError};
 use sinew_integrators::{FactorError, StaticError};
 use sinew_measure::{CaseError, MeasureError};
 use sinew_mesh::structured::StructuredError;
@@ -32,6 +35,9 @@ pub enum VerifyError {
     /// A model.
     #[error(transparent)]
     Model(#[from] FemError),
+    /// A cut.
+    #[error(transparent)]
+    Cut(#[from] CutModelError),
     /// A field on a model.
     #[error(transparent)]
     Field(#[from] FieldError),
@@ -59,6 +65,12 @@ pub enum VerifyError {
     /// The motion of a tool.
     #[error(transparent)]
     Motion(#[from] TableError),
+    /// A coupling that a device cannot render.
+    #[error(transparent)]
+    Coupling(#[from] CouplingError),
+    /// A step of a tool in the hand of a device.
+    #[error(transparent)]
+    ToolStep(#[from] ToolStepError),
     /// The assembly of a matrix.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
@@ -97,4 +109,10 @@ pub enum VerifyError {
         /// Figures that are asked for.
         asked: usize,
     },
+}
+
+impl From<Infallible> for VerifyError {
+    fn from(never: Infallible) -> Self {
+        match never {}
+    }
 }

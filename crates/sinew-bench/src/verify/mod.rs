@@ -19,6 +19,7 @@ pub(crate) mod reference;
 mod results;
 mod run;
 mod sources;
+mod staggered_energy;
 mod subject;
 mod subjects;
 mod text;

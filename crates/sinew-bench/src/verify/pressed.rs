@@ -8,7 +8,9 @@ use sinew_core::{
 };
 use sinew_fem::{Model, Problem};
 use sinew_mesh::TetMesh;
-use sinew_tools::{Convex, Motion, Row, Shape, Table, Tool, Tools, TouchedCell};
+use sinew_tools::{
+    Convex, Corner, Motion, Row, Shape, Table, Tool, Tools, TouchedCell, TouchedTriangle,
+};
 
 use super::error::VerifyError;
 
@@ -46,6 +48,37 @@ impl Pressed {
             state: State::at_rest(model.dofs()),
             model,
             tools,
+        })
+    }
+
+    /// The body of a problem under a tool that touches all nodes, and the triangles of the surface as well.
+    pub(crate) fn with_triangles(
+        mesh: &TetMesh,
+        problem: &Problem,
+        tool: Tool,
+    ) -> Result<Self, VerifyError> {
+        let pressed = Self::new(mesh, problem, tool, |_| true)?;
+        let corner = |node: u32| match pressed.model.cell_of_node(node) {
+            Some(cell) => Corner::Cell(cell),
+            None => Corner::Held(mesh.points[node as usize]),
+        };
+        let triangles = mesh.boundary(None).into_iter();
+        let triangles = triangles.map(|nodes| TouchedTriangle {
+            corners: nodes.map(corner),
+        });
+        let triangles: Vec<TouchedTriangle> = triangles.collect();
+        let all: Vec<u32> = (0..triangles.len() as u32).collect();
+        let tools = pressed.tools.tools().iter().cloned();
+        let tools = tools.map(|tool| Tool {
+            triangles: all.clone(),
+            ..tool
+        });
+        let cells = pressed.tools.touched_cells().to_vec();
+        let tools = Arc::new(Tools::with_triangles(tools.collect(), cells, triangles)?);
+        Ok(Self {
+            model: pressed.model.with_contact(tools.clone()),
+            tools,
+            state: pressed.state,
         })
     }
 
@@ -88,7 +121,8 @@ impl Pressed {
 
     /// How far the deepest node is from the tool (m), negative inside.
     pub(crate) fn gap(&self) -> f64 {
-        let deepest = self.tools.deepest(&self.state.u, self.state.t(), 0);
+        let pose = self.tools.pose(&self.state, Inputs::none(), 0);
+        let deepest = self.tools.deepest(&self.state.u, &pose, 0);
         deepest.map_or(f64::INFINITY, |depth| depth.gap)
     }
 }
@@ -107,6 +141,8 @@ pub(crate) fn tool(convex: Convex, motion: Motion, friction: f64) -> Tool {
         friction,
         cells: Vec::new(),
         grasp: None,
+        body: None,
+        triangles: Vec::new(),
     }
 }
 

@@ -1,13 +1,17 @@
 //! The model of a body.
 
+mod after_cut;
 mod deformed;
+mod element_bounds;
 mod element_forces;
 mod energy;
 mod field_error;
+mod follow_split;
 mod force_law;
 mod forces;
 mod motion;
 mod nodes;
+mod other_ramps;
 mod reactions;
 mod static_load;
 mod strain;
@@ -15,7 +19,9 @@ mod support_motion;
 mod system;
 mod with_memory;
 
+pub use after_cut::{CutStateError, NodesCarried};
 pub use deformed::DeformedTet;
+pub(crate) use element_bounds::TetFrequencies;
 pub use field_error::FieldError;
 pub use forces::NodalForces;
 pub use static_load::ModelLoads;

@@ -45,13 +45,11 @@ impl Model {
         Ok(self)
     }
 
-    /// The courses of a component (0, 1, 2 for x, y, z) of a mesh node (0-based) that is moved; empty where the
-    /// component is held or moves by itself.
+    /// The courses of a component (0, 1, 2 for x, y, z) of a mesh node (0-based) that is moved, or a constant one where it was frozen; empty
+    /// where the component is held at rest or moves by itself.
     #[must_use]
     pub fn courses(&self, node: u32, axis: usize) -> &[Course] {
-        let part = self.motions.part_of(node, axis);
-        let part = part.and_then(|part| self.motions.parts().get(part));
-        part.map_or(&[], |part| &part.courses)
+        self.motions.courses(node, axis)
     }
 
     /// Writes the displacements (m) of all nodes of the mesh at a time (s), with the displacement `u` (m) of the degrees

@@ -115,6 +115,10 @@ impl Scheme for GeneralizedAlpha {
         Properties::of_order(2, Needs::Tangents, energy)
     }
 
+    fn refuses_contact(&self) -> bool {
+        true
+    }
+
     fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
         Some(NumericalDissipation::Newmark {
             beta: self.beta(),

@@ -47,6 +47,10 @@ impl Scheme for ImplicitEuler {
         Properties::of_order(1, Needs::Tangents, EnergyBehaviour::Falls)
     }
 
+    fn refuses_contact(&self) -> bool {
+        true
+    }
+
     fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
         Some(NumericalDissipation::ImplicitEuler)
     }

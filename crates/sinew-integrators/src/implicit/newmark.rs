@@ -103,6 +103,10 @@ impl Scheme for Newmark {
         Properties::of_order(order, Needs::Tangents, energy)
     }
 
+    fn refuses_contact(&self) -> bool {
+        true
+    }
+
     fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
         Some(NumericalDissipation::Newmark {
             beta: self.beta,

@@ -121,6 +121,7 @@ fn named(subject: &Subject) -> String {
     match subject {
         Subject::Displacement => "displacement of all nodes".to_owned(),
         Subject::Probe(name) => format!("`{name}`"),
+        Subject::Force(name) => format!("force on `{name}`"),
         Subject::ElasticEnergy => "elastic energy".to_owned(),
     }
 }

@@ -43,6 +43,11 @@ pub enum ConvergeError {
         /// The step (s).
         dt: f64,
     },
+    /// A body that may be cut.
+    #[error(
+        "the body may be cut ([cutting]), on each mesh otherwise: take the table out to measure the motion of the whole body"
+    )]
+    Cut,
     /// Errors are relative to the motion, and there is none.
     #[error("nothing moves in this scene, so that there is no error to estimate")]
     NothingMoves,

@@ -121,8 +121,9 @@ pub(super) fn solve(
             })?;
             level.reference_sweeps = track.sweeps;
             let mut eye = Eye::new(simulation, places)?;
-            for (t, u) in times.iter().zip(&track.displacements) {
-                eye.look(*t, u)?;
+            for (index, (t, u)) in times.iter().zip(&track.displacements).enumerate() {
+                let impulses = track.impulses.get(index).map_or(&[][..], Vec::as_slice);
+                eye.look(*t, u, impulses)?;
             }
             (eye.seen, Halving::OF_REFERENCE)
         }
@@ -197,10 +198,16 @@ impl Recorder for Instants<'_> {
 
     fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
         let (t, u) = (moment.state.t(), &moment.state.u);
-        self.eye.look(t, u).map_err(|source| RecordError {
-            t,
-            source: Box::new(source),
-        })?;
+        let contact = moment.system.contact();
+        let impulses = contact.map_or_else(Vec::new, |contact| {
+            contact.impulses(moment.state).into_flattened()
+        });
+        self.eye
+            .look(t, u, &impulses)
+            .map_err(|source| RecordError {
+                t,
+                source: Box::new(source),
+            })?;
         Ok(Verdict::Continue)
     }
 }
@@ -208,7 +215,9 @@ impl Recorder for Instants<'_> {
 /// The rest under the loads at the end of the scene.
 fn rest(simulation: &Simulation, places: &Places) -> Result<Option<Observed>, ConvergeError> {
     let system = simulation.system();
-    let Some(linear) = system.as_linear() else {
+    // What tools hold is none of the loads.
+    let linear = system.as_linear().filter(|_| system.contact().is_none());
+    let Some(linear) = linear else {
         return Ok(None);
     };
     let end = simulation.settings().duration;
@@ -218,7 +227,7 @@ fn rest(simulation: &Simulation, places: &Places) -> Result<Option<Observed>, Co
         return Ok(None);
     };
     let mut eye = Eye::new(simulation, places)?;
-    eye.look(end, &u)?;
+    eye.look(end, &u, &[])?;
     Ok(Some(eye.seen))
 }
 

@@ -40,7 +40,7 @@ pub struct Convergence {
     pub levels: Vec<Level>,
     /// How errors in time were found.
     pub time_check: TimeCheck,
-    /// Displacements, probes and energies.
+    /// Displacements, probes, forces on tools and energies.
     pub quantities: Vec<Quantity>,
     /// What the estimates do not cover.
     pub caveats: Vec<Caveat>,

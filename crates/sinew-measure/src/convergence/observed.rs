@@ -1,4 +1,4 @@
-//! What is compared between meshes: displacements at places that all have, and energies.
+//! What is compared between meshes: displacements at places that all have, forces on tools, and energies.
 
 use sinew_scene::{BodyModel, ProbeAt, ProbePoint, Simulation, Subject as SceneSubject};
 
@@ -6,13 +6,15 @@ use super::caveats::Caveat;
 use super::error::ConvergeError;
 use super::quantity::{Subject, is_estimated};
 
-/// Displacements and energies of a motion, instant after instant.
+/// Displacements, forces and energies of a motion, instant after instant.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Observed {
     /// Of the nodes of the scene's mesh, which are the first of every refined one (m).
     nodes: Vec<f64>,
     /// At the points of probes (m).
     probes: Vec<Vec<f64>>,
+    /// On tools, means since the instant before (N).
+    forces: Vec<Vec<f64>>,
     /// Elastic (J).
     energy: Vec<f64>,
 }
@@ -25,6 +27,8 @@ pub(super) type Of = Box<dyn Fn(&Observed) -> &[f64]>;
 pub(super) struct Places {
     nodes: usize,
     probes: Vec<ProbePlace>,
+    /// The names of the tools.
+    tools: Vec<String>,
 }
 
 /// The place of a probe.
@@ -77,6 +81,12 @@ impl Places {
         Ok(Self {
             nodes: body.mesh.points.len(),
             probes: probes.collect(),
+            tools: body
+                .tools
+                .iter()
+                .flat_map(|tools| tools.tools())
+                .map(|tool| tool.name.clone())
+                .collect(),
         })
     }
 
@@ -86,9 +96,14 @@ impl Places {
             let of: Of = Box::new(move |observed| &observed.probes[index]);
             (Subject::Probe(probe.name.clone()), of)
         });
+        let forces = self.tools.iter().enumerate().map(|(index, name)| {
+            let of: Of = Box::new(move |observed| &observed.forces[index]);
+            (Subject::Force(name.clone()), of)
+        });
         let nodes: Of = Box::new(|observed| &observed.nodes);
         let energy: Of = Box::new(|observed| &observed.energy);
         probes
+            .chain(forces)
             .chain([
                 (Subject::Displacement, nodes),
                 (Subject::ElasticEnergy, energy),
@@ -129,6 +144,8 @@ pub(super) struct Eye<'a> {
     probes: Vec<Vec<(u32, f64)>>,
     /// Displacement of all nodes (m).
     all: Vec<[f64; 3]>,
+    /// The instant (s) of the last look, and the impulses (N s) of tools until then.
+    last: (f64, Vec<f64>),
     pub(super) seen: Observed,
 }
 
@@ -154,15 +171,25 @@ impl<'a> Eye<'a> {
             nodes: places.nodes,
             probes: places.probes.iter().map(shares).collect(),
             all: vec![[0.0; 3]; body.mesh.points.len()],
+            last: (
+                simulation.initial_state().t(),
+                vec![0.0; 3 * places.tools.len()],
+            ),
             seen: Observed {
+                forces: vec![Vec::new(); places.tools.len()],
                 probes: vec![Vec::new(); places.probes.len()],
                 ..Observed::default()
             },
         })
     }
 
-    /// Looks at the displacement `u` (m) of the degrees of freedom at a time (s).
-    pub(super) fn look(&mut self, t: f64, u: &[f64]) -> Result<(), ConvergeError> {
+    /// Looks at the displacement `u` (m) of the degrees of freedom at a time (s), and at the impulses (N s) of tools until then, x, y, z of each.
+    pub(super) fn look(
+        &mut self,
+        t: f64,
+        u: &[f64],
+        impulses: &[f64],
+    ) -> Result<(), ConvergeError> {
         let found = self.body.model.displacements_at(t, u, &mut self.all);
         found.map_err(|error| ConvergeError::Field(error.to_string()))?;
         let seen = &mut self.seen;
@@ -176,6 +203,19 @@ impl<'a> Eye<'a> {
             };
             values.extend([along(0), along(1), along(2)]);
         }
+        let (before, last) = &mut self.last;
+        let values = seen.forces.iter_mut();
+        let values = values.zip(
+            impulses
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .zip(last.as_chunks::<3>().0),
+        );
+        for (values, (now, last)) in values {
+            values.extend((0..3).map(|axis| (now[axis] - last[axis]) / (t - *before)));
+        }
+        (*before, *last) = (t, impulses.to_vec());
         // Where supports move, elements between them and the body are in no matrix.
         let energy = match self.body.problem.moves.is_empty() {
             true => {

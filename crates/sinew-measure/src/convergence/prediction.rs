@@ -78,6 +78,9 @@ const FACTOR_OPERATIONS: f64 = 64.0;
 pub fn predict(simulation: &Simulation, levels: usize) -> Result<Prediction, ConvergeError> {
     let body = simulation.model().body();
     let body = body.ok_or(RefinementError::NoMesh)?;
+    if simulation.is_cut() {
+        return Err(ConvergeError::Cut);
+    }
     let system = simulation.system();
     let steps = simulation.run().steps.max(1);
     let dt = simulation.settings().duration / steps as f64;

@@ -9,6 +9,8 @@ pub enum Subject {
     Displacement,
     /// The displacement at the point of a probe (m).
     Probe(String),
+    /// The force on a tool (N), the mean between the instants that are compared.
+    Force(String),
     /// The elastic energy (J).
     ElasticEnergy,
 }
@@ -29,7 +31,7 @@ pub struct Quantity {
     pub subject: Subject,
     /// Its time.
     pub when: When,
-    /// Its size on the finest mesh, its root mean square over nodes and instants (m or J).
+    /// Its size on the finest mesh, its root mean square over nodes and instants (m, N or J).
     pub size: f64,
     /// The error in time on each mesh over [`Quantity::size`] (fraction), the scene's mesh first; none at rest and for a run that
     /// diverged.

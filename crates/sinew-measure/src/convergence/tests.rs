@@ -220,3 +220,35 @@ fn a_place_between_nodes_and_one_of_single_nodes_are_named() {
     let points = caveats("{ nodes = [1, 3, 7, 9] }");
     assert!(points.contains("point-place"), "{points}");
 }
+
+/// A plate that comes down slowly on a light bar which does not widen feels `E A d/L` all the way, on every mesh.
+#[test]
+fn the_force_on_a_tool_is_one_of_the_quantities() {
+    let (speed, duration) = (-0.01, 0.2);
+    let simulation = simulation(&format!(
+        "[mesh]\ncube = {{ cells = 1, edge = {EDGE} }}\n[[region]]\ndensity = 10.0\nmodel = \"linear\"\nyoungs_modulus = 3000.0\n\
+         poissons_ratio = 0.0\n[damping]\nmass = 300.0\n[[fixed]]\ngroup = \"bottom\"\n[[tool]]\nname = \"plate\"\nshape = {{ plane = {{}} }}\n\
+         start = [0.05, 0.05, {EDGE}]\nrotation = [{PI}, 0.0, 0.0]\nvelocity = [0.0, 0.0, {speed}]\n\
+         [run]\nduration = {duration}\nintegrator = \"central-difference\"\ndt = 0.001\n"
+    ));
+    let found = converge(&simulation, &predict(&simulation, 2).unwrap()).unwrap();
+    let force = of(&found, &Subject::Force("plate".into()), When::Run);
+    let last = 3000.0 * EDGE * EDGE * -speed * duration / EDGE;
+    let expected = last / 3.0_f64.sqrt();
+    assert!(
+        (force.size / expected - 1.0).abs() < 0.1,
+        "{} {expected}",
+        force.size
+    );
+    assert!(force.estimate.differences[0] < 0.1);
+    assert!(
+        force
+            .errors_in_time
+            .iter()
+            .flatten()
+            .all(|error| *error < 0.1)
+    );
+    // Held by a plate, it comes to rest elsewhere than under its loads.
+    let rests = found.quantities.iter().filter(|of| of.when == When::Rest);
+    assert_eq!(rests.count(), 0);
+}

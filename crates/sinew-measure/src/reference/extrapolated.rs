@@ -2,7 +2,7 @@
 
 use sinew_core::{ElasticLaw, Integrator, State, System};
 use sinew_integrators::Method;
-use sinew_integrators::explicit::{CentralDifference, Rk4};
+use sinew_integrators::explicit::{CentralDifference, Rk4, SymplecticEuler};
 #[cfg(feature = "implicit")]
 use sinew_integrators::implicit::{GeneralizedAlpha, Newmark};
 
@@ -32,6 +32,9 @@ impl Falling {
     /// The method of the solution and that of the check, for a system whose stable step of undamped leapfrog at rest is `critical` (s) and
     /// instants `interval` (s) apart.
     fn pair(system: &dyn System, critical: f64, interval: f64) -> [Self; 2] {
+        if system.contact().is_some() {
+            return Self::touched((critical / 4.0).min(interval));
+        }
         let damping = system.as_elastic().map(ElasticLaw::damping);
         #[cfg(feature = "implicit")]
         if damping.is_some_and(|damping| damping.stiffness > 0.0) {
@@ -54,6 +57,22 @@ impl Falling {
                 halvings: 6,
                 aim: 1e-5,
             },
+        ]
+    }
+
+    /// With tools: methods for which contact is exact at the end of each step, and which do not know when within it a node met its tool. So
+    /// the check takes steps of another length as well, which end elsewhere.
+    fn touched(first: f64) -> [Self; 2] {
+        let falling = |integrator: Box<dyn Integrator>, first: f64| Self {
+            integrator,
+            order: 1,
+            first,
+            halvings: 5,
+            aim: 1e-4,
+        };
+        [
+            falling(CentralDifference.integrator(), first),
+            falling(SymplecticEuler.integrator(), first / 1.5),
         ]
     }
 
@@ -104,6 +123,7 @@ fn critical_step(system: &dyn System) -> f64 {
 struct Converged<'a> {
     sight: Sight<'a>,
     extrapolated: Vec<Vec<f64>>,
+    impulses: Vec<Vec<f64>>,
     /// Relative difference between the extrapolated solution and that in the shortest steps.
     difference: f64,
     sweeps: u64,
@@ -111,7 +131,7 @@ struct Converged<'a> {
 
 /// Follows a system from `start` through `times` (s), increasing: by Runge and Kutta's method in steps halved until they hardly matter,
 /// extrapolated by Richardson's rule, and once more by central difference, which has another order and no formula in common, extrapolated
-/// as well. Bodies with stiffness damping are followed by implicit methods.
+/// as well. Bodies with stiffness damping are followed by implicit methods, those that tools touch by the two methods of order 1.
 ///
 /// # Errors
 /// [`ReferenceError`] where neither converges, or the two solutions differ by more than 1 %.
@@ -140,6 +160,7 @@ pub(super) fn by_extrapolation<'a>(
     };
     let mut track = solution.sight.track(method, between, sweeps);
     track.displacements = solution.extrapolated;
+    track.impulses = solution.impulses;
     Ok(track)
 }
 
@@ -160,11 +181,14 @@ fn converge<'a>(
             continue;
         };
         if let Some(coarse) = &coarse {
-            let extrapolated = extrapolate(coarse, &fine, method.order);
+            let share = (2.0_f64.powi(method.order) - 1.0).recip();
+            let extrapolated = extrapolate(&coarse.displacements, &fine.displacements, share);
+            let impulses = extrapolate(&coarse.impulses, &fine.impulses, share);
             let difference = ErrorNorm::between(&fine.displacements, &extrapolated);
             best = Some(Converged {
                 sight: fine.clone(),
                 extrapolated,
+                impulses,
                 difference,
                 sweeps,
             });
@@ -195,7 +219,7 @@ fn follow<'a>(
         let span = time - before;
         before = time;
         if span <= 0.0 {
-            sight.keep(&state);
+            sight.keep_of(system, &state);
             continue;
         }
         let steps = (span / longest).ceil().max(1.0);
@@ -211,15 +235,14 @@ fn follow<'a>(
             }
             sight.pass(&state);
         }
-        sight.keep(&state);
+        sight.keep_of(system, &state);
     }
     Some(sight)
 }
 
-/// Richardson's rule for steps and half steps.
-fn extrapolate(coarse: &Sight<'_>, fine: &Sight<'_>, order: i32) -> Vec<Vec<f64>> {
-    let share = (2.0_f64.powi(order) - 1.0).recip();
-    let pairs = coarse.displacements.iter().zip(&fine.displacements);
+/// Richardson's rule for values in steps and in half steps: `share` of what these differ by is added.
+fn extrapolate(coarse: &[Vec<f64>], fine: &[Vec<f64>], share: f64) -> Vec<Vec<f64>> {
+    let pairs = coarse.iter().zip(fine);
     pairs
         .map(|(coarse, fine)| {
             let pairs = coarse.iter().zip(fine);

@@ -43,7 +43,7 @@ pub(crate) enum Course {
     Taylor(Pace),
     /// By Faber series.
     Faber,
-    /// By extrapolation, for force laws.
+    /// By extrapolation, for force laws and bodies that tools touch.
     Extrapolated,
 }
 
@@ -76,10 +76,8 @@ pub(crate) fn follow_by(
     start: &State,
     times: &[f64],
 ) -> Result<Track, ReferenceError> {
-    if system.contact().is_some() {
-        return Err(ReferenceError::Contact);
-    }
     let track = match course {
+        _ if system.contact().is_some() => return by_extrapolation(system, start, times),
         Course::Extrapolated => return by_extrapolation(system, start, times),
         Course::Taylor(pace) => {
             let (operators, spectrum) = matrices(system)?;

@@ -1,7 +1,7 @@
 //! A reference at the instants a comparison needs.
 
-use sinew_core::State;
 use sinew_core::vectors::largest;
+use sinew_core::{State, System};
 
 use super::peak::peak_between;
 
@@ -12,6 +12,8 @@ pub struct Track {
     pub times: Vec<f64>,
     /// Displacement (m) at each instant.
     pub displacements: Vec<Vec<f64>>,
+    /// The impulses (N s) until each instant of the things that touch the body, x, y, z of each; empty where nothing does.
+    pub impulses: Vec<Vec<f64>>,
     /// Largest |component| (m) over the run.
     pub max_u: f64,
     /// Half the range (m) of the worst degree of freedom over the last fifth of the run.
@@ -63,11 +65,6 @@ pub enum ReferenceError {
     /// The system is not linear.
     #[error("a reference solution needs the matrices of a linear system")]
     NotLinear,
-    /// Tools touch the body.
-    #[error(
-        "there is no reference solution with tools yet, so that no error can be measured: compare runs in steps of half the length"
-    )]
-    Contact,
     /// A method's solutions do not come together in any of the steps that were tried.
     #[error("no reference solution: `{method}` does not converge in any of the steps tried")]
     NotConverged {
@@ -94,6 +91,7 @@ pub(crate) const TOLD_APART: f64 = 100.0;
 pub(super) struct Sight<'a> {
     times: &'a [f64],
     pub(super) displacements: Vec<Vec<f64>>,
+    pub(super) impulses: Vec<Vec<f64>>,
     before: State,
     max_u: f64,
     late: LateRange,
@@ -105,6 +103,7 @@ impl<'a> Sight<'a> {
         Self {
             times,
             displacements: Vec::with_capacity(times.len()),
+            impulses: Vec::new(),
             before: start.clone(),
             max_u: largest(&start.u),
             late: LateRange::new(start.u.len()),
@@ -127,10 +126,19 @@ impl<'a> Sight<'a> {
         self.displacements.push(state.u.clone());
     }
 
+    /// Keeps the displacement and, where something touches the body, the impulses until the next of the instants.
+    pub(super) fn keep_of(&mut self, system: &dyn System, state: &State) {
+        self.keep(state);
+        if let Some(contact) = system.contact() {
+            self.impulses.push(contact.impulses(state).into_flattened());
+        }
+    }
+
     pub(super) fn track(self, method: ReferenceMethod, error: f64, sweeps: u64) -> Track {
         Track {
             times: self.times.to_vec(),
             displacements: self.displacements,
+            impulses: self.impulses,
             max_u: self.max_u,
             late_amplitude: self.late.amplitude(),
             error,

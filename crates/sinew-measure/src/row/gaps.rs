@@ -79,6 +79,7 @@ impl Row {
             settles: _,
             error,
             error_is_below,
+            force_error,
             expected_error,
             max_u,
             late_amplitude,
@@ -105,6 +106,7 @@ impl Row {
         gaps.maybe("diverged_at_s", *diverged_at_s);
         gaps.finished("error", *error, *outcome);
         gaps.maybe("error_is_below", *error_is_below);
+        gaps.maybe("force_error", *force_error);
         gaps.maybe("expected_error", *expected_error);
         gaps.finished("max_u", *max_u, *outcome);
         gaps.finished("late_amplitude", *late_amplitude, *outcome);

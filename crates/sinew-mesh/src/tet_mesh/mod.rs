@@ -2,8 +2,10 @@
 
 mod add_group;
 mod boundary;
+mod boundary_surface;
 mod collect_data;
 mod collect_groups;
+mod cut;
 mod error;
 mod find_data;
 mod find_group;
@@ -11,21 +13,28 @@ mod from_mesh;
 mod group;
 mod placement;
 mod refine;
+mod split_in_place;
 mod surface;
 mod tet_data;
 mod to_mesh;
 mod vector;
 
 pub use add_group::AddGroupError;
+pub use boundary_surface::BoundarySurface;
+pub use cut::{CutBody, CutMesh, MovedNode};
 pub use error::TetMeshError;
 pub use find_data::TetDataError;
 pub use find_group::UnknownGroup;
 pub use group::{Group, GroupMembers};
 pub use refine::RefineError;
+pub use split_in_place::{Split, SplitFollower};
 pub(crate) use surface::OUTWARD_FACES;
 pub use surface::SurfaceError;
 pub use tet_data::TetData;
 pub(crate) use vector::{cross, dot, sub};
+
+/// The vertices of each edge of a tetrahedron.
+const EDGES: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
 
 /// Points, tetrahedra and groups, every point being a corner of some tetrahedron.
 ///
@@ -131,10 +140,9 @@ impl TetMesh {
     /// Each edge of the tetrahedra once, lower node first, in ascending order.
     #[must_use]
     pub fn edges(&self) -> Vec<[u32; 2]> {
-        const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
         let mut edges = Vec::with_capacity(6 * self.tets.len());
         for tet in &self.tets {
-            for (i, j) in PAIRS {
+            for (i, j) in EDGES {
                 let (a, b) = (tet[i].min(tet[j]), tet[i].max(tet[j]));
                 // A collapsed tetrahedron may name a node twice.
                 if a != b {

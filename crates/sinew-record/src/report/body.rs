@@ -1,10 +1,10 @@
 //! Pictures of the body.
 
 use sinew_draw::{Page, Surface as Picture};
+use sinew_mesh::BoundarySurface;
 
 use super::beside;
 use crate::summary::Summary;
-use crate::surface::Surface;
 
 /// Triangles beyond which a page with two pictures takes long to open.
 const MOST_TRIANGLES: usize = 80_000;
@@ -19,7 +19,12 @@ const DRAWN: f64 = 0.08;
 const AWAY: [f64; 3] = [1.0, 1.0, -1.0];
 
 /// The body at rest and at its largest motion.
-pub(super) fn section(page: &mut Page, summary: &Summary<'_>, surface: &Surface, largest: &[f64]) {
+pub(super) fn section(
+    page: &mut Page,
+    summary: &Summary<'_>,
+    surface: &BoundarySurface,
+    largest: &[f64],
+) {
     page.section("body", "The body");
     let seen = summary.progress.seen.displacement;
     let moved = largest.as_chunks::<3>().0;
@@ -52,12 +57,14 @@ pub(super) fn section(page: &mut Page, summary: &Summary<'_>, surface: &Surface,
     let (rest, then) = (surface.points.clone(), place(scale));
     let view = bounds(rest.iter().chain(&then));
     let range = Some((0.0, 1e3 * seen.value));
-    let words = match scale > 1.0 {
-        true => format!(
-            "At t = {:.4} s, displacements drawn {scale} times as large",
-            seen.t
-        ),
+    let body = summary.simulation.model().body();
+    let when = match body.is_some_and(|body| body.cut.is_some()) {
+        true => "After the cuts, in the last frame".to_owned(),
         false => format!("At t = {:.4} s", seen.t),
+    };
+    let words = match scale > 1.0 {
+        true => format!("{when}, displacements drawn {scale} times as large"),
+        false => when,
     };
     let pictures = [
         ("At rest".to_owned(), rest, vec![0.0; sizes.len()]),

@@ -6,6 +6,8 @@
 mod balance_of_energy;
 mod common;
 mod comparisons;
+mod cuts;
+mod replays;
 mod resumed_runs;
 mod tables_and_fields;
 mod tools;

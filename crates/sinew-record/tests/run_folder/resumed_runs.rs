@@ -48,7 +48,7 @@ fn contents(path: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-const SCENES: [&str; 5] = [
+const SCENES: [&str; 7] = [
     "[[fixed]]\ngroup = \"sides\"\n[[load]]\ngroup = \"top\"\npressure = 100.0\n[damping]\nmass = 2.0\n[run]\n\
      duration = 0.3\nintegrator = \"central-difference\"\ndt = 0.001\n[output]\nfields = { frames = 7 }\n",
     "gravity = [0.0, 0.0, -9.81]\n[[fixed]]\ngroup = \"bottom\"\n[[move]]\ngroup = \"top\"\ndisplacement = [0.0, 0.0, 0.01]\n\
@@ -62,6 +62,14 @@ const SCENES: [&str; 5] = [
      velocity = [0.05, 0.0, -0.2]\nfriction = 0.3\ngrasp = { from = 0.05, to = 0.11 }\n[[tool]]\nname = \"wall\"\nshape = { plane = {} }\n\
      start = [0.099, 0.0, 0.0]\nrotation = [0.0, -1.5707963267948966, 0.0]\nhold = true\nstarts_inside = \"push\"\n[run]\nduration = 0.15\n\
      integrator = \"central-difference\"\ndt = 0.001\n",
+    "gravity = [0.0, 0.0, 9.81]\n[[fixed]]\ngroup = \"bottom\"\n[[tool]]\nname = \"blade\"\nshape = { blade = { length = 0.3 } }\n\
+     start = [-0.005, 0.05, 0.051]\nrotation = [1.5707963267948966, 0.0, 0.0]\nvelocity = [1.0, 0.0, 0.3]\n[[tool]]\nname = \"jaw\"\n\
+     shape = { sphere = { radius = 0.03 } }\nstart = [0.05, 0.05, 0.131]\nvelocity = [0.0, 0.0, -0.03]\ngrasp = { from = 0.01, to = 1.0 }\n\
+     [cutting]\nsnap = 0.25\ntool = \"blade\"\ntoughness = 10.0\n[run]\nduration = 0.15\nintegrator = \"central-difference\"\ndt = 0.001\n",
+    "[[fixed]]\ngroup = \"bottom\"\n[[move]]\ngroup = \"top\"\naxes = \"x\"\ndisplacement = [0.01, 0.0, 0.0]\n\
+     ramp = { kind = \"sin2\", rise = 0.1 }\n[[tool]]\nname = \"burner\"\nshape = { sphere = { radius = 0.03 } }\n\
+     start = [-0.05, 0.05, 0.05]\nvelocity = [0.8, 0.0, 0.0]\n[cutting]\nremove = { tool = \"burner\" }\npieces = \"freeze\"\n[run]\n\
+     duration = 0.3\nintegrator = \"newmark\"\ndt = 0.002\n[output]\nenergy = { every = 0.013 }\n",
 ];
 
 #[test]

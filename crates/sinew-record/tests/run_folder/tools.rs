@@ -176,3 +176,39 @@ fn the_work_of_tools_is_no_energy_from_nothing() {
     assert!(system.energy(&state.u, &state.v).unwrap().total() > 1e-3);
     assert_eq!(growth.in_words(), None);
 }
+
+/// A plate on a spring of the bar's own stiffness goes half as deep, and its table says what its hand does.
+#[test]
+fn a_plate_on_a_coupling_shares_the_way_with_the_tissue() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("out");
+    pressed(place.path(), 2.0, "");
+    let path = place.path().join("scene.toml");
+    let body = format!(
+        "table = \"plate.csv\"\nbody = {{ mass = 0.05, inertia = [1e3, 1e3, 1e3], coupling = {STIFFNESS}, rotational_coupling = 1e6 }}\n"
+    );
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("table = \"plate.csv\"\n", &body)).unwrap();
+    let mut simulation = Scene::load(&path).unwrap().build().unwrap();
+    simulation.end_at_duration();
+    run(&out, &simulation, &mut ());
+    let rows = table(&out.join("tools.csv"));
+    let last = |name: &str| *rows[name].last().unwrap();
+    assert_eq!(rows["plate_hand_work_J"][0], 0.0);
+    // It begins with the velocity of its path.
+    let speed = (height(1e-3) - height(0.0)) / 1e-3;
+    let kinetic = 0.5 * 0.05 * speed * speed;
+    assert!(kinetic > 0.0);
+    assert!((rows["plate_energy_J"][0] / kinetic - 1.0).abs() < 1e-9);
+    assert!((last("plate_z_m") - 0.0975).abs() < 1e-9);
+    assert!((last("plate_force_z_N") / (0.0025 * STIFFNESS) - 1.0).abs() < 1e-6);
+    assert!(last("plate_residual") < 1e-9);
+    let spring = 0.5 * STIFFNESS * 0.0025 * 0.0025;
+    assert!((last("plate_energy_J") / spring - 1.0).abs() < 1e-6);
+    // The path pushes with at most the last force.
+    let hand = last("plate_hand_work_J");
+    assert!(
+        hand > 2.0 * spring && hand < 0.005 * 0.0025 * STIFFNESS,
+        "{hand}"
+    );
+}

@@ -137,6 +137,9 @@ pub enum Fault {
     /// A tool that does not fit the body, or cannot be.
     #[error(transparent)]
     Tool(#[from] crate::simulation::ToolFault),
+    /// A body that cannot be cut.
+    #[error(transparent)]
+    Cutting(#[from] sinew_fem::CutModelError),
     /// A mesh that is not a body of tetrahedra.
     #[error(transparent)]
     Tetrahedra(#[from] sinew_mesh::TetMeshError),
@@ -179,6 +182,23 @@ pub enum Fault {
     /// dt = "auto" with an integrator that sets no step on this scene.
     #[error("dt = \"auto\" needs an integrator with a largest stable step: {0}")]
     NoStableStep(#[from] NoStableStep),
+    /// A method that tools cannot push.
+    #[error(transparent)]
+    Touched(sinew_core::SetupError),
+    /// A step longer than the duration where steps go on beyond that.
+    #[error("dt = {dt} s is longer than the duration, {duration} s: expected a step within it")]
+    LongStep {
+        /// The step (s).
+        dt: f64,
+        /// The duration (s).
+        duration: f64,
+    },
+    /// dt = "auto" on a linear body that is cut, whose elements bound no step.
+    #[error(
+        "dt = \"auto\" finds no step that is stable after cuts, since an element of the body averages strain over tetrahedra that they separate: \
+         expected a step with a margin, or element = \"p1\""
+    )]
+    NoStepOverCuts,
     /// More steps than can be told apart.
     #[error(
         "dt = {dt:e} s: a duration of {duration:e} s takes {:.3e} steps, more than can be counted ({MOST_STEPS:.0e}); \

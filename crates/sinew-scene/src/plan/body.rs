@@ -9,7 +9,7 @@ use sinew_mesh::GroupMembers;
 use sinew_mesh::structured::Split;
 
 use super::section::PlanSection;
-use super::tools;
+use super::{cutting, tools};
 use crate::formula::Formula;
 use crate::number::{count, length, short, vector};
 use crate::scene::{Body, Initial, MeshChanges, MeshSource, Quantity, Rotation, Way};
@@ -29,6 +29,7 @@ pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<
         PlanSection::new("fixed", supports(body, built, report)),
         PlanSection::new("moves", moves(body, built)),
         PlanSection::new("tools", tools::lines(body, built)),
+        PlanSection::new("cutting", cutting::lines(body, built)),
         PlanSection::new("loads", loads(body, report)),
         PlanSection::new("initial", initial.collect()),
         PlanSection::new("probes", probes.iter().map(probe).collect()),

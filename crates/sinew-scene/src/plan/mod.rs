@@ -1,6 +1,7 @@
 //! The plan: a description of a simulation for people.
 
 mod body;
+mod cutting;
 mod matrices;
 mod oscillator;
 mod run;

@@ -9,7 +9,15 @@ pub(super) fn lines(body: &Body, built: &BodyModel) -> Vec<String> {
     let known = built.tools.iter().flat_map(|tools| tools.tools());
     let tools = body.tools.iter().zip(known);
     tools
-        .map(|(tool, known)| {
+        .enumerate()
+        .map(|(index, (tool, known))| {
+            if body.is_cut_by(index) {
+                let (shape, way) = (shape(&tool.parts), way(&tool.path));
+                return format!(
+                    "`{}`: {shape} {way}; it cuts, and touches nothing",
+                    tool.name
+                );
+            }
             let on = match &tool.touches {
                 None => "the surface".to_owned(),
                 Some(group) => format!("`{group}`"),
@@ -36,6 +44,7 @@ fn shape(parts: &[ToolPart]) -> String {
         ),
         ToolShape::Plane => "plane".to_owned(),
         ToolShape::Box { size } => format!("box of {} m", vector(size)),
+        ToolShape::Blade { length } => format!("blade of {} m", short(length)),
     };
     parts.iter().map(of).collect::<Vec<_>>().join(" and ")
 }
@@ -59,6 +68,14 @@ fn rest(tool: &Tool) -> String {
     }
     if let Some(grasp) = tool.grasp {
         text.push_str(&format!(", seizes from {} s to {} s", grasp.from, grasp.to));
+    }
+    if let Some(body) = tool.body {
+        text.push_str(&format!(
+            ", a body of {} kg on springs of {} N/m and {} N m/rad",
+            short(body.mass),
+            short(body.coupling),
+            short(body.rotational_coupling)
+        ));
     }
     if tool.starts_inside == StartsInside::Push {
         text.push_str(", pushes out what is inside at t = 0");

@@ -1,5 +1,6 @@
 //! The top of a scene: its tables and the keys before them.
 
+use super::cutting::CUTTING;
 use super::damping::DAMPING;
 use super::fixed::FIXED;
 use super::initial::INITIAL;
@@ -29,6 +30,7 @@ pub(crate) const DOCUMENT: TableDescription = TableDescription {
         &SUPPORTS,
         &MOTIONS,
         &TOOLS,
+        &CUTTING_TABLE,
         &LOADS,
         &GRAVITY_VECTOR,
         &INITIAL_STATES,
@@ -101,6 +103,14 @@ pub(super) const TOOLS: Key<Inner, Optional> = Key::optional(
     "Rigid tools that press on the body.",
     Inner::several("tables [[tool]]", &TOOL),
     "nothing touches the body",
+)
+.only(OF_A_BODY);
+
+pub(super) const CUTTING_TABLE: Key<Inner, Optional> = Key::optional(
+    "cutting",
+    "What cuts the body.",
+    Inner::one("a table [cutting]", &CUTTING),
+    "the body stays whole",
 )
 .only(OF_A_BODY);
 

@@ -1,5 +1,6 @@
 //! The tables of a scene as the user wrote them, checked one by one.
 
+mod cutting;
 mod damping;
 mod document;
 mod field;
@@ -21,6 +22,7 @@ mod run;
 mod selected;
 mod tissue;
 mod tool;
+mod tool_body;
 mod tool_shape;
 
 use std::path::{Path, PathBuf};
@@ -29,10 +31,11 @@ use std::sync::Arc;
 use sinew_fem::Problem;
 use toml::de::DeTable;
 
+pub use cutting::{Blade, Cutting, LoosePieces};
 pub(crate) use document::DOCUMENT;
 use document::{
-    DAMPING_TABLE, GRAVITY_VECTOR, INITIAL_STATES, LOADS, MESH_TABLE, MOTIONS, OSCILLATOR_TABLE,
-    OUTPUT_TABLE, PROBES, REGIONS, RUN_TABLE, SUPPORTS, TITLE, TOOLS,
+    CUTTING_TABLE, DAMPING_TABLE, GRAVITY_VECTOR, INITIAL_STATES, LOADS, MESH_TABLE, MOTIONS,
+    OSCILLATOR_TABLE, OUTPUT_TABLE, PROBES, REGIONS, RUN_TABLE, SUPPORTS, TITLE, TOOLS,
 };
 pub use initial::Initial;
 use keys::GRAVITY;
@@ -45,7 +48,9 @@ pub(crate) use run::{INTEGRATOR, RUN};
 pub use run::{RunSettings, TimeStep};
 use selected::Selections;
 pub use selected::{Choice, Members, Selected};
-pub use tool::{Grasp, StartsInside, Tool, ToolPath, ToolStart};
+pub(crate) use tool::ToolPlace;
+pub use tool::{Grasp, StartsInside, Tool, ToolBody, ToolPath, ToolStart};
+pub(crate) use tool_shape::FARTHEST;
 pub use tool_shape::{ToolPart, ToolShape};
 
 use crate::decode::{Place, Table};
@@ -85,6 +90,8 @@ pub struct Body {
     pub motions: Vec<Motion>,
     /// Rigid tools that press on it.
     pub tools: Vec<Tool>,
+    /// What cuts it; `None` for a body that stays whole.
+    pub cutting: Option<Cutting>,
     /// The name of each load of `problem`, if it has one.
     pub load_names: Vec<Option<String>>,
     /// Its state at t = 0.
@@ -105,7 +112,8 @@ pub(crate) struct Places {
     pub(crate) damping: Option<Place>,
     pub(crate) fixed: Vec<Place>,
     pub(crate) motions: Vec<Place>,
-    pub(crate) tools: Vec<Place>,
+    pub(crate) tools: Vec<ToolPlace>,
+    pub(crate) cutting: Option<Place>,
     pub(crate) loads: Vec<Place>,
     pub(crate) initial: Vec<Place>,
     pub(crate) probes: Vec<Place>,
@@ -117,6 +125,13 @@ impl Places {
     /// The place of a list's item, or of the whole document if the list has no such item.
     pub(crate) fn of<'a>(&'a self, list: &'a [Place], index: usize) -> &'a Place {
         list.get(index).unwrap_or(&self.document)
+    }
+
+    /// The place of a tool, or of the whole document if there is no such tool.
+    pub(crate) fn of_tool(&self, index: usize) -> &Place {
+        self.tools
+            .get(index)
+            .map_or(&self.document, |place| &place.table)
     }
 }
 
@@ -218,6 +233,7 @@ impl Scene {
                 mesh,
                 motions,
                 tools,
+                cutting,
                 ..
             } = &**body;
             if let MeshSource::File(written) = mesh {
@@ -231,6 +247,9 @@ impl Scene {
                 ToolPath::Table(written) => Some(source.resolve(written)),
                 ToolPath::Hold(_) | ToolPath::Velocity(..) => None,
             }));
+            if let Some(Blade::Table(written)) = cutting.as_ref().map(|cutting| &cutting.blade) {
+                files.push(source.resolve(written));
+            }
         }
         files
     }
@@ -241,11 +260,12 @@ impl Scene {
     pub fn input_files_of(path: &Path) -> Vec<PathBuf> {
         let text = text_of(path).unwrap_or_default();
         let (document, _) = DeTable::parse_recoverable(&text);
-        let mesh = document.get_ref().get(MESH_TABLE.name);
-        let file = mesh.and_then(|mesh| {
-            let file = mesh.get_ref().as_table()?.get(mesh::FILE.name)?;
-            file.get_ref().as_str()
-        });
+        let of_table = |table: &str, key: &str| -> Option<&str> {
+            let table = document.get_ref().get(table)?.get_ref().as_table()?;
+            table.get(key)?.get_ref().as_str()
+        };
+        let file = of_table(MESH_TABLE.name, mesh::FILE.name);
+        let strokes = of_table(CUTTING_TABLE.name, cutting::TABLE.name);
         let of_list = |list: &str, key: &str| -> Vec<&str> {
             let tables = document.get_ref().get(list);
             let tables = tables.and_then(|tables| tables.get_ref().as_array());
@@ -257,7 +277,7 @@ impl Scene {
         let motions = of_list(MOTIONS.name, motion::TABLE.name);
         let tools = of_list(TOOLS.name, tool::TABLE.name);
         let source = SceneSource::new(path, "");
-        let named = file.into_iter().chain(motions).chain(tools);
+        let named = file.into_iter().chain(motions).chain(tools).chain(strokes);
         let named = named.map(|written| source.resolve(Path::new(written)));
         std::iter::once(path.to_owned()).chain(named).collect()
     }
@@ -273,6 +293,7 @@ impl Scene {
             fixed: Vec::new(),
             motions: Vec::new(),
             tools: Vec::new(),
+            cutting: None,
             loads: Vec::new(),
             initial: Vec::new(),
             probes: Vec::new(),
@@ -322,6 +343,13 @@ impl Body {
         }
     }
 
+    /// Whether a tool (0-based) cuts the body or takes parts of it away, so that it touches nothing.
+    #[must_use]
+    pub fn is_cut_by(&self, tool: usize) -> bool {
+        let cutting = self.cutting.as_ref();
+        cutting.is_some_and(|cutting| cutting.is_by(tool))
+    }
+
     fn read(document: &Table<'_>, places: &mut Places) -> Result<Self, SceneError> {
         let mesh_table = document.table(&MESH_TABLE)?;
         let mesh = MeshSource::read(&mesh_table)?;
@@ -335,6 +363,12 @@ impl Body {
         let (motions, motion_places) =
             motion::read_all(document.tables(&MOTIONS)?, &mut selections)?;
         let (tools, tool_places) = tool::read_all(document.tables(&TOOLS)?)?;
+        let cutting_table = document.table(&CUTTING_TABLE)?;
+        let cutting = cutting_table.as_ref();
+        let cutting = cutting
+            .map(|table| cutting::read(table, &tools))
+            .transpose()?;
+        cutting::check_tools(&tools, cutting.as_ref(), &tool_places)?;
         let is_large = regions.iter().any(|region| region.law.is_hyperelastic());
         let loads = load::read_all(document.tables(&LOADS)?, is_large, &mut selections)?;
         let gravity = document.read(&GRAVITY_VECTOR)?;
@@ -349,6 +383,7 @@ impl Body {
         places.fixed = fixed_places;
         places.motions = motion_places;
         places.tools = tool_places;
+        places.cutting = cutting_table.map(Table::into_place);
         places.loads = loads.places;
         places.initial = initial_places;
         places.probes = probe_places;
@@ -366,6 +401,7 @@ impl Body {
             },
             motions,
             tools,
+            cutting,
             load_names: loads.names,
             initial,
             probes,

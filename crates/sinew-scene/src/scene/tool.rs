@@ -1,9 +1,13 @@
 //! `[[tool]]`: rigid tools that press on the body.
 
+use std::ops::Bound;
 use std::path::PathBuf;
 
+pub use sinew_tools::{Grasp, ToolBody};
+
 use super::region::taken;
-use super::tool_shape::{self, SHAPE, ToolPart};
+use super::tool_body::{self, BODIES};
+use super::tool_shape::{self, PLACES, ROTATIONS, SHAPE, ToolPart, ToolShape};
 use crate::decode::value::Misfit;
 use crate::decode::{
     Condition, Flag, Inner, Key, Kind, Needs, Number, Optional, Or, Place, Shape, Table,
@@ -28,6 +32,8 @@ pub struct Tool {
     pub starts_inside: StartsInside,
     /// The time for which it seizes what it touches.
     pub grasp: Option<Grasp>,
+    /// The rigid body that its path draws along; `None` for a tool that is on its path.
+    pub body: Option<ToolBody>,
 }
 
 /// The way that a tool moves.
@@ -59,13 +65,13 @@ pub enum StartsInside {
     Push,
 }
 
-/// The time for which a tool seizes what it touches.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Grasp {
-    /// Its beginning (s).
-    pub from: f64,
-    /// Its end (s).
-    pub to: f64,
+impl Tool {
+    /// Whether its shape is a blade, which cuts and touches nothing.
+    #[must_use]
+    pub fn is_blade(&self) -> bool {
+        let is_blade = |part: &ToolPart| matches!(part.shape, ToolShape::Blade { .. });
+        self.parts.iter().any(is_blade)
+    }
 }
 
 pub(super) const TOOL: TableDescription = TableDescription {
@@ -85,6 +91,7 @@ pub(super) const TOOL: TableDescription = TableDescription {
         &TOUCHES,
         &STARTS_INSIDE,
         &GRASP,
+        &BODY,
     ],
     needs: Needs::OneOf(&[TABLE.name, VELOCITY.name, HOLD.name]),
     examples: &[
@@ -94,6 +101,8 @@ pub(super) const TOOL: TableDescription = TableDescription {
          hold = true\ntouches = \"top\"\nstarts_inside = \"push\"\n",
         "[[tool]]\nname = \"grasper\"\nshapes = [{ capsule = { radius = 0.003, length = 0.02 }, at = [0.0, 0.01, 0.0] }, \
          { capsule = { radius = 0.003, length = 0.02 }, at = [0.0, -0.01, 0.0] }]\ntable = \"grasper.csv\"\ngrasp = { from = 0.4, to = 1.2 }\n",
+        "[[tool]]\nname = \"handle\"\nshape = { sphere = { radius = 0.006 } }\nstart = [0.05, 0.05, 0.12]\nvelocity = [0.0, 0.0, -0.01]\n\
+         body = { mass = 0.05, inertia = [2e-6, 2e-6, 2e-6], coupling = 400.0, rotational_coupling = 0.5, damping = 0.8 }\n",
     ],
 };
 
@@ -108,7 +117,7 @@ const NAME: Key<Text> = Key::required(
     },
 );
 
-const SHAPE_OF_TOOL: Key<Inner> = Key::required(
+pub(super) const SHAPE_OF_TOOL: Key<Inner> = Key::required(
     "shape",
     "The shape of the tool.",
     Inner::one("a table such as { sphere = { radius = 0.006 } }", &SHAPE),
@@ -118,7 +127,7 @@ const SHAPE_OF_TOOL: Key<Inner> = Key::required(
     "does not go with `shapes`, which stand in its place",
 )]);
 
-const SHAPES: Key<Inner, Optional> = Key::optional(
+pub(super) const SHAPES: Key<Inner, Optional> = Key::optional(
     "shapes",
     "The shapes of a tool that is made of several.",
     Inner::several(
@@ -131,7 +140,7 @@ const SHAPES: Key<Inner, Optional> = Key::optional(
 const START: Key<Vector> = Key::required(
     "start",
     "The place of the tool's own origin at t = 0.",
-    Vector::finite("[x, y, z] in m, all finite"),
+    PLACES,
 )
 .unit("m")
 .only(&[NOT_TABLE]);
@@ -139,7 +148,7 @@ const START: Key<Vector> = Key::required(
 const ROTATION: Key<Vector, Or<[f64; 3]>> = Key::or(
     "rotation",
     "Rotation about the tool's own origin at t = 0: the axis times the angle.",
-    Vector::finite("[rx, ry, rz] in rad, all finite"),
+    ROTATIONS,
     [0.0; 3],
 )
 .unit("rad")
@@ -161,20 +170,35 @@ pub(super) const TABLE: Key<Text> = Key::required(
 const VELOCITY: Key<Vector> = Key::required(
     "velocity",
     "Velocity from t = 0 on; the tool does not turn.",
-    Vector::finite("[x, y, z] in m/s, all finite"),
+    Vector {
+        expected: "[x, y, z] in m/s, of at most 1e6",
+        of: Number::between(
+            "a velocity of at most 1e6 m/s",
+            Bound::Included(-FASTEST),
+            Bound::Included(FASTEST),
+        ),
+        fits: |_| true,
+    },
 )
 .unit("m/s");
 
+/// Largest component of a velocity (m/s).
+const FASTEST: f64 = 1e6;
+
 const HOLD: Key<True> = Key::required("hold", "The tool stays where it is.", True);
 
-const FRICTION: Key<Number, Or<f64>> = Key::or(
+pub(super) const FRICTION: Key<Number, Or<f64>> = Key::or(
     "friction",
     "Coefficient of Coulomb's friction between tool and tissue.",
-    Number::zero_or_above("a finite coefficient, 0 or above"),
+    Number::between(
+        "a coefficient from 0 to 1e6",
+        Bound::Included(0.0),
+        Bound::Included(1e6),
+    ),
     0.0,
 );
 
-const TOUCHES: Key<Text, Optional> = Key::optional(
+pub(super) const TOUCHES: Key<Text, Optional> = Key::optional(
     "touches",
     "What it can touch: the nodes of the body's surface, or those of a group of the mesh.",
     Text::any("\"surface\" or the name of a group"),
@@ -184,7 +208,7 @@ const TOUCHES: Key<Text, Optional> = Key::optional(
 /// The word for all nodes of the body's surface.
 const SURFACE: &str = "surface";
 
-const STARTS_INSIDE: Key<Words<StartsInside>, Or<StartsInside>> = Key::or(
+pub(super) const STARTS_INSIDE: Key<Words<StartsInside>, Or<StartsInside>> = Key::or(
     "starts_inside",
     "What happens where nodes are inside the tool at t = 0: the scene is refused, or the first step pushes them out.",
     Words(&[
@@ -194,11 +218,21 @@ const STARTS_INSIDE: Key<Words<StartsInside>, Or<StartsInside>> = Key::or(
     StartsInside::Refuse,
 );
 
-const GRASP: Key<Inner, Optional> = Key::optional(
+pub(super) const GRASP: Key<Inner, Optional> = Key::optional(
     "grasp",
-    "The time for which the tool holds the nodes that it touches as it begins.",
+    "The time for which the tool holds what it touches: a node that it pushes within this time goes with it until the end.",
     Inner::one("a table such as { from = 0.4, to = 1.2 }", &GRASPS),
     "it seizes nothing",
+);
+
+pub(super) const BODY: Key<Inner, Optional> = Key::optional(
+    "body",
+    "Makes the tool a rigid body that a spring and a damper draw to its path, as a hand does: it gives way where tissue pushes back. No gravity pulls on it.",
+    Inner::one(
+        "a table such as { mass = 0.05, inertia = [2e-6, 2e-6, 2e-6], coupling = 400.0, rotational_coupling = 0.5 }",
+        &BODIES,
+    ),
+    "the tool is where its path says, whatever it takes",
 );
 
 const GRASPS: TableDescription = TableDescription {
@@ -248,20 +282,31 @@ impl Values for True {
     }
 }
 
-pub(super) fn read_all(tables: Vec<Table<'_>>) -> Result<(Vec<Tool>, Vec<Place>), SceneError> {
-    let (mut tools, mut places): (Vec<Tool>, Vec<Place>) = Default::default();
+/// The place of a tool's table, and of those that hold the sizes of its parts.
+#[derive(Debug, Clone)]
+pub(crate) struct ToolPlace {
+    pub(crate) table: Place,
+    pub(crate) sizes: Vec<Place>,
+}
+
+pub(super) fn read_all(tables: Vec<Table<'_>>) -> Result<(Vec<Tool>, Vec<ToolPlace>), SceneError> {
+    let (mut tools, mut places): (Vec<Tool>, Vec<ToolPlace>) = Default::default();
     for table in tables {
-        let tool = read(&table)?;
+        let (tool, sizes) = read(&table)?;
         if let Some(first) = tools.iter().position(|other| other.name == tool.name) {
-            return Err(taken(table.place(), NAME.name, &tool.name, &places[first]));
+            let first = &places[first].table;
+            return Err(taken(table.place(), NAME.name, &tool.name, first));
         }
         tools.push(tool);
-        places.push(table.into_place());
+        places.push(ToolPlace {
+            table: table.into_place(),
+            sizes,
+        });
     }
     Ok((tools, places))
 }
 
-fn read(table: &Table<'_>) -> Result<Tool, SceneError> {
+fn read(table: &Table<'_>) -> Result<(Tool, Vec<Place>), SceneError> {
     let path = table.exactly_one()?;
     table.check_conditions()?;
     let path = match path {
@@ -272,15 +317,23 @@ fn read(table: &Table<'_>) -> Result<Tool, SceneError> {
             ToolPath::Hold(start(table)?)
         }
     };
-    Ok(Tool {
-        name: table.read(&NAME)?,
-        parts: parts(table)?,
+    let name = table.read(&NAME)?;
+    let (parts, sizes) = parts(table)?.into_iter().unzip();
+    let tool = Tool {
+        name,
+        parts,
         path,
         friction: table.read(&FRICTION)?,
         touches: table.read(&TOUCHES)?.filter(|name| name != SURFACE),
         starts_inside: table.read(&STARTS_INSIDE)?,
         grasp: table.table(&GRASP)?.as_ref().map(grasp).transpose()?,
-    })
+        body: table
+            .table(&BODY)?
+            .as_ref()
+            .map(tool_body::read)
+            .transpose()?,
+    };
+    Ok((tool, sizes))
 }
 
 fn start(table: &Table<'_>) -> Result<ToolStart, SceneError> {
@@ -290,7 +343,7 @@ fn start(table: &Table<'_>) -> Result<ToolStart, SceneError> {
     })
 }
 
-fn parts(table: &Table<'_>) -> Result<Vec<ToolPart>, SceneError> {
+fn parts(table: &Table<'_>) -> Result<Vec<(ToolPart, Place)>, SceneError> {
     if !table.has(SHAPES.name) {
         let shape = table.table(&SHAPE_OF_TOOL)?;
         return Ok(vec![tool_shape::read(&shape)?]);

@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
-use sinew_fem::{Cause, Course, FemError, Item, Model, Moving, On};
+use sinew_fem::{Cause, Course, CutModel, CutModelError, FemError, Item, Model, Moving, On};
 
+use super::cut_plan::CutPlan;
 use super::mesh::MeshAndWarnings;
 use super::model::BodyModel;
-use super::motion_table::MotionTable;
+use super::motion_table::{MotionTable, read_strokes};
 use super::selected;
 use crate::error::{Fault, SceneError};
 use crate::scene::keys::GRAVITY;
-use crate::scene::{Body, MeshSource, Motion, Places, Way};
+use crate::scene::{Blade, Body, MeshSource, Motion, Places, Way};
 
 /// Assembles the matrices.
 pub(super) fn build(
@@ -31,8 +32,21 @@ pub(super) fn build(
         mesh.data = Vec::new();
     }
     let mesh = Arc::new(mesh);
-    let model = Model::build_on(Arc::clone(&mesh), &problem)
-        .map_err(|error| refused(error, body, places))?;
+    let model = match &body.cutting {
+        None => Model::build_on(Arc::clone(&mesh), &problem)
+            .map_err(|error| refused(error, body, places))?,
+        Some(cutting) => {
+            let cut = CutModel::new(Arc::clone(&mesh), problem.clone(), cutting.snap);
+            let cut = cut.map_err(|error| match error {
+                CutModelError::Model(error) => refused(error, body, places),
+                error => {
+                    let place = places.cutting.as_ref().unwrap_or(&places.document);
+                    place.fault(Fault::Cutting(error))
+                }
+            })?;
+            cut.model().clone()
+        }
+    };
     Ok(BodyModel {
         mesh,
         mesh_warnings,
@@ -40,7 +54,27 @@ pub(super) fn build(
         problem,
         model,
         tools: None,
+        cut: None,
     })
+}
+
+/// What cuts a body, its table read.
+pub(super) fn cut_plan(body: &Body, places: &Places) -> Result<Option<Arc<CutPlan>>, SceneError> {
+    let Some(cutting) = &body.cutting else {
+        return Ok(None);
+    };
+    let strokes = match &cutting.blade {
+        Blade::Table(written) => {
+            let place = places.cutting.as_ref().unwrap_or(&places.document);
+            let read = read_strokes(&place.scene().resolve(written));
+            Some(read.map_err(|error| place.value_fault("table", error.into()))?)
+        }
+        Blade::None | Blade::Tool(_) => None,
+    };
+    Ok(Some(Arc::new(CutPlan {
+        cutting: cutting.clone(),
+        strokes,
+    })))
 }
 
 /// A prescribed motion, its table read.

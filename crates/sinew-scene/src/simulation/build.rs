@@ -2,16 +2,16 @@
 
 use std::sync::OnceLock;
 
-use sinew_core::{LinearModel, LinearOperators, Load, OperatorError, Ramp, State};
+use sinew_core::{LinearModel, LinearOperators, LinearSystem, Load, OperatorError, Ramp, State};
 use sinew_mesh::TetMesh;
 
 use super::Simulation;
 use super::body;
 use super::mesh::{self, MeshAndWarnings};
 use super::model::SceneModel;
-use super::{probe, start, step, tool};
+use super::{probe, start, step, tool, touched_steps};
 use crate::error::{Fault, MOST_STEPS, SceneError};
-use crate::scene::{Body, Oscillator, Places, Scene, Subject};
+use crate::scene::{Body, Oscillator, Places, Scene, Subject, TimeStep};
 
 impl Scene {
     /// Reads the mesh, assembles the matrices and finds the state at t = 0.
@@ -35,12 +35,20 @@ impl Scene {
         self,
         make_mesh: impl FnOnce(&Body, &Places) -> Result<MeshAndWarnings, SceneError>,
     ) -> Result<Simulation, SceneError> {
+        let mut cutting = None;
         let (model, initial, probes) = match self.subject() {
             Subject::Body(body) => {
                 let mesh = make_mesh(body, self.places())?;
                 let model = body::build(body, mesh, self.places())?;
+                cutting = body::cut_plan(body, self.places())?;
                 let initial = start::state(body, self.places(), &model)?;
-                let model = tool::added_to(model, body, self.places(), &initial)?;
+                let model = tool::added_to(
+                    model,
+                    body,
+                    self.places(),
+                    &initial,
+                    self.settings().duration,
+                )?;
                 let probes = probe::of_body(&body.probes, self.places(), &model)?;
                 (SceneModel::Body(Box::new(model)), initial, probes)
             }
@@ -58,6 +66,18 @@ impl Scene {
                 )
             }
         };
+        // Blades touch nothing.
+        if model.system().contact().is_some() {
+            touched_steps::check(self.settings(), &self.places().run)?;
+        }
+        let has_bounds = || {
+            let body = model.body();
+            body.is_some_and(|body| body.model.operators().element_bounds().is_some())
+        };
+        let is_linear = model.system().as_linear().is_some();
+        if cutting.is_some() && is_linear && self.settings().dt == TimeStep::Auto && !has_bounds() {
+            return Err(self.places().run.value_fault("dt", Fault::NoStepOverCuts));
+        }
         let stable_step = OnceLock::new();
         let stable = || {
             let found = stable_step.get_or_init(|| step::stable(self.settings(), model.system()));
@@ -77,6 +97,7 @@ impl Scene {
             initial,
             probes,
             stable_step,
+            cutting,
         })
     }
 }

@@ -76,7 +76,7 @@ impl Simulation {
         })
     }
 
-    fn loads(&self) -> &[Load] {
+    pub(super) fn loads(&self) -> &[Load] {
         let linear = self.system().as_linear();
         linear.map_or(&[], |linear| linear.operators().loads())
     }

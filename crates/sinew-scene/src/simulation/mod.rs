@@ -2,6 +2,11 @@
 
 mod body;
 mod build;
+mod cut_beforehand;
+mod cut_from;
+mod cut_plan;
+mod cutter;
+mod driven;
 mod footprint;
 mod load_problems;
 mod loads;
@@ -14,15 +19,23 @@ mod refined;
 mod selected;
 mod start;
 mod step;
+mod stretch;
 mod tool;
+mod tool_end;
 mod tool_fault;
+mod tool_surface;
+mod touched_steps;
 mod warnings;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use sinew_core::{OptionError, Options, Run, StableStep, State, System};
 use sinew_integrators::Stepper;
 
+pub use cut_from::CutFrom;
+use cut_plan::CutPlan;
+pub use cutter::{CutTotals, Cutter, CuttingError};
+pub use driven::DrivenLoadError;
 pub use footprint::Footprint;
 pub use load_problems::{LoadRemedy, RefusedLoad, UnresolvedLoad};
 pub use model::{BodyModel, SceneModel};
@@ -31,12 +44,12 @@ pub use probe::{NearestNode, Probe, ProbeNode};
 pub use reaction::{HeldPlace, Reaction, ReactionError, ReactionOf};
 pub use refined::RefinementError;
 pub use selected::SelectedPart;
+pub use stretch::{BodyChange, Seen, Stretch, StretchError};
 pub use tool_fault::ToolFault;
 
 pub use warnings::{Warning, WarningKind};
 
-use crate::error::StableStepError;
-use crate::number::short;
+use crate::error::{Fault, SceneError, StableStepError};
 use crate::scene::{RunSettings, Scene};
 
 /// A scene that is ready to run: files read, matrices assembled, step chosen.
@@ -48,6 +61,8 @@ pub struct Simulation {
     probes: Vec<Probe>,
     dt: f64,
     stable_step: OnceLock<Result<StableStep, StableStepError>>,
+    /// What cuts the body; `None` where nothing does.
+    cutting: Option<Arc<CutPlan>>,
 }
 
 impl Simulation {
@@ -87,6 +102,19 @@ impl Simulation {
         self.dt
     }
 
+    /// Refuses a step that is longer than the duration, of which a run makes one step that ends with it: what goes on beyond would be taken in such steps.
+    ///
+    /// # Errors
+    /// [`SceneError`] at the step of the scene.
+    pub fn check_step_within_duration(&self) -> Result<(), SceneError> {
+        let (dt, duration) = (self.dt, self.settings().duration);
+        if dt <= duration {
+            return Ok(());
+        }
+        let fault = Fault::LongStep { dt, duration };
+        Err(self.scene.places().run.value_fault("dt", fault))
+    }
+
     /// Shortens all steps alike so that a whole number of them ends at the duration; the step (s) that it was before,
     /// where it did not.
     pub fn end_at_duration(&mut self) -> Option<f64> {
@@ -122,16 +150,14 @@ impl Simulation {
     /// The options of the integrator: those of the scene, and where [`Simulation::follows_stiffness`] the cut of its steps.
     #[must_use]
     pub fn options(&self) -> Options {
-        step::options(self.settings(), self.system())
+        let settings = self.settings();
+        self.options_of(&settings.integrator, &settings.options)
     }
 
-    /// What measures the error of a run, as a sentence goes on after "not known: ".
+    /// The options of another integrator than the scene's, to which where [`Simulation::follows_stiffness`] the cut of its steps is added.
     #[must_use]
-    pub fn how_to_know_the_error(&self) -> &'static str {
-        match self.system().contact() {
-            None => "`sinew plan --tolerance` measures it",
-            Some(_) => "runs in steps of half the length tell it",
-        }
+    pub fn options_of(&self, integrator: &str, options: &Options) -> Options {
+        step::options((integrator, options), self.follows_stiffness())
     }
 
     /// Whether steps are cut by the current stiffness: dt = "auto" on a body that is not linear.
@@ -157,24 +183,12 @@ impl Simulation {
         step::outrun(self.system(), self.dt, integrator, state)
     }
 
-    /// A sentence for each tool that had to leave a node in it, up to this state.
+    /// Sentences of what tools could not do, up to this state.
     #[must_use]
-    pub fn left_in_tools(&self, state: &State) -> Vec<String> {
-        let Some(tools) = self.model().tools() else {
-            return Vec::new();
-        };
+    pub fn left_by_tools(&self, state: &State) -> Vec<String> {
         let size = self.system().extent().unwrap_or(0.0);
-        let deep = |index| tools.report(state, index).depth;
-        let names = tools.tools().iter().map(|tool| &tool.name).enumerate();
-        let deep = names.map(|(index, name)| (name, deep(index)));
-        let left = deep.filter(|(_, depth)| *depth > tool::ROUNDING * size);
-        let said = left.map(|(name, depth)| {
-            format!(
-                "tool `{name}` left a node up to {} m in it: one that is held in that direction, or has no room between its surfaces",
-                short(depth)
-            )
-        });
-        said.collect()
+        let tools = self.model().tools();
+        tools.map_or_else(Vec::new, |tools| tool_end::sentences(tools, size, state))
     }
 
     /// The steps that cover the duration. A body counts as diverged when a displacement exceeds 100

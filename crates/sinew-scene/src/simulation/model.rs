@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use sinew_core::{LinearModel, State, System};
+use sinew_core::{Contact, LinearModel, State, System};
 use sinew_mesh::{TetMesh, UnknownGroup};
 use sinew_tools::Tools;
 
+use super::cut_from::CutFrom;
 use super::selected::SelectedPart;
 
 /// The thing that moves, with its matrices.
@@ -18,7 +19,7 @@ pub enum SceneModel {
 }
 
 /// A body of tetrahedra: its mesh and its matrices.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct BodyModel {
     /// The mesh, shared with the model.
     pub mesh: Arc<TetMesh>,
@@ -32,6 +33,8 @@ pub struct BodyModel {
     pub model: sinew_fem::Model,
     /// The tools that touch it, of which the model knows; `None` where the scene has none.
     pub tools: Option<Arc<Tools>>,
+    /// Where its parts come from, once it was cut.
+    pub cut: Option<Arc<CutFrom>>,
 }
 
 impl SceneModel {
@@ -61,6 +64,22 @@ impl SceneModel {
 }
 
 impl BodyModel {
+    /// The same body, which these tools touch.
+    pub(super) fn touched_by(self, tools: Arc<Tools>) -> Self {
+        // Blades touch nothing, so that every method goes with them.
+        let model = match tools.touched_cells().is_empty() {
+            true => self.model,
+            false => self
+                .model
+                .with_contact(Arc::clone(&tools) as Arc<dyn Contact>),
+        };
+        Self {
+            model,
+            tools: Some(tools),
+            ..self
+        }
+    }
+
     /// Takes off the forces (N) of supports on all nodes what tools push into held directions in a state: the supports bear it.
     pub fn subtract_contact(&self, state: &State, reactions: &mut [[f64; 3]]) {
         let Some(tools) = &self.tools else {

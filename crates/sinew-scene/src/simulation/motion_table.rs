@@ -1,12 +1,17 @@
-//! Tables of positions and of poses in CSV files.
+//! Tables of positions, poses and strokes in CSV files.
 
 use std::path::{Path, PathBuf};
 
+use sinew_cutting::{BladePose, Strokes};
+
+/// The column of times.
+const TIME: &str = "t_s";
+
 /// Columns of a table of positions.
-const POSITIONS: [&str; 4] = ["t_s", "x_m", "y_m", "z_m"];
+const POSITIONS: [&str; 4] = [TIME, "x_m", "y_m", "z_m"];
 
 /// Columns of a table of poses.
-const POSES: [&str; 7] = ["t_s", "x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"];
+const POSES: [&str; 7] = [TIME, "x_m", "y_m", "z_m", "rx_rad", "ry_rad", "rz_rad"];
 
 /// Positions relative to rest (m) over time (s).
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -22,6 +27,11 @@ pub(super) struct PoseTable {
     pub(super) positions: Vec<[f64; 3]>,
     pub(super) rotations: Vec<[f64; 3]>,
 }
+
+/// Columns of a table of strokes.
+const STROKES: [&str; 8] = [
+    "stroke", TIME, "ax_m", "ay_m", "az_m", "bx_m", "by_m", "bz_m",
+];
 
 /// Rows of numbers, as many in each as there are columns.
 struct Rows {
@@ -100,6 +110,9 @@ pub enum MotionTableFault {
     /// A table without a row.
     #[error("there is no row below the names of the columns: expected at least one")]
     NoRows,
+    /// Rows that make no strokes.
+    #[error(transparent)]
+    Strokes(#[from] sinew_cutting::StrokesError),
     /// A position along an axis that is not moved.
     #[error("{column} = {found}, but the axis is not among `axes`: expected 0")]
     UnnamedAxis {
@@ -157,6 +170,24 @@ impl PoseTable {
     }
 }
 
+/// Reads a table of the strokes of a blade.
+pub(super) fn read_strokes(path: &Path) -> Result<Strokes, MotionTableError> {
+    read(path, strokes)
+}
+
+/// The strokes of a text, or the line that is at fault.
+fn strokes(text: &str) -> Result<Strokes, (usize, MotionTableFault)> {
+    let rows = Rows::parse(text, &[&STROKES])?;
+    let ends = rows.vectors(2).into_iter().zip(rows.vectors(5));
+    let poses = rows.rows.iter().zip(ends).map(|(row, (a, b))| BladePose {
+        stroke: row[0],
+        t: row[1],
+        ends: [a, b],
+    });
+    // Row 1 is on line 2, below the names.
+    Strokes::new(poses.collect()).map_err(|error| (error.row() + 1, error.into()))
+}
+
 /// Reads a file and makes a table of its text.
 fn read<T>(
     path: &Path,
@@ -193,11 +224,12 @@ impl Rows {
             };
             return Err((1, fault));
         };
+        let time = columns.iter().position(|name| *name == TIME).unwrap_or(0);
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for (line, row) in lines {
             let row = numbers(row, columns).map_err(|fault| (line, fault))?;
-            let t = row[0];
-            if let Some(last) = rows.last().map(|last| last[0])
+            let t = row[time];
+            if let Some(last) = rows.last().map(|last| last[time])
                 && t <= last
             {
                 return Err((line, MotionTableFault::Order { t, last }));

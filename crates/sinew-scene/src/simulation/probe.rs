@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use sinew_fem::Course;
-use sinew_mesh::{GroupMembers, TetMesh};
+use sinew_fem::{Course, Model};
+use sinew_mesh::{CutMesh, GroupMembers, TetMesh};
 
 use super::model::BodyModel;
 use crate::error::{Fault, SceneError};
@@ -25,6 +25,8 @@ pub struct Probe {
     pub tets: Vec<(u32, f64)>,
     /// Its place in words.
     pub place: String,
+    /// Whether all of that was cut away: it has no value any more.
+    pub is_gone: bool,
 }
 
 /// A node of a probe, or the mass of an oscillator.
@@ -53,6 +55,21 @@ pub struct NearestNode {
 }
 
 impl ProbeNode {
+    fn of(model: &Model, index: u32, share: f64) -> Self {
+        let cell = model.cell_of_node(index);
+        let dof = |axis: usize| -> Option<usize> {
+            let dof = 3 * cell? as usize + axis;
+            (!model.pinned()[dof]).then_some(dof)
+        };
+        let courses = (0..3).map(|axis| model.courses(index, axis).to_vec());
+        Self {
+            share,
+            index,
+            dofs: (0..3).map(dof).collect(),
+            courses: courses.collect(),
+        }
+    }
+
     /// The displacement (m) that is prescribed in a direction at time `t` (s); 0 where none is.
     pub(crate) fn prescribed(&self, axis: usize, t: f64) -> f64 {
         let courses = self.courses.get(axis).into_iter().flatten();
@@ -63,6 +80,52 @@ impl ProbeNode {
 }
 
 impl Probe {
+    /// The same probe, which is one of the uncut body, on what is left of it: it stays with its own nodes, of which a copy stands for one that lost its
+    /// tetrahedra, and with its own tetrahedra. Where all are gone it has no value.
+    pub(super) fn after_cut(&self, cut: &CutMesh, model: &Model) -> Self {
+        let node_of = |origin: u32| -> Option<u32> {
+            let place = cut.origins.iter().position(|other| *other == origin)?;
+            Some(place as u32)
+        };
+        let nodes: Vec<(u32, f64)> = self
+            .nodes
+            .iter()
+            .filter_map(|node| Some((node_of(node.index)?, node.share)))
+            .collect();
+        let tet_of = |tet: u32| cut.tets.binary_search(&tet).ok();
+        let tets: Vec<(u32, f64)> = self
+            .tets
+            .iter()
+            .filter_map(|(tet, share)| Some((tet_of(*tet)? as u32, *share)))
+            .collect();
+        let is_whole = nodes.len() == self.nodes.len() && tets.len() == self.tets.len();
+        let is_gone = nodes.is_empty() && tets.is_empty();
+        let [nodes, tets] = [nodes, tets].map(|shares| match is_whole {
+            true => shares,
+            false => of_sum_one(shares),
+        });
+        let nodes = nodes
+            .into_iter()
+            .map(|(index, share)| ProbeNode::of(model, index, share));
+        let held = ProbeNode {
+            share: 1.0,
+            index: 0,
+            dofs: vec![None; self.axes()],
+            courses: Vec::new(),
+        };
+        // A node that is not looked at keeps the number of columns.
+        let stand_in = (is_gone && self.axes() > 0).then_some(held);
+        Self {
+            node: self.node,
+            nodes: nodes.chain(stand_in).collect(),
+            tets,
+            is_gone,
+            name: self.name.clone(),
+            quantity: self.quantity,
+            place: self.place.clone(),
+        }
+    }
+
     /// Its directions: three, or one for an oscillator; none for stress.
     pub(crate) fn axes(&self) -> usize {
         self.nodes.first().map_or(0, |node| node.dofs.len())
@@ -84,6 +147,7 @@ impl Probe {
     /// The mean of a value of its nodes. That of a single one keeps its bits.
     pub(crate) fn mean(&self, mut of: impl FnMut(&ProbeNode) -> f64) -> f64 {
         match &self.nodes[..] {
+            _ if self.is_gone => f64::NAN,
             [node] => of(node),
             nodes => nodes.iter().map(|node| node.share * of(node)).sum(),
         }
@@ -131,21 +195,9 @@ fn of_motion(point: &ProbePoint, body: &BodyModel) -> Result<Probe, Fault> {
             (None, shares, place)
         }
     };
-    let nodes = shares.into_iter().map(|(index, share)| {
-        let cell = body.model.cell_of_node(index);
-        let dof = |axis: usize| -> Option<usize> {
-            let dof = 3 * cell? as usize + axis;
-            (!body.model.pinned()[dof]).then_some(dof)
-        };
-        ProbeNode {
-            share,
-            index,
-            dofs: (0..3).map(dof).collect(),
-            courses: (0..3)
-                .map(|axis| body.model.courses(index, axis).to_vec())
-                .collect(),
-        }
-    });
+    let nodes = shares
+        .into_iter()
+        .map(|(index, share)| ProbeNode::of(&body.model, index, share));
     Ok(Probe {
         name: point.name.clone(),
         quantity: point.quantity,
@@ -153,6 +205,7 @@ fn of_motion(point: &ProbePoint, body: &BodyModel) -> Result<Probe, Fault> {
         nodes: nodes.collect(),
         tets: Vec::new(),
         place,
+        is_gone: false,
     })
 }
 
@@ -199,6 +252,7 @@ fn of_stress(point: &ProbePoint, body: &BodyModel) -> Result<Probe, Fault> {
         nodes: Vec::new(),
         tets,
         place,
+        is_gone: false,
     })
 }
 
@@ -306,5 +360,6 @@ pub(super) fn of_oscillator() -> Probe {
         }],
         tets: Vec::new(),
         place: "the mass".into(),
+        is_gone: false,
     }
 }

@@ -29,6 +29,8 @@ pub struct HeldPlace {
     /// Its nodes (0-based) with the components that it holds or moves and no part before it does, so that the forces of
     /// all parts add up to that of the whole.
     pub nodes: Vec<(u32, [bool; 3])>,
+    /// Mean (m) of the places at rest of its nodes before all cuts.
+    pub centre: [f64; 3],
 }
 
 /// A table of a scene by which components are held or moved, by its place in the list (0-based).
@@ -87,9 +89,24 @@ impl Simulation {
             (node, own)
         };
         let place = |(by, on, axes): (ReactionOf, On, [bool; 3])| {
-            let nodes = on.nodes(&built.mesh).map_err(FieldError::from)?;
+            let uncut = built.cut.as_ref().map_or(&built.mesh, |from| &from.uncut);
+            let first = on.nodes(uncut).map_err(FieldError::from)?;
+            let count = first.len().max(1) as f64;
+            let centre = [0, 1, 2].map(|axis| {
+                let places = first.iter().map(|node| uncut.points[*node as usize]);
+                places.map(|place| place[axis]).sum::<f64>() / count
+            });
+            let nodes = match &built.cut {
+                None => first,
+                Some(from) => from.cut.with_copies(uncut, &first),
+            };
             let nodes = nodes.into_iter().map(|node| own(node, axes)).collect();
-            Ok(HeldPlace { by, on, nodes })
+            Ok(HeldPlace {
+                by,
+                on,
+                nodes,
+                centre,
+            })
         };
         fixed.chain(moves).map(place).collect()
     }
@@ -111,7 +128,7 @@ impl Simulation {
         built.subtract_contact(state, &mut forces);
         let parts = self.held_parts()?.into_iter();
         Ok(parts
-            .map(|HeldPlace { by, on, nodes }| {
+            .map(|HeldPlace { by, on, nodes, .. }| {
                 let mut force = [0.0; 3];
                 for (node, own) in nodes {
                     for axis in (0..3).filter(|axis| own[*axis]) {

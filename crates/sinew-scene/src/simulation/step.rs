@@ -22,14 +22,13 @@ pub(super) fn follows_stiffness(settings: &RunSettings, system: &dyn System) -> 
     settings.dt == TimeStep::Auto && system.as_linear().is_none()
 }
 
-/// The options of a scene's integrator.
-pub(super) fn options(settings: &RunSettings, system: &dyn System) -> Options {
-    let options = settings.options.clone();
-    let cuts = sinew_integrators::entry(&settings.integrator).is_some_and(|entry| entry.substeps);
-    if cuts && follows_stiffness(settings, system) && options.get(Substeps::KEY).is_none() {
-        return options.with_text(Substeps::KEY, "auto");
+/// The options of an integrator by its id, whose steps are to be cut by the current stiffness, or not.
+pub(super) fn options((id, options): (&str, &Options), follows_stiffness: bool) -> Options {
+    let cuts = sinew_integrators::entry(id).is_some_and(|entry| entry.substeps);
+    if cuts && follows_stiffness && options.get(Substeps::KEY).is_none() {
+        return options.clone().with_text(Substeps::KEY, "auto");
     }
-    options
+    options.clone()
 }
 
 /// The step (s) that a scene asks for; `stable` is called only where it leaves it to the integrator.

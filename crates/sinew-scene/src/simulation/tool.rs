@@ -2,19 +2,20 @@
 
 use std::sync::Arc;
 
-use sinew_core::{State, System};
-use sinew_fem::{Model, On};
+use sinew_core::{Inputs, State, System};
+use sinew_fem::Model;
 use sinew_mesh::{TetMesh, UnknownGroup};
 use sinew_tools::{
-    Convex, Grasp, Motion, Part, Pose, Row, Shape, ShapeError, Table, Tools, TouchedCell,
+    Convex, Motion, Part, Pose, Row, Shape, ShapeError, Table, Tools, ToolsError, TouchedCell,
 };
 
 use super::model::BodyModel;
 use super::motion_table::PoseTable;
 use super::tool_fault::ToolFault;
+use super::tool_surface::{self, moved_nodes};
 use crate::decode::Place;
-use crate::error::SceneError;
-use crate::scene::{Body, Places, StartsInside, Tool, ToolPath, ToolShape, ToolStart};
+use crate::error::{Fault, SceneError};
+use crate::scene::{Body, FARTHEST, Places, StartsInside, Tool, ToolPath, ToolShape, ToolStart};
 
 /// Share of the body's size by which a node may lie inside a tool that begins on its surface.
 pub(super) const ROUNDING: f64 = 1e-9;
@@ -25,70 +26,118 @@ pub(super) fn added_to(
     body: &Body,
     places: &Places,
     initial: &State,
+    duration: f64,
 ) -> Result<BodyModel, SceneError> {
     if body.tools.is_empty() {
         return Ok(built);
     }
-    let mut nodes_of = Vec::new();
+    let (mut nodes_of, mut tools) = (Vec::new(), Vec::new());
     for (index, tool) in body.tools.iter().enumerate() {
-        let place = places.of(&places.tools, index);
-        nodes_of.push(nodes(tool, &built, place)?);
-    }
-    let mut touched: Vec<u32> = nodes_of.iter().flatten().copied().collect();
-    touched.sort_unstable();
-    touched.dedup();
-    let mut tools = Vec::new();
-    for (index, (tool, nodes)) in body.tools.iter().zip(&nodes_of).enumerate() {
-        let place = places.of(&places.tools, index);
-        let among = nodes.iter().map(|node| touched.binary_search(node));
-        tools.push(sinew_tools::Tool {
+        let place = places.of_tool(index);
+        if tool.is_blade() && !body.is_cut_by(index) {
+            let (key, reason) = (
+                "shape",
+                "is a blade, which cuts where [cutting] has tool = \"its name\" only",
+            );
+            let reason = reason.to_owned();
+            return Err(place.key_fault(key, Fault::Misplaced { key, reason }));
+        }
+        nodes_of.push(nodes(body, index, &built, place)?);
+        let known = sinew_tools::Tool {
             name: tool.name.clone(),
             shape: shape(tool).map_err(|error| place.fault(ToolFault::from(error).into()))?,
             motion: motion(tool, place)?,
             friction: tool.friction,
-            cells: among.flatten().map(|place| place as u32).collect(),
-            grasp: tool.grasp.map(|grasp| Grasp {
-                from: grasp.from,
-                to: grasp.to,
-            }),
+            cells: Vec::new(),
+            grasp: tool.grasp,
+            body: tool.body,
+            triangles: Vec::new(),
+        };
+        if !tool.is_blade() {
+            check_width(&known, &built).map_err(|(part, fault)| {
+                let key = tool.parts[part].shape.thinnest();
+                let size = places.tools[index].sizes.get(part);
+                match (size, key) {
+                    (Some(size), Some(key)) => size.value_fault(key, fault.into()),
+                    _ => place.fault(fault.into()),
+                }
+            })?;
+        }
+        tools.push(known);
+    }
+    let tools = on_nodes(tools, &nodes_of, &built, duration).map_err(|error| {
+        let at_fault = error.tool().and_then(|name| {
+            let mut tools = body.tools.iter();
+            tools.position(|tool| tool.name == name)
         });
+        let last = body.tools.len() - 1;
+        let place = places.of_tool(at_fault.unwrap_or(last));
+        place.fault(ToolFault::from(error).into())
+    })?;
+    for (index, tool) in body.tools.iter().enumerate() {
+        let place = places.of_tool(index);
+        let key = match tool.path {
+            ToolPath::Table(_) => "table",
+            ToolPath::Hold(_) | ToolPath::Velocity(..) => "start",
+        };
+        if body.is_cut_by(index) {
+            continue;
+        }
+        check_start(&tools, index, tool, &built, initial)
+            .map_err(|fault| place.value_fault(key, fault.into()))?;
+    }
+    Ok(built.touched_by(Arc::new(tools)))
+}
+
+/// Tools that touch these nodes of a body each, and the surface under their tips.
+pub(super) fn on_nodes(
+    mut tools: Vec<sinew_tools::Tool>,
+    nodes_of: &[Vec<u32>],
+    built: &BodyModel,
+    duration: f64,
+) -> Result<Tools, ToolsError> {
+    let mut touched: Vec<u32> = nodes_of.iter().flatten().copied().collect();
+    touched.sort_unstable();
+    touched.dedup();
+    for (tool, nodes) in tools.iter_mut().zip(nodes_of) {
+        let among = nodes.iter().map(|node| touched.binary_search(node));
+        tool.cells = among.flatten().map(|place| place as u32).collect();
+        tool.triangles.clear();
     }
     let cells = touched
         .iter()
         .filter_map(|node| cell(&built.model, *node))
         .collect();
-    let tools = Tools::new(tools, cells).map_err(|error| {
-        let last = places.of(&places.tools, body.tools.len() - 1);
-        last.fault(ToolFault::from(error).into())
-    })?;
-    for (index, tool) in body.tools.iter().enumerate() {
-        let place = places.of(&places.tools, index);
-        let key = match tool.path {
-            ToolPath::Table(_) => "table",
-            ToolPath::Hold(_) | ToolPath::Velocity(..) => "start",
-        };
-        check_start(&tools, index, tool, &built, initial)
-            .map_err(|fault| place.value_fault(key, fault.into()))?;
-    }
-    let tools = Arc::new(tools);
-    Ok(BodyModel {
-        model: built
-            .model
-            .with_contact(Arc::clone(&tools) as Arc<dyn sinew_core::Contact>),
-        tools: Some(tools),
-        ..built
-    })
+    let triangles = tool_surface::under_tips(&mut tools, nodes_of, &touched, built, duration);
+    Tools::with_triangles(tools, cells, triangles)
 }
 
 /// The nodes that a tool may touch: those that move freely in at least one direction, and are not moved in another.
-fn nodes(tool: &Tool, built: &BodyModel, place: &Place) -> Result<Vec<u32>, SceneError> {
-    let (met, unmet) =
-        nodes_of(tool, built).map_err(|error| place.value_fault("touches", error.into()))?;
-    if met.is_empty() {
+fn nodes(
+    body: &Body,
+    index: usize,
+    built: &BodyModel,
+    place: &Place,
+) -> Result<Vec<u32>, SceneError> {
+    let (met, unmet) = touchable(body, index, built)
+        .map_err(|error| place.value_fault("touches", error.into()))?;
+    if met.is_empty() && !body.is_cut_by(index) {
         let fault = ToolFault::NothingToTouch { nodes: unmet.len() };
         return Err(place.value_fault("touches", fault.into()));
     }
     Ok(met)
+}
+
+/// The nodes that a tool of a body meets, and those that it does not: see [`nodes_of`]. One that cuts or removes meets none.
+pub(super) fn touchable(
+    body: &Body,
+    index: usize,
+    built: &BodyModel,
+) -> Result<(Vec<u32>, Vec<u32>), UnknownGroup> {
+    match body.tools.get(index) {
+        Some(tool) if !body.is_cut_by(index) => nodes_of(tool, built),
+        _ => Ok(Default::default()),
+    }
 }
 
 /// The nodes of a tool's surface or group that it meets, and those that it does not, since they are held or moved.
@@ -110,24 +159,6 @@ pub(super) fn nodes_of(
     Ok(nodes.into_iter().partition(is_met))
 }
 
-/// The nodes of which some component is moved, increasing: where they are is no matter of the degrees of freedom alone.
-fn moved_nodes(built: &BodyModel) -> Vec<u32> {
-    let mut moved = Vec::new();
-    for motion in &built.problem.moves {
-        match &motion.on {
-            On::Group(name) => {
-                let group = built.mesh.group(name);
-                moved.extend(group.map_or_else(|_| Vec::new(), |g| built.mesh.group_nodes(g)));
-            }
-            On::Nodes(nodes) => moved.extend_from_slice(nodes),
-            On::Triangles(triangles) => moved.extend(triangles.iter().flatten()),
-        }
-    }
-    moved.sort_unstable();
-    moved.dedup();
-    moved
-}
-
 fn cell(model: &Model, node: u32) -> Option<TouchedCell> {
     let cell = model.cell_of_node(node)?;
     let first = 3 * cell as usize;
@@ -145,6 +176,7 @@ fn shape(tool: &Tool) -> Result<Shape, ShapeError> {
             ToolShape::Capsule { radius, length } => Convex::capsule(radius, length)?,
             ToolShape::Plane => Convex::Plane,
             ToolShape::Box { size } => Convex::cuboid(size)?,
+            ToolShape::Blade { length } => Convex::edge(length)?,
         };
         let pose = Pose::new(part.at, part.rotation);
         Ok(Part { convex, pose })
@@ -170,7 +202,13 @@ fn motion(tool: &Tool, place: &Place) -> Result<Motion, SceneError> {
                 position,
                 rotation_vector,
             });
-            let table = Table::new(rows.collect());
+            let rows: Vec<Row> = rows.collect();
+            let is_far = |row: &&Row| row.position.iter().any(|x| x.abs() > FARTHEST);
+            if let Some(row) = rows.iter().find(is_far) {
+                let (t, position) = (row.t, row.position);
+                return Err(fault(ToolFault::Far { t, position }.into()));
+            }
+            let table = Table::new(rows);
             Motion::Table(table.map_err(|error| fault(ToolFault::from(error).into()))?)
         }
     })
@@ -183,7 +221,8 @@ pub(super) fn inside(
     built: &BodyModel,
     initial: &State,
 ) -> Option<(u64, f64)> {
-    let deepest = tools.deepest(&initial.u, initial.t(), index)?;
+    let pose = tools.pose(initial, Inputs::none(), index);
+    let deepest = tools.deepest(&initial.u, &pose, index)?;
     let size = built.model.extent().unwrap_or(0.0);
     if deepest.gap >= -ROUNDING * size {
         return None;
@@ -191,6 +230,23 @@ pub(super) fn inside(
     let cell = tools.touched_cells()[deepest.place].cell;
     let node = built.model.nodes()[cell as usize];
     Some((built.mesh.node_tags[node as usize], -deepest.gap))
+}
+
+/// Share of the body's size below which a tool is too thin for the rounding of places.
+const THINNEST: f64 = 1e-9;
+
+/// The part of a tool that is too thin, and what is to be said about it.
+fn check_width(tool: &sinew_tools::Tool, built: &BodyModel) -> Result<(), (usize, ToolFault)> {
+    let Some(body) = built.model.extent() else {
+        return Ok(());
+    };
+    for (number, part) in tool.shape.parts().iter().enumerate() {
+        let width = part.convex.width();
+        if width < THINNEST * body {
+            return Err((number, ToolFault::Tiny { width, body }));
+        }
+    }
+    Ok(())
 }
 
 fn check_start(
@@ -207,7 +263,7 @@ fn check_start(
         };
     }
     let found = &tools.tools()[index];
-    let pose = found.motion.at(initial.t());
+    let pose = found.motion.at(initial.t(), Inputs::none());
     let parts = found.shape.parts().iter();
     let bounded = parts.filter(|part| part.convex != Convex::Plane);
     let middles: Vec<[f64; 3]> = bounded

@@ -31,6 +31,26 @@ pub enum ToolFault {
         /// Number of the nodes.
         nodes: usize,
     },
+    /// A tool that is thinner than places are known.
+    #[error(
+        "a radius or half a thickness of {} m, less than 1e-9 of the body, {} m: expected more; are its lengths in m?",
+        short(*width),
+        short(*body)
+    )]
+    Tiny {
+        /// The radius or half the thickness (m).
+        width: f64,
+        /// The size of the body (m).
+        body: f64,
+    },
+    /// A place of a table that is farther away than places are known.
+    #[error("at t = {} s the tool is at {position:?} m: expected coordinates of at most 1e6 m", short(*t))]
+    Far {
+        /// The time (s).
+        t: f64,
+        /// The place (m).
+        position: [f64; 3],
+    },
     /// An impossible shape.
     #[error(transparent)]
     Shape(#[from] ShapeError),

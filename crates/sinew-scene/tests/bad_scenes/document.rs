@@ -25,7 +25,7 @@ fn an_unknown_table() {
         refusal(BODY, "[damping]", "[dampening]"),
         @"
     scene.toml:9: unknown key `dampening`; did you mean `damping`?
-    help: the keys here are `title`, `mesh`, `oscillator`, `region`, `damping`, `fixed`, `move`, `tool`, `load`, `gravity`, `initial`, `run`, `probe`, `output`
+    help: the keys here are `title`, `mesh`, `oscillator`, `region`, `damping`, `fixed`, `move`, `tool`, `cutting`, `load`, `gravity`, `initial`, `run`, `probe`, `output`
     "
     );
 }

@@ -4,12 +4,14 @@ use std::sync::PoisonError;
 
 use sinew_core::{Contact, Meeting, State};
 
+use super::count::{Count, note_residual};
+use super::met::Met;
 use super::node::Compliance;
-use super::record::{self, CONTACTS, DEPTH, FORCE, OF_HELD, PASSES, Record, TORQUE, WORK};
+use super::record::{DEPTH, OF_HELD, OF_VELOCITY, PASSES, RIVAL, Record, swing};
 use super::report::displacement_of;
-use super::room::{Met, ToolStep, is_near};
+use super::tool_step::{ToolStep, Way, is_near};
 use super::tools::Tools;
-use crate::vector::{Vector, add, cross, dot, scaled, sub};
+use crate::vector::{Vector, add, scaled, sub};
 
 impl Contact for Tools {
     fn cells(&self) -> &[u32] {
@@ -17,47 +19,76 @@ impl Contact for Tools {
     }
 
     fn kept(&self) -> usize {
-        record::numbers(self.tools.len(), self.cells.len(), self.holds)
+        self.counts.numbers()
     }
 
     fn meet(&self, meeting: &Meeting<'_>, state: &mut State, pushed: &mut Vec<u32>) {
         let mut room = self.room.lock().unwrap_or_else(PoisonError::into_inner);
-        room.take(&self.tools, state, meeting.dt);
-        room.look(&self.places, state, meeting.dt, self.holds);
+        let mut kept = std::mem::take(&mut state.contact);
+        let mut record = Record::of(&mut kept, &self.counts);
+        record.forget_last_step();
+        room.take(&self.tools, state, meeting, record.bodies);
+        if self.linking != 0 {
+            self.link(&mut room, meeting, state, &mut record);
+        }
+        room.look(&self.cells, state, meeting.dt, self.counts.holds);
         let step = Step {
             tools: self,
             steps: &room.steps,
             meeting,
             end: state.t() + meeting.dt,
         };
-        let State {
-            u, v, a, contact, ..
-        } = state;
-        let mut record = Record::of(contact, self.tools.len(), self.cells.len());
-        record.forget_last_step();
         for (numbers, step) in record.tools.iter_mut().zip(&room.steps) {
             numbers[PASSES] = step.passes();
         }
         for place in &room.near {
             let place = *place as usize;
+            if room.links.is_linked(place) {
+                continue;
+            }
             let touched = &self.cells[place];
-            let to = add(touched.rest, displacement_of(u, touched.cell));
-            let from = sub(to, scaled(displacement_of(v, touched.cell), meeting.dt));
+            let to = add(touched.rest, displacement_of(&state.u, touched.cell));
+            let from = sub(
+                to,
+                scaled(displacement_of(&state.v, touched.cell), meeting.dt),
+            );
             let moved = step.meet(place, (from, to), &mut record);
             if moved == [0.0; 3] {
                 continue;
             }
             pushed.push(touched.cell);
-            let first = 3 * touched.cell as usize;
-            for axis in 0..3 {
-                let change = moved[axis] / meeting.dt;
-                u[first + axis] += moved[axis];
-                v[first + axis] += change;
-                if let (Some(kick), Some(a)) = (meeting.kick, a.get_mut(first + axis)) {
-                    *a += change / kick;
-                }
+            push(state, touched.cell, moved, meeting);
+        }
+        for place in &room.links.places {
+            let cell = self.cells[*place as usize].cell;
+            let moved = room.links.moved[*place as usize];
+            if moved != [0.0; 3] {
+                pushed.push(cell);
+                push(state, cell, moved, meeting);
             }
         }
+        if self.counts.rubs {
+            record.velocities.fill([0.0; OF_VELOCITY]);
+            for place in room.near.iter().chain(&room.links.places) {
+                let cell = self.cells[*place as usize].cell;
+                record.velocities[*place as usize] = displacement_of(&state.v, cell);
+            }
+        }
+        let bodies = room.steps.iter().filter_map(|step| step.body.as_ref());
+        for (body, numbers) in bodies.zip(record.bodies.iter_mut()) {
+            body.keep(numbers);
+        }
+        state.contact = kept;
+    }
+
+    fn impulses(&self, state: &State) -> Vec<[f64; 3]> {
+        let tools = 0..self.tools().len();
+        tools.map(|tool| self.report(state, tool).impulse).collect()
+    }
+
+    fn work(&self, state: &State) -> f64 {
+        let tools = 0..self.tools().len();
+        tools.map(|tool| self.report(state, tool).work).sum()
     }
 
     fn add_forces(&self, state: &State, with_held: bool, out: &mut [f64]) {
@@ -66,6 +97,20 @@ impl Contact for Tools {
             for axis in (0..3).filter(|axis| with_held || touched.free[*axis]) {
                 out[first + axis] += force[axis];
             }
+        }
+    }
+}
+
+/// Moves a cell of a trial state by a displacement (m).
+fn push(state: &mut State, cell: u32, moved: Vector, meeting: &Meeting<'_>) {
+    let State { u, v, a, .. } = state;
+    let first = 3 * cell as usize;
+    for axis in 0..3 {
+        let change = moved[axis] / meeting.dt;
+        u[first + axis] += moved[axis];
+        v[first + axis] += change;
+        if let (Some(kick), Some(a)) = (meeting.kick, a.get_mut(first + axis)) {
+            *a += change / kick;
         }
     }
 }
@@ -82,8 +127,9 @@ struct Step<'a> {
 impl Step<'_> {
     /// The displacement (m) by which a cell is pushed that a step took from one place (m) to another.
     fn meet(&self, place: usize, (from, to): (Vector, Vector), record: &mut Record<'_>) -> Vector {
-        let holder = self.holder(record.held.get(place));
-        let tools = self.tools.tools_at[place];
+        let holder = self.tools.holder(record.held.get(place), self.end);
+        // Those whose contacts act on each other do not meet it.
+        let tools = self.tools.tools_at[place] & !self.tools.linking;
         if holder.is_none() && !is_near(self.steps, tools, (from, to)) {
             if let Some(held) = record.held.get_mut(place) {
                 *held = [0.0; OF_HELD];
@@ -102,7 +148,10 @@ impl Step<'_> {
             _ => {
                 // What one surface pushes back may meet another there.
                 let mut end = to;
-                while met.touches(self.steps, tools, (from, to), end) {
+                let kept = record.velocities.get(place);
+                let swing = swing(self.meeting, kept, sub(to, from));
+                let swing = (swing, self.meeting.dt);
+                while met.touches(self.steps, tools, (from, to), end, swing) {
                     met.solve(&compliance);
                     end = add(to, met.sum(|force| compliance.displacement(force)));
                 }
@@ -114,50 +163,34 @@ impl Step<'_> {
         }
         let moved = met.sum(|force| compliance.displacement(force));
         let end = add(to, moved);
+        let count = Count {
+            tools: self.tools,
+            steps: self.steps,
+            dt: self.meeting.dt,
+            end: self.end,
+        };
         for (tool, force) in met.pushing() {
-            self.count(tool, force, end, record, place);
+            count.of_node((tool, force), place, end, record);
+            note_residual(&mut record.tools[tool], met.residual);
         }
         if let (None, Some(held)) = (holder, record.held.get_mut(place)) {
-            let taker = met.pushing().find(|(tool, _)| self.holds(*tool));
-            *held = taker.map_or([0.0; OF_HELD], |(tool, _)| {
-                let [x, y, z] = self.steps[tool].after.to_own(end);
-                [(tool + 1) as f64, x, y, z]
-            });
+            *held = [0.0; OF_HELD];
+            let takers = met.pushing().map(|(tool, _)| tool);
+            takers.for_each(|tool| count.seize(tool, place, end, record));
+        }
+        if let Some(holder) = holder {
+            self.note_rivals(holder, tools, (from, end), record);
         }
         moved
     }
 
-    /// Whether a tool holds what it touches in this step.
-    fn holds(&self, tool: usize) -> bool {
-        let grasp = self.tools.tools[tool].grasp;
-        grasp.is_some_and(|grasp| (grasp.from..=grasp.to).contains(&self.end))
-    }
-
-    /// The tool that has hold of a cell.
-    fn holder(&self, held: Option<&[f64; OF_HELD]>) -> Option<usize> {
-        let tool = (held?[0] as usize).checked_sub(1)?;
-        self.holds(tool).then_some(tool)
-    }
-
-    /// Counts a force (N) of a tool on a cell that ends at a place (m).
-    fn count(
-        &self,
-        tool: usize,
-        force: Vector,
-        end: Vector,
-        record: &mut Record<'_>,
-        place: usize,
-    ) {
-        let step = &self.steps[tool];
-        let numbers = &mut record.tools[tool];
-        let torque = cross(sub(end, step.after.position()), force);
-        for axis in 0..3 {
-            numbers[FORCE + axis] -= force[axis];
-            numbers[TORQUE + axis] -= torque[axis];
-            record.cells[place][axis] += force[axis];
+    /// Notes which other tools would seize a cell that one of them has hold of, on its way (m).
+    fn note_rivals(&self, holder: usize, tools: u64, way: Way, record: &mut Record<'_>) {
+        for (other, step) in self.steps.iter().enumerate() {
+            let may_meet = other != holder && tools >> other & 1 == 1;
+            if may_meet && self.tools.holds(other, self.end) && step.touches(way).next().is_some() {
+                record.tools[other][RIVAL] = (holder + 1) as f64;
+            }
         }
-        let dt = self.meeting.dt;
-        numbers[WORK] += dt * dot(force, step.velocity(end, dt));
-        numbers[CONTACTS] += 1.0;
     }
 }

@@ -5,15 +5,28 @@
 //! v* the velocity to which the step led and w that of the tool. P has one block for each node, so that nodes do not act on each other within a step: the
 //! linear complementarity problem of all contacts is solved exactly, node by node and in any order. No stiffness is added, and with the energy
 //! of the staggered step, `E+ - E- <= W` where W is the work of the tools.
+//!
+//! A tip that is finer than the surface meets triangles as well as nodes: a point of a triangle moves by the weights of its corners, so that contacts which share a node act on each
+//! other. A tool that is a body of its own moves as one more body with its own P, and couples its contacts: they are solved by an iteration, in a fixed order.
 
+mod body_step;
+mod carried;
+mod count;
+mod coupled;
+mod links;
 mod meet;
+mod met;
 mod node;
 mod record;
 mod report;
 mod room;
 mod tool;
+mod tool_body;
+mod tool_step;
 mod tools;
+mod twist;
 
-pub use report::{Depth, ToolReport};
-pub use tool::{Grasp, Tool, ToolsError, TouchedCell};
+pub use report::{BodyReport, Depth, ToolReport};
+pub use tool::{Corner, Grasp, Tool, ToolsError, TouchedCell, TouchedTriangle};
+pub use tool_body::{ToolBody, ToolBodyError};
 pub use tools::Tools;

@@ -9,8 +9,20 @@ pub(super) const MOST: usize = 8;
 /// have to be answered with a force a million times as large.
 const HELD: f64 = 1e-6;
 
+/// Most sweeps of an iteration for forces that act on each other.
+pub(super) const MOST_SWEEPS: usize = 500;
+
+/// Change of a displacement in a sweep, as a share of the largest that any force causes, below which an iteration has come to its end.
+pub(super) const CONVERGED: f64 = 1e-13;
+
+/// What is left of an iteration that goes nowhere.
+const WEDGED: f64 = 1e-3;
+
+/// Violation of constraints, as a share of that without forces, up to which a node has room between them.
+const MEANT_TO_FIT: f64 = 1e-9;
+
 /// What a node would move by under forces within a step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Compliance {
     /// `dt^2 P^-1` (m/N), zero in the directions in which the node is held.
     block: [Vector; 3],
@@ -28,6 +40,20 @@ pub(super) struct Constraint {
     pub(super) stick: Vector,
     /// Coefficient of Coulomb's friction.
     pub(super) friction: f64,
+    /// What friction works along: the displacement (m) of the node against the tool in the step, in staggered steps together with that in the step before.
+    pub(super) swing: Vector,
+}
+
+impl Constraint {
+    /// The constraint as it is after a displacement (m).
+    pub(super) fn behind(&self, displacement: Vector) -> Self {
+        Self {
+            gap: self.gap + dot(self.normal, displacement),
+            stick: sub(self.stick, displacement),
+            swing: add(self.swing, displacement),
+            ..*self
+        }
+    }
 }
 
 impl Compliance {
@@ -42,6 +68,20 @@ impl Compliance {
             }
         }
         Self { block, free }
+    }
+
+    /// What yields in all directions, by a symmetric block (m/N).
+    pub(super) fn yielding(block: [Vector; 3]) -> Self {
+        let free = [true; 3];
+        Self { block, free }
+    }
+
+    /// This one and a share of another one, one after the other.
+    pub(super) fn plus(&self, other: &Self, share: f64) -> Self {
+        Self {
+            block: [0, 1, 2].map(|axis| add(self.block[axis], scaled(other.block[axis], share))),
+            free: [0, 1, 2].map(|axis| self.free[axis] || other.free[axis]),
+        }
     }
 
     /// The displacement (m) by a force (N).
@@ -63,12 +103,13 @@ impl Compliance {
     }
 
     /// The force (N) of one constraint: the cone of friction in closed form.
-    fn of_one(&self, constraint: &Constraint) -> Vector {
+    pub(super) fn of_one(&self, constraint: &Constraint) -> Vector {
         let Constraint {
             normal,
             gap,
             stick,
             friction,
+            swing,
         } = *constraint;
         if gap >= 0.0 {
             return [0.0; 3];
@@ -78,11 +119,17 @@ impl Compliance {
             let pressing = dot(sticking, normal);
             let along = sub(sticking, scaled(normal, pressing));
             let size = length(along);
-            if pressing > 0.0 && size <= friction * pressing {
+            let sticks = pressing > 0.0 && size <= friction * pressing;
+            let share = if sticks { size / pressing } else { friction };
+            let most = match size > 0.0 {
+                true => self.most_friction(constraint, scaled(along, 1.0 / size), swing),
+                false => f64::INFINITY,
+            };
+            if sticks && share <= most {
                 return sticking;
             }
             if size > 0.0 {
-                let direction = add(normal, scaled(along, friction / size));
+                let direction = add(normal, scaled(along, share.min(most) / size));
                 let response = dot(normal, self.displacement(direction));
                 if self.moves(response) {
                     return scaled(direction, -gap / response);
@@ -97,25 +144,84 @@ impl Compliance {
         }
     }
 
+    /// The largest friction in a direction across the normal, as a share of the pressure, that does no work on tissue and tool together: in staggered steps forces work at the mean of the velocities
+    /// before and after, and friction against the latter alone would feed a motion that turns about from step to step.
+    ///
+    /// With the force `lambda (n + s d)` that closes the gap, `d . (swing + C lambda (n + s d))` times `n . C (n + s d)` is `before + s by`.
+    fn most_friction(&self, constraint: &Constraint, direction: Vector, swing: Vector) -> f64 {
+        let Constraint { normal, gap, .. } = *constraint;
+        let [of_normal, of_direction] = [normal, direction].map(|of| self.displacement(of));
+        let along = dot(direction, swing);
+        let before = along * dot(normal, of_normal) - gap * dot(direction, of_normal);
+        let by = along * dot(normal, of_direction) - gap * dot(direction, of_direction);
+        if before >= 0.0 {
+            0.0
+        } else if by > 0.0 {
+            // What sticks does so up to rounding.
+            -before / by * (1.0 + 1e-9)
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// Whether a node with this response (m/N) to a unit force moves in the direction of that force.
     fn moves(&self, response: f64) -> bool {
         let own = [0, 1, 2].map(|axis| self.block[axis][axis]);
         response > HELD * own.into_iter().fold(0.0, f64::max)
     }
 
-    /// Writes the force (N) of each constraint: at one exactly, with friction; at several exactly too, without it.
-    pub(super) fn solve(&self, constraints: &[Constraint], forces: &mut [Vector; MOST]) {
+    /// Writes the force (N) of each constraint: at one exactly, with friction; at several exactly without it, and with it by an iteration, of which
+    /// the residual is returned.
+    pub(super) fn solve(&self, constraints: &[Constraint], forces: &mut [Vector; MOST]) -> f64 {
         forces.fill([0.0; 3]);
         match constraints {
-            [] => {}
-            [one] => forces[0] = self.of_one(one),
-            several => self.of_several(several, forces),
+            [] => 0.0,
+            [one] => {
+                forces[0] = self.of_one(one);
+                0.0
+            }
+            several => {
+                let left = self.of_several(several, forces);
+                // Where there is no room, cones would push each other on without end.
+                let rubs = several.iter().any(|one| one.friction > 0.0);
+                if rubs && left <= MEANT_TO_FIT {
+                    self.rub(several, forces)
+                } else {
+                    0.0
+                }
+            }
         }
+    }
+
+    /// Finds the forces (N) with friction from those without it, by Gauss and Seidel's iteration: each constraint exactly for the forces of the others. Returns what is left, the change of a
+    /// displacement in the last sweep as a share of the largest by a force. Surfaces that wedge a node have no such forces within bounds: it then gets those without friction.
+    fn rub(&self, constraints: &[Constraint], forces: &mut [Vector; MOST]) -> f64 {
+        let (mut left, without) = (0.0, *forces);
+        for _ in 0..MOST_SWEEPS {
+            let mut sum = forces.iter().copied().fold([0.0; 3], add);
+            let (mut change, mut largest): (f64, f64) = (0.0, 0.0);
+            for (constraint, own) in constraints.iter().zip(forces.iter_mut()) {
+                let others = sub(sum, *own);
+                let force = self.of_one(&constraint.behind(self.displacement(others)));
+                change = change.max(length(self.displacement(sub(force, *own))));
+                largest = largest.max(length(self.displacement(force)));
+                (sum, *own) = (add(others, force), force);
+            }
+            left = if change > 0.0 { change / largest } else { 0.0 };
+            if left <= CONVERGED {
+                return left;
+            }
+        }
+        if left > WEDGED {
+            *forces = without;
+        }
+        left
     }
 
     /// The linear complementarity problem `0 <= lambda, gap + N C N' lambda >= 0`, of which at most three constraints act in space: sets of one, two
     /// and three are tried in turn. Where no point satisfies all, as between closing jaws, the one that violates the others least is taken.
-    fn of_several(&self, constraints: &[Constraint], forces: &mut [Vector; MOST]) {
+    /// Returns the violation that is left, as a share of that without forces.
+    fn of_several(&self, constraints: &[Constraint], forces: &mut [Vector; MOST]) -> f64 {
         let count = constraints.len().min(MOST);
         let violation = |displacement: Vector| {
             let gaps = constraints.iter();
@@ -145,12 +251,13 @@ impl Compliance {
         if scale > 0.0 {
             let _found = singles.chain(pairs).chain(triples).any(&mut attempt);
         }
-        let (_, active, lambda) = best;
+        let (left, active, lambda) = best;
         for (index, lambda) in active.into_iter().zip(lambda) {
             if index < count {
                 forces[index] = scaled(constraints[index].normal, lambda);
             }
         }
+        if scale > 0.0 { left / scale } else { 0.0 }
     }
 
     /// The multipliers (N) that close the gaps of some constraints.
@@ -204,6 +311,7 @@ fn solved(a: [Vector; 3], b: Vector) -> Option<Vector> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vector::cross;
 
     const BLOCK: [Vector; 3] = [[2.0, 0.3, -0.1], [0.3, 1.0, 0.2], [-0.1, 0.2, 1.5]];
 
@@ -217,6 +325,7 @@ mod tests {
             gap,
             stick: [0.0; 3],
             friction: 0.0,
+            swing: [0.0; 3],
         }
     }
 
@@ -257,6 +366,7 @@ mod tests {
         let compliance = compliance([true; 3]);
         let mut constraint = plane([0.0, 0.0, 1.0], -0.01);
         constraint.stick = [0.002, -0.001, 0.01];
+        constraint.swing = scaled(constraint.stick, -1.0);
         constraint.friction = 10.0;
         let (moved, _) = total(&compliance, &[constraint]);
         assert!(length(sub(moved, constraint.stick)) < 1e-16, "{moved:?}");
@@ -268,6 +378,34 @@ mod tests {
         // Against the slip that is left.
         let left = sub(constraint.stick, moved);
         assert!(x * left[0] + y * left[1] > 0.0);
+    }
+
+    /// A motion that turns about in each step would be fed by friction that looks at the velocity after the step alone.
+    #[test]
+    fn friction_does_no_work_whatever_the_motion_was_before() {
+        let compliance = compliance([true; 3]);
+        let mut limited = 0;
+        for before in [-3.0, -1.1, -0.9, -0.3, 0.0, 0.4, 2.0] {
+            for friction in [0.01, 0.3, 10.0, 1e6] {
+                let mut constraint = plane([0.1, 0.2, 1.0], -0.01);
+                constraint.stick = add(scaled(constraint.normal, 0.01), [0.002, -0.001, 0.0]);
+                constraint.gap = -dot(constraint.normal, constraint.stick);
+                constraint.swing = scaled(constraint.stick, -1.0 - before);
+                constraint.friction = friction;
+                let (moved, forces) = total(&compliance, &[constraint]);
+                let normal = constraint.normal;
+                let pressing = dot(forces[0], normal);
+                let along = sub(forces[0], scaled(normal, pressing));
+                let power = dot(along, add(constraint.swing, moved));
+                assert!(power <= 1e-12, "{before} {friction}: {power}");
+                assert!((dot(normal, moved) + constraint.gap).abs() < 1e-15);
+                let share = length(along) / pressing;
+                assert!(share <= friction * (1.0 + 1e-12));
+                let sticks = length(sub(moved, constraint.stick)) < 1e-12;
+                limited += i32::from(share < friction && !sticks);
+            }
+        }
+        assert!(limited > 4, "{limited}");
     }
 
     #[test]
@@ -291,11 +429,68 @@ mod tests {
     }
 
     #[test]
+    fn friction_at_several_surfaces_stays_in_its_cones_and_slows_what_slips() {
+        let compliance = compliance([true; 3]);
+        for (first, second) in [(0.3, 0.3), (0.0, 0.5), (1.0, 0.2)] {
+            for side in [-0.02, 0.0, 0.004, 0.03] {
+                let mut walls = [plane([1.0, 0.0, 0.1], -0.01), plane([0.1, 1.0, 0.2], -0.02)];
+                for (wall, friction) in walls.iter_mut().zip([first, second]) {
+                    // Where the wall was touched, so far to its side.
+                    let across = cross(wall.normal, [0.0, 0.0, 1.0]);
+                    wall.stick = add(scaled(wall.normal, -wall.gap), scaled(across, side));
+                    wall.swing = scaled(wall.stick, -1.0);
+                    wall.friction = friction;
+                }
+                let mut forces = [[0.0; 3]; MOST];
+                let residual = compliance.solve(&walls, &mut forces);
+                assert!(residual <= CONVERGED, "{first} {second} {side}: {residual}");
+                let moved = compliance.displacement(forces.into_iter().fold([0.0; 3], add));
+                for (wall, force) in walls.iter().zip(forces) {
+                    let after = wall.behind(moved);
+                    let pressing = dot(wall.normal, force);
+                    let along = sub(force, scaled(wall.normal, pressing));
+                    let slip = sub(
+                        after.stick,
+                        scaled(wall.normal, dot(wall.normal, after.stick)),
+                    );
+                    assert!(after.gap > -1e-14 && pressing >= 0.0);
+                    assert!(after.gap * pressing < 1e-14);
+                    assert!(length(along) <= wall.friction * pressing + 1e-13);
+                    let sticks = length(along) < wall.friction * pressing - 1e-9;
+                    assert!(!sticks || length(slip) < 1e-12, "{slip:?}");
+                    assert!(dot(along, slip) >= -1e-14);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_node_that_is_wedged_is_pushed_without_friction_and_that_is_told() {
+        let mut walls = [plane([1.0, 0.0, 0.1], -0.01), plane([0.1, 1.0, 0.2], -0.02)];
+        let (expected, _) = total(&compliance([true; 3]), &walls);
+        for wall in &mut walls {
+            let across = cross(wall.normal, [0.0, 0.0, 1.0]);
+            wall.stick = add(scaled(wall.normal, -wall.gap), scaled(across, -0.02));
+            wall.swing = scaled(wall.stick, -1.0);
+            wall.friction = 5.0;
+        }
+        let mut forces = [[0.0; 3]; MOST];
+        let residual = compliance([true; 3]).solve(&walls, &mut forces);
+        let (moved, _) = total(&compliance([true; 3]), &walls);
+        assert!(residual > 0.01, "{residual}");
+        assert_eq!(moved, expected);
+    }
+
+    #[test]
     fn between_closing_jaws_the_violation_is_not_made_worse() {
         let jaws = [
             plane([0.0, 0.0, 1.0], -0.01),
             plane([0.0, 0.0, -1.0], -0.002),
         ];
+        let jaws = jaws.map(|jaw| Constraint {
+            friction: 0.5,
+            ..jaw
+        });
         let (moved, _) = total(&compliance([true; 3]), &jaws);
         let worst = jaws
             .iter()

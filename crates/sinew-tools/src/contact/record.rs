@@ -1,47 +1,124 @@
 //! What tools keep from step to step, as numbers in a state.
 
-/// Numbers of a tool.
-pub(super) const OF_TOOL: usize = 10;
+use std::ops::Range;
 
-/// Their places: the force (N) and the torque (N m) on it, its work (J) and how deep (m) it had to leave a node in it so far, its contacts, and the passes
-/// of its stroke.
+use sinew_core::Meeting;
+
+use super::twist::Twist;
+use crate::pose::Pose;
+use crate::vector::{Vector, add, scaled};
+
+/// Numbers of a tool.
+pub(super) const OF_TOOL: usize = 17;
+
+/// Their places: the force (N) and the torque (N m) on it, its work (J) and how deep (m) it had to leave a node in it so far, its contacts, the passes
+/// of its stroke, the impulse (N s) that it has received so far, what the iteration for its contacts left in the last step and at most, how many cells it has
+/// seized so far, and the number, from 1 on, of a tool that held a cell which it would have seized.
 pub(super) const FORCE: usize = 0;
 pub(super) const TORQUE: usize = 3;
 pub(super) const WORK: usize = 6;
 pub(super) const DEPTH: usize = 7;
 pub(super) const CONTACTS: usize = 8;
 pub(super) const PASSES: usize = 9;
+pub(super) const IMPULSE: usize = 10;
+pub(super) const RESIDUAL: usize = 13;
+pub(super) const LARGEST_RESIDUAL: usize = 14;
+pub(super) const SEIZED: usize = 15;
+pub(super) const RIVAL: usize = 16;
+
+/// Numbers of a tool that is a body of its own.
+pub(super) const OF_BODY: usize = 21;
 
 /// Numbers of a touched cell.
 pub(super) const OF_CELL: usize = 3;
 
+/// Numbers of a cell whose velocity is kept.
+pub(super) const OF_VELOCITY: usize = 3;
+
 /// Numbers of a cell that may be held.
 pub(super) const OF_HELD: usize = 4;
+
+/// What friction works along of a cell that a step moves by `way` (m), with its velocity (m/s) before where it was kept: in staggered steps contact works at the mean of the
+/// velocities before and after, elsewhere at the latter.
+pub(super) fn swing(
+    meeting: &Meeting<'_>,
+    velocity: Option<&[f64; OF_VELOCITY]>,
+    way: Vector,
+) -> Vector {
+    let before = velocity.copied().filter(|velocity| *velocity != [0.0; 3]);
+    let before = before.map_or(way, |velocity| scaled(velocity, meeting.dt));
+    if meeting.is_staggered {
+        add(before, way)
+    } else {
+        way
+    }
+}
 
 /// What contact did in the last step, and what it holds, by rows of numbers.
 pub(super) struct Record<'a> {
     /// Of each tool.
     pub(super) tools: &'a mut [[f64; OF_TOOL]],
+    /// Of each tool that is a body of its own.
+    pub(super) bodies: &'a mut [[f64; OF_BODY]],
     /// Of each cell the force (N) on it.
     pub(super) cells: &'a mut [[f64; OF_CELL]],
+    /// Of each cell that was near a tool its velocity (m/s) after the step, zeros of others; empty where nothing rubs.
+    pub(super) velocities: &'a mut [[f64; OF_VELOCITY]],
     /// Of each cell the tool that holds it, from 1 on, or 0, and the place (m) in that tool's frame; empty where no tool holds.
     pub(super) held: &'a mut [[f64; OF_HELD]],
 }
 
-/// Numbers of a record.
-pub(super) fn numbers(tools: usize, cells: usize, holds: bool) -> usize {
-    let held = if holds { OF_HELD } else { 0 };
-    tools * OF_TOOL + cells * (OF_CELL + held)
+/// How many there are of what a record tells of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Counts {
+    pub(super) tools: usize,
+    pub(super) bodies: usize,
+    pub(super) cells: usize,
+    /// Whether any tool has friction.
+    pub(super) rubs: bool,
+    /// Whether any tool ever holds.
+    pub(super) holds: bool,
+}
+
+impl Counts {
+    /// Numbers of a record.
+    pub(super) fn numbers(&self) -> usize {
+        let held = if self.holds { OF_HELD } else { 0 };
+        self.of_velocities().end + self.cells * held
+    }
+
+    /// Places of the numbers of bodies.
+    pub(super) fn of_bodies(&self) -> Range<usize> {
+        let first = self.tools * OF_TOOL;
+        first..first + self.bodies * OF_BODY
+    }
+
+    /// Places of the numbers of cells.
+    pub(super) fn of_cells(&self) -> Range<usize> {
+        let first = self.of_bodies().end;
+        first..first + self.cells * OF_CELL
+    }
+
+    /// Places of the velocities of cells.
+    pub(super) fn of_velocities(&self) -> Range<usize> {
+        let first = self.of_cells().end;
+        let kept = if self.rubs { OF_VELOCITY } else { 0 };
+        first..first + self.cells * kept
+    }
 }
 
 impl<'a> Record<'a> {
-    /// The record in these numbers, as many as [`numbers`] says.
-    pub(super) fn of(numbers: &'a mut [f64], tools: usize, cells: usize) -> Self {
-        let (of_tools, rest) = numbers.split_at_mut(tools * OF_TOOL);
-        let (of_cells, of_held) = rest.split_at_mut(cells * OF_CELL);
+    /// The record in these numbers, as many as [`Counts::numbers`] says.
+    pub(super) fn of(numbers: &'a mut [f64], counts: &Counts) -> Self {
+        let (numbers, of_held) = numbers.split_at_mut(counts.of_velocities().end);
+        let (numbers, of_velocities) = numbers.split_at_mut(counts.of_cells().end);
+        let (numbers, of_cells) = numbers.split_at_mut(counts.of_bodies().end);
+        let (of_tools, of_bodies) = numbers.split_at_mut(counts.of_bodies().start);
         Self {
             tools: of_tools.as_chunks_mut().0,
+            bodies: of_bodies.as_chunks_mut().0,
             cells: of_cells.as_chunks_mut().0,
+            velocities: of_velocities.as_chunks_mut().0,
             held: of_held.as_chunks_mut().0,
         }
     }
@@ -49,10 +126,65 @@ impl<'a> Record<'a> {
     /// Forgets the last step but for what has been since the motion began.
     pub(super) fn forget_last_step(&mut self) {
         for numbers in self.tools.iter_mut() {
-            let (work, depth) = (numbers[WORK], numbers[DEPTH]);
-            *numbers = [0.0; OF_TOOL];
-            (numbers[WORK], numbers[DEPTH]) = (work, depth);
+            let before = std::mem::replace(numbers, [0.0; OF_TOOL]);
+            let since = [WORK, DEPTH, LARGEST_RESIDUAL, SEIZED, RIVAL].into_iter();
+            for place in since.chain(IMPULSE..IMPULSE + 3) {
+                numbers[place] = before[place];
+            }
         }
         self.cells.as_flattened_mut().fill(0.0);
+    }
+}
+
+/// What a tool that is a body of its own keeps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Body {
+    pub(super) pose: Pose,
+    /// Its velocity, in the middle of the last step.
+    pub(super) velocity: Twist,
+    /// The velocity of its path over the last step.
+    pub(super) path: Twist,
+    /// Kinetic and elastic energy (J), in the middle of the last step.
+    pub(super) energy: f64,
+    /// The work (J) of the hand on its path since the motion began.
+    pub(super) hand_work: f64,
+}
+
+impl Body {
+    /// What the numbers tell; `None` before the first step.
+    pub(super) fn read(numbers: &[f64; OF_BODY]) -> Option<Self> {
+        let (vectors, [energy, hand_work, has_begun]) = numbers.split_last_chunk::<3>()?;
+        let vectors = vectors.as_chunks::<3>().0;
+        if *has_begun == 0.0 {
+            return None;
+        }
+        let twist = |first: usize| Twist {
+            along: vectors[first],
+            about: vectors[first + 1],
+        };
+        Some(Self {
+            pose: Pose::new(vectors[0], vectors[1]),
+            velocity: twist(2),
+            path: twist(4),
+            energy: *energy,
+            hand_work: *hand_work,
+        })
+    }
+
+    /// Writes them.
+    pub(super) fn write(&self, numbers: &mut [f64; OF_BODY]) {
+        let vectors = [
+            self.pose.position(),
+            self.pose.rotation_vector(),
+            self.velocity.along,
+            self.velocity.about,
+            self.path.along,
+            self.path.about,
+        ];
+        let last = [self.energy, self.hand_work, 1.0];
+        let all = vectors.into_iter().flatten().chain(last);
+        for (number, value) in numbers.iter_mut().zip(all) {
+            *number = value;
+        }
     }
 }

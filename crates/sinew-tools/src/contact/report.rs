@@ -1,22 +1,25 @@
 //! What tools tell of the last step.
 
-use sinew_core::State;
+use sinew_core::{Inputs, State};
 
-use super::record::{CONTACTS, DEPTH, FORCE, OF_CELL, OF_TOOL, PASSES, TORQUE, WORK};
+use super::record::{
+    Body, CONTACTS, DEPTH, FORCE, IMPULSE, LARGEST_RESIDUAL, OF_BODY, OF_CELL, OF_TOOL, PASSES,
+    RESIDUAL, RIVAL, SEIZED, TORQUE, WORK,
+};
+use super::tool::{Corner, Tool};
 use super::tools::Tools;
-use crate::vector::{Vector, add};
+use crate::pose::Pose;
+use crate::vector::{Vector, add, dot};
 
 /// A tool after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolReport {
-    /// Position (m) of its origin.
-    pub position: [f64; 3],
-    /// Its rotation vector (rad).
-    pub rotation_vector: [f64; 3],
     /// The force on it (N), friction included: the mean over the step.
     pub force: [f64; 3],
     /// The torque on it (N m) about its origin.
     pub torque: [f64; 3],
+    /// The impulse (N s) that it has received since the motion began: its growth over any time is the mean force then.
+    pub impulse: [f64; 3],
     /// The work (J) that it did on the body since the motion began.
     pub work: f64,
     /// How deep (m) it had to leave a node in it since the motion began: one that is held in the direction of the contact, or has no room between surfaces.
@@ -25,6 +28,29 @@ pub struct ToolReport {
     pub contacts: usize,
     /// Passes that its stroke takes, so that normals of the first contact stay meaningful.
     pub passes: u32,
+    /// What the iteration left of its contacts, where they act on each other: the largest change of a displacement in the last sweep, as a share of the largest displacement by a contact.
+    pub residual: f64,
+    /// The largest such residual since the motion began.
+    pub largest_residual: f64,
+    /// Number of cells that it has seized since the motion began.
+    pub seized: usize,
+    /// A tool that had hold of a cell which this one would have seized; `None` where there was none.
+    pub rival: Option<usize>,
+    /// Its own motion where it is a body; `None` before the first step.
+    pub body: Option<BodyReport>,
+}
+
+/// A tool that is a body of its own, after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyReport {
+    /// The velocity (m/s) of its origin in the middle of the step.
+    pub velocity: [f64; 3],
+    /// Its spin (rad/s) then.
+    pub spin: [f64; 3],
+    /// Its kinetic energy and that of its coupling (J) then.
+    pub energy: f64,
+    /// The work (J) of the hand that moves its path, since the motion began: that of the coupling's force on the hand.
+    pub hand_work: f64,
 }
 
 /// How deep a cell is in a tool.
@@ -32,63 +58,116 @@ pub struct ToolReport {
 pub struct Depth {
     /// The distance (m) to the tool's surface, negative inside.
     pub gap: f64,
-    /// The place of the cell among the touched cells.
+    /// The place of the cell among the touched cells, or of a corner of the triangle that is deepest.
     pub place: usize,
 }
 
 impl Tools {
+    /// Where a tool is in a state, under inputs from outside.
+    #[must_use]
+    pub fn pose(&self, state: &State, inputs: &Inputs, tool: usize) -> Pose {
+        match self.body(state, tool) {
+            Some(body) => body.pose,
+            None => self.tools[tool].motion.at(state.t(), inputs),
+        }
+    }
+
     /// A tool after the last step of a state; at rest before the first.
     #[must_use]
     pub fn report(&self, state: &State, tool: usize) -> ToolReport {
-        let pose = self.tools[tool].motion.at(state.t());
+        let body = self.body(state, tool);
         let numbers = state.contact.get(tool * OF_TOOL..(tool + 1) * OF_TOOL);
         let numbers = numbers.unwrap_or(&[0.0; OF_TOOL]);
         ToolReport {
-            position: pose.position(),
-            rotation_vector: pose.rotation_vector(),
             force: [0, 1, 2].map(|axis| numbers[FORCE + axis]),
             torque: [0, 1, 2].map(|axis| numbers[TORQUE + axis]),
+            impulse: [0, 1, 2].map(|axis| numbers[IMPULSE + axis]),
             work: numbers[WORK],
             depth: numbers[DEPTH],
             contacts: numbers[CONTACTS] as usize,
             passes: numbers[PASSES] as u32,
+            residual: numbers[RESIDUAL],
+            largest_residual: numbers[LARGEST_RESIDUAL],
+            seized: numbers[SEIZED] as usize,
+            rival: (numbers[RIVAL] as usize).checked_sub(1),
+            body: body.map(|body| BodyReport {
+                velocity: body.velocity.along,
+                spin: body.velocity.about,
+                energy: body.energy,
+                hand_work: body.hand_work,
+            }),
         }
     }
 
-    /// The work (J) of all tools since the motion began.
+    /// The motion of a tool that is a body of its own: after the last step, or as it begins; `None` for others.
     #[must_use]
-    pub fn work(&self, state: &State) -> f64 {
-        let tools = 0..self.tools.len();
-        tools.map(|tool| self.report(state, tool).work).sum()
+    pub fn body_report(&self, state: &State, inputs: &Inputs, tool: usize) -> Option<BodyReport> {
+        let Tool { body, motion, .. } = &self.tools[tool];
+        let body = body.as_ref()?;
+        if let Some(after) = self.report(state, tool).body {
+            return Some(after);
+        }
+        let [velocity, spin] = motion.velocity(state.t(), inputs);
+        let own = motion.at(state.t(), inputs).turned_back(spin);
+        let turning: f64 = (0..3)
+            .map(|axis| body.inertia[axis] * own[axis].powi(2))
+            .sum();
+        Some(BodyReport {
+            velocity,
+            spin,
+            energy: 0.5 * (body.mass * dot(velocity, velocity) + turning),
+            hand_work: 0.0,
+        })
+    }
+
+    /// What a tool keeps that is a body of its own; `None` before its first step.
+    fn body(&self, state: &State, tool: usize) -> Option<Body> {
+        let numbers = state.contact.get(self.counts.of_bodies())?;
+        let numbers = numbers.as_chunks::<OF_BODY>().0;
+        Body::read(numbers.get(self.body_of(tool)?)?)
     }
 
     /// The force (N) on each touched cell in the last step.
     pub fn forces<'s>(&self, state: &'s State) -> impl Iterator<Item = [f64; 3]> + 's {
-        let cells = self.tools.len() * OF_TOOL..self.first_held();
-        let numbers = state.contact.get(cells).unwrap_or_default();
+        let numbers = state
+            .contact
+            .get(self.counts.of_cells())
+            .unwrap_or_default();
         numbers.as_chunks::<OF_CELL>().0.iter().copied()
     }
 
-    /// The cell that is nearest to a tool, or deepest in it, at a time (s) with the displacement `u` (m); `None` where the tool may touch none.
+    /// The cell, or triangle, that is nearest to a tool in a pose, or deepest in it, with the displacement `u` (m); `None` where the tool may touch none.
     #[must_use]
-    pub fn deepest(&self, u: &[f64], t: f64, tool: usize) -> Option<Depth> {
+    pub fn deepest(&self, u: &[f64], pose: &Pose, tool: usize) -> Option<Depth> {
         let Self { tools, cells, .. } = self;
         let tool = &tools[tool];
-        let pose = tool.motion.at(t);
         let depths = tool.cells.iter().map(|place| {
             let cell = &cells[*place as usize];
             let at = add(cell.rest, displacement_of(u, cell.cell));
-            let parts = tool.shape.parts().iter();
-            let distances = parts.map(|part| {
-                let own = pose.then(&part.pose).to_own(at);
-                part.convex.nearest(own).distance
-            });
             Depth {
-                gap: distances.fold(f64::INFINITY, f64::min),
+                gap: tool.shape.distance(pose, at),
                 place: *place as usize,
             }
         });
-        depths.reduce(|a, b| if b.gap < a.gap { b } else { a })
+        let nearest = depths.reduce(|a, b| if b.gap < a.gap { b } else { a });
+        let between = tool.triangles.iter().filter_map(|number| {
+            let triangle = &self.triangles[*number as usize];
+            let corners = triangle.corners.map(|corner| match corner {
+                Corner::Held(at) => at,
+                Corner::Cell(place) => {
+                    let cell = &cells[place as usize];
+                    add(cell.rest, displacement_of(u, cell.cell))
+                }
+            });
+            let place = triangle.corners.iter().find_map(|corner| match corner {
+                Corner::Cell(place) => Some(*place as usize),
+                Corner::Held(_) => None,
+            })?;
+            let gap = tool.shape.distance_of_triangle(pose, &corners);
+            Some(Depth { gap, place })
+        });
+        let all = nearest.into_iter().chain(between);
+        all.reduce(|a, b| if b.gap < a.gap { b } else { a })
     }
 }
 

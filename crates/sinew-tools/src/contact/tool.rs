@@ -1,5 +1,6 @@
 //! Tools and the cells that they may touch.
 
+use super::tool_body::{ToolBody, ToolBodyError};
 use crate::motion::Motion;
 use crate::shape::Shape;
 
@@ -10,12 +11,16 @@ pub struct Tool {
     pub name: String,
     /// Its shape.
     pub shape: Shape,
-    /// Where it is at any time.
+    /// Where it is at any time, or where its coupling draws it to.
     pub motion: Motion,
+    /// What it is where it is a body of its own; `None` for a tool that is where its motion says.
+    pub body: Option<ToolBody>,
     /// Coefficient of Coulomb's friction.
     pub friction: f64,
     /// The cells that it may touch, by their places among the touched cells of [`crate::Tools`], increasing.
     pub cells: Vec<u32>,
+    /// The triangles that it may touch besides, by their places among those of [`crate::Tools`]: for a tip that would pass between nodes.
+    pub triangles: Vec<u32>,
     /// When it holds what it touches; `None` where it never does.
     pub grasp: Option<Grasp>,
 }
@@ -38,6 +43,38 @@ pub struct TouchedCell {
     pub rest: [f64; 3],
     /// Whether it moves in x, y and z.
     pub free: [bool; 3],
+}
+
+/// A triangle of the surface of a body by its corners, counter-clockwise as seen from outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TouchedTriangle {
+    /// The corners.
+    pub corners: [Corner; 3],
+}
+
+/// A corner of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Corner {
+    /// A touched cell, by its place among them.
+    Cell(u32),
+    /// A place (m) that is held.
+    Held([f64; 3]),
+}
+
+impl ToolsError {
+    /// The name of the tool at fault; `None` where it is none alone.
+    #[must_use]
+    pub fn tool(&self) -> Option<&str> {
+        match self {
+            Self::TooMany { .. } => None,
+            Self::SameName { name }
+            | Self::Friction { name, .. }
+            | Self::Grasp { name, .. }
+            | Self::Body { name, .. }
+            | Self::NoTriangle { name, .. }
+            | Self::NoCell { name, .. } => Some(name),
+        }
+    }
 }
 
 /// Tools that do not fit together, or to their cells.
@@ -75,6 +112,26 @@ pub enum ToolsError {
         from: f64,
         /// The end (s).
         to: f64,
+    },
+    /// A body that there cannot be.
+    #[error("\"{name}\": {source}")]
+    Body {
+        /// The tool.
+        name: String,
+        /// What is wrong with it.
+        source: ToolBodyError,
+    },
+    /// A place beyond the triangles.
+    #[error(
+        "\"{name}\" may touch triangle {place} of {triangles}: expected a place below their number, and corners below that of cells"
+    )]
+    NoTriangle {
+        /// The tool.
+        name: String,
+        /// The place.
+        place: u32,
+        /// Number of triangles.
+        triangles: usize,
     },
     /// A place beyond the touched cells.
     #[error("\"{name}\" may touch cell {place} of {cells}: expected a place below their number")]

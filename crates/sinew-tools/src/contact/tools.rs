@@ -2,26 +2,30 @@
 
 use std::sync::Mutex;
 
-use super::record;
+use super::record::{Counts, OF_HELD};
 use super::room::Room;
-use super::tool::{Grasp, Tool, ToolsError, TouchedCell};
+use super::tool::{Corner, Grasp, Tool, ToolsError, TouchedCell, TouchedTriangle};
+use super::tool_body::ToolBody;
+use crate::motion::Motion;
+use crate::steering::Steering;
 
 /// Most tools of a body.
-const MOST_TOOLS: usize = 64;
+pub(super) const MOST_TOOLS: usize = 64;
 
 /// Rigid tools that touch the surface of a body.
 #[derive(Debug)]
 pub struct Tools {
     pub(super) tools: Vec<Tool>,
     pub(super) cells: Vec<TouchedCell>,
+    pub(super) triangles: Vec<TouchedTriangle>,
     /// The numbers of `cells`.
     pub(super) numbers: Vec<u32>,
-    /// The same with the positions at rest (m), for the look at all of them.
-    pub(super) places: Vec<(u32, [f64; 3])>,
     /// The tools that may touch each cell, one bit each.
     pub(super) tools_at: Vec<u64>,
-    /// Whether any tool ever holds.
-    pub(super) holds: bool,
+    /// Numbers of what is kept.
+    pub(super) counts: Counts,
+    /// The tools whose contacts act on each other, one bit each.
+    pub(super) linking: u64,
     pub(super) room: Mutex<Room>,
 }
 
@@ -31,6 +35,18 @@ impl Tools {
     /// # Errors
     /// [`ToolsError`] for what does not fit together.
     pub fn new(tools: Vec<Tool>, cells: Vec<TouchedCell>) -> Result<Self, ToolsError> {
+        Self::with_triangles(tools, cells, Vec::new())
+    }
+
+    /// Tools, the cells that any of them may touch, and triangles between these.
+    ///
+    /// # Errors
+    /// [`ToolsError`] for what does not fit together.
+    pub fn with_triangles(
+        tools: Vec<Tool>,
+        cells: Vec<TouchedCell>,
+        triangles: Vec<TouchedTriangle>,
+    ) -> Result<Self, ToolsError> {
         if tools.len() > MOST_TOOLS {
             return Err(ToolsError::TooMany {
                 count: tools.len(),
@@ -59,6 +75,26 @@ impl Tools {
                     to,
                 });
             }
+            if let Some(Err(source)) = tool.body.as_ref().map(ToolBody::check) {
+                return Err(ToolsError::Body {
+                    name: name(),
+                    source,
+                });
+            }
+            let is_missing = |corner: &Corner| match corner {
+                Corner::Cell(place) => *place as usize >= cells.len(),
+                Corner::Held(_) => false,
+            };
+            for place in &tool.triangles {
+                let triangle = triangles.get(*place as usize);
+                if triangle.is_none_or(|triangle| triangle.corners.iter().any(is_missing)) {
+                    return Err(ToolsError::NoTriangle {
+                        name: name(),
+                        place: *place,
+                        triangles: triangles.len(),
+                    });
+                }
+            }
             for place in &tool.cells {
                 let at = tools_at.get_mut(*place as usize);
                 *at.ok_or_else(|| ToolsError::NoCell {
@@ -68,15 +104,50 @@ impl Tools {
                 })? |= 1 << number;
             }
         }
-        Ok(Self {
+        Ok(Self::sound(tools, (cells, triangles), tools_at))
+    }
+
+    /// These tools, each of which follows its own motion until it is steered.
+    #[must_use]
+    pub fn steered(&self, steering: &[Steering]) -> Self {
+        let mut tools = self.tools.clone();
+        for (tool, steering) in tools.iter_mut().zip(steering) {
+            tool.motion = Motion::Steered(Box::new(tool.motion.clone()), *steering);
+        }
+        let surface = (self.cells.clone(), self.triangles.clone());
+        Self::sound(tools, surface, self.tools_at.clone())
+    }
+
+    /// Tools that were found to fit together.
+    fn sound(
+        tools: Vec<Tool>,
+        (cells, triangles): (Vec<TouchedCell>, Vec<TouchedTriangle>),
+        tools_at: Vec<u64>,
+    ) -> Self {
+        let is_body = |tool: &Tool| tool.body.is_some();
+        let links = |tool: &Tool| is_body(tool) || !tool.triangles.is_empty();
+        let linking = (0..).zip(&tools).filter(|(_, tool)| links(tool));
+        let linking = linking.fold(0, |bits, (number, _)| bits | 1 << number);
+        Self {
             numbers: cells.iter().map(|cell| cell.cell).collect(),
-            holds: tools.iter().any(|tool| tool.grasp.is_some()),
-            places: cells.iter().map(|cell| (cell.cell, cell.rest)).collect(),
-            room: Mutex::new(Room::of(&tools, cells.len())),
+            counts: Counts {
+                tools: tools.len(),
+                bodies: tools.iter().filter(|tool| is_body(tool)).count(),
+                cells: cells.len(),
+                rubs: tools.iter().any(|tool| tool.friction > 0.0),
+                holds: tools.iter().any(|tool| tool.grasp.is_some()),
+            },
+            linking,
+            room: Mutex::new(Room::of(
+                &tools,
+                if linking == 0 { 0 } else { cells.len() },
+                cells.len(),
+            )),
             tools,
             cells,
+            triangles,
             tools_at,
-        })
+        }
     }
 
     /// The tools.
@@ -91,8 +162,36 @@ impl Tools {
         &self.cells
     }
 
-    /// Place of the first number of held cells.
-    pub(super) fn first_held(&self) -> usize {
-        record::numbers(self.tools.len(), self.cells.len(), false)
+    /// Whether contacts of a tool act on each other within a step, so that they are found by an iteration.
+    #[must_use]
+    pub fn links(&self, tool: usize) -> bool {
+        self.linking >> tool & 1 == 1
+    }
+
+    /// Whether a tool holds what it touches in a step that ends at `end` (s).
+    pub(super) fn holds(&self, tool: usize, end: f64) -> bool {
+        let grasp = self.tools[tool].grasp;
+        grasp.is_some_and(|grasp| (grasp.from..=grasp.to).contains(&end))
+    }
+
+    /// The tool that has hold of a cell in a step that ends at `end` (s).
+    pub(super) fn holder(&self, held: Option<&[f64; OF_HELD]>, end: f64) -> Option<usize> {
+        let tool = (held?[0] as usize).checked_sub(1)?;
+        self.holds(tool, end).then_some(tool)
+    }
+
+    /// Places of the touched cells that tools have hold of at a time (s), by what they keep ([`sinew_core::State::contact`]).
+    pub fn held<'s>(&'s self, contact: &'s [f64], t: f64) -> impl Iterator<Item = usize> + 's {
+        let numbers = contact.get(self.counts.of_velocities().end..);
+        let rows = numbers.unwrap_or_default().as_chunks::<OF_HELD>().0;
+        let rows = rows.iter().enumerate();
+        rows.filter_map(move |(place, held)| self.holder(Some(held), t).map(|_| place))
+    }
+
+    /// Place of a tool among those that are bodies of their own.
+    pub(super) fn body_of(&self, tool: usize) -> Option<usize> {
+        let is_body = |tool: &&Tool| tool.body.is_some();
+        self.tools[tool].body?;
+        Some(self.tools[..tool].iter().filter(is_body).count())
     }
 }

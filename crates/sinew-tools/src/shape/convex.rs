@@ -3,7 +3,7 @@
 use super::error::ShapeError;
 use super::touch::{Nearest, Touch};
 use super::{capsule, cuboid, plane, sphere};
-use crate::vector::{dot, length, scaled, sub};
+use crate::vector::{cross, dot, length, scaled, sub};
 
 /// A convex shape in its own frame. Lengths are in metres, points finite.
 ///
@@ -71,6 +71,21 @@ impl Convex {
             return Err(ShapeError::Length(length));
         }
         Ok(Self::Capsule { radius, length })
+    }
+
+    /// The edge of a blade: a segment along z of this `length` (m), centred at the origin, without any thickness.
+    ///
+    /// # Errors
+    ///
+    /// A length that is not finite and above 0.
+    pub fn edge(length: f64) -> Result<Self, ShapeError> {
+        if !is_length(length) {
+            return Err(ShapeError::Length(length));
+        }
+        Ok(Self::Capsule {
+            radius: 0.0,
+            length,
+        })
     }
 
     /// A cuboid with edges of these lengths (m).
@@ -156,6 +171,43 @@ impl Convex {
             Self::Plane | Self::Cuboid { .. } => None,
         }
     }
+
+    /// Half the smallest width (m) of what hides behind the shape along a direction in its own frame: nodes that are nearer to each other do not let it pass between them that way.
+    /// Infinite for a plane.
+    ///
+    /// Across a direction d a cuboid is `sum a_i |e_i|` wide along e, between whose kinks that is a sine above 0: so it is least at one of them, where e is across d and an edge.
+    #[must_use]
+    pub fn width_across(&self, direction: [f64; 3]) -> f64 {
+        let Self::Cuboid { size } = *self else {
+            return self.width();
+        };
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let widths = axes.into_iter().filter_map(|axis| {
+            let across = cross(direction, axis);
+            let size_of_it = length(across);
+            // Along an edge all directions across are those of the other two.
+            (size_of_it > 1e-9 * length(direction)).then(|| {
+                let width = (0..3).map(|x| size[x] / 2.0 * across[x].abs());
+                width.sum::<f64>() / size_of_it
+            })
+        });
+        let least = widths.fold(f64::INFINITY, f64::min);
+        if least.is_finite() {
+            least
+        } else {
+            self.width()
+        }
+    }
+
+    /// The radius (m) of a round shape, or half the smallest edge of a cuboid; infinite for a plane.
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        match *self {
+            Self::Sphere { radius } | Self::Capsule { radius, .. } => radius,
+            Self::Plane => f64::INFINITY,
+            Self::Cuboid { size } => size.into_iter().fold(f64::INFINITY, f64::min) / 2.0,
+        }
+    }
 }
 
 fn checked_radius(radius: f64) -> Result<f64, ShapeError> {
@@ -197,6 +249,32 @@ mod tests {
             said(Convex::cuboid([1.0, 0.0, 1.0])),
             "the edge along y is 0 m: expected a finite length above 0"
         );
+    }
+
+    #[test]
+    fn a_cuboid_is_as_wide_across_a_direction_as_its_shadow() {
+        let plate = Convex::cuboid([0.2, 0.3, 0.01]).unwrap();
+        assert!((plate.width_across([0.0, 0.0, -2.0]) - 0.1).abs() < 1e-15);
+        assert!((plate.width_across([1.0, 0.0, 0.0]) - 0.005).abs() < 1e-15);
+        assert_eq!(plate.width_across([0.0; 3]), 0.005);
+        assert_eq!(Convex::Plane.width_across([1.0; 3]), f64::INFINITY);
+        assert_eq!(Convex::sphere(0.1).unwrap().width_across([1.0; 3]), 0.1);
+        // The least over all directions across, by looking at many.
+        for direction in [[1.0, 2.0, 3.0], [-0.1, 0.3, 0.02], [1.0, 1.0, 0.0]] {
+            let first = cross(direction, [0.3, -0.5, 0.8]);
+            let first = scaled(first, 1.0 / length(first));
+            let second = cross(direction, first);
+            let second = scaled(second, 1.0 / length(second));
+            let least = (0..20_000).map(|n| {
+                let (sin, cos) = (f64::from(n) * 1e-4 * std::f64::consts::PI).sin_cos();
+                let half = [0.1, 0.15, 0.005];
+                (0..3)
+                    .map(|x| half[x] * (cos * first[x] + sin * second[x]).abs())
+                    .sum::<f64>()
+            });
+            let least = least.fold(f64::INFINITY, f64::min);
+            assert!((plate.width_across(direction) - least).abs() < 1e-4);
+        }
     }
 
     #[test]

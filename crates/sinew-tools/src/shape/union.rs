@@ -2,7 +2,9 @@
 
 use super::convex::Convex;
 use super::error::ShapeError;
+use super::hull::Hull;
 use crate::pose::Pose;
+use crate::vector::length;
 
 /// A convex shape with its place in a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +41,45 @@ impl Shape {
             return Err(ShapeError::NoPart);
         }
         Ok(Self { parts })
+    }
+
+    /// The distance (m) of a place in the world to the surface, negative inside, where the tool has this pose.
+    #[must_use]
+    pub fn distance(&self, pose: &Pose, place: [f64; 3]) -> f64 {
+        let distances = self.parts.iter().map(|part| {
+            let own = pose.then(&part.pose).to_own(place);
+            part.convex.nearest(own).distance
+        });
+        distances.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The distance (m) of a triangle of places in the world, whose corners are counter-clockwise as seen from its outer side, to the surface, negative
+    /// inside; infinite for planes and for what is behind the triangle.
+    #[must_use]
+    pub fn distance_of_triangle(&self, pose: &Pose, corners: &[[f64; 3]; 3]) -> f64 {
+        let distances = self.parts.iter().filter_map(|part| {
+            let pose = pose.then(&part.pose);
+            let own = corners.map(|corner| pose.to_own(corner));
+            let (gap, _) = Hull::of(&part.convex)?.look(&own)?;
+            Some(gap)
+        });
+        distances.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The radius (m) of a ball about the tool's origin that contains all parts; none where one is a plane.
+    pub(crate) fn reach(&self) -> Option<f64> {
+        let reaches = self.parts.iter().map(|part| {
+            let reach = part.convex.reach()?;
+            Some(length(part.pose.position()) + reach)
+        });
+        reaches.reduce(|a, b| Some(a?.max(b?)))?
+    }
+
+    /// The smallest radius (m) of its parts, or half the smallest edge of a cuboid; infinite for planes alone.
+    #[must_use]
+    pub fn smallest_width(&self) -> f64 {
+        let widths = self.parts.iter().map(|part| part.convex.width());
+        widths.fold(f64::INFINITY, f64::min)
     }
 
     /// The parts, at least one.

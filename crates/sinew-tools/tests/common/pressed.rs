@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
-use sinew_core::{Options, Run, StableStep, State, System, simulate};
+use sinew_core::{LinearSystem, Options, Run, StableStep, State, System, simulate, vectors};
+use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Rayleigh, Region, Tissue};
 use sinew_mesh::structured::{Split, block};
-use sinew_tools::{Convex, Motion, Row, Shape, Table, Tool, Tools, TouchedCell};
+use sinew_tools::{
+    Convex, Corner, Motion, Row, Shape, Table, Tool, Tools, TouchedCell, TouchedTriangle,
+};
 
 /// Young's modulus (Pa).
 pub(crate) const E: f64 = 3500.0;
@@ -26,6 +29,9 @@ pub(crate) struct Block {
     pub(crate) damping: Rayleigh,
     pub(crate) is_held: bool,
     pub(crate) gravity: Option<[f64; 3]>,
+    /// A law of large deformation in the place of the linear one.
+    pub(crate) law: Option<&'static str>,
+    pub(crate) element: Element,
 }
 
 impl Block {
@@ -37,6 +43,8 @@ impl Block {
             damping: Rayleigh::default(),
             is_held: true,
             gravity: None,
+            law: None,
+            element: Element::P1,
         }
     }
 
@@ -54,11 +62,21 @@ impl Block {
             regions: vec![Region {
                 group: None,
                 density: DENSITY,
-                law: Law::Linear {
-                    youngs_modulus: E,
-                    poissons_ratio: self.nu,
+                law: match self.law {
+                    None => Law::Linear {
+                        youngs_modulus: E,
+                        poissons_ratio: self.nu,
+                    },
+                    Some(id) => Law::Hyperelastic {
+                        id,
+                        parameters: Parameters {
+                            youngs_modulus: E,
+                            poissons_ratio: self.nu,
+                            c1_over_c2: None,
+                        },
+                    },
                 },
-                element: Element::P1,
+                element: self.element,
                 tissue: Tissue::default(),
                 from_mesh: FromMesh::default(),
             }],
@@ -75,6 +93,15 @@ impl Block {
 
     /// The block with tools that may touch all of its nodes that move.
     pub(crate) fn with(&self, tools: Vec<Tool>) -> Pressed {
+        self.touched_by(tools, false)
+    }
+
+    /// The same with tools that meet the triangles of its surface as well.
+    pub(crate) fn with_triangles(&self, tools: Vec<Tool>) -> Pressed {
+        self.touched_by(tools, true)
+    }
+
+    fn touched_by(&self, tools: Vec<Tool>, meet_triangles: bool) -> Pressed {
         let mesh = block(self.cells, self.size, Split::Kuhn).unwrap();
         let model = Model::build(&mesh, &self.problem()).unwrap();
         let pinned = model.pinned().as_chunks::<3>().0;
@@ -86,11 +113,27 @@ impl Block {
         });
         let cells: Vec<TouchedCell> = cells.collect();
         let all: Vec<u32> = (0..cells.len() as u32).collect();
+        let corner = |node: u32| match model.cell_of_node(node) {
+            Some(cell) => Corner::Cell(cell),
+            None => Corner::Held(mesh.points[node as usize]),
+        };
+        let triangles = match meet_triangles {
+            true => mesh.boundary(None),
+            false => Vec::new(),
+        };
+        let triangles: Vec<TouchedTriangle> = triangles
+            .into_iter()
+            .map(|nodes| TouchedTriangle {
+                corners: nodes.map(corner),
+            })
+            .collect();
         let tools = tools.into_iter().map(|tool| Tool {
             cells: all.clone(),
+            triangles: (0..triangles.len() as u32).collect(),
             ..tool
         });
-        let tools = Arc::new(Tools::new(tools.collect(), cells).unwrap());
+        let tools = Tools::with_triangles(tools.collect(), cells, triangles.clone());
+        let tools = Arc::new(tools.unwrap());
         Pressed {
             model: model.with_contact(tools.clone()),
             tools,
@@ -152,6 +195,8 @@ pub(crate) fn tool(convex: Convex, motion: Motion) -> Tool {
         friction: 0.0,
         cells: Vec::new(),
         grasp: None,
+        body: None,
+        triangles: Vec::new(),
     }
 }
 
@@ -163,4 +208,19 @@ pub(crate) fn through(rows: &[(f64, [f64; 3])], rotation_vector: [f64; 3]) -> Mo
         rotation_vector,
     });
     Motion::Table(Table::new(rows.collect()).unwrap())
+}
+
+/// `(v' (M - dt^2/4 K) v + u' K u)/2` of central difference's step, u being the mean of both displacements.
+pub(crate) fn staggered_energy(model: &Model, before: &State, after: &State, dt: f64) -> f64 {
+    let matrix = model.operators().stiffness();
+    let quadratic = |x: &[f64]| {
+        let mut out = vec![0.0; x.len()];
+        matrix.multiply(x, &mut out);
+        vectors::dot(x, &out)
+    };
+    let both = before.u.iter().zip(&after.u);
+    let mean: Vec<f64> = both.map(|(a, b)| 0.5 * (a + b)).collect();
+    let moving = after.v.iter().zip(model.mass());
+    let kinetic: f64 = moving.map(|(v, m)| m * v * v).sum();
+    0.5 * (kinetic - dt * dt / 4.0 * quadratic(&after.v) + quadratic(&mean))
 }

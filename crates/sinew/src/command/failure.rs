@@ -13,7 +13,8 @@ use sinew_mesh::vtu::WriteVtuError;
 use sinew_mesh::{CellType, MshFileError, RefineError, TetMeshError, WriteMshError};
 use sinew_record::{CompareError, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
-use sinew_scene::{ReactionError, RefusedLoad, SceneError, Warning};
+use sinew_scene::{CuttingError, ReactionError, RefusedLoad, SceneError, StretchError, Warning};
+use sinew_session::{LogError, ReplayError};
 
 /// Exit code for input that cannot be used.
 const REFUSED: u8 = 2;
@@ -46,6 +47,20 @@ pub(crate) enum Failure {
         /// The scene file.
         path: PathBuf,
     },
+    /// A log of a session that cannot be read.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// A session that cannot be repeated.
+    #[error("{}: {source}", log.display())]
+    Replay {
+        /// Its log.
+        log: PathBuf,
+        /// The reason.
+        source: Box<ReplayError>,
+    },
+    /// A body that cannot be cut.
+    #[error(transparent)]
+    Cutting(#[from] CuttingError),
     /// A load that the scene's integrator refuses.
     #[error(transparent)]
     Load(#[from] RefusedLoad),
@@ -211,6 +226,10 @@ pub(crate) enum Failure {
     #[cfg(feature = "implicit")]
     #[error(transparent)]
     Modes(#[from] sinew_record::ModesError),
+    /// A page that cannot be served.
+    #[cfg(feature = "live")]
+    #[error(transparent)]
+    Live(sinew_live::LiveError),
     /// No folder for the results of a scene that is compared.
     #[error("no temporary folder for the results: {0}; TMPDIR names another place for it")]
     TemporaryFolder(io::Error),
@@ -239,6 +258,29 @@ pub(crate) enum Failure {
     Print(io::Error),
 }
 
+#[cfg(feature = "live")]
+impl From<sinew_live::LiveError> for Failure {
+    fn from(error: sinew_live::LiveError) -> Self {
+        match error {
+            // With its excerpt.
+            sinew_live::LiveError::Scene(error) => Self::Scene(error),
+            error => Self::Live(error),
+        }
+    }
+}
+
+impl From<StretchError> for Failure {
+    fn from(error: StretchError) -> Self {
+        match error {
+            StretchError::Simulate(error) => Self::Run(error),
+            StretchError::Cutting { t, source } => Self::Refused {
+                t,
+                reason: source.to_string(),
+            },
+        }
+    }
+}
+
 impl Failure {
     /// An error where there are warnings.
     pub(crate) fn of_warnings(warnings: &[Warning]) -> Result<(), Self> {
@@ -254,6 +296,7 @@ impl Failure {
             | Self::SetTwice { .. }
             | Self::SceneForMesh { .. }
             | Self::Load(_)
+            | Self::Cutting(_)
             | Self::Option(_)
             | Self::Setup(_)
             | Self::Warnings { .. }
@@ -268,6 +311,8 @@ impl Failure {
             | Self::Refine { .. }
             | Self::WriteMsh { .. }
             | Self::WriteVtu { .. }
+            | Self::Log(_)
+            | Self::Replay { .. }
             | Self::SharedOutput { .. } => REFUSED,
             Self::Output(error) | Self::Record(RecordRunError::Output(error))
                 if error.is_refusal() =>
@@ -281,15 +326,21 @@ impl Failure {
                 | RecordRunError::Checkpoint { .. }
                 | RecordRunError::Unusable { .. }
                 | RecordRunError::OtherInput { .. }
+                | RecordRunError::Replay { .. }
                 | RecordRunError::NoInput { .. },
             ) => REFUSED,
             #[cfg(feature = "implicit")]
             Self::Modes(_) => FAILED,
+            #[cfg(feature = "live")]
+            Self::Live(error) if error.is_refusal() => REFUSED,
+            #[cfg(feature = "live")]
+            Self::Live(_) => FAILED,
             Self::Compare(_) => REFUSED,
             Self::Converge { source, .. } => match source {
                 ConvergeError::Refinement(_)
                 | ConvergeError::Options(_)
                 | ConvergeError::Setup(_)
+                | ConvergeError::Cut
                 | ConvergeError::NothingMoves => REFUSED,
                 _ => FAILED,
             },

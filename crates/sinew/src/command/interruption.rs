@@ -28,6 +28,12 @@ impl Interruption {
     pub(crate) fn is_asked_for(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
+
+    /// Takes what was asked for as done: the next request is the first again.
+    #[cfg(feature = "live")]
+    pub(crate) fn is_followed(&self) {
+        self.0.store(false, Ordering::Relaxed);
+    }
 }
 
 #[cfg(unix)]

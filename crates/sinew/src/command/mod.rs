@@ -5,6 +5,8 @@ pub(crate) mod converge;
 mod failure;
 pub(crate) mod integrators;
 mod interruption;
+#[cfg(feature = "live")]
+pub(crate) mod live;
 pub(crate) mod mesh;
 #[cfg(feature = "implicit")]
 pub(crate) mod modes;

@@ -31,7 +31,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.out {
         check_modes_folder(path, &scene.input_files())?;
     }
-    let simulation = scene.build()?;
+    let mut simulation = scene.build()?;
+    if simulation.is_cut_later() {
+        say("of the body before it is cut while it moves")?;
+    } else {
+        simulation = simulation.cut_beforehand()?;
+    }
     let modes = natural_modes(&simulation, usize::from(arguments.count))?;
     say(&table(&modes))?;
     if simulation.system().as_linear().is_none() {

@@ -1,53 +1,33 @@
 //! `sinew run`.
 
-use std::path::{Path, PathBuf};
+use std::cell::RefCell;
+use std::path::Path;
 
-use sinew_core::{OptionError, OptionValue, Outcome, Recorders, RunReport, simulate};
+use sinew_core::{
+    Integrator, OptionError, OptionValue, Outcome, Recorders, Run, RunReport, StepReport,
+};
 use sinew_integrators::Stepper;
 use sinew_measure::Forecast;
-use sinew_record::{Companion, Ended, EnergyGrowth, Request, RunEnd, RunFolder};
+use sinew_record::{Companion, Ended, EnergyGrowth, Request, RunFolder, words_of_cuts};
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
 use sinew_scene::{
-    Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Simulation, Warning, WarningKind,
+    Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Seen, Simulation, Warning, WarningKind,
 };
+
+mod arguments;
+pub(crate) mod replay;
+mod words;
+
+pub(crate) use self::arguments::{Arguments, threads};
+
+use self::words::{summary, summary_of};
 
 use super::Failure;
 use super::interruption::Interruption;
 use super::onlooker::Onlooker;
-use super::scene_with::Values;
 
 /// Predicted time (s) of a run beyond which its user is warned.
 pub(crate) const LONG: f64 = 60.0;
-
-/// What no run knows of itself.
-fn error_not_known(simulation: &Simulation) -> String {
-    let how = simulation.how_to_know_the_error();
-    format!("the error of this run is not known: {how}")
-}
-
-/// A scene and the destination of what the run gives.
-#[derive(clap::Args)]
-pub(crate) struct Arguments {
-    /// The scene file.
-    scene: PathBuf,
-    /// The folder for fields, tables, summary and report: a new one, or that of an earlier run, which
-    /// is replaced
-    #[arg(long, value_name = "DIR", conflicts_with = "probes")]
-    out: Option<PathBuf>,
-    /// The CSV file for the motion of the probes: a new file, a writable file that the run does not
-    /// read, a device or a pipe, or - for standard output
-    #[arg(long, value_name = "FILE", default_value = "-")]
-    probes: PathBuf,
-    /// The largest number of threads for methods that machines run, or auto for one a processor: fewer
-    /// where they do not pay, and the same bits for every number [default: that of the scene, or auto]
-    #[arg(long, value_name = "N|auto", value_parser = threads)]
-    threads: Option<OptionValue>,
-    /// Make warnings errors, before the run begins
-    #[arg(long)]
-    strict: bool,
-    #[command(flatten)]
-    values: Values,
-}
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let interruption = Interruption::listen().map_err(Failure::Signals)?;
@@ -64,6 +44,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         None => Some(Destination::new(&arguments.probes, &scene.input_files())?),
     };
+    if let Some(log) = &arguments.replay {
+        return replay::run(arguments, scene, log, destination, interruption);
+    }
     let mut simulation = scene.build()?;
     if let Some(refused) = simulation.refused_load() {
         return Err(refused.into());
@@ -174,56 +157,6 @@ pub(crate) fn run_for_comparison(
     }
 }
 
-/// A line about steps that were taken again, where there were any.
-fn retaken(times: u64) -> Option<String> {
-    (times > 0).then(|| {
-        format!("{times} times a step was taken again in shorter parts, because the body stiffened within it")
-    })
-}
-
-/// At most sixteen lines about a run.
-fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> Vec<String> {
-    let (steps, wall) = end.own;
-    let own = steps as f64 * simulation.dt();
-    let (sweeps, solves) = end.work;
-    let mut lines = vec![
-        format!(
-            "{}: {} steps of {} s by `{}`: {sweeps} sweeps, {solves} solves",
-            simulation.scene().title(),
-            end.steps,
-            simulation.dt(),
-            simulation.settings().integrator,
-        ),
-        format!(
-            "{own:.4} s in {wall:.2} s, outputs included: {:.3} times real time",
-            own / wall.max(1e-9)
-        ),
-    ];
-    if simulation.model().body().is_some() {
-        let (u, t, node) = end.largest;
-        lines.push(format!(
-            "largest displacement in {} frames: {u:.6e} m at t = {t:.6} s, node {node}",
-            end.frames
-        ));
-    }
-    if end.saturated > 0.0 {
-        lines.push(format!(
-            "guarded: {:.3} % of all velocities were saturated; the motion is bounded, not accurate",
-            100.0 * end.saturated
-        ));
-    }
-    lines.extend(retaken(end.retaken));
-    lines.extend(end.remarks.iter().cloned());
-    let warnings = end.warnings.iter();
-    lines.extend(warnings.map(|warning| format!("warning: {warning}")));
-    lines.push(error_not_known(simulation));
-    lines.push(format!(
-        "{}: report.html, fields.pvd for ParaView, tables, summary.json",
-        path.display()
-    ));
-    lines
-}
-
 /// Runs a simulation and writes the motion of its probes alone.
 fn probes_alone(
     path: &Path,
@@ -233,22 +166,58 @@ fn probes_alone(
     interruption: Interruption,
 ) -> Result<(), Failure> {
     let voice = Voice::apart_from(&destination);
-    let system = simulation.system();
-    integrator.prepare(system, simulation.dt())?;
-    let mut csv = ProbeCsv::new(destination.open()?, ProbeRows::new(simulation))?;
+    integrator.prepare(simulation.system(), simulation.dt())?;
+    let cutter = simulation.cutter()?.map(RefCell::new);
+    let mut output = ProbeCsv::new(destination.open()?, ProbeRows::new(simulation))?.without_rows();
     let mut state = simulation.initial_state().clone();
-    let settings = simulation.run();
-    let mut onlooker = Onlooker::new(interruption, settings.steps, simulation.settings().duration);
+    let whole = simulation.run();
+    let mut onlooker = Onlooker::new(interruption, whole.steps, simulation.settings().duration);
     let mut growth = EnergyGrowth::new(simulation);
-    let mut recorders = Recorders::new()
-        .with_lent(&mut csv)
-        .with_lent(&mut growth)
-        .with_lent(&mut onlooker);
-    let report = simulate(system, integrator, &mut state, &settings, &mut recorders);
-    drop(recorders);
+    // The scene on the body as cuts left it.
+    let mut cut: Option<Simulation> = None;
+    let mut taken = RunReport {
+        outcome: Outcome::Finished,
+        steps: 0,
+        work: StepReport::default(),
+    };
+    let (csv, report, simulation) = loop {
+        let now = cut.as_ref().unwrap_or(simulation);
+        let mut csv = output.with_rows(ProbeRows::new(now));
+        let mut recorders = Recorders::new()
+            .with_lent(&mut csv)
+            .with_lent(&mut onlooker);
+        if cutter.is_none() {
+            recorders = recorders.with_lent(&mut growth);
+        }
+        let seen = Seen {
+            steps: taken.steps,
+            beginning: cut.is_some(),
+        };
+        let run = Run {
+            steps: whole.steps - taken.steps,
+            ..whole
+        };
+        let integrator: &mut dyn Integrator = integrator;
+        let moving = (cutter.as_ref(), integrator, &mut state);
+        let stretch = now.stretch(moving, &run, (&mut recorders, seen));
+        drop(recorders);
+        let stretch = match stretch {
+            Ok(stretch) => stretch,
+            Err(error) => break (csv, Err(error), now),
+        };
+        taken.steps += stretch.report.steps;
+        taken.work += stretch.report.work;
+        taken.outcome = stretch.report.outcome;
+        let Some(change) = stretch.change else {
+            break (csv, Ok(taken), now);
+        };
+        output = csv.without_rows();
+        cut = Some(change.simulation);
+    };
     onlooker.finish();
+    let system = simulation.system();
     let outrun = simulation.outrun(integrator, &state);
-    let left = simulation.left_in_tools(&state);
+    let left = simulation.left_by_tools(&state);
     let left = left.iter().map(String::as_str);
     for warning in growth
         .in_words()
@@ -262,6 +231,11 @@ fn probes_alone(
     // Where the reader of the motion closed its pipe, nobody wants a summary.
     if csv.finish()? == Delivery::Whole {
         voice.say(&summary(simulation, &report))?;
+        if let Some(cutter) = &cutter {
+            let cutter = cutter.borrow();
+            let words = words_of_cuts(cutter.totals(), cutter.pieces());
+            voice.say(&format!("cut: {words}"))?;
+        }
         for remark in integrator.computed_by().iter().chain(&integrator.remarks()) {
             voice.say(remark)?;
         }
@@ -309,30 +283,9 @@ pub(crate) fn integrator(
     simulation: &Simulation,
     threads: Option<&OptionValue>,
 ) -> Result<Box<dyn Stepper>, OptionError> {
-    const KEY: &str = "threads";
-    let settings = simulation.settings();
-    let mut options = simulation.options();
-    let programs =
-        sinew_integrators::entry(&settings.integrator).is_some_and(|entry| entry.programs);
-    match threads {
-        Some(threads) => options.insert(KEY, threads.clone()),
-        None if programs && options.get(KEY).is_none() => {
-            options.insert(KEY, OptionValue::Text("auto".to_owned()));
-        }
-        None => {}
-    }
-    sinew_integrators::build(&settings.integrator, &options)
-}
-
-pub(crate) fn threads(text: &str) -> Result<OptionValue, &'static str> {
-    const EXPECTED: &str = "expected a whole number from 1 on, or auto";
-    if text == "auto" {
-        return Ok(OptionValue::Text(text.to_owned()));
-    }
-    match text.parse::<u32>() {
-        Ok(count) if count > 0 => Ok(OptionValue::Number(f64::from(count))),
-        _ => Err(EXPECTED),
-    }
+    let id = &simulation.settings().integrator;
+    let options = sinew_integrators::with_threads(id, &simulation.options(), threads);
+    sinew_integrators::build(id, &options)
 }
 
 /// An option as a command line has it.
@@ -342,33 +295,4 @@ fn in_words(threads: &OptionValue) -> String {
         OptionValue::Text(text) => text.clone(),
         other => format!("{other:?}"),
     }
-}
-
-fn summary(simulation: &Simulation, report: &RunReport) -> String {
-    let settings = simulation.settings();
-    let pairs = report.steps as f64 * simulation.system().dofs() as f64;
-    let work = report.work;
-    let mut text = format!(
-        "{}: {} steps of {} s by `{}`: {} sweeps, {} solves",
-        simulation.scene().title(),
-        report.steps,
-        simulation.dt(),
-        settings.integrator,
-        work.sweeps,
-        work.solves
-    );
-    if work.saturated > 0 {
-        let share = 100.0 * work.saturated as f64 / pairs;
-        text.push_str(&format!(
-            "\nguarded: {share:.3} % of all velocities were saturated; the motion is bounded, not accurate"
-        ));
-    }
-    for line in retaken(work.retaken)
-        .into_iter()
-        .chain([error_not_known(simulation)])
-    {
-        text.push('\n');
-        text.push_str(&line);
-    }
-    text
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use sinew_core::{LinearSystem, OptionValue, Options, State, System, vectors};
+use sinew_core::{Contact, OptionValue, Options, System};
 use sinew_fem::{Element, Problem, Rayleigh};
 use sinew_integrators::Frame;
 use sinew_integrators::cnn::CnnStabilised;
@@ -13,7 +13,10 @@ use crate::verify::bodies::{YOUNGS_MODULUS, body, held};
 use crate::verify::check::{Asked, Check, Source};
 use crate::verify::error::VerifyError;
 use crate::verify::pressed::{Pressed, method, through, tool};
+use crate::verify::staggered_energy::staggered_energy;
 use crate::verify::subject::Subject;
+
+use super::free_tools;
 
 pub(super) const SUBJECT: Subject = Subject {
     id: "contact",
@@ -65,6 +68,7 @@ fn checks() -> Vec<Check> {
             |_| bounce(),
         ),
     ];
+    checks.extend(free_tools::checks());
     for share in [0.55, 11.0, 55.0, 275.0] {
         let law =
             "E+ - E- <= W for P above dt^2/4 K: multiply the step by the mean of both velocities";
@@ -241,56 +245,16 @@ fn rise_under(
     let mut integrator = Frame::new(CnnStabilised::default());
     let (mut last, mut largest, mut rise): (Option<f64>, f64, f64) = (None, 0.0, 0.0);
     for _ in 0..(6.0 * stretch / dt) as usize {
-        let before = pressed.state.clone();
         pressed.run(&mut integrator, dt, 1)?;
         let blocks = integrator.scheme().stabiliser();
         let blocks = blocks.map(|stabiliser| stabiliser.majorant().inverse().entries());
-        let energy = staggered_energy(&pressed, blocks, &before, dt);
+        let energy = staggered_energy(&pressed.model, &pressed.state, blocks, dt);
         let left = energy - pressed.tools.work(&pressed.state);
         rise = rise.max(last.map_or(0.0, |last| left - last));
         last = Some(left);
         largest = largest.max(energy);
     }
     Ok(rise / largest)
-}
-
-/// `(v' (P - dt^2/4 K) v + u' K u)/2` (J), u being the mean of the displacements before and after, by the blocks of `P^-1`, or with the mass.
-fn staggered_energy(pressed: &Pressed, inverse: Option<&[f64]>, before: &State, dt: f64) -> f64 {
-    let (model, state) = (&pressed.model, &pressed.state);
-    let matrix = model.operators().stiffness();
-    let quadratic = |x: &[f64]| {
-        let mut out = vec![0.0; x.len()];
-        matrix.multiply(x, &mut out);
-        vectors::dot(x, &out)
-    };
-    let both = before.u.iter().zip(&state.u);
-    let mean: Vec<f64> = both.map(|(a, b)| 0.5 * (a + b)).collect();
-    let kinetic: f64 = match inverse {
-        None => {
-            let all = state.v.iter().zip(model.mass());
-            all.map(|(v, m)| m * v * v).sum()
-        }
-        Some(blocks) => {
-            let cells = blocks.as_chunks::<9>().0.iter();
-            let cells = cells.zip(state.v.as_chunks::<3>().0);
-            cells.map(|(block, v)| of_inverse(block, *v)).sum()
-        }
-    };
-    0.5 * (kinetic - dt * dt / 4.0 * quadratic(&state.v) + quadratic(&mean))
-}
-
-/// `v' B^-1 v` by Cramer's rule.
-fn of_inverse(block: &[f64; 9], v: [f64; 3]) -> f64 {
-    let [a, b, c, d, e, f, g, h, i] = *block;
-    let minors = [e * i - f * h, f * g - d * i, d * h - e * g];
-    let determinant = a * minors[0] + b * minors[1] + c * minors[2];
-    let adjugate = [
-        [minors[0], c * h - b * i, b * f - c * e],
-        [minors[1], a * i - c * g, c * d - a * f],
-        [minors[2], b * g - a * h, a * e - b * d],
-    ];
-    let products = adjugate.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
-    (v[0] * products[0] + v[1] * products[1] + v[2] * products[2]) / determinant
 }
 
 fn expected_acceleration(angle: f64) -> f64 {

@@ -6,10 +6,13 @@ mod bonded_block;
 mod cantilever;
 mod contact;
 mod cook;
+mod cutting;
 mod energy;
 mod fibres;
 mod free_cube;
+mod free_tools;
 mod hanging_bar;
+mod haptics;
 mod held_cube;
 mod hertz;
 mod hyperelastic;
@@ -19,6 +22,7 @@ mod memory;
 mod oscillator;
 mod pressure;
 mod propagation;
+mod slits;
 mod springs;
 mod tissue_laws;
 mod wave;
@@ -49,4 +53,7 @@ pub(super) const SUBJECTS: &[Subject] = &[
     tissue_laws::SUBJECT,
     hertz::SUBJECT,
     contact::SUBJECT,
+    cutting::SUBJECT,
+    slits::SUBJECT,
+    haptics::SUBJECT,
 ];

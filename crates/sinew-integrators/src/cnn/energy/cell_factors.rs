@@ -48,21 +48,63 @@ impl CellFactors {
         }
     }
 
+    /// `x'B y` for the blocks B.
+    pub(super) fn product(&self, x: &[f64], y: &[f64]) -> f64 {
+        let n = self.layers;
+        let cells = x.chunks_exact(n).zip(y.chunks_exact(n));
+        let of_cell = |(block, (x, y)): (&[f64], (&[f64], &[f64]))| {
+            let of_row = |i: usize| {
+                let whole = |x: &[f64]| {
+                    let below: f64 = (i + 1..n).map(|j| block[j * n + i] * x[j]).sum();
+                    x[i] + below
+                };
+                block[i * n + i] * whole(x) * whole(y)
+            };
+            (0..n).map(of_row).sum::<f64>()
+        };
+        self.entries
+            .chunks_exact(n * n)
+            .zip(cells)
+            .map(of_cell)
+            .sum()
+    }
+
+    /// Writes the inverse blocks, `factor` times, row by row.
+    pub(super) fn write_inverse(&self, factor: f64, out: &mut [f64]) {
+        let n = self.layers;
+        out.fill(0.0);
+        let blocks = self.entries.chunks_exact(n * n);
+        for (block, out) in blocks.zip(out.chunks_exact_mut(n * n)) {
+            // Rows are columns, as the inverse is symmetric.
+            for (k, row) in out.chunks_exact_mut(n).enumerate() {
+                row[k] = factor;
+                solve_by(block, row);
+            }
+        }
+    }
+
     /// Replaces `x` by the solution with each cell's block.
     pub(super) fn solve(&self, x: &mut [f64]) {
         let n = self.layers;
         for (block, x) in self.entries.chunks_exact(n * n).zip(x.chunks_exact_mut(n)) {
-            for i in 0..n {
-                for j in 0..i {
-                    x[i] -= block[i * n + j] * x[j];
-                }
-            }
-            for i in (0..n).rev() {
-                x[i] /= block[i * n + i];
-                for j in i + 1..n {
-                    x[i] -= block[j * n + i] * x[j];
-                }
-            }
+            solve_by(block, x);
+        }
+    }
+}
+
+/// Replaces `x` by the solution with one block's factors.
+#[inline]
+fn solve_by(block: &[f64], x: &mut [f64]) {
+    let n = x.len();
+    for i in 0..n {
+        for j in 0..i {
+            x[i] -= block[i * n + j] * x[j];
+        }
+    }
+    for i in (0..n).rev() {
+        x[i] /= block[i * n + i];
+        for j in i + 1..n {
+            x[i] -= block[j * n + i] * x[j];
         }
     }
 }
@@ -85,6 +127,18 @@ mod tests {
             let found = row + (i as f64 + 1.0) * x[i];
             assert!((found - right[i]).abs() < 1e-14, "{found}");
         }
+        let mut inverse = [0.0; 9];
+        factors.write_inverse(2.0, &mut inverse);
+        let rows = inverse.as_chunks::<3>().0;
+        let by_inverse = rows
+            .iter()
+            .map(|row| (0..3).map(|j| row[j] * right[j]).sum());
+        for (by_inverse, x) in by_inverse.zip(x) {
+            let by_inverse: f64 = by_inverse;
+            assert!((by_inverse - 2.0 * x).abs() < 1e-14, "{by_inverse}");
+        }
+        let expected: f64 = (0..3).map(|i| x[i] * right[i]).sum();
+        assert!((factors.product(&x, &x) - expected).abs() < 1e-14);
     }
 
     #[test]

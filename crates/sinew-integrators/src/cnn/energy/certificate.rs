@@ -9,7 +9,7 @@ pub(super) struct Certificate {
     backtracks: u64,
     limiter_hits: u64,
     fallbacks: u64,
-    /// The largest rise of the energy in a step beyond the work of the loads (J), from the energies themselves.
+    /// The largest rise of the energy in a step beyond the work of loads and tools (J), from the energies themselves.
     largest_rise: f64,
     /// The largest sum of kinetic and stored energy (J).
     largest_energy: f64,
@@ -42,7 +42,7 @@ impl Certificate {
     }
 
     pub(super) fn in_words(&self) -> String {
-        let promise = "certificate: the energy never rises by more than the work of the loads, whatever the step, the sweeps and the tissue";
+        let promise = "certificate: the energy never rises by more than the work of loads and tools, whatever the step, the sweeps and the tissue";
         if self.steps == 0 {
             return promise.to_owned();
         }
@@ -55,7 +55,7 @@ impl Certificate {
         } = self;
         format!(
             "{promise}; in {steps} steps it rose by {:.1e} of its largest value in a step at most, velocities were reduced in {limiter_hits}, \
-             {fallbacks} were taken again by kind = \"ie\", and sweeps were shortened {backtracks} times",
+             {fallbacks} were taken again by kind = \"ie\" or with one sweep, and sweeps were shortened {backtracks} times",
             self.rise()
         )
     }

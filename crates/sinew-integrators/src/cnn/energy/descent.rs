@@ -13,10 +13,10 @@ const ARMIJO: f64 = 1e-4;
 const LONGEST: f64 = 10.0;
 
 /// Halvings after which a direction is given up.
-const MOST_HALVINGS: u32 = 60;
+pub(super) const MOST_HALVINGS: u32 = 60;
 
 /// Multiples of the rounding of forces within which a slope says nothing.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// `m/2 y'M y + d/2 y'D y - b'y`, y being the displacement over the step: what a step's potential holds besides `W`.
 pub(super) struct Quadratic<'a> {
@@ -30,6 +30,25 @@ pub(super) struct Quadratic<'a> {
     pub(super) pull: &'a [f64],
 }
 
+impl Quadratic<'_> {
+    /// The potential's slope (N) where a displacement y (m), with D y (N) where anything damps, has led to the law's force (N).
+    pub(super) fn write_slope(
+        &self,
+        (moved, damped): (&[f64], Option<&[f64]>),
+        force: &[f64],
+        out: &mut [f64],
+    ) {
+        let values = moved.iter().zip(self.masses).zip(self.pull);
+        let values = values.zip(force).zip(&mut *out);
+        for ((((moved, mass), pull), force), slope) in values {
+            *slope = self.mass_weight * mass * moved - pull + force;
+        }
+        if let Some(damped) = damped {
+            add_scaled(self.damping_weight, damped, out);
+        }
+    }
+}
+
 /// A displacement over a step that is improved by nonlinear conjugate gradients with the cells' own blocks for a preconditioner.
 ///
 /// Directions are those of Polak and Ribiere, never negative (Gilbert and Nocedal, SIAM J. Optim. 2, 1992). They begin anew with every step,
@@ -41,7 +60,7 @@ pub(super) struct Descent {
     pub(super) reached: Point,
     trial: Point,
     layers: usize,
-    blocks: CellFactors,
+    pub(super) blocks: CellFactors,
     gradient: Vec<f64>,
     gradient_before: Vec<f64>,
     preconditioned: Vec<f64>,
@@ -142,7 +161,7 @@ impl Descent {
     }
 
     /// Factorises the diagonal blocks of the potential's second derivative at the start of the step.
-    fn factorise(
+    pub(super) fn factorise(
         &mut self,
         law: &Law<'_>,
         quadratic: &Quadratic<'_>,
@@ -178,20 +197,12 @@ impl Descent {
     /// Finds the next direction; `before` is the steepness of the last.
     fn turn(&mut self, law: &Law<'_>, quadratic: &Quadratic<'_>, before: Option<f64>) -> Turn {
         std::mem::swap(&mut self.gradient, &mut self.gradient_before);
-        let Quadratic {
-            masses,
-            mass_weight,
-            damping_weight,
-            pull,
-        } = *quadratic;
-        let values = self.moved.iter().zip(masses).zip(pull);
-        let values = values.zip(&self.reached.force).zip(&mut self.gradient);
-        for ((((moved, mass), pull), force), gradient) in values {
-            *gradient = mass_weight * mass * moved - pull + force;
-        }
-        if law.is_damped() {
-            add_scaled(damping_weight, &self.damped, &mut self.gradient);
-        }
+        let damped = law.is_damped().then_some(&*self.damped);
+        quadratic.write_slope(
+            (&self.moved, damped),
+            &self.reached.force,
+            &mut self.gradient,
+        );
         self.preconditioned.copy_from_slice(&self.gradient);
         self.blocks.solve(&mut self.preconditioned);
         let steepness = dot(&self.gradient, &self.preconditioned);

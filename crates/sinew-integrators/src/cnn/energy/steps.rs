@@ -2,14 +2,15 @@
 
 use sinew_core::vectors::{dot, dot_of_difference, scale, weighted_dot};
 use sinew_core::{
-    Acceleration, ElasticLaw, EvaluationError, Fact, LoadTime, Needs, State, Step, StepError,
-    StepReport, Stepped, System,
+    Acceleration, Contact, ElasticLaw, EvaluationError, Fact, LoadTime, Needs, State, Step,
+    StepError, StepReport, Stepped, System,
 };
 
 use super::certificate::Certificate;
 use super::descent::{Descent, Found, Quadratic};
 use super::kind::Kind;
 use super::point::{Law, Point};
+use super::touched::{Taken, Touched};
 use crate::StepByHand;
 
 /// Relative excess of the kinetic energy that counts as rounding where the limiter takes it.
@@ -21,6 +22,8 @@ pub struct EnergySteps {
     kind: Kind,
     sweeps: u32,
     descent: Descent,
+    /// Present where something touches the body.
+    touched: Option<Touched>,
     start: Point,
     /// Loads at the start and the end of the step, and their mean, by which work is counted (N).
     load_before: Vec<f64>,
@@ -57,6 +60,7 @@ impl EnergySteps {
             kind,
             sweeps,
             descent: Descent::new(system.layers().count(), system.dofs()),
+            touched: system.contact().map(|_| Touched::new(system.dofs())),
             start: Point::new(system.dofs()),
             load_before: zeros(),
             load: zeros(),
@@ -142,11 +146,10 @@ impl EnergySteps {
         &mut self,
         kind: Kind,
         law: &Law<'_>,
-        state: &State,
-        masses: &[f64],
+        (step, state): (&Step<'_>, &State),
         work: &mut StepReport,
     ) -> Result<Attempt, EvaluationError> {
-        let dt = law.dt;
+        let (dt, masses) = (law.dt, step.system.mass());
         let rate = law.law.damping().mass;
         let [of_mass, of_damping] = kind.weights(dt);
         match kind {
@@ -174,14 +177,41 @@ impl EnergySteps {
             damping_weight: of_damping,
             pull: &self.pull,
         };
-        let found = self
-            .descent
-            .lower(law, &quadratic, &self.start, self.sweeps, work)?;
         let kinetic = 0.5 * weighted_dot(masses, &state.v, &state.v);
-        Ok(Attempt {
-            room: kinetic - self.potential_change(law),
-            found,
-        })
+        let (Some(touched), Some(contact)) = (&mut self.touched, step.system.contact()) else {
+            let found = self
+                .descent
+                .lower(law, &quadratic, &self.start, self.sweeps, work)?;
+            return Ok(Attempt {
+                room: kinetic - self.potential_change(law),
+                found,
+            });
+        };
+        let taken = Taken {
+            law,
+            quadratic: &quadratic,
+            start: &self.start,
+            contact,
+            step,
+            state,
+        };
+        let found = touched.lower(taken, &mut self.descent, self.sweeps, work)?;
+        let room = kinetic - self.potential_change(law) + self.work_of_contact(contact, state);
+        if room >= 0.0 || found != Found::Lower {
+            return Ok(Attempt { room, found });
+        }
+        work.fallbacks += 1;
+        if let Some(touched) = &mut self.touched {
+            touched.back_to_first(&mut self.descent);
+        }
+        let room = kinetic - self.potential_change(law) + self.work_of_contact(contact, state);
+        Ok(Attempt { room, found })
+    }
+
+    /// Work of contact (J) in the step from a state on; 0 where nothing touches the body.
+    fn work_of_contact(&self, contact: &dyn Contact, state: &State) -> f64 {
+        let after = self.touched.as_ref().map(Touched::shown);
+        after.map_or(0.0, |after| contact.work(after) - contact.work(state))
     }
 
     /// Change of the elastic energy without the work of the loads (J) since the start of the step.
@@ -230,6 +260,10 @@ impl StepByHand for EnergySteps {
         "the length of each sweep's step follows from sums over all cells"
     }
 
+    fn meets_contact(&self) -> bool {
+        self.kind == Kind::ImplicitEuler
+    }
+
     fn step(&mut self, step: &Step<'_>, state: &mut State) -> Result<Stepped, StepError> {
         let law = step.system.as_elastic();
         let elastic = law.ok_or_else(|| Needs::Tangents.lacking(self.id))?;
@@ -259,18 +293,34 @@ impl StepByHand for EnergySteps {
         }
         let mut kind = self.kind;
         let mut attempt = self
-            .attempt(kind, &law, state, masses, &mut work)
+            .attempt(kind, &law, (step, state), &mut work)
             .map_err(refused)?;
         let sound = attempt.has_room() && attempt.found == Found::Lower;
         if kind == Kind::Trapezoidal && !sound {
             work.fallbacks += 1;
             kind = Kind::ImplicitEuler;
             attempt = self
-                .attempt(kind, &law, state, masses, &mut work)
+                .attempt(kind, &law, (step, state), &mut work)
                 .map_err(refused)?;
         }
         if attempt.found == Found::NotFinite {
             return Err(inaccurate(self.id, "the forces are not finite"));
+        }
+        if let (false, Some(touched), Some(contact)) =
+            (attempt.has_room(), &mut self.touched, step.system.contact())
+        {
+            if attempt.room.is_nan() {
+                let reason = "contact leads to energies that are no numbers";
+                return Err(inaccurate(self.id, reason));
+            }
+            let is_free = touched.stay((contact, step, state), &mut self.descent, &self.start);
+            if !is_free {
+                attempt = self
+                    .attempt(kind, &law, (step, state), &mut work)
+                    .map_err(refused)?;
+            }
+            // What tools push cannot stay: it is left without a velocity, and the certificate counts what it gained.
+            attempt.room = if is_free { kinetic } else { 0.0 };
         }
         if !attempt.has_room() {
             // Rounding alone can do that: the potential is not higher than it was. To stay costs no energy.
@@ -287,7 +337,10 @@ impl StepByHand for EnergySteps {
             scale(&mut self.v, (attempt.room / after).sqrt());
             after = 0.5 * weighted_dot(masses, &self.v, &self.v);
         }
-        let gained = (after - kinetic) + (self.descent.reached.energy - self.start.energy)
+        let contact = step.system.contact();
+        let of_contact = contact.map_or(0.0, |contact| self.work_of_contact(contact, state));
+        let gained = (after - kinetic) - of_contact
+            + (self.descent.reached.energy - self.start.energy)
             - dot(&self.mean_load, &self.descent.moved);
         let energy = kinetic + self.start.energy.abs();
         self.certificate.count(gained, energy, &work);
@@ -306,6 +359,9 @@ impl StepByHand for EnergySteps {
         }
         state.u.copy_from_slice(&self.descent.reached.u);
         state.v.copy_from_slice(&self.v);
+        if let Some(touched) = &self.touched {
+            state.contact.clone_from(&touched.shown().contact);
+        }
         let acceleration = match self.kind {
             Kind::ImplicitEuler => Acceleration::None,
             Kind::Trapezoidal => Acceleration::Same,

@@ -472,6 +472,10 @@ impl Scheme for Modal {
         }
     }
 
+    fn refuses_contact(&self) -> bool {
+        true
+    }
+
     fn depends_on_loads(&self) -> bool {
         true
     }

@@ -154,14 +154,22 @@ fn bounds_are_those_that_messages_name() {
         let words = match low {
             Bound::Unbounded => vec![String::new()],
             Bound::Excluded(low) => vec![format!("above {low}")],
-            Bound::Included(low) => vec![format!("from {low}"), format!(", {low}")],
+            Bound::Included(low) => vec![
+                format!("from {low}"),
+                format!("from {low:e} "),
+                format!(", {low}"),
+            ],
         };
         let says = |words: &[String]| words.iter().any(|words| key.expected.contains(words));
         assert!(says(&words), "{}: {}, {low:?}", key.name, key.expected);
         let words = match high {
             Bound::Unbounded => vec![String::new()],
             Bound::Excluded(high) => vec![format!("below {high}")],
-            Bound::Included(high) => vec![format!("to {high}"), format!("to 1/{}", high.recip())],
+            Bound::Included(high) => vec![
+                format!("to {high}"),
+                format!("to {high:e}"),
+                format!("to 1/{}", high.recip()),
+            ],
         };
         assert!(says(&words), "{}: {}, {high:?}", key.name, key.expected);
         if low == Bound::Unbounded {

@@ -1,23 +1,30 @@
 //! What a user of tools may not expect.
 
-use sinew_core::System;
-use sinew_tools::{Convex, Motion, Tools};
+use sinew_core::{Inputs, System};
+use sinew_tools::Motion;
 
 use super::{Warning, WarningKind};
 use crate::number::{length, short};
 use crate::scene::Subject;
 use crate::simulation::Simulation;
 use crate::simulation::model::BodyModel;
-use crate::simulation::tool::{inside, nodes_of};
+use crate::simulation::tool::{ROUNDING, inside, nodes_of};
 
 pub(super) fn warnings(simulation: &Simulation, built: &BodyModel) -> Vec<Warning> {
     let Some(tools) = &built.tools else {
         return Vec::new();
     };
-    let edge = longest_edge(built);
     let mut warnings = Vec::new();
     for (index, tool) in tools.tools().iter().enumerate() {
         let name = &tool.name;
+        let cuts = match simulation.scene().subject() {
+            Subject::Body(body) => body.is_cut_by(index),
+            Subject::Oscillator(_) => false,
+        };
+        if cuts {
+            // It touches nothing.
+            continue;
+        }
         let start = inside(tools, index, built, simulation.initial_state());
         warnings.extend(start.map(|(node, depth)| {
             let what = format!(
@@ -27,20 +34,19 @@ pub(super) fn warnings(simulation: &Simulation, built: &BodyModel) -> Vec<Warnin
             Warning::new(WarningKind::ToolInside, what, "").with(&[("depth_m", depth)])
         }));
         warnings.extend(unmet(simulation, built, index));
-        let width = smallest_width(tools, index);
-        if width < edge {
+        if !tool.triangles.is_empty() {
+            let width = tool.shape.smallest_width();
             let what = format!(
-                "tool `{name}` has a radius or half a thickness of {} m, below the longest edge of the surface, {} m: it touches \
-                 nodes alone, and may pass between them",
-                short(width),
-                short(edge)
+                "tool `{name}` has a radius or half a thickness of {} m, below the longest edge of the surface within its reach: it meets triangles as well as \
+                 nodes, and how deep it gets depends on the mesh",
+                short(width)
             );
             let warning = Warning::new(
                 WarningKind::SmallTool,
                 what,
                 "refine the mesh where it presses",
             );
-            warnings.push(warning.with(&[("radius_m", width), ("edge_m", edge)]));
+            warnings.push(warning.with(&[("radius_m", width)]));
         }
         let way = highest_speed(&tool.motion) * simulation.dt();
         let size = built.model.extent().unwrap_or(f64::INFINITY);
@@ -71,16 +77,13 @@ fn unmet(simulation: &Simulation, built: &BodyModel, index: usize) -> Option<War
     let mut u = vec![[0.0; 3]; built.mesh.points.len()];
     for look in 0..=LOOKS {
         let t = simulation.settings().duration * f64::from(look) / f64::from(LOOKS);
-        let pose = tool.motion.at(t);
+        let pose = tool.motion.at(t, Inputs::none());
         let still = &simulation.initial_state().u;
         built.model.displacements_at(t, still, &mut u).ok()?;
         let is_inside = |node: &&u32| {
             let (point, u) = (built.mesh.points[**node as usize], u[**node as usize]);
             let at = std::array::from_fn(|axis| point[axis] + u[axis]);
-            tool.shape.parts().iter().any(|part| {
-                let own = pose.then(&part.pose).to_own(at);
-                part.convex.nearest(own).distance < -1e-9 * size
-            })
+            tool.shape.distance(&pose, at) < -ROUNDING * size
         };
         if let Some(node) = nodes.iter().find(is_inside) {
             let what = format!(
@@ -100,20 +103,11 @@ fn unmet(simulation: &Simulation, built: &BodyModel, index: usize) -> Option<War
     None
 }
 
-/// The smallest radius (m) of a tool's parts, or half the smallest edge of a box.
-fn smallest_width(tools: &Tools, index: usize) -> f64 {
-    let parts = tools.tools()[index].shape.parts().iter();
-    let widths = parts.map(|part| match part.convex {
-        Convex::Cuboid { size, .. } => size.into_iter().fold(f64::INFINITY, f64::min) / 2.0,
-        convex => convex.smallest_radius().unwrap_or(f64::INFINITY),
-    });
-    widths.fold(f64::INFINITY, f64::min)
-}
-
 /// The highest speed (m/s) of a tool's origin.
 fn highest_speed(motion: &Motion) -> f64 {
     match motion {
         Motion::Held(_) => 0.0,
+        Motion::Steered(own, _) => highest_speed(own),
         Motion::Steady { velocity, .. } => length(*velocity),
         Motion::Table(table) => {
             let speeds = table.rows().windows(2).map(|rows| {
@@ -124,17 +118,4 @@ fn highest_speed(motion: &Motion) -> f64 {
             speeds.fold(0.0, f64::max)
         }
     }
-}
-
-/// The longest edge (m) of the body's surface.
-fn longest_edge(built: &BodyModel) -> f64 {
-    let points = &built.mesh.points;
-    let mut longest = 0.0_f64;
-    for [a, b, c] in built.mesh.boundary(None) {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            let (from, to) = (points[from as usize], points[to as usize]);
-            longest = longest.max(length(std::array::from_fn(|axis| to[axis] - from[axis])));
-        }
-    }
-    longest
 }

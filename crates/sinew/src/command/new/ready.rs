@@ -86,9 +86,19 @@ const READY: &[Ready] = &[
         file: Some(("press.csv", file!("press.csv"))),
     },
     Ready {
+        name: "handle",
+        scene: scene!("handle.toml"),
+        file: Some(("handle.csv", file!("handle.csv"))),
+    },
+    Ready {
         name: "needle-push",
         scene: scene!("needle-push.toml"),
         file: Some(("needle-push.csv", file!("needle-push.csv"))),
+    },
+    Ready {
+        name: "slit",
+        scene: scene!("slit.toml"),
+        file: Some(("slit.csv", file!("slit.csv"))),
     },
     Ready {
         name: "retract",

@@ -293,6 +293,9 @@ fn left_out(refused: &[(MethodChoice, LeftOut)]) -> Vec<String> {
     let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
     for (method, reason) in refused {
         let reason = reason.to_string();
+        // Set-up names the method first, which would tell equal reasons apart.
+        let named = format!("`{}`: ", method.integrator);
+        let reason = reason.strip_prefix(&named).unwrap_or(&reason).to_owned();
         match reasons.iter_mut().find(|(known, _)| *known == reason) {
             Some((_, methods)) => methods.push(method.label()),
             None => reasons.push((reason, vec![method.label()])),

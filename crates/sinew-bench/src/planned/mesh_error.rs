@@ -10,7 +10,7 @@ use sinew_measure::Case;
 use sinew_measure::reference::ErrorNorm;
 use sinew_scene::{Scene, SceneError, Simulation};
 
-use super::cases::FinerMeshes;
+use super::case::FinerMeshes;
 
 /// Shares of the stable step of undamped leapfrog at rest in which finer meshes are followed by the methods of order 4 and 2: errors in time
 /// are then far below those in space.

@@ -7,31 +7,31 @@ const C1_OVER_C2: f64 = 4.0;
 
 /// A law with an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Material {
+pub(crate) struct Material {
     law: &'static str,
     element: &'static str,
 }
 
 impl Material {
     /// Every law with every element.
-    pub(super) fn all() -> Vec<Self> {
+    pub(crate) fn all() -> Vec<Self> {
         let laws = Hyperelastic::IDS.iter();
         laws.flat_map(|law| ["p1", "fbar", "fbar-edge"].map(|element| Self { law, element }))
             .collect()
     }
 
     /// The law's id.
-    pub(super) fn law(self) -> &'static str {
+    pub(crate) fn law(self) -> &'static str {
         self.law
     }
 
     /// The material in words.
-    pub(super) fn words(self) -> String {
+    pub(crate) fn words(self) -> String {
         format!("{}, {}", self.law, self.element)
     }
 
     /// What a scene of one region changes to be made of it.
-    pub(super) fn values(self) -> Vec<String> {
+    pub(crate) fn values(self) -> Vec<String> {
         let mut values = vec![
             format!("region.1.model={}", self.law),
             format!("region.1.element={}", self.element),

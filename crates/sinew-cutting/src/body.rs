@@ -1,0 +1,276 @@
+//! A body that can be cut.
+
+use std::collections::HashMap;
+
+use sinew_mesh::{CutBody, CutMesh, TetMesh};
+
+use crate::error::CutError;
+use crate::incidence::Incidence;
+use crate::marks::Marks;
+use crate::properties::TetProperties;
+use crate::report::{Removal, Stroke};
+use crate::tet::{EDGES, FACES};
+use crate::vector::{Vector, length, sub};
+
+/// Stands for no tetrahedron.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// A body of tetrahedra whose faces can be split and whose tetrahedra can be taken away.
+///
+/// Tetrahedra keep their numbers, and nodes theirs; copies of nodes are appended. Room for a tenth more nodes is made at the
+/// beginning: until it is used up, strokes allocate nothing.
+pub struct CuttableBody {
+    pub(crate) properties: Box<dyn TetProperties>,
+    /// Where the mesh had each of its own nodes.
+    pub(crate) first_places: Vec<Vector>,
+    /// Shortest edge at each node of the mesh.
+    pub(crate) edge_at: Vec<f64>,
+    pub(crate) longest_edge: f64,
+    /// The largest frequency of a tetrahedron of the mesh (1/s).
+    pub(crate) largest_frequency: f64,
+    /// Places at rest.
+    pub(crate) points: Vec<Vector>,
+    /// The node of the mesh that each node is, or is a copy of.
+    pub(crate) origins: Vec<u32>,
+    /// Whether each node stays where it is at rest: on a face that was cut, at a tetrahedron that was removed, or as was asked.
+    pub(crate) is_kept: Vec<bool>,
+    pub(crate) tets: Vec<[u32; 4]>,
+    pub(crate) is_removed: Vec<bool>,
+    /// The tetrahedron beyond the face opposite each vertex.
+    pub(crate) neighbours: Vec<[u32; 4]>,
+    pub(crate) incidence: Incidence,
+    pub(crate) marks: Marks,
+    pub(crate) stroke: Stroke,
+    pub(crate) removal: Removal,
+    pub(crate) room: Room,
+}
+
+/// Lists that strokes use again.
+#[derive(Default)]
+pub(crate) struct Room {
+    /// The last look in which each tetrahedron was seen.
+    pub(crate) seen: Vec<u32>,
+    pub(crate) look: u32,
+    /// Tetrahedra that are to be looked at.
+    pub(crate) queue: Vec<u32>,
+    pub(crate) touched: Vec<u32>,
+    /// Nodes that may be moved, with their distance from the sheet by their shortest edge.
+    pub(crate) near: Vec<(f64, u32)>,
+    /// Nodes of faces that were cut.
+    pub(crate) corners: Vec<u32>,
+    /// Group of each tetrahedron at the node at hand.
+    pub(crate) group_of: Vec<u32>,
+}
+
+impl CuttableBody {
+    /// The body of a mesh, uncut.
+    ///
+    /// # Errors
+    /// [`CutError`] where a face has more than two tetrahedra, or a tetrahedron names a node twice.
+    pub fn new(mesh: &TetMesh, properties: Box<dyn TetProperties>) -> Result<Self, CutError> {
+        let (nodes, tets) = (mesh.points.len(), mesh.tets.len());
+        let spare = nodes / 10 + 16;
+        let mut edge_at = vec![f64::INFINITY; nodes];
+        let (mut longest_edge, mut largest_frequency) = (0.0_f64, 0.0_f64);
+        for (tet, corners) in mesh.tets.iter().enumerate() {
+            let vertices = corners.map(|node| mesh.points[node as usize]);
+            for [i, j] in EDGES {
+                if corners[i] == corners[j] {
+                    return Err(CutError::Collapsed { tet });
+                }
+                let edge = length(sub(vertices[i], vertices[j]));
+                longest_edge = longest_edge.max(edge);
+                for end in [corners[i], corners[j]] {
+                    let shortest = &mut edge_at[end as usize];
+                    *shortest = shortest.min(edge);
+                }
+            }
+            largest_frequency = largest_frequency.max(properties.frequency(tet, &vertices));
+        }
+        let with_spare = |points: &[Vector]| {
+            let mut copy = Vec::with_capacity(nodes + spare);
+            copy.extend_from_slice(points);
+            copy
+        };
+        let mut origins = Vec::with_capacity(nodes + spare);
+        origins.extend(0..nodes as u32);
+        let mut is_kept = Vec::with_capacity(nodes + spare);
+        is_kept.resize(nodes, false);
+        Ok(Self {
+            properties,
+            first_places: mesh.points.clone(),
+            edge_at,
+            longest_edge,
+            largest_frequency,
+            points: with_spare(&mesh.points),
+            origins,
+            is_kept,
+            tets: mesh.tets.clone(),
+            is_removed: vec![false; tets],
+            neighbours: neighbours(&mesh.tets)?,
+            incidence: Incidence::new(nodes, &mesh.tets, spare),
+            marks: Marks::new(nodes, tets, spare),
+            stroke: Stroke::with_room(spare),
+            removal: Removal::default(),
+            room: Room {
+                seen: vec![0; tets],
+                group_of: vec![0; tets],
+                queue: Vec::with_capacity(tets),
+                touched: Vec::with_capacity(tets),
+                near: Vec::with_capacity(4 * spare),
+                corners: Vec::with_capacity(4 * spare),
+                look: 0,
+            },
+        })
+    }
+
+    /// Keeps nodes where they are at rest: those of supports, or between regions.
+    pub fn keep(&mut self, nodes: &[u32]) {
+        for node in nodes {
+            self.is_kept[*node as usize] = true;
+        }
+    }
+
+    /// Number of nodes, copies and nodes that lost their last tetrahedron included.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Places of the nodes at rest (m).
+    #[must_use]
+    pub fn points(&self) -> &[[f64; 3]] {
+        &self.points
+    }
+
+    /// The nodes of each tetrahedron, removed ones included.
+    #[must_use]
+    pub fn tets(&self) -> &[[u32; 4]] {
+        &self.tets
+    }
+
+    /// Whether each tetrahedron was removed.
+    #[must_use]
+    pub fn is_removed(&self) -> &[bool] {
+        &self.is_removed
+    }
+
+    /// The node of the mesh that each node is, or is a copy of.
+    #[must_use]
+    pub fn origins(&self) -> &[u32] {
+        &self.origins
+    }
+
+    /// The tetrahedra at a node, increasing.
+    #[must_use]
+    pub fn tets_at(&self, node: u32) -> &[u32] {
+        self.incidence.of(node)
+    }
+
+    /// The tetrahedron beyond the face opposite a vertex (0 to 3); `None` at the surface and across cuts.
+    #[must_use]
+    pub fn neighbour(&self, tet: u32, vertex: usize) -> Option<u32> {
+        let neighbour = self.neighbours[tet as usize][vertex];
+        (neighbour != NONE).then_some(neighbour)
+    }
+
+    /// What the last stroke, or the last cut of faces, did.
+    #[must_use]
+    pub fn last_stroke(&self) -> &Stroke {
+        &self.stroke
+    }
+
+    /// The body as it is, in its own numbers.
+    #[must_use]
+    pub fn as_cut(&self) -> CutBody<'_> {
+        CutBody {
+            points: &self.points,
+            origins: &self.origins,
+            tets: &self.tets,
+            is_removed: &self.is_removed,
+        }
+    }
+
+    /// The mesh of the body as it is, with the groups and the data of the uncut one, which must be the mesh that it was made of.
+    #[must_use]
+    pub fn mesh(&self, uncut: &TetMesh) -> CutMesh {
+        uncut.after_cuts(self.as_cut())
+    }
+
+    /// Mass of a tetrahedron as it is at rest (kg).
+    #[must_use]
+    pub fn mass_of(&self, tet: u32) -> f64 {
+        self.properties.density(tet as usize) * crate::tet::volume(&self.vertices(tet))
+    }
+
+    /// Whether the last sheet touched any tetrahedron.
+    #[must_use]
+    pub fn is_touched(&self) -> bool {
+        !self.room.touched.is_empty()
+    }
+
+    /// The bound of a frequency (1/s) that each tetrahedron keeps: the mesh's largest.
+    #[must_use]
+    pub fn largest_frequency(&self) -> f64 {
+        self.largest_frequency
+    }
+
+    /// The vertices of a tetrahedron at rest.
+    pub(crate) fn vertices(&self, tet: u32) -> [Vector; 4] {
+        self.tets[tet as usize].map(|node| self.points[node as usize])
+    }
+
+    /// Shortest edge that the mesh had at a node.
+    pub(crate) fn edge_at(&self, node: u32) -> f64 {
+        self.edge_at[self.origins[node as usize] as usize]
+    }
+
+    /// Separates the two tetrahedra at a face.
+    pub(crate) fn open(&mut self, tet: u32, vertex: usize) {
+        let other = std::mem::replace(&mut self.neighbours[tet as usize][vertex], NONE);
+        if other != NONE {
+            for neighbour in &mut self.neighbours[other as usize] {
+                if *neighbour == tet {
+                    *neighbour = NONE;
+                }
+            }
+        }
+    }
+
+    /// The vertex of a tetrahedron opposite its face with a neighbour.
+    pub(crate) fn vertex_towards(&self, tet: u32, neighbour: u32) -> Option<usize> {
+        let mut neighbours = self.neighbours[tet as usize].iter();
+        neighbours.position(|other| *other == neighbour)
+    }
+
+    pub(crate) fn require_positions(&self, positions: &[Vector]) -> Result<(), CutError> {
+        let (found, expected) = (positions.len(), self.points.len());
+        if found == expected {
+            return Ok(());
+        }
+        Err(CutError::Positions { found, expected })
+    }
+}
+
+fn neighbours(tets: &[[u32; 4]]) -> Result<Vec<[u32; 4]>, CutError> {
+    let mut neighbours = vec![[NONE; 4]; tets.len()];
+    // Faces that had one tetrahedron so far; those that have two stay, so that a third is found.
+    let mut open: HashMap<[u32; 3], Option<(u32, usize)>> = HashMap::with_capacity(2 * tets.len());
+    for (tet, corners) in (0..).zip(tets) {
+        for (vertex, face) in FACES.into_iter().enumerate() {
+            let mut nodes = face.map(|corner| corners[corner]);
+            nodes.sort_unstable();
+            match open.get_mut(&nodes) {
+                None => {
+                    open.insert(nodes, Some((tet, vertex)));
+                }
+                Some(first) => {
+                    let (other, across) = first.take().ok_or(CutError::SharedFace { nodes })?;
+                    neighbours[other as usize][across] = tet;
+                    neighbours[tet as usize][vertex] = other;
+                }
+            }
+        }
+    }
+    Ok(neighbours)
+}

@@ -1,0 +1,200 @@
+//! A stroke: what a sheet touches is marked, faces between its sides are cut, nodes are split.
+
+use crate::body::{CuttableBody, NONE};
+use crate::error::CutError;
+use crate::report::Stroke;
+use crate::sheet::Sheet;
+use crate::tet::FACES;
+use crate::vector::{Vector, cross, dot, length, sub};
+
+/// Passes over the tetrahedra that a sheet touches in which these may change sides.
+const SMOOTHING: usize = 2;
+
+impl CuttableBody {
+    /// Cuts by a sheet in the current configuration, in which the nodes have these positions (m). Copies of nodes get the positions
+    /// of what they are copies of, and nodes that are moved at rest onto the sheet theirs.
+    ///
+    /// Nodes within a share `snap` of their shortest edge are moved first; 0 moves none. A face is cut that has tetrahedra of both
+    /// sides, once its centroid was swept and the blade has come through the tetrahedra beside it. So one that was entered in part
+    /// stays whole until a later stroke comes through; [`CuttableBody::lift`] forgets.
+    ///
+    /// # Errors
+    /// [`CutError::Positions`] unless there is a position for each node; nothing is changed then.
+    pub fn stroke(
+        &mut self,
+        sheet: &Sheet,
+        positions: &mut Vec<[f64; 3]>,
+        snap: f64,
+    ) -> Result<&Stroke, CutError> {
+        self.require_positions(positions)?;
+        self.stroke.clear();
+        let turned = self
+            .marks
+            .normal
+            .is_some_and(|last| dot(last, sheet.normal()) < 0.0);
+        let sheet = if turned { sheet.reversed() } else { *sheet };
+        self.marks.normal = Some(sheet.normal());
+        self.find_touched(&sheet, positions);
+        if snap > 0.0 {
+            self.snap(&sheet, positions, snap);
+        }
+        let touched = std::mem::take(&mut self.room.touched);
+        for tet in &touched {
+            self.settle_nodes(*tet, &sheet, positions);
+        }
+        for tet in &touched {
+            self.mark(*tet, &sheet, positions);
+        }
+        for _ in 0..SMOOTHING {
+            for tet in &touched {
+                self.smooth(*tet, &sheet, positions);
+            }
+        }
+        for tet in &touched {
+            self.cut_faces_of(*tet, &sheet, positions);
+        }
+        self.room.touched = touched;
+        self.split(positions);
+        self.marks.keep_places(positions);
+        Ok(&self.stroke)
+    }
+
+    /// Lifts the blade: the next stroke goes on with no tetrahedron that this one left entered in part.
+    pub fn lift(&mut self) {
+        self.marks.clear();
+    }
+
+    /// Cuts faces, each given by a tetrahedron and the vertex (0 to 3) opposite. Faces of the surface stay what they are.
+    ///
+    /// # Errors
+    /// [`CutError::Positions`] unless there is a position for each node; nothing is changed then.
+    pub fn cut_faces(
+        &mut self,
+        faces: impl IntoIterator<Item = (u32, usize)>,
+        positions: &mut Vec<[f64; 3]>,
+    ) -> Result<&Stroke, CutError> {
+        self.require_positions(positions)?;
+        self.stroke.clear();
+        for (tet, vertex) in faces {
+            self.cut_face(tet, vertex);
+        }
+        self.split(positions);
+        Ok(&self.stroke)
+    }
+
+    fn split(&mut self, positions: &mut Vec<Vector>) {
+        let mut stroke = std::mem::take(&mut self.stroke);
+        let changed = &mut stroke.changed_tets;
+        self.split_corners(positions, &mut stroke.copied, |tet| changed.push(tet));
+        changed.sort_unstable();
+        changed.dedup();
+        self.stroke = stroke;
+    }
+
+    fn mark(&mut self, tet: u32, sheet: &Sheet, positions: &[Vector]) {
+        let beside = self.beside(tet, sheet, positions);
+        let mut mark = self.marks.of(tet);
+        beside
+            .crossed_edges(sheet)
+            .for_each(|edge| mark.cross(edge));
+        beside
+            .vertices_on(sheet)
+            .for_each(|vertex| mark.lay(vertex));
+        beside.faces_under(sheet).for_each(|face| mark.sweep(face));
+        if mark.side == 0 {
+            mark.side = beside.side();
+        }
+        self.marks.set(tet, mark);
+    }
+
+    /// Lets a tetrahedron that the sheet divides change sides where the faces that are cut then lie nearer to the sheet. So single
+    /// ones do not come off as chips, and the cut is smoother than by the side of most of each tetrahedron alone.
+    fn smooth(&mut self, tet: u32, sheet: &Sheet, positions: &[Vector]) {
+        let beside = self.beside(tet, sheet, positions);
+        let mut mark = self.marks.of(tet);
+        if mark.is_settled() || !beside.is_divided() {
+            return;
+        }
+        // Roughness of the faces towards each side.
+        let mut towards = [0.0; 2];
+        for (face, corners) in FACES.into_iter().enumerate() {
+            let other = self.neighbours[tet as usize][face];
+            if other == NONE {
+                continue;
+            }
+            let [a, b, c] = corners.map(|corner| beside.vertices[corner]);
+            let squares = corners.map(|corner| beside.distances[corner].powi(2));
+            let rough = length(cross(sub(b, a), sub(c, a))) * squares.iter().sum::<f64>();
+            let side = self.side_of(other, sheet, positions);
+            towards[usize::from(side > 0)] += rough;
+        }
+        let [own, opposite] = if mark.side > 0 {
+            [towards[1], towards[0]]
+        } else {
+            towards
+        };
+        if own < opposite * (1.0 - 1e-9) {
+            mark.side = -mark.side;
+            self.marks.set(tet, mark);
+        }
+    }
+
+    /// The side of a tetrahedron: that of its mark, or where it lies now.
+    fn side_of(&self, tet: u32, sheet: &Sheet, positions: &[Vector]) -> i8 {
+        match self.marks.of(tet).side {
+            0 => self.beside(tet, sheet, positions).side(),
+            side => side,
+        }
+    }
+
+    fn cut_faces_of(&mut self, tet: u32, sheet: &Sheet, positions: &[Vector]) {
+        if !self.lets_through(tet, sheet, positions) {
+            return;
+        }
+        let mark = self.marks.of(tet);
+        for vertex in 0..4 {
+            let other = self.neighbours[tet as usize][vertex];
+            if other == NONE {
+                continue;
+            }
+            let beyond = self.marks.of(other);
+            let swept_beyond = || {
+                let towards = self.vertex_towards(other, tet);
+                towards.is_some_and(|vertex| beyond.has_swept(vertex))
+            };
+            if !(mark.has_swept(vertex) || swept_beyond()) {
+                continue;
+            }
+            let side = self.side_of(other, sheet, positions);
+            if side != mark.side && self.lets_through(other, sheet, positions) {
+                self.cut_face(tet, vertex);
+            }
+        }
+    }
+
+    /// Whether faces of a tetrahedron may be cut: the blade has come through it, or passes beside it.
+    fn lets_through(&self, tet: u32, sheet: &Sheet, positions: &[Vector]) -> bool {
+        let mark = self.marks.of(tet);
+        if mark.is_crossed() {
+            return true;
+        }
+        !mark.is_entered() && !self.beside(tet, sheet, positions).is_divided()
+    }
+
+    fn cut_face(&mut self, tet: u32, vertex: usize) {
+        if self.neighbour(tet, vertex).is_none() {
+            return;
+        }
+        let corners = FACES[vertex].map(|corner| self.tets[tet as usize][corner]);
+        let [a, b, c] = corners.map(|node| self.points[node as usize]);
+        self.stroke.area += length(cross(sub(b, a), sub(c, a))) / 2.0;
+        self.stroke.faces.push((tet, vertex as u8));
+        self.room.corners.extend(corners);
+        for beside in [tet, self.neighbours[tet as usize][vertex]] {
+            let mut mark = self.marks.of(beside);
+            mark.settle();
+            self.marks.set(beside, mark);
+        }
+        self.open(tet, vertex);
+    }
+}

@@ -1,0 +1,60 @@
+//! Cuts through bodies of tetrahedra.
+//!
+//! A blade, a segment, sweeps a [`Sheet`] from one pose to the next, in the current configuration. [`CuttableBody::stroke`] moves nodes near
+//! it onto it, cuts the faces that are nearest to it, and splits their nodes (Nienhuys and van der Stappen, A surgery simulation
+//! supporting cuts and finite element deformation, MICCAI 2001). No tetrahedron is born, so mass stays what it is, and no stable
+//! step falls below the bound of the single tetrahedra. [`CuttableBody::remove`] takes tetrahedra away with their mass.
+//!
+//! ```
+//! use sinew_cutting::{CuttableBody, Sheet, TetProperties};
+//! use sinew_mesh::structured::{self, Split};
+//!
+//! struct Water;
+//! impl TetProperties for Water {
+//!     fn density(&self, _: usize) -> f64 {
+//!         1000.0 // kg/m3
+//!     }
+//!     fn frequency(&self, _: usize, _: &[[f64; 3]; 4]) -> f64 {
+//!         0.0 // nothing to be bounded
+//!     }
+//! }
+//!
+//! let mesh = structured::cube(4, 0.1, Split::Kuhn)?;
+//! let mut body = CuttableBody::new(&mesh, Box::new(Water))?;
+//! let mut positions = mesh.points.clone();
+//! // A blade along y comes down through the middle.
+//! let blade = |z: f64| [[0.05, -0.01, z], [0.05, 0.11, z]];
+//! let sheet = Sheet::swept(blade(0.11), blade(-0.01)).ok_or("it has an area")?;
+//! let stroke = body.stroke(&sheet, &mut positions, 0.25)?;
+//! assert_eq!((stroke.faces.len(), stroke.copied.len()), (32, 25));
+//! assert!((stroke.area - 0.01).abs() < 1e-15);
+//! assert_eq!(body.pieces().count, 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod body;
+mod cut;
+mod error;
+mod incidence;
+mod marks;
+mod pieces;
+mod properties;
+mod remove;
+mod report;
+mod saved;
+mod sheet;
+mod snap;
+mod split;
+mod strokes;
+mod tet;
+mod touch;
+mod vector;
+
+pub use body::CuttableBody;
+pub use error::CutError;
+pub use pieces::Pieces;
+pub use properties::TetProperties;
+pub use report::{Removal, Stroke};
+pub use saved::SavedBodyError;
+pub use sheet::Sheet;
+pub use strokes::{BladeAct, BladePose, Strokes, StrokesError};

@@ -1,0 +1,232 @@
+//! How far a blade has come through each tetrahedron.
+
+use crate::tet::EDGES;
+
+/// How far the blade has come through one tetrahedron since it was set on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Mark {
+    /// Side on which the tetrahedron stays: -1 or 1; 0 before it was touched.
+    pub(crate) side: i8,
+    /// Edges that were crossed, by their places.
+    edges: u8,
+    /// Vertices that lie on the sheet.
+    on_sheet: u8,
+    /// Faces whose centroid was swept.
+    faces: u8,
+    /// Whether one of its faces was cut, so that it stays on its side.
+    settled: bool,
+}
+
+impl Mark {
+    pub(crate) fn to_bytes(self) -> [u8; 5] {
+        let [side] = self.side.to_le_bytes();
+        let settled = u8::from(self.settled);
+        [side, self.edges, self.on_sheet, self.faces, settled]
+    }
+
+    pub(crate) fn from_bytes([side, edges, on_sheet, faces, settled]: [u8; 5]) -> Self {
+        Self {
+            side: i8::from_le_bytes([side]),
+            edges,
+            on_sheet,
+            faces,
+            settled: settled != 0,
+        }
+    }
+
+    pub(crate) fn cross(&mut self, edge: usize) {
+        self.edges |= 1 << edge;
+    }
+
+    pub(crate) fn lay(&mut self, vertex: usize) {
+        self.on_sheet |= 1 << vertex;
+    }
+
+    pub(crate) fn sweep(&mut self, face: usize) {
+        self.faces |= 1 << face;
+    }
+
+    pub(crate) fn has_swept(&self, face: usize) -> bool {
+        self.faces & 1 << face != 0
+    }
+
+    pub(crate) fn settle(&mut self) {
+        self.settled = true;
+    }
+
+    pub(crate) fn is_settled(&self) -> bool {
+        self.settled
+    }
+
+    pub(crate) fn is_entered(&self) -> bool {
+        self.edges != 0
+    }
+
+    /// Whether the edges that were crossed separate its vertices, those on the sheet left out.
+    pub(crate) fn is_crossed(&self) -> bool {
+        let off_sheet = !self.on_sheet & 0b1111;
+        let mut reached = off_sheet & off_sheet.wrapping_neg();
+        // Three rounds reach the last of four vertices.
+        for _ in 0..3 {
+            for (edge, [i, j]) in EDGES.into_iter().enumerate() {
+                let ends = 1_u8 << i | 1 << j;
+                let is_joined = self.edges & 1 << edge == 0 && ends & off_sheet == ends;
+                if is_joined && reached & ends != 0 {
+                    reached |= ends;
+                }
+            }
+        }
+        reached != off_sheet
+    }
+}
+
+/// The side of a node for the stroke at hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum NodeSide {
+    /// Not settled: where it lies now.
+    #[default]
+    Open,
+    OnSheet,
+    Below,
+    Above,
+}
+
+impl NodeSide {
+    pub(crate) fn to_byte(self) -> u8 {
+        match self {
+            Self::Open => 0,
+            Self::OnSheet => 1,
+            Self::Below => 2,
+            Self::Above => 3,
+        }
+    }
+
+    pub(crate) fn from_byte(byte: u8) -> Self {
+        match byte {
+            1 => Self::OnSheet,
+            2 => Self::Below,
+            3 => Self::Above,
+            _ => Self::Open,
+        }
+    }
+}
+
+/// The marks of all tetrahedra since the blade was set on.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Marks {
+    of: Vec<Mark>,
+    /// Tetrahedra with a mark.
+    marked: Vec<u32>,
+    /// Normal of the last sheet.
+    pub(crate) normal: Option<[f64; 3]>,
+    /// The side of each node.
+    pub(crate) sides: Vec<NodeSide>,
+    /// Where each node was when the last sheet came (m); empty before the first one.
+    pub(crate) places: Vec<[f64; 3]>,
+}
+
+impl Marks {
+    pub(crate) fn new(nodes: usize, tets: usize, spare: usize) -> Self {
+        let mut sides = Vec::with_capacity(nodes + spare);
+        sides.resize(nodes, NodeSide::default());
+        Self {
+            of: vec![Mark::default(); tets],
+            marked: Vec::with_capacity(tets),
+            normal: None,
+            sides,
+            places: Vec::with_capacity(nodes + spare),
+        }
+    }
+
+    pub(crate) fn side_of_node(&self, node: u32) -> NodeSide {
+        self.sides[node as usize]
+    }
+
+    /// Settles the side of a node at this distance from the sheet, unless it is.
+    pub(crate) fn settle_node(&mut self, node: u32, distance: f64) {
+        let side = &mut self.sides[node as usize];
+        if *side == NodeSide::Open {
+            *side = match distance {
+                distance if distance < 0.0 => NodeSide::Below,
+                distance if distance > 0.0 => NodeSide::Above,
+                _ => NodeSide::OnSheet,
+            };
+        }
+    }
+
+    /// How far a node, which is here now, has moved since the last sheet.
+    pub(crate) fn moved(&self, node: u32, place: [f64; 3]) -> [f64; 3] {
+        match self.places.get(node as usize) {
+            Some(before) => std::array::from_fn(|axis| place[axis] - before[axis]),
+            None => [0.0; 3],
+        }
+    }
+
+    /// Keeps where the nodes are, copies included, for the next sheet.
+    pub(crate) fn keep_places(&mut self, places: &[[f64; 3]]) {
+        self.places.clear();
+        self.places.extend_from_slice(places);
+    }
+
+    /// A node that was moved to another place of the tissue is where it is from now on.
+    pub(crate) fn forget_place(&mut self, node: u32, place: [f64; 3]) {
+        if let Some(before) = self.places.get_mut(node as usize) {
+            *before = place;
+        }
+    }
+
+    /// A node more, which lies where another one does.
+    pub(crate) fn copy_node(&mut self, node: u32) {
+        self.sides.push(self.sides[node as usize]);
+        if let Some(place) = self.places.get(node as usize) {
+            self.places.push(*place);
+        }
+    }
+
+    pub(crate) fn of(&self, tet: u32) -> Mark {
+        self.of[tet as usize]
+    }
+
+    pub(crate) fn set(&mut self, tet: u32, mark: Mark) {
+        let old = std::mem::replace(&mut self.of[tet as usize], mark);
+        if old == Mark::default() {
+            self.marked.push(tet);
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        for tet in self.marked.drain(..) {
+            self.of[tet as usize] = Mark::default();
+        }
+        self.normal = None;
+        self.places.clear();
+        self.sides.fill(NodeSide::default());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mark(edges: &[[usize; 2]], on_sheet: &[usize]) -> Mark {
+        let mut mark = Mark::default();
+        for ends in edges {
+            mark.cross(EDGES.iter().position(|edge| edge == ends).unwrap());
+        }
+        on_sheet.iter().for_each(|vertex| mark.lay(*vertex));
+        mark
+    }
+
+    #[test]
+    fn a_tetrahedron_is_crossed_once_the_edges_passed_separate_its_vertices() {
+        assert!(mark(&[[0, 1], [0, 2], [0, 3]], &[]).is_crossed());
+        assert!(mark(&[[0, 2], [0, 3], [1, 2], [1, 3]], &[]).is_crossed());
+        assert!(!mark(&[[0, 2], [0, 3], [1, 2]], &[]).is_crossed());
+        assert!(!mark(&[[0, 1], [0, 2]], &[]).is_crossed());
+        assert!(mark(&[[0, 1], [0, 2]], &[3]).is_crossed());
+        assert!(mark(&[[2, 3]], &[0, 1]).is_crossed());
+        assert!(!mark(&[], &[0, 1]).is_crossed());
+        assert!(!mark(&[], &[0, 1, 2]).is_crossed());
+        assert!(!mark(&[], &[]).is_crossed());
+    }
+}

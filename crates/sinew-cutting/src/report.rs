@@ -1,0 +1,58 @@
+//! What strokes and removals did.
+
+use sinew_mesh::MovedNode;
+
+/// What one stroke did.
+#[derive(Clone, Debug, Default)]
+pub struct Stroke {
+    /// Faces that were cut, each by a tetrahedron and the vertex (0 to 3) opposite.
+    pub faces: Vec<(u32, u8)>,
+    /// Area of these faces at rest (m^2).
+    pub area: f64,
+    /// What moved nodes added to the mass (kg): rounding, but for nodes of a curved surface.
+    pub mass_gained: f64,
+    /// Nodes that were moved at rest onto the sheet, in this order.
+    pub moved: Vec<MovedNode>,
+    /// The node that each new node is a copy of; the new ones follow the last node in this order.
+    pub copied: Vec<u32>,
+    /// Tetrahedra that have a copy in a node's place, or a moved node; increasing.
+    pub changed_tets: Vec<u32>,
+}
+
+/// What a removal of tetrahedra did.
+#[derive(Clone, Debug, Default)]
+pub struct Removal {
+    /// The tetrahedra that are gone, increasing.
+    pub tets: Vec<u32>,
+    /// Their mass (kg).
+    pub mass: f64,
+    /// The node that each new node is a copy of: parts that hung together at a node or an edge only come apart.
+    pub copied: Vec<u32>,
+}
+
+impl Stroke {
+    pub(crate) fn with_room(nodes: usize) -> Self {
+        Self {
+            faces: Vec::with_capacity(4 * nodes),
+            area: 0.0,
+            mass_gained: 0.0,
+            moved: Vec::with_capacity(nodes),
+            copied: Vec::with_capacity(nodes),
+            changed_tets: Vec::with_capacity(64 * nodes),
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        (self.area, self.mass_gained) = (0.0, 0.0);
+        self.faces.clear();
+        self.moved.clear();
+        self.copied.clear();
+        self.changed_tets.clear();
+    }
+
+    /// Whether nothing changed.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.faces.is_empty() && self.moved.is_empty()
+    }
+}

@@ -1,0 +1,165 @@
+//! The surface that a blade sweeps.
+
+use crate::vector::{Vector, add, cross, dot, length, mean, scaled, sub};
+
+/// Share of its size by which the rim of a sheet reaches out, so that nothing is lost between two that follow each other.
+const RIM: f64 = 1e-9;
+
+/// The quadrilateral that a blade, a segment, sweeps from one pose to the next, in its mean plane.
+#[derive(Clone, Copy, Debug)]
+pub struct Sheet {
+    corners: [Vector; 4],
+    centre: Vector,
+    normal: Vector,
+    /// Axes in the plane.
+    axes: [Vector; 2],
+    /// The corners by these axes, from the centre.
+    flat: [[f64; 2]; 4],
+    size: f64,
+}
+
+impl Sheet {
+    /// The sheet between two poses of a blade, each given by its two ends (m). `None` where it has no area or an end is not finite.
+    #[must_use]
+    pub fn swept(before: [[f64; 3]; 2], after: [[f64; 3]; 2]) -> Option<Self> {
+        let corners = [before[0], before[1], after[1], after[0]];
+        let diagonals = [sub(corners[2], corners[0]), sub(corners[3], corners[1])];
+        let size = length(diagonals[0]).max(length(diagonals[1]));
+        let normal = cross(diagonals[0], diagonals[1]);
+        let doubled = length(normal);
+        let has_area = size.is_finite() && doubled > 1e-12 * size * size;
+        let normal = has_area.then(|| scaled(normal, 1.0 / doubled))?;
+        let centre = mean(corners);
+        let along = diagonals[0];
+        let along = sub(along, scaled(normal, dot(along, normal)));
+        let along = scaled(along, 1.0 / length(along));
+        let axes = [along, cross(normal, along)];
+        let flat = corners.map(|corner| axes.map(|axis| dot(axis, sub(corner, centre))));
+        let flat_enough = flat.iter().flatten().all(|value| value.is_finite());
+        flat_enough.then_some(Self {
+            corners,
+            centre,
+            normal,
+            axes,
+            flat,
+            size,
+        })
+    }
+
+    /// The unit normal of the mean plane: blade times motion.
+    #[must_use]
+    pub fn normal(&self) -> [f64; 3] {
+        self.normal
+    }
+
+    /// Distance (m) of a point from the mean plane, positive on the normal's side.
+    #[must_use]
+    pub fn distance(&self, point: [f64; 3]) -> f64 {
+        dot(self.normal, sub(point, self.centre))
+    }
+
+    /// The same sheet with its normal turned round.
+    pub(crate) fn reversed(&self) -> Self {
+        Self {
+            normal: scaled(self.normal, -1.0),
+            ..*self
+        }
+    }
+
+    /// Whether a point, brought to the plane along the normal, lies in the sheet.
+    #[must_use]
+    pub fn covers(&self, point: [f64; 3]) -> bool {
+        self.passes(point, [0.0; 3])
+    }
+
+    /// Whether the blade passes a point of tissue that has moved so far since the blade was where the sheet begins: seen from there, the blade
+    /// began so much farther on. Without that, tissue which comes towards a blade would slip through between two sheets.
+    pub(crate) fn passes(&self, point: Vector, moved: Vector) -> bool {
+        let flat = |vector: Vector| self.axes.map(|axis| dot(axis, vector));
+        let place = flat(sub(point, self.centre));
+        let [dx, dy] = flat(moved);
+        let [a, b, c, d] = self.flat;
+        let [a, b] = [a, b].map(|[x, y]| [x + dx, y + dy]);
+        self.is_within(place, [a, b, c]) || self.is_within(place, [a, c, d])
+    }
+
+    /// Whether a point of the plane is ahead of where the blade is in the end.
+    pub(crate) fn is_beyond_end(&self, point: Vector) -> bool {
+        let from_centre = sub(point, self.centre);
+        let place = self.axes.map(|axis| dot(axis, from_centre));
+        let [a, b, c, d] = self.flat;
+        let side = |[x, y]: [f64; 2]| (c[0] - d[0]) * (y - d[1]) - (c[1] - d[1]) * (x - d[0]);
+        side(place) * (side(a) + side(b)) < 0.0
+    }
+
+    fn is_within(&self, place: [f64; 2], [a, b, c]: [[f64; 2]; 3]) -> bool {
+        let turn = |p: [f64; 2], q: [f64; 2]| {
+            (q[0] - p[0]) * (place[1] - p[1]) - (q[1] - p[1]) * (place[0] - p[0])
+        };
+        let turns = [turn(a, b), turn(b, c), turn(c, a)];
+        let whole = turns.iter().sum::<f64>().signum();
+        let room = RIM * self.size * self.size;
+        turns.iter().all(|turn| turn * whole >= -room)
+    }
+
+    /// Whether the plane meets the segment between two points, at these distances of opposite sign from it, in the sheet; `moved` is how far
+    /// its ends have moved since the sheet's beginning.
+    pub(crate) fn meets(
+        &self,
+        places: [Vector; 2],
+        moved: [Vector; 2],
+        [from_p, from_q]: [f64; 2],
+    ) -> bool {
+        let share = from_p / (from_p - from_q);
+        let between = |[p, q]: [Vector; 2]| add(p, scaled(sub(q, p), share));
+        self.passes(between(places), between(moved))
+    }
+
+    /// The least and greatest coordinates of the sheet.
+    pub(crate) fn bounds(&self) -> [Vector; 2] {
+        let extreme = |choose: fn(f64, f64) -> f64| {
+            std::array::from_fn(|axis| {
+                let of_corner = |corner: &Vector| corner[axis];
+                let first = self.corners[0][axis];
+                self.corners.iter().map(of_corner).fold(first, choose)
+            })
+        };
+        [extreme(f64::min), extreme(f64::max)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sheet_covers_what_lies_over_it_and_nothing_else() {
+        let sheet = Sheet::swept(
+            [[0.0, 0.0, 1.0], [0.0, 2.0, 1.0]],
+            [[3.0, 0.0, 1.0], [3.0, 2.0, 1.0]],
+        );
+        let sheet = sheet.unwrap();
+        assert_eq!(sheet.normal(), [0.0, 0.0, -1.0]);
+        for (place, is_covered) in [
+            ([1.0, 1.0, 5.0], true),
+            ([3.0, 2.0, 1.0], true),
+            ([3.1, 1.0, 1.0], false),
+            ([1.0, -0.1, 1.0], false),
+            ([f64::NAN; 3], false),
+        ] {
+            assert_eq!(sheet.covers(place), is_covered, "{place:?}");
+        }
+        assert!((sheet.distance([9.0, 9.0, 4.0]) + 3.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn blades_that_sweep_nothing_make_no_sheet() {
+        let blade = [[0.0; 3], [0.0, 0.0, 1.0]];
+        let slid = blade.map(|end| add(end, [0.0, 0.0, 0.5]));
+        assert!(Sheet::swept(blade, blade).is_none());
+        assert!(Sheet::swept(blade, slid).is_none());
+        assert!(Sheet::swept(blade, [[f64::NAN; 3]; 2]).is_none());
+        assert!(Sheet::swept([[0.0; 3]; 2], [[1.0; 3]; 2]).is_none());
+        assert!(Sheet::swept(blade, [[0.0; 3], [f64::INFINITY; 3]]).is_none());
+    }
+}

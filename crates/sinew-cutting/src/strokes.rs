@@ -1,0 +1,304 @@
+//! Strokes of a blade over time.
+
+use crate::sheet::Sheet;
+
+/// Largest coordinate of a blade's end (m).
+const FARTHEST: f64 = 1e6;
+
+/// A pose of a blade at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BladePose {
+    /// Number of the stroke: where it changes, the blade was lifted.
+    pub stroke: f64,
+    /// Time (s).
+    pub t: f64,
+    /// Both ends (m).
+    pub ends: [[f64; 3]; 2],
+}
+
+/// Reasons for which poses make no strokes. Rows count from 1.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StrokesError {
+    /// A number that is not finite.
+    #[error("row {row}: {found} is not finite")]
+    NotFinite {
+        /// The row.
+        row: usize,
+        /// The number.
+        found: f64,
+    },
+    /// An end that is farther away than sheets are told apart.
+    #[error(
+        "row {row}: an end of the blade at {found:e} m: expected at most {FARTHEST:e} m in size"
+    )]
+    TooFar {
+        /// The row.
+        row: usize,
+        /// The coordinate (m).
+        found: f64,
+    },
+    /// A blade without length.
+    #[error(
+        "row {row}: both ends of the blade are at one place, where it cuts nothing: expected two places"
+    )]
+    NoLength {
+        /// The row.
+        row: usize,
+    },
+    /// A time that is not after the one before.
+    #[error(
+        "row {row}: t = {t} s is not after {before} s, the time of the row before; times must rise"
+    )]
+    Time {
+        /// The row.
+        row: usize,
+        /// Its time (s).
+        t: f64,
+        /// Time of the row before (s).
+        before: f64,
+    },
+    /// A stroke of one pose.
+    #[error("row {row}: stroke {stroke} has this row only; a stroke needs two poses of the blade")]
+    OnePose {
+        /// The row.
+        row: usize,
+        /// Number of the stroke.
+        stroke: f64,
+    },
+    /// A stroke that comes again.
+    #[error("row {row}: stroke {stroke} ended before; number its return anew")]
+    Again {
+        /// The row.
+        row: usize,
+        /// Number of the stroke.
+        stroke: f64,
+    },
+}
+
+impl StrokesError {
+    /// The row at fault, from 1 on.
+    #[must_use]
+    pub fn row(&self) -> usize {
+        match self {
+            Self::NotFinite { row, .. }
+            | Self::TooFar { row, .. }
+            | Self::NoLength { row }
+            | Self::Time { row, .. }
+            | Self::OnePose { row, .. }
+            | Self::Again { row, .. } => *row,
+        }
+    }
+}
+
+/// Strokes of a blade over time: straight lines between poses.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Strokes(Vec<BladePose>);
+
+/// What a blade does within a time.
+#[derive(Clone, Copy, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "each is used as it comes, and none is kept"
+)]
+pub enum BladeAct {
+    /// It is lifted, or set on anew.
+    Lift,
+    /// It sweeps a sheet.
+    Sweep(Sheet),
+}
+
+impl Strokes {
+    /// The strokes of these poses.
+    ///
+    /// # Errors
+    /// [`StrokesError`] with the first row at fault.
+    pub fn new(poses: Vec<BladePose>) -> Result<Self, StrokesError> {
+        let mut ended: Vec<f64> = Vec::new();
+        for (index, pose) in poses.iter().enumerate() {
+            let row = index + 1;
+            let numbers = [pose.stroke, pose.t];
+            let mut numbers = numbers.iter().chain(pose.ends.as_flattened());
+            if let Some(&found) = numbers.find(|number| !number.is_finite()) {
+                return Err(StrokesError::NotFinite { row, found });
+            }
+            let mut places = pose.ends.as_flattened().iter();
+            if let Some(&found) = places.find(|place| place.abs() > FARTHEST) {
+                return Err(StrokesError::TooFar { row, found });
+            }
+            if pose.ends[0] == pose.ends[1] {
+                return Err(StrokesError::NoLength { row });
+            }
+            let before = index.checked_sub(1).map(|before| &poses[before]);
+            let after = poses.get(index + 1);
+            if let Some(before) = before.filter(|before| before.t >= pose.t) {
+                let (t, before) = (pose.t, before.t);
+                return Err(StrokesError::Time { row, t, before });
+            }
+            let same =
+                |other: Option<&BladePose>| other.is_some_and(|other| other.stroke == pose.stroke);
+            let stroke = pose.stroke;
+            if !same(before) {
+                if ended.contains(&stroke) {
+                    return Err(StrokesError::Again { row, stroke });
+                }
+                if !same(after) {
+                    return Err(StrokesError::OnePose { row, stroke });
+                }
+                ended.push(stroke);
+            }
+        }
+        Ok(Self(poses))
+    }
+
+    /// What the blade does after `from` and up to `to` (s), in order: a sheet for each straight line of which a part falls into that time.
+    /// Cut at any instants, a time has the same sheets put together.
+    pub fn between(&self, from: f64, to: f64) -> impl Iterator<Item = BladeAct> {
+        let first = self
+            .0
+            .partition_point(|pose| pose.t <= from)
+            .saturating_sub(1);
+        let lines = self.0[first..]
+            .windows(2)
+            .take_while(move |line| line[0].t < to);
+        lines.filter_map(move |line| {
+            let [start, end] = line else { return None };
+            if start.stroke != end.stroke {
+                return (end.t > from).then_some(BladeAct::Lift);
+            }
+            let at = |t: f64| {
+                let share = (t - start.t) / (end.t - start.t);
+                let mut ends = start.ends;
+                for (place, goal) in ends
+                    .as_flattened_mut()
+                    .iter_mut()
+                    .zip(end.ends.as_flattened())
+                {
+                    *place = if share >= 1.0 {
+                        *goal
+                    } else {
+                        *place + share * (goal - *place)
+                    };
+                }
+                ends
+            };
+            let (begin, finish) = (start.t.max(from), end.t.min(to));
+            let sheet = (begin < finish).then(|| Sheet::swept(at(begin), at(finish)));
+            Some(BladeAct::Sweep(sheet.flatten()?))
+        })
+    }
+
+    /// The time (s) from which on the blade is next in the middle of a stroke, or is lifted; `None` after the last stroke.
+    #[must_use]
+    pub fn next_from(&self, t: f64) -> Option<f64> {
+        let line = self.0.windows(2).find(|line| line[1].t > t)?;
+        Some(line[0].t.max(t))
+    }
+
+    /// Times (s) at which the first stroke begins and the last one ends.
+    #[must_use]
+    pub fn span(&self) -> Option<[f64; 2]> {
+        Some([self.0.first()?.t, self.0.last()?.t])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pose(stroke: f64, t: f64, x: f64) -> BladePose {
+        BladePose {
+            stroke,
+            t,
+            ends: [[x, 0.0, 0.0], [x, 1.0, 0.0]],
+        }
+    }
+
+    fn table() -> Vec<BladePose> {
+        vec![
+            pose(1.0, 0.1, 0.0),
+            pose(1.0, 0.2, 2.0),
+            pose(1.0, 0.3, 3.0),
+            pose(2.0, 0.5, 7.0),
+            pose(2.0, 0.6, 8.0),
+        ]
+    }
+
+    /// Where sheets begin and end along x.
+    fn swept(strokes: &Strokes, from: f64, to: f64) -> Vec<Option<[f64; 2]>> {
+        let act = |act| match act {
+            BladeAct::Lift => None,
+            BladeAct::Sweep(sheet) => {
+                let [low, high] = sheet.bounds();
+                Some([low[0], high[0]])
+            }
+        };
+        strokes.between(from, to).map(act).collect()
+    }
+
+    #[test]
+    fn a_time_has_the_sheets_of_the_lines_in_it_and_a_lift_where_the_stroke_changes() {
+        let strokes = Strokes::new(table()).unwrap();
+        let all = swept(&strokes, 0.0, 1.0);
+        assert_eq!(
+            all,
+            [Some([0.0, 2.0]), Some([2.0, 3.0]), None, Some([7.0, 8.0])]
+        );
+        assert_eq!(swept(&strokes, 0.0, 0.1), []);
+        assert_eq!(swept(&strokes, 0.6, 9.0), []);
+        assert_eq!(swept(&strokes, 0.3, 0.4), [None], "lifted");
+        let within = swept(&strokes, 0.125, 0.175);
+        assert!(
+            matches!(within[..], [Some([low, high])] if (low - 0.5).abs() < 1e-12 && (high - 1.5).abs() < 1e-12)
+        );
+        assert_eq!(strokes.span(), Some([0.1, 0.6]));
+        assert_eq!(Strokes::default().between(0.0, 1.0).count(), 0);
+    }
+
+    #[test]
+    fn sheets_of_steps_follow_each_other_without_a_gap() {
+        let strokes = Strokes::new(table()).unwrap();
+        let steps = (0..100).map(|n| 0.007 * f64::from(n));
+        let sheets = steps.flat_map(|t| swept(&strokes, t, t + 0.007));
+        let mut last: Option<f64> = None;
+        for sheet in sheets {
+            if let (Some([low, _]), Some(last)) = (sheet, last) {
+                assert!((low - last).abs() < 1e-12, "{low} {last}");
+            }
+            last = sheet.map(|[_, high]| high);
+        }
+    }
+
+    #[test]
+    fn rows_that_make_no_strokes_are_named() {
+        let said = |change: &dyn Fn(&mut Vec<BladePose>)| {
+            let mut rows = table();
+            change(&mut rows);
+            Strokes::new(rows).unwrap_err().to_string()
+        };
+        assert_eq!(
+            said(&|rows| rows[2].t = 0.2),
+            "row 3: t = 0.2 s is not after 0.2 s, the time of the row before; times must rise"
+        );
+        assert_eq!(
+            said(&|rows| rows[1].ends[1][2] = f64::NAN),
+            "row 2: NaN is not finite"
+        );
+        assert_eq!(
+            said(&|rows| rows[3].ends[1] = rows[3].ends[0]),
+            "row 4: both ends of the blade are at one place, where it cuts nothing: expected two places"
+        );
+        assert_eq!(
+            said(&|rows| rows.truncate(4)),
+            "row 4: stroke 2 has this row only; a stroke needs two poses of the blade"
+        );
+        assert_eq!(
+            said(&|rows| {
+                rows[3].stroke = 3.0;
+                rows[4].stroke = 3.0;
+                rows.extend([pose(1.0, 0.7, 0.0), pose(1.0, 0.8, 0.0)]);
+            }),
+            "row 6: stroke 1 ended before; number its return anew"
+        );
+    }
+}

@@ -1,0 +1,36 @@
+//! Vectors of three coordinates.
+
+pub(crate) type Vector = [f64; 3];
+
+pub(crate) fn add(a: Vector, b: Vector) -> Vector {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+pub(crate) fn sub(a: Vector, b: Vector) -> Vector {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+pub(crate) fn scaled(a: Vector, factor: f64) -> Vector {
+    a.map(|value| value * factor)
+}
+
+pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+pub(crate) fn length(a: Vector) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// The mean of some points.
+pub(crate) fn mean<const N: usize>(points: [Vector; N]) -> Vector {
+    scaled(points.into_iter().fold([0.0; 3], add), 1.0 / N as f64)
+}

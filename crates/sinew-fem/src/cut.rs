@@ -1,0 +1,43 @@
+//! A problem on the mesh of a body that was cut.
+
+use sinew_mesh::{CutMesh, TetMesh};
+
+use crate::error::Cause;
+use crate::{LoadKind, On, Problem};
+
+impl Problem {
+    /// The problem of a body that was cut, of which `uncut` is the mesh that this problem is on.
+    ///
+    /// Copies of nodes that are held or moved are held or moved. Tractions and pressures follow their triangles. A force on nodes stays with
+    /// the nodes that it was on, so that a cut does no work; where all that a load acts on is gone, so is the load.
+    ///
+    /// # Errors
+    /// [`Cause`] where a part of the mesh does not exist.
+    pub fn after_cuts(&self, uncut: &TetMesh, cut: &CutMesh) -> Result<Self, Cause> {
+        let mut problem = self.clone();
+        let fixed = problem.fixed.iter_mut().map(|fixed| &mut fixed.on);
+        for on in fixed.chain(problem.moves.iter_mut().map(|moving| &mut moving.on)) {
+            *on = On::Nodes(cut.with_copies(uncut, &on.nodes(uncut)?));
+        }
+        problem.fixed.retain(|fixed| !is_nothing(&fixed.on));
+        problem.moves.retain(|moving| !is_nothing(&moving.on));
+        for load in &mut problem.loads {
+            load.on = match load.kind {
+                LoadKind::Force(_) => On::Nodes(cut.without_copies(uncut, &load.on.nodes(uncut)?)),
+                LoadKind::Traction(_) | LoadKind::Pressure(_) | LoadKind::FollowingPressure(_) => {
+                    On::Triangles(cut.triangles(uncut, &load.on.triangles(uncut)?))
+                }
+            };
+        }
+        problem.loads.retain(|load| !is_nothing(&load.on));
+        Ok(problem)
+    }
+}
+
+fn is_nothing(on: &On) -> bool {
+    match on {
+        On::Group(_) => false,
+        On::Nodes(nodes) => nodes.is_empty(),
+        On::Triangles(triangles) => triangles.is_empty(),
+    }
+}

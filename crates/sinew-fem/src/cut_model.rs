@@ -1,0 +1,621 @@
+//! A model whose body is cut while it moves.
+
+use std::collections::{BTreeMap, HashSet};
+use std::sync::Arc;
+
+use sinew_core::{Energy, Inputs, LinearSystem, LoadTime, State, System};
+use sinew_cutting::{
+    CutError, CuttableBody, Removal, SavedBodyError, Sheet, Stroke, TetProperties,
+};
+use sinew_mesh::{CutMesh, TetMesh};
+
+use crate::error::{Cause, FemError};
+use crate::in_place::{InPlace, spare};
+use crate::model::{CutStateError, FieldError, NodesCarried, TetFrequencies};
+use crate::{Fixed, Model, On, Problem};
+
+/// Frequency of tetrahedra whose nodes were moved, in terms of the mesh's largest, at most.
+const SNAPPED: f64 = 1.25;
+
+/// No 4-node tetrahedron has a larger factor between its matrix and its blocks.
+const LARGEST_BLOCK_FACTOR: f64 = 4.0;
+
+/// A reason for which a model cannot be cut.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CutModelError {
+    /// The mesh.
+    #[error(transparent)]
+    Mesh(#[from] CutError),
+    /// The problem, or what is left of it after a cut.
+    #[error(transparent)]
+    Model(#[from] FemError),
+    /// A part of the mesh that does not exist.
+    #[error(transparent)]
+    Place(#[from] Cause),
+    /// A state that cannot be carried over a cut.
+    #[error(transparent)]
+    State(#[from] CutStateError),
+    /// A saved body that is none of this one.
+    #[error(transparent)]
+    Saved(#[from] SavedBodyError),
+    /// A body of which nothing that moves is left.
+    #[error("nothing that moves is left of the body")]
+    NothingLeft,
+}
+
+impl From<FieldError> for CutModelError {
+    fn from(error: FieldError) -> Self {
+        Self::State(error.into())
+    }
+}
+
+/// What a cut did to the body and to its energy.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CutReport {
+    /// Faces that were cut.
+    pub faces: usize,
+    /// Their area at rest (m^2).
+    pub area: f64,
+    /// Nodes that were added.
+    pub new_nodes: usize,
+    /// Nodes that were moved at rest.
+    pub moved_nodes: usize,
+    /// Mass that moved nodes added (kg): rounding, but for nodes of a curved surface.
+    pub mass_gained: f64,
+    /// Tetrahedra that were removed.
+    pub removed_tets: usize,
+    /// Their mass (kg).
+    pub removed_mass: f64,
+    /// Tetrahedra that were frozen where they were.
+    pub frozen_tets: usize,
+    /// Kinetic and elastic energy (J) after the cut less those before; `None` where the model tells none.
+    pub energy_gained: Option<Energy>,
+}
+
+impl CutReport {
+    fn of_stroke(stroke: &Stroke) -> Self {
+        Self {
+            faces: stroke.faces.len(),
+            area: stroke.area,
+            new_nodes: stroke.copied.len(),
+            moved_nodes: stroke.moved.len(),
+            mass_gained: stroke.mass_gained,
+            ..Self::default()
+        }
+    }
+
+    fn of_removal(removal: &Removal) -> Self {
+        Self {
+            removed_tets: removal.tets.len(),
+            removed_mass: removal.mass,
+            new_nodes: removal.copied.len(),
+            ..Self::default()
+        }
+    }
+
+    /// Whether nothing changed.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        [
+            self.faces,
+            self.moved_nodes,
+            self.removed_tets,
+            self.frozen_tets,
+        ] == [0; 4]
+    }
+
+    /// Adds another cut to this one.
+    pub fn add(&mut self, other: &Self) {
+        self.faces += other.faces;
+        self.area += other.area;
+        self.new_nodes += other.new_nodes;
+        self.moved_nodes += other.moved_nodes;
+        self.mass_gained += other.mass_gained;
+        self.removed_tets += other.removed_tets;
+        self.removed_mass += other.removed_mass;
+        self.frozen_tets += other.frozen_tets;
+        self.energy_gained = match (self.energy_gained, other.energy_gained) {
+            (Some(a), Some(b)) => Some(Energy {
+                kinetic: a.kinetic + b.kinetic,
+                elastic: a.elastic + b.elastic,
+            }),
+            (a, b) => a.or(b),
+        };
+    }
+}
+
+/// A model whose body is cut while it moves.
+///
+/// A cut carries the state over: displacement and velocity of a node are those of its copies. So mass, momentum and, for tetrahedra that average
+/// nothing, energy stay what they are. Frequencies and K's blocks are bounded by single tetrahedra where these bounds hold, so that stable
+/// steps are the same before and after.
+///
+/// Linear bodies of plain tetrahedra whose supports rest follow a split in their place, at the cost of the rows that it touches: with the bits of a
+/// model that is made anew, [`Model::report`] aside, whose sums of masses, volumes and loads stay. A tenth more nodes have room; until it is used up
+/// nothing is allocated, while no clone of the model shares its rows. All other models are made anew on the mesh of the body that is left: springs,
+/// hyperelastic regions, elements that average strain, supports in motion, and any body from the first piece on that was removed or frozen.
+pub struct CutModel {
+    uncut: Arc<TetMesh>,
+    problem: Problem,
+    body: CuttableBody,
+    mesh: CutMesh,
+    model: Model,
+    snap: f64,
+    epoch: u64,
+    layouts: u64,
+    /// Density (kg/m^3) of each tetrahedron of the uncut mesh.
+    densities: Arc<[f64]>,
+    /// Displacement (m) of the nodes of the body that are frozen.
+    frozen: BTreeMap<u32, [f64; 3]>,
+    /// What the model follows splits with; `None` where it is made anew.
+    in_place: Option<Box<InPlace>>,
+    /// Room for displacements of the nodes of the mesh, and positions of those of the body.
+    displacements: Vec<[f64; 3]>,
+    positions: Vec<[f64; 3]>,
+}
+
+/// Densities and frequencies of a model's tetrahedra.
+struct OfModel {
+    frequencies: TetFrequencies,
+    densities: Arc<[f64]>,
+}
+
+impl TetProperties for OfModel {
+    fn density(&self, tet: usize) -> f64 {
+        self.densities[tet]
+    }
+
+    fn frequency(&self, tet: usize, vertices: &[[f64; 3]; 4]) -> f64 {
+        self.frequencies.of(tet, vertices)
+    }
+}
+
+impl CutModel {
+    /// The model of a problem on a mesh, uncut. Strokes move nodes within the share `snap` of their shortest edge onto the sheet; 0 moves none.
+    /// Nodes of supports and prescribed motions, and between regions, are not moved.
+    ///
+    /// # Errors
+    /// [`CutModelError`].
+    pub fn new(mesh: Arc<TetMesh>, problem: Problem, snap: f64) -> Result<Self, CutModelError> {
+        let model = Model::build_on(Arc::clone(&mesh), &problem)?;
+        if model.internal_variables() > 0 && !model.is_without_averages() {
+            return Err(CutStateError::Memory.into());
+        }
+        let model = match model.element_bounds() {
+            Some(mut bounds) => {
+                if snap > 0.0 {
+                    bounds.omega_max *= SNAPPED;
+                    bounds.block_factor = LARGEST_BLOCK_FACTOR;
+                }
+                model.with_element_bounds(bounds)
+            }
+            None => model,
+        };
+        let densities: Arc<[f64]> = model.densities(&problem)?.into();
+        let properties = OfModel {
+            frequencies: model.tet_frequencies(),
+            densities: Arc::clone(&densities),
+        };
+        let mut body = CuttableBody::new(&mesh, Box::new(properties))?;
+        body.keep(&kept_nodes(&mesh, &problem, &model)?);
+        let cut = body.mesh(&mesh);
+        let nodes = mesh.points.len() + spare(mesh.points.len());
+        let mut cut_model = Self {
+            uncut: mesh,
+            problem,
+            body,
+            mesh: cut,
+            model,
+            snap,
+            epoch: 0,
+            layouts: 0,
+            densities,
+            frozen: BTreeMap::new(),
+            in_place: None,
+            displacements: Vec::with_capacity(nodes),
+            positions: Vec::with_capacity(nodes),
+        };
+        cut_model.follow_from_here();
+        Ok(cut_model)
+    }
+
+    /// Makes room in a state for the nodes that the model has room for, so that cuts allocate nothing for it either.
+    pub fn make_room(&self, state: &mut State) {
+        let more = 3 * spare(self.mesh.nodes.len());
+        for values in [&mut state.u, &mut state.v, &mut state.a] {
+            values.reserve(more);
+        }
+    }
+
+    /// The model of the body as it is.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The body.
+    #[must_use]
+    pub fn body(&self) -> &CuttableBody {
+        &self.body
+    }
+
+    /// The mesh of the body as it is, which the model is on.
+    #[must_use]
+    pub fn mesh(&self) -> &CutMesh {
+        &self.mesh
+    }
+
+    /// Number of cuts that changed the model.
+    #[must_use]
+    pub fn epoch(&self) -> u64 {
+        self.epoch
+    }
+
+    /// Number of times that all rows were laid out anew to make room for further nodes, and of those in which something else shared the
+    /// model's rows, so that they were copied.
+    #[must_use]
+    pub fn layouts(&self) -> u64 {
+        self.layouts
+    }
+
+    /// Cuts by a sheet in the configuration of the state, which is carried over. The model has another revision only where something changed.
+    ///
+    /// # Errors
+    /// [`CutModelError`]; the body is to be given up then.
+    pub fn stroke(
+        &mut self,
+        sheet: &Sheet,
+        state: &mut State,
+        inputs: &Inputs,
+    ) -> Result<CutReport, CutModelError> {
+        self.require(state)?;
+        self.find_positions(state, inputs)?;
+        let nodes = self.body.nodes();
+        self.body.stroke(sheet, &mut self.positions, self.snap)?;
+        self.split(nodes, state, inputs)
+    }
+
+    /// Lifts the blade: the next stroke goes on with no tetrahedron that this one left entered in part.
+    pub fn lift(&mut self) {
+        self.body.lift();
+    }
+
+    /// Cuts faces, each given by a tetrahedron of the uncut mesh and the vertex (0 to 3) opposite.
+    ///
+    /// # Errors
+    /// Same as [`CutModel::stroke`].
+    pub fn cut_faces(
+        &mut self,
+        faces: impl IntoIterator<Item = (u32, usize)>,
+        state: &mut State,
+        inputs: &Inputs,
+    ) -> Result<CutReport, CutModelError> {
+        self.require(state)?;
+        self.find_positions(state, inputs)?;
+        let nodes = self.body.nodes();
+        self.body.cut_faces(faces, &mut self.positions)?;
+        self.split(nodes, state, inputs)
+    }
+
+    /// Removes the tetrahedra whose centroid, in the configuration of the state, `is_inside` something.
+    ///
+    /// # Errors
+    /// Same as [`CutModel::stroke`], and [`CutModelError::NothingLeft`].
+    pub fn remove(
+        &mut self,
+        is_inside: impl FnMut([f64; 3]) -> bool,
+        state: &mut State,
+        inputs: &Inputs,
+    ) -> Result<CutReport, CutModelError> {
+        self.find_positions(state, inputs)?;
+        let nodes = self.body.nodes();
+        let removal = self.body.remove(is_inside, &mut self.positions)?;
+        let (report, copied) = (CutReport::of_removal(removal), removal.copied.clone());
+        if report.is_empty() {
+            return Ok(report);
+        }
+        self.go_on_anew(nodes, &copied, report, state, inputs)
+    }
+
+    /// Removes the pieces of which no node is held or moved from outside, with their mass: by the problem, or by something else that has hold of
+    /// `held`, nodes of the body.
+    ///
+    /// # Errors
+    /// Same as [`CutModel::remove`].
+    pub fn remove_loose(
+        &mut self,
+        held: &[u32],
+        state: &mut State,
+        inputs: &Inputs,
+    ) -> Result<CutReport, CutModelError> {
+        let Some(is_loose) = self.loose_tets(held) else {
+            return Ok(CutReport::default());
+        };
+        self.find_positions(state, inputs)?;
+        let nodes = self.body.nodes();
+        let is_gone = |tet: u32| is_loose[tet as usize];
+        let removal = self.body.remove_tets(is_gone, &mut self.positions)?;
+        let report = CutReport::of_removal(removal);
+        self.go_on_anew(nodes, &[], report, state, inputs)
+    }
+
+    /// Holds the pieces that [`CutModel::remove_loose`] would remove where they are: they keep mass and shape, and rest.
+    ///
+    /// # Errors
+    /// Same as [`CutModel::remove`].
+    pub fn freeze_loose(
+        &mut self,
+        held: &[u32],
+        state: &mut State,
+        inputs: &Inputs,
+    ) -> Result<CutReport, CutModelError> {
+        let Some(is_loose) = self.loose_tets(held) else {
+            return Ok(CutReport::default());
+        };
+        self.require(state)?;
+        self.find_positions(state, inputs)?;
+        let mut report = CutReport::default();
+        for (tet, nodes) in self.mesh.tets.iter().zip(&self.mesh.mesh.tets) {
+            if is_loose[*tet as usize] {
+                report.frozen_tets += 1;
+                for node in nodes.map(|node| node as usize) {
+                    let displacement = self.displacements[node];
+                    self.frozen.insert(self.mesh.nodes[node], displacement);
+                }
+            }
+        }
+        let frozen: Vec<u32> = self.frozen.keys().copied().collect();
+        // A node that were moved would have another displacement.
+        self.body.keep(&frozen);
+        self.go_on_anew(self.body.nodes(), &[], report, state, inputs)
+    }
+
+    /// Whether each tetrahedron belongs to a piece that nothing holds or moves from outside; `None` where there is none.
+    fn loose_tets(&self, held: &[u32]) -> Option<Vec<bool>> {
+        let held: HashSet<u32> = held.iter().copied().collect();
+        let is_held = |node: u32| {
+            self.model.is_supported(node) || held.contains(&self.mesh.nodes[node as usize])
+        };
+        let pieces = self.body.pieces();
+        let mut is_loose = vec![true; pieces.count];
+        for (tet, nodes) in self.mesh.tets.iter().zip(&self.mesh.mesh.tets) {
+            let is_held = nodes.iter().any(|node| is_held(*node));
+            if let (true, Some(piece)) = (is_held, pieces.of_tet[*tet as usize]) {
+                is_loose[piece as usize] = false;
+            }
+        }
+        let of_piece = |piece: &Option<u32>| piece.is_some_and(|piece| is_loose[piece as usize]);
+        let of_tet = || pieces.of_tet.iter().map(of_piece);
+        is_loose.contains(&true).then(|| of_tet().collect())
+    }
+
+    /// What cuts changed, as bytes.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = self.epoch.to_le_bytes().to_vec();
+        bytes.extend((self.frozen.len() as u64).to_le_bytes());
+        for (node, displacement) in &self.frozen {
+            bytes.extend(node.to_le_bytes());
+            bytes.extend(displacement.iter().flat_map(|along| along.to_le_bytes()));
+        }
+        bytes.extend(self.body.to_bytes());
+        bytes
+    }
+
+    /// Becomes the model that [`CutModel::to_bytes`] was called on, which was made of the same mesh and problem.
+    ///
+    /// # Errors
+    /// [`CutModelError`].
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), CutModelError> {
+        let (epoch, rest) = bytes.split_first_chunk().ok_or(SavedBodyError)?;
+        let (count, mut rest) = rest.split_first_chunk().ok_or(SavedBodyError)?;
+        let mut frozen = BTreeMap::new();
+        for _ in 0..u64::from_le_bytes(*count) {
+            let (node, numbers) = rest.split_first_chunk().ok_or(SavedBodyError)?;
+            let (numbers, after) = numbers.split_first_chunk::<24>().ok_or(SavedBodyError)?;
+            let numbers = numbers.as_chunks::<8>().0;
+            let displacement = [0, 1, 2].map(|axis| f64::from_le_bytes(numbers[axis]));
+            frozen.insert(u32::from_le_bytes(*node), displacement);
+            rest = after;
+        }
+        self.body.restore(rest)?;
+        self.frozen = frozen;
+        let before = std::mem::replace(&mut self.epoch, u64::from_le_bytes(*epoch));
+        if before > 0 || self.epoch > 0 {
+            let mesh = self.body.mesh(&self.uncut);
+            self.model = self.model_on(&mesh)?;
+            self.mesh = mesh;
+            self.follow_from_here();
+        }
+        Ok(())
+    }
+
+    /// The model of what is left of the body.
+    fn model_on(&self, mesh: &CutMesh) -> Result<Model, CutModelError> {
+        if mesh.tets.is_empty() {
+            return Err(CutModelError::NothingLeft);
+        }
+        let mut problem = self.problem.after_cuts(&self.uncut, mesh)?;
+        let nodes = (0..).zip(&mesh.nodes);
+        let frozen = nodes.filter_map(|(node, of_body)| Some((node, *self.frozen.get(of_body)?)));
+        let frozen: Vec<(u32, [f64; 3])> = frozen.collect();
+        if !frozen.is_empty() {
+            problem.fixed.push(Fixed {
+                on: On::Nodes(frozen.iter().map(|(node, _)| *node).collect()),
+                axes: [true; 3],
+            });
+        }
+        let model = Model::build(&mesh.mesh, &problem).map_err(|error| match error.cause() {
+            Cause::NothingFree { .. } => CutModelError::NothingLeft,
+            _ => error.into(),
+        })?;
+        let model = model.with_frozen(&frozen);
+        Ok(match self.model.operators().element_bounds() {
+            Some(bounds) => model.with_element_bounds(bounds),
+            None => model,
+        })
+    }
+
+    /// Lets the model follow splits from here on, where it can.
+    fn follow_from_here(&mut self) {
+        let is_whole = self.frozen.is_empty() && !self.body.is_removed().contains(&true);
+        let can = is_whole && self.model.can_follow_splits();
+        let in_place =
+            can.then(|| InPlace::new(&self.problem, &self.uncut, &self.mesh, &self.densities));
+        self.in_place = in_place.flatten().map(Box::new);
+        if self.in_place.is_some() {
+            self.mesh.reserve(spare(self.mesh.nodes.len()));
+            self.model.make_room_for_splits();
+        }
+    }
+
+    /// Checks a state before anything is changed.
+    fn require(&self, state: &State) -> Result<(), CutModelError> {
+        Ok(self.model.require_state(state)?)
+    }
+
+    /// Finds where the nodes of the body are.
+    fn find_positions(&mut self, state: &State, inputs: &Inputs) -> Result<(), CutModelError> {
+        let when = LoadTime::at(state.t()).under(inputs);
+        self.displacements.resize(self.mesh.nodes.len(), [0.0; 3]);
+        self.model
+            .displacements_at(when, &state.u, &mut self.displacements)?;
+        self.positions.clear();
+        self.positions.extend_from_slice(self.body.points());
+        for (node, displacement) in self.mesh.nodes.iter().zip(&self.displacements) {
+            let position = &mut self.positions[*node as usize];
+            *position = std::array::from_fn(|axis| position[axis] + displacement[axis]);
+        }
+        Ok(())
+    }
+
+    /// Goes on after the last stroke, or cut of faces, of the body, which had so many nodes before.
+    fn split(
+        &mut self,
+        nodes: usize,
+        state: &mut State,
+        inputs: &Inputs,
+    ) -> Result<CutReport, CutModelError> {
+        let stroke = self.body.last_stroke();
+        let mut report = CutReport::of_stroke(stroke);
+        if stroke.moved.is_empty() && stroke.copied.is_empty() {
+            return Ok(report);
+        }
+        match &mut self.in_place {
+            Some(in_place) => {
+                let (body, model) = (&self.body, &mut self.model);
+                in_place.look(body, nodes);
+                let before = model.energy_of_touched(in_place, body, state);
+                in_place.follow_mesh(&mut self.mesh, body);
+                self.layouts += u64::from(model.follow_split(in_place, body)?);
+                model.carry_over_split(state, stroke, nodes);
+                let after = model.energy_of_touched(in_place, body, state);
+                report.energy_gained = Some(gained(before, after));
+                self.epoch += 1;
+                Ok(report)
+            }
+            None => {
+                let copied = stroke.copied.clone();
+                self.freeze_copies(nodes, &copied);
+                let stroke = self.body.last_stroke();
+                let mesh = self.body.mesh(&self.uncut);
+                let carried = NodesCarried {
+                    nodes,
+                    before: &self.mesh.nodes,
+                    moved: &stroke.moved,
+                    copied: &stroke.copied,
+                    after: &mesh.nodes,
+                };
+                let model = self.model_on(&mesh)?;
+                let after = model.state_after_cut(&self.model, state, inputs, carried)?;
+                self.go_on(mesh, model, after, &mut report, state);
+                Ok(report)
+            }
+        }
+    }
+
+    /// Goes on with a model made anew, after a change of the body, which had so many nodes before, that moved none of them at rest.
+    fn go_on_anew(
+        &mut self,
+        nodes: usize,
+        copied: &[u32],
+        mut report: CutReport,
+        state: &mut State,
+        inputs: &Inputs,
+    ) -> Result<CutReport, CutModelError> {
+        // Nodes of the model and of the body have different numbers from now on, or some of them are frozen.
+        self.in_place = None;
+        self.freeze_copies(nodes, copied);
+        let mesh = self.body.mesh(&self.uncut);
+        let carried = NodesCarried {
+            nodes,
+            before: &self.mesh.nodes,
+            moved: &[],
+            copied,
+            after: &mesh.nodes,
+        };
+        let model = self.model_on(&mesh)?;
+        let after = model.state_after_cut(&self.model, state, inputs, carried)?;
+        self.go_on(mesh, model, after, &mut report, state);
+        Ok(report)
+    }
+
+    /// Freezes the copies of frozen nodes, which come after the `nodes` that the body had.
+    fn freeze_copies(&mut self, nodes: usize, copied: &[u32]) {
+        for (copy, node) in (nodes as u32..).zip(copied) {
+            if let Some(displacement) = self.frozen.get(node) {
+                self.frozen.insert(copy, *displacement);
+            }
+        }
+    }
+
+    /// Goes on with a model that was made anew.
+    fn go_on(
+        &mut self,
+        mesh: CutMesh,
+        model: Model,
+        after: State,
+        report: &mut CutReport,
+        state: &mut State,
+    ) {
+        let energies = (
+            self.model.energy(&state.u, &state.v),
+            model.energy(&after.u, &after.v),
+        );
+        if let (Some(before), Some(after)) = energies {
+            report.energy_gained = Some(gained(before, after));
+        }
+        *state = after;
+        self.mesh = mesh;
+        self.model = model;
+        self.epoch += 1;
+    }
+}
+
+fn gained(before: Energy, after: Energy) -> Energy {
+    Energy {
+        kinetic: after.kinetic - before.kinetic,
+        elastic: after.elastic - before.elastic,
+    }
+}
+
+/// The nodes that stay where they are at rest: those that the problem holds or moves, and those of several regions.
+fn kept_nodes(mesh: &TetMesh, problem: &Problem, model: &Model) -> Result<Vec<u32>, Cause> {
+    let mut kept = Vec::new();
+    let fixed = problem.fixed.iter().map(|fixed| &fixed.on);
+    let moved = problem.moves.iter().map(|moving| &moving.on);
+    for on in fixed.chain(moved) {
+        kept.extend(on.nodes(mesh)?);
+    }
+    let mut region_of = vec![None; mesh.points.len()];
+    for (nodes, region) in mesh.tets.iter().zip(model.region_of()) {
+        for node in nodes {
+            match region_of[*node as usize].replace(*region) {
+                Some(other) if other != *region => kept.push(*node),
+                _ => {}
+            }
+        }
+    }
+    Ok(kept)
+}

@@ -1,0 +1,140 @@
+//! A state, carried to a model whose body was cut.
+
+use sinew_core::{Acceleration, Inputs, LoadTime, State, System};
+use sinew_mesh::MovedNode;
+
+use super::Model;
+use super::field_error::FieldError;
+use crate::Problem;
+use crate::by_tet::ByTet;
+use crate::error::FemError;
+
+/// The nodes of a body before and after a cut, by its own numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct NodesCarried<'a> {
+    /// Number of nodes that the body had.
+    pub nodes: usize,
+    /// The node of the body that each node of the mesh before is.
+    pub before: &'a [u32],
+    /// The nodes that were moved at rest, in this order.
+    pub moved: &'a [MovedNode],
+    /// The node that each new node is a copy of: the new ones follow the last one.
+    pub copied: &'a [u32],
+    /// The node of the body that each node of the mesh after is.
+    pub after: &'a [u32],
+}
+
+/// A reason for which a state cannot be carried over a cut.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CutStateError {
+    /// Memory of regions whose numbers do not stand in the order of tetrahedra alone.
+    #[error(
+        "tissue with memory (`prony`) can be cut where its element is p1 and no tetrahedron is removed: what it remembers has another order otherwise"
+    )]
+    Memory,
+    /// A state of another model.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+}
+
+impl Model {
+    /// Whether no region averages strain over several tetrahedra.
+    pub(crate) fn is_without_averages(&self) -> bool {
+        self.body.smoothing.is_empty()
+    }
+
+    /// Whether some component of a node (0-based) is held, or moved from outside.
+    pub(crate) fn is_supported(&self, node: u32) -> bool {
+        self.body.cells.held_nodes.binary_search(&node).is_ok()
+    }
+
+    /// Shows nodes, increasing, that the problem holds where they are frozen: with these displacements (m).
+    pub(crate) fn with_frozen(mut self, nodes: &[(u32, [f64; 3])]) -> Self {
+        self.motions.freeze(nodes);
+        self
+    }
+
+    /// The density (kg/m^3) of each tetrahedron, by the problem that the model was made of.
+    pub(crate) fn densities(&self, problem: &Problem) -> Result<Vec<f64>, FemError> {
+        let by_tet = ByTet::new(&self.mesh, problem, &self.region_of)?;
+        let regions = self.region_of.iter().enumerate();
+        let density = |(tet, region): (usize, &u32)| {
+            problem.regions[*region as usize].density * by_tet.density(tet)
+        };
+        Ok(regions.map(density).collect())
+    }
+
+    /// The state of this model, whose body was cut, from that of the model `before`: copies of nodes take displacement and velocity
+    /// over, and moved nodes the mean at their new place.
+    ///
+    /// An acceleration at the displacement's time is left out, since forces on both sides of a cut are others. So are forces of
+    /// contact: what touches the body has other nodes to meet.
+    ///
+    /// # Errors
+    /// [`CutStateError`].
+    pub fn state_after_cut(
+        &self,
+        before: &Model,
+        state: &State,
+        inputs: &Inputs,
+        nodes: NodesCarried<'_>,
+    ) -> Result<State, CutStateError> {
+        let when = LoadTime::at(state.t()).under(inputs);
+        let carried = |values: &[f64], order: usize| -> Result<Vec<f64>, FieldError> {
+            let mut field = vec![[0.0; 3]; before.mesh().points.len()];
+            match order {
+                0 => before.displacements_at(when, values, &mut field)?,
+                1 => before.velocities_at(when, values, &mut field)?,
+                _ => before.accelerations_at(when, values, &mut field)?,
+            }
+            self.carried(&field, nodes)
+        };
+        let internal = self.internal_variables();
+        let keeps_order = self.is_without_averages() && nodes.after.len() >= nodes.before.len();
+        if internal != before.internal_variables() || internal > 0 && !keeps_order {
+            return Err(CutStateError::Memory);
+        }
+        let mut cut = State::new(carried(&state.u, 0)?, carried(&state.v, 1)?);
+        if state.acceleration == Acceleration::Kick {
+            cut.a = carried(&state.a, 2)?;
+            cut.acceleration = Acceleration::Kick;
+        }
+        cut.clock = state.clock;
+        cut.velocity = state.velocity;
+        cut.internal.clone_from(&state.internal);
+        cut.start = state.start;
+        cut.cut = state.cut;
+        Ok(cut)
+    }
+
+    /// A field at the nodes of the mesh before as a vector of this model.
+    fn carried(
+        &self,
+        before: &[[f64; 3]],
+        nodes: NodesCarried<'_>,
+    ) -> Result<Vec<f64>, FieldError> {
+        let mut field = vec![[0.0; 3]; nodes.nodes + nodes.copied.len()];
+        for (node, value) in nodes.before.iter().zip(before) {
+            field[*node as usize] = *value;
+        }
+        for moved in nodes.moved {
+            let parts = moved.nodes.map(|node| field[node as usize]);
+            field[moved.node as usize] = std::array::from_fn(|axis| {
+                let terms = parts.iter().zip(moved.shares);
+                terms.map(|(part, share)| share * part[axis]).sum()
+            });
+        }
+        for (copy, node) in (nodes.nodes..).zip(nodes.copied) {
+            field[copy] = field[*node as usize];
+        }
+        let after: Vec<[f64; 3]> = nodes
+            .after
+            .iter()
+            .map(|node| field[*node as usize])
+            .collect();
+        let mut values = vec![0.0; self.dofs()];
+        self.to_dofs(&after, &mut values)?;
+        Ok(values)
+    }
+}

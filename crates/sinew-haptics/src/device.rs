@@ -1,0 +1,20 @@
+//! Devices that a hand holds.
+
+use crate::coupling::DeviceLimits;
+
+/// A device with a handle.
+pub trait Device {
+    /// What it is able to do.
+    fn limits(&self) -> DeviceLimits;
+
+    /// Position (m) of its handle, as it measures it.
+    fn position(&mut self) -> [f64; 3];
+
+    /// Rotation vector (rad) of its handle.
+    fn rotation_vector(&mut self) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    /// Holds this force (N) on its handle until the next.
+    fn render(&mut self, force: [f64; 3]);
+}

@@ -1,0 +1,173 @@
+//! Device and simulation in a thread each, by the clock.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::coupling::{Coupling, CouplingError};
+use crate::device::Device;
+use crate::exchange::{Publisher, Reader, exchange};
+use crate::force_loop::ForceLoop;
+use crate::hand::Hand;
+use crate::jitter::Jitter;
+use crate::published::{DeviceMotion, Published, Simulated};
+
+/// Time before a tick from which it is waited for without sleep: a thread that sleeps is often woken that late.
+const AWAKE: Duration = Duration::from_micros(150);
+
+/// A run that could not begin, or ended early.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RealTimeError<E> {
+    /// A coupling that the device cannot render.
+    #[error(transparent)]
+    Coupling(#[from] CouplingError),
+    /// A step that could not be taken.
+    #[error("the simulation came to an end: {0}")]
+    Step(E),
+}
+
+/// What a run was like.
+#[derive(Clone, Debug)]
+pub struct LoopReport {
+    /// By how much (s) ticks began later than they were due.
+    pub jitter: Jitter,
+    /// How long (s) the loop worked in a tick, the device apart.
+    pub work: Jitter,
+    /// Number of steps that were published.
+    pub steps: u64,
+    /// Number of them that took longer than their own time.
+    pub late_steps: u64,
+    /// The most ticks by which a step was late.
+    pub most_late: u32,
+}
+
+/// Runs a device in this thread and a simulation in one of its own, until `each` says so, which is told after each tick.
+///
+/// Neither waits for the other. A simulation that is slower than its steps are long drops time: the loop goes on with what it knows, and gives no more energy than it was
+/// given. No force is left on the device at the end, whatever ended it.
+///
+/// # Errors
+/// [`RealTimeError`] for a coupling that the device cannot render, and a step that cannot be taken.
+pub fn run<S>(
+    mut simulation: S,
+    coupling: Coupling,
+    device: &mut impl Device,
+    mut each: impl FnMut(&ForceLoop) -> ControlFlow<()>,
+) -> Result<LoopReport, RealTimeError<S::Error>>
+where
+    S: Simulated + Send,
+    S::Error: Send,
+{
+    let (limits, position) = (device.limits(), device.position());
+    let first = Published::free_at(position);
+    let mut forces = ForceLoop::new(coupling, limits, &first)?;
+    let mut hand = Hand::new(limits.tick);
+    let (publisher, mut published) = exchange(&first);
+    let (mut motion, motions) = exchange(&DeviceMotion::at(position));
+    let is_over = AtomicBool::new(false);
+    let mut report = LoopReport {
+        jitter: Jitter::default(),
+        work: Jitter::default(),
+        steps: 0,
+        late_steps: 0,
+        most_late: 0,
+    };
+    let tick = Duration::from_secs_f64(limits.tick);
+    let stepped = thread::scope(|scope| {
+        let stepping = scope.spawn(|| {
+            let over = Over(&is_over);
+            step_until(over, &mut simulation, motions, publisher)
+        });
+        let over = Over(&is_over);
+        let mut due = Instant::now();
+        while !over.is_set() {
+            due += tick;
+            wait_until(due);
+            let begun = Instant::now();
+            report.jitter.count((begun - due).as_secs_f64());
+            let position = device.position();
+            hand.see(position, device.rotation_vector());
+            motion.publish(hand.motion());
+            if let Some(published) = published.newer() {
+                forces.take(published);
+            }
+            let force = forces.tick(position);
+            report.work.count(begun.elapsed().as_secs_f64());
+            device.render(force);
+            report.most_late = report.most_late.max(forces.late());
+            if each(&forces).is_break() {
+                break;
+            }
+            // Ticks that were missed altogether are not made up for.
+            due = due.max(begun - tick);
+        }
+        drop(over);
+        device.render([0.0; 3]);
+        stepping.join()
+    });
+    match stepped {
+        Ok(Ok([steps, late])) => {
+            (report.steps, report.late_steps) = (steps, late);
+            Ok(report)
+        }
+        Ok(Err(error)) => Err(RealTimeError::Step(error)),
+        Err(panic) => std::panic::resume_unwind(panic),
+    }
+}
+
+/// Tells the other thread that this one has ended, also by a panic.
+struct Over<'a>(&'a AtomicBool);
+
+impl Over<'_> {
+    fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Takes steps until it is over; their number, and that of the late ones.
+fn step_until<S: Simulated>(
+    over: Over<'_>,
+    simulation: &mut S,
+    mut motions: Reader<DeviceMotion>,
+    mut publisher: Publisher<Published>,
+) -> Result<[u64; 2], S::Error> {
+    let dt = Duration::from_secs_f64(simulation.dt());
+    let mut due = Instant::now();
+    let [mut steps, mut late] = [0; 2];
+    while !over.is_set() {
+        let published = simulation.step(motions.latest())?;
+        due += dt;
+        steps += 1;
+        let now = Instant::now();
+        if now > due {
+            late += 1;
+            due = now;
+        } else {
+            thread::sleep(due - now);
+        }
+        publisher.publish(published);
+    }
+    Ok([steps, late])
+}
+
+fn wait_until(due: Instant) {
+    loop {
+        let left = due.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return;
+        }
+        if left > AWAKE {
+            thread::sleep(left - AWAKE);
+        } else {
+            std::hint::spin_loop();
+        }
+    }
+}

@@ -1,0 +1,28 @@
+// The last seconds of a pane, as plots show them.
+
+export const SPAN = 5;
+const NAMES = ["t", "force", "depth", "kinetic", "elastic", "balance", "moved"];
+
+export class History {
+  constructor() {
+    this.clear();
+  }
+
+  clear() {
+    for (const name of NAMES) this[name] = [];
+  }
+
+  /// Takes a pane of a picture, with the force (N) on it and the way (m) of the point that a hand holds.
+  take(pane, force, depth, moved) {
+    if (this.t.length > 0 && pane.t <= this.t.at(-1)) {
+      if (pane.t < this.t.at(-1)) this.clear();
+      else return;
+    }
+    const { t, kinetic, elastic, balance } = pane;
+    const values = { t, force, depth, kinetic, elastic, balance, moved };
+    for (const name of NAMES) this[name].push(values[name]);
+    let old = 0;
+    while (this.t[old] < pane.t - SPAN) old += 1;
+    if (old > 40) for (const name of NAMES) this[name].splice(0, old);
+  }
+}

@@ -1,0 +1,246 @@
+//! The pages that look on.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use axum::body::Bytes;
+use axum::extract::ws::Message;
+use tokio::sync::mpsc::{Receiver, Sender, channel};
+
+use crate::protocol::{APPLIED_AT, Event};
+
+/// Credits with which a page begins.
+pub(crate) const FIRST_CREDITS: u32 = 2;
+
+/// Most credits of a page, however many it grants.
+const MOST_CREDITS: u32 = 4;
+
+/// Short messages that may wait for a page, several for each order that may wait in the inbox: one that reads nothing is let go when more do.
+const MOST_WAITING: usize = 1024;
+
+/// Most pages at once.
+const MOST_CLIENTS: usize = 16;
+
+#[derive(Debug)]
+struct Client {
+    id: u32,
+    credits: u32,
+    /// The last command of this client that the simulation has carried out.
+    applied: u32,
+    /// The topology that it has.
+    epoch: Option<u32>,
+    sender: Sender<Message>,
+}
+
+#[derive(Debug, Default)]
+struct List {
+    clients: Vec<Client>,
+    last: u32,
+}
+
+/// All pages, with the credits that they gave.
+#[derive(Debug, Default)]
+pub(crate) struct Clients(Mutex<List>);
+
+impl Clients {
+    /// A new client: its number, and the messages for it; `None` where there are too many.
+    pub(crate) fn enter(&self) -> Option<(u32, Receiver<Message>)> {
+        let mut list = self.lock();
+        if list.clients.len() >= MOST_CLIENTS {
+            return None;
+        }
+        let (sender, receiver) = channel(MOST_WAITING);
+        list.last += 1;
+        let id = list.last;
+        list.clients.push(Client {
+            id,
+            credits: FIRST_CREDITS,
+            applied: 0,
+            epoch: None,
+            sender,
+        });
+        Some((id, receiver))
+    }
+
+    /// Forgets a client.
+    pub(crate) fn leave(&self, id: u32) {
+        self.lock().clients.retain(|client| client.id != id);
+    }
+
+    /// Forgets all of them, so that their connections end.
+    pub(crate) fn dismiss(&self) {
+        self.lock().clients.clear();
+    }
+
+    /// Takes a credit of a client.
+    pub(crate) fn grant(&self, id: u32) {
+        if let Some(client) = self.lock().find(id) {
+            client.credits = (client.credits + 1).min(MOST_CREDITS);
+        }
+    }
+
+    /// Notes the last command of a client that was carried out.
+    pub(crate) fn applied(&self, id: u32, command: u32) {
+        if let Some(client) = self.lock().find(id) {
+            client.applied = client.applied.max(command);
+        }
+    }
+
+    /// Whether any client holds a credit.
+    pub(crate) fn want_a_frame(&self) -> bool {
+        self.lock().clients.iter().any(|client| client.credits > 0)
+    }
+
+    /// Sends a picture, and before it the topology where that is new, to all who hold a credit.
+    pub(crate) fn show(&self, frame: Vec<u8>, epoch: u32, topology: &Bytes) {
+        let mut list = self.lock();
+        let want = list.clients.iter().filter(|client| client.credits > 0);
+        let mut left = want.count();
+        let mut whole = Some(frame);
+        list.keep(|client| {
+            if client.credits == 0 {
+                return true;
+            }
+            left -= 1;
+            let copy = match left {
+                0 => whole.take(),
+                _ => whole.clone(),
+            };
+            let Some(mut frame) = copy else {
+                return true;
+            };
+            if client.epoch != Some(epoch) {
+                client.epoch = Some(epoch);
+                if !client.take(Message::Binary(topology.clone())) {
+                    return false;
+                }
+            }
+            if let Some(place) = frame.get_mut(APPLIED_AT..APPLIED_AT + 4) {
+                place.copy_from_slice(&client.applied.to_le_bytes());
+            }
+            client.credits -= 1;
+            client.take(Message::Binary(frame.into()))
+        });
+    }
+
+    /// Tells all clients.
+    pub(crate) fn tell_all(&self, event: &Event) {
+        let text = event.to_text();
+        self.lock()
+            .keep(|client| client.take(Message::Text(text.clone().into())));
+    }
+
+    /// Tells one client.
+    pub(crate) fn tell(&self, id: u32, event: &Event) {
+        let text = event.to_text();
+        self.lock()
+            .keep(|client| client.id != id || client.take(Message::Text(text.clone().into())));
+    }
+
+    fn lock(&self) -> MutexGuard<'_, List> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl List {
+    fn find(&mut self, id: u32) -> Option<&mut Client> {
+        self.clients.iter_mut().find(|client| client.id == id)
+    }
+
+    fn keep(&mut self, stays: impl FnMut(&mut Client) -> bool) {
+        self.clients.retain_mut(stays);
+    }
+}
+
+impl Client {
+    /// Hands a message over without waiting; `false` where too many wait already.
+    fn take(&self, message: Message) -> bool {
+        self.sender.try_send(message).is_ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame() -> Vec<u8> {
+        vec![0; 64]
+    }
+
+    #[test]
+    fn a_frame_takes_a_credit_and_a_grant_gives_one() {
+        let clients = Clients::default();
+        let (id, mut messages) = clients.enter().unwrap();
+        let mut sent = 0;
+        while clients.want_a_frame() {
+            clients.show(frame(), 1, &Bytes::from_static(b"topology"));
+            sent += 1;
+        }
+        assert_eq!(sent, FIRST_CREDITS);
+        clients.grant(id);
+        assert!(clients.want_a_frame());
+        // The topology comes once, before the first picture.
+        assert!(
+            matches!(messages.try_recv(), Ok(Message::Binary(first)) if &first[..] == b"topology")
+        );
+        for _ in 0..FIRST_CREDITS {
+            assert!(matches!(messages.try_recv(), Ok(Message::Binary(next)) if next.len() == 64));
+        }
+        assert!(messages.try_recv().is_err());
+    }
+
+    #[test]
+    fn credits_have_a_bound() {
+        let clients = Clients::default();
+        let (id, _messages) = clients.enter().unwrap();
+        for _ in 0..1000 {
+            clients.grant(id);
+        }
+        let mut sent = 0;
+        while clients.want_a_frame() && sent < 1000 {
+            clients.show(frame(), 1, &Bytes::new());
+            sent += 1;
+        }
+        assert_eq!(sent, MOST_CREDITS);
+    }
+
+    #[test]
+    fn each_client_is_told_of_its_own_commands() {
+        let clients = Clients::default();
+        let (first, mut of_first) = clients.enter().unwrap();
+        let (second, mut of_second) = clients.enter().unwrap();
+        clients.applied(first, 7);
+        clients.applied(second, 70_000);
+        clients.show(frame(), 1, &Bytes::new());
+        for (messages, expected) in [(&mut of_first, 7), (&mut of_second, 70_000_u32)] {
+            messages.try_recv().unwrap();
+            let Ok(Message::Binary(frame)) = messages.try_recv() else {
+                panic!("expected a frame");
+            };
+            assert_eq!(frame[APPLIED_AT..APPLIED_AT + 4], expected.to_le_bytes());
+        }
+    }
+
+    #[test]
+    fn a_client_that_reads_nothing_is_let_go_and_others_stay() {
+        let clients = Clients::default();
+        let (_deaf, of_deaf) = clients.enter().unwrap();
+        let (_other, mut of_other) = clients.enter().unwrap();
+        for _ in 0..2 * MOST_WAITING {
+            clients.tell_all(&Event::Refused {
+                reason: String::new(),
+            });
+            of_other.try_recv().unwrap();
+        }
+        assert_eq!(clients.lock().clients.len(), 1);
+        drop(of_deaf);
+    }
+
+    #[test]
+    fn there_are_only_so_many_clients() {
+        let clients = Clients::default();
+        let all: Vec<_> = (0..100).map_while(|_| clients.enter()).collect();
+        assert_eq!(all.len(), MOST_CLIENTS);
+        clients.leave(all[0].0);
+        assert!(clients.enter().is_some());
+    }
+}

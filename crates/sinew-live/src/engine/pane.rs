@@ -1,0 +1,642 @@
+//! A session beside others that follow the same hand.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::Instant;
+
+use sinew_core::vectors::weighted_dot;
+use sinew_core::{Contact, Energy, LoadTime, Options, StableStep, System};
+use sinew_scene::{BodyModel, CutTotals, Scene, Simulation};
+use sinew_session::{Command, CommandError, Log, Session};
+use sinew_tools::Tools;
+
+use super::course::Course;
+use super::lights::{Bounds, Light, Settling, error_light, packed};
+use super::shown::{Budget, Shown};
+use super::{options, stability};
+use crate::error::LiveError;
+use crate::picture::Surface;
+use crate::protocol::{
+    CutHead, Field, FrameWriter, OptionFacts, PaneFacts, PaneHead, StepFacts, ToolHead,
+};
+
+/// The option of an integrator that limits velocities.
+const GUARD: &str = "saturation";
+
+/// A session with what is known of its motion.
+pub(crate) struct Pane {
+    session: Session,
+    /// Commands for simulated times (s), in their order.
+    due: VecDeque<(f64, Command)>,
+    /// The integrator and the step that it was given, which a reset keeps.
+    method: (String, Options, f64),
+    /// Why it cannot go on.
+    pub(crate) stopped: Option<String>,
+    /// Error of the trusted run, and time (s) by which that is behind.
+    pub(crate) error: f64,
+    pub(crate) lag: f64,
+    /// The integrator and the options that the session was given last.
+    given: (String, Options),
+    step_facts: StepFacts,
+    options: Vec<OptionFacts>,
+    /// The body as pages see it; `None` before the first picture.
+    shown: Option<Shown>,
+    measured: Budget,
+    /// Displacement (m) before the last step, behind a cut at its beginning, and half way through it.
+    before: Vec<f64>,
+    middle: Vec<f64>,
+    force: Vec<f64>,
+    /// The last pose that each tool was given.
+    led: Vec<Option<[f64; 6]>>,
+    /// Impulse on each tool (N s) and time (s) since the last picture.
+    impulses: Vec<[f64; 3]>,
+    span: f64,
+    saturated: u64,
+    steps: u64,
+    has_stepped: bool,
+    ms_per_step: f64,
+    /// Kinetic energy now, and the work of loads since the beginning (J).
+    kinetic: f64,
+    load_work: f64,
+    energies: Energies,
+    settling: Settling,
+}
+
+/// Energies (J), all of the same instant, and the work since the beginning.
+#[derive(Clone, Copy, Debug, Default)]
+struct Energies {
+    kinetic: f64,
+    elastic: f64,
+    loads: f64,
+    tools: f64,
+    /// What cuts brought in.
+    cuts: f64,
+    /// Energy at the beginning.
+    first: f64,
+    /// The largest energy or work so far.
+    scale: f64,
+}
+
+impl Energies {
+    /// Energy less that at the beginning, the work since, and what cuts brought in.
+    fn balance(&self) -> f64 {
+        self.kinetic + self.elastic - self.first - self.loads - self.tools - self.cuts
+    }
+}
+
+impl Pane {
+    /// A scene of its own.
+    pub(crate) fn of(scene: &Scene) -> Result<Self, LiveError> {
+        Self::new(Session::new(scene.clone())?)
+    }
+
+    pub(crate) fn new(session: Session) -> Result<Self, LiveError> {
+        let body = body(&session).ok_or(LiveError::NoBody)?;
+        let tools = body.tools.as_ref().map_or(0, |tools| tools.tools().len());
+        let dofs = body.model.dofs();
+        let mut pane = Self {
+            shown: None,
+            session,
+            due: VecDeque::new(),
+            method: (String::new(), Options::new(), 0.0),
+            stopped: None,
+            error: f64::NAN,
+            lag: 0.0,
+            given: (String::new(), Options::new()),
+            step_facts: StepFacts::default(),
+            options: Vec::new(),
+            measured: Budget::default(),
+            before: vec![0.0; dofs],
+            middle: vec![0.0; dofs],
+            force: vec![0.0; dofs],
+            led: vec![None; tools],
+            impulses: vec![[0.0; 3]; tools],
+            span: 0.0,
+            saturated: 0,
+            steps: 0,
+            has_stepped: false,
+            ms_per_step: f64::NAN,
+            kinetic: 0.0,
+            load_work: 0.0,
+            energies: Energies::default(),
+            settling: Settling::default(),
+        };
+        pane.given = pane.of_scene();
+        let (id, options) = pane.given.clone();
+        pane.method = (id, options, pane.session.dt());
+        pane.take_first_energy();
+        pane.learn();
+        Ok(pane)
+    }
+
+    /// The integrator and the options of the scene.
+    fn of_scene(&self) -> (String, Options) {
+        let settings = self.session.simulation().settings();
+        (settings.integrator.clone(), settings.options.clone())
+    }
+
+    /// Another integrator. The options of the scene hold where it is the scene's own, and so does its limit of velocities.
+    pub(crate) fn use_integrator(&mut self, name: &str) -> Result<(), CommandError> {
+        let settings = self.session.simulation().settings();
+        let own = &settings.options;
+        let takes_guard = || {
+            let help = sinew_integrators::entry(name).map(|entry| entry.all_options());
+            help.is_some_and(|help| help.iter().any(|help| help.key == GUARD))
+        };
+        let mut options = Options::new();
+        if settings.integrator == name {
+            options = own.clone();
+        } else if let Some(limit) = own.get(GUARD).filter(|_| takes_guard()) {
+            options.insert(GUARD, limit.clone());
+        }
+        let dt = self.method.2;
+        let refused = match self.switch((name.to_owned(), options.clone(), dt)) {
+            Err(refused) => refused,
+            Ok(()) => return Ok(()),
+        };
+        let entry = sinew_integrators::entry(name).filter(|_| self.tools().is_some());
+        let others = entry.map_or_else(Vec::new, |entry| options::alternatives(&entry, &options));
+        for options in others {
+            if self.switch((name.to_owned(), options, dt)).is_ok() {
+                return Ok(());
+            }
+        }
+        Err(refused)
+    }
+
+    /// Another step (s).
+    pub(crate) fn use_step(&mut self, dt: f64) -> Result<(), CommandError> {
+        let (id, options, _) = self.method.clone();
+        self.switch((id, options, dt))
+    }
+
+    /// Another option of the integrator: a word, a number, or both.
+    pub(crate) fn use_option(
+        &mut self,
+        key: &str,
+        word: Option<String>,
+        number: Option<f64>,
+    ) -> Result<(), String> {
+        let (id, mut options, dt) = self.method.clone();
+        let value = options::value_of((&id, &options), key, word, number)?;
+        options.insert(key, value);
+        self.switch((id, options, dt))
+            .map_err(|error| error.to_string())
+    }
+
+    /// Another integrator, with its own options, and another step (s) at once.
+    pub(crate) fn use_method(&mut self, name: &str, dt: f64) -> Result<(), CommandError> {
+        self.switch((name.to_owned(), Options::new(), dt))
+    }
+
+    /// The largest stable step (s) of an integrator on this body, where it has one.
+    pub(crate) fn stable_step_of(&self, name: &str) -> Result<Option<f64>, LiveError> {
+        let integrator = sinew_integrators::build(name, &Options::new())?;
+        let found = integrator.stable_step(self.session.simulation().system());
+        Ok(match found {
+            Ok(StableStep::UpTo(step)) => Some(step),
+            _ => None,
+        })
+    }
+
+    /// Goes on by another method; one that stopped begins anew.
+    fn switch(&mut self, method: (String, Options, f64)) -> Result<(), CommandError> {
+        if self.stopped.is_some() {
+            // The session has failed, and takes no other command.
+            let before = std::mem::replace(&mut self.method, method);
+            return self.reset().inspect_err(|_| self.method = before);
+        }
+        self.apply(&method)?;
+        self.method = method;
+        self.learn();
+        Ok(())
+    }
+
+    /// Gives the session a method: the shorter step first, which both integrators more likely bear.
+    fn apply(&mut self, (id, options, dt): &(String, Options, f64)) -> Result<(), CommandError> {
+        let integrator = Command::Integrator {
+            id: id.clone(),
+            options: options.clone(),
+        };
+        let is_other = self.given != (id.clone(), options.clone());
+        if *dt != self.session.dt() {
+            self.session.command(Command::Dt(*dt))?;
+        }
+        if is_other {
+            self.session.command(integrator)?;
+            self.given = (id.clone(), options.clone());
+        }
+        Ok(())
+    }
+
+    /// Asks for the stable step of the integrator, and for its options.
+    pub(crate) fn learn(&mut self) {
+        let (simulation, integrator) = (self.session.simulation(), self.session.integrator());
+        let found = integrator.stable_step(simulation.system());
+        let (id, options) = &self.given;
+        self.step_facts = stability::facts(
+            integrator,
+            &simulation.options_of(id, options),
+            simulation,
+            found.unwrap_or(StableStep::Unknown),
+        );
+        self.options = options::facts(id, options);
+    }
+
+    /// The limit of velocities (m/s), where there is one.
+    fn limit(&self) -> Option<f64> {
+        let guard = self.options.iter().find(|option| option.key == GUARD)?;
+        guard.value.filter(|_| guard.word.is_none())
+    }
+
+    /// Back to the beginning, with the integrator and the step as they are.
+    pub(crate) fn reset(&mut self) -> Result<(), CommandError> {
+        self.due.clear();
+        self.session.command(Command::Reset)?;
+        self.given = self.of_scene();
+        self.stopped = None;
+        (self.error, self.lag) = (f64::NAN, 0.0);
+        self.measured = Budget::default();
+        self.impulses.fill([0.0; 3]);
+        self.led.fill(None);
+        (self.span, self.saturated, self.steps) = (0.0, 0, 0);
+        (self.energies, self.settling) = (Energies::default(), Settling::default());
+        self.settling.disturbed(self.session.t());
+        self.has_stepped = false;
+        self.fit();
+        self.take_first_energy();
+        self.apply(&self.method.clone())?;
+        self.learn();
+        Ok(())
+    }
+
+    fn take_first_energy(&mut self) {
+        let state = self.session.state();
+        let energy = self
+            .session
+            .simulation()
+            .system()
+            .energy(&state.u, &state.v);
+        self.kinetic = energy.as_ref().map_or(0.0, |energy| energy.kinetic);
+        self.load_work = 0.0;
+        self.energies.first = energy.map_or(0.0, Energy::total);
+    }
+
+    /// Gives what is kept from step to step the length of the state, which a cut or a reset changes.
+    fn fit(&mut self) {
+        let u = &self.session.state().u;
+        if self.before.len() != u.len() {
+            self.before.clone_from(u);
+            self.middle.clone_from(u);
+            self.force.resize(u.len(), 0.0);
+        }
+    }
+
+    /// A command that takes effect with the first step from a simulated time (s) on.
+    pub(crate) fn command_at(&mut self, t: f64, command: Command) {
+        self.due.push_back((t, command));
+    }
+
+    /// Steps up to a simulated time (s), but not beyond; a sentence where a command was refused.
+    pub(crate) fn follow(&mut self, until: f64, hands: &[Option<Course>]) -> Option<String> {
+        let mut refused = None;
+        while self.stopped.is_none() {
+            let (t, dt) = (self.session.t(), self.session.dt());
+            let slack = 1e-6 * dt;
+            if t + dt > until + slack {
+                break;
+            }
+            while self.due.front().is_some_and(|(due, _)| *due <= t + slack) {
+                if let Some((_, command)) = self.due.pop_front() {
+                    self.settling.disturbed(t);
+                    if let Err(error) = self.session.command(command) {
+                        refused = Some(error.to_string());
+                    }
+                }
+            }
+            if let Err(reason) = self.step(hands) {
+                self.stopped = Some(reason);
+            }
+        }
+        refused
+    }
+
+    fn step(&mut self, hands: &[Option<Course>]) -> Result<(), String> {
+        let (t, dt) = (self.session.t(), self.session.dt());
+        for (tool, hand) in hands.iter().enumerate() {
+            let (Some(hand), Some(tools)) = (hand, self.tools()) else {
+                continue;
+            };
+            let pose = hand.at(t + dt);
+            if self.led[tool] == Some(pose) {
+                continue;
+            }
+            let [x, y, z, a, b, c] = pose;
+            let name = tools.tools()[tool].name.clone();
+            self.led[tool] = Some(pose);
+            self.settling.disturbed(t);
+            let command = Command::Pose {
+                tool: name,
+                position: [x, y, z],
+                rotation_vector: [a, b, c],
+            };
+            self.session
+                .command(command)
+                .map_err(|error| error.to_string())?;
+        }
+        self.before.copy_from_slice(&self.session.state().u);
+        let begun = Instant::now();
+        let stepped = self.session.step();
+        self.fit();
+        let report = stepped.map_err(|error| error.to_string())?;
+        if let Some(change) = self.session.change() {
+            self.before.copy_from_slice(&change.after.u);
+            self.settling.disturbed(t);
+        }
+        let ms = 1e3 * begun.elapsed().as_secs_f64();
+        self.ms_per_step = match self.ms_per_step.is_nan() {
+            true => ms,
+            false => 0.95 * self.ms_per_step + 0.05 * ms,
+        };
+        self.saturated += report.saturated;
+        self.steps += 1;
+        self.has_stepped = true;
+        self.span += dt;
+        self.look(dt);
+        Ok(())
+    }
+
+    /// What is summed up step by step.
+    fn look(&mut self, dt: f64) {
+        let simulation = self.session.simulation();
+        let (system, state) = (simulation.system(), self.session.state());
+        if let Some(tools) = simulation.model().tools() {
+            for (tool, impulse) in self.impulses.iter_mut().enumerate() {
+                let force = tools.report(state, tool).force;
+                for (sum, force) in impulse.iter_mut().zip(force) {
+                    *sum += dt * force;
+                }
+            }
+        }
+        for ((middle, before), u) in self.middle.iter_mut().zip(&self.before).zip(&state.u) {
+            *middle = 0.5 * (before + u);
+        }
+        let when = LoadTime::at(state.t() - 0.5 * dt).under(self.session.inputs());
+        system.external_force(when, &self.middle, &mut self.force);
+        let moved = self.before.iter().zip(&state.u).zip(&self.force);
+        self.load_work += moved
+            .map(|((before, after), force)| force * (after - before))
+            .sum::<f64>();
+        let kinetic = 0.5 * weighted_dot(system.mass(), &state.v, &state.v);
+        self.kinetic = kinetic;
+        self.settling.step(state.t(), dt, kinetic);
+    }
+
+    /// The energies, the elastic one half way through the last step, where its velocity belongs.
+    fn measure(&mut self) {
+        if !self.measured.is_due() {
+            return;
+        }
+        let begun = Instant::now();
+        let simulation = self.session.simulation();
+        let state = self.session.state();
+        let u = match self.has_stepped {
+            true => &self.middle,
+            false => &state.u,
+        };
+        let energy = simulation.system().energy(u, &state.v);
+        let tools = simulation.model().tools();
+        let energies = &mut self.energies;
+        (energies.kinetic, energies.loads) = (self.kinetic, self.load_work);
+        energies.tools = tools.map_or(0.0, |tools| tools.work(state));
+        energies.cuts = self.session.cuts().map_or(0.0, CutTotals::energy);
+        energies.elastic = energy.map_or(f64::NAN, |energy| energy.elastic);
+        let total = energies.kinetic + energies.elastic;
+        energies.scale = [total, energies.loads.abs(), energies.tools.abs()]
+            .into_iter()
+            .fold(energies.scale, f64::max);
+        self.measured.spent_since(begun);
+    }
+
+    /// Looks whether its body is another one than pages have, which they then have to be shown.
+    pub(crate) fn see_body(&mut self, uncut: &Surface) -> bool {
+        let Some(body) = body(&self.session) else {
+            return false;
+        };
+        if self.shown.as_ref().is_some_and(|shown| shown.is_of(body)) {
+            return false;
+        }
+        self.shown = Some(Shown::of(&self.session, body, uncut));
+        true
+    }
+
+    /// Whether its body was cut.
+    pub(crate) fn is_cut(&self) -> bool {
+        body(&self.session).is_some_and(|body| body.cut.is_some())
+    }
+
+    /// Its body with the surface that pages are shown of it.
+    pub(crate) fn seen_body(&self) -> Option<(&BodyModel, &Surface)> {
+        Some((body(&self.session)?, &self.shown.as_ref()?.surface))
+    }
+
+    /// Writes it into a picture, with the depth of tools in the body at rest before all cuts.
+    pub(crate) fn write(
+        &mut self,
+        frame: &mut FrameWriter,
+        uncut: &Surface,
+        field: Field,
+        anew: bool,
+    ) {
+        self.measure();
+        let t = self.session.t();
+        let limit = self.limit();
+        if let Some(shown) = &mut self.shown {
+            shown.paint(&self.session, (field, limit), anew);
+        }
+        let lights = self.lights();
+        let (colours, reasons) = packed(lights);
+        let cuts = self.cuts();
+        let (body, Some(shown)) = (body(&self.session), &self.shown) else {
+            return;
+        };
+        let state = self.session.state();
+        let tools = body.and_then(|body| body.tools.as_deref());
+        let saturated = match self.steps * state.v.len() as u64 {
+            0 => 0.0,
+            all => self.saturated as f64 / all as f64,
+        };
+        let reports = (0..self.impulses.len()).filter_map(|tool| Some(tools?.report(state, tool)));
+        let contacts: usize = reports.map(|report| report.contacts).sum();
+        let head = PaneHead {
+            step: self.session.steps() as u64,
+            t,
+            dt: self.session.dt(),
+            kinetic: self.energies.kinetic,
+            elastic: self.energies.elastic,
+            tool_work: self.energies.tools,
+            load_work: self.energies.loads,
+            ms_per_step: self.ms_per_step,
+            error: self.error,
+            lag: self.lag,
+            largest: shown.largest(),
+            saturated,
+            settling: self.settling.ratio(),
+            lights: colours,
+            reasons,
+            inverted: shown.inverted(),
+            contacts: contacts as u32,
+            balance: self.energies.balance(),
+            nodes: body.map_or(0, |body| body.mesh.points.len()) as u32,
+            tets: body.map_or(0, |body| body.mesh.tets.len()) as u32,
+            cuts,
+        };
+        frame.pane(&head, shown.surface.points.len(), self.impulses.len());
+        for (tool, impulse) in self.impulses.iter_mut().enumerate() {
+            let Some(tools) = tools else { continue };
+            let (pose, report) = (self.session.tool_pose(tool), tools.report(state, tool));
+            let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
+            let force = match self.span > 0.0 {
+                true => impulse.map(|impulse| impulse / self.span),
+                false => report.force,
+            };
+            let shape = &tools.tools()[tool].shape;
+            frame.tool(&ToolHead {
+                pose: [x, y, z, a, b, c],
+                force,
+                depth: uncut.depth(shape, &pose),
+                work: report.work,
+                gap: tools
+                    .deepest(&state.u, &pose, tool)
+                    .map_or(f64::INFINITY, |depth| depth.gap),
+                contacts: report.contacts as f64,
+            });
+            *impulse = [0.0; 3];
+        }
+        (self.span, self.saturated, self.steps) = (0.0, 0, 0);
+        frame.points(shown.places(), shown.values());
+    }
+
+    /// What was cut.
+    fn cuts(&self) -> CutHead {
+        let (Some(totals), Some(shown)) = (self.session.cuts(), &self.shown) else {
+            return CutHead {
+                area: f64::NAN,
+                energy: f64::NAN,
+                blade_work: f64::NAN,
+                pieces: 1,
+                ..CutHead::default()
+            };
+        };
+        let report = &totals.report;
+        let energy = report.energy_gained.map_or(f64::NAN, Energy::total);
+        CutHead {
+            area: report.area,
+            // Nothing is known of the energy of what was not cut yet but that it stays.
+            energy: if totals.changes == 0 { 0.0 } else { energy },
+            blade_work: totals.blade_work,
+            new_nodes: report.new_nodes as u32,
+            pieces: shown.pieces as u32,
+            removed: report.removed_tets as u32,
+            changes: totals.changes as u32,
+        }
+    }
+
+    fn lights(&self) -> [Light; 3] {
+        let bounded = match self.has_stepped {
+            false => Light::GREY,
+            true => Bounds {
+                stopped: self.stopped.is_some(),
+                saturated: self.saturated as f64,
+                inverted: self.shown.as_ref().map_or(0, Shown::inverted),
+                balance: self.energies.balance(),
+                scale: self.energies.scale,
+            }
+            .light(),
+        };
+        [
+            bounded,
+            self.settling.light(self.session.t()),
+            error_light(self.error),
+        ]
+    }
+
+    /// Its state as a checkpoint.
+    pub(crate) fn state_bytes(&self) -> Vec<u8> {
+        let system = self.session.simulation().system();
+        self.session.state().to_bytes(system)
+    }
+
+    /// All commands so far.
+    pub(crate) fn log(&self) -> String {
+        self.session.log().to_text()
+    }
+
+    /// All commands so far, where it has ended.
+    pub(crate) fn into_log(self) -> Log {
+        self.session.log().clone()
+    }
+
+    /// Checks a command before it is given.
+    pub(crate) fn check(&self, command: &Command) -> Result<(), CommandError> {
+        self.session.check(command)
+    }
+
+    /// Its settings.
+    pub(crate) fn facts(&self) -> PaneFacts {
+        PaneFacts {
+            integrator: self.session.integrator().id().to_owned(),
+            dt: self.session.dt(),
+            step: self.step_facts,
+            options: self.options.clone(),
+            stopped: self.stopped.clone(),
+        }
+    }
+
+    /// The scene on its body as it is.
+    pub(crate) fn simulation(&self) -> &Arc<Simulation> {
+        self.session.simulation()
+    }
+
+    /// The largest stable step (s) of its integrator on its body as it is, where it has one.
+    pub(crate) fn stable_step(&self) -> Option<f64> {
+        self.session.stable_step()
+    }
+
+    /// Simulated time (s).
+    pub(crate) fn t(&self) -> f64 {
+        self.session.t()
+    }
+
+    /// Step (s).
+    pub(crate) fn dt(&self) -> f64 {
+        self.session.dt()
+    }
+
+    /// Displacement (m) of the degrees of freedom.
+    pub(crate) fn u(&self) -> &[f64] {
+        &self.session.state().u
+    }
+
+    /// Displacement (m) before the last step.
+    pub(crate) fn u_before(&self) -> &[f64] {
+        &self.before
+    }
+
+    /// Position (m) and rotation vector (rad) of a tool now.
+    pub(crate) fn tool_pose(&self, tool: usize) -> [f64; 6] {
+        let pose = self.session.tool_pose(tool);
+        let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
+        [x, y, z, a, b, c]
+    }
+
+    /// The tools that touch its body.
+    pub(crate) fn tools(&self) -> Option<&Arc<Tools>> {
+        self.session.simulation().model().tools()
+    }
+}
+
+/// The body of a session.
+fn body(session: &Session) -> Option<&BodyModel> {
+    session.simulation().model().body()
+}

@@ -1,0 +1,144 @@
+//! A body as pages see it.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use sinew_core::LoadTime;
+use sinew_mesh::TetMesh;
+use sinew_scene::{BodyModel, Cutter};
+use sinew_session::Session;
+
+use crate::picture::{Colours, GONE, Seen, Surface, twins};
+use crate::protocol::{Field, NO_TWIN};
+
+/// Colours and energies take one part in so many of the time.
+const SHARE: u32 = 5;
+
+/// A task that is done as often as its share of time allows.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Budget {
+    last: Option<(Instant, Duration)>,
+}
+
+impl Budget {
+    pub(super) fn is_due(&self) -> bool {
+        self.last
+            .is_none_or(|(end, cost)| end.elapsed() >= SHARE * cost)
+    }
+
+    pub(super) fn spent_since(&mut self, begun: Instant) {
+        let now = Instant::now();
+        self.last = Some((now, now - begun));
+    }
+}
+
+/// Surface and colours of a body between two changes of it.
+pub(super) struct Shown {
+    mesh: Arc<TetMesh>,
+    pub(super) surface: Surface,
+    colours: Colours,
+    coloured: Budget,
+    displacement: Vec<[f64; 3]>,
+    /// Pieces of the body.
+    pub(super) pieces: usize,
+}
+
+impl Shown {
+    /// A body, of which this was the surface before all cuts.
+    pub(super) fn of(session: &Session, body: &BodyModel, uncut: &Surface) -> Self {
+        let surface = uncut.after_cuts(body);
+        Self {
+            mesh: Arc::clone(&body.mesh),
+            colours: Colours::new(&body.model, &surface),
+            surface,
+            coloured: Budget::default(),
+            displacement: vec![[0.0; 3]; body.mesh.points.len()],
+            pieces: session.cutter().map_or(1, Cutter::pieces),
+        }
+    }
+
+    /// Whether it shows this body.
+    pub(super) fn is_of(&self, body: &BodyModel) -> bool {
+        Arc::ptr_eq(&self.mesh, &body.mesh)
+    }
+
+    /// Takes displacements of all nodes and, as often as there is time for it or where they shall be other ones, colours.
+    pub(super) fn paint(
+        &mut self,
+        session: &Session,
+        (field, limit): (Field, Option<f64>),
+        anew: bool,
+    ) {
+        let body = session.simulation().model().body();
+        let Some(body) = body.filter(|body| self.is_of(body)) else {
+            return;
+        };
+        let (model, state) = (&body.model, session.state());
+        // The lengths are those of the model; motions that follow inputs are not among what a session has.
+        let found = model.displacements_at(
+            LoadTime::at(state.t()).under(session.inputs()),
+            &state.u,
+            &mut self.displacement,
+        );
+        if found.is_ok() && (anew || self.coloured.is_due()) {
+            let begun = Instant::now();
+            let seen = Seen {
+                model,
+                surface: &self.surface,
+                state,
+                displacement: &self.displacement,
+                tools: body.tools.as_deref(),
+                limit,
+            };
+            // Fields that a body lacks are not offered.
+            let _ = self.colours.take(field, &seen);
+            self.coloured.spent_since(begun);
+        }
+    }
+
+    /// The largest displacement (m).
+    pub(super) fn largest(&self) -> f64 {
+        let squares = self.displacement.iter();
+        let squares = squares.map(|u| u.iter().map(|u| u * u).sum::<f64>());
+        squares.fold(0.0, f64::max).sqrt()
+    }
+
+    /// Tetrahedra inside out.
+    pub(super) fn inverted(&self) -> u32 {
+        self.colours.inverted
+    }
+
+    /// Where the points of the surface are (m).
+    pub(super) fn places(&self) -> impl Iterator<Item = [f32; 3]> {
+        let points = self.surface.nodes.iter().zip(&self.surface.points);
+        points.map(|(node, point)| {
+            let u = self.displacement[*node as usize];
+            std::array::from_fn(|axis| (point[axis] + u[axis]) as f32)
+        })
+    }
+
+    /// The colours of the points.
+    pub(super) fn values(&self) -> &[f32] {
+        &self.colours.values
+    }
+}
+
+/// For each point of a surface the point of another one that is the same corner of the same tetrahedron, or [`NO_TWIN`].
+pub(super) fn twin_points(
+    (own, surface): (&BodyModel, &Surface),
+    (other, other_surface): (&BodyModel, &Surface),
+) -> Vec<u32> {
+    let twin_of = twins(own, other);
+    let mut point_of = vec![NO_TWIN; other.mesh.points.len()];
+    for (point, node) in (0..).zip(&other_surface.nodes) {
+        point_of[*node as usize] = point;
+    }
+    let points = surface
+        .nodes
+        .iter()
+        .map(|node| match twin_of[*node as usize] {
+            GONE => NO_TWIN,
+            twin => point_of[twin as usize],
+        });
+    points.collect()
+}

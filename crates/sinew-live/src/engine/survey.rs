@@ -1,0 +1,95 @@
+//! What each integrator can do on a scene.
+
+use std::io;
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+
+use sinew_core::Options;
+use sinew_integrators::{Entry, Stepper};
+use sinew_scene::Simulation;
+
+use super::{options, stability};
+use crate::protocol::{Event, IntegratorFacts, StepFacts};
+use crate::server::Shared;
+
+/// Asks what each integrator can do, on a thread of its own.
+#[derive(Debug)]
+pub(crate) struct Survey(JoinHandle<()>);
+
+impl Survey {
+    /// Begins to ask, and tells all pages then.
+    pub(crate) fn start(shared: &Arc<Shared>, simulation: &Arc<Simulation>) -> io::Result<Self> {
+        let (shared, simulation) = (Arc::clone(shared), Arc::clone(simulation));
+        let thread = thread::Builder::new().name("survey".to_owned());
+        let thread = thread.spawn(move || {
+            let list = survey(&simulation);
+            shared.tell_of_integrators(Event::Integrators { list });
+        });
+        Ok(Self(thread?))
+    }
+
+    /// Whether all were told.
+    pub(crate) fn is_finished(&self) -> bool {
+        self.0.is_finished()
+    }
+}
+
+/// An integrator that is set up on a scene where it is to be tried, or the reason for which it cannot be.
+fn set_up(
+    entry: &Entry,
+    options: &Options,
+    simulation: &Simulation,
+    is_tried: bool,
+) -> Result<Box<dyn Stepper>, String> {
+    let mut integrator = entry.build(options).map_err(|error| error.to_string())?;
+    if is_tried {
+        integrator
+            .prepare(simulation.system(), simulation.dt())
+            .map_err(|error| error.to_string())?;
+    }
+    Ok(integrator)
+}
+
+/// Asks every integrator for its stable step, and whether it refuses the scene. Those that factorise are not set up, unless there are tools,
+/// which they refuse before they factorise.
+fn survey(simulation: &Simulation) -> Vec<IntegratorFacts> {
+    let system = simulation.system();
+    let has_tools = system.contact().is_some();
+    let entries = sinew_integrators::entries().into_iter();
+    let facts = entries.map(|entry| {
+        let mut facts = IntegratorFacts {
+            name: entry.id.to_owned(),
+            summary: entry.summary.to_owned(),
+            refused: None,
+            step: StepFacts::default(),
+        };
+        let plain = Options::new();
+        let mut all = vec![plain.clone()];
+        if has_tools {
+            all.extend(options::alternatives(&entry, &plain));
+        }
+        let is_tried = has_tools || !entry.factorises;
+        let mut found = None;
+        for options in all {
+            let options = simulation.options_of(entry.id, &options);
+            match set_up(&entry, &options, simulation, is_tried) {
+                Ok(integrator) => {
+                    found = Some((integrator, options));
+                    break;
+                }
+                // That of the plain method is told.
+                Err(reason) => facts.refused = facts.refused.take().or(Some(reason)),
+            }
+        }
+        let Some((integrator, options)) = found else {
+            return facts;
+        };
+        facts.refused = None;
+        match integrator.stable_step(system) {
+            Ok(found) => facts.step = stability::facts(&*integrator, &options, simulation, found),
+            Err(error) => facts.refused = Some(error.to_string()),
+        }
+        facts
+    });
+    facts.collect()
+}

@@ -1,0 +1,284 @@
+//! A run beside the panes by which their errors are known.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+
+use sinew_scene::{Scene, Simulation};
+use sinew_session::Command;
+
+use super::common::Common;
+use super::course::Course;
+use super::pane::Pane;
+
+/// The method that is trusted, in steps that are short for it.
+const METHOD: &str = "central-difference";
+
+/// Share of the stable step.
+const SHARE: f64 = 0.9;
+
+/// Spans by which it may be behind.
+const MOST_BEHIND: usize = 1024;
+
+/// Displacements of a pane that may wait to be compared: those of a body of 20,000 nodes take half a megabyte, a thousand of which would be kept for
+/// a trusted run that is behind.
+const MOST_LOOKS: usize = 8;
+
+/// Share of an error that is left after a span: what is shown is the largest of late.
+const FADES: f64 = 0.99;
+
+/// A span that the panes have stepped through.
+struct Span {
+    /// Its end (s), and its length (s): a whole number of the trusted run's steps.
+    until: f64,
+    length: f64,
+    hands: Vec<Option<Course>>,
+    commands: Vec<(f64, Command)>,
+    looks: Vec<Look>,
+}
+
+/// A pane as it was.
+struct Look {
+    pane: usize,
+    /// Its time (s).
+    t: f64,
+    /// Its displacement (m), and the body that it belongs to.
+    u: Vec<f64>,
+    scene: Arc<Simulation>,
+}
+
+/// What is known so far.
+#[derive(Debug, Default)]
+struct Known {
+    errors: Vec<f64>,
+    failure: Option<String>,
+}
+
+/// A session on a thread of its own, which takes the same commands.
+pub(crate) struct Trusted {
+    spans: SyncSender<Span>,
+    known: Arc<Mutex<Known>>,
+    /// Simulated time (s), as bits.
+    t: Arc<AtomicU64>,
+    commands: Vec<(f64, Command)>,
+    /// Room for displacements, which comes back when they have been compared.
+    spare: Receiver<Vec<f64>>,
+}
+
+impl Trusted {
+    /// Begins where the panes begin; a sentence where that cannot be.
+    pub(crate) fn begin(scene: &Scene, panes: usize, tick: f64) -> Result<Self, String> {
+        let words = |error: &dyn std::error::Error| error.to_string();
+        let mut pane = Pane::of(scene).map_err(|error| words(&error))?;
+        // In a step that suits it, for the switch tries one.
+        let dt = pane.stable_step_of(METHOD).map_err(|error| words(&error))?;
+        let stable_step =
+            dt.ok_or_else(|| format!("{METHOD} has no stable step here that could be trusted"))?;
+        pane.use_method(METHOD, step_within(tick, stable_step))
+            .map_err(|error| words(&error))?;
+        let (spans, received) = sync_channel(MOST_BEHIND);
+        let known = Arc::new(Mutex::new(Known {
+            errors: vec![f64::NAN; panes],
+            failure: None,
+        }));
+        let t = Arc::new(AtomicU64::new(pane.t().to_bits()));
+        let (compared, spare) = sync_channel(MOST_LOOKS);
+        for _ in 0..MOST_LOOKS {
+            // There is room for all of them.
+            let _ = compared.try_send(Vec::new());
+        }
+        let follower = Follower {
+            pane,
+            known: Arc::clone(&known),
+            t: Arc::clone(&t),
+            largest: 0.0,
+            stable_step,
+            common: (0..panes).map(|_| None).collect(),
+            compared,
+        };
+        thread::Builder::new()
+            .name("trusted".to_owned())
+            .spawn(move || follower.run(&received))
+            .map_err(|error| words(&error))?;
+        Ok(Self {
+            spans,
+            known,
+            t,
+            commands: Vec::new(),
+            spare,
+        })
+    }
+
+    /// A command that the panes were given for a simulated time (s).
+    pub(crate) fn command_at(&mut self, t: f64, command: Command) {
+        self.commands.push((t, command));
+    }
+
+    /// The panes have stepped to the end (s) of a span; a sentence where the trusted run cannot follow.
+    pub(crate) fn span(
+        &mut self,
+        until: f64,
+        tick: f64,
+        hands: &[Option<Course>],
+        panes: &[Pane],
+    ) -> Result<(), String> {
+        let mut looks = Vec::new();
+        for (number, pane) in panes.iter().enumerate() {
+            if pane.stopped.is_some() {
+                continue;
+            }
+            // Where too many wait, these are not compared.
+            let Ok(mut u) = self.spare.try_recv() else {
+                break;
+            };
+            u.clear();
+            u.extend_from_slice(pane.u());
+            looks.push(Look {
+                pane: number,
+                t: pane.t(),
+                u,
+                scene: Arc::clone(pane.simulation()),
+            });
+        }
+        let span = Span {
+            until,
+            length: tick,
+            hands: hands.to_vec(),
+            commands: std::mem::take(&mut self.commands),
+            looks,
+        };
+        match self.spans.try_send(span) {
+            Ok(()) => Ok(()),
+            Err(TrySendError::Full(_)) => Err(
+                "the trusted run takes longer than real time here, so that it was ended".to_owned(),
+            ),
+            Err(TrySendError::Disconnected(_)) => {
+                let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+                let reason = known.failure.clone().unwrap_or_default();
+                Err(format!("the trusted run ended: {reason}"))
+            }
+        }
+    }
+
+    /// The error of a pane, and the time (s) by which it is old.
+    pub(crate) fn error(&self, pane: usize, t: f64) -> (f64, f64) {
+        let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let error = known.errors.get(pane).copied().unwrap_or(f64::NAN);
+        (error, t - f64::from_bits(self.t.load(Ordering::Relaxed)))
+    }
+}
+
+/// The longest step (s) of which a whole number make a span and that is short for the trusted method.
+fn step_within(span: f64, stable_step: f64) -> f64 {
+    span / (span / (SHARE * stable_step)).ceil().max(1.0)
+}
+
+struct Follower {
+    pane: Pane,
+    known: Arc<Mutex<Known>>,
+    t: Arc<AtomicU64>,
+    /// The largest displacement (m) so far.
+    largest: f64,
+    stable_step: f64,
+    /// What the body of each pane has in common with its own.
+    common: Vec<Option<Common>>,
+    /// Where displacements go that have been compared.
+    compared: SyncSender<Vec<f64>>,
+}
+
+impl Follower {
+    fn run(mut self, spans: &Receiver<Span>) {
+        while let Ok(span) = spans.recv() {
+            if let Err(failure) = self.follow(span) {
+                let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+                known.failure = Some(failure);
+                return;
+            }
+            self.t.store(self.pane.t().to_bits(), Ordering::Relaxed);
+        }
+    }
+
+    fn follow(&mut self, span: Span) -> Result<(), String> {
+        let dt = step_within(span.length, self.stable_step);
+        if self.pane.dt() != dt {
+            self.pane.use_step(dt).map_err(|error| error.to_string())?;
+        }
+        for (t, command) in span.commands {
+            self.pane.command_at(t, command);
+        }
+        let mut looks = span.looks;
+        looks.sort_by(|a, b| a.t.total_cmp(&b.t));
+        for look in looks {
+            let (number, t) = (look.pane, look.t);
+            self.go(t, &span.hands)?;
+            let own = self.pane.t();
+            if t - own > 1e-6 * dt {
+                self.go(own + dt, &span.hands)?;
+            }
+            let error = self.error(&look);
+            // Nobody waits for it where the panes have ended.
+            let _ = self.compared.try_send(look.u);
+            let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+            let late = FADES * known.errors[number];
+            known.errors[number] = if late > error { late } else { error };
+        }
+        self.go(span.until, &span.hands)
+    }
+
+    fn go(&mut self, until: f64, hands: &[Option<Course>]) -> Result<(), String> {
+        let refused = self.pane.follow(until, hands);
+        if let Some(reason) = self.pane.stopped.clone().or(refused) {
+            return Err(reason);
+        }
+        // Of a body that was cut it may be another one.
+        if let Some(stable_step) = self.pane.stable_step() {
+            self.stable_step = stable_step;
+        }
+        Ok(())
+    }
+
+    /// The largest distance of a pane from here, at what both bodies have left, over the largest displacement so far; not a number where that is nothing.
+    fn error(&mut self, look: &Look) -> f64 {
+        let own = self.pane.simulation().model().body();
+        let (Some(own), Some(other)) = (own, look.scene.model().body()) else {
+            return f64::NAN;
+        };
+        let common = &mut self.common[look.pane];
+        let common = match common.take().filter(|common| common.is_of(own, other)) {
+            Some(known) => common.insert(known),
+            None => common.insert(Common::of(own, other)),
+        };
+        // The time lies within the last step.
+        let share = 1.0 - (self.pane.t() - look.t) / self.pane.dt();
+        let (before, after) = (self.pane.u_before(), self.pane.u());
+        let u = |dof: usize| before[dof] + share * (after[dof] - before[dof]);
+        let Some([largest, away]) = common.largest(u, &look.u) else {
+            return f64::NAN;
+        };
+        self.largest = self.largest.max(largest);
+        if self.largest > 0.0 {
+            away / self.largest
+        } else {
+            f64::NAN
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_fill_a_span_and_stay_below_the_stable_one() {
+        for (span, stable, expected) in [
+            (0.02, 0.0018, 13.0),
+            (0.001, 0.0018, 1.0),
+            (0.00162, 0.0018, 1.0),
+        ] {
+            let dt = step_within(span, stable);
+            assert!(dt <= SHARE * stable * (1.0 + 1e-12));
+            assert!((span / dt - expected).abs() < 1e-9, "{span} {dt}");
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Errors of the live page.
+
+use sinew_core::OptionError;
+use sinew_scene::SceneError;
+use sinew_session::{CommandError, SessionError};
+
+/// A page that cannot be served, or a scene that cannot be driven.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LiveError {
+    /// The scene cannot be used.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The scene cannot be driven.
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    /// An integrator or a step of a pane is refused.
+    #[error(transparent)]
+    Command(#[from] CommandError),
+    /// An integrator that does not exist, or an option that it does not take.
+    #[error(transparent)]
+    Option(#[from] OptionError),
+    /// A scene without a body.
+    #[error("a single mass has no surface to show; `sinew run` writes its motion")]
+    NoBody,
+    /// A port that another program listens to.
+    #[error("port {port} of this computer is taken; --port 0 takes a free one")]
+    PortTaken {
+        /// The port.
+        port: u16,
+    },
+    /// A port that cannot be listened to.
+    #[error("cannot listen to port {port} of this computer: {source}; --port 0 takes a free one")]
+    Listen {
+        /// The port.
+        port: u16,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// No random numbers for the address of the page.
+    #[error("the system gives no random numbers for the page's address: {0}")]
+    Random(getrandom::Error),
+    /// A thread or a timer that the system refuses.
+    #[error("cannot begin to serve: {0}")]
+    Serve(std::io::Error),
+    /// A simulation that ended by a fault of this program.
+    #[error(
+        "the simulation ended by a fault of this program; please report what was done until then"
+    )]
+    Simulation,
+}
+
+impl LiveError {
+    /// Whether what was asked for cannot be used, as opposed to a failure of this computer.
+    #[must_use]
+    pub fn is_refusal(&self) -> bool {
+        !matches!(self, Self::Random(_) | Self::Serve(_) | Self::Simulation)
+    }
+}

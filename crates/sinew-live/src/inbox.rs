@@ -1,0 +1,165 @@
+//! What pages ask of the simulation.
+
+use std::collections::VecDeque;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use crate::protocol::Order;
+
+/// Most orders that wait: more come from no hand.
+const MOST_ORDERS: usize = 256;
+
+/// A request of a client, by the number that the client gave it.
+#[derive(Clone, Debug)]
+pub(crate) struct Request<T> {
+    /// The client.
+    pub(crate) client: u32,
+    /// The client's own number of the command.
+    pub(crate) id: u32,
+    /// What is asked for.
+    pub(crate) what: T,
+}
+
+impl<T> Request<T> {
+    /// What a client asks for under its number.
+    pub(crate) fn of(client: u32, id: u32, what: T) -> Self {
+        Self { client, id, what }
+    }
+}
+
+/// Position (m) and rotation vector (rad) of a tool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Place {
+    /// Number of the tool.
+    pub(crate) tool: usize,
+    /// Position (m), then rotation vector (rad).
+    pub(crate) pose: [f64; 6],
+}
+
+/// What waits for the simulation: of poses the latest of each tool, of all else everything in order.
+#[derive(Debug, Default)]
+pub(crate) struct Waiting {
+    /// The latest pose asked for, of each tool for which there is one.
+    pub(crate) poses: Vec<Request<Place>>,
+    /// Everything else, in the order in which it came.
+    pub(crate) orders: VecDeque<Request<Order>>,
+    /// Clients that are new and know no settings.
+    pub(crate) entered: Vec<u32>,
+    /// Whether the simulation shall end.
+    pub(crate) ends: bool,
+    woken: bool,
+}
+
+/// The one way from pages to the simulation.
+#[derive(Debug, Default)]
+pub(crate) struct Inbox {
+    waiting: Mutex<Waiting>,
+    wake: Condvar,
+}
+
+impl Inbox {
+    /// Takes a pose in the place of an earlier one of the same tool.
+    pub(crate) fn pose(&self, request: Request<Place>) {
+        let mut waiting = self.lock();
+        let earlier = waiting
+            .poses
+            .iter_mut()
+            .find(|earlier| earlier.what.tool == request.what.tool);
+        match earlier {
+            Some(earlier) => *earlier = request,
+            None => waiting.poses.push(request),
+        }
+        self.wake(waiting);
+    }
+
+    /// Takes an order behind the others; `false` where too many wait.
+    pub(crate) fn order(&self, request: Request<Order>) -> bool {
+        let mut waiting = self.lock();
+        let has_room = waiting.orders.len() < MOST_ORDERS;
+        if has_room {
+            waiting.orders.push_back(request);
+        }
+        self.wake(waiting);
+        has_room
+    }
+
+    /// Tells of a new client.
+    pub(crate) fn enter(&self, client: u32) {
+        let mut waiting = self.lock();
+        waiting.entered.push(client);
+        self.wake(waiting);
+    }
+
+    /// Wakes the simulation, for a page gave a credit.
+    pub(crate) fn nudge(&self) {
+        self.wake(self.lock());
+    }
+
+    /// Ends the simulation.
+    pub(crate) fn end(&self) {
+        let mut waiting = self.lock();
+        waiting.ends = true;
+        self.wake(waiting);
+    }
+
+    /// Moves what waits into `taken`, which keeps its room, after at most `patience` of waiting for anything.
+    pub(crate) fn take(&self, taken: &mut Waiting, patience: Duration) {
+        let mut waiting = self.lock();
+        if !waiting.woken && !patience.is_zero() {
+            let slept = self.wake.wait_timeout(waiting, patience);
+            waiting = slept.unwrap_or_else(PoisonError::into_inner).0;
+        }
+        taken.poses.clear();
+        taken.poses.append(&mut waiting.poses);
+        taken.orders.clear();
+        taken.orders.append(&mut waiting.orders);
+        taken.entered.clear();
+        taken.entered.append(&mut waiting.entered);
+        taken.ends = waiting.ends;
+        waiting.woken = false;
+    }
+
+    fn wake(&self, mut waiting: MutexGuard<'_, Waiting>) {
+        waiting.woken = true;
+        drop(waiting);
+        self.wake.notify_one();
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Waiting> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pose(tool: usize, id: u32) -> Request<Place> {
+        let pose = [f64::from(id); 6];
+        Request::of(1, id, Place { tool, pose })
+    }
+
+    #[test]
+    fn of_poses_the_latest_is_kept_and_of_orders_all() {
+        let (inbox, mut taken) = (Inbox::default(), Waiting::default());
+        for id in 0..5 {
+            inbox.pose(pose(id as usize % 2, id));
+            assert!(inbox.order(Request::of(1, id, Order::Step)));
+        }
+        inbox.take(&mut taken, Duration::ZERO);
+        let ids = |id: &Request<Place>| id.id;
+        assert_eq!(taken.poses.iter().map(ids).collect::<Vec<_>>(), [4, 3]);
+        let order: Vec<u32> = taken.orders.iter().map(|order| order.id).collect();
+        assert_eq!(order, [0, 1, 2, 3, 4]);
+        inbox.take(&mut taken, Duration::ZERO);
+        assert!(taken.poses.is_empty() && taken.orders.is_empty());
+    }
+
+    #[test]
+    fn a_flood_of_orders_is_cut() {
+        let inbox = Inbox::default();
+        let kept = (0..1000).filter(|id| inbox.order(Request::of(1, *id, Order::Reset)));
+        let kept = kept.count();
+        assert_eq!(kept, MOST_ORDERS);
+    }
+}

@@ -1,0 +1,300 @@
+//! A scene behind a page.
+
+use std::future::IntoFuture;
+use std::io::ErrorKind;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::pin::pin;
+use std::sync::Arc;
+use std::thread;
+use std::time::Duration;
+
+use futures_util::future::{Either, select};
+use sinew_core::Inputs;
+use sinew_fem::{Law, LoadKind};
+use sinew_scene::{BodyModel, Scene, Simulation};
+use sinew_session::Session;
+use sinew_tools::{Convex, Part, Tool};
+use tokio::net::TcpListener;
+use tokio::runtime::{Builder, Runtime};
+
+use crate::ended::Ended;
+use crate::engine::{Beginning, Engine, Survey};
+use crate::error::LiveError;
+use crate::pane_choice::PaneChoice;
+use crate::picture::{Colours, Surface};
+use crate::protocol::{Field, HandFacts, Hertz, LoadFacts, PartFacts, Scenery, ToolFacts};
+use crate::server::{Shared, Token, router};
+
+/// Time between two looks at whether the page shall end.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Three loads of a scene, along x, y and z, by which a hand pulls at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hand {
+    /// Names of the loads.
+    pub loads: [String; 3],
+    /// Force (N) of each.
+    pub unit: f64,
+    /// The place (m) at rest.
+    pub at: [f64; 3],
+    /// A sentence for the page.
+    pub note: String,
+}
+
+/// What a page is to show.
+#[derive(Debug)]
+pub struct Settings {
+    /// The scene.
+    pub scene: Scene,
+    /// The panes to begin with, one or two.
+    pub panes: Vec<PaneChoice>,
+    /// The second pane, where it is asked for later.
+    pub second: PaneChoice,
+    /// Loads by which a hand pulls; they are 0 at the beginning.
+    pub hand: Option<Hand>,
+    /// The port of this computer; 0 for a free one.
+    pub port: u16,
+}
+
+/// A scene behind a page, which nobody has opened yet.
+pub struct Live {
+    runtime: Runtime,
+    listener: TcpListener,
+    address: SocketAddr,
+    token: Token,
+    shared: Arc<Shared>,
+    engine: Engine,
+    simulation: Arc<Simulation>,
+}
+
+impl Live {
+    /// Builds the sessions and listens to the port.
+    ///
+    /// # Errors
+    /// [`LiveError`] for a scene that cannot be driven, or a port that cannot be listened to.
+    pub fn open(settings: Settings) -> Result<Self, LiveError> {
+        let Settings {
+            scene,
+            panes,
+            second,
+            hand,
+            port,
+        } = settings;
+        let token = Token::random().map_err(LiveError::Random)?;
+        let runtime = Builder::new_current_thread()
+            .enable_all()
+            .build()
+            .map_err(LiveError::Serve)?;
+        // Before the scene is built, which may take long.
+        let listener = runtime
+            .block_on(TcpListener::bind((Ipv4Addr::LOCALHOST, port)))
+            .map_err(|source| match source.kind() {
+                ErrorKind::AddrInUse => LiveError::PortTaken { port },
+                _ => LiveError::Listen { port, source },
+            })?;
+        let address = listener.local_addr().map_err(LiveError::Serve)?;
+        let session = Session::new(scene.clone())?;
+        let simulation = Arc::clone(session.simulation());
+        let body = simulation.model().body().ok_or(LiveError::NoBody)?;
+        let surface = Surface::of(&body.mesh);
+        let loads = loads_of(&simulation, body);
+        let laws: Vec<&Law> = body
+            .problem
+            .regions
+            .iter()
+            .map(|region| &region.law)
+            .collect();
+        let fields = Colours::fields_of(&laws, body.tools.is_some());
+        let pulls = |load: &LoadFacts| {
+            hand.as_ref()
+                .is_some_and(|hand| hand.loads.contains(&load.name))
+        };
+        let beginning = Beginning {
+            scene: scene.clone(),
+            panes,
+            second,
+            field: fields.first().copied().unwrap_or(Field::Displacement),
+            factors: loads
+                .iter()
+                .map(|load| if pulls(load) { 0.0 } else { 1.0 })
+                .collect(),
+            loads: loads.iter().map(|load| load.name.clone()).collect(),
+        };
+        let scenery = Scenery {
+            title: scene.title().to_owned(),
+            version: env!("CARGO_PKG_VERSION"),
+            client: 0,
+            nodes: body.mesh.points.len(),
+            tets: body.mesh.tets.len(),
+            cuts: simulation.is_cut(),
+            fields,
+            youngs_modulus: laws
+                .iter()
+                .map(|law| law.youngs_modulus())
+                .fold(0.0, f64::max),
+            tools: tools_of(body, &simulation),
+            hand: hand.and_then(|hand| hand_facts(&hand, &loads, &surface)),
+            loads,
+            hertz: hertz_of(&laws),
+        };
+        let engine = Engine::new(beginning, session, surface)?;
+        let shared = Arc::new(Shared::new(scenery));
+        Ok(Self {
+            runtime,
+            listener,
+            address,
+            token,
+            shared,
+            engine,
+            simulation,
+        })
+    }
+
+    /// The address of the page, with its secret.
+    #[must_use]
+    pub fn url(&self) -> String {
+        format!("http://{}/{}/", self.address, self.token)
+    }
+
+    /// Serves the page and simulates until `ends` says so.
+    ///
+    /// # Errors
+    /// [`LiveError::Serve`] where the system refuses a thread or a connection.
+    pub fn run(self, ends: impl Fn() -> bool) -> Result<Ended, LiveError> {
+        let Self {
+            runtime,
+            listener,
+            token,
+            shared,
+            engine,
+            simulation,
+            ..
+        } = self;
+        let survey = Survey::start(&shared, &simulation).map_err(LiveError::Serve)?;
+        let simulated = {
+            let shared = Arc::clone(&shared);
+            thread::Builder::new()
+                .name("simulation".to_owned())
+                .spawn(move || engine.run(&shared, survey))
+                .map_err(LiveError::Serve)?
+        };
+        let router = router(Arc::clone(&shared), token);
+        let outcome = runtime.block_on(async {
+            let server = pin!(axum::serve(listener, router).into_future());
+            let end = pin!(async {
+                let mut look = tokio::time::interval(LOOK);
+                while !ends() && !simulated.is_finished() {
+                    look.tick().await;
+                }
+                // Pages are told that the connection closes.
+                shared.clients.dismiss();
+                tokio::time::sleep(LOOK).await;
+            });
+            match select(server, end).await {
+                Either::Left((outcome, _)) => outcome,
+                Either::Right(_) => Ok(()),
+            }
+        });
+        shared.inbox.end();
+        let ended = simulated.join();
+        runtime.shutdown_background();
+        outcome.map_err(LiveError::Serve)?;
+        ended.map_err(|_| LiveError::Simulation)
+    }
+}
+
+fn loads_of(simulation: &Simulation, body: &BodyModel) -> Vec<LoadFacts> {
+    let names = simulation.load_names().into_iter().enumerate();
+    let facts = names.map(|(place, name)| {
+        let what = match body.problem.loads.get(place) {
+            Some(load) => format!("{}, {}", kind_of(&load.kind), load.on),
+            None => name.clone(),
+        };
+        LoadFacts { name, what }
+    });
+    facts.collect()
+}
+
+/// A kind of load with its size, in words.
+fn kind_of(kind: &LoadKind) -> String {
+    let length = |vector: &[f64; 3]| vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+    match kind {
+        LoadKind::Traction(traction) => format!("{} Pa", length(traction)),
+        LoadKind::Pressure(pressure) | LoadKind::FollowingPressure(pressure) => {
+            format!("pressure of {pressure} Pa")
+        }
+        LoadKind::Force(force) => format!("{} N", length(force)),
+    }
+}
+
+fn tools_of(body: &BodyModel, simulation: &Simulation) -> Vec<ToolFacts> {
+    let Some(tools) = &body.tools else {
+        return Vec::new();
+    };
+    let state = simulation.initial_state();
+    let facts = tools.tools().iter().enumerate().map(|(index, tool)| {
+        let pose = tools.pose(state, Inputs::none(), index);
+        let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
+        let Tool { name, shape, .. } = tool;
+        ToolFacts {
+            name: name.clone(),
+            parts: shape.parts().iter().map(part_facts).collect(),
+            start: [x, y, z, a, b, c],
+        }
+    });
+    facts.collect()
+}
+
+fn part_facts(part: &Part) -> PartFacts {
+    let (kind, sizes) = match part.convex {
+        Convex::Sphere { radius, .. } => ("sphere", vec![radius]),
+        Convex::Capsule { radius, length, .. } => ("capsule", vec![radius, length]),
+        Convex::Plane => ("plane", Vec::new()),
+        Convex::Cuboid { size, .. } => ("box", size.to_vec()),
+    };
+    PartFacts {
+        kind,
+        sizes,
+        position: part.pose.position(),
+        rotation: part.pose.rotation_vector(),
+    }
+}
+
+fn hand_facts(hand: &Hand, loads: &[LoadFacts], surface: &Surface) -> Option<HandFacts> {
+    let place = |name: &String| loads.iter().position(|load| load.name == *name);
+    let [x, y, z] = hand.loads.each_ref().map(place);
+    let away = |point: &[f64; 3]| -> f64 {
+        point
+            .iter()
+            .zip(hand.at)
+            .map(|(a, b)| (a - b).powi(2))
+            .sum()
+    };
+    let points = surface.points.iter().enumerate();
+    let nearest = points.min_by(|a, b| away(a.1).total_cmp(&away(b.1)))?;
+    Some(HandFacts {
+        loads: [x?, y?, z?],
+        unit: hand.unit,
+        point: nearest.0,
+        note: hand.note.clone(),
+    })
+}
+
+/// The constants of a body of one isotropic material.
+fn hertz_of(laws: &[&Law]) -> Option<Hertz> {
+    let [law] = laws else { return None };
+    match law {
+        Law::Linear {
+            youngs_modulus,
+            poissons_ratio,
+        } => Some(Hertz {
+            youngs_modulus: *youngs_modulus,
+            poissons_ratio: *poissons_ratio,
+        }),
+        Law::Hyperelastic { parameters, .. } => Some(Hertz {
+            youngs_modulus: parameters.youngs_modulus,
+            poissons_ratio: parameters.poissons_ratio,
+        }),
+        Law::Springs { .. } => None,
+    }
+}

@@ -1,0 +1,10 @@
+//! What a pane begins with.
+
+/// Integrator and step of a pane.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PaneChoice {
+    /// The integrator; `None` for that of the scene.
+    pub integrator: Option<String>,
+    /// The step (s); `None` for that of the scene.
+    pub dt: Option<f64>,
+}

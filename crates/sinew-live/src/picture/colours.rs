@@ -1,0 +1,217 @@
+//! What colours show at the points of the surface.
+
+use sinew_core::{Contact, State};
+use sinew_fem::stress::von_mises;
+use sinew_fem::{FieldError, Law, Model};
+use sinew_tools::{SurfacePressures, Tools};
+
+use super::surface::Surface;
+use crate::protocol::Field;
+
+/// The value of a point at tetrahedra that are inside out: the page shows it in a colour of its own.
+const INSIDE_OUT: f32 = f32::NAN;
+
+/// Values of a field at the points of a surface.
+#[derive(Debug)]
+pub(crate) struct Colours {
+    /// The value of each point; not a number at tetrahedra that are inside out.
+    pub(crate) values: Vec<f32>,
+    /// Number of tetrahedra that are inside out.
+    pub(crate) inverted: u32,
+    /// Place of each node among the points, or `NOWHERE`.
+    point_of: Vec<u32>,
+    sums: Vec<f64>,
+    weights: Vec<f64>,
+    volumes: Vec<f64>,
+    /// Forces (N) of contact on the degrees of freedom, and on the points.
+    forces: Vec<f64>,
+    at_points: Vec<[f64; 3]>,
+    pressures: SurfacePressures,
+}
+
+/// Share of a limit at which a velocity counts as clamped, which leaves it there but for rounding.
+const AT_LIMIT: f64 = 1.0 - 1e-9;
+
+const NOWHERE: u32 = u32::MAX;
+
+/// What a field is taken from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen<'a> {
+    /// The body.
+    pub(crate) model: &'a Model,
+    /// Its surface.
+    pub(crate) surface: &'a Surface,
+    /// The state.
+    pub(crate) state: &'a State,
+    /// Displacement (m) of each node of the mesh then.
+    pub(crate) displacement: &'a [[f64; 3]],
+    /// The tools.
+    pub(crate) tools: Option<&'a Tools>,
+    /// The limit of velocities (m/s), where there is one.
+    pub(crate) limit: Option<f64>,
+}
+
+impl Colours {
+    pub(crate) fn new(model: &Model, surface: &Surface) -> Self {
+        let mesh = model.mesh();
+        let mut point_of = vec![NOWHERE; mesh.points.len()];
+        for (point, node) in (0..).zip(&surface.nodes) {
+            point_of[*node as usize] = point;
+        }
+        let volumes = (0..mesh.tets.len()).map(|tet| mesh.volume(tet));
+        let points = surface.points.len();
+        Self {
+            values: vec![0.0; points],
+            inverted: 0,
+            point_of,
+            sums: vec![0.0; points],
+            weights: vec![0.0; points],
+            volumes: volumes.collect(),
+            forces: Vec::new(),
+            at_points: vec![[0.0; 3]; points],
+            pressures: SurfacePressures::default(),
+        }
+    }
+
+    /// The fields that a body has.
+    pub(crate) fn fields_of(laws: &[&Law], has_tools: bool) -> Vec<Field> {
+        let mut fields = vec![Field::Strain, Field::Displacement];
+        let has_stress = laws.iter().all(|law| !matches!(law, Law::Springs { .. }));
+        if has_stress {
+            fields.insert(0, Field::Stress);
+        }
+        if laws.iter().all(|law| matches!(law, Law::Linear { .. })) {
+            fields.push(Field::EnergyDensity);
+        }
+        fields.push(Field::Saturated);
+        if has_tools {
+            fields.push(Field::Pressure);
+        }
+        fields
+    }
+
+    /// Computes a field anew.
+    pub(crate) fn take(&mut self, field: Field, seen: &Seen<'_>) -> Result<(), FieldError> {
+        match field {
+            Field::Stress | Field::Strain | Field::EnergyDensity => {
+                return self.of_tets(field, seen);
+            }
+            Field::Displacement => {
+                for (value, node) in self.values.iter_mut().zip(&seen.surface.nodes) {
+                    *value = length(seen.displacement[*node as usize]) as f32;
+                }
+            }
+            Field::Saturated => self.saturated(seen),
+            Field::Pressure => self.pressure(seen),
+        }
+        self.mark_inverted(seen)
+    }
+
+    /// Means over the tetrahedra at each point, by volume.
+    fn of_tets(&mut self, field: Field, seen: &Seen<'_>) -> Result<(), FieldError> {
+        self.sums.fill(0.0);
+        self.weights.fill(0.0);
+        self.inverted = 0;
+        let tets = seen.model.deformed_tets(seen.displacement)?;
+        for ((tet, nodes), volume) in tets.zip(&seen.model.mesh().tets).zip(&self.volumes) {
+            self.inverted += u32::from(tet.is_inverted);
+            let value = match field {
+                Field::Strain => 2.0 / 3.0 * von_mises(&tet.strain),
+                Field::EnergyDensity => tet
+                    .stress
+                    .map_or(0.0, |stress| 0.5 * contracted(&stress, &tet.strain)),
+                _ => tet.stress.map_or(0.0, |stress| von_mises(&stress)),
+            };
+            let value = if tet.is_inverted { f64::NAN } else { value };
+            for node in nodes {
+                let point = self.point_of[*node as usize] as usize;
+                if let Some(sum) = self.sums.get_mut(point) {
+                    *sum += volume * value;
+                    self.weights[point] += volume;
+                }
+            }
+        }
+        let means = self.sums.iter().zip(&self.weights);
+        for (value, (sum, weight)) in self.values.iter_mut().zip(means) {
+            *value = (sum / weight) as f32;
+        }
+        Ok(())
+    }
+
+    fn mark_inverted(&mut self, seen: &Seen<'_>) -> Result<(), FieldError> {
+        self.inverted = 0;
+        let tets = seen.model.deformed_tets(seen.displacement)?;
+        for (tet, nodes) in tets.zip(&seen.model.mesh().tets) {
+            if tet.is_inverted {
+                self.inverted += 1;
+                for node in nodes {
+                    let point = self.point_of[*node as usize] as usize;
+                    if let Some(value) = self.values.get_mut(point) {
+                        *value = INSIDE_OUT;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn saturated(&mut self, seen: &Seen<'_>) {
+        self.values.fill(0.0);
+        let Some(limit) = seen.limit else { return };
+        for (v, node) in seen
+            .state
+            .v
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .zip(seen.model.nodes())
+        {
+            let is_at_limit = length(*v) >= AT_LIMIT * limit;
+            let point = self.point_of[*node as usize] as usize;
+            if let Some(value) = self.values.get_mut(point) {
+                *value = f32::from(u8::from(is_at_limit));
+            }
+        }
+    }
+
+    /// The pressure of contact, as the fields of a run have it.
+    fn pressure(&mut self, seen: &Seen<'_>) {
+        self.values.fill(0.0);
+        let Some(tools) = seen.tools else { return };
+        self.forces.clear();
+        self.forces.resize(seen.state.v.len(), 0.0);
+        tools.add_forces(seen.state, true, &mut self.forces);
+        self.at_points.fill([0.0; 3]);
+        let nodes = seen.model.nodes();
+        for (node, force) in nodes.iter().zip(self.forces.as_chunks::<3>().0) {
+            let point = self.point_of[*node as usize] as usize;
+            if let Some(own) = self.at_points.get_mut(point) {
+                *own = *force;
+            }
+        }
+        let surface = seen.surface;
+        let place = |point: usize| -> [f64; 3] {
+            let (rest, u) = (
+                surface.points[point],
+                seen.displacement[surface.nodes[point] as usize],
+            );
+            std::array::from_fn(|axis| rest[axis] + u[axis])
+        };
+        let pressures = &mut self.sums;
+        self.pressures
+            .take(&surface.triangles, place, &self.at_points, pressures);
+        for (value, pressure) in self.values.iter_mut().zip(pressures) {
+            *value = *pressure as f32;
+        }
+    }
+}
+
+fn length(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// The product of two symmetric tensors.
+fn contracted(a: &[f64; 6], b: &[f64; 6]) -> f64 {
+    let product = |places: std::ops::Range<usize>| -> f64 { places.map(|i| a[i] * b[i]).sum() };
+    product(0..3) + 2.0 * product(3..6)
+}

@@ -1,0 +1,9 @@
+//! What a page is shown of a body: its surface, with colours.
+
+mod colours;
+mod surface;
+mod twins;
+
+pub(crate) use colours::{Colours, Seen};
+pub(crate) use surface::Surface;
+pub(crate) use twins::{GONE, twins};

@@ -1,0 +1,176 @@
+//! Commands of a page.
+
+use serde::Deserialize;
+
+/// A command with the page's own number.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+pub(crate) struct Said {
+    /// The number, which rises from command to command; pictures say which was the last that they contain.
+    pub(crate) id: u32,
+    /// The command.
+    #[serde(flatten)]
+    pub(crate) order: Order,
+}
+
+/// A command.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(tag = "do", rename_all = "snake_case")]
+pub(crate) enum Order {
+    /// A tool shall be there.
+    Pose {
+        /// Number of the tool.
+        tool: usize,
+        /// Position (m).
+        position: [f64; 3],
+        /// Rotation vector (rad).
+        rotation: [f64; 3],
+    },
+    /// A load of the scene times a factor.
+    Load {
+        /// Its name.
+        load: String,
+        /// The factor.
+        factor: f64,
+    },
+    /// A cut by the sheet that a blade sweeps, as the body lies then.
+    Cut {
+        /// Both ends (m) of the blade before.
+        from: [[f64; 3]; 2],
+        /// Both ends (m) after.
+        to: [[f64; 3]; 2],
+    },
+    /// Another integrator in a pane.
+    Integrator {
+        /// The pane, from 0.
+        pane: usize,
+        /// The name.
+        name: String,
+    },
+    /// Another step in a pane.
+    Dt {
+        /// The pane, from 0.
+        pane: usize,
+        /// The step (s).
+        dt: f64,
+    },
+    /// Another option of a pane's integrator: a word, a number, or both.
+    Option {
+        /// The pane, from 0.
+        pane: usize,
+        /// The key.
+        key: String,
+        /// The word.
+        word: Option<String>,
+        /// The number.
+        number: Option<f64>,
+    },
+    /// Time stops or goes on.
+    Pause {
+        /// Whether it stops.
+        on: bool,
+    },
+    /// One step while time stops.
+    Step,
+    /// Back to the beginning.
+    Reset,
+    /// One pane or two.
+    Panes {
+        /// How many.
+        count: usize,
+    },
+    /// What colours show.
+    Field {
+        /// The field.
+        name: Field,
+    },
+    /// A trusted run beside, by which the error is known, or none.
+    Trusted {
+        /// Whether there is one.
+        on: bool,
+    },
+    /// A folder with the scene, the state and all commands so far.
+    Save,
+}
+
+/// What colours show.
+#[derive(Clone, Copy, Debug, Deserialize, serde::Serialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+#[repr(u32)]
+pub(crate) enum Field {
+    /// The equivalent stress of von Mises (Pa).
+    Stress,
+    /// The equivalent strain of von Mises (fraction).
+    Strain,
+    /// The length of the displacement (m).
+    Displacement,
+    /// Half of stress times strain (J/m3).
+    EnergyDensity,
+    /// Cells at their limit of velocity (1) and others (0).
+    Saturated,
+    /// The pressure of tools (Pa).
+    Pressure,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(text: &str) -> Option<Order> {
+        serde_json::from_str::<Said>(text)
+            .ok()
+            .map(|said| said.order)
+    }
+
+    #[test]
+    fn commands_are_read() {
+        let pose = said(r#"{"id":3,"do":"pose","tool":0,"position":[0,0,0.1],"rotation":[0,0,0]}"#);
+        assert!(
+            matches!(pose, Some(Order::Pose { tool: 0, position, .. }) if position == [0.0, 0.0, 0.1])
+        );
+        assert_eq!(said(r#"{"id":1,"do":"reset"}"#), Some(Order::Reset));
+        assert_eq!(
+            said(r#"{"id":1,"do":"dt","pane":1,"dt":0.02}"#),
+            Some(Order::Dt { pane: 1, dt: 0.02 })
+        );
+        assert_eq!(
+            said(r#"{"id":1,"do":"option","pane":0,"key":"sweeps","number":8}"#),
+            Some(Order::Option {
+                pane: 0,
+                key: "sweeps".to_owned(),
+                word: None,
+                number: Some(8.0)
+            })
+        );
+        assert_eq!(
+            said(r#"{"id":1,"do":"cut","from":[[0,0,1],[0,0,0]],"to":[[1,0,1],[1,0,0]]}"#),
+            Some(Order::Cut {
+                from: [[0.0, 0.0, 1.0], [0.0; 3]],
+                to: [[1.0, 0.0, 1.0], [1.0, 0.0, 0.0]],
+            })
+        );
+        let field = Order::Field {
+            name: Field::EnergyDensity,
+        };
+        assert_eq!(
+            said(r#"{"id":1,"do":"field","name":"energy_density"}"#),
+            Some(field)
+        );
+    }
+
+    #[test]
+    fn what_is_no_command_is_refused() {
+        for text in [
+            "",
+            "{}",
+            "[]",
+            "null",
+            r#"{"id":-1,"do":"reset"}"#,
+            r#"{"id":1,"do":"pose"}"#,
+            r#"{"id":1,"do":"fly"}"#,
+            r#"{"id":1,"do":"cut","from":[[0,0,1]],"to":[[1,0,1],[1,0,0]]}"#,
+            r#"{"do":"reset"}"#,
+        ] {
+            assert_eq!(said(text), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! What pages are told in words.
+
+use serde::Serialize;
+
+use super::command::Field;
+
+/// Something that happened.
+#[derive(Debug, Serialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+pub(crate) enum Event {
+    /// What there is to see; first of all.
+    Scenery(Box<Scenery>),
+    /// The settings as they are now.
+    Settings {
+        /// Each pane.
+        panes: Vec<PaneFacts>,
+        /// Whether time stops.
+        paused: bool,
+        /// What colours show.
+        field: Field,
+        /// Factors of the loads, in the order of the scenery.
+        factors: Vec<f64>,
+        /// Whether a trusted run goes beside.
+        trusted: bool,
+    },
+    /// What the integrators can do on this scene.
+    Integrators {
+        /// Each of them.
+        list: Vec<IntegratorFacts>,
+    },
+    /// A command that is refused, or a message that is no command.
+    Refused {
+        /// Why.
+        reason: String,
+    },
+    /// A pane that cannot go on.
+    Stopped {
+        /// The pane.
+        pane: usize,
+        /// Why.
+        reason: String,
+    },
+    /// All went back to the beginning.
+    Reset,
+    /// A trusted run that ended.
+    TrustedEnded {
+        /// Why.
+        reason: String,
+    },
+    /// A moment that was saved.
+    Saved {
+        /// The folder.
+        folder: String,
+        /// The command that repeats the session.
+        replay: String,
+    },
+}
+
+impl Event {
+    pub(crate) fn to_text(&self) -> String {
+        serde_json::to_string(self).unwrap_or_default()
+    }
+}
+
+/// What there is to see.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Scenery {
+    /// The scene's title.
+    pub(crate) title: String,
+    /// Version of this program.
+    pub(crate) version: &'static str,
+    /// The client's number.
+    pub(crate) client: u32,
+    /// Nodes of the whole body.
+    pub(crate) nodes: usize,
+    /// Its tetrahedra.
+    pub(crate) tets: usize,
+    /// Whether the body may be cut.
+    pub(crate) cuts: bool,
+    /// Fields that this body has.
+    pub(crate) fields: Vec<Field>,
+    /// The largest of Young's moduli (Pa), a scale for stress.
+    pub(crate) youngs_modulus: f64,
+    /// The tools.
+    pub(crate) tools: Vec<ToolFacts>,
+    /// The loads that can be scaled.
+    pub(crate) loads: Vec<LoadFacts>,
+    /// Three loads by which a hand pulls.
+    pub(crate) hand: Option<HandFacts>,
+    /// What Hertz's formula takes, where the body is of one isotropic material.
+    pub(crate) hertz: Option<Hertz>,
+}
+
+/// A tool.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct ToolFacts {
+    /// Its name.
+    pub(crate) name: String,
+    /// Its parts.
+    pub(crate) parts: Vec<PartFacts>,
+    /// Position (m) and rotation vector (rad) at the beginning.
+    pub(crate) start: [f64; 6],
+}
+
+/// A part of a tool: its kind, its sizes, where it is in the tool.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct PartFacts {
+    /// "sphere", "capsule", "plane" or "box".
+    pub(crate) kind: &'static str,
+    /// Radius (m); radius and length; nothing; three edges.
+    pub(crate) sizes: Vec<f64>,
+    /// Position (m) in the tool.
+    pub(crate) position: [f64; 3],
+    /// Rotation vector (rad) in the tool.
+    pub(crate) rotation: [f64; 3],
+}
+
+/// A load.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct LoadFacts {
+    /// Its name.
+    pub(crate) name: String,
+    /// What it is, in words.
+    pub(crate) what: String,
+}
+
+/// Three loads along x, y and z by which a hand pulls at a place.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct HandFacts {
+    /// The loads, by their places in the list of loads.
+    pub(crate) loads: [usize; 3],
+    /// Force (N) of each for a factor of 1.
+    pub(crate) unit: f64,
+    /// Point of the surface, by its place, at which it pulls.
+    pub(crate) point: usize,
+    /// Sentence about it.
+    pub(crate) note: String,
+}
+
+/// What Hertz's formula takes.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Hertz {
+    /// Young's modulus (Pa).
+    pub(crate) youngs_modulus: f64,
+    /// Poisson's ratio.
+    pub(crate) poissons_ratio: f64,
+}
+
+/// A pane.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct PaneFacts {
+    /// Its integrator.
+    pub(crate) integrator: String,
+    /// Its step (s).
+    pub(crate) dt: f64,
+    /// What is known of its stability.
+    #[serde(flatten)]
+    pub(crate) step: StepFacts,
+    /// The options of its integrator that can be set.
+    pub(crate) options: Vec<OptionFacts>,
+    /// Why it stopped, where it did.
+    pub(crate) stopped: Option<String>,
+}
+
+/// What an integrator can do on this scene.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct IntegratorFacts {
+    /// Its name.
+    pub(crate) name: String,
+    /// One line about it.
+    pub(crate) summary: String,
+    /// Why it cannot run here.
+    pub(crate) refused: Option<String>,
+    /// What is known of its stability.
+    #[serde(flatten)]
+    pub(crate) step: StepFacts,
+}
+
+/// What is known of the stability of steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct StepFacts {
+    /// What holds.
+    pub(crate) stability: Stability,
+    /// The largest stable step (s), where there is one: 0 for none at all.
+    pub(crate) stable_step: Option<f64>,
+}
+
+/// Which steps are stable.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Stability {
+    /// Nobody knows.
+    #[default]
+    Unknown,
+    /// Every step.
+    Any,
+    /// Every step for small motions about rest of a body that is not linear.
+    AtRest,
+    /// Steps up to the stable one.
+    UpTo,
+    /// Steps up to the stable one for small motions about rest of a body that is not linear.
+    AtRestUpTo,
+    /// Each step is cut into parts by the current stiffness.
+    Cut,
+}
+
+/// An option of an integrator.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct OptionFacts {
+    /// Its key.
+    pub(crate) key: &'static str,
+    /// Its effect.
+    pub(crate) help: &'static str,
+    /// The words that it takes.
+    pub(crate) words: Vec<&'static str>,
+    /// The numbers that it takes.
+    pub(crate) number: Option<NumberFacts>,
+    /// Whether it is a word and a number at once.
+    pub(crate) has_both: bool,
+    /// The word that holds.
+    pub(crate) word: Option<String>,
+    /// The number that holds.
+    pub(crate) value: Option<f64>,
+}
+
+/// Numbers that a hand is offered.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct NumberFacts {
+    /// The least of them.
+    pub(crate) low: f64,
+    /// The largest of them.
+    pub(crate) high: f64,
+    /// Whether they are whole.
+    pub(crate) is_whole: bool,
+    /// Whether equal ways of a slider are equal ratios.
+    pub(crate) is_logarithmic: bool,
+}

@@ -1,0 +1,341 @@
+//! Pictures in binary, little-endian, each part at a multiple of eight bytes.
+//!
+//! A topology is the surface of each pane's body at rest, and is sent before the first picture that belongs to it. A picture is a head of 32 bytes, then
+//! for each pane its numbers, its tools and its points. `page/src/frames.js` reads both.
+
+/// Kind of a topology.
+const TOPOLOGY: u32 = 0;
+
+/// Kind of a picture.
+const PICTURE: u32 = 1;
+
+/// Place of the last command that a picture contains, which is other for each client.
+pub(crate) const APPLIED_AT: usize = 8;
+
+/// Bytes of the head of a picture.
+const HEAD: usize = 32;
+
+/// Bytes of the numbers of a pane.
+const PANE: usize = 184;
+
+/// Bytes of a tool.
+const TOOL: usize = 104;
+
+/// The surface of a pane's body at rest.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SurfaceShape<'a> {
+    /// Positions (m) of its points.
+    pub(crate) points: &'a [[f64; 3]],
+    /// Outward triangles between points.
+    pub(crate) triangles: &'a [[u32; 3]],
+    /// How many of them, the first, are of the body before all cuts.
+    pub(crate) outer: usize,
+    /// The point of the other pane's surface that is each point, or [`NO_TWIN`].
+    pub(crate) twins: &'a [u32],
+}
+
+/// Stands for a point that the other pane's surface does not have.
+pub(crate) const NO_TWIN: u32 = u32::MAX;
+
+/// The surfaces of all panes, which hold for the pictures of this epoch.
+pub(crate) fn topology(epoch: u32, surfaces: &[SurfaceShape<'_>]) -> Vec<u8> {
+    let size = |surface: &SurfaceShape<'_>| {
+        rounded_up(16 + 16 * surface.points.len() + 12 * surface.triangles.len())
+    };
+    let mut out = Vec::with_capacity(16 + surfaces.iter().map(size).sum::<usize>());
+    for number in [TOPOLOGY, epoch, surfaces.len() as u32, 0] {
+        out.extend(number.to_le_bytes());
+    }
+    for surface in surfaces {
+        let counts = [
+            surface.points.len(),
+            surface.triangles.len(),
+            surface.outer,
+            0,
+        ];
+        for count in counts {
+            out.extend((count as u32).to_le_bytes());
+        }
+        for coordinate in surface.points.as_flattened() {
+            out.extend((*coordinate as f32).to_le_bytes());
+        }
+        let corners = surface.triangles.as_flattened();
+        for number in corners.iter().chain(surface.twins) {
+            out.extend(number.to_le_bytes());
+        }
+        out.resize(rounded_up(out.len()), 0);
+    }
+    out
+}
+
+/// Head of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FrameHead {
+    /// Number of the picture.
+    pub(crate) frame: u32,
+    /// Topology that its points belong to.
+    pub(crate) epoch: u32,
+    /// Panes in it.
+    pub(crate) panes: u32,
+    /// What colours show.
+    pub(crate) field: u32,
+    /// Simulated time over the time on the wall.
+    pub(crate) pace: f64,
+}
+
+/// Numbers of a pane.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PaneHead {
+    /// Steps so far.
+    pub(crate) step: u64,
+    /// Simulated time (s).
+    pub(crate) t: f64,
+    /// Step (s).
+    pub(crate) dt: f64,
+    /// Kinetic energy (J).
+    pub(crate) kinetic: f64,
+    /// Elastic energy (J).
+    pub(crate) elastic: f64,
+    /// Work of tools (J).
+    pub(crate) tool_work: f64,
+    /// Work of loads (J).
+    pub(crate) load_work: f64,
+    /// Time of a step (ms).
+    pub(crate) ms_per_step: f64,
+    /// Relative distance from the trusted run; not a number where there is none.
+    pub(crate) error: f64,
+    /// Time (s) by which the trusted run is behind.
+    pub(crate) lag: f64,
+    /// Largest displacement (m).
+    pub(crate) largest: f64,
+    /// Share of velocities at their limit since the last picture.
+    pub(crate) saturated: f64,
+    /// Kinetic energy of the last half second over that of the half second before; not a number while the hand moves.
+    pub(crate) settling: f64,
+    /// Colours of the three lights, two bits each.
+    pub(crate) lights: u32,
+    /// Reasons of the three lights, eight bits each.
+    pub(crate) reasons: u32,
+    /// Tetrahedra inside out.
+    pub(crate) inverted: u32,
+    /// Points at which tools press.
+    pub(crate) contacts: u32,
+    /// Energy less that at the beginning and the work since (J); not a number where the energy is not known.
+    pub(crate) balance: f64,
+    /// Nodes and tetrahedra of the body as it is.
+    pub(crate) nodes: u32,
+    pub(crate) tets: u32,
+    /// What was cut.
+    pub(crate) cuts: CutHead,
+}
+
+/// What was cut of a body since the beginning.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct CutHead {
+    /// Area (m2) at rest.
+    pub(crate) area: f64,
+    /// Energy (J) that cuts brought in; not a number where it is not known.
+    pub(crate) energy: f64,
+    /// Work (J) of the blade for new surface.
+    pub(crate) blade_work: f64,
+    /// Nodes that were added.
+    pub(crate) new_nodes: u32,
+    /// Pieces of the body.
+    pub(crate) pieces: u32,
+    /// Tetrahedra that were taken away.
+    pub(crate) removed: u32,
+    /// Times that the body became another one.
+    pub(crate) changes: u32,
+}
+
+/// A tool.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ToolHead {
+    /// Position (m), then rotation vector (rad).
+    pub(crate) pose: [f64; 6],
+    /// Force on it (N), the mean since the last picture.
+    pub(crate) force: [f64; 3],
+    /// Depth (m) in the body at rest.
+    pub(crate) depth: f64,
+    /// Work (J) that it did.
+    pub(crate) work: f64,
+    /// Distance (m) of the surface's nearest point, negative inside.
+    pub(crate) gap: f64,
+    /// Nodes that it presses on.
+    pub(crate) contacts: f64,
+}
+
+/// Writes a picture.
+#[derive(Debug)]
+pub(crate) struct FrameWriter(Vec<u8>);
+
+impl FrameWriter {
+    /// A picture of so many points in each pane, and so many tools in all of them, whose length is known beforehand.
+    pub(crate) fn new(head: &FrameHead, points: &[usize], tools: usize) -> Self {
+        let of_pane = |points: &usize| PANE + TOOL * tools + rounded_up(16 * points);
+        let mut out = Vec::with_capacity(HEAD + points.iter().map(of_pane).sum::<usize>());
+        for number in [PICTURE, head.frame, 0, head.epoch, head.panes, head.field] {
+            out.extend(number.to_le_bytes());
+        }
+        out.extend(head.pace.to_le_bytes());
+        Self(out)
+    }
+
+    /// The numbers of a pane.
+    pub(crate) fn pane(&mut self, head: &PaneHead, points: usize, tools: usize) {
+        let begins = self.0.len();
+        self.0.extend(head.step.to_le_bytes());
+        let numbers = [
+            head.t,
+            head.dt,
+            head.kinetic,
+            head.elastic,
+            head.tool_work,
+            head.load_work,
+            head.ms_per_step,
+            head.error,
+            head.lag,
+            head.largest,
+            head.saturated,
+            head.settling,
+        ];
+        self.numbers(&numbers);
+        let counts = [
+            head.lights,
+            head.reasons,
+            head.inverted,
+            head.contacts,
+            points as u32,
+            tools as u32,
+        ];
+        for count in counts {
+            self.0.extend(count.to_le_bytes());
+        }
+        let CutHead {
+            area,
+            energy,
+            blade_work,
+            new_nodes,
+            pieces,
+            removed,
+            changes,
+        } = head.cuts;
+        self.numbers(&[head.balance, area, energy, blade_work]);
+        for count in [head.nodes, head.tets, new_nodes, pieces, removed, changes] {
+            self.0.extend(count.to_le_bytes());
+        }
+        debug_assert_eq!(self.0.len(), begins + PANE);
+    }
+
+    /// A tool.
+    pub(crate) fn tool(&mut self, tool: &ToolHead) {
+        self.numbers(&tool.pose);
+        self.numbers(&tool.force);
+        self.numbers(&[tool.depth, tool.work, tool.gap, tool.contacts]);
+    }
+
+    /// Where the points are (m), and their colours.
+    pub(crate) fn points(&mut self, places: impl Iterator<Item = [f32; 3]>, colours: &[f32]) {
+        for coordinate in places.flatten() {
+            self.0.extend(coordinate.to_le_bytes());
+        }
+        for colour in colours {
+            self.0.extend(colour.to_le_bytes());
+        }
+        self.0.resize(rounded_up(self.0.len()), 0);
+    }
+
+    /// The message.
+    pub(crate) fn finish(self) -> Vec<u8> {
+        self.0
+    }
+
+    fn numbers(&mut self, numbers: &[f64]) {
+        for number in numbers {
+            self.0.extend(number.to_le_bytes());
+        }
+    }
+}
+
+fn rounded_up(bytes: usize) -> usize {
+    bytes.next_multiple_of(8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_takes_the_room_that_it_was_given_and_its_parts_lie_where_they_are_read() {
+        let head = FrameHead {
+            frame: 5,
+            epoch: 2,
+            panes: 2,
+            field: 1,
+            pace: 0.5,
+        };
+        let mut writer = FrameWriter::new(&head, &[3, 3], 1);
+        let room = writer.0.capacity();
+        for pane in 0..2 {
+            let numbers = PaneHead {
+                step: 9,
+                t: 1.5,
+                lights: 7,
+                balance: -0.5,
+                cuts: CutHead {
+                    area: 0.75,
+                    changes: 4,
+                    ..CutHead::default()
+                },
+                ..PaneHead::default()
+            };
+            writer.pane(&numbers, 3, 1);
+            writer.tool(&ToolHead {
+                depth: 0.25,
+                ..ToolHead::default()
+            });
+            writer.points([[pane as f32; 3]; 3].into_iter(), &[4.0; 3]);
+        }
+        let out = writer.finish();
+        assert_eq!((out.len(), out.capacity()), (room, room));
+        let f64_at = |at: usize| f64::from_le_bytes(out[at..at + 8].try_into().unwrap());
+        let u32_at = |at: usize| u32::from_le_bytes(out[at..at + 4].try_into().unwrap());
+        let f32_at = |at: usize| f32::from_le_bytes(out[at..at + 4].try_into().unwrap());
+        assert_eq!([0, 4, 8, 12, 16, 20].map(u32_at), [1, 5, 0, 2, 2, 1]);
+        assert_eq!(f64_at(24), 0.5);
+        for (pane, at) in [HEAD, HEAD + PANE + TOOL + 48].into_iter().enumerate() {
+            assert_eq!(f64_at(at + 8), 1.5);
+            assert_eq!(u32_at(at + 104), 7);
+            assert_eq!([at + 120, at + 124].map(u32_at), [3, 1]);
+            assert_eq!([at + 128, at + 136].map(f64_at), [-0.5, 0.75]);
+            assert_eq!(u32_at(at + 180), 4);
+            assert_eq!(f64_at(at + PANE + 72), 0.25);
+            assert_eq!(f32_at(at + PANE + TOOL), pane as f32);
+            assert_eq!(f32_at(at + PANE + TOOL + 36), 4.0);
+        }
+    }
+
+    #[test]
+    fn surfaces_of_several_panes_lie_behind_each_other() {
+        let of_three = SurfaceShape {
+            points: &[[0.5; 3]; 3],
+            triangles: &[[0, 1, 2]],
+            outer: 1,
+            twins: &[1, 0, NO_TWIN],
+        };
+        let of_one = SurfaceShape {
+            points: &[[0.25; 3]],
+            triangles: &[],
+            outer: 0,
+            twins: &[0],
+        };
+        let out = topology(7, &[of_three, of_one]);
+        assert_eq!((out.len(), out.capacity()), (16 + 80 + 32, out.len()));
+        let u32_at = |at: usize| u32::from_le_bytes(out[at..at + 4].try_into().unwrap());
+        assert_eq!([0, 4, 8].map(u32_at), [TOPOLOGY, 7, 2]);
+        let first = [16, 20, 24, 72, 76, 80, 84, 88].map(u32_at);
+        assert_eq!(first, [3, 1, 1, 1, 2, 1, 0, NO_TWIN]);
+        let second = [96, 100, 104, 112].map(u32_at);
+        assert_eq!(second, [1, 0, 0, 0.25_f32.to_bits()]);
+    }
+}

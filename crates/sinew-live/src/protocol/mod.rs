@@ -1,0 +1,18 @@
+//! What a page and the simulation say to each other.
+//!
+//! A page sends text, a JSON object for each command, and four bytes of credit for each picture that it has drawn. It gets text, a
+//! JSON object for each event, and binary pictures, with the surfaces that they belong to before the first of them.
+
+mod command;
+mod event;
+mod frame;
+
+pub(crate) use command::{Field, Order, Said};
+pub(crate) use event::{
+    Event, HandFacts, Hertz, IntegratorFacts, LoadFacts, NumberFacts, OptionFacts, PaneFacts,
+    PartFacts, Scenery, Stability, StepFacts, ToolFacts,
+};
+pub(crate) use frame::{
+    APPLIED_AT, CutHead, FrameHead, FrameWriter, NO_TWIN, PaneHead, SurfaceShape, ToolHead,
+    topology,
+};

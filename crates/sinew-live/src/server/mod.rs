@@ -1,0 +1,12 @@
+//! The server of the page, for this computer alone.
+
+mod assets;
+mod guard;
+mod routes;
+mod shared;
+mod socket;
+mod token;
+
+pub(crate) use routes::router;
+pub(crate) use shared::Shared;
+pub(crate) use token::Token;

@@ -1,0 +1,45 @@
+//! What the server and the simulation have in common.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::clients::Clients;
+use crate::inbox::Inbox;
+use crate::protocol::{Event, Scenery};
+
+/// What connections share with the simulation.
+#[derive(Debug)]
+pub(crate) struct Shared {
+    /// Commands go there.
+    pub(crate) inbox: Inbox,
+    /// Pictures come from there.
+    pub(crate) clients: Clients,
+    /// What a page is told first.
+    pub(crate) scenery: Scenery,
+    integrators: Mutex<Option<Arc<Event>>>,
+}
+
+impl Shared {
+    /// Nobody has come yet.
+    pub(crate) fn new(scenery: Scenery) -> Self {
+        Self {
+            inbox: Inbox::default(),
+            clients: Clients::default(),
+            scenery,
+            integrators: Mutex::default(),
+        }
+    }
+
+    /// What a page is told of the integrators, once that is known.
+    pub(crate) fn integrators(&self) -> Option<Arc<Event>> {
+        let known = self.integrators.lock();
+        known.unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Tells all pages of the integrators, and those that come later.
+    pub(crate) fn tell_of_integrators(&self, event: Event) {
+        let event = Arc::new(event);
+        let known = self.integrators.lock();
+        *known.unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(&event));
+        self.clients.tell_all(&event);
+    }
+}

@@ -1,0 +1,100 @@
+//! A connection to a page.
+
+use std::pin::pin;
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::extract::ws::{Message, WebSocket};
+use futures_util::future::select;
+use futures_util::{SinkExt, StreamExt};
+use tokio::sync::mpsc::Receiver;
+use tokio::time::timeout;
+
+use super::shared::Shared;
+use crate::inbox::{Place, Request};
+use crate::protocol::{Event, Order, Said, Scenery};
+
+/// Time for which a page may read nothing while a message is under way to it.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Talks to a page until it goes, breaks the protocol, or reads nothing while messages pile up.
+pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>) {
+    let Some((id, messages)) = shared.clients.enter() else {
+        return;
+    };
+    let scenery = Scenery {
+        client: id,
+        ..shared.scenery.clone()
+    };
+    let greeting = Event::Scenery(Box::new(scenery)).to_text();
+    if stream.send(Message::Text(greeting.into())).await.is_ok() {
+        // Those who came before it was known have been told.
+        if let Some(integrators) = shared.integrators() {
+            shared.clients.tell(id, &integrators);
+        }
+        shared.inbox.enter(id);
+        exchange(stream, &shared, id, messages).await;
+    }
+    shared.clients.leave(id);
+}
+
+/// Passes messages on in both directions, neither of which waits for the other, until one of them ends.
+async fn exchange(stream: WebSocket, shared: &Shared, id: u32, mut messages: Receiver<Message>) {
+    let (mut sink, mut source) = stream.split();
+    let speak = pin!(async {
+        while let Some(message) = messages.recv().await {
+            let sent = timeout(PATIENCE, sink.send(message)).await;
+            if !matches!(sent, Ok(Ok(()))) {
+                break;
+            }
+        }
+    });
+    let listen = pin!(async {
+        while let Some(Ok(message)) = source.next().await {
+            if !hear(shared, id, &message) {
+                break;
+            }
+        }
+    });
+    select(speak, listen).await;
+}
+
+/// Takes a message of a page; `false` where it says good-bye.
+fn hear(shared: &Shared, id: u32, message: &Message) -> bool {
+    let refuse = |reason: String| shared.clients.tell(id, &Event::Refused { reason });
+    match message {
+        Message::Close(_) => return false,
+        Message::Ping(_) | Message::Pong(_) => {}
+        Message::Binary(grant) if grant.len() == 4 => {
+            shared.clients.grant(id);
+            shared.inbox.nudge();
+        }
+        Message::Binary(other) => {
+            let bytes = other.len();
+            refuse(format!("{bytes} bytes that are no credit: expected 4"));
+        }
+        Message::Text(text) => match serde_json::from_str::<Said>(text) {
+            Ok(Said { id: number, order }) => {
+                let has_room = match order {
+                    Order::Pose {
+                        tool,
+                        position: [x, y, z],
+                        rotation: [a, b, c],
+                    } => {
+                        let pose = [x, y, z, a, b, c];
+                        shared
+                            .inbox
+                            .pose(Request::of(id, number, Place { tool, pose }));
+                        true
+                    }
+                    order => shared.inbox.order(Request::of(id, number, order)),
+                };
+                if !has_room {
+                    refuse("too many commands wait".to_owned());
+                }
+            }
+            Err(error) => refuse(format!("no command: {error}")),
+        },
+    }
+    true
+}

@@ -1,0 +1,440 @@
+//! A small cube under a ball.
+
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use sinew_live::{Live, LiveError, PaneChoice, Settings};
+use sinew_scene::{Scene, SceneSource};
+use tungstenite::Message;
+
+use crate::common::{self, Heard, NUMBERS, PANE, Page, applied, f64_at, time, u32_at};
+
+const SCENE: &str = r#"
+title = "a cube under a ball"
+[mesh]
+cube = { cells = 3, edge = 0.1 }
+[[region]]
+density = 1060.0
+model = "linear"
+youngs_modulus = 3500.0
+poissons_ratio = 0.3
+[damping]
+mass = 20.0
+[[fixed]]
+group = "bottom"
+[[load]]
+name = "push"
+group = "top"
+traction = [0.0, 0.0, -1.0]
+[[tool]]
+name = "ball"
+shape = { sphere = { radius = 0.04 } }
+start = [0.05, 0.05, 0.145]
+hold = true
+[run]
+duration = 1.0
+integrator = "symplectic-euler"
+dt = 0.002
+"#;
+
+/// Points of the cube's surface.
+const POINTS: usize = 56;
+
+/// Places in a picture: the tool of the first pane, the second pane.
+const TOOL: usize = PANE + NUMBERS;
+const SECOND: usize = TOOL + common::TOOL + 16 * POINTS;
+
+fn settings(port: u16) -> Settings {
+    Settings {
+        scene: Scene::parse(SceneSource::new("cube.toml", SCENE)).unwrap(),
+        panes: vec![PaneChoice::default()],
+        second: PaneChoice {
+            integrator: Some("cnn-stabilised".to_owned()),
+            dt: None,
+        },
+        hand: None,
+        port,
+    }
+}
+
+/// A page of the cube.
+fn open() -> Page {
+    Page::of(settings(0))
+}
+
+/// Steps of the first pane.
+fn steps(picture: &[u8]) -> u32 {
+    u32_at(picture, PANE)
+}
+
+/// Height (m) of the ball of the first pane.
+fn height(picture: &[u8]) -> f64 {
+    f64_at(picture, TOOL + 16)
+}
+
+#[test]
+fn the_page_is_for_this_computer_and_for_those_who_know_its_secret() {
+    let page = open();
+    let (host, path) = (page.host(), page.path());
+    assert_eq!(path.len(), 34);
+    for name in ["", "live.js", "live.css"] {
+        assert_eq!(page.get(host, &format!("{path}{name}")), 200, "{name}");
+    }
+    // A forwarded port.
+    assert_eq!(page.get("localhost:1234", path), 200);
+    assert_eq!(page.get("evil.example", path), 403);
+    let guessed = format!("/{}/", "0".repeat(32));
+    for path in ["/", "/x/", &guessed, &format!("{path}none")] {
+        assert_eq!(page.get(host, path), 404, "{path}");
+    }
+}
+
+#[test]
+fn only_its_own_page_may_connect() {
+    let page = open();
+    let own = format!("http://{}", page.host());
+    for origin in [
+        "http://evil.example",
+        "null",
+        "http://localhost:1",
+        "https://127.0.0.1",
+    ] {
+        let refused = page.connect_to(&page.url, origin).err();
+        assert_eq!(refused, Some(403), "{origin}");
+    }
+    let guessed = format!("{own}/{}/", "0".repeat(32));
+    assert_eq!(page.connect_to(&guessed, &own).err(), Some(404));
+    assert!(page.connect_to(&page.url, &own).is_ok());
+}
+
+#[test]
+fn pictures_come_for_credits_and_the_topology_before_them() {
+    let page = open();
+    let mut client = page.connect();
+    let scenery = client.event("scenery");
+    assert_eq!(
+        (&scenery["nodes"], &scenery["tets"]),
+        (&Value::from(64), &Value::from(162))
+    );
+    assert_eq!(scenery["tools"][0]["parts"][0]["kind"], "sphere");
+    let soon = Some(Duration::from_millis(500));
+    client.socket.get_ref().set_read_timeout(soon).unwrap();
+    let (mut topologies, mut pictures) = (0, 0);
+    loop {
+        match client.hear() {
+            Heard::Topology => {
+                assert_eq!(pictures, 0);
+                topologies += 1;
+            }
+            Heard::Picture(picture) => {
+                assert_eq!(picture.len(), SECOND);
+                pictures += 1;
+            }
+            Heard::Event(_) => {}
+            Heard::Nothing => break,
+            Heard::End => panic!("the connection ended"),
+        }
+    }
+    assert_eq!((topologies, pictures), (1, 2), "two credits, two pictures");
+    client.grant();
+    client.picture(|_| true);
+}
+
+#[test]
+fn a_pose_is_where_the_tool_goes_and_the_picture_says_which_command_it_contains() {
+    let page = open();
+    let mut client = page.connect();
+    client.say(r#"{"id":7,"do":"pose","tool":0,"position":[0.05,0.05,0.13],"rotation":[0,0,0]}"#);
+    let picture = client.picture(|picture| applied(picture) >= 7);
+    assert_eq!(height(&picture), 0.13);
+    // The cube's top is at 0.1 m: the ball stands 10 mm deep in it, and feels it.
+    assert!((f64_at(&picture, TOOL + 72) - 0.01).abs() < 1e-9);
+    let feels = |picture: &[u8]| f64_at(picture, TOOL + 64) > 0.0;
+    let picture = client.picture(feels);
+    assert!(
+        f64_at(&picture, TOOL + 88) > -1e-12,
+        "no node is in the ball"
+    );
+}
+
+#[test]
+fn time_stops_goes_on_by_one_step_and_begins_anew() {
+    let page = open();
+    let mut client = page.connect();
+    client.say(r#"{"id":1,"do":"pause","on":true}"#);
+    let stopped = client.picture(|picture| applied(picture) >= 1);
+    client.say(r#"{"id":2,"do":"step"}"#);
+    let stepped = client.picture(|picture| applied(picture) >= 2);
+    assert_eq!(steps(&stepped), steps(&stopped) + 1);
+    assert!((time(&stepped) - time(&stopped) - 0.002).abs() < 1e-12);
+    client.say(r#"{"id":3,"do":"reset"}"#);
+    let begun = client.picture(|picture| applied(picture) >= 3);
+    assert_eq!(time(&begun), 0.0);
+    client.say(r#"{"id":4,"do":"pause","on":false}"#);
+    client.picture(|picture| time(picture) > 0.05);
+}
+
+#[test]
+fn settings_outlive_a_reset_and_are_told_to_all() {
+    let page = open();
+    let (mut first, mut second) = (page.connect(), page.connect());
+    second.event("settings");
+    first.say(r#"{"id":1,"do":"integrator","pane":0,"name":"cnn-stabilised"}"#);
+    first.say(r#"{"id":2,"do":"dt","pane":0,"dt":0.004}"#);
+    first.say(r#"{"id":3,"do":"load","load":"push","factor":2.5}"#);
+    let is_set = |settings: &Value| {
+        let pane = &settings["panes"][0];
+        (&pane["integrator"], &pane["dt"]) == (&Value::from("cnn-stabilised"), &Value::from(0.004))
+    };
+    let mut settings = second.event("settings");
+    while !(is_set(&settings) && settings["factors"][0] == 2.5) {
+        settings = second.event("settings");
+    }
+    second.say(r#"{"id":1,"do":"reset"}"#);
+    first.event("reset");
+    let settings = first.event("settings");
+    assert!(is_set(&settings));
+    assert_eq!(settings["factors"][0], 1.0, "loads begin anew");
+}
+
+#[test]
+fn two_panes_follow_the_same_hand() {
+    let page = open();
+    let mut client = page.connect();
+    client.say(r#"{"id":1,"do":"panes","count":2}"#);
+    client.say(r#"{"id":2,"do":"dt","pane":1,"dt":0.007}"#);
+    client.say(r#"{"id":3,"do":"pose","tool":0,"position":[0.06,0.05,0.13],"rotation":[0,0,0]}"#);
+    let of_second = |picture: &[u8], at: usize| f64_at(picture, SECOND + at);
+    let both = |picture: &[u8]| {
+        u32_at(picture, 16) == 2
+            && height(picture) == 0.13
+            && of_second(picture, NUMBERS + 16) == 0.13
+    };
+    let picture = client.picture(both);
+    let apart = (time(&picture) - of_second(&picture, 8)).abs();
+    assert!(apart < 0.0071, "{apart} s");
+    assert_eq!(of_second(&picture, NUMBERS), 0.06);
+}
+
+#[test]
+fn a_trusted_run_tells_the_error_which_is_not_known_without() {
+    let page = open();
+    let mut client = page.connect();
+    let error = |picture: &[u8]| f64_at(picture, PANE + 64);
+    assert!(error(&client.picture(|_| true)).is_nan());
+    client.say(r#"{"id":1,"do":"trusted","on":true}"#);
+    client.say(r#"{"id":2,"do":"pose","tool":0,"position":[0.05,0.05,0.13],"rotation":[0,0,0]}"#);
+    // The blow of the first contact is hard for both; what stays is small.
+    client.picture(|picture| error(picture) > 0.0 && error(picture) < 0.05);
+}
+
+#[test]
+fn nonsense_is_refused_with_a_reason_and_harms_nobody() {
+    let page = open();
+    let mut client = page.connect();
+    for text in [
+        "",
+        "{",
+        "[]",
+        r#"{"id":1,"do":"fly"}"#,
+        r#"{"id":1,"do":"dt","pane":0,"dt":-1}"#,
+        r#"{"id":1,"do":"dt","pane":9,"dt":0.001}"#,
+        r#"{"id":1,"do":"dt","pane":0,"dt":1e999}"#,
+        r#"{"id":1,"do":"integrator","pane":0,"name":"magic"}"#,
+        r#"{"id":1,"do":"integrator","pane":0,"name":"rk4"}"#,
+        r#"{"id":1,"do":"load","load":"none","factor":1}"#,
+        r#"{"id":1,"do":"panes","count":0}"#,
+        r#"{"id":1,"do":"pose","tool":5,"position":[0,0,0],"rotation":[0,0,0]}"#,
+    ] {
+        client.say(text);
+        let refused = client.event("refused");
+        let reason = refused["reason"].as_str().unwrap();
+        assert!(reason.len() > 5, "{text}: {reason}");
+    }
+    client.socket.send(Message::binary(vec![0; 3])).unwrap();
+    client.event("refused");
+    client.picture(|_| true);
+}
+
+#[test]
+fn numbers_beyond_any_body_are_refused_to_their_sender_and_the_session_goes_on() {
+    let mut page = open();
+    let (mut client, mut other) = (page.connect(), page.connect());
+    for (text, named) in [
+        (
+            r#"{"id":1,"do":"pose","tool":0,"position":[1e308,-1e308,0],"rotation":[0,0,0]}"#,
+            "1e308",
+        ),
+        (
+            r#"{"id":2,"do":"pose","tool":0,"position":[0,0,0.2],"rotation":[0,0,1.1e6]}"#,
+            "1.1e6",
+        ),
+        (
+            r#"{"id":3,"do":"load","load":"push","factor":1e308}"#,
+            "1e308",
+        ),
+    ] {
+        client.say(text);
+        let number: f64 = named.parse().unwrap();
+        let reason = client.event("refused")["reason"].to_string();
+        assert!(reason.contains(&format!("{number}")), "{reason}");
+        assert!(reason.contains("at most 1e6"), "{reason}");
+    }
+    // As far as a pose may be.
+    client.say(r#"{"id":4,"do":"pose","tool":0,"position":[1e6,0,1e6],"rotation":[0,0,0]}"#);
+    let t = time(&client.picture(|picture| applied(picture) >= 4));
+    client.picture(|picture| time(picture) > t + 0.1);
+    client.say(r#"{"id":5,"do":"pose","tool":0,"position":[0.05,0.05,0.15],"rotation":[0,0,0]}"#);
+    client.picture(|picture| applied(picture) >= 5 && height(picture) == 0.15);
+    let soon = Some(Duration::from_millis(300));
+    other.socket.get_ref().set_read_timeout(soon).unwrap();
+    loop {
+        match other.hear() {
+            Heard::Event(event) => assert!(
+                event["event"] != "refused" && event["event"] != "stopped",
+                "{event}"
+            ),
+            Heard::Nothing => break,
+            Heard::End => panic!("the connection ended"),
+            Heard::Topology | Heard::Picture(_) => {}
+        }
+    }
+    let log = page.end().logs[0].to_text();
+    assert!(!log.contains("e308"), "{log}");
+}
+
+#[test]
+fn energy_is_counted_from_the_beginning_also_for_a_page_that_comes_late() {
+    let page = open();
+    let mut first = page.connect();
+    first.say(r#"{"id":1,"do":"pose","tool":0,"position":[0.05,0.05,0.13],"rotation":[0,0,0]}"#);
+    first.picture(|picture| applied(picture) >= 1);
+    first.say(r#"{"id":2,"do":"pose","tool":0,"position":[0.05,0.05,0.15],"rotation":[0,0,0]}"#);
+    let t = time(&first.picture(|picture| applied(picture) >= 2));
+    first.picture(|picture| time(picture) > t + 0.5);
+    let mut late = page.connect();
+    let picture = late.picture(|picture| time(picture) > 0.0);
+    let number = |place: usize| f64_at(&picture, PANE + 24 + 8 * place);
+    let [kinetic, elastic, tool, loads] = [0, 1, 2, 3].map(number);
+    let balance = f64_at(&picture, PANE + 128);
+    assert!(tool.abs() > 1e-6, "{tool} J");
+    // It began at rest. What is gone is what damping took.
+    let expected = kinetic + elastic - tool - loads;
+    assert!(
+        (balance - expected).abs() <= 1e-12 * tool.abs(),
+        "{balance} {expected}"
+    );
+    assert!(balance < -1e-7, "{balance} J");
+}
+
+#[test]
+fn options_of_the_method_are_set_while_it_runs_and_outlive_a_reset() {
+    let mut page = open();
+    let mut client = page.connect();
+    let option = |settings: &Value, key: &str| -> Value {
+        let options = settings["panes"][0]["options"].as_array().unwrap();
+        let found = options.iter().find(|option| option["key"] == key);
+        found.cloned().unwrap_or_default()
+    };
+    client.say(r#"{"id":1,"do":"integrator","pane":0,"name":"cnn-energy"}"#);
+    client.say(r#"{"id":2,"do":"option","pane":0,"key":"sweeps","number":9}"#);
+    let mut settings = client.event("settings");
+    while option(&settings, "sweeps")["value"] != 9.0 {
+        settings = client.event("settings");
+    }
+    // The kind that meets tools.
+    assert_eq!(option(&settings, "kind")["word"], "ie");
+    client.say(r#"{"id":3,"do":"reset"}"#);
+    client.event("reset");
+    assert_eq!(option(&client.event("settings"), "sweeps")["value"], 9.0);
+    for order in [
+        r#"{"id":4,"do":"option","pane":0,"key":"sweeps","number":0.5}"#,
+        r#"{"id":5,"do":"option","pane":0,"key":"kind","word":"trap"}"#,
+        r#"{"id":6,"do":"option","pane":0,"key":"soul","number":1}"#,
+        r#"{"id":7,"do":"option","pane":3,"key":"sweeps","number":1}"#,
+    ] {
+        client.say(order);
+        client.event("refused");
+    }
+    let picture = client.picture(|_| true);
+    client.picture(|later| steps(later) > steps(&picture) + 5);
+    let log = page.end().logs[0].to_text();
+    assert_eq!(log.matches("sweeps").count(), 2, "{log}");
+}
+
+#[test]
+fn a_step_that_follows_the_stiffness_is_not_said_to_be_stable_at_any_length() {
+    let text = SCENE
+        .replace("model = \"linear\"", "model = \"neo-hookean\"")
+        .replace("dt = 0.002", "dt = \"auto\"");
+    let page = Page::of(Settings {
+        scene: Scene::parse(SceneSource::new("cube.toml", text)).unwrap(),
+        ..settings(0)
+    });
+    let mut client = page.connect();
+    let pane = client.event("settings")["panes"][0].take();
+    assert_eq!(pane["stability"], "cut", "{pane}");
+    client.say(r#"{"id":1,"do":"integrator","pane":0,"name":"cnn-energy"}"#);
+    let mut pane = pane;
+    while pane["integrator"] != "cnn-energy" {
+        pane = client.event("settings")["panes"][0].take();
+    }
+    assert_eq!(pane["stability"], "any", "its energy never rises");
+}
+
+#[test]
+fn a_message_that_is_too_long_ends_its_own_connection_alone() {
+    let page = open();
+    let (mut long, mut other) = (page.connect(), page.connect());
+    // The server may close while it is sent.
+    let _ = long.socket.send(Message::text("x".repeat(1_000_000)));
+    let begun = Instant::now();
+    while !matches!(long.hear(), Heard::End) {
+        assert!(begun.elapsed() < Duration::from_secs(20));
+    }
+    other.picture(|_| true);
+}
+
+#[test]
+fn a_page_that_reads_nothing_holds_nobody_up() {
+    let mut page = open();
+    let (mut deaf, mut other) = (page.connect(), page.connect());
+    for number in 0..300 {
+        let order = format!(r#"{{"id":{number},"do":"field","name":"strain"}}"#);
+        let granted = deaf.socket.send(Message::binary(vec![1, 0, 0, 0]));
+        let sent = granted.and_then(|()| deaf.socket.send(Message::text(order)));
+        if sent.is_err() {
+            break;
+        }
+    }
+    let t = time(&other.picture(|_| true));
+    other.picture(|picture| time(picture) > t + 0.2);
+    assert!(page.end().t > t + 0.2);
+}
+
+#[test]
+fn a_port_that_is_taken_is_one_sentence() {
+    let page = open();
+    let port = page.host().rsplit(':').next().unwrap().parse().unwrap();
+    let error = Live::open(settings(port)).err().unwrap();
+    assert!(matches!(error, LiveError::PortTaken { .. }));
+    assert!(error.to_string().contains("--port 0"), "{error}");
+}
+
+#[test]
+fn a_page_that_comes_late_is_told_of_the_integrators() {
+    let page = open();
+    page.connect().event("integrators");
+    let list = page.connect().event("integrators")["list"].take();
+    let of = |name: &str| {
+        let mut facts = list.as_array().unwrap().iter();
+        let found = facts.rfind(|facts| facts["name"] == name);
+        found.cloned().unwrap()
+    };
+    assert_eq!(of("cnn-stabilised")["stability"], "any");
+    assert!(
+        of("cnn-energy")["refused"].is_null(),
+        "of a kind that meets tools"
+    );
+    assert!(of("modal")["refused"].as_str().unwrap().contains("tools"));
+}

@@ -1,0 +1,8 @@
+//! The live page as a browser talks to it.
+
+#![cfg(test)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may end so")]
+
+mod common;
+mod cube;
+mod cuts;

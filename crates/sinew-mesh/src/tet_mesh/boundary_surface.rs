@@ -1,0 +1,37 @@
+//! The boundary with points of its own.
+
+use super::TetMesh;
+
+/// The boundary of a body, with points of its own: what is drawn and written of it without the nodes inside.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BoundarySurface {
+    /// Node of the mesh (0-based) of each point, increasing.
+    pub nodes: Vec<u32>,
+    /// Position (m) of each point.
+    pub points: Vec<[f64; 3]>,
+    /// Outward triangles between points.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl TetMesh {
+    /// The triangles of [`TetMesh::boundary`] of the whole mesh, in its order, with the nodes on them alone.
+    #[must_use]
+    pub fn boundary_surface(&self) -> BoundarySurface {
+        let boundary = self.boundary(None);
+        let mut nodes: Vec<u32> = boundary.iter().flatten().copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let place = |node: &u32| nodes.binary_search(node).unwrap_or_default() as u32;
+        let triangles = boundary
+            .iter()
+            .map(|triangle| triangle.each_ref().map(place));
+        BoundarySurface {
+            triangles: triangles.collect(),
+            points: nodes
+                .iter()
+                .map(|node| self.points[*node as usize])
+                .collect(),
+            nodes,
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! What was cut, in words.
+
+use sinew_scene::CutTotals;
+
+/// A line about what was cut, and the pieces of the body in the end.
+#[must_use]
+pub fn words_of_cuts(CutTotals { report, .. }: &CutTotals, pieces: usize) -> String {
+    let mut text = format!(
+        "{:.4e} m2 in {} faces, {} new nodes, {} of the body",
+        report.area,
+        report.faces,
+        report.new_nodes,
+        match pieces {
+            1 => "1 piece".to_owned(),
+            _ => format!("{pieces} pieces"),
+        }
+    );
+    if report.removed_tets > 0 {
+        text.push_str(&format!(
+            "; {} tetrahedra of {:.4e} kg taken away",
+            report.removed_tets, report.removed_mass
+        ));
+    }
+    if report.frozen_tets > 0 {
+        text.push_str(&format!("; {} tetrahedra frozen", report.frozen_tets));
+    }
+    text
+}

@@ -1,0 +1,218 @@
+//! Runs whose body is cut.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use sinew_record::{Ended, Request, RunFolder};
+use sinew_scene::{Scene, SceneSource};
+use sinew_session::{Command, Replay, Session};
+
+use crate::common::{build, run, table};
+
+fn scene(tables: &str) -> String {
+    format!(
+        "gravity = [3.0, 0.0, -5.0]\n[mesh]\ncube = {{ cells = 3, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
+         youngs_modulus = 3000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[[probe]]\nname = \"top\"\npoint = [0.0, 0.0, 0.1]\n\
+         {tables}"
+    )
+}
+
+/// A blade through the middle, wholly after .025 s.
+const BLADE: &str = "[[tool]]\nname = \"blade\"\nshape = { blade = { length = 0.3 } }\nstart = [-0.02, 0.05, 0.05]\n\
+    rotation = [1.5707963267948966, 0.0, 0.0]\nvelocity = [6.0, 0.0, 0.0]\n[cutting]\ntool = \"blade\"\n";
+
+const NEWMARK: &str = "[run]\nduration = 0.1\nintegrator = \"newmark\"\ndt = 0.002\n[output]\nfields = { frames = 10 }\n";
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap()
+}
+
+/// Number of nodes and of tetrahedra in a frame.
+fn sizes(folder: &Path, frame: usize) -> [usize; 2] {
+    let bytes = fs::read(folder.join(format!("fields/frame-{frame:05}.vtu"))).unwrap();
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    ["NumberOfPoints=\"", "NumberOfCells=\""].map(|name| {
+        let (_, rest) = text.split_once(name).unwrap();
+        rest.split('"').next().unwrap().parse().unwrap()
+    })
+}
+
+#[test]
+fn the_energy_of_a_split_body_adds_up_and_its_frames_have_the_nodes_that_it_had() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("cut");
+    let simulation = build(&scene(&format!("{BLADE}{NEWMARK}")));
+    let end = run(&path, &simulation, &mut ());
+    assert_eq!((end.ended, end.steps), (Ended::Finished, 50));
+    let energy = table(&path.join("energy.csv"));
+    let most = energy["kinetic_J"].iter().zip(&energy["elastic_J"]);
+    let most = most.map(|(a, b)| a + b).fold(0.0, f64::max);
+    assert_eq!(energy["t_s"].len(), 51);
+    for column in ["remainder_J", "of_cuts_J"] {
+        let largest = energy[column]
+            .iter()
+            .fold(0.0_f64, |most, x| most.max(x.abs()));
+        assert!(largest < 1e-12 * most, "{column}: {largest} of {most}");
+    }
+    assert_eq!(table(&path.join("probes.csv"))["t_s"].len(), 51);
+    let first = sizes(&path, 0);
+    assert_eq!(first, [64, 162]);
+    let last = sizes(&path, 10);
+    let cuts = &summary(&path)["cuts"];
+    let new_nodes = cuts["new_nodes"].as_u64().unwrap() as usize;
+    assert!(new_nodes >= 16);
+    assert_eq!(last, [64 + new_nodes, 162]);
+    assert_eq!(cuts["pieces_at_the_end"], 2);
+    let mass = &summary(&path)["mass_kg"];
+    let [start, end] = ["start", "end"].map(|key| mass[key].as_f64().unwrap());
+    assert!((start - 1.0).abs() < 1e-12 && (end - start).abs() < 1e-14);
+}
+
+#[test]
+fn what_is_taken_away_takes_its_energy_along() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("cut");
+    let cutting = format!("{BLADE}pieces = \"remove\"\n{NEWMARK}");
+    let simulation = build(&scene(&cutting));
+    run(&path, &simulation, &mut ());
+    let energy = table(&path.join("energy.csv"));
+    let most = energy["kinetic_J"].iter().zip(&energy["elastic_J"]);
+    let most = most.map(|(a, b)| a + b).fold(0.0, f64::max);
+    let taken = *energy["of_cuts_J"].last().unwrap();
+    assert!(taken < -0.01 * most, "{taken} of {most}");
+    let remainder = energy["remainder_J"].iter();
+    let largest = remainder.fold(0.0_f64, |most, x| most.max(x.abs()));
+    assert!(largest < 1e-12 * most, "{largest} of {most}");
+    let removed = summary(&path)["cuts"]["removed_mass_kg"].as_f64().unwrap();
+    assert!(removed > 0.3);
+    let mass = summary(&path)["mass_kg"]["end"].as_f64().unwrap();
+    assert!((mass + removed - 1.0).abs() < 1e-12);
+    // The probe was on what is gone.
+    assert!(
+        table(&path.join("probes.csv"))["top_u_x_m"]
+            .last()
+            .unwrap()
+            .is_nan()
+    );
+}
+
+#[test]
+fn what_is_frozen_takes_its_energy_along_and_stays_in_the_frames() {
+    let place = tempfile::tempdir().unwrap();
+    let [removed, frozen] = ["remove", "freeze"].map(|pieces| {
+        let path = place.path().join(pieces);
+        let cutting = format!("{BLADE}pieces = \"{pieces}\"\n{NEWMARK}");
+        run(&path, &build(&scene(&cutting)), &mut ());
+        path
+    });
+    let [of_removed, of_frozen] = [&removed, &frozen].map(|path| table(&path.join("energy.csv")));
+    for column in ["kinetic_J", "elastic_J", "of_cuts_J"] {
+        assert_eq!(of_removed[column], of_frozen[column], "{column}");
+    }
+    let cuts = &summary(&frozen)["cuts"];
+    assert_eq!(cuts["removed_tetrahedra"], 0);
+    assert!(cuts["frozen_tetrahedra"].as_u64().unwrap() > 50);
+    assert_eq!(sizes(&frozen, 10)[1], 162);
+    let mass = summary(&frozen)["mass_kg"]["end"].as_f64().unwrap();
+    assert!((mass - 1.0).abs() < 1e-12);
+    let top = &table(&frozen.join("probes.csv"))["top_u_x_m"];
+    let [.., before, last] = top[..] else {
+        panic!("two rows at least");
+    };
+    assert!(last.abs() > 1e-5, "{last}");
+    assert_eq!(last, before);
+}
+
+fn read(text: &str) -> Scene {
+    Scene::parse(SceneSource::new("scene.toml", text)).unwrap()
+}
+
+#[test]
+fn a_session_that_only_waits_leaves_what_a_run_leaves() {
+    let place = tempfile::tempdir().unwrap();
+    let (ran, again) = (place.path().join("ran"), place.path().join("again"));
+    let text = scene(&format!("{BLADE}{NEWMARK}"));
+    run(&ran, &build(&text), &mut ());
+    let mut session = Session::new(read(&text)).unwrap();
+    for _ in 0..50 {
+        session.step().unwrap();
+    }
+    let mut replay = Replay::new(read(&text), session.log().clone()).unwrap();
+    let end = RunFolder::replay(&again, &mut replay, &Request::default(), &mut ()).unwrap();
+    assert_eq!(
+        (end.ended, end.steps, end.frames),
+        (Ended::Finished, 50, 11)
+    );
+    assert_eq!(replay.session().state(), session.state());
+    let files = ["probes.csv", "energy.csv", "reactions.csv", "fields.pvd"];
+    for file in files.into_iter().chain(["fields/frame-00010.vtu"]) {
+        let [ran, again] = [&ran, &again].map(|folder| fs::read(folder.join(file)).unwrap());
+        assert!(ran == again, "{file}");
+    }
+    assert_eq!(summary(&ran)["cuts"], summary(&again)["cuts"]);
+}
+
+#[test]
+fn sheets_from_outside_are_repeated_bit_for_bit_and_recorded() {
+    let place = tempfile::tempdir().unwrap();
+    let text = scene(&format!(
+        "[[load]]\nname = \"press\"\ngroup = \"top\"\ntraction = [0.0, 0.0, -20.0]\n[cutting]\n{NEWMARK}"
+    ));
+    let mut session = Session::new(read(&text)).unwrap();
+    let steps = |session: &mut Session, count: usize| {
+        for _ in 0..count {
+            session.step().unwrap();
+        }
+    };
+    let blade = |x: f64| [[x, -0.05, 0.045], [x, 0.15, 0.045]];
+    let cut = |from: f64, to: f64| Command::Cut {
+        from: blade(from),
+        to: blade(to),
+    };
+    // Before a reset the body is cut as well, and then whole again.
+    session.command(cut(-0.01, 0.2)).unwrap();
+    steps(&mut session, 3);
+    assert_eq!(session.cuts().unwrap().changes, 1);
+    session.command(Command::Reset).unwrap();
+    assert_eq!(session.cuts().unwrap().changes, 0);
+    steps(&mut session, 5);
+    session.command(cut(-0.01, 0.04)).unwrap();
+    steps(&mut session, 5);
+    let half = session.cuts().unwrap().report.area;
+    session
+        .command(Command::LoadFactor {
+            load: "press".to_owned(),
+            factor: 3.0,
+        })
+        .unwrap();
+    session.command(cut(0.04, 0.2)).unwrap();
+    steps(&mut session, 20);
+    let totals = *session.cuts().unwrap();
+    assert!(half > 0.0 && totals.report.area > half && totals.changes == 2);
+    assert_eq!(session.cutter().unwrap().pieces(), 2);
+    let log = session.log().clone();
+    let path = place.path().join("again");
+    let mut replay = Replay::new(read(&text), log).unwrap();
+    let end = RunFolder::replay(&path, &mut replay, &Request::default(), &mut ()).unwrap();
+    assert_eq!((end.ended, end.steps), (Ended::Finished, 30));
+    assert_eq!(replay.session().state(), session.state());
+    assert_eq!(replay.session().cuts(), Some(&totals));
+    let energy = table(&path.join("energy.csv"));
+    assert_eq!(energy["t_s"].len(), 31);
+    assert!(energy["t_s"].windows(2).all(|pair| pair[1] > pair[0]));
+    let most = energy["kinetic_J"].iter().zip(&energy["elastic_J"]);
+    let most = most.map(|(a, b)| a + b).fold(0.0, f64::max);
+    let remainder = energy["remainder_J"].iter();
+    let largest = remainder.fold(0.0_f64, |most, x| most.max(x.abs()));
+    assert!(largest < 1e-12 * most, "{largest} of {most}");
+    let wrong = session.command(Command::Cut {
+        from: blade(f64::NAN),
+        to: blade(0.0),
+    });
+    let said = wrong.unwrap_err().to_string();
+    assert_eq!(
+        said,
+        "cut: NaN: expected finite numbers, at most 1e6 m in size"
+    );
+}

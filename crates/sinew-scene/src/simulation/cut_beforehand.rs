@@ -1,0 +1,48 @@
+//! Bodies that are cut before they move.
+
+use sinew_core::Inputs;
+
+use super::Simulation;
+use super::cut_plan::CutPlan;
+use super::cutter::CuttingError;
+use crate::scene::Blade;
+
+impl CutPlan {
+    /// Whether the scene cuts after a time (s).
+    fn cuts_after(&self, t: f64) -> bool {
+        let last = self.strokes.as_ref().and_then(sinew_cutting::Strokes::span);
+        let by_tool = self.cutting.remove.is_some() || matches!(self.cutting.blade, Blade::Tool(_));
+        by_tool || last.is_some_and(|[_, end]| end > t)
+    }
+}
+
+impl Simulation {
+    /// Whether the scene cuts its body after the beginning of the motion: it is none of a single body then.
+    #[must_use]
+    pub fn is_cut_later(&self) -> bool {
+        let t = self.initial.t();
+        self.cutting.as_ref().is_some_and(|plan| plan.cuts_after(t))
+    }
+
+    /// The scene on the body that is cut by all strokes which end by the beginning of the motion, and by nothing later on.
+    ///
+    /// # Errors
+    /// [`CuttingError`].
+    pub fn cut_beforehand(self) -> Result<Self, CuttingError> {
+        let Some(mut cutter) = self.cutter()? else {
+            return Ok(self);
+        };
+        let mut state = self.initial_state().clone();
+        let t = state.t();
+        let cut = cutter.follow(&self, &mut state, Inputs::none(), t)?;
+        let simulation = match cut {
+            Some(simulation) => simulation,
+            None => self,
+        };
+        Ok(Self {
+            cutting: None,
+            initial: state,
+            ..simulation
+        })
+    }
+}

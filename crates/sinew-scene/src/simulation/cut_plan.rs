@@ -1,0 +1,13 @@
+//! What cuts a body, its files read.
+
+use sinew_cutting::Strokes;
+
+use crate::scene::Cutting;
+
+/// What cuts a body, its files read.
+#[derive(Debug)]
+pub(super) struct CutPlan {
+    pub(super) cutting: Cutting,
+    /// The strokes of a table.
+    pub(super) strokes: Option<Strokes>,
+}

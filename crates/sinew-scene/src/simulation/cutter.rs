@@ -1,0 +1,520 @@
+//! A body that is cut while it moves.
+
+use std::collections::{HashMap, HashSet};
+use std::sync::{Arc, OnceLock};
+
+use sinew_core::{Energy, Inputs, State, System};
+use sinew_cutting::{BladeAct, SavedBodyError, Sheet};
+use sinew_fem::{CutModel, CutModelError, CutReport, Problem};
+use sinew_mesh::{CutMesh, TetMesh};
+use sinew_tools::{Convex, Tools, ToolsError};
+
+use super::cut_from::CutFrom;
+use super::cut_plan::CutPlan;
+use super::model::{BodyModel, SceneModel};
+use super::probe::Probe;
+use super::{Simulation, tool};
+use crate::scene::{Blade, Body, Cutting, LoosePieces, Subject};
+
+/// What was cut since a motion began.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct CutTotals {
+    /// Faces, area, nodes, mass and energy of all cuts.
+    pub report: CutReport,
+    /// Times that the body became another one.
+    pub changes: u64,
+    /// Work (J) of the blade: the toughness times the area.
+    pub blade_work: f64,
+}
+
+impl CutTotals {
+    /// Energy (J) that all changes brought in; 0 where the model tells none.
+    #[must_use]
+    pub fn energy(&self) -> f64 {
+        self.report.energy_gained.map_or(0.0, Energy::total)
+    }
+}
+
+/// Reasons for which a body cannot be cut on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CuttingError {
+    /// The body, or what is left of it.
+    #[error(transparent)]
+    Body(#[from] CutModelError),
+    /// Tools that do not fit what is left of it.
+    #[error(transparent)]
+    Tools(#[from] ToolsError),
+}
+
+/// Cuts the body of a scene while it moves: by the blade and the tool that the scene names, and by sheets from outside.
+///
+/// A blade is followed over each step in the configuration at the step's beginning. Where the body becomes another one, so does the
+/// scene: [`Cutter::follow`] gives the scene that goes on, and carries the state over.
+///
+/// ```
+/// use sinew_core::{Inputs, System};
+/// use sinew_scene::{Scene, SceneSource};
+///
+/// let text = r#"
+/// [mesh]
+/// cube = { cells = 4, edge = 0.1 }
+/// [[region]]
+/// density = 1060.0
+/// model = "linear"
+/// youngs_modulus = 3500.0
+/// poissons_ratio = 0.3
+/// [[fixed]]
+/// group = "bottom"
+/// [cutting]
+/// [run]
+/// duration = 0.1
+/// integrator = "central-difference"
+/// dt = "auto"
+/// "#;
+/// let simulation = Scene::parse(SceneSource::new("cube.toml", text))?.build()?;
+/// let mut cutter = simulation.cutter()?.ok_or("the scene has [cutting]")?;
+/// let mut state = simulation.initial_state().clone();
+/// let blade = |z: f64| [[0.05, -0.01, z], [0.05, 0.11, z]];
+/// let cut = cutter.cut([blade(0.11), blade(0.05)], &simulation, &mut state, Inputs::none())?;
+/// let cut = cut.ok_or("the blade comes half way down")?;
+/// assert_eq!(cut.system().dofs(), state.u.len());
+/// assert!((cutter.totals().report.area - 0.005).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Cutter {
+    pub(super) cut: CutModel,
+    pub(super) plan: Arc<CutPlan>,
+    uncut: Arc<TetMesh>,
+    /// The problem and the probes on the body before all cuts.
+    problem: Problem,
+    probes: Vec<Probe>,
+    /// Time (s) up to which the blade was followed; `None` before the first step.
+    pub(super) followed: Option<f64>,
+    pub(super) totals: CutTotals,
+}
+
+impl Simulation {
+    /// What cuts its body, which is whole; `None` where the scene has no `[cutting]`. Assembles the body once more.
+    ///
+    /// # Errors
+    /// [`CuttingError`] for a body that cannot be cut, which building the scene rules out.
+    pub fn cutter(&self) -> Result<Option<Cutter>, CuttingError> {
+        let (Some(plan), Some(body)) = (&self.cutting, self.model.body()) else {
+            return Ok(None);
+        };
+        let (uncut, problem) = (Arc::clone(&body.mesh), body.problem.clone());
+        Ok(Some(Cutter {
+            cut: CutModel::new(Arc::clone(&uncut), problem.clone(), plan.cutting.snap)?,
+            plan: Arc::clone(plan),
+            uncut,
+            problem,
+            probes: self.probes.clone(),
+            followed: None,
+            totals: CutTotals::default(),
+        }))
+    }
+
+    /// Whether its body may be cut while it moves.
+    #[must_use]
+    pub fn is_cut(&self) -> bool {
+        self.cutting.is_some()
+    }
+}
+
+impl Cutter {
+    /// What was cut so far.
+    #[must_use]
+    pub fn totals(&self) -> &CutTotals {
+        &self.totals
+    }
+
+    /// Mass (kg) of the body as it is.
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.cut.model().node_masses().iter().sum()
+    }
+
+    /// Number of pieces of the body.
+    #[must_use]
+    pub fn pieces(&self) -> usize {
+        self.cut.body().pieces().count
+    }
+
+    /// The time (s) until which nothing cuts, from `t` (s) on.
+    #[must_use]
+    pub fn idle_until(&self, t: f64) -> f64 {
+        let Cutting { blade, remove, .. } = &self.plan.cutting;
+        if remove.is_some() || matches!(blade, Blade::Tool(_)) {
+            return t;
+        }
+        let strokes = self.plan.strokes.as_ref();
+        let from = self.followed.unwrap_or(f64::NEG_INFINITY);
+        let next = strokes.and_then(|strokes| strokes.next_from(from));
+        next.map_or(f64::INFINITY, |next| next.max(t))
+    }
+
+    /// Cuts what the scene's blade and the tool that removes come through up to `end` (s), in the configuration of the state, before
+    /// the step that ends then. Where the body changes: the scene as it goes on, and the state is carried over to it.
+    ///
+    /// # Errors
+    /// [`CuttingError`]; the run cannot go on then.
+    pub fn follow(
+        &mut self,
+        simulation: &Simulation,
+        state: &mut State,
+        inputs: &Inputs,
+        end: f64,
+    ) -> Result<Option<Simulation>, CuttingError> {
+        let t = state.t();
+        let followed = self.followed.replace(end);
+        let before = Before::of(self.cut.body().nodes(), state);
+        let epoch = self.cut.epoch();
+        let plan = Arc::clone(&self.plan);
+        if let Some(strokes) = &plan.strokes {
+            // What comes before the motion cuts the body that it starts with.
+            for act in strokes.between(followed.unwrap_or(f64::NEG_INFINITY), end) {
+                match act {
+                    BladeAct::Lift => self.cut.lift(),
+                    BladeAct::Sweep(sheet) => self.sweep(&sheet, state, inputs)?,
+                }
+            }
+        }
+        let tools = simulation.model().tools();
+        if let (Blade::Tool(blade), Some(tools)) = (&plan.cutting.blade, tools) {
+            let ends = [followed.unwrap_or(t), end].map(|t| edge(tools, *blade, t, inputs));
+            if let [Some(from), Some(to)] = ends
+                && let Some(sheet) = Sheet::swept(from, to)
+            {
+                self.sweep(&sheet, state, inputs)?;
+                if !self.cut.body().is_touched() {
+                    self.cut.lift();
+                }
+            }
+        }
+        if let (Some(place), Some(tools)) = (plan.cutting.remove, tools)
+            && let Some(tool) = tools.tools().get(place)
+        {
+            let pose = tool.motion.at(end, inputs);
+            let is_inside = |middle: [f64; 3]| tool.shape.distance(&pose, middle) < 0.0;
+            let report = self.cut.remove(is_inside, state, inputs)?;
+            self.totals.report.add(&report);
+        }
+        self.go_on(epoch, simulation, before, state, inputs)
+    }
+
+    /// Cuts by the sheet that a blade sweeps from one place to another (its two ends, m), in the configuration of the state. Where the
+    /// body changes: the scene as it goes on, and the state is carried over to it.
+    ///
+    /// # Errors
+    /// [`CuttingError`]; the run cannot go on then.
+    pub fn cut(
+        &mut self,
+        [from, to]: [[[f64; 3]; 2]; 2],
+        simulation: &Simulation,
+        state: &mut State,
+        inputs: &Inputs,
+    ) -> Result<Option<Simulation>, CuttingError> {
+        let before = Before::of(self.cut.body().nodes(), state);
+        let epoch = self.cut.epoch();
+        if let Some(sheet) = Sheet::swept(from, to) {
+            self.sweep(&sheet, state, inputs)?;
+        }
+        self.go_on(epoch, simulation, before, state, inputs)
+    }
+
+    /// Lifts a blade from outside: its next sheet goes on with no tetrahedron that it left entered in part.
+    pub fn lift(&mut self) {
+        self.cut.lift();
+    }
+
+    /// All that it needs to go on, as bytes.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let CutTotals {
+            report,
+            changes,
+            blade_work,
+        } = self.totals;
+        let energy = report.energy_gained;
+        let parts = energy.map_or([f64::NAN; 2], |energy| [energy.kinetic, energy.elastic]);
+        let numbers = [
+            self.followed.unwrap_or(f64::NAN),
+            report.area,
+            report.mass_gained,
+            report.removed_mass,
+            blade_work,
+            parts[0],
+            parts[1],
+        ];
+        let counts = [
+            report.faces,
+            report.new_nodes,
+            report.moved_nodes,
+            report.removed_tets,
+            report.frozen_tets,
+        ];
+        let mut bytes = changes.to_le_bytes().to_vec();
+        let counts = counts.map(|count| (count as u64).to_le_bytes());
+        bytes.extend(
+            numbers
+                .map(f64::to_le_bytes)
+                .iter()
+                .chain(&counts)
+                .flatten(),
+        );
+        bytes.extend(self.cut.to_bytes());
+        bytes
+    }
+
+    /// Becomes what [`Cutter::to_bytes`] was called on, of the same scene, whose body is whole in `simulation`; the scene as it goes on, where the body was cut.
+    ///
+    /// # Errors
+    /// [`CuttingError`] for other bytes.
+    pub fn restore(
+        &mut self,
+        bytes: &[u8],
+        simulation: &Simulation,
+    ) -> Result<Option<Simulation>, CuttingError> {
+        let other = || CuttingError::from(CutModelError::from(SavedBodyError));
+        let (head, body) = bytes.split_at_checked(13 * 8).ok_or_else(other)?;
+        let words: Vec<[u8; 8]> = head.as_chunks().0.to_vec();
+        let number = |place: usize| f64::from_le_bytes(words[place]);
+        let count = |place: usize| u64::from_le_bytes(words[place]) as usize;
+        self.cut.restore(body)?;
+        let (kinetic, elastic) = (number(6), number(7));
+        self.followed = Some(number(1)).filter(|t| !t.is_nan());
+        self.totals = CutTotals {
+            changes: u64::from_le_bytes(words[0]),
+            blade_work: number(5),
+            report: CutReport {
+                faces: count(8),
+                area: number(2),
+                new_nodes: count(9),
+                moved_nodes: count(10),
+                mass_gained: number(3),
+                removed_tets: count(11),
+                frozen_tets: count(12),
+                removed_mass: number(4),
+                energy_gained: (!kinetic.is_nan()).then_some(Energy { kinetic, elastic }),
+            },
+        };
+        if self.totals.changes == 0 {
+            return Ok(None);
+        }
+        let rest = State::at_rest(self.cut.model().dofs());
+        Ok(Some(self.simulation(simulation, &rest)?))
+    }
+
+    fn sweep(
+        &mut self,
+        sheet: &Sheet,
+        state: &mut State,
+        inputs: &Inputs,
+    ) -> Result<(), CuttingError> {
+        let report = self.cut.stroke(sheet, state, inputs)?;
+        self.totals.blade_work += self.plan.cutting.toughness * report.area;
+        self.totals.report.add(&report);
+        Ok(())
+    }
+
+    /// The scene as it goes on, where the body is another one than in this epoch.
+    fn go_on(
+        &mut self,
+        epoch: u64,
+        simulation: &Simulation,
+        before: Before,
+        state: &mut State,
+        inputs: &Inputs,
+    ) -> Result<Option<Simulation>, CuttingError> {
+        if self.cut.epoch() == epoch {
+            return Ok(None);
+        }
+        let loose = match self.plan.cutting.pieces {
+            LoosePieces::Fall => CutReport::default(),
+            LoosePieces::Freeze => {
+                let held = self.held_by_tools(simulation, &before, state);
+                self.cut.freeze_loose(&held, state, inputs)?
+            }
+            LoosePieces::Remove => {
+                let held = self.held_by_tools(simulation, &before, state);
+                self.cut.remove_loose(&held, state, inputs)?
+            }
+        };
+        self.totals.report.add(&loose);
+        self.totals.changes += 1;
+        let cut = self.simulation(simulation, state)?;
+        if let (Some(theirs), Some(own)) = (simulation.model().tools(), cut.model().tools()) {
+            let place_of = before.places(simulation, &cut, &state.u);
+            state.contact = own.carried(theirs, &before.contact, |place| place_of[place]);
+        }
+        Ok(Some(cut))
+    }
+
+    /// Nodes of the body that tools have hold of, and their new copies.
+    fn held_by_tools(&self, simulation: &Simulation, before: &Before, state: &State) -> Vec<u32> {
+        let Some(tools) = simulation.model().tools() else {
+            return Vec::new();
+        };
+        let mut held: Vec<usize> = tools.held(&before.contact, state.t()).collect();
+        held.sort_unstable();
+        let known = touched(simulation, &before.u);
+        let known = known.filter(|(place, ..)| held.binary_search(place).is_ok());
+        let (mut nodes, origins): (Vec<u32>, HashSet<u32>) =
+            known.map(|(_, [node, origin], _)| (node, origin)).unzip();
+        let of_body = (0..).zip(self.cut.body().origins());
+        let copies = of_body.skip(before.nodes);
+        nodes.extend(copies.filter_map(|(node, origin)| origins.contains(origin).then_some(node)));
+        nodes
+    }
+
+    /// The scene on the body as it is, with a state to go on from.
+    pub(super) fn simulation(
+        &self,
+        before: &Simulation,
+        state: &State,
+    ) -> Result<Simulation, CuttingError> {
+        let (cut, model) = (self.cut.mesh(), self.cut.model());
+        let from = CutFrom {
+            uncut: Arc::clone(&self.uncut),
+            cut: cut.clone(),
+            loads: self.loads_left(cut)?,
+        };
+        let theirs = before.model.body();
+        let mut body = BodyModel {
+            mesh: Arc::new(cut.mesh.clone()),
+            mesh_warnings: Vec::new(),
+            selected: theirs.map_or_else(Vec::new, |body| body.selected.clone()),
+            problem: self
+                .problem
+                .after_cuts(&self.uncut, cut)
+                .map_err(CutModelError::from)?,
+            model: model.clone(),
+            tools: None,
+            cut: Some(Arc::new(from)),
+        };
+        if let (Subject::Body(scene), Some(tools)) = (before.scene.subject(), before.model.tools())
+        {
+            body = with_tools(body, scene, tools, before.settings().duration)?;
+        }
+        let probes = self.probes.iter();
+        Ok(Simulation {
+            scene: before.scene.clone(),
+            probes: probes.map(|probe| probe.after_cut(cut, model)).collect(),
+            model: SceneModel::Body(Box::new(body)),
+            initial: state.clone(),
+            dt: before.dt,
+            stable_step: OnceLock::new(),
+            cutting: before.cutting.clone(),
+        })
+    }
+
+    /// The places of the loads that still act on something.
+    fn loads_left(&self, cut: &CutMesh) -> Result<Vec<usize>, CutModelError> {
+        let mut left = Vec::new();
+        for (place, load) in self.problem.loads.iter().enumerate() {
+            let alone = Problem {
+                loads: vec![load.clone()],
+                ..Problem::default()
+            };
+            if !alone.after_cuts(&self.uncut, cut)?.loads.is_empty() {
+                left.push(place);
+            }
+        }
+        Ok(left)
+    }
+}
+
+/// Both ends (m) of a blade at a time (s).
+fn edge(tools: &Tools, blade: usize, t: f64, inputs: &Inputs) -> Option<[[f64; 3]; 2]> {
+    let tool = tools.tools().get(blade)?;
+    let part = tool.shape.parts().first()?;
+    let Convex::Capsule { length, .. } = part.convex else {
+        return None;
+    };
+    let pose = tool.motion.at(t, inputs).then(&part.pose);
+    Some([-0.5, 0.5].map(|share| pose.to_world([0.0, 0.0, share * length])))
+}
+
+/// Lets the tools of a body that was cut touch what is left of it.
+fn with_tools(
+    built: BodyModel,
+    body: &Body,
+    tools: &Tools,
+    duration: f64,
+) -> Result<BodyModel, ToolsError> {
+    let nodes_of: Vec<Vec<u32>> = body
+        .tools
+        .iter()
+        .enumerate()
+        // A group of which nothing is left is empty.
+        .map(|(index, _)| {
+            tool::touchable(body, index, &built).map_or_else(|_| Vec::new(), |nodes| nodes.0)
+        })
+        .collect();
+    let tools = tool::on_nodes(tools.tools().to_vec(), &nodes_of, &built, duration)?;
+    Ok(built.touched_by(Arc::new(tools)))
+}
+
+/// What tools kept before a cut, and where the cells were then.
+struct Before {
+    /// Number of nodes of the body, gone ones included.
+    nodes: usize,
+    contact: Vec<f64>,
+    /// Displacements (m); empty where tools kept nothing.
+    u: Vec<f64>,
+}
+
+impl Before {
+    fn of(nodes: usize, state: &State) -> Self {
+        let contact = state.contact.clone();
+        let u = match contact.is_empty() {
+            true => Vec::new(),
+            false => state.u.clone(),
+        };
+        Self { nodes, contact, u }
+    }
+
+    /// The place in the scene before that each touched cell of the scene after has, or that of which it is a copy: copies lie where it lies.
+    fn places(&self, before: &Simulation, after: &Simulation, u: &[f64]) -> Vec<Option<usize>> {
+        let mut by_node = HashMap::new();
+        let mut by_origin = HashMap::new();
+        for (place, [node, origin], u) in touched(before, &self.u) {
+            by_node.insert(node, place);
+            by_origin.entry((origin, u)).or_insert(place);
+        }
+        let known = touched(after, u).map(|(_, [node, origin], u)| {
+            let same = by_node.get(&node);
+            same.or_else(|| by_origin.get(&(origin, u))).copied()
+        });
+        known.collect()
+    }
+}
+
+/// The place of each touched cell, the numbers of its node in the body and in the uncut mesh, and the bits of its displacement.
+fn touched<'a>(
+    simulation: &'a Simulation,
+    u: &'a [f64],
+) -> impl Iterator<Item = (usize, [u32; 2], [u64; 3])> + 'a {
+    let body = simulation.model.body();
+    let both = body.and_then(|body| Some((body, body.tools.as_ref()?)));
+    both.into_iter().flat_map(move |(body, tools)| {
+        tools
+            .touched_cells()
+            .iter()
+            .enumerate()
+            .map(move |(place, cell)| {
+                let node = body.model.nodes()[cell.cell as usize];
+                let numbers = match &body.cut {
+                    Some(from) => {
+                        let node = node as usize;
+                        [from.cut.nodes[node], from.cut.origins[node]]
+                    }
+                    None => [node; 2],
+                };
+                let first = 3 * cell.cell as usize;
+                let u = [0, 1, 2].map(|axis| u.get(first + axis).map_or(0, |u| u.to_bits()));
+                (place, numbers, u)
+            })
+    })
+}

@@ -1,0 +1,141 @@
+//! Scenes that are driven from outside while they run.
+
+use std::sync::{Arc, OnceLock};
+
+use sinew_core::{
+    Channel, Inputs, LinearModel, LinearSystem, Load, OperatorError, Ramp, RampError,
+};
+use sinew_fem::{FemError, Item};
+use sinew_tools::Steering;
+
+use super::Simulation;
+use super::model::{BodyModel, SceneModel};
+use crate::scene::Subject;
+use crate::scene::keys::GRAVITY;
+
+/// Reasons for which loads cannot be driven.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DrivenLoadError {
+    /// A load that is driven already.
+    #[error(transparent)]
+    Ramp(#[from] RampError),
+    /// A load that a body refuses.
+    #[error(transparent)]
+    Body(#[from] FemError),
+    /// A force that an oscillator refuses.
+    #[error(transparent)]
+    Oscillator(#[from] OperatorError),
+}
+
+/// The name of the force on an oscillator.
+const FORCE: &str = "force";
+
+impl Simulation {
+    /// Lets inputs steer its tools, each of which follows the scene until then; their channels, in the order of the tools.
+    pub fn steer_tools(&mut self, inputs: &mut Inputs) -> Vec<Steering> {
+        let SceneModel::Body(body) = &mut self.model else {
+            return Vec::new();
+        };
+        let Some(tools) = &body.tools else {
+            return Vec::new();
+        };
+        let steering: Vec<Steering> = tools
+            .tools()
+            .iter()
+            .map(|_| Steering::new(inputs))
+            .collect();
+        let steered = Arc::new(tools.steered(&steering));
+        **body = (**body).clone().touched_by(steered);
+        steering
+    }
+
+    /// The names by which its loads can be driven: those of the scene, `load 2` for the second where it has none, `gravity` where there is one; `force` for an
+    /// oscillator's.
+    #[must_use]
+    pub fn load_names(&self) -> Vec<String> {
+        let Subject::Body(body) = self.scene.subject() else {
+            let force = self.oscillator_loads().first();
+            return force.map(|_| FORCE.to_owned()).into_iter().collect();
+        };
+        let named = (1..).zip(&body.load_names);
+        let named =
+            named.map(|(number, name)| name.clone().unwrap_or_else(|| format!("load {number}")));
+        let gravity = body.problem.gravity.map(|_| GRAVITY.to_owned());
+        named.chain(gravity).collect()
+    }
+
+    fn oscillator_loads(&self) -> &[Load] {
+        match &self.model {
+            SceneModel::Oscillator(_) => self.loads(),
+            SceneModel::Body(_) => &[],
+        }
+    }
+
+    /// Adds a channel of factors for each of [`Simulation::load_names`], by which [`Simulation::with_driven_loads`] drives them.
+    ///
+    /// # Errors
+    /// [`DrivenLoadError::Ramp`] for a load that is driven already.
+    pub fn add_load_channels(&self, inputs: &mut Inputs) -> Result<Vec<Channel>, DrivenLoadError> {
+        let ramps: Vec<Ramp> = match self.scene.subject() {
+            Subject::Body(body) => {
+                let loads = body.problem.loads.iter().map(|load| load.ramp.clone());
+                loads
+                    .chain(body.problem.gravity.map(|_| Ramp::Step))
+                    .collect()
+            }
+            Subject::Oscillator(_) => {
+                let force = self.oscillator_loads().iter();
+                force.map(|load| load.ramp.clone()).collect()
+            }
+        };
+        let channels = ramps.into_iter().map(|ramp| inputs.add_factor_of(ramp));
+        Ok(channels.collect::<Result<_, _>>()?)
+    }
+
+    /// The same scene, whose loads have the factors of these channels, beside their own courses over time. Its matrices are shared; no force differs until a
+    /// factor is given.
+    ///
+    /// # Errors
+    /// [`DrivenLoadError`] where the system refuses its loads.
+    pub fn with_driven_loads(&self, channels: &[Channel]) -> Result<Self, DrivenLoadError> {
+        let driven = |place: usize| channels.get(place).map(|channel| Ramp::Input(*channel));
+        let model = match &self.model {
+            SceneModel::Body(body) => {
+                // Behind those of the scene, of which some may be gone.
+                let gravity = channels.len().saturating_sub(1);
+                // Cuts leave out loads of which all that they act on is gone.
+                let place_of = |place: usize| match &body.cut {
+                    Some(from) => from.loads.get(place).copied(),
+                    None => Some(place),
+                };
+                let model = body.model.with_ramps(|item| match item {
+                    Item::Load(place) => place_of(place).and_then(driven),
+                    Item::Gravity => driven(gravity),
+                    _ => None,
+                })?;
+                let body = BodyModel {
+                    model,
+                    ..(**body).clone()
+                };
+                SceneModel::Body(Box::new(body))
+            }
+            SceneModel::Oscillator(model) => {
+                let mut loads = self.loads().to_vec();
+                for (place, load) in loads.iter_mut().enumerate() {
+                    load.ramp = driven(place).unwrap_or_else(|| load.ramp.clone());
+                }
+                SceneModel::Oscillator(LinearModel::new(model.operators().with_loads(loads)?))
+            }
+        };
+        Ok(Self {
+            scene: self.scene.clone(),
+            model,
+            initial: self.initial.clone(),
+            probes: self.probes.clone(),
+            dt: self.dt,
+            stable_step: OnceLock::new(),
+            cutting: self.cutting.clone(),
+        })
+    }
+}

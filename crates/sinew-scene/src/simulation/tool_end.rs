@@ -1,0 +1,62 @@
+//! What tools could not do in a run.
+
+use sinew_core::State;
+use sinew_tools::{ToolReport, Tools};
+
+use super::tool::ROUNDING;
+use crate::number::short;
+
+/// The largest residual of an iteration for contacts that counts as its end. Where contacts on one triangle are nearly equal a thousandth is left, and forces and balances are
+/// sound to that.
+const CONVERGED: f64 = 1e-2;
+
+/// Depth, over the body's size, at which contacts that act on each other are left unsaid.
+const LEFT_BY_ITERATION: f64 = 1e-6;
+
+/// Sentences about tools of a body of this size (m), up to a state.
+pub(super) fn sentences(tools: &Tools, size: f64, state: &State) -> Vec<String> {
+    let mut said = Vec::new();
+    for (index, tool) in tools.tools().iter().enumerate() {
+        let name = &tool.name;
+        let ToolReport {
+            depth,
+            largest_residual,
+            seized,
+            rival,
+            ..
+        } = tools.report(state, index);
+        let unsaid = match tools.links(index) {
+            true => LEFT_BY_ITERATION,
+            false => ROUNDING,
+        };
+        if depth > unsaid * size {
+            said.push(format!(
+                "tool `{name}` left a node up to {} m in it: one that is held in that direction, or has no room between its surfaces",
+                short(depth)
+            ));
+        }
+        if largest_residual > CONVERGED {
+            said.push(format!(
+                "the contacts of tool `{name}` are unconverged: the last sweep of a step still changed a displacement by {} of the largest",
+                short(largest_residual)
+            ));
+        }
+        if let Some(rival) = rival {
+            said.push(format!(
+                "tool `{name}` would have seized a node that tool `{}` had hold of, and did not",
+                tools.tools()[rival].name
+            ));
+        }
+        if let Some(grasp) = tool.grasp
+            && grasp.from <= state.t()
+            && seized == 0
+        {
+            said.push(format!(
+                "tool `{name}` seized nothing from {} s to {} s: it pushed no node",
+                short(grasp.from),
+                short(grasp.to)
+            ));
+        }
+    }
+    said
+}

@@ -1,0 +1,70 @@
+//! Methods that tools cannot push.
+
+use std::sync::Arc;
+
+use sinew_core::{Options, SetupError};
+use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_mesh::structured::{Split, block};
+use sinew_tools::Tools;
+
+use crate::decode::Place;
+use crate::error::{Fault, SceneError};
+use crate::scene::RunSettings;
+
+/// A step (s) that is stable on the stand-in.
+const STEP: f64 = 1e-6;
+
+/// Refuses a method that tools cannot push, at the key that makes it one: on a body of one cube, since that is a matter of the method and its options.
+pub(super) fn check(settings: &RunSettings, run: &Place) -> Result<(), SceneError> {
+    let RunSettings {
+        integrator,
+        options,
+        ..
+    } = settings;
+    let Some(stand_in) = stand_in() else {
+        return Ok(());
+    };
+    let refusal = |options: &Options| {
+        let mut method = sinew_integrators::build(integrator, options).ok()?;
+        match method.prepare(&stand_in, STEP) {
+            Err(refusal @ SetupError::Contact { .. }) => Some(refusal),
+            _ => None,
+        }
+    };
+    let Some(refused) = refusal(options) else {
+        return Ok(());
+    };
+    let is_at_fault = |key: &&str| {
+        let mut others = options.clone();
+        others.remove(key);
+        refusal(&others).is_none()
+    };
+    let key = options.iter().map(|(key, _)| key).find(is_at_fault);
+    Err(run.value_fault(key.unwrap_or("integrator"), Fault::Touched(refused)))
+}
+
+/// A cube that no tool touches, but which could be; `None` never.
+fn stand_in() -> Option<Model> {
+    let mesh = block([1; 3], [1.0; 3], Split::Kuhn).ok()?;
+    let problem = Problem {
+        regions: vec![Region {
+            group: None,
+            density: 1000.0,
+            law: Law::Linear {
+                youngs_modulus: 1000.0,
+                poissons_ratio: 0.3,
+            },
+            element: Element::P1,
+            tissue: Tissue::default(),
+            from_mesh: FromMesh::default(),
+        }],
+        fixed: vec![Fixed {
+            on: "bottom".into(),
+            axes: [true; 3],
+        }],
+        ..Problem::default()
+    };
+    let model = Model::build(&mesh, &problem).ok()?;
+    let tools = Tools::new(Vec::new(), Vec::new()).ok()?;
+    Some(model.with_contact(Arc::new(tools)))
+}

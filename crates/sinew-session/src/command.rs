@@ -1,0 +1,132 @@
+//! What a hand can do to a running scene.
+
+use sinew_core::{OptionError, Options, StepError};
+use sinew_scene::{CuttingError, DrivenLoadError};
+
+/// A command to a session. It takes effect with the next step.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Command {
+    /// The pose of a tool at the end of the next step: it goes there straight within that step, and stays until another pose comes. Until
+    /// the first one it follows the scene.
+    Pose {
+        /// Name of the tool.
+        tool: String,
+        /// Position (m) of its own origin.
+        position: [f64; 3],
+        /// Its rotation vector (rad).
+        rotation_vector: [f64; 3],
+    },
+    /// A factor of a load, beside its own course over time; 1 at the beginning.
+    LoadFactor {
+        /// Name of the load: that of the scene, `load 2` for the second where it has none, or `gravity`.
+        load: String,
+        /// The factor.
+        factor: f64,
+    },
+    /// Another integrator, which goes on from the state.
+    Integrator {
+        /// Its id.
+        id: String,
+        /// Its options.
+        options: Options,
+    },
+    /// Another step (s).
+    Dt(f64),
+    /// The initial state, integrator and step again, with tools and loads as the scene has them. Steps are counted on.
+    Reset,
+    /// A cut by the sheet that a blade sweeps from one place to another, its two ends (m) before and after, in the configuration at the beginning of
+    /// the next step. One that does not begin where the last one ended lifts the blade before. The scene needs `[cutting]`.
+    Cut {
+        /// The ends before.
+        from: [[f64; 3]; 2],
+        /// The ends after.
+        to: [[f64; 3]; 2],
+    },
+}
+
+/// Reasons for which a command is refused; the session goes on as if it had not come.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CommandError {
+    /// A tool that the scene does not have.
+    #[error("no tool is named \"{name}\"; there are {}", quoted(.known))]
+    NoTool {
+        /// The name.
+        name: String,
+        /// The names of all tools.
+        known: Vec<String>,
+    },
+    /// A load that the scene does not have.
+    #[error("no load is named \"{name}\"; there are {}", quoted(.known))]
+    NoLoad {
+        /// The name.
+        name: String,
+        /// The names of all loads.
+        known: Vec<String>,
+    },
+    /// A pose that is no place.
+    #[error(
+        "pose of \"{tool}\": {value}: expected finite numbers, at most {most:e} m or rad in size"
+    )]
+    Pose {
+        /// The tool.
+        tool: String,
+        /// The number at fault.
+        value: f64,
+        /// The largest size.
+        most: f64,
+    },
+    /// A factor that is not finite.
+    #[error("factor of \"{load}\": {factor}: expected a finite number, at most {most:e} in size")]
+    Factor {
+        /// The load.
+        load: String,
+        /// The factor.
+        factor: f64,
+        /// The largest size.
+        most: f64,
+    },
+    /// A step that is not positive and finite, or by which the time of the session does not advance.
+    #[error("dt = {dt} s: expected a finite step above 0 that advances the time, {t} s")]
+    Dt {
+        /// The step (s).
+        dt: f64,
+        /// The time (s).
+        t: f64,
+    },
+    /// Another integrator, or an option, that does not exist.
+    #[error(transparent)]
+    Option(#[from] OptionError),
+    /// Loads that cannot be driven.
+    #[error(transparent)]
+    Driven(#[from] DrivenLoadError),
+    /// A method that cannot take a step from here.
+    #[error("no step can be taken with that: {0}")]
+    Step(#[from] StepError),
+    /// A session whose last step failed.
+    #[error("the last step failed: only a reset goes on from here")]
+    Failed,
+    /// A cut in a scene whose body stays whole.
+    #[error("the scene has no table [cutting], so its body stays whole: add one")]
+    Whole,
+    /// A place of a blade that is none.
+    #[error("cut: {value}: expected finite numbers, at most {most:e} m in size")]
+    Cut {
+        /// The number at fault.
+        value: f64,
+        /// The largest size.
+        most: f64,
+    },
+    /// A body that cannot be cut.
+    #[error(transparent)]
+    Cutting(#[from] CuttingError),
+}
+
+fn quoted(names: &[String]) -> String {
+    if names.is_empty() {
+        return "none".to_owned();
+    }
+    let names: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+    names.join(", ")
+}

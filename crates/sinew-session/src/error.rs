@@ -1,0 +1,67 @@
+//! Errors of sessions and their steps.
+
+use sinew_core::{InputError, OptionError, StepError};
+use sinew_scene::{CuttingError, DrivenLoadError, RefusedLoad, SceneError};
+
+use crate::input_file::InputFileError;
+
+/// Reasons for which a scene cannot be driven.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SessionError {
+    /// A scene that cannot be built.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A load that the scene's integrator does not take.
+    #[error(transparent)]
+    Load(#[from] RefusedLoad),
+    /// Loads that cannot be driven.
+    #[error(transparent)]
+    Driven(#[from] DrivenLoadError),
+    /// An option that the scene's integrator does not take.
+    #[error(transparent)]
+    Option(#[from] OptionError),
+    /// A first step that cannot be taken.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// A body that cannot be cut.
+    #[error(transparent)]
+    Cutting(#[from] CuttingError),
+    /// A file of the scene that could not be read for its hash.
+    #[error(transparent)]
+    File(#[from] InputFileError),
+}
+
+/// Reasons for which a step of a session fails. Only a reset goes on from there.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SessionStepError {
+    /// A displacement that is not finite, or beyond 100 times the size of the body. The step was taken, and counts.
+    #[error("the motion diverged at t = {t} s: {place} is too far away")]
+    Diverged {
+        /// Time (s).
+        t: f64,
+        /// The degree of freedom that went farthest, in the system's words.
+        place: String,
+    },
+    /// A method that could not take the step, or a law that refused a state.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// A cut that leaves nothing to go on with.
+    #[error(transparent)]
+    Cutting(#[from] CuttingError),
+    /// Loads that cannot be driven on what a cut left.
+    #[error("after a cut: {0}")]
+    Driven(String),
+    /// A pose that could not be recorded.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A step by which the time does not advance any more.
+    #[error("t = {t} s: a step of {dt} s does not advance it: expected a longer step, or a reset")]
+    Time {
+        /// Time (s).
+        t: f64,
+        /// The step (s).
+        dt: f64,
+    },
+}

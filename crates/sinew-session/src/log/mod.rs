@@ -1,0 +1,112 @@
+//! The log of a session.
+
+mod error;
+mod read;
+mod text;
+mod words;
+
+pub use error::{LogError, LogFault};
+
+use sinew_scene::Scene;
+
+use crate::command::Command;
+use crate::input_file::{InputFile, InputFileError, sha256};
+
+/// What a log belongs to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Header {
+    /// Version of the program.
+    pub program: String,
+    /// SHA-256 of the scene's text, values of the command line included, in hexadecimal digits.
+    pub scene: String,
+    /// The other files that the scene reads.
+    pub inputs: Vec<InputFile>,
+}
+
+impl Header {
+    /// That of a scene and this program.
+    ///
+    /// # Errors
+    /// [`InputFileError`] where a file of the scene cannot be read.
+    pub fn of(scene: &Scene) -> Result<Self, InputFileError> {
+        // The scene is known by its text.
+        let others = scene.input_files().into_iter().skip(1);
+        Ok(Self {
+            program: env!("CARGO_PKG_VERSION").to_owned(),
+            scene: sha256(scene.source().text().as_bytes()),
+            inputs: others.map(InputFile::of).collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+/// A command of a log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Steps taken before it.
+    pub step: usize,
+    /// Time (s) of the state then.
+    pub t: f64,
+    /// The command.
+    pub command: Command,
+}
+
+/// All commands of a session, each with the number of steps before it, and the number of steps at its end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Log {
+    header: Header,
+    entries: Vec<Entry>,
+    steps: usize,
+}
+
+impl Log {
+    pub(crate) fn new(header: Header) -> Self {
+        Self {
+            header,
+            entries: Vec::new(),
+            steps: 0,
+        }
+    }
+
+    /// Adds a command. Of several poses of a tool before a step the last holds.
+    pub(crate) fn add(&mut self, step: usize, t: f64, command: Command) {
+        self.steps = step;
+        if let Command::Pose { tool, .. } = &command {
+            let of_step = self
+                .entries
+                .iter_mut()
+                .rev()
+                .take_while(|entry| entry.step == step);
+            let mut poses =
+                of_step.take_while(|entry| matches!(entry.command, Command::Pose { .. }));
+            let same = poses.find(|entry| matches!(&entry.command, Command::Pose { tool: other, .. } if other == tool));
+            if let Some(entry) = same {
+                entry.command = command;
+                return;
+            }
+        }
+        self.entries.push(Entry { step, t, command });
+    }
+
+    /// The session has taken so many steps.
+    pub(crate) fn ends_after(&mut self, steps: usize) {
+        self.steps = steps;
+    }
+
+    /// What it belongs to.
+    #[must_use]
+    pub fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// The commands in the order in which they came.
+    #[must_use]
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// Steps of the session.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+}

@@ -1,0 +1,205 @@
+//! Logs read from text.
+
+use std::fs;
+use std::path::Path;
+
+use super::error::{LogError, LogFault};
+use super::text::{KIND, VERSION};
+use super::words::Words;
+use super::{Entry, Header, Log};
+use crate::command::Command;
+use crate::input_file::InputFile;
+
+/// What commands there are.
+const COMMANDS: &str = "pose, factor, integrator, dt, reset, cut or end";
+
+impl Log {
+    /// Reads a file that [`Log::to_text`] gave.
+    ///
+    /// # Errors
+    /// [`LogError`] with file and line of what is wrong.
+    pub fn read(path: &Path) -> Result<Self, LogError> {
+        let text = fs::read_to_string(path).map_err(|source| LogError::File {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(path, &text)
+    }
+
+    /// Reads a text that [`Log::to_text`] gave; messages name it by a path.
+    ///
+    /// # Errors
+    /// [`LogError::Line`] with the line of what is wrong.
+    pub fn parse(path: &Path, text: &str) -> Result<Self, LogError> {
+        let mut reader = Reading::default();
+        let at = |(line, fault)| LogError::Line {
+            path: path.to_owned(),
+            line,
+            fault,
+        };
+        let mut last = 0;
+        for (number, line) in (1..).zip(text.lines()) {
+            last = number;
+            reader
+                .line(number, line)
+                .map_err(|fault| at((number, fault)))?;
+        }
+        reader.finish().map_err(|fault| at((last.max(1), fault)))
+    }
+}
+
+/// A log as far as it is read.
+#[derive(Default)]
+struct Reading {
+    program: Option<String>,
+    scene: Option<String>,
+    inputs: Vec<InputFile>,
+    entries: Vec<Entry>,
+    end: Option<usize>,
+}
+
+impl Reading {
+    fn line(&mut self, number: usize, line: &str) -> Result<(), LogFault> {
+        if number == 1 {
+            return first(line);
+        }
+        if let Some(end) = self.end {
+            return Err(LogFault::AfterEnd { end });
+        }
+        let mut words = Words::of(line);
+        if self.program.is_none() {
+            keyword(&mut words, "program", "program \"VERSION\"")?;
+            self.program = Some(words.quoted("the version of the program in quotes")?);
+            return words.end();
+        }
+        if self.scene.is_none() {
+            keyword(&mut words, "scene", "scene HASH")?;
+            self.scene = Some(hash(&mut words)?);
+            return words.end();
+        }
+        let mut ahead = words;
+        if ahead.word() == "file" && self.entries.is_empty() {
+            let sha256 = hash(&mut ahead)?;
+            let path = ahead.quoted("the path of the file in quotes")?.into();
+            self.inputs.push(InputFile { path, sha256 });
+            return ahead.end();
+        }
+        self.command(words)
+    }
+
+    fn command(&mut self, mut words: Words<'_>) -> Result<(), LogFault> {
+        let step = words.count("the number of steps before the command")?;
+        let last = self.entries.last();
+        if let Some(last) = last.filter(|last| step < last.step) {
+            let last = last.step;
+            return Err(LogFault::Step { found: step, last });
+        }
+        let mut ahead = words;
+        if ahead.word() == "end" {
+            self.end = Some(step);
+            return ahead.end();
+        }
+        let t = words.number("the time (s) of the state, or end")?;
+        if let Some(last) = last
+            && last.command != Command::Reset
+            && (t < last.t || (step == last.step && t != last.t))
+        {
+            let last = last.t;
+            return Err(LogFault::Time { found: t, last });
+        }
+        let word = words.word();
+        let command = match word {
+            "pose" => Command::Pose {
+                tool: words.quoted("the name of a tool in quotes")?,
+                position: words
+                    .vector("six finite numbers, position (m) and rotation vector (rad)")?,
+                rotation_vector: words
+                    .vector("six finite numbers, position (m) and rotation vector (rad)")?,
+            },
+            "factor" => Command::LoadFactor {
+                load: words.quoted("the name of a load in quotes")?,
+                factor: words.number("a finite factor")?,
+            },
+            "integrator" => Command::Integrator {
+                id: words.quoted("the name of an integrator in quotes")?,
+                options: words.options()?,
+            },
+            "dt" => Command::Dt(words.number("a finite step (s)")?),
+            "reset" => Command::Reset,
+            "cut" => {
+                const ENDS: &str = "twelve finite numbers, both ends of the blade (m) twice";
+                let mut ends = || Ok([words.vector(ENDS)?, words.vector(ENDS)?]);
+                Command::Cut {
+                    from: ends()?,
+                    to: ends()?,
+                }
+            }
+            _ => {
+                return Err(LogFault::Word {
+                    found: word.to_owned(),
+                    expected: COMMANDS,
+                });
+            }
+        };
+        words.end()?;
+        self.entries.push(Entry { step, t, command });
+        Ok(())
+    }
+
+    fn finish(self) -> Result<Log, LogFault> {
+        let least = self.entries.last().map_or(0, |entry| entry.step);
+        let (Some(program), Some(scene)) = (self.program, self.scene) else {
+            return Err(LogFault::Kind {
+                expected: format!("{KIND} {VERSION}"),
+            });
+        };
+        let steps = self.end.ok_or(LogFault::NoEnd { least })?;
+        Ok(Log {
+            header: Header {
+                program,
+                scene,
+                inputs: self.inputs,
+            },
+            entries: self.entries,
+            steps,
+        })
+    }
+}
+
+/// Checks the first line.
+fn first(line: &str) -> Result<(), LogFault> {
+    let version = line.strip_prefix(KIND).map(str::trim);
+    match version.map(str::parse::<usize>) {
+        Some(Ok(VERSION)) => Ok(()),
+        Some(Ok(found)) if found > VERSION => Err(LogFault::Newer {
+            found,
+            known: VERSION,
+        }),
+        _ => Err(LogFault::Kind {
+            expected: format!("{KIND} {VERSION}"),
+        }),
+    }
+}
+
+fn keyword(words: &mut Words<'_>, key: &str, expected: &'static str) -> Result<(), LogFault> {
+    let word = words.word();
+    if word == key {
+        return Ok(());
+    }
+    Err(LogFault::Word {
+        found: word.to_owned(),
+        expected,
+    })
+}
+
+/// A hash in hexadecimal digits.
+fn hash(words: &mut Words<'_>) -> Result<String, LogFault> {
+    let word = words.word();
+    if word.len() == 64 && word.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+        return Ok(word.to_owned());
+    }
+    Err(LogFault::Word {
+        found: word.chars().take(80).collect(),
+        expected: "a hash of 64 hexadecimal digits",
+    })
+}

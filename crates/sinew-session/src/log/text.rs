@@ -1,0 +1,86 @@
+//! A log as text.
+
+use std::fmt::Write;
+
+use super::words::{push_number, push_options, push_quoted};
+use super::{Entry, Header, Log};
+use crate::command::Command;
+
+/// First line of a log, before its version.
+pub(super) const KIND: &str = "sinew session log";
+
+/// Version of logs.
+pub(super) const VERSION: usize = 1;
+
+/// The lines before the commands.
+pub(super) fn head(header: &Header) -> String {
+    let mut text = format!("{KIND} {VERSION}\nprogram ");
+    push_quoted(&mut text, &header.program);
+    let _ = writeln!(text, "\nscene {}", header.scene);
+    for file in &header.inputs {
+        let _ = write!(text, "file {} ", file.sha256);
+        push_quoted(&mut text, &file.path.to_string_lossy());
+        text.push('\n');
+    }
+    text
+}
+
+/// Adds the line of a command.
+pub(super) fn push_entry(out: &mut String, entry: &Entry) {
+    let _ = write!(out, "{} ", entry.step);
+    push_number(out, entry.t);
+    match &entry.command {
+        Command::Pose {
+            tool,
+            position,
+            rotation_vector,
+        } => {
+            out.push_str(" pose ");
+            push_quoted(out, tool);
+            push_numbers(out, position.iter().chain(rotation_vector));
+        }
+        Command::LoadFactor { load, factor } => {
+            out.push_str(" factor ");
+            push_quoted(out, load);
+            push_numbers(out, [factor]);
+        }
+        Command::Integrator { id, options } => {
+            out.push_str(" integrator ");
+            push_quoted(out, id);
+            push_options(out, options.iter());
+        }
+        Command::Dt(dt) => {
+            out.push_str(" dt");
+            push_numbers(out, [dt]);
+        }
+        Command::Reset => out.push_str(" reset"),
+        Command::Cut { from, to } => {
+            out.push_str(" cut");
+            push_numbers(out, from.iter().chain(to).flatten());
+        }
+    }
+    out.push('\n');
+}
+
+fn push_numbers<'n>(out: &mut String, numbers: impl IntoIterator<Item = &'n f64>) {
+    for number in numbers {
+        out.push(' ');
+        push_number(out, *number);
+    }
+}
+
+impl Log {
+    /// The log as text, from which [`Log::parse`] reads it back without loss.
+    ///
+    /// First lines say what it belongs to; then there is a line for each command: the steps taken before it, the time (s) of the state then, and
+    /// the command; the last line has the number of all steps.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        let mut text = head(&self.header);
+        for entry in &self.entries {
+            push_entry(&mut text, entry);
+        }
+        let _ = writeln!(text, "{} end", self.steps);
+        text
+    }
+}

@@ -1,0 +1,52 @@
+//! What tools keep, carried to other cells.
+
+use super::record::{OF_CELL, OF_HELD, OF_VELOCITY};
+use super::tools::Tools;
+
+impl Tools {
+    /// What these tools keep ([`sinew_core::State::contact`]), where `before` are the same tools on the cells that there were before a cut, and `contact` is what
+    /// they kept. `of` tells for a touched cell which one of those it is, by its place, or a copy of; `None` for a cell that could not be touched.
+    ///
+    /// Forces of the last step stay with the first of several copies, and a tool that holds a cell holds all of its copies.
+    #[must_use]
+    pub fn carried(
+        &self,
+        before: &Self,
+        contact: &[f64],
+        of: impl Fn(usize) -> Option<usize>,
+    ) -> Vec<f64> {
+        let is_theirs = contact.len() == before.counts.numbers();
+        if !is_theirs || self.counts.of_bodies() != before.counts.of_bodies() {
+            return Vec::new();
+        }
+        let mut carried = vec![0.0; self.counts.numbers()];
+        let cells = before.counts.of_cells();
+        carried[..cells.start].copy_from_slice(&contact[..cells.start]);
+        let (velocities, held) = contact[cells.end..].split_at(before.counts.of_velocities().len());
+        let forces = &contact[cells];
+        let mut is_taken = vec![false; before.cells.len()];
+        let own = self.counts.of_cells();
+        let (own_forces, others) = carried[own.start..].split_at_mut(own.len());
+        let (own_velocities, own_held) = others.split_at_mut(self.counts.of_velocities().len());
+        for place in 0..self.cells.len() {
+            let Some(from) = of(place).filter(|from| *from < before.cells.len()) else {
+                continue;
+            };
+            if !std::mem::replace(&mut is_taken[from], true) {
+                copy::<OF_CELL>(forces, from, own_forces, place);
+            }
+            copy::<OF_VELOCITY>(velocities, from, own_velocities, place);
+            copy::<OF_HELD>(held, from, own_held, place);
+        }
+        carried
+    }
+}
+
+/// Copies a row of `N` numbers, where both lists have it.
+fn copy<const N: usize>(source: &[f64], from: usize, target: &mut [f64], to: usize) {
+    let source = source.get(N * from..N * (from + 1));
+    let target = target.get_mut(N * to..N * (to + 1));
+    if let (Some(source), Some(target)) = (source, target) {
+        target.copy_from_slice(source);
+    }
+}

@@ -1,0 +1,123 @@
+//! Counts of what tools do to cells.
+
+use super::links::Links;
+use super::record::{
+    CONTACTS, DEPTH, FORCE, IMPULSE, LARGEST_RESIDUAL, OF_HELD, OF_TOOL, RESIDUAL, RIVAL, Record,
+    SEIZED, TORQUE, WORK,
+};
+use super::tool_step::ToolStep;
+use super::tools::{MOST_TOOLS, Tools};
+use crate::vector::{Vector, add, cross, dot, scaled, sub};
+
+/// Notes what an iteration for the contacts of a tool left.
+pub(super) fn note_residual(numbers: &mut [f64; OF_TOOL], residual: f64) {
+    for place in [RESIDUAL, LARGEST_RESIDUAL] {
+        numbers[place] = residual.max(numbers[place]);
+    }
+}
+
+/// A step of all tools whose forces are counted.
+pub(super) struct Count<'a> {
+    pub(super) tools: &'a Tools,
+    pub(super) steps: &'a [ToolStep],
+    /// Its length (s).
+    pub(super) dt: f64,
+    /// Its end (s).
+    pub(super) end: f64,
+}
+
+impl Count<'_> {
+    /// Counts the forces of contacts that act on each other, with the place (m) of each cell after them, and seizes what tools take hold of.
+    pub(super) fn of_links(
+        &self,
+        links: &Links,
+        at: impl Fn(u32) -> Vector,
+        record: &mut Record<'_>,
+    ) {
+        for place in &links.places {
+            let place = *place as usize;
+            if self
+                .tools
+                .holder(record.held.get(place), self.end)
+                .is_none()
+                && let Some(held) = record.held.get_mut(place)
+            {
+                *held = [0.0; OF_HELD];
+            }
+        }
+        let mut contacts = [0.0_f64; MOST_TOOLS];
+        for link in &links.all {
+            let step = &self.steps[link.tool];
+            let place = link.place(step);
+            let weighted = link.nodes().map(|node| scaled(at(node.place), node.weight));
+            let depth = link.depth(step, weighted.fold(link.still(), add));
+            let deepest = &mut record.tools[link.tool][DEPTH];
+            *deepest = deepest.max(depth);
+            if link.force == [0.0; 3] {
+                continue;
+            }
+            self.of_tool(link.tool, link.force, place, record);
+            contacts[link.tool] += 1.0;
+            for node in link.nodes() {
+                let force = &mut record.cells[node.place as usize];
+                *force = add(*force, scaled(link.force, node.weight));
+            }
+            if !link.is_held() {
+                for node in link.nodes() {
+                    let place = node.place as usize;
+                    self.seize(link.tool, place, at(node.place), record);
+                }
+            }
+        }
+        let all = self.steps.iter().zip(record.tools.iter_mut()).zip(contacts);
+        for ((step, numbers), contacts) in all {
+            numbers[CONTACTS] = contacts.max(numbers[CONTACTS]);
+            note_residual(numbers, step.residual);
+        }
+    }
+
+    /// Lets a tool take hold of a cell at a place (m), if it holds what it pushes and no tool has hold of that.
+    pub(super) fn seize(&self, tool: usize, place: usize, at: Vector, record: &mut Record<'_>) {
+        if !self.tools.holds(tool, self.end) {
+            return;
+        }
+        let Some(held) = record.held.get_mut(place) else {
+            return;
+        };
+        let (own, numbers) = ((tool + 1) as f64, &mut record.tools[tool]);
+        if held[0] == 0.0 {
+            let [x, y, z] = self.steps[tool].now.to_own(at);
+            *held = [own, x, y, z];
+            numbers[SEIZED] += 1.0;
+        } else if held[0] != own {
+            numbers[RIVAL] = held[0];
+        }
+    }
+
+    /// Counts a force (N) of a tool on a cell that ends at a place (m).
+    pub(super) fn of_node(
+        &self,
+        (tool, force): (usize, Vector),
+        place: usize,
+        end: Vector,
+        record: &mut Record<'_>,
+    ) {
+        self.of_tool(tool, force, end, record);
+        record.tools[tool][CONTACTS] += 1.0;
+        record.cells[place] = add(record.cells[place], force);
+    }
+
+    /// Counts a force (N) of a tool at a place (m), against the tool.
+    fn of_tool(&self, tool: usize, force: Vector, end: Vector, record: &mut Record<'_>) {
+        let step = &self.steps[tool];
+        let numbers = &mut record.tools[tool];
+        let dt = self.dt;
+        let torque = cross(sub(end, step.now.position()), force);
+        for axis in 0..3 {
+            numbers[IMPULSE + axis] -= dt * force[axis];
+            numbers[FORCE + axis] -= force[axis];
+            numbers[TORQUE + axis] -= torque[axis];
+        }
+        numbers[WORK] += dt * dot(force, step.velocity(end, dt));
+    }
+}

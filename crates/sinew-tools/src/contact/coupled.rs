@@ -1,0 +1,297 @@
+//! Contacts of a step that act on each other: which there are, and what becomes of them.
+
+use sinew_core::{Meeting, State};
+
+use super::count::Count;
+use super::links::{Link, LinkedNode, Links, Rule};
+use super::node::Compliance;
+use super::record::{OF_HELD, OF_VELOCITY, Record, swing};
+use super::report::displacement_of;
+use super::room::Room;
+use super::tool::{Corner, Tool};
+use super::tool_step::{ToolStep, Way, is_near};
+use super::tools::Tools;
+use crate::shape::TriangleTouch;
+use crate::vector::{Vector, add, between, scaled, sub};
+
+/// Most rounds of looking for contacts and solving for their forces: what one surface pushes back may meet another there.
+const MOST_ROUNDS: usize = 8;
+
+/// Share of a pass within which a contact has been there at its beginning.
+const BEGINNING: f64 = 1e-6;
+
+/// Most contacts of a triangle with a part of a tool in a step.
+const MOST_ON_TRIANGLE: usize = 4;
+
+/// Rounds in which a body that is turned by its contacts is looked at where it ends.
+const ROUNDS_OF_BODIES: usize = 2;
+
+impl Tools {
+    /// Finds the contacts of a step that act on each other, and what they move tissue and tools by; in passes where a fine tip goes far, so that no
+    /// triangle gets round it.
+    pub(super) fn link(
+        &self,
+        room: &mut Room,
+        meeting: &Meeting<'_>,
+        state: &State,
+        record: &mut Record<'_>,
+    ) {
+        room.links.clear();
+        let passes = room.passes_between_nodes(&self.tools);
+        for pass in 1..=passes {
+            let shares = [pass - 1, pass].map(|done| f64::from(done) / f64::from(passes));
+            if passes > 1 {
+                room.pass(&self.tools, shares);
+            }
+            room.links.begin_pass();
+            let search = Search {
+                tools: self,
+                meeting,
+                state,
+                held: record.held,
+                velocities: record.velocities,
+                shares,
+            };
+            self.rounds(room, &search);
+            let count = Count {
+                tools: self,
+                steps: &room.steps,
+                dt: meeting.dt,
+                end: search.end(),
+            };
+            let after = Search {
+                tools: self,
+                meeting,
+                state,
+                held: &[],
+                velocities: &[],
+                shares,
+            };
+            let moved = &room.links.moved;
+            let end = |place: u32| {
+                let stood = after.stood(place as usize, shares[1]);
+                add(stood, moved[place as usize])
+            };
+            count.of_links(&room.links, end, record);
+        }
+        if passes > 1 {
+            room.pass(&self.tools, [0.0, 1.0]);
+        }
+    }
+
+    /// Finds the contacts of a pass and solves for their forces.
+    fn rounds(&self, room: &mut Room, search: &Search<'_>) {
+        let least = if self.counts.bodies > 0 {
+            ROUNDS_OF_BODIES
+        } else {
+            1
+        };
+        let (state, dt) = (search.state, search.meeting.dt);
+        for round in 0..MOST_ROUNDS {
+            room.look(&self.cells, state, dt, self.counts.holds);
+            let is_new = search.all(room, round == 0);
+            if !is_new && (room.links.all.is_empty() || round >= least) {
+                break;
+            }
+            let stood = |place: u32| search.stood(place as usize, search.shares[1]);
+            let swing = |place: u32| search.swing(place as usize);
+            room.links.look(&room.steps, dt, stood, swing);
+            room.links.solve(&mut room.steps);
+            room.follow(&self.tools);
+        }
+    }
+}
+
+/// A search for contacts in a step.
+struct Search<'a> {
+    tools: &'a Tools,
+    meeting: &'a Meeting<'a>,
+    state: &'a State,
+    held: &'a [[f64; OF_HELD]],
+    /// Velocities (m/s) before the step, where they are known.
+    velocities: &'a [[f64; OF_VELOCITY]],
+    /// The shares of the step between which the pass is.
+    shares: [f64; 2],
+}
+
+impl Search<'_> {
+    /// The way (m) of a cell in the step, without contact.
+    fn way(&self, place: usize) -> Way {
+        let touched = &self.tools.cells[place];
+        let to = add(touched.rest, displacement_of(&self.state.u, touched.cell));
+        let back = displacement_of(&self.state.v, touched.cell);
+        (sub(to, scaled(back, self.meeting.dt)), to)
+    }
+
+    /// Where a cell is at a share of the step (m), without contact.
+    fn stood(&self, place: usize, share: f64) -> Vector {
+        let (from, to) = self.way(place);
+        if share == 1.0 {
+            to
+        } else {
+            between(from, to, share)
+        }
+    }
+
+    /// The way (m) of a cell in the pass, as far as contact has moved it.
+    fn pass(&self, place: usize, links: &Links) -> Way {
+        let [from, to] = self.shares.map(|share| self.stood(place, share));
+        (add(from, links.before[place]), add(to, links.moved[place]))
+    }
+
+    /// What friction works along of a cell (m), without contact.
+    fn swing(&self, place: usize) -> Vector {
+        let (from, to) = self.way(place);
+        swing(self.meeting, self.velocities.get(place), sub(to, from))
+    }
+
+    fn compliance(&self, place: usize) -> Compliance {
+        let touched = &self.tools.cells[place];
+        let inverse = self.meeting.inverse_block(touched.cell as usize);
+        Compliance::new(inverse, touched.free, self.meeting.dt)
+    }
+
+    /// Adds what is new; whether there is anything. At first, triangles that touch at the beginning: the others may not come to touch at all once these do not give way.
+    fn all(&self, room: &mut Room, is_first: bool) -> bool {
+        let before = room.links.all.len();
+        for near in 0..room.near.len() {
+            let place = room.near[near] as usize;
+            if !room.links.is_linked(place) {
+                self.at_node(room, place, self.tools.linking);
+            }
+        }
+        let is_left = self.of_triangles(room, is_first);
+        let mut next = 0;
+        while let Some(place) = room.links.places.get(next) {
+            self.at_node(room, *place as usize, u64::MAX);
+            next += 1;
+        }
+        is_left || room.links.all.len() > before
+    }
+
+    /// Adds the contacts of a node with some tools, one bit each.
+    fn at_node(&self, room: &mut Room, place: usize, tools: u64) {
+        let (from, end) = self.pass(place, &room.links);
+        let held = self.held.get(place);
+        if let (Some(tool), Some([_, x, y, z])) = (self.tools.holder(held, self.end()), held) {
+            if tools >> tool & 1 == 1 && !room.links.knows(place, (tool, 0)) {
+                let link = Link::of_node(
+                    (place as u32, self.compliance(place)),
+                    (tool, 0),
+                    [*x, *y, *z],
+                    (Rule::Held, 0.0),
+                );
+                room.links.add(link);
+            }
+            return;
+        }
+        let tools = tools & self.tools.tools_at[place];
+        if !is_near(&room.steps, tools, (from, end)) {
+            return;
+        }
+        let Room { steps, links, .. } = room;
+        for (number, step) in steps.iter().enumerate() {
+            if tools >> number & 1 == 0 {
+                continue;
+            }
+            for (part, touch) in step.touches((from, end)) {
+                if links.knows(place, (number, part)) {
+                    continue;
+                }
+                let pose = &self.tools.tools[number].shape.parts()[part].pose;
+                let link = Link::of_node(
+                    (place as u32, self.compliance(place)),
+                    (number, part),
+                    pose.to_world(touch.point),
+                    (Rule::Outside(pose.turned(touch.normal)), step.friction),
+                );
+                links.add(link);
+            }
+        }
+    }
+
+    /// Adds the contacts of triangles, or those that are there at the beginning; whether it left others.
+    fn of_triangles(&self, room: &mut Room, at_beginning: bool) -> bool {
+        let Room { steps, links, .. } = room;
+        let thin = |tool: &&Tool| !tool.triangles.is_empty();
+        if !self.tools.tools.iter().any(|tool| thin(&tool)) {
+            return false;
+        }
+        let mut is_left = false;
+        for place in 0..self.tools.cells.len() {
+            links.ways[place] = self.pass(place, links);
+        }
+        for (number, tool) in self.tools.tools.iter().enumerate() {
+            let step = &steps[number];
+            for triangle in &tool.triangles {
+                let corners = &self.tools.triangles[*triangle as usize].corners;
+                let ways = corners.map(|corner| match corner {
+                    Corner::Cell(place) => links.ways[place as usize],
+                    Corner::Held(at) => (at, at),
+                });
+                let (from, end) = (ways.map(|way| way.0), ways.map(|way| way.1));
+                // What contacts of rounds before have moved may be in the tool elsewhere.
+                if !links.all.is_empty() {
+                    for (part, touch) in step.triangle_overlaps(&end) {
+                        let known = links.of_triangle(*triangle, (number, part));
+                        if (1..MOST_ON_TRIANGLE).contains(&known) {
+                            self.add_triangle(links, step, (number, part, *triangle), &touch);
+                        }
+                    }
+                }
+                for (part, touch) in step.triangle_touches(&from, &end) {
+                    if at_beginning && touch.share > BEGINNING {
+                        is_left = true;
+                    } else if links.of_triangle(*triangle, (number, part)) == 0 {
+                        self.add_triangle(links, step, (number, part, *triangle), &touch);
+                    }
+                }
+            }
+        }
+        is_left
+    }
+
+    fn add_triangle(
+        &self,
+        links: &mut Links,
+        step: &ToolStep,
+        (number, part, triangle): (usize, usize, u32),
+        touch: &TriangleTouch,
+    ) {
+        let corners = self.tools.triangles[triangle as usize].corners;
+        let mut still = [0.0; 3];
+        let mut nodes = [None; 3];
+        for ((corner, weight), node) in corners.iter().zip(touch.weights).zip(&mut nodes) {
+            match corner {
+                Corner::Held(at) => still = add(still, scaled(*at, weight)),
+                Corner::Cell(place) if weight > 0.0 => {
+                    *node = Some(LinkedNode {
+                        place: *place,
+                        weight,
+                        compliance: self.compliance(*place as usize),
+                    });
+                }
+                Corner::Cell(_) => {}
+            }
+        }
+        let mut nodes = nodes.into_iter().flatten();
+        let Some(first) = nodes.clone().next() else {
+            return;
+        };
+        let pose = &self.tools.tools[number].shape.parts()[part].pose;
+        let of_first = Link::of_node(
+            (first.place, first.compliance),
+            (number, part),
+            pose.to_world(touch.point),
+            (Rule::Outside(pose.turned(touch.normal)), step.friction),
+        );
+        // Triangles that share an edge or a node meet a tool there as one.
+        if !links.knows_alike(&of_first) {
+            links.add(of_first.of_triangle(triangle, nodes.by_ref(), still));
+        }
+    }
+
+    fn end(&self) -> f64 {
+        self.state.t() + self.meeting.dt
+    }
+}

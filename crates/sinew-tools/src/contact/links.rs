@@ -1,0 +1,364 @@
+//! Contacts that act on each other within a step, since they share a tool that is a body of its own, or a node.
+
+use super::body_step::BodyStep;
+use super::node::{CONVERGED, Compliance, Constraint, MOST_SWEEPS};
+use super::tool_step::{ToolStep, Way};
+use super::twist::Twist;
+use crate::vector::{Vector, add, dot, length, scaled, sub};
+
+/// Difference of unit normals, and of places as a share of their distance from the tool's origin, below which contacts are the same.
+const ALIKE: f64 = 1e-7;
+
+/// Nodes of a contact, at most.
+const NODES: usize = 3;
+
+/// A node of a contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LinkedNode {
+    /// Its place among the touched cells.
+    pub(super) place: u32,
+    /// Its share of the point of contact.
+    pub(super) weight: f64,
+    pub(super) compliance: Compliance,
+}
+
+/// What a contact is held to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Rule {
+    /// It does not pass the tool's surface, with this outward normal in the tool's frame.
+    Outside(Vector),
+    /// It stays at its place in the tool's frame.
+    Held,
+}
+
+/// A point of tissue in contact with a tool.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Link {
+    nodes: [LinkedNode; NODES],
+    /// The share (m) of held corners in the point of contact.
+    still: Vector,
+    pub(super) tool: usize,
+    /// The part of the tool.
+    pub(super) part: usize,
+    /// The triangle, where it is none of a node alone.
+    pub(super) triangle: Option<u32>,
+    /// The place (m) of the contact in the tool's frame.
+    own: Vector,
+    rule: Rule,
+    /// The surface as it is seen from where the step led, without any force.
+    constraint: Constraint,
+    /// From the tool's origin to the contact (m).
+    arm: Vector,
+    /// The displacement of tissue against tool by a force on the contact.
+    response: Compliance,
+    /// The force (N) on the tissue.
+    pub(super) force: Vector,
+    /// The contact of the same node before this one.
+    before: Option<u32>,
+}
+
+/// All of them, with what they move.
+#[derive(Debug, Default)]
+pub(super) struct Links {
+    pub(super) all: Vec<Link>,
+    /// Places of the cells that are part of any, each once.
+    pub(super) places: Vec<u32>,
+    /// Displacement (m) by contact, of each touched cell.
+    pub(super) moved: Vec<Vector>,
+    /// Where each touched cell comes from, and where it has been moved to (m), while triangles are looked for.
+    pub(super) ways: Vec<Way>,
+    /// The same before the pass.
+    pub(super) before: Vec<Vector>,
+    /// Of each touched cell the last contact of its own.
+    last: Vec<Option<u32>>,
+    is_linked: Vec<bool>,
+}
+
+impl Links {
+    /// Room for so many cells.
+    pub(super) fn of(cells: usize) -> Self {
+        Self {
+            all: Vec::with_capacity(cells),
+            places: Vec::with_capacity(cells),
+            moved: vec![[0.0; 3]; cells],
+            before: vec![[0.0; 3]; cells],
+            ways: vec![([0.0; 3], [0.0; 3]); cells],
+            last: vec![None; cells],
+            is_linked: vec![false; cells],
+        }
+    }
+
+    /// Forgets the last step.
+    pub(super) fn clear(&mut self) {
+        self.begin_pass();
+        for place in self.places.drain(..) {
+            let place = place as usize;
+            (self.moved[place], self.before[place]) = ([0.0; 3], [0.0; 3]);
+            self.is_linked[place] = false;
+        }
+    }
+
+    /// Forgets the contacts of the last pass, but for what they have moved.
+    pub(super) fn begin_pass(&mut self) {
+        for place in &self.places {
+            let place = *place as usize;
+            (self.before[place], self.last[place]) = (self.moved[place], None);
+        }
+        self.all.clear();
+    }
+
+    /// Whether the cell at a place is part of any.
+    pub(super) fn is_linked(&self, place: usize) -> bool {
+        self.is_linked
+            .get(place)
+            .is_some_and(|is_linked| *is_linked)
+    }
+
+    /// Whether there is a contact of the cell at a place alone with a part of a tool.
+    pub(super) fn knows(&self, place: usize, (tool, part): (usize, usize)) -> bool {
+        let mut next = self.last[place];
+        while let Some(link) = next.and_then(|number| self.all.get(number as usize)) {
+            if (link.tool, link.part) == (tool, part) {
+                return true;
+            }
+            next = link.before;
+        }
+        false
+    }
+
+    /// Number of contacts of a triangle with a part of a tool.
+    pub(super) fn of_triangle(&self, triangle: u32, (tool, part): (usize, usize)) -> usize {
+        let is_it = |link: &&Link| {
+            link.triangle == Some(triangle) && (link.tool, link.part) == (tool, part)
+        };
+        self.all.iter().filter(is_it).count()
+    }
+
+    /// Whether there is a contact with the same place of a tool, from the same side.
+    pub(super) fn knows_alike(&self, link: &Link) -> bool {
+        let Rule::Outside(normal) = link.rule else {
+            return false;
+        };
+        self.all.iter().any(|other| {
+            (other.tool, other.part) == (link.tool, link.part)
+                && matches!(other.rule, Rule::Outside(of) if length(sub(of, normal)) < ALIKE)
+                && length(sub(other.own, link.own))
+                    < ALIKE * length(link.own).max(length(other.own))
+        })
+    }
+
+    /// Adds one.
+    pub(super) fn add(&mut self, mut link: Link) {
+        for node in link.nodes() {
+            let place = node.place as usize;
+            if !self.is_linked[place] {
+                self.is_linked[place] = true;
+                self.places.push(node.place);
+            }
+        }
+        if link.triangle.is_none() {
+            let last = &mut self.last[link.nodes[0].place as usize];
+            link.before = last.replace(self.all.len() as u32);
+        }
+        self.all.push(link);
+    }
+
+    /// Looks at each contact as it is where tools and tissue have been moved to so far: where nodes stood without contact is asked for by place, and so is what friction works along of each
+    /// (m) in a step of `dt` (s).
+    pub(super) fn look(
+        &mut self,
+        tools: &[ToolStep],
+        dt: f64,
+        stood: impl Fn(u32) -> Vector,
+        swing: impl Fn(u32) -> Vector,
+    ) {
+        let Self { all, moved, .. } = self;
+        for link in all {
+            let tool = &tools[link.tool];
+            let mut at = link.still;
+            for node in link.nodes() {
+                let now = add(stood(node.place), moved[node.place as usize]);
+                at = add(at, scaled(now, node.weight));
+            }
+            link.look(tool, at);
+            let so_far = link.displacement(moved, tool.body.as_ref());
+            link.constraint.stick = add(link.constraint.stick, so_far);
+            link.constraint.gap = -dot(link.constraint.normal, link.constraint.stick);
+            let own = link.nodes().fold([0.0; 3], |sum, node| {
+                add(sum, scaled(swing(node.place), node.weight))
+            });
+            link.constraint.swing = sub(own, tool.swing(link.place(tool), dt));
+        }
+    }
+
+    /// Solves for all forces by projected Gauss and Seidel's iteration (Jourdan, Alart and Jean 1998): each contact exactly for the forces of the others, in turn. Each tool
+    /// gets what was left of its contacts: the largest change of a displacement in the last sweep, as a share of the largest displacement by a contact.
+    pub(super) fn solve(&mut self, tools: &mut [ToolStep]) {
+        if self.all.is_empty() {
+            return;
+        }
+        for _ in 0..MOST_SWEEPS {
+            tools.iter_mut().for_each(|tool| tool.residual = 0.0);
+            let mut largest: f64 = 0.0;
+            for link in &mut self.all {
+                let tool = &mut tools[link.tool];
+                let change = link.update(&self.moved, tool.body.as_ref());
+                largest = largest.max(length(link.response.displacement(link.force)));
+                if change == [0.0; 3] {
+                    continue;
+                }
+                let left = length(link.response.displacement(change));
+                tool.residual = tool.residual.max(left);
+                for node in link.nodes() {
+                    let by = node.compliance.displacement(scaled(change, node.weight));
+                    let moved = &mut self.moved[node.place as usize];
+                    *moved = add(*moved, by);
+                }
+                if let Some(body) = &mut tool.body {
+                    let by = body.response(link.arm, change);
+                    body.pushed = body.pushed.minus(by);
+                }
+            }
+            let mut left: f64 = 0.0;
+            for tool in tools.iter_mut().filter(|tool| tool.residual > 0.0) {
+                tool.residual /= largest;
+                left = left.max(tool.residual);
+            }
+            if left <= CONVERGED {
+                break;
+            }
+        }
+    }
+}
+
+impl Link {
+    /// A contact of one node with a tool, at a place (m) in its frame.
+    pub(super) fn of_node(
+        node: (u32, Compliance),
+        (tool, part): (usize, usize),
+        own: Vector,
+        (rule, friction): (Rule, f64),
+    ) -> Self {
+        let (place, compliance) = node;
+        let node = LinkedNode {
+            place,
+            weight: 1.0,
+            compliance,
+        };
+        let idle = LinkedNode {
+            weight: 0.0,
+            ..node
+        };
+        Self {
+            nodes: [node, idle, idle],
+            still: [0.0; 3],
+            tool,
+            part,
+            triangle: None,
+            own,
+            rule,
+            constraint: Constraint {
+                normal: [0.0; 3],
+                gap: 0.0,
+                stick: [0.0; 3],
+                friction,
+                swing: [0.0; 3],
+            },
+            arm: [0.0; 3],
+            response: compliance,
+            force: [0.0; 3],
+            before: None,
+        }
+    }
+
+    /// A contact of a triangle with a tool: the same of its first node, with all nodes by their weights, of which it has one, and the share (m) of corners that are held.
+    pub(super) fn of_triangle(
+        self,
+        triangle: u32,
+        nodes: impl Iterator<Item = LinkedNode>,
+        still: Vector,
+    ) -> Self {
+        let mut link = Self {
+            triangle: Some(triangle),
+            still,
+            ..self
+        };
+        link.nodes.iter_mut().for_each(|node| node.weight = 0.0);
+        for (own, node) in link.nodes.iter_mut().zip(nodes) {
+            *own = node;
+        }
+        link
+    }
+
+    /// The share (m) of held corners in the point of contact.
+    pub(super) fn still(&self) -> Vector {
+        self.still
+    }
+
+    /// The nodes that bear it.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = &LinkedNode> {
+        self.nodes.iter().filter(|node| node.weight != 0.0)
+    }
+
+    pub(super) fn is_held(&self) -> bool {
+        self.rule == Rule::Held
+    }
+
+    /// The place (m) of contact with the tool as it ends.
+    pub(super) fn place(&self, tool: &ToolStep) -> Vector {
+        tool.now.to_world(self.own)
+    }
+
+    /// How deep (m) tissue at a point (m) is left in the tool.
+    pub(super) fn depth(&self, tool: &ToolStep, at: Vector) -> f64 {
+        match self.rule {
+            Rule::Outside(normal) => dot(tool.now.turned(normal), sub(self.place(tool), at)),
+            Rule::Held => 0.0,
+        }
+    }
+
+    fn look(&mut self, tool: &ToolStep, at: Vector) {
+        let after = &tool.now;
+        let place = after.to_world(self.own);
+        self.arm = sub(place, after.position());
+        self.constraint.stick = sub(place, at);
+        if let Rule::Outside(normal) = self.rule {
+            self.constraint.normal = after.turned(normal);
+        }
+        let mut response = Compliance::default();
+        for node in self.nodes() {
+            response = response.plus(&node.compliance, node.weight * node.weight);
+        }
+        if let Some(body) = &tool.body {
+            let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            // Symmetric: its columns are its rows.
+            let block = axes.map(|axis| body.response(self.arm, axis).at(self.arm));
+            response = response.plus(&Compliance::yielding(block), 1.0);
+        }
+        self.response = response;
+    }
+
+    /// The displacement (m) of tissue against tool by all forces.
+    fn displacement(&self, moved: &[Vector], body: Option<&BodyStep>) -> Vector {
+        let mut sum = [0.0; 3];
+        for node in self.nodes() {
+            sum = add(sum, scaled(moved[node.place as usize], node.weight));
+        }
+        let pushed = body.map_or(Twist::default(), |body| body.pushed);
+        sub(sum, pushed.at(self.arm))
+    }
+
+    /// Takes the force that the others leave to it; its change (N).
+    fn update(&mut self, moved: &[Vector], body: Option<&BodyStep>) -> Vector {
+        let all = self.displacement(moved, body);
+        let by_others = sub(all, self.response.displacement(self.force));
+        let seen = self.constraint.behind(by_others);
+        let force = match self.rule {
+            Rule::Outside(_) => self.response.of_one(&seen),
+            Rule::Held => self.response.force(seen.stick),
+        };
+        let change = sub(force, self.force);
+        self.force = force;
+        change
+    }
+}

@@ -1,0 +1,106 @@
+//! What a node meets in a step, alone.
+
+use super::node::{Compliance, Constraint, MOST};
+use super::tool_step::{ToolStep, Way};
+use crate::vector::{Vector, add, dot, sub};
+
+/// What a node met in a step.
+pub(super) struct Met {
+    count: usize,
+    /// Tool and part of each surface.
+    parts: [(usize, usize); MOST],
+    constraints: [Constraint; MOST],
+    /// The forces (N) on the node.
+    forces: [Vector; MOST],
+    /// What an iteration for them left.
+    pub(super) residual: f64,
+}
+
+impl Met {
+    /// Nothing yet.
+    pub(super) fn none() -> Self {
+        let nothing = Constraint {
+            normal: [0.0; 3],
+            gap: 0.0,
+            stick: [0.0; 3],
+            friction: 0.0,
+            swing: [0.0; 3],
+        };
+        Self {
+            count: 0,
+            parts: [(0, 0); MOST],
+            constraints: [nothing; MOST],
+            forces: [[0.0; 3]; MOST],
+            residual: 0.0,
+        }
+    }
+
+    /// Finds what a node meets on its way (m) to where it is pushed, among some tools, one bit each, and has not met before; whether there is anything new.
+    /// The gap is taken where the step led it. With what friction works along of the node (m), and the length (s) of the step.
+    pub(super) fn touches(
+        &mut self,
+        steps: &[ToolStep],
+        tools: u64,
+        (from, to): Way,
+        end: Vector,
+        (swing, dt): (Vector, f64),
+    ) -> bool {
+        let before = self.count;
+        for (number, step) in steps.iter().enumerate() {
+            if tools >> number & 1 == 0 {
+                continue;
+            }
+            for (part, stroke) in step.near_strokes((from, end)) {
+                let is_known = self.parts[..before].contains(&(number, part));
+                if self.count == MOST || is_known {
+                    continue;
+                }
+                if let Some(touch) = stroke.first_contact(from, end) {
+                    let last = stroke.pose_at(1.0);
+                    let stick = sub(last.to_world(touch.point), to);
+                    let normal = last.turned(touch.normal);
+                    let swing = sub(swing, step.swing(add(to, stick), dt));
+                    self.parts[self.count] = (number, part);
+                    self.constraints[self.count] = Constraint {
+                        normal,
+                        gap: -dot(normal, stick),
+                        stick,
+                        friction: step.friction,
+                        swing,
+                    };
+                    self.count += 1;
+                }
+            }
+        }
+        self.count > before
+    }
+
+    /// Computes the forces.
+    pub(super) fn solve(&mut self, compliance: &Compliance) {
+        self.residual = compliance.solve(&self.constraints[..self.count], &mut self.forces);
+    }
+
+    /// Leaves the node to a tool that holds it by this force (N).
+    pub(super) fn hold(&mut self, tool: usize, force: Vector) {
+        (self.count, self.parts[0], self.forces[0]) = (1, (tool, 0), force);
+    }
+
+    /// The tools that push the node, with their forces (N).
+    pub(super) fn pushing(&self) -> impl Iterator<Item = (usize, Vector)> {
+        let met = self.parts[..self.count].iter().zip(&self.forces);
+        let pushing = met.filter(|(_, force)| **force != [0.0; 3]);
+        pushing.map(|((tool, _), force)| (*tool, *force))
+    }
+
+    /// How deep (m) the node is left in each surface by a displacement (m).
+    pub(super) fn depths(&self, moved: Vector) -> impl Iterator<Item = (usize, f64)> {
+        let met = self.parts[..self.count].iter().zip(&self.constraints);
+        met.map(move |((tool, _), surface)| (*tool, -(surface.gap + dot(surface.normal, moved))))
+    }
+
+    /// The sum of what follows from each force (N).
+    pub(super) fn sum(&self, of: impl Fn(Vector) -> Vector) -> Vector {
+        let forces = self.pushing();
+        forces.fold([0.0; 3], |sum, (_, force)| add(sum, of(force)))
+    }
+}

@@ -1,0 +1,246 @@
+//! The step of a tool: where it is, and what it meets.
+
+use super::body_step::BodyStep;
+use super::record::OF_BODY;
+use super::tool::Tool;
+use crate::pose::Pose;
+use crate::shape::{Touch, Triangle, TriangleTouch};
+use crate::stroke::Stroke;
+use crate::vector::{Vector, add, dot, length, scaled, sub};
+
+/// The way (m) of a cell in a step, straight from one place to another.
+pub(super) type Way = (Vector, Vector);
+
+/// A tool during a step.
+#[derive(Debug)]
+pub(super) struct ToolStep {
+    before: Pose,
+    pub(super) after: Pose,
+    /// The poses at the beginning and at the end of a pass.
+    start: Pose,
+    pub(super) now: Pose,
+    /// The pose before the step before, and the length (s) of that step.
+    earlier: Option<(Pose, f64)>,
+    /// Steps over which contact works: 2 where velocities are staggered, else 1.
+    steps_at_work: f64,
+    /// The step of a tool that is a body of its own.
+    pub(super) body: Option<BodyStep>,
+    pub(super) friction: f64,
+    /// What is left of contacts that act on each other.
+    pub(super) residual: f64,
+    strokes: Vec<(Stroke, Near)>,
+}
+
+/// Where nodes can meet a part.
+#[derive(Clone, Copy, Debug)]
+enum Near {
+    /// Ways that meet a box (m).
+    Box([Vector; 2]),
+    /// Ways that end below a plane: by a point (m) and its normal.
+    Below(Vector, Vector),
+}
+
+impl Near {
+    fn of(stroke: &Stroke) -> Self {
+        match stroke.bounds() {
+            Some(bounds) => Self::Box(bounds),
+            None => {
+                let end = stroke.pose_at(1.0);
+                Self::Below(end.position(), end.turned([0.0, 0.0, 1.0]))
+            }
+        }
+    }
+
+    fn bounds(&self) -> Option<[Vector; 2]> {
+        match self {
+            Self::Box(bounds) => Some(*bounds),
+            Self::Below(..) => None,
+        }
+    }
+
+    #[inline]
+    fn is_met(&self, (from, to): Way) -> bool {
+        match self {
+            Self::Box([low, high]) => (0..3).all(|axis| {
+                from[axis].min(to[axis]) <= high[axis] && from[axis].max(to[axis]) >= low[axis]
+            }),
+            Self::Below(point, normal) => dot(*normal, sub(to, *point)) < 0.0,
+        }
+    }
+}
+
+/// Whether a way (m) may meet any of some tools, one bit each.
+#[inline]
+pub(super) fn is_near(steps: &[ToolStep], tools: u64, way: Way) -> bool {
+    let mut steps = steps.iter().enumerate();
+    steps.any(|(number, step)| {
+        tools >> number & 1 == 1 && step.strokes.iter().any(|(_, near)| near.is_met(way))
+    })
+}
+
+impl ToolStep {
+    /// A step that is still to begin.
+    pub(super) fn of(tool: &Tool) -> Self {
+        Self {
+            before: Pose::identity(),
+            after: Pose::identity(),
+            start: Pose::identity(),
+            now: Pose::identity(),
+            earlier: None,
+            steps_at_work: 1.0,
+            body: None,
+            friction: tool.friction,
+            residual: 0.0,
+            strokes: Vec::with_capacity(tool.shape.parts().len()),
+        }
+    }
+
+    /// Begins a step with the poses of the path before and after it, the pose before the last one with its length (s), and with what a body keeps, the length (s) of the step, and whether
+    /// velocities are staggered.
+    pub(super) fn begin(
+        &mut self,
+        tool: &Tool,
+        path: [Pose; 2],
+        earlier: Option<(Pose, f64)>,
+        (kept, dt, is_staggered): (Option<&[f64; OF_BODY]>, f64, bool),
+    ) {
+        self.residual = 0.0;
+        self.earlier = earlier;
+        self.steps_at_work = if is_staggered { 2.0 } else { 1.0 };
+        [self.before, self.after] = path;
+        if let (Some(body), Some(kept)) = (&tool.body, kept) {
+            let body = BodyStep::new(body, kept, path, (dt, is_staggered));
+            (self.before, self.after) = (body.before(), body.after());
+            self.body = Some(body);
+        }
+        (self.start, self.now) = (self.before, self.after);
+        self.stroke(tool);
+    }
+
+    /// Follows a body to where contact has pushed it, in a pass that ends at a share of the step.
+    pub(super) fn follow(&mut self, tool: &Tool, share: f64) {
+        if let Some(body) = &self.body {
+            self.after = body.after();
+            self.now = body.at(share);
+            self.stroke(tool);
+        }
+    }
+
+    /// Takes the pass between two shares of the step.
+    pub(super) fn pass(&mut self, tool: &Tool, [from, to]: [f64; 2]) {
+        let turn = self.before.turn_to(&self.after);
+        let at = |share: f64| match share {
+            0.0 => self.before,
+            1.0 => self.after,
+            _ => self.before.on_the_way(&self.after, turn, share),
+        };
+        (self.start, self.now) = match &self.body {
+            None => (at(from), at(to)),
+            Some(body) if from == 0.0 => (self.before, body.at(to)),
+            Some(body) => (self.now, body.at(to)),
+        };
+        self.stroke(tool);
+    }
+
+    /// How far (m) any point of the tool goes, at most, without planes.
+    pub(super) fn way(&self, tool: &Tool) -> f64 {
+        let way = length(sub(self.after.position(), self.before.position()));
+        let turn = length(self.before.turn_to(&self.after));
+        way + turn * tool.shape.reach().unwrap_or(0.0)
+    }
+
+    /// The boxes (m) outside of which no way meets its parts; `None` for a plane.
+    pub(super) fn bounds(&self) -> impl Iterator<Item = Option<[Vector; 2]>> {
+        self.strokes.iter().map(|(_, near)| near.bounds())
+    }
+
+    /// The strokes of the parts that a way (m) may meet, by their numbers.
+    pub(super) fn near_strokes(&self, way: Way) -> impl Iterator<Item = (usize, &Stroke)> {
+        let strokes = self.strokes.iter().enumerate();
+        let near = strokes.filter(move |(_, (_, near))| near.is_met(way));
+        near.map(|(part, (stroke, _))| (part, stroke))
+    }
+
+    /// Makes its strokes from the poses of the pass.
+    fn stroke(&mut self, tool: &Tool) {
+        let Self { start, now, .. } = *self;
+        self.strokes.clear();
+        let strokes = tool.shape.parts().iter().map(|part| {
+            let stroke = Stroke::new(part, start, now);
+            (stroke, Near::of(&stroke))
+        });
+        self.strokes.extend(strokes);
+    }
+
+    /// Where a way (m) meets its parts, by their numbers.
+    pub(super) fn touches(&self, way: Way) -> impl Iterator<Item = (usize, Touch)> {
+        self.near_strokes(way).filter_map(move |(part, stroke)| {
+            let touch = stroke.first_contact(way.0, way.1)?;
+            Some((part, touch))
+        })
+    }
+
+    /// Passes of its stroke.
+    pub(super) fn passes(&self) -> f64 {
+        let passes = self.strokes.iter().map(|(stroke, _)| stroke.passes());
+        f64::from(passes.max().unwrap_or(1))
+    }
+
+    /// Where a triangle meets its parts, by their numbers, on its way from one place to another (m).
+    pub(super) fn triangle_touches(
+        &self,
+        from: &Triangle,
+        to: &Triangle,
+    ) -> impl Iterator<Item = (usize, TriangleTouch)> {
+        let near = self.near_triangle(from, to);
+        near.filter_map(move |(part, stroke)| Some((part, stroke.first_triangle(from, to)?)))
+    }
+
+    /// Where a triangle (m) is in its parts, by their numbers, after the step.
+    pub(super) fn triangle_overlaps(
+        &self,
+        corners: &Triangle,
+    ) -> impl Iterator<Item = (usize, TriangleTouch)> {
+        let near = self.near_triangle(corners, corners);
+        near.filter_map(move |(part, stroke)| Some((part, stroke.triangle_at_end(corners)?)))
+    }
+
+    /// The strokes whose boxes the box of a triangle's way (m) meets, by the numbers of their parts.
+    fn near_triangle(
+        &self,
+        from: &Triangle,
+        to: &Triangle,
+    ) -> impl Iterator<Item = (usize, &Stroke)> {
+        let ([a, b, c], [d, e, f]) = (from, to);
+        let low = [0, 1, 2].map(|x| a[x].min(b[x]).min(c[x]).min(d[x]).min(e[x]).min(f[x]));
+        let high = [0, 1, 2].map(|x| a[x].max(b[x]).max(c[x]).max(d[x]).max(e[x]).max(f[x]));
+        self.near_strokes((low, high))
+    }
+
+    /// The velocity (m/s) of the tool at a place (m) after the step by which its work is counted: in staggered steps the mean of this step's and the last one's. With
+    /// it the work of contact is what the energy of the step needs.
+    pub(super) fn velocity(&self, place: Vector, dt: f64) -> Vector {
+        if let Some(body) = &self.body {
+            return body.working_velocity(sub(place, self.now.position()));
+        }
+        let own = self.now.to_own(place);
+        let middle = self.before.to_world(own);
+        let now = scaled(sub(self.after.to_world(own), middle), 1.0 / dt);
+        match &self.earlier {
+            Some((earlier, last)) => {
+                let before = scaled(sub(middle, earlier.to_world(own)), 1.0 / last);
+                scaled(add(now, before), 0.5)
+            }
+            None => now,
+        }
+    }
+
+    /// What friction works along of the tool (m) in a step of `dt` (s), at a place (m) after it and without what contact pushes a body by: its displacement, in staggered steps together with
+    /// that in the step before.
+    pub(super) fn swing(&self, place: Vector, dt: f64) -> Vector {
+        match &self.body {
+            Some(body) => body.swing(sub(place, self.now.position())),
+            None => scaled(self.velocity(place, dt), self.steps_at_work * dt),
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! The first contact of a moving triangle with a shape.
+
+use super::hull::{Hull, Triangle, doubled_area};
+use crate::vector::{Vector, add, between, dot, scaled, sub};
+
+/// Gap, as a share of a hull's radius, below which a triangle touches it.
+const TOUCHES: f64 = 1e-9;
+
+/// Depth, as a share of a hull's radius, from which on a triangle that was in contact elsewhere gets another contact. Far nearer ones would be all but the same, and their forces hard to tell
+/// apart.
+const OVERLAPS: f64 = 0.1;
+
+/// Most advances towards a first contact; what is still on its way then counts as touching.
+const MOST_ADVANCES: usize = 200;
+
+/// The contact of a triangle with a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TriangleTouch {
+    /// The share of the way at which it happens (0 to 1).
+    pub(crate) share: f64,
+    /// Weights of its corners at the point of contact.
+    pub(crate) weights: Vector,
+    /// The point on the surface of the shape (m), in its own frame.
+    pub(crate) point: Vector,
+    /// The outward unit normal of the shape there.
+    pub(crate) normal: Vector,
+}
+
+impl Hull {
+    /// The first contact with a triangle whose corners move straight from one place to another (m), and that is met from outside.
+    ///
+    /// By conservative advancement: as the nearest points show a plane between triangle and core, none of the corners can be in contact before that which approaches
+    /// the plane fastest has come as near as the radius.
+    pub(crate) fn first_contact(&self, from: &Triangle, to: &Triangle) -> Option<TriangleTouch> {
+        let motion = [0, 1, 2].map(|corner| sub(to[corner], from[corner]));
+        let mut share = 0.0;
+        for advance in 0.. {
+            let now = [0, 1, 2].map(|corner| between(from[corner], to[corner], share));
+            let (gap, touch) = self.look(&now)?;
+            let touch = TriangleTouch { share, ..touch };
+            // Towards the shape.
+            let speeds = motion.map(|motion| -dot(touch.normal, motion));
+            let fastest = speeds.into_iter().fold(0.0, f64::max);
+            if gap < -TOUCHES * self.radius {
+                return Some(touch);
+            }
+            if fastest == 0.0 {
+                return None;
+            }
+            if gap <= TOUCHES * self.radius || advance == MOST_ADVANCES {
+                return Some(touch);
+            }
+            share += gap / fastest;
+            if share > 1.0 {
+                return None;
+            }
+        }
+        None
+    }
+
+    /// The contact with a triangle that is deep in the shape (m), as seen with its radius: what is less the next step finds.
+    pub(crate) fn overlap(&self, triangle: &Triangle) -> Option<TriangleTouch> {
+        let (gap, touch) = self.look(triangle)?;
+        (gap < -OVERLAPS * self.radius).then_some(touch)
+    }
+
+    /// The gap (m) to a triangle that is seen from outside, and where it is smallest.
+    pub(crate) fn look(&self, triangle: &Triangle) -> Option<(f64, TriangleTouch)> {
+        let outward = doubled_area(triangle);
+        let size = dot(outward, outward).sqrt();
+        let found = self.nearest(triangle);
+        let normal = if found.distance > TOUCHES * self.radius {
+            scaled(sub(found.on_triangle, found.on_core), 1.0 / found.distance)
+        } else if size > 0.0 {
+            scaled(outward, -1.0 / size)
+        } else {
+            return None;
+        };
+        let is_outside = dot(normal, outward) <= 0.0;
+        let touch = TriangleTouch {
+            share: 0.0,
+            weights: found.weights,
+            point: add(found.on_core, scaled(normal, self.radius)),
+            normal,
+        };
+        is_outside.then_some((found.distance - self.radius, touch))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Convex;
+    use crate::vector::length;
+
+    /// A number from -1 to 1 by a simple generator.
+    fn random(seed: &mut u64) -> f64 {
+        *seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn point(seed: &mut u64) -> Vector {
+        [0; 3].map(|_: i32| random(seed))
+    }
+
+    /// A ball meets a large triangle that comes down on it after the share that its height says, at its top.
+    #[test]
+    fn a_triangle_that_comes_down_on_a_ball_meets_its_top() {
+        let ball = Hull::of(&Convex::sphere(0.01).unwrap()).unwrap();
+        let at = |z: f64| [[0.0, 0.3, z], [0.3, -0.3, z], [-0.3, -0.3, z]];
+        let touch = ball.first_contact(&at(0.05), &at(-0.15)).unwrap();
+        assert!((touch.share - 0.2).abs() < 1e-12, "{}", touch.share);
+        assert!(length(sub(touch.normal, [0.0, 0.0, 1.0])) < 1e-12);
+        assert!(length(sub(touch.point, [0.0, 0.0, 0.01])) < 1e-12);
+        let [a, b, c] = touch.weights;
+        assert!((a - 0.5).abs() < 1e-12 && (b - 0.25).abs() < 1e-12 && (c - 0.25).abs() < 1e-12);
+        assert_eq!(ball.first_contact(&at(0.05), &at(0.011)), None);
+        // From behind it is not met.
+        assert_eq!(ball.first_contact(&at(-0.05), &at(0.15)), None);
+    }
+
+    /// Up to the first contact the triangle is outside, there it touches, and without one it is outside throughout.
+    #[test]
+    fn nothing_is_met_too_late_or_too_early() {
+        let shapes = [
+            Convex::sphere(0.1).unwrap(),
+            Convex::capsule(0.05, 0.4).unwrap(),
+            Convex::cuboid([0.2, 0.3, 0.4]).unwrap(),
+        ];
+        let (mut seed, mut met) = (7, 0);
+        for shape in shapes {
+            let hull = Hull::of(&shape).unwrap();
+            for _ in 0..400 {
+                let from = [0; 3].map(|_: i32| add(point(&mut seed), [0.0, 0.0, -1.4]));
+                let to = [0; 3].map(|_: i32| add(point(&mut seed), [0.0, 0.0, 1.0]));
+                let outside = |share: f64| {
+                    let now = [0, 1, 2].map(|corner| between(from[corner], to[corner], share));
+                    hull.nearest(&now).distance - hull.radius
+                };
+                if doubled_area(&from)[2] < 0.0 || outside(0.0) <= 0.0 {
+                    continue;
+                }
+                let touch = hull.first_contact(&from, &to);
+                let end = touch.map_or(1.0, |touch| touch.share);
+                if touch.is_some() {
+                    met += 1;
+                    assert!(outside(end).abs() < 1e-8);
+                } else if (0..=200).any(|n| {
+                    let share = f64::from(n) / 200.0;
+                    let now = [0, 1, 2].map(|corner| between(from[corner], to[corner], share));
+                    hull.look(&now).is_none()
+                }) {
+                    // Seen from behind at some time.
+                    continue;
+                }
+                for n in 0..200 {
+                    let gap = outside(end * f64::from(n) / 200.0);
+                    assert!(gap > -1e-9, "{shape:?} {from:?} {to:?}: {gap}");
+                }
+            }
+        }
+        assert!(met > 100, "{met}");
+    }
+}

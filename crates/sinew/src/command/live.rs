@@ -1,0 +1,92 @@
+//! `sinew live`.
+
+mod recording;
+
+use std::path::PathBuf;
+
+use sinew_live::{Hand, Live, PaneChoice, Settings};
+use sinew_scene::output::{Voice, complain};
+use sinew_scene::{Scene, SceneSource};
+
+use self::recording::Recording;
+use super::Failure;
+use super::interruption::Interruption;
+use super::scene_with::Values;
+
+/// The scene without a name: the paper's cube, and a hand that pulls at its top.
+const CUBE: &str = include_str!("live/cube.toml");
+
+/// The methods that stand side by side without a scene: the paper's, and the one that bears its step.
+const SIDE_BY_SIDE: [&str; 2] = ["cnn", "cnn-stabilised"];
+
+/// A scene, and where its page is.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The scene file [default: the paper's cube in steps of 20 ms, by two methods side by side]
+    scene: Option<PathBuf>,
+    /// The port of this computer, or 0 for a free one
+    #[arg(long, value_name = "PORT", default_value_t = 0)]
+    port: u16,
+    /// A second pane beside the first, with this integrator, given the same commands
+    #[arg(long, value_name = "ID")]
+    beside: Option<String>,
+    /// At the end write what `sinew run --out` writes: the motion since the last reset, into DIR, and that of a second pane into DIR-second
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+    #[command(flatten)]
+    values: Values,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let interruption = Interruption::listen().map_err(Failure::Signals)?;
+    let own = PaneChoice::default();
+    let beside = |id: &str| PaneChoice {
+        integrator: Some(id.to_owned()),
+        dt: None,
+    };
+    let (scene, hand, mut panes) = match &arguments.scene {
+        Some(path) => (arguments.values.load(path)?, None, vec![own]),
+        None => {
+            let scene = Scene::parse(SceneSource::new("cube.toml", CUBE.to_owned()))?;
+            (scene, Some(hand()), SIDE_BY_SIDE.map(beside).to_vec())
+        }
+    };
+    if let Some(id) = &arguments.beside {
+        panes.truncate(1);
+        panes.push(beside(id));
+    }
+    let values = arguments.values.assignments();
+    let recording = arguments
+        .record
+        .as_ref()
+        .map(|path| Recording::new(path, scene.clone(), values))
+        .transpose()?;
+    let second = panes.get(1).cloned();
+    let live = Live::open(Settings {
+        scene,
+        panes,
+        second: second.unwrap_or_else(|| beside(SIDE_BY_SIDE[1])),
+        hand,
+        port: arguments.port,
+    })?;
+    Voice::StandardOutput.say(&live.url())?;
+    complain("open this address in a browser on this computer; Ctrl-C ends");
+    let session = live.run(|| interruption.is_asked_for())?;
+    interruption.is_followed();
+    complain(&format!("the session ended at t = {:.6} s", session.t));
+    match recording {
+        Some(recording) => recording.write(session.logs, &interruption),
+        None => Ok(()),
+    }
+}
+
+/// The hand of the scene without a name.
+fn hand() -> Hand {
+    Hand {
+        loads: ["hand-x", "hand-y", "hand-z"].map(str::to_owned),
+        unit: 1.0,
+        at: [0.1, 0.1, 0.2],
+        note: "The hand pulls at the middle of the top: a force, since cnn cannot meet tools."
+            .to_owned(),
+    }
+}

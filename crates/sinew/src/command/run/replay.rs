@@ -1,0 +1,132 @@
+//! `sinew run --replay`.
+
+use std::path::{Path, PathBuf};
+
+use sinew_core::Recorders;
+use sinew_record::{Companion, Ended, Request, RunFolder};
+use sinew_scene::output::{Delivery, Destination, Voice, complain};
+use sinew_scene::{ProbeCsv, ProbeRows, Scene, WarningKind};
+use sinew_session::{FollowError, Log, Replay};
+
+use super::arguments::Arguments;
+use super::words::summary_of;
+use crate::command::Failure;
+use crate::command::interruption::Interruption;
+use crate::command::onlooker::Onlooker;
+
+/// Repeats a session of a scene.
+pub(super) fn run(
+    arguments: &Arguments,
+    scene: Scene,
+    log: &Path,
+    destination: Option<Destination>,
+    interruption: Interruption,
+) -> Result<(), Failure> {
+    let failed = |source| Failure::Replay {
+        log: log.to_owned(),
+        source: Box::new(source),
+    };
+    let mut replay = Replay::new(scene, Log::read(log)?).map_err(failed)?;
+    let warnings = warnings_of(&replay);
+    for warning in &warnings {
+        complain(&format!("warning: {warning}"));
+    }
+    if arguments.strict && !warnings.is_empty() {
+        let count = warnings.len();
+        return Err(Failure::Warnings { count });
+    }
+    let Some(destination) = destination else {
+        let path = arguments.out.as_deref().unwrap_or(Path::new("."));
+        let request = Request {
+            threads: None,
+            warnings,
+            values: arguments.values.assignments(),
+        };
+        return match in_folder(path, &mut replay, &request, interruption)? {
+            Ended::Finished => Ok(()),
+            Ended::Diverged { t, place } => Err(Failure::Diverged { t, place }),
+            Ended::Refused { t, reason } => Err(Failure::Refused { t, reason }),
+            Ended::Interrupted { t } => Err(interrupted(t)),
+        };
+    };
+    let mut onlooker = onlooker(&replay, interruption);
+    let voice = Voice::apart_from(&destination);
+    let simulation = replay
+        .recorded_scene()
+        .map_err(sinew_record::RecordRunError::from)?;
+    let mut csv = ProbeCsv::new(destination.open()?, ProbeRows::new(&simulation))?;
+    let mut recorders = Recorders::new()
+        .with_lent(&mut csv)
+        .with_lent(&mut onlooker);
+    let followed = replay.follow(&simulation, &mut recorders);
+    drop(recorders);
+    onlooker.finish();
+    let followed = match followed {
+        Ok(followed) => followed,
+        Err(FollowError::Replay(source)) => return Err(failed(source)),
+        Err(FollowError::Record(error)) => {
+            return Err(sinew_core::SimulateError::from(error).into());
+        }
+    };
+    let session = replay.session();
+    if csv.finish()? == Delivery::Whole {
+        voice.say(&format!(
+            "{}: {} steps repeated, {} of them since the last reset, {} commands; t = {:.6} s",
+            simulation.scene().title(),
+            session.steps(),
+            followed.steps,
+            session.log().entries().len(),
+            session.t()
+        ))?;
+        if voice == Voice::StandardOutput {
+            voice.say(&format!("probes: {}", probes(arguments).display()))?;
+        }
+    }
+    match followed.diverged {
+        Some((t, place)) => Err(Failure::Diverged { t, place }),
+        None if followed.is_stopped && onlooker.is_interrupted() => Err(interrupted(session.t())),
+        None => Ok(()),
+    }
+}
+
+/// What is to be said before a session is repeated. Its folder shows the motion of all nodes, so that probes are not missed.
+pub(crate) fn warnings_of(replay: &Replay) -> Vec<String> {
+    let mut warnings = replay.session().simulation().warnings();
+    warnings.retain(|warning| warning.kind != WarningKind::NoProbe);
+    let warnings = warnings.iter().map(ToString::to_string);
+    warnings.chain(replay.warning()).collect()
+}
+
+/// Repeats a session into a folder and says what came out.
+pub(crate) fn in_folder(
+    path: &Path,
+    replay: &mut Replay,
+    request: &Request,
+    interruption: Interruption,
+) -> Result<Ended, Failure> {
+    let mut onlooker = onlooker(replay, interruption);
+    let end = RunFolder::replay(path, replay, request, &mut onlooker);
+    onlooker.finish();
+    let end = end?;
+    for line in summary_of(replay.session().simulation(), &end, path) {
+        complain(&line);
+    }
+    Ok(end.ended)
+}
+
+fn onlooker(replay: &Replay, interruption: Interruption) -> Onlooker {
+    let course = replay.course();
+    let duration = course.steps as f64 * course.dt;
+    Onlooker::new(interruption, course.steps, duration)
+}
+
+fn probes(arguments: &Arguments) -> &PathBuf {
+    &arguments.probes
+}
+
+fn interrupted(t: f64) -> Failure {
+    Failure::Interrupted {
+        t,
+        remedy: "; a session is repeated as a whole, and cannot be gone on with".to_owned(),
+    }
+}

@@ -1,0 +1,94 @@
+//! What is said after a run.
+
+use std::path::Path;
+
+use sinew_core::RunReport;
+use sinew_record::{RunEnd, words_of_cuts};
+use sinew_scene::Simulation;
+
+/// What no run knows of itself.
+const ERROR_NOT_KNOWN: &str =
+    "the error of this run is not known: `sinew plan --tolerance` measures it";
+
+/// A line about steps that were taken again, where there were any.
+fn retaken(times: u64) -> Option<String> {
+    (times > 0).then(|| {
+        format!("{times} times a step was taken again in shorter parts, because the body stiffened within it")
+    })
+}
+
+/// At most sixteen lines about a run.
+pub(super) fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> Vec<String> {
+    let (steps, wall) = end.own;
+    let own = steps as f64 * simulation.dt();
+    let (sweeps, solves) = end.work;
+    let mut lines = vec![
+        format!(
+            "{}: {} steps of {} s by `{}`: {sweeps} sweeps, {solves} solves",
+            simulation.scene().title(),
+            end.steps,
+            simulation.dt(),
+            simulation.settings().integrator,
+        ),
+        format!(
+            "{own:.4} s in {wall:.2} s, outputs included: {:.3} times real time",
+            own / wall.max(1e-9)
+        ),
+    ];
+    if simulation.model().body().is_some() {
+        let (u, t, node) = end.largest;
+        lines.push(format!(
+            "largest displacement in {} frames: {u:.6e} m at t = {t:.6} s, node {node}",
+            end.frames
+        ));
+    }
+    if let Some((totals, pieces)) = &end.cuts {
+        lines.push(format!("cut: {}", words_of_cuts(totals, *pieces)));
+    }
+    if end.saturated > 0.0 {
+        lines.push(format!(
+            "guarded: {:.3} % of all velocities were saturated; the motion is bounded, not accurate",
+            100.0 * end.saturated
+        ));
+    }
+    lines.extend(retaken(end.retaken));
+    lines.extend(end.remarks.iter().cloned());
+    let warnings = end.warnings.iter();
+    lines.extend(warnings.map(|warning| format!("warning: {warning}")));
+    lines.push(ERROR_NOT_KNOWN.to_owned());
+    lines.push(format!(
+        "{}: report.html, fields.pvd for ParaView, tables, summary.json",
+        path.display()
+    ));
+    lines
+}
+
+/// Some lines about a run of which nothing is kept but the motion of probes.
+pub(super) fn summary(simulation: &Simulation, report: &RunReport) -> String {
+    let settings = simulation.settings();
+    let pairs = report.steps as f64 * simulation.system().dofs() as f64;
+    let work = report.work;
+    let mut text = format!(
+        "{}: {} steps of {} s by `{}`: {} sweeps, {} solves",
+        simulation.scene().title(),
+        report.steps,
+        simulation.dt(),
+        settings.integrator,
+        work.sweeps,
+        work.solves
+    );
+    if work.saturated > 0 {
+        let share = 100.0 * work.saturated as f64 / pairs;
+        text.push_str(&format!(
+            "\nguarded: {share:.3} % of all velocities were saturated; the motion is bounded, not accurate"
+        ));
+    }
+    for line in retaken(work.retaken)
+        .into_iter()
+        .chain([ERROR_NOT_KNOWN.to_owned()])
+    {
+        text.push('\n');
+        text.push_str(&line);
+    }
+    text
+}

@@ -1,0 +1,42 @@
+//! What the tests of the live page have in common.
+
+use std::path::PathBuf;
+
+use tempfile::TempDir;
+
+use super::chromium::Chromium;
+use crate::failure::Failure;
+
+/// The scene under the ball.
+const CUBE: &str = include_str!("cube.toml");
+
+/// What the tests need.
+pub(super) struct Bench {
+    pub(super) sinew: PathBuf,
+    pub(super) chromium: Chromium,
+    pub(super) folder: TempDir,
+}
+
+impl Bench {
+    /// A scene with so many cells along an edge, by this method in steps of `dt` (s).
+    pub(super) fn scene(&self, cells: usize, method: &str, dt: f64) -> Result<PathBuf, Failure> {
+        let text = CUBE
+            .replace("cells = 10", &format!("cells = {cells}"))
+            .replace("symplectic-euler", method)
+            .replace("dt = 0.001 ", &format!("dt = {dt} "));
+        let path = self
+            .folder
+            .path()
+            .join(format!("cube-{cells}-{method}.toml"));
+        std::fs::write(&path, text).map_err(Failure::chore)?;
+        Ok(path)
+    }
+}
+
+/// A sentence where something does not hold.
+pub(super) fn require(holds: bool, what: impl FnOnce() -> String) -> Result<(), Failure> {
+    match holds {
+        true => Ok(()),
+        false => Err(Failure::Chore(what())),
+    }
+}

@@ -1,0 +1,159 @@
+//! A page in Chromium, by its DevTools protocol.
+
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+use tungstenite::{Message, WebSocket, client};
+
+use crate::failure::Failure;
+
+/// Longest time for an answer.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A tab.
+pub(super) struct Tab {
+    socket: WebSocket<TcpStream>,
+    session: String,
+    last: u64,
+    /// Complaints of the page's scripts.
+    pub(super) errors: Vec<String>,
+}
+
+/// A mouse event.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Mouse {
+    Press,
+    Move,
+    Release,
+}
+
+impl Tab {
+    /// A new tab of a browser that listens there, of this size.
+    pub(super) fn open(address: &str, width: u32, height: u32) -> Result<Self, Failure> {
+        let place = address.trim_start_matches("ws://");
+        let host = place.split('/').next().unwrap_or_default();
+        let stream = TcpStream::connect(host).map_err(Failure::chore)?;
+        stream.set_nodelay(true).map_err(Failure::chore)?;
+        stream
+            .set_read_timeout(Some(PATIENCE))
+            .map_err(Failure::chore)?;
+        let (socket, _) = client(address, stream).map_err(Failure::chore)?;
+        let mut tab = Self {
+            socket,
+            session: String::new(),
+            last: 0,
+            errors: Vec::new(),
+        };
+        let target = tab.call("Target.createTarget", json!({ "url": "about:blank" }))?;
+        let attach = json!({ "targetId": target["targetId"], "flatten": true });
+        let attached = tab.call("Target.attachToTarget", attach)?;
+        tab.session = attached["sessionId"]
+            .as_str()
+            .unwrap_or_default()
+            .to_owned();
+        tab.call("Page.enable", json!({}))?;
+        tab.call("Runtime.enable", json!({}))?;
+        tab.resize(width, height)?;
+        Ok(tab)
+    }
+
+    /// Another size of the page.
+    pub(super) fn resize(&mut self, width: u32, height: u32) -> Result<(), Failure> {
+        let metrics =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.call("Emulation.setDeviceMetricsOverride", metrics)?;
+        Ok(())
+    }
+
+    /// Goes to an address.
+    pub(super) fn go(&mut self, url: &str) -> Result<(), Failure> {
+        self.call("Page.navigate", json!({ "url": url }))?;
+        Ok(())
+    }
+
+    /// The value of an expression on the page; `null` where it throws.
+    pub(super) fn value(&mut self, expression: &str) -> Result<Value, Failure> {
+        let question =
+            json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
+        let mut answer = self.call("Runtime.evaluate", question)?;
+        Ok(answer["result"]["value"].take())
+    }
+
+    /// The number that an expression has; not a number where it has none.
+    pub(super) fn number(&mut self, expression: &str) -> Result<f64, Failure> {
+        Ok(self.value(expression)?.as_f64().unwrap_or(f64::NAN))
+    }
+
+    /// Waits until an expression is true.
+    pub(super) fn wait_for(&mut self, expression: &str, patience: Duration) -> Result<(), Failure> {
+        // Tabs behind another draw nothing.
+        self.call("Page.bringToFront", json!({}))?;
+        let begun = Instant::now();
+        while self.value(&format!("Boolean({expression})"))? != Value::Bool(true) {
+            if begun.elapsed() > patience {
+                let state = self.value("JSON.stringify([window.sinew?.connected, window.sinew?.lights(), window.sinew?.settings])")?;
+                return Err(Failure::Chore(format!(
+                    "waited {patience:?} in vain for `{expression}`; the page has {state}"
+                )));
+            }
+            std::thread::sleep(Duration::from_millis(40));
+        }
+        Ok(())
+    }
+
+    /// A mouse event at a place (CSS pixels).
+    pub(super) fn mouse(&mut self, what: Mouse, [x, y]: [f64; 2]) -> Result<(), Failure> {
+        let (kind, button, buttons) = match what {
+            Mouse::Press => ("mousePressed", "left", 1),
+            Mouse::Move => ("mouseMoved", "left", 1),
+            Mouse::Release => ("mouseReleased", "left", 0),
+        };
+        let event = json!({ "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": 1 });
+        self.call("Input.dispatchMouseEvent", event)?;
+        Ok(())
+    }
+
+    /// A key, pressed and released.
+    pub(super) fn key(&mut self, key: &str) -> Result<(), Failure> {
+        for kind in ["rawKeyDown", "keyUp"] {
+            self.call(
+                "Input.dispatchKeyEvent",
+                json!({ "type": kind, "key": key, "code": key }),
+            )?;
+        }
+        Ok(())
+    }
+
+    fn call(&mut self, method: &str, parameters: Value) -> Result<Value, Failure> {
+        self.last += 1;
+        let mut question = json!({ "id": self.last, "method": method, "params": parameters });
+        if !self.session.is_empty() {
+            question["sessionId"] = json!(self.session);
+        }
+        self.socket
+            .send(Message::text(question.to_string()))
+            .map_err(Failure::chore)?;
+        loop {
+            let message = self.socket.read().map_err(Failure::chore)?;
+            let Message::Text(text) = message else {
+                continue;
+            };
+            let mut answer: Value = serde_json::from_str(&text).map_err(Failure::chore)?;
+            if answer["id"] == self.last {
+                if answer["error"].is_object() {
+                    return Err(Failure::Chore(format!(
+                        "{method}: {}",
+                        answer["error"]["message"]
+                    )));
+                }
+                return Ok(answer["result"].take());
+            }
+            if answer["method"] == "Runtime.exceptionThrown" {
+                let details = &answer["params"]["exceptionDetails"];
+                self.errors
+                    .push(details["exception"]["description"].to_string());
+            }
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! `cargo xtask live-test`: the live page in a browser without a window.
+
+mod bench;
+mod blade;
+mod cdp;
+mod chromium;
+mod served;
+mod speed;
+mod strangers;
+mod touch;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use sinew_bench::output::say;
+use tempfile::TempDir;
+
+use self::bench::Bench;
+use self::chromium::Chromium;
+use crate::failure::Failure;
+use crate::repository::root;
+
+/// What is tried.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Ten minutes of input, after which memory must be what it was
+    #[arg(long)]
+    long: bool,
+    /// Seconds of random input
+    #[arg(long, value_name = "S", default_value_t = 60)]
+    seconds: u64,
+    /// A sinew that is built already, instead of a release build of this one
+    #[arg(long, value_name = "PROGRAM")]
+    sinew: Option<PathBuf>,
+    /// Fail where a mark of speed is missed, instead of saying so
+    #[arg(long)]
+    strict: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Some(program) = chromium::find() else {
+        say("live-test: SKIPPED, for no Chromium is installed (apt install chromium)")?;
+        return Ok(());
+    };
+    let sinew = match &arguments.sinew {
+        Some(sinew) => sinew.clone(),
+        None => build()?,
+    };
+    let folder = TempDir::new().map_err(Failure::chore)?;
+    let bench = Bench {
+        sinew,
+        chromium: Chromium::start(program)?,
+        folder,
+    };
+    if let Ok(load) = std::fs::read_to_string("/proc/loadavg") {
+        let minute = load.split_whitespace().next().unwrap_or_default();
+        say(&format!(
+            "load of this computer in the last minute: {minute}"
+        ))?;
+    }
+    touch::press_hold_and_switch(&bench)?;
+    touch::side_by_side(&bench)?;
+    blade::cuts(&bench)?;
+    strangers::are_refused(&bench)?;
+    strangers::do_no_harm(&bench)?;
+    strangers::ctrl_c_and_taken_port(&bench)?;
+    speed::measure(&bench, arguments.strict)?;
+    let seconds = match arguments.long {
+        true => 600,
+        false => arguments.seconds,
+    };
+    touch::random_input(&bench, seconds)?;
+    say("live-test: all that was asked for holds")?;
+    Ok(())
+}
+
+fn build() -> Result<PathBuf, Failure> {
+    let status = Command::new(env!("CARGO"))
+        .args(["build", "--release", "--quiet", "-psinew"])
+        .current_dir(root())
+        .status()
+        .map_err(Failure::chore)?;
+    match status.success() {
+        true => Ok(target(&root()).join("release/sinew")),
+        false => Err(Failure::Chore(format!("building sinew: {status}"))),
+    }
+}
+
+fn target(root: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from)
+}
