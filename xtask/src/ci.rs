@@ -14,6 +14,13 @@ use crate::{compare, memory, rules};
 /// draws new cases each time.
 const SEED_OF_CASES: &str = "1";
 
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Go on after a check that fails; all that failed are named at the end.
+    #[arg(long)]
+    keep_going: bool,
+}
+
 /// A run of cargo and what it checks.
 struct Step {
     name: String,
@@ -120,21 +127,57 @@ pub(crate) fn check_rules() -> Result<(), Failure> {
     Ok(say("rules: kept")?)
 }
 
-pub(crate) fn run() -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
-    check_rules()?;
+    let mut failed = Failed {
+        is_last: !arguments.keep_going,
+        names: Vec::new(),
+    };
+    failed.add("rules", check_rules())?;
     for step in steps(&root()).map_err(Failure::chore)? {
         let arguments = step.arguments.join(" ");
         say(&format!("\n== {}: cargo {arguments}", step.name))?;
         let begin = Instant::now();
-        run_step(&step)?;
+        failed.add(&step.name, run_step(&step))?;
         let seconds = begin.elapsed().as_secs();
-        say(&format!("== {}: fine after {seconds} s", step.name))?;
+        say(&format!("== {}: over after {seconds} s", step.name))?;
     }
-    watch_memory_if_possible()?;
-    compare_if_possible()?;
+    failed.add("kernels under valgrind", watch_memory_if_possible())?;
+    failed.add("comparison", compare_if_possible())?;
+    failed.report()?;
     let seconds = start.elapsed().as_secs();
     Ok(say(&format!("\nall fine after {seconds} s"))?)
+}
+
+/// The checks that failed so far.
+struct Failed {
+    /// Whether the first of them ends the run.
+    is_last: bool,
+    names: Vec<String>,
+}
+
+impl Failed {
+    fn add(&mut self, name: &str, outcome: Result<(), Failure>) -> Result<(), Failure> {
+        match outcome {
+            Err(Failure::Input(message) | Failure::Chore(message)) if !self.is_last => {
+                say(&format!("== FAILED: {name}: {message}"))?;
+                self.names.push(name.to_owned());
+                Ok(())
+            }
+            outcome => outcome,
+        }
+    }
+
+    fn report(self) -> Result<(), Failure> {
+        if self.names.is_empty() {
+            return Ok(());
+        }
+        let names = self.names.join(", ");
+        Err(Failure::Chore(format!(
+            "{} checks failed: {names}",
+            self.names.len()
+        )))
+    }
 }
 
 /// Runs the kernels' tests under valgrind, where it is installed.
@@ -229,6 +272,27 @@ mod tests {
             assert_eq!(runs.len(), 2);
             assert!(runs[0].contains("examples/one/Cargo.toml") && runs[1].contains("/two/"));
         }
+    }
+
+    #[test]
+    fn a_run_that_keeps_going_fails_in_the_end() {
+        let mut failed = Failed {
+            is_last: false,
+            names: Vec::new(),
+        };
+        failed.add("one", Err(Failure::chore("broken"))).unwrap();
+        failed.add("two", Ok(())).unwrap();
+        failed.add("three", Err(Failure::input("odd"))).unwrap();
+        let Err(Failure::Chore(message)) = failed.report() else {
+            panic!("two failed")
+        };
+        assert_eq!(message, "2 checks failed: one, three");
+        let mut failed = Failed {
+            is_last: true,
+            names: Vec::new(),
+        };
+        assert!(failed.add("one", Err(Failure::chore("broken"))).is_err());
+        assert!(failed.report().is_ok());
     }
 
     #[test]
