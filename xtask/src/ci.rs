@@ -131,7 +131,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
     let mut failed = Failed {
         is_last: !arguments.keep_going,
-        names: Vec::new(),
+        checks: Vec::new(),
     };
     failed.add("rules", check_rules())?;
     for step in steps(&root()).map_err(Failure::chore)? {
@@ -153,15 +153,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 struct Failed {
     /// Whether the first of them ends the run.
     is_last: bool,
-    names: Vec<String>,
+    /// Each with its reason.
+    checks: Vec<String>,
 }
 
 impl Failed {
     fn add(&mut self, name: &str, outcome: Result<(), Failure>) -> Result<(), Failure> {
         match outcome {
             Err(Failure::Input(message) | Failure::Chore(message)) if !self.is_last => {
-                say(&format!("== FAILED: {name}: {message}"))?;
-                self.names.push(name.to_owned());
+                self.checks.push(format!("{name}: {message}"));
                 Ok(())
             }
             outcome => outcome,
@@ -169,14 +169,15 @@ impl Failed {
     }
 
     fn report(self) -> Result<(), Failure> {
-        if self.names.is_empty() {
-            return Ok(());
+        match self.checks.len() {
+            0 => Ok(()),
+            count => {
+                let checks = self.checks.join("\n  ");
+                Err(Failure::Chore(format!(
+                    "{count} checks failed:\n  {checks}"
+                )))
+            }
         }
-        let names = self.names.join(", ");
-        Err(Failure::Chore(format!(
-            "{} checks failed: {names}",
-            self.names.len()
-        )))
     }
 }
 
@@ -278,7 +279,7 @@ mod tests {
     fn a_run_that_keeps_going_fails_in_the_end() {
         let mut failed = Failed {
             is_last: false,
-            names: Vec::new(),
+            checks: Vec::new(),
         };
         failed.add("one", Err(Failure::chore("broken"))).unwrap();
         failed.add("two", Ok(())).unwrap();
@@ -286,10 +287,10 @@ mod tests {
         let Err(Failure::Chore(message)) = failed.report() else {
             panic!("two failed")
         };
-        assert_eq!(message, "2 checks failed: one, three");
+        assert_eq!(message, "2 checks failed:\n  one: broken\n  three: odd");
         let mut failed = Failed {
             is_last: true,
-            names: Vec::new(),
+            checks: Vec::new(),
         };
         assert!(failed.add("one", Err(Failure::chore("broken"))).is_err());
         assert!(failed.report().is_ok());

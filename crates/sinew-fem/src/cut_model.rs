@@ -7,7 +7,7 @@ use sinew_core::{Energy, Inputs, LinearSystem, LoadTime, State, System};
 use sinew_cutting::{
     CutError, CuttableBody, Removal, SavedBodyError, Sheet, Stroke, TetProperties,
 };
-use sinew_mesh::{CutMesh, TetMesh};
+use sinew_mesh::{CutMesh, MovedNode, TetMesh};
 
 use crate::error::{Cause, FemError};
 use crate::in_place::{InPlace, spare};
@@ -269,7 +269,6 @@ impl CutModel {
         state: &mut State,
         inputs: &Inputs,
     ) -> Result<CutReport, CutModelError> {
-        self.require(state)?;
         self.find_positions(state, inputs)?;
         let nodes = self.body.nodes();
         self.body.stroke(sheet, &mut self.positions, self.snap)?;
@@ -291,7 +290,6 @@ impl CutModel {
         state: &mut State,
         inputs: &Inputs,
     ) -> Result<CutReport, CutModelError> {
-        self.require(state)?;
         self.find_positions(state, inputs)?;
         let nodes = self.body.nodes();
         self.body.cut_faces(faces, &mut self.positions)?;
@@ -315,7 +313,7 @@ impl CutModel {
         if report.is_empty() {
             return Ok(report);
         }
-        self.go_on_anew(nodes, &copied, report, state, inputs)
+        self.go_on_anew(nodes, &[], &copied, report, state, inputs)
     }
 
     /// Removes the pieces of which no node is held or moved from outside, with their mass: by the problem, or by something else that has hold of
@@ -337,7 +335,7 @@ impl CutModel {
         let is_gone = |tet: u32| is_loose[tet as usize];
         let removal = self.body.remove_tets(is_gone, &mut self.positions)?;
         let report = CutReport::of_removal(removal);
-        self.go_on_anew(nodes, &[], report, state, inputs)
+        self.go_on_anew(nodes, &[], &[], report, state, inputs)
     }
 
     /// Holds the pieces that [`CutModel::remove_loose`] would remove where they are: they keep mass and shape, and rest.
@@ -353,7 +351,6 @@ impl CutModel {
         let Some(is_loose) = self.loose_tets(held) else {
             return Ok(CutReport::default());
         };
-        self.require(state)?;
         self.find_positions(state, inputs)?;
         let mut report = CutReport::default();
         for (tet, nodes) in self.mesh.tets.iter().zip(&self.mesh.mesh.tets) {
@@ -368,7 +365,7 @@ impl CutModel {
         let frozen: Vec<u32> = self.frozen.keys().copied().collect();
         // A node that were moved would have another displacement.
         self.body.keep(&frozen);
-        self.go_on_anew(self.body.nodes(), &[], report, state, inputs)
+        self.go_on_anew(self.body.nodes(), &[], &[], report, state, inputs)
     }
 
     /// Whether each tetrahedron belongs to a piece that nothing holds or moves from outside; `None` where there is none.
@@ -470,13 +467,9 @@ impl CutModel {
         }
     }
 
-    /// Checks a state before anything is changed.
-    fn require(&self, state: &State) -> Result<(), CutModelError> {
-        Ok(self.model.require_state(state)?)
-    }
-
-    /// Finds where the nodes of the body are.
+    /// Finds where the nodes of the body are, and checks the state before anything is changed.
     fn find_positions(&mut self, state: &State, inputs: &Inputs) -> Result<(), CutModelError> {
+        self.model.require_state(state)?;
         let when = LoadTime::at(state.t()).under(inputs);
         self.displacements.resize(self.mesh.nodes.len(), [0.0; 3]);
         self.model
@@ -516,69 +509,36 @@ impl CutModel {
                 Ok(report)
             }
             None => {
-                let copied = stroke.copied.clone();
-                self.freeze_copies(nodes, &copied);
-                let stroke = self.body.last_stroke();
-                let mesh = self.body.mesh(&self.uncut);
-                let carried = NodesCarried {
-                    nodes,
-                    before: &self.mesh.nodes,
-                    moved: &stroke.moved,
-                    copied: &stroke.copied,
-                    after: &mesh.nodes,
-                };
-                let model = self.model_on(&mesh)?;
-                let after = model.state_after_cut(&self.model, state, inputs, carried)?;
-                self.go_on(mesh, model, after, &mut report, state);
-                Ok(report)
+                let (moved, copied) = (stroke.moved.clone(), stroke.copied.clone());
+                self.go_on_anew(nodes, &moved, &copied, report, state, inputs)
             }
         }
     }
 
-    /// Goes on with a model made anew, after a change of the body, which had so many nodes before, that moved none of them at rest.
+    /// Goes on with a model made anew, after a change of the body, which had so many nodes before: `moved` ones lie elsewhere at rest now, and
+    /// those after them are copies of `copied` ones.
     fn go_on_anew(
         &mut self,
         nodes: usize,
+        moved: &[MovedNode],
         copied: &[u32],
         mut report: CutReport,
         state: &mut State,
         inputs: &Inputs,
     ) -> Result<CutReport, CutModelError> {
-        // Nodes of the model and of the body have different numbers from now on, or some of them are frozen.
+        // A split can be followed no longer: nodes of the model and of the body have different numbers from now on, or some of them are frozen.
         self.in_place = None;
         self.freeze_copies(nodes, copied);
         let mesh = self.body.mesh(&self.uncut);
         let carried = NodesCarried {
             nodes,
             before: &self.mesh.nodes,
-            moved: &[],
+            moved,
             copied,
             after: &mesh.nodes,
         };
         let model = self.model_on(&mesh)?;
         let after = model.state_after_cut(&self.model, state, inputs, carried)?;
-        self.go_on(mesh, model, after, &mut report, state);
-        Ok(report)
-    }
-
-    /// Freezes the copies of frozen nodes, which come after the `nodes` that the body had.
-    fn freeze_copies(&mut self, nodes: usize, copied: &[u32]) {
-        for (copy, node) in (nodes as u32..).zip(copied) {
-            if let Some(displacement) = self.frozen.get(node) {
-                self.frozen.insert(copy, *displacement);
-            }
-        }
-    }
-
-    /// Goes on with a model that was made anew.
-    fn go_on(
-        &mut self,
-        mesh: CutMesh,
-        model: Model,
-        after: State,
-        report: &mut CutReport,
-        state: &mut State,
-    ) {
         let energies = (
             self.model.energy(&state.u, &state.v),
             model.energy(&after.u, &after.v),
@@ -590,6 +550,16 @@ impl CutModel {
         self.mesh = mesh;
         self.model = model;
         self.epoch += 1;
+        Ok(report)
+    }
+
+    /// Freezes the copies of frozen nodes, which come after the `nodes` that the body had.
+    fn freeze_copies(&mut self, nodes: usize, copied: &[u32]) {
+        for (copy, node) in (nodes as u32..).zip(copied) {
+            if let Some(displacement) = self.frozen.get(node) {
+                self.frozen.insert(copy, *displacement);
+            }
+        }
     }
 }
 

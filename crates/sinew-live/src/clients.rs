@@ -18,7 +18,7 @@ const MOST_CREDITS: u32 = 4;
 const MOST_WAITING: usize = 1024;
 
 /// Most pages at once.
-const MOST_CLIENTS: usize = 16;
+pub(crate) const MOST_CLIENTS: usize = 16;
 
 #[derive(Debug)]
 struct Client {
@@ -26,6 +26,8 @@ struct Client {
     credits: u32,
     /// The last command of this client that the simulation has carried out.
     applied: u32,
+    /// Pictures that wait to be sent.
+    waiting: u32,
     /// The topology that it has.
     epoch: Option<u32>,
     sender: Sender<Message>,
@@ -55,6 +57,7 @@ impl Clients {
             id,
             credits: FIRST_CREDITS,
             applied: 0,
+            waiting: 0,
             epoch: None,
             sender,
         });
@@ -78,6 +81,13 @@ impl Clients {
         }
     }
 
+    /// Notes that a picture has been sent to a client.
+    pub(crate) fn sent(&self, id: u32) {
+        if let Some(client) = self.lock().find(id) {
+            client.waiting = client.waiting.saturating_sub(1);
+        }
+    }
+
     /// Notes the last command of a client that was carried out.
     pub(crate) fn applied(&self, id: u32, command: u32) {
         if let Some(client) = self.lock().find(id) {
@@ -87,17 +97,17 @@ impl Clients {
 
     /// Whether any client holds a credit.
     pub(crate) fn want_a_frame(&self) -> bool {
-        self.lock().clients.iter().any(|client| client.credits > 0)
+        self.lock().clients.iter().any(Client::wants_a_frame)
     }
 
     /// Sends a picture, and before it the topology where that is new, to all who hold a credit.
     pub(crate) fn show(&self, frame: Vec<u8>, epoch: u32, topology: &Bytes) {
         let mut list = self.lock();
-        let want = list.clients.iter().filter(|client| client.credits > 0);
+        let want = list.clients.iter().filter(|client| client.wants_a_frame());
         let mut left = want.count();
         let mut whole = Some(frame);
         list.keep(|client| {
-            if client.credits == 0 {
+            if !client.wants_a_frame() {
                 return true;
             }
             left -= 1;
@@ -118,6 +128,7 @@ impl Clients {
                 place.copy_from_slice(&client.applied.to_le_bytes());
             }
             client.credits -= 1;
+            client.waiting += 1;
             client.take(Message::Binary(frame.into()))
         });
     }
@@ -152,6 +163,11 @@ impl List {
 }
 
 impl Client {
+    /// Whether it holds a credit, and takes what it is sent: one that grants without reading gets no more.
+    fn wants_a_frame(&self) -> bool {
+        self.credits > 0 && self.waiting < MOST_CREDITS
+    }
+
     /// Hands a message over without waiting; `false` where too many wait already.
     fn take(&self, message: Message) -> bool {
         self.sender.try_send(message).is_ok()
@@ -201,6 +217,23 @@ mod tests {
             sent += 1;
         }
         assert_eq!(sent, MOST_CREDITS);
+    }
+
+    #[test]
+    fn pictures_do_not_pile_up_for_one_that_grants_and_reads_nothing() {
+        let clients = Clients::default();
+        let (id, _messages) = clients.enter().unwrap();
+        let mut sent = 0;
+        for _ in 0..1000 {
+            clients.grant(id);
+            if clients.want_a_frame() {
+                clients.show(frame(), 1, &Bytes::new());
+                sent += 1;
+            }
+        }
+        assert_eq!(sent, MOST_CREDITS);
+        clients.sent(id);
+        assert!(clients.want_a_frame());
     }
 
     #[test]

@@ -1,12 +1,19 @@
 //! What a session leaves.
 
-use sinew_session::Log;
+use sinew_scene::Scene;
+use sinew_session::{JournalError, Log};
 
 /// A session that has ended.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Ended {
     /// The simulated time (s).
     pub t: f64,
+    /// The scene: another one than in the beginning where the page changed a tool.
+    pub scene: Scene,
+    /// Values that are set in its file to get it, as `KEY=VALUE`.
+    pub values: Vec<String>,
+    /// Files of [`Live::keep_logs`](crate::Live::keep_logs) that do not hold their logs to the end.
+    pub unkept: Vec<JournalError>,
     /// The log of each pane.
     pub logs: Vec<Log>,
 }

@@ -13,7 +13,9 @@ mod live;
 mod pane_choice;
 mod picture;
 mod protocol;
+mod scene_values;
 mod server;
+mod tool_facts;
 
 pub use ended::Ended;
 pub use error::LiveError;

@@ -9,11 +9,9 @@ use std::thread;
 use std::time::Duration;
 
 use futures_util::future::{Either, select};
-use sinew_core::Inputs;
 use sinew_fem::{Law, LoadKind};
 use sinew_scene::{BodyModel, Scene, Simulation};
-use sinew_session::Session;
-use sinew_tools::{Convex, Part, Tool};
+use sinew_session::{Journal, Session};
 use tokio::net::TcpListener;
 use tokio::runtime::{Builder, Runtime};
 
@@ -22,8 +20,10 @@ use crate::engine::{Beginning, Engine, Survey};
 use crate::error::LiveError;
 use crate::pane_choice::PaneChoice;
 use crate::picture::{Colours, Surface};
-use crate::protocol::{Field, HandFacts, Hertz, LoadFacts, PartFacts, Scenery, ToolFacts};
+use crate::protocol::{HandFacts, Hertz, LoadFacts, Scenery};
+use crate::scene_values::SceneValues;
 use crate::server::{Shared, Token, router};
+use crate::tool_facts::tools_of;
 
 /// Time between two looks at whether the page shall end.
 const LOOK: Duration = Duration::from_millis(50);
@@ -46,6 +46,8 @@ pub struct Hand {
 pub struct Settings {
     /// The scene.
     pub scene: Scene,
+    /// Values that were set in its file to get it, as `KEY=VALUE`.
+    pub values: Vec<String>,
     /// The panes to begin with, one or two.
     pub panes: Vec<PaneChoice>,
     /// The second pane, where it is asked for later.
@@ -75,6 +77,7 @@ impl Live {
     pub fn open(settings: Settings) -> Result<Self, LiveError> {
         let Settings {
             scene,
+            values,
             panes,
             second,
             hand,
@@ -104,16 +107,17 @@ impl Live {
             .iter()
             .map(|region| &region.law)
             .collect();
-        let fields = Colours::fields_of(&laws, body.tools.is_some());
+        let fields = Colours::fields_of(&body.model, &laws, body.tools.is_some());
         let pulls = |load: &LoadFacts| {
             hand.as_ref()
                 .is_some_and(|hand| hand.loads.contains(&load.name))
         };
+        let title = scene.title().to_owned();
         let beginning = Beginning {
-            scene: scene.clone(),
+            scene: SceneValues { scene, values },
             panes,
             second,
-            field: fields.first().copied().unwrap_or(Field::Displacement),
+            fields: fields.clone(),
             factors: loads
                 .iter()
                 .map(|load| if pulls(load) { 0.0 } else { 1.0 })
@@ -121,9 +125,8 @@ impl Live {
             loads: loads.iter().map(|load| load.name.clone()).collect(),
         };
         let scenery = Scenery {
-            title: scene.title().to_owned(),
+            title,
             version: env!("CARGO_PKG_VERSION"),
-            client: 0,
             nodes: body.mesh.points.len(),
             tets: body.mesh.tets.len(),
             cuts: simulation.is_cut(),
@@ -154,6 +157,11 @@ impl Live {
     #[must_use]
     pub fn url(&self) -> String {
         format!("http://{}/{}/", self.address, self.token)
+    }
+
+    /// Keeps a file for each pane up to date with its commands, so that a session that is killed can be repeated. Commands reach it within a second.
+    pub fn keep_logs(&mut self, journals: Vec<Journal>) {
+        self.engine.keep_logs(journals);
     }
 
     /// Serves the page and simulates until `ends` says so.
@@ -224,39 +232,6 @@ fn kind_of(kind: &LoadKind) -> String {
             format!("pressure of {pressure} Pa")
         }
         LoadKind::Force(force) => format!("{} N", length(force)),
-    }
-}
-
-fn tools_of(body: &BodyModel, simulation: &Simulation) -> Vec<ToolFacts> {
-    let Some(tools) = &body.tools else {
-        return Vec::new();
-    };
-    let state = simulation.initial_state();
-    let facts = tools.tools().iter().enumerate().map(|(index, tool)| {
-        let pose = tools.pose(state, Inputs::none(), index);
-        let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
-        let Tool { name, shape, .. } = tool;
-        ToolFacts {
-            name: name.clone(),
-            parts: shape.parts().iter().map(part_facts).collect(),
-            start: [x, y, z, a, b, c],
-        }
-    });
-    facts.collect()
-}
-
-fn part_facts(part: &Part) -> PartFacts {
-    let (kind, sizes) = match part.convex {
-        Convex::Sphere { radius, .. } => ("sphere", vec![radius]),
-        Convex::Capsule { radius, length, .. } => ("capsule", vec![radius, length]),
-        Convex::Plane => ("plane", Vec::new()),
-        Convex::Cuboid { size, .. } => ("box", size.to_vec()),
-    };
-    PartFacts {
-        kind,
-        sizes,
-        position: part.pose.position(),
-        rotation: part.pose.rotation_vector(),
     }
 }
 

@@ -88,7 +88,7 @@ pub enum CaseError {
         /// Id of the case.
         case: String,
         /// The error.
-        source: CuttingError,
+        source: Box<CuttingError>,
     },
     /// The reference.
     #[error("{case}: {source}")]
@@ -186,7 +186,10 @@ impl Case {
         }
         let simulation = match simulation.cut_beforehand() {
             Ok(simulation) => simulation,
-            Err(source) => return Err(CaseError::Cutting { case: id, source }),
+            Err(source) => {
+                let source = Box::new(source);
+                return Err(CaseError::Cutting { case: id, source });
+            }
         };
         let times = span.instants();
         let before = thread_cpu_time();

@@ -15,6 +15,6 @@ pub use command::{Command, CommandError};
 pub use course::Course;
 pub use error::{SessionError, SessionStepError};
 pub use input_file::{InputFile, InputFileError};
-pub use log::{Entry, Header, Log, LogError, LogFault};
+pub use log::{Entry, Header, Journal, JournalError, Log, LogError, LogFault};
 pub use replay::{FollowError, Followed, Replay, ReplayError};
 pub use session::{BodyCut, Session};

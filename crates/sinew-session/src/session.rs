@@ -611,6 +611,12 @@ impl Session {
     pub fn log(&self) -> &Log {
         &self.log
     }
+
+    /// All commands of a session that has ended.
+    #[must_use]
+    pub fn into_log(self) -> Log {
+        self.log
+    }
 }
 
 /// Takes a step on a copy of a state, which sets the method up and shows whether it can go on from there.

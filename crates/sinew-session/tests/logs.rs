@@ -5,12 +5,13 @@
 
 mod common;
 
+use std::fs;
 use std::path::Path;
 
 use common::{CUBE, session};
 use proptest::prelude::*;
 use sinew_core::{OptionValue, Options};
-use sinew_session::{Command, Log};
+use sinew_session::{Command, Journal, Log};
 
 fn parse(text: &str) -> Result<Log, String> {
     Log::parse(Path::new("s.log"), text).map_err(|error| error.to_string())
@@ -89,6 +90,10 @@ fn bad_lines_are_refused_by_file_line_and_what_to_do() {
             "s.log:1: expected `sinew session log 1`: this is no log of a session",
         ),
         (
+            parse("sinew session log 1\nprogram \"1\"\n").unwrap_err(),
+            "s.log:2: the log is cut off before its first command",
+        ),
+        (
             parse(&without_end).unwrap_err(),
             "s.log:8: the log is cut off: expected `STEPS end` as its last line; `5 end` repeats it as far as it goes",
         ),
@@ -146,6 +151,52 @@ fn bad_lines_are_refused_by_file_line_and_what_to_do() {
     }
     let missing = Log::read(Path::new("/nowhere/s.log")).unwrap_err();
     assert!(missing.to_string().starts_with("/nowhere/s.log: "));
+}
+
+#[test]
+fn a_journal_holds_what_no_later_pose_can_replace_and_in_the_end_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.log");
+    let mut journal = Journal::create(path.clone()).unwrap();
+    let text = || fs::read_to_string(&path).unwrap();
+    let pose = |z: f64| Command::Pose {
+        tool: "ball".to_owned(),
+        position: [0.04, 0.04, z],
+        rotation_vector: [0.0; 3],
+    };
+    let mut session = session(CUBE);
+    session.command(pose(0.2)).unwrap();
+    journal.keep_up(session.log()).unwrap();
+    assert!(
+        !text().contains("pose"),
+        "another one may come before the step"
+    );
+    session.command(pose(0.19)).unwrap();
+    session.step().unwrap();
+    session.command(Command::Reset).unwrap();
+    journal.keep_up(session.log()).unwrap();
+    assert!(text().contains("0.19") && !text().contains("0.2 ") && !text().contains("reset"));
+    // Killed here, it can be repeated as far as it goes.
+    let error = Log::read(&path).unwrap_err().to_string();
+    let end = error
+        .split('`')
+        .find(|word| word.ends_with(" end") && !word.starts_with("STEPS"));
+    let kept = parse(&format!("{}{}\n", text(), end.unwrap())).unwrap();
+    assert_eq!(kept.entries(), &session.log().entries()[..1]);
+    session.step().unwrap();
+    journal.keep_up(session.log()).unwrap();
+    session.command(pose(0.18)).unwrap();
+    journal.finish(session.log()).unwrap();
+    assert_eq!(text(), session.log().to_text());
+
+    let refused = Journal::create(path.clone()).unwrap_err().to_string();
+    assert!(refused.contains("--replay"), "{refused}");
+    fs::remove_file(&path).unwrap();
+    let mut journal = Journal::create(path.clone()).unwrap();
+    journal.keep_up(session.log()).unwrap();
+    journal.begin_anew().unwrap();
+    journal.finish(session.log()).unwrap();
+    assert_eq!(text(), session.log().to_text());
 }
 
 proptest! {

@@ -10,8 +10,10 @@ use std::io::{BufRead, BufReader, Read};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::CommandCargoExt;
+use serde_json::Value;
 use sinew_scene::Scene;
 use sinew_session::{Log, Replay};
 use tungstenite::client::IntoClientRequest;
@@ -70,6 +72,21 @@ impl Folder {
         (status.code(), String::from_utf8_lossy(&stderr).into_owned())
     }
 
+    /// The files of a recorded session, which are those of the replay of its log with these arguments.
+    fn replayed(&self, own: &str, arguments: &[&str]) -> BTreeMap<String, Vec<u8>> {
+        let (log, other) = (format!("{own}/session.log"), format!("{own}-again"));
+        let mut all = vec!["run", "ball.toml", "--replay", &log, "--out", &other];
+        all.extend(arguments);
+        let (code, said) = self.says(&all);
+        assert_eq!(code, Some(0), "{said}");
+        let (own, other) = (contents(&self.path(own)), contents(&self.path(&other)));
+        assert!(own.keys().eq(other.keys()));
+        for (name, bytes) in &own {
+            assert!(other[name] == *bytes, "{name}");
+        }
+        own
+    }
+
     fn live(&self, arguments: &[&str]) -> Served {
         let mut command = self.sinew(&["live", "ball.toml"]);
         command.args(arguments).stdin(Stdio::null());
@@ -89,8 +106,8 @@ struct Served {
 }
 
 impl Served {
-    /// Says something as its page does, and waits for a picture that contains it.
-    fn say(&self, number: u32, order: &str) {
+    /// Says something as its page does, and waits for a picture that contains it; the events until then.
+    fn say(&self, number: u32, order: &str) -> Vec<Value> {
         let host = self.url.split('/').nth(2).unwrap();
         let url = format!("{}socket", self.url.replacen("http", "ws", 1));
         let mut request = url.into_client_request().unwrap();
@@ -99,14 +116,20 @@ impl Served {
         let (mut page, _) = client(request, TcpStream::connect(host).unwrap()).unwrap();
         let text = format!(r#"{{"id":{number},{order}}}"#);
         page.send(Message::text(text)).unwrap();
+        let mut events = Vec::new();
         loop {
-            let Message::Binary(picture) = page.read().unwrap() else {
-                continue;
+            let picture = match page.read().unwrap() {
+                Message::Binary(picture) => picture,
+                Message::Text(event) => {
+                    events.push(serde_json::from_str(&event).unwrap());
+                    continue;
+                }
+                _ => continue,
             };
             if picture[0] == 1 {
                 page.send(Message::binary(vec![1, 0, 0, 0])).unwrap();
                 if u32::from_le_bytes(picture[8..12].try_into().unwrap()) >= number {
-                    return;
+                    return events;
                 }
             }
         }
@@ -183,12 +206,8 @@ fn what_is_recorded_is_what_the_replay_of_its_log_records() {
     );
     let (code, said) = served.interrupt();
     assert_eq!(code, Some(0), "{said}");
-    for (own, other) in [("it", "again"), ("it-second", "again-second")] {
-        let log = format!("{own}/session.log");
-        let arguments = ["run", "ball.toml", "--replay", &log, "--out", other];
-        let (code, said) = folder.says(&arguments);
-        assert_eq!(code, Some(0), "{said}");
-        let (own, other) = (contents(&folder.path(own)), contents(&folder.path(other)));
+    for own in ["it", "it-second"] {
+        let own = folder.replayed(own, &[]);
         let names: Vec<&String> = own.keys().collect();
         for name in [
             "energy.csv",
@@ -198,10 +217,6 @@ fn what_is_recorded_is_what_the_replay_of_its_log_records() {
             "fields.pvd",
         ] {
             assert!(own.contains_key(name), "{name} of {names:?}");
-        }
-        assert!(own.keys().eq(other.keys()), "{names:?}");
-        for (name, bytes) in &own {
-            assert!(other[name] == *bytes, "{name}");
         }
         let tools = String::from_utf8(own["tools.csv"].clone()).unwrap();
         let mut rows = tools.lines().filter(|row| !row.starts_with('#'));
@@ -241,17 +256,9 @@ fn cuts_are_recorded_and_saved_moments_repeated_bit_for_bit() {
     served.say(7, r#""do":"save""#);
     let (code, said) = served.interrupt();
     assert_eq!(code, Some(0), "{said}");
-    for (own, other) in [("it", "again"), ("it-second", "again-second")] {
-        let log = format!("{own}/session.log");
-        let arguments = ["run", "ball.toml", "--replay", &log, "--out", other];
-        let (code, said) = folder.says(&arguments);
-        assert_eq!(code, Some(0), "{said}");
-        let (own, other) = (contents(&folder.path(own)), contents(&folder.path(other)));
-        assert!(own.keys().eq(other.keys()));
-        for (name, bytes) in &own {
-            assert!(other[name] == *bytes, "{name}");
-        }
-        let summary: serde_json::Value = serde_json::from_slice(&own["summary.json"]).unwrap();
+    for own in ["it", "it-second"] {
+        let own = folder.replayed(own, &[]);
+        let summary: Value = serde_json::from_slice(&own["summary.json"]).unwrap();
         assert!(
             summary["cuts"]["new_nodes"].as_u64().unwrap() > 0,
             "{summary}"
@@ -275,12 +282,90 @@ fn cuts_are_recorded_and_saved_moments_repeated_bit_for_bit() {
 }
 
 #[test]
+fn values_of_the_command_line_and_of_the_page_belong_to_what_is_recorded_and_saved() {
+    const SHAPE: &str = "tool.1.shape={ sphere = { radius = 0.03 } }";
+    let folder = Folder::new();
+    let served = folder.live(&["--record", "it", "--dt", "0.001"]);
+    served.say(1, r#""do":"dt","pane":0,"dt":0.0015"#);
+    for (number, radius) in [(2, 0.02), (3, 0.03)] {
+        let shape = format!(r#""do":"shape","tool":0,"shape":{{"sphere":{{"radius":{radius}}}}}"#);
+        served.say(number, &shape);
+    }
+    served.say(
+        4,
+        r#""do":"pose","tool":0,"position":[0.05,0.05,0.12],"rotation":[0,0,0]"#,
+    );
+    let events = served.say(5, r#""do":"save""#);
+    let (code, said) = served.interrupt();
+    assert_eq!(code, Some(0), "{said}");
+    folder.replayed("it", &["--dt", "0.001", "--set", SHAPE]);
+    let saved = events.iter().find(|event| event["event"] == "saved");
+    let replay = saved.unwrap()["replay"].as_str().unwrap();
+    let (sinew, rest) = replay.split_once(' ').unwrap();
+    assert_eq!(sinew, "sinew");
+    let program = folder.sinew(&[]).get_program().to_owned();
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &format!("\"$0\" {rest} --out saved")]);
+    let ran = shell.arg(program).current_dir(folder.0.path()).output();
+    let Output { status, stderr, .. } = ran.unwrap();
+    let said = String::from_utf8_lossy(&stderr);
+    assert_eq!(status.code(), Some(0), "{rest}: {said}");
+    for text in ["it/scene.toml", "saved/scene.toml", "live-1/scene.toml"] {
+        let text = fs::read_to_string(folder.path(text)).unwrap();
+        assert!(
+            text.contains("radius = 0.03") && text.contains("dt = 0.001"),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn a_session_that_is_killed_leaves_its_commands_beside_its_folder() {
+    let folder = Folder::new();
+    let mut served = folder.live(&["--record", "it"]);
+    served.say(
+        1,
+        r#""do":"pose","tool":0,"position":[0.05,0.05,0.13],"rotation":[0,0,0]"#,
+    );
+    let path = folder.path("it.session.log");
+    let begun = Instant::now();
+    while !fs::read_to_string(&path).unwrap().contains("pose") {
+        assert!(begun.elapsed() < Duration::from_secs(20));
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    served.child.kill().unwrap();
+    served.child.wait().unwrap();
+    assert!(!folder.path("it").exists());
+    let (code, said) = folder.says(&["live", "ball.toml", "--record", "it"]);
+    assert_eq!(code, Some(2), "what is kept is not overwritten: {said}");
+    let arguments = [
+        "run",
+        "ball.toml",
+        "--replay",
+        "it.session.log",
+        "--out",
+        "it",
+    ];
+    let (code, said) = folder.says(&arguments);
+    assert_eq!(code, Some(2), "{said}");
+    let end = said
+        .split('`')
+        .find(|word| word.ends_with(" end") && !word.starts_with("STEPS"));
+    let whole = format!("{}{}\n", fs::read_to_string(&path).unwrap(), end.unwrap());
+    fs::write(&path, whole).unwrap();
+    let (code, said) = folder.says(&arguments);
+    assert_eq!(code, Some(0), "{said}");
+}
+
+#[test]
 fn a_session_of_a_moment_is_recorded_whole() {
     let folder = Folder::new();
     let (code, said) = folder.live(&["--record", "it"]).interrupt();
     assert_eq!(code, Some(0), "{said}");
     assert!(contents(&folder.path("it")).contains_key("summary.json"));
-    assert!(!folder.path("it-second").exists());
+    for name in ["it-second", "it.session.log", "it-second.session.log"] {
+        assert!(!folder.path(name).exists(), "{name}");
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use tempfile::TempDir;
 
+use super::cdp::Tab;
 use super::chromium::Chromium;
 use crate::failure::Failure;
 
@@ -39,4 +40,11 @@ pub(super) fn require(holds: bool, what: impl FnOnce() -> String) -> Result<(), 
         true => Ok(()),
         false => Err(Failure::Chore(what())),
     }
+}
+
+/// A sentence where scripts of a page have failed.
+pub(super) fn complaints(tab: &Tab) -> Result<(), Failure> {
+    require(tab.errors.is_empty(), || {
+        format!("the page complains: {}", tab.errors.join("; "))
+    })
 }

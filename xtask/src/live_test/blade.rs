@@ -5,15 +5,15 @@ use std::time::Duration;
 
 use sinew_bench::output::say;
 
-use super::bench::{Bench, require};
+use super::bench::{Bench, complaints, require};
 use super::cdp::{Mouse, Tab};
+use super::hand::{PATIENCE, open};
 use super::served::Served;
-use super::touch::{PATIENCE, open};
 use crate::failure::Failure;
 use crate::repository::root;
 
 /// A slab at rest, which all methods cut in the same way.
-const SLAB: &str = include_str!("slab.toml");
+pub(super) const SLAB: &str = include_str!("slab.toml");
 
 /// Tissue is cut by a drag and by keys in two panes, made whole again, and cut by the strokes of a scene.
 pub(super) fn cuts(bench: &Bench) -> Result<(), Failure> {
@@ -129,14 +129,7 @@ fn both(tab: &mut Tab, name: &str) -> Result<[f64; 2], Failure> {
 
 /// Drags from one place (m) to another in the first pane.
 fn drag(tab: &mut Tab, from: [f64; 3], to: [f64; 3]) -> Result<(), Failure> {
-    let mut on_page = |place: [f64; 3]| -> Result<[f64; 2], Failure> {
-        let place = format!("window.sinew.onPage({place:?})");
-        Ok([
-            tab.number(&format!("{place}[0]"))?,
-            tab.number(&format!("{place}[1]"))?,
-        ])
-    };
-    let (from, to) = (on_page(from)?, on_page(to)?);
+    let (from, to) = (on_page(tab, from)?, on_page(tab, to)?);
     tab.mouse(Mouse::Press, from)?;
     for step in 1..=40 {
         let share = f64::from(step) / 40.0;
@@ -147,8 +140,11 @@ fn drag(tab: &mut Tab, from: [f64; 3], to: [f64; 3]) -> Result<(), Failure> {
     tab.mouse(Mouse::Release, to)
 }
 
-fn complaints(tab: &Tab) -> Result<(), Failure> {
-    require(tab.errors.is_empty(), || {
-        format!("the page complains: {}", tab.errors.join("; "))
-    })
+/// Where a place (m) is in the first pane (CSS pixels).
+pub(super) fn on_page(tab: &mut Tab, place: [f64; 3]) -> Result<[f64; 2], Failure> {
+    let place = format!("window.sinew.onPage({place:?})");
+    Ok([
+        tab.number(&format!("{place}[0]"))?,
+        tab.number(&format!("{place}[1]"))?,
+    ])
 }

@@ -72,12 +72,22 @@ impl Tab {
         Ok(())
     }
 
-    /// The value of an expression on the page; `null` where it throws.
+    /// The value of an expression on the page.
     pub(super) fn value(&mut self, expression: &str) -> Result<Value, Failure> {
+        self.evaluate(expression)?
+            .map_err(|reason| Failure::Chore(format!("`{expression}` fails on the page: {reason}")))
+    }
+
+    /// The value of an expression on the page, or what it throws.
+    fn evaluate(&mut self, expression: &str) -> Result<Result<Value, Value>, Failure> {
         let question =
             json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
         let mut answer = self.call("Runtime.evaluate", question)?;
-        Ok(answer["result"]["value"].take())
+        let mut thrown = answer["exceptionDetails"].take();
+        Ok(match thrown.is_null() {
+            true => Ok(answer["result"]["value"].take()),
+            false => Err(thrown["exception"]["description"].take()),
+        })
     }
 
     /// The number that an expression has; not a number where it has none.
@@ -90,7 +100,8 @@ impl Tab {
         // Tabs behind another draw nothing.
         self.call("Page.bringToFront", json!({}))?;
         let begun = Instant::now();
-        while self.value(&format!("Boolean({expression})"))? != Value::Bool(true) {
+        // On the way to it parts of the page may be missing.
+        while self.evaluate(&format!("Boolean({expression})"))? != Ok(Value::Bool(true)) {
             if begun.elapsed() > patience {
                 let state = self.value("JSON.stringify([window.sinew?.connected, window.sinew?.lights(), window.sinew?.settings])")?;
                 return Err(Failure::Chore(format!(
@@ -111,6 +122,27 @@ impl Tab {
         };
         let event = json!({ "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": 1 });
         self.call("Input.dispatchMouseEvent", event)?;
+        Ok(())
+    }
+
+    /// Lets the page believe that it has a touch screen.
+    pub(super) fn has_fingers(&mut self) -> Result<(), Failure> {
+        self.call(
+            "Emulation.setTouchEmulationEnabled",
+            json!({ "enabled": true, "maxTouchPoints": 2 }),
+        )?;
+        Ok(())
+    }
+
+    /// What fingers do, with the places (CSS pixels) of those that are down then: `touchStart`, `touchMove` or `touchEnd`.
+    pub(super) fn touch(&mut self, what: &str, fingers: &[[f64; 2]]) -> Result<(), Failure> {
+        let points = fingers.iter().enumerate();
+        let points = points.map(|(id, [x, y])| json!({ "x": x, "y": y, "id": id }));
+        let points: Vec<Value> = points.collect();
+        self.call(
+            "Input.dispatchTouchEvent",
+            json!({ "type": what, "touchPoints": points }),
+        )?;
         Ok(())
     }
 

@@ -4,10 +4,11 @@ mod bench;
 mod blade;
 mod cdp;
 mod chromium;
+mod fingers;
+mod hand;
 mod served;
 mod speed;
 mod strangers;
-mod touch;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -58,8 +59,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "load of this computer in the last minute: {minute}"
         ))?;
     }
-    touch::press_hold_and_switch(&bench)?;
-    touch::side_by_side(&bench)?;
+    hand::press_hold_and_switch(&bench)?;
+    hand::side_by_side(&bench)?;
+    fingers::press_pull_and_cut(&bench)?;
     blade::cuts(&bench)?;
     strangers::are_refused(&bench)?;
     strangers::do_no_harm(&bench)?;
@@ -69,7 +71,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         true => 600,
         false => arguments.seconds,
     };
-    touch::random_input(&bench, seconds)?;
+    hand::random_input(&bench, seconds)?;
     say("live-test: all that was asked for holds")?;
     Ok(())
 }

@@ -7,8 +7,8 @@ use sinew_bench::output::say;
 
 use super::bench::{Bench, require};
 use super::cdp::{Mouse, Tab};
+use super::hand::{grip, open};
 use super::served::Served;
-use super::touch::{grip, open};
 use crate::failure::Failure;
 
 /// A body with its marks.

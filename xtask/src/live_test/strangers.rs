@@ -9,8 +9,8 @@ use sinew_bench::output::say;
 use tungstenite::{Error, Message};
 
 use super::bench::{Bench, require};
+use super::hand::{PATIENCE, open};
 use super::served::Served;
-use super::touch::{PATIENCE, open};
 use crate::failure::Failure;
 
 /// Others' origins, hosts and tokens.

@@ -40,7 +40,8 @@ pub enum CutStateError {
 
 impl Model {
     /// Whether no region averages strain over several tetrahedra.
-    pub(crate) fn is_without_averages(&self) -> bool {
+    #[must_use]
+    pub fn is_without_averages(&self) -> bool {
         self.body.smoothing.is_empty()
     }
 

@@ -47,5 +47,6 @@ export const FIELDS = {
   energy_density: { title: "Strain energy", unit: "J/m³", factor: 1 },
   saturated: { title: "Cells at their limit", unit: "", factor: 1 },
   pressure: { title: "Contact pressure", unit: "Pa", factor: 1 },
+  step_limit: { title: "Stable step of elements", unit: "ms", factor: 1 },
   difference: { title: "Difference of the two", unit: "mm", factor: 1000 },
 };

@@ -14,7 +14,6 @@ export class Connection {
     this.owed = 0;
     this.picture = null;
     this.topology = null;
-    this.received = 0;
     const { host, pathname } = window.location;
     this.socket = new WebSocket(`ws://${host}${pathname}socket`);
     this.socket.binaryType = "arraybuffer";
@@ -34,7 +33,6 @@ export class Connection {
       this.picture = null;
       return;
     }
-    this.received += 1;
     this.owed += 1;
     const picture = readPicture(buffer);
     if (picture.epoch === this.topology?.epoch) this.picture = Object.assign(picture, { topology: this.topology });

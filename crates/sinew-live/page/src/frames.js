@@ -4,6 +4,9 @@ const HEAD = 32;
 const PANE = 184;
 const TOOL = 104;
 
+/// Fields in the order of their numbers.
+const FIELDS = ["stress", "strain", "displacement", "energy_density", "saturated", "pressure", "step_limit"];
+
 /// Stands for a point that the other pane's surface does not have.
 export const NO_TWIN = 0xffffffff;
 
@@ -35,7 +38,7 @@ export function readPicture(buffer) {
   const view = new DataView(buffer);
   const u32 = (at) => view.getUint32(at, true);
   const f64 = (at) => view.getFloat64(at, true);
-  const picture = { frame: u32(4), applied: u32(8), epoch: u32(12), field: u32(20), pace: f64(24), panes: [] };
+  const picture = { frame: u32(4), applied: u32(8), epoch: u32(12), field: FIELDS[u32(20)], pace: f64(24), panes: [] };
   let at = HEAD;
   for (let pane = 0; pane < u32(16); pane += 1) {
     const names = ["t", "dt", "kinetic", "elastic", "toolWork", "loadWork", "msPerStep", "error", "lag", "largest", "saturated", "settling"];

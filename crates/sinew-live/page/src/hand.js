@@ -13,13 +13,15 @@ export class Hand {
     this.pull = null;
     this.pointers = new Map();
     this.lifted = false;
+    this.pulledAt = -Infinity;
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => this.up(event));
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     canvas.addEventListener("keydown", (event) => this.key(event));
-    window.addEventListener("keydown", (event) => event.key === "Shift" && this.lift(true));
+    // While it drags: Shift with an arrow key is a fine step, and with Tab the way back.
+    window.addEventListener("keydown", (event) => event.key === "Shift" && this.drags && this.lift(true));
     window.addEventListener("keyup", (event) => event.key === "Shift" && this.lift(false));
     window.addEventListener("blur", () => this.lift(false));
   }
@@ -47,6 +49,10 @@ export class Hand {
     this.pull?.force.set(0, 0, 0);
   }
 
+  get drags() {
+    return this.mode === "tool" && this.pointers.size > 0;
+  }
+
   get canMove() {
     return this.tools.length > 0 || this.pull !== null;
   }
@@ -60,6 +66,8 @@ export class Hand {
     this.mode = "view";
     if (grabs && blade.isOn) this.mode = "blade";
     else if (grabs && this.canMove) this.mode = "tool";
+    // A second finger turns the view, and pulls no more.
+    if (this.mode !== "tool") this.letGo();
     if (this.mode === "blade") blade.begin(event.clientX, event.clientY);
     else blade.end();
     if (this.mode === "tool" && this.tools.length > 1) this.pick(event);
@@ -102,10 +110,28 @@ export class Hand {
   up(event) {
     this.pointers.delete(event.pointerId);
     if (this.mode === "blade") this.actions.blade.end();
-    if (this.mode === "tool" && this.pull && this.pointers.size === 0) {
-      this.pull.force.set(0, 0, 0);
-      this.actions.pull(this.pull.force);
+    if (this.pointers.size === 0) {
+      this.lift(false);
+      this.letGo();
     }
+  }
+
+  /// Pulls no more.
+  letGo() {
+    if (!this.pull || this.pull.force.lengthSq() === 0) return;
+    this.pull.force.set(0, 0, 0);
+    this.sendPull();
+  }
+
+  sendPull() {
+    this.pulledAt = performance.now();
+    this.actions.pull(this.pull.force);
+  }
+
+  /// The factors of loads as they are, where no pointer changes them: another page may pull, or have pulled.
+  follow(factors) {
+    // What was sent just now comes back later.
+    if (this.pull && this.pointers.size === 0 && performance.now() - this.pulledAt > 500) this.pull.force.set(...this.pull.loads.map((load) => this.pull.unit * factors[load]));
   }
 
   wheel(event) {
@@ -134,9 +160,8 @@ export class Hand {
       this.view.zoom(event.key === "+" ? 0.9 : 1.1);
     } else if (event.key === "[" || event.key === "]") {
       this.view.orbit(event.key === "[" ? 12 : -12, 0);
-    } else if (event.key === "Escape" && this.pull) {
-      this.pull.force.set(0, 0, 0);
-      this.actions.pull(this.pull.force);
+    } else if (event.key === "Escape") {
+      this.letGo();
     }
   }
 
@@ -154,7 +179,7 @@ export class Hand {
     } else if (this.pull) {
       // A hand on a spring: so many newtons for a pull of the body's size.
       this.pull.force.addScaledVector(by, this.pull.stiffness);
-      this.actions.pull(this.pull.force);
+      this.sendPull();
     }
   }
 

@@ -3,6 +3,9 @@
 export const SPAN = 5;
 const NAMES = ["t", "force", "depth", "kinetic", "elastic", "balance", "moved"];
 
+// Most samples: steps that are short and shown one by one bring more than a plot can show.
+const MOST = 2000;
+
 export class History {
   constructor() {
     this.clear();
@@ -23,6 +26,7 @@ export class History {
     for (const name of NAMES) this[name].push(values[name]);
     let old = 0;
     while (this.t[old] < pane.t - SPAN) old += 1;
-    if (old > 40) for (const name of NAMES) this[name].splice(0, old);
+    if (this.t.length > MOST) for (const name of NAMES) this[name] = this[name].filter((_, index) => index % 2 === 0);
+    else if (old > 40) for (const name of NAMES) this[name].splice(0, old);
   }
 }

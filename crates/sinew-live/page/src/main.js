@@ -12,6 +12,7 @@ import { colourOfLight, numberOfReason, reasonOf } from "./lights.js";
 import { plain, short, withUnit } from "./numbers.js";
 import { PaneCard, stepInWords } from "./panes.js";
 import { Plot, around } from "./plots.js";
+import { ShapeRow } from "./shape.js";
 import { View } from "./view.js";
 
 const get = (id) => document.getElementById(id);
@@ -29,12 +30,19 @@ let settings = null;
 let integrators = [];
 let picture = null;
 let pictures = 0;
-let scale = {};
+/// The largest 1/step (1/s) of an element at the surface.
+let shortest = 1;
 let notice = 0;
 let plotted = 0;
-let since = { at: performance.now(), pictures: 0, received: 0 };
+let since = { at: performance.now(), pictures: 0 };
 let connected = true;
 const last = { saved: null, refused: [], stopped: [], rate: 0 };
+
+/// Adds to a list of the latest.
+function keep(list, item) {
+  list.push(item);
+  if (list.length > 50) list.shift();
+}
 
 const connection = new Connection({
   scenery: begin,
@@ -44,14 +52,20 @@ const connection = new Connection({
     cards.forEach((card) => card.setIntegrators(list));
   },
   refused: ({ reason }) => {
-    last.refused.push(reason);
+    keep(last.refused, reason);
     say(reason);
   },
-  stopped: ({ pane, reason }) => last.stopped.push({ pane, reason }),
+  stopped: (event) => keep(last.stopped, event),
   reset: () => {
     histories.forEach((history) => history.clear());
     hand.release();
     blade.end();
+  },
+  tools: ({ tools }) => {
+    scenery.tools = tools;
+    hand.begin(tools, scenery.hand);
+    view.setTools(tools);
+    showShape();
   },
   trusted_ended: ({ reason }) => say(reason),
   saved: (event) => {
@@ -60,6 +74,7 @@ const connection = new Connection({
   },
   closed: () => {
     connected = false;
+    if (!scenery) return;
     say("The simulation has ended, or this page was closed from there. Reload it where `sinew live` still runs.", Infinity);
   },
 });
@@ -85,6 +100,9 @@ const hand = new Hand(canvas, view, {
     });
   },
 });
+
+const shapeRow = new ShapeRow(get("shape"), (tool, shape) => connection.command("shape", { tool, shape }));
+const showShape = () => shapeRow.show(hand.selected, scenery.tools[hand.selected], view.extent);
 
 function say(text, time = 6000) {
   const message = get("message");
@@ -176,6 +194,7 @@ function configure(event) {
     if (document.activeElement !== slider) slider.value = event.factors[index];
     slider.parentElement.querySelector("output").textContent = `× ${plain(event.factors[index], 3)}`;
   });
+  hand.follow(event.factors);
   view.setCount(panes.length);
   legend();
 }
@@ -187,9 +206,9 @@ const shown = () => (get("difference").checked && settings?.panes.length === 2 ?
 function largestOf(field) {
   const modulus = scenery.youngs_modulus;
   const extent = view.extent ?? 0.1;
-  return scale[field] ?? {
+  return {
     stress: roundUp(0.2 * modulus), strain: 0.2, displacement: roundUp(0.1 * extent), energy_density: roundUp(0.02 * modulus),
-    saturated: 1, pressure: roundUp(0.3 * modulus), difference: roundUp(0.02 * extent),
+    saturated: 1, pressure: roundUp(0.3 * modulus), step_limit: shortest, difference: roundUp(0.02 * extent),
   }[field];
 }
 
@@ -199,7 +218,11 @@ function legend() {
   const { title, unit, factor } = FIELDS[field];
   get("legend-title").textContent = title;
   const largest = largestOf(field) * factor;
-  const ticks = field === "saturated" ? [[1, "at limit"], [0, "free"]] : [0, 0.25, 0.5, 0.75, 1].map((share) => [share, `${short(share * largest)} ${unit}`]);
+  const wordsAt = (share) => {
+    if (field === "step_limit") return share > 0 ? `${short(1000 / (share * largest))} ${unit}` : "longer";
+    return `${short(share * largest)} ${unit}`;
+  };
+  const ticks = field === "saturated" ? [[1, "at limit"], [0, "free"]] : [0, 0.25, 0.5, 0.75, 1].map((share) => [share, wordsAt(share)]);
   get("legend-ticks").replaceChildren(...ticks.map(([share, words]) => {
     const tick = document.createElement("span");
     tick.textContent = words;
@@ -226,7 +249,15 @@ function show() {
     view.setTopology(picture.topology, scenery.tools);
     if (hand.pull) hand.pull.stiffness = scenery.youngs_modulus * view.extent * 0.1;
     cutPanel.resize();
+    showShape();
     legend();
+  }
+  if (picture.field === "step_limit") {
+    const now = Math.max(...picture.panes.map((pane) => pane.colours.reduce((most, value) => (value > most ? value : most), 0))) || 1;
+    if (now !== shortest) {
+      shortest = now;
+      legend();
+    }
   }
   const largest = largestOf(shown());
   picture.panes.forEach((pane, number) => {
@@ -283,6 +314,7 @@ function panels() {
     ? `E − W is above 0${live.length > 1 ? ` in ${red.map((number) => settings.panes[number].integrator).join(" and ")}` : ""}: energy from nowhere.`
     : "E − W, energy less the work of loads and tools: what damping takes makes it fall. It must not rise above 0.";
   get("energy-now").textContent = `E ${withUnit(first.kinetic + first.elastic, "J")} · W ${withUnit(first.loadWork + first.toolWork, "J")}`;
+  if (shapeRow.number !== hand.selected) showShape();
   const tool = first.tools[hand.selected];
   if (tool) get("force-now").textContent = `${withUnit(Math.hypot(...tool.force), "N")} · ${plain(1000 * Math.max(0, tool.depth), 3)} mm deep`;
   else if (scenery.hand) get("force-now").textContent = `${withUnit(hand.pull.force.length(), "N")} · ${plain(1000 * (histories[0].moved.at(-1) ?? 0), 3)} mm`;
@@ -330,7 +362,7 @@ function frame(now) {
   if (now - since.at > 1000) {
     last.rate = ((pictures - since.pictures) * 1000) / (now - since.at);
     get("rate").textContent = `${plain(last.rate, 2)} /s`;
-    since = { at: now, pictures, received: connection.received };
+    since = { at: now, pictures };
   }
   if (connected && now > notice) get("message").hidden = true;
 }
@@ -347,7 +379,7 @@ get("difference").addEventListener("change", legend);
 window.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || ["INPUT", "SELECT"].includes(event.target.tagName)) return;
   const press = { " ": "pause", ".": "step", r: "reset", v: "view", c: "cut" }[event.key];
-  if (!press || get(press).hidden || get(press).closest("[hidden]") || (event.key === " " && event.target.tagName === "BUTTON")) return;
+  if (!press || get(press).hidden || get(press).closest("[hidden]") || (event.key === " " && event.target.closest("button, summary"))) return;
   event.preventDefault();
   get(press).click();
 });

@@ -55,6 +55,19 @@ class Pane {
     this.rim.frustumCulled = false;
     this.scene.add(this.body, this.edges, this.rim);
     this.setSurface(surface);
+    this.tools = [];
+    this.setTools(tools, extent);
+    this.pull = new LineSegments(new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(6), 3)), new LineBasicMaterial({ color: 0xd1495b }));
+    this.grip = new Mesh(new SphereGeometry(0.028 * extent, 28, 20), new MeshLambertMaterial({ color: 0xd1495b }));
+    this.pull.frustumCulled = false;
+    this.pull.visible = false;
+    this.grip.visible = false;
+    this.scene.add(this.pull, this.grip);
+  }
+
+  setTools(tools, extent) {
+    this.scene.remove(...this.tools);
+    for (const { children } of this.tools) children.forEach(({ geometry, material }) => [geometry, material].forEach((own) => own.dispose()));
     this.tools = tools.map((tool) => {
       const group = new Group();
       for (const part of tool.parts) {
@@ -67,12 +80,6 @@ class Pane {
       this.scene.add(group);
       return group;
     });
-    this.pull = new LineSegments(new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(6), 3)), new LineBasicMaterial({ color: 0xd1495b }));
-    this.grip = new Mesh(new SphereGeometry(0.028 * extent, 28, 20), new MeshLambertMaterial({ color: 0xd1495b }));
-    this.pull.frustumCulled = false;
-    this.pull.visible = false;
-    this.grip.visible = false;
-    this.scene.add(this.pull, this.grip);
   }
 
   /// Takes the surface of a body that became another one.
@@ -96,13 +103,6 @@ class Pane {
   showEdges(on) {
     if (on && !this.edges.geometry.index) this.edges.geometry.setIndex(new BufferAttribute(edgesOf(this.triangles), 1));
     this.edges.visible = on;
-  }
-
-  dispose() {
-    this.scene.traverse((object) => {
-      object.geometry?.dispose();
-      object.material?.dispose();
-    });
   }
 }
 
@@ -165,6 +165,12 @@ export class View {
     if (isFirst) this.begin(topology.surfaces[0]);
   }
 
+  setTools(tools) {
+    this.toolFacts = tools;
+    this.panes.forEach((pane) => pane.setTools(tools, this.extent));
+    this.dirty = true;
+  }
+
   /// Size and place of the body, as cameras and blades take them for the whole session.
   begin({ points }) {
     const low = [Infinity, Infinity, Infinity];
@@ -175,7 +181,6 @@ export class View {
     });
     this.centre = new Vector3(...low.map((value, axis) => (value + high[axis]) / 2));
     this.extent = Math.max(...low.map((value, axis) => high[axis] - value));
-    this.top = high[2];
     this.setCount(this.count);
     this.resetCamera();
   }

@@ -39,8 +39,8 @@ const SLACK: f64 = 0.05;
 pub(crate) struct Bounds {
     /// Whether it stopped with an error.
     pub(crate) stopped: bool,
-    /// Share of velocities at their limit.
-    pub(crate) saturated: f64,
+    /// Whether velocities were at their limit.
+    pub(crate) is_saturated: bool,
     /// Tetrahedra inside out.
     pub(crate) inverted: u32,
     /// Energy less what was put in (J), not a number where it is not known, and the largest energy or work so far (J).
@@ -56,7 +56,7 @@ impl Bounds {
             Light::GREY
         } else if self.balance > SLACK * self.scale {
             Light::new(Colour::Red, 3)
-        } else if self.saturated > 0.0 {
+        } else if self.is_saturated {
             Light::new(Colour::Amber, 2)
         } else if self.inverted > 0 {
             Light::new(Colour::Amber, 5)

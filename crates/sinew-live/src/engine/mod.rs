@@ -16,8 +16,7 @@ mod trusted;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use sinew_scene::Scene;
-use sinew_session::{Command, CommandError, Session};
+use sinew_session::{Command, CommandError, Journal, JournalError, Log, Session};
 
 use self::course::Course;
 use self::pace::Pace;
@@ -30,7 +29,8 @@ use crate::error::LiveError;
 use crate::inbox::{Place, Request, Waiting};
 use crate::pane_choice::PaneChoice;
 use crate::picture::Surface;
-use crate::protocol::{Event, Field, FrameHead, FrameWriter, Order};
+use crate::protocol::{Event, Field, FrameHead, FrameWriter, Order, Shape};
+use crate::scene_values::SceneValues;
 use crate::server::Shared;
 
 /// Simulated time (s) in which a tool goes to where the hand is: a jump within one step would be a blow.
@@ -51,12 +51,15 @@ const IDLE: Duration = Duration::from_millis(100);
 /// Time without a cut after which the stable steps of a body that was cut are asked for: that may take longer than a cut.
 const CALM: Duration = Duration::from_millis(500);
 
+/// Time between two looks at what journals lack.
+const BETWEEN_ENTRIES: Duration = Duration::from_secs(1);
+
 /// Most panes.
 const MOST_PANES: usize = 2;
 
 /// The sessions, and who drives them.
 pub(crate) struct Engine {
-    scene: Scene,
+    scene: SceneValues,
     panes: Vec<Pane>,
     /// The other pane, where one comes.
     second: PaneChoice,
@@ -73,20 +76,43 @@ pub(crate) struct Engine {
     cut_at: Option<Instant>,
     /// Whether those that are known are of a body that was cut.
     knows_cut: bool,
+    /// The fields that the body has, and the one that colours show.
+    fields: Vec<Field>,
     field: Field,
     repaint: bool,
     trusted: Option<Trusted>,
     paused: bool,
-    /// Simulated time (s) up to which commands are known.
+    /// Simulated time (s) up to which all panes have stepped.
     t: f64,
+    /// What they are stepping through.
+    ahead: Option<Span>,
     pace: Pace,
     pictures: u32,
     last_picture: Option<Instant>,
     changed: bool,
     /// Whether settings are other than pages know, and whether all went back to the beginning.
     news: News,
-    /// Poses under way: client, number of the command, simulated time (s) of the arrival.
-    under_way: Vec<(u32, u32, f64)>,
+    /// Commands that no step has taken yet.
+    under_way: Vec<UnderWay>,
+    /// Files of the logs of the panes, and when they were last brought up to date.
+    journals: Vec<Journal>,
+    last_entries: Instant,
+}
+
+/// A span of simulated time (s).
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    until: f64,
+    length: f64,
+}
+
+/// A command that steps have taken from a simulated time (s) on.
+#[derive(Clone, Copy, Debug)]
+struct UnderWay {
+    client: u32,
+    id: u32,
+    arrival: f64,
+    is_pose: bool,
 }
 
 /// What pages have not been told yet.
@@ -99,10 +125,10 @@ struct News {
 
 /// What an engine begins with.
 pub(crate) struct Beginning {
-    pub(crate) scene: Scene,
+    pub(crate) scene: SceneValues,
     pub(crate) panes: Vec<PaneChoice>,
     pub(crate) second: PaneChoice,
-    pub(crate) field: Field,
+    pub(crate) fields: Vec<Field>,
     pub(crate) loads: Vec<String>,
     pub(crate) factors: Vec<f64>,
 }
@@ -118,13 +144,13 @@ impl Engine {
             scene,
             panes: choices,
             second,
-            field,
+            fields,
             loads,
             factors,
         } = beginning;
         let mut panes = vec![Pane::new(session)?];
         while panes.len() < choices.len() {
-            panes.push(Pane::of(&scene)?);
+            panes.push(Pane::of(&scene.scene)?);
         }
         for (pane, choice) in panes.iter_mut().zip(&choices) {
             choose(pane, choice)?;
@@ -146,20 +172,29 @@ impl Engine {
             topology: Topology::default(),
             cut_at: None,
             knows_cut: false,
-            field,
+            field: fields.first().copied().unwrap_or(Field::Displacement),
+            fields,
             repaint: true,
             trusted: None,
             paused: false,
             t,
+            ahead: None,
             pace: Pace::new(t),
             pictures: 0,
             last_picture: None,
             changed: true,
             news: News::default(),
             under_way: Vec::new(),
+            journals: Vec::new(),
+            last_entries: Instant::now(),
         };
         engine.set_first_factors();
         Ok(engine)
+    }
+
+    /// Keeps files up to date with the logs of the panes.
+    pub(crate) fn keep_logs(&mut self, journals: Vec<Journal>) {
+        self.journals = journals;
     }
 
     /// Simulates until it is told to end.
@@ -169,26 +204,55 @@ impl Engine {
         loop {
             shared.inbox.take(&mut waiting, self.patience(shared));
             if waiting.ends {
-                return Ended {
-                    t: self.t,
-                    logs: self.panes.into_iter().map(Pane::into_log).collect(),
-                };
+                return self.end();
             }
             self.obey(&mut waiting, shared);
             self.tell(shared);
-            if !self.paused {
-                self.advance(shared);
-            }
+            self.advance(shared);
             self.show(shared);
             self.learn_after_cuts(shared, &mut survey);
+            if self.last_entries.elapsed() >= BETWEEN_ENTRIES {
+                self.last_entries = Instant::now();
+                let kept = self.keep_up();
+                self.report_journals(kept, shared);
+            }
+        }
+    }
+
+    fn end(self) -> Ended {
+        let logs: Vec<Log> = self.panes.into_iter().map(Pane::into_log).collect();
+        let finished = self.journals.into_iter().zip(&logs);
+        let unkept = finished.filter_map(|(journal, log)| journal.finish(log).err());
+        Ended {
+            t: self.t,
+            scene: self.scene.scene,
+            values: self.scene.values,
+            unkept: unkept.collect(),
+            logs,
+        }
+    }
+
+    /// Brings the files of the logs up to date.
+    fn keep_up(&mut self) -> Result<(), JournalError> {
+        let mut journals = self.journals.iter_mut().zip(&self.panes);
+        journals.try_for_each(|(journal, pane)| journal.keep_up(pane.log()))
+    }
+
+    /// Tells pages once where commands are no longer kept in a file.
+    fn report_journals(&mut self, kept: Result<(), JournalError>, shared: &Shared) {
+        if let Err(error) = kept {
+            self.journals.clear();
+            let reason = format!("commands are kept in memory alone from now on: {error}");
+            shared.clients.tell_all(&Event::Refused { reason });
         }
     }
 
     /// How long nothing is to be done, unless something comes.
     fn patience(&self, shared: &Shared) -> Duration {
-        let until_step = match self.paused {
-            true => IDLE,
-            false => self.pace.until(self.t + self.tick()),
+        let until_step = match (self.ahead, self.paused) {
+            (Some(_), _) => Duration::ZERO,
+            (None, true) => IDLE,
+            (None, false) => self.pace.until(self.t + self.tick()),
         };
         let until_picture = match (self.changed, self.last_picture) {
             (true, Some(last)) if shared.clients.want_a_frame() => {
@@ -210,21 +274,36 @@ impl Engine {
         steps.fold(0.0, f64::max)
     }
 
-    fn advance(&mut self, shared: &Shared) {
-        let begun = Instant::now();
-        let tick = self.tick();
-        while self.t + tick <= self.pace.target() && begun.elapsed() < LOOK {
-            self.take_tick(tick, shared);
-        }
-        self.pace.note(self.t);
+    /// Simulated time (s) from which on commands take effect.
+    fn now(&self) -> f64 {
+        self.ahead.map_or(self.t, |span| span.until)
     }
 
-    fn take_tick(&mut self, tick: f64, shared: &Shared) {
-        let until = self.t + tick;
+    /// Steps as far as time on the wall asks for, but not for longer than commands may wait.
+    fn advance(&mut self, shared: &Shared) {
+        let begun = Instant::now();
+        let may = || begun.elapsed() < LOOK;
+        while may() {
+            let is_due = || !self.paused && self.t + self.tick() <= self.pace.target();
+            if self.ahead.is_none() && !is_due() {
+                break;
+            }
+            self.take_tick(shared, may);
+        }
+        if !self.paused {
+            self.pace.note(self.t);
+        }
+    }
+
+    /// Steps on through the span that panes are in, or through the next one, as long as it `may`.
+    fn take_tick(&mut self, shared: &Shared, may: impl Fn() -> bool) {
+        let length = self.tick();
+        let until = self.t + length;
+        let Span { until, length } = *self.ahead.get_or_insert(Span { until, length });
         let mut oldest = until;
         for (number, pane) in self.panes.iter_mut().enumerate() {
             let was_stopped = pane.stopped.is_some();
-            if let Some(reason) = pane.follow(until, &self.hands) {
+            if let Some(reason) = pane.follow(until, &self.hands, &may) {
                 shared.clients.tell_all(&Event::Refused { reason });
             }
             if let Some(reason) = pane.stopped.clone().filter(|_| !was_stopped) {
@@ -236,11 +315,16 @@ impl Engine {
                 oldest = oldest.min(pane.t());
             }
         }
+        self.changed = true;
+        if !self.panes.iter().all(|pane| pane.is_at(until)) {
+            return;
+        }
+        self.ahead = None;
         if let Some(trusted) = &mut self.trusted {
             for (number, pane) in self.panes.iter_mut().enumerate() {
                 (pane.error, pane.lag) = trusted.error(number, pane.t());
             }
-            if let Err(reason) = trusted.span(until, tick, &self.hands, &self.panes) {
+            if let Err(reason) = trusted.span(until, length, &self.hands, &self.panes) {
                 self.distrust(reason, shared);
             }
         }
@@ -248,14 +332,13 @@ impl Engine {
         for hand in self.hands.iter_mut().flatten() {
             hand.forget_before(oldest);
         }
-        self.under_way.retain(|(client, id, arrival)| {
-            let is_there = *arrival <= until + 1e-12;
+        self.under_way.retain(|command| {
+            let is_there = command.arrival <= until + 1e-12;
             if is_there {
-                shared.clients.applied(*client, *id);
+                shared.clients.applied(command.client, command.id);
             }
             !is_there
         });
-        self.changed = true;
     }
 
     fn show(&mut self, shared: &Shared) {
@@ -319,12 +402,15 @@ impl Engine {
         }
         for Request { client, id, what } in waiting.orders.drain(..) {
             let is_pose = matches!(what, Order::Pose { .. });
-            match self.carry_out(client, id, what, shared) {
-                Ok(()) => {}
-                Err(reason) => shared.clients.tell(client, &Event::Refused { reason }),
+            let waits = is_pose || matches!(what, Order::Load { .. } | Order::Cut { .. });
+            let outcome = self.carry_out(client, id, what, shared);
+            if outcome.is_err() || !waits {
+                shared.clients.applied(client, id);
+            }
+            if let Err(reason) = outcome {
+                shared.clients.tell(client, &Event::Refused { reason });
             }
             if !is_pose {
-                shared.clients.applied(client, id);
                 self.news.settings = true;
                 (self.changed, self.repaint) = (true, true);
             }
@@ -367,16 +453,56 @@ impl Engine {
             position: [x, y, z],
             rotation_vector: [a, b, c],
         })?;
-        let (t, arrival) = (self.t, self.t + GLIDE.max(self.tick()));
+        let t = self.now();
+        let arrival = t + GLIDE.max(self.tick());
         let here = first.filter(|_| is_new).map(|pane| pane.tool_pose(tool));
         let course =
             self.hands[tool].get_or_insert_with(|| Course::at_rest(t, here.unwrap_or_default()));
         course.go(t, pose, arrival);
-        // Also while time stops it holds no more than one of each client at a time.
+        // Also while time stops it holds no more than one pose of each client at a time.
         self.under_way
-            .retain(|(other, _, then)| *other != client || *then < arrival);
-        self.under_way.push((client, id, arrival));
+            .retain(|other| !other.is_pose || other.client != client || other.arrival < arrival);
+        self.under_way.push(UnderWay {
+            client,
+            id,
+            arrival,
+            is_pose: true,
+        });
         Ok(())
+    }
+
+    /// Gives all panes a command that takes effect with their next steps.
+    fn give(&mut self, client: u32, id: u32, command: Command) -> Result<(), String> {
+        self.check(&command)?;
+        let t = self.now();
+        for pane in &mut self.panes {
+            pane.command_at(t, command.clone());
+        }
+        if let Some(trusted) = &mut self.trusted {
+            trusted.command_at(t, command);
+        }
+        self.under_way.push(UnderWay {
+            client,
+            id,
+            arrival: t + self.tick(),
+            is_pose: false,
+        });
+        Ok(())
+    }
+
+    /// Changes the method of a pane. One that had stopped begins anew, and so do all.
+    fn change_method(
+        &mut self,
+        number: usize,
+        change: impl FnOnce(&mut Pane) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let pane = self.pane(number)?;
+        let was_stopped = pane.stopped.is_some();
+        let changed = change(pane);
+        if was_stopped && pane.stopped.is_none() {
+            self.restart()?;
+        }
+        changed
     }
 
     fn carry_out(
@@ -398,72 +524,59 @@ impl Engine {
             }
             Order::Load { load, factor } => {
                 let place = self.loads.iter().position(|name| *name == load);
-                let command = Command::LoadFactor { load, factor };
-                self.check(&command)?;
+                self.give(client, id, Command::LoadFactor { load, factor })?;
                 if let Some(factor_of) = place.and_then(|place| self.factors.get_mut(place)) {
                     *factor_of = factor;
                 }
-                for pane in &mut self.panes {
-                    pane.command_at(self.t, command.clone());
-                }
-                if let Some(trusted) = &mut self.trusted {
-                    trusted.command_at(self.t, command);
-                }
             }
-            Order::Cut { from, to } => {
-                let command = Command::Cut { from, to };
-                self.check(&command)?;
-                for pane in &mut self.panes {
-                    pane.command_at(self.t, command.clone());
-                }
-                if let Some(trusted) = &mut self.trusted {
-                    trusted.command_at(self.t, command);
-                }
-            }
+            Order::Cut { from, to } => self.give(client, id, Command::Cut { from, to })?,
+            Order::Shape { tool, shape } => self.reshape(tool, shape, shared)?,
             Order::Integrator { pane, name } => {
-                self.pane(pane)?.use_integrator(&name).map_err(words)?;
+                self.change_method(pane, |pane| pane.use_integrator(&name).map_err(words))?
             }
             Order::Dt { pane, dt } => {
                 if !(1e-6..=1.0).contains(&dt) {
                     return Err(format!("a step of {dt} s: expected 1e-6 to 1 s"));
                 }
-                self.pane(pane)?.use_step(dt).map_err(words)?;
+                self.change_method(pane, |pane| pane.use_step(dt).map_err(words))?;
             }
             Order::Option {
                 pane,
                 key,
                 word,
                 number,
-            } => self.pane(pane)?.use_option(&key, word, number)?,
+            } => self.change_method(pane, |pane| pane.use_option(&key, word, number))?,
             Order::Pause { on } => {
                 self.paused = on;
                 self.pace = Pace::new(self.t);
             }
             Order::Step => {
                 self.paused = true;
-                self.take_tick(self.tick(), shared);
+                let length = self.tick();
+                let until = self.t + length;
+                self.ahead.get_or_insert(Span { until, length });
             }
-            Order::Reset => {
-                if self.trusted.is_some() {
-                    self.trusted = Some(self.begin_trusted()?);
-                }
-                self.go_back()?;
-            }
+            Order::Reset => self.restart()?,
             Order::Panes { count } => {
                 if count == 0 || count > MOST_PANES {
                     return Err(format!("{count} panes: expected 1 or {MOST_PANES}"));
                 }
                 if count > self.panes.len() {
-                    let mut second = Pane::of(&self.scene).map_err(|error| error.to_string())?;
+                    let mut second =
+                        Pane::of(&self.scene.scene).map_err(|error| error.to_string())?;
                     choose(&mut second, &self.second).map_err(words)?;
                     self.panes.push(second);
                 }
                 self.panes.truncate(count);
                 self.trusted = None;
+                // That of the second pane is another session's, or nobody's.
+                let emptied = self.journals.get_mut(1).map_or(Ok(()), Journal::begin_anew);
+                self.report_journals(emptied, shared);
                 // From the beginning, so that both have been given the same.
                 self.go_back()?;
             }
-            Order::Field { name } => self.field = name,
+            Order::Field { name } if self.fields.contains(&name) => self.field = name,
+            Order::Field { .. } => return Err("this body has no such field".to_owned()),
             Order::Trusted { on } => {
                 self.trusted = match on {
                     true => Some(self.begin_trusted()?),
@@ -497,7 +610,7 @@ impl Engine {
     }
 
     fn begin_trusted(&self) -> Result<Trusted, String> {
-        Trusted::begin(&self.scene, self.panes.len(), self.tick())
+        Trusted::begin(&self.scene.scene, self.panes.len(), self.tick())
     }
 
     /// Ends the trusted run.
@@ -510,18 +623,55 @@ impl Engine {
         self.news.settings = true;
     }
 
-    /// Takes all panes back to the beginning.
-    fn go_back(&mut self) -> Result<(), String> {
-        for pane in &mut self.panes {
-            pane.reset().map_err(|error| error.to_string())?;
+    /// Gives a tool another shape: another scene, whose motion begins anew by the methods as they are.
+    fn reshape(&mut self, tool: usize, shape: Shape, shared: &Shared) -> Result<(), String> {
+        let key = format!("tool.{}.shape", tool.saturating_add(1));
+        let scene = self.scene.with(&key, &shape.to_toml());
+        let scene = scene.map_err(|error| error.to_string())?;
+        let mut panes = Vec::with_capacity(self.panes.len());
+        for pane in &self.panes {
+            panes.push(pane.on(&scene.scene)?);
         }
+        if self.trusted.is_some() {
+            let trusted = Trusted::begin(&scene.scene, panes.len(), self.tick());
+            self.trusted = Some(trusted?);
+        }
+        (self.scene, self.panes) = (scene, panes);
+        let emptied = self.journals.iter_mut().try_for_each(Journal::begin_anew);
+        self.report_journals(emptied, shared);
+        shared.tell_of_tools(self.panes.first().map_or_else(Vec::new, Pane::tool_facts));
+        self.begin_anew();
+        Ok(())
+    }
+
+    /// Takes all back to the beginning, the trusted run as well.
+    fn restart(&mut self) -> Result<(), String> {
+        let trusted = self.trusted.take().map(|_| self.begin_trusted());
+        let trusted = trusted.transpose().map(|trusted| self.trusted = trusted);
+        self.go_back().and(trusted)
+    }
+
+    /// Takes all panes back to the beginning; a sentence where one goes on by another method there.
+    fn go_back(&mut self) -> Result<(), String> {
+        let mut outcome = Ok(());
+        for pane in &mut self.panes {
+            if let Err(refused) = pane.reset() {
+                outcome = Err(refused.to_string());
+            }
+        }
+        self.begin_anew();
+        outcome
+    }
+
+    /// Lets go of all, with panes at the beginning.
+    fn begin_anew(&mut self) {
         self.hands.fill(None);
         self.under_way.clear();
         self.t = self.panes.first().map_or(0.0, Pane::t);
+        self.ahead = None;
         self.pace = Pace::new(self.t);
         self.set_first_factors();
         (self.news.settings, self.news.went_back) = (true, true);
-        Ok(())
     }
 
     /// The factors of loads as they are at the beginning.

@@ -17,8 +17,12 @@ use super::{options, stability};
 use crate::error::LiveError;
 use crate::picture::Surface;
 use crate::protocol::{
-    CutHead, Field, FrameWriter, OptionFacts, PaneFacts, PaneHead, StepFacts, ToolHead,
+    CutHead, Field, FrameWriter, OptionFacts, PaneFacts, PaneHead, StepFacts, ToolFacts, ToolHead,
 };
+use crate::tool_facts::tools_of;
+
+/// Share of a step by which times may differ by rounding.
+const SLACK: f64 = 1e-6;
 
 /// The option of an integrator that limits velocities.
 const GUARD: &str = "saturation";
@@ -129,6 +133,20 @@ impl Pane {
         Ok(pane)
     }
 
+    /// A pane of another scene at its beginning, by the same method.
+    pub(crate) fn on(&self, scene: &Scene) -> Result<Self, String> {
+        let mut pane = Self::of(scene).map_err(|error| error.to_string())?;
+        let switched = pane.switch(self.method.clone());
+        switched.map_err(|error| error.to_string())?;
+        Ok(pane)
+    }
+
+    /// What pages are told of its tools.
+    pub(crate) fn tool_facts(&self) -> Vec<ToolFacts> {
+        let simulation = self.session.simulation();
+        body(&self.session).map_or_else(Vec::new, |body| tools_of(body, simulation))
+    }
+
     /// The integrator and the options of the scene.
     fn of_scene(&self) -> (String, Options) {
         let settings = self.session.simulation().settings();
@@ -199,12 +217,11 @@ impl Pane {
         })
     }
 
-    /// Goes on by another method; one that stopped begins anew.
+    /// Goes on by another method; one that stopped begins anew, as its session takes no other command.
     fn switch(&mut self, method: (String, Options, f64)) -> Result<(), CommandError> {
         if self.stopped.is_some() {
-            // The session has failed, and takes no other command.
-            let before = std::mem::replace(&mut self.method, method);
-            return self.reset().inspect_err(|_| self.method = before);
+            self.method = method;
+            return self.reset();
         }
         self.apply(&method)?;
         self.method = method;
@@ -212,7 +229,7 @@ impl Pane {
         Ok(())
     }
 
-    /// Gives the session a method: the shorter step first, which both integrators more likely bear.
+    /// Gives the session a method.
     fn apply(&mut self, (id, options, dt): &(String, Options, f64)) -> Result<(), CommandError> {
         let integrator = Command::Integrator {
             id: id.clone(),
@@ -249,7 +266,7 @@ impl Pane {
         guard.value.filter(|_| guard.word.is_none())
     }
 
-    /// Back to the beginning, with the integrator and the step as they are.
+    /// Back to the beginning, with the integrator and the step as they are; with those of the scene where these are refused.
     pub(crate) fn reset(&mut self) -> Result<(), CommandError> {
         self.due.clear();
         self.session.command(Command::Reset)?;
@@ -265,9 +282,13 @@ impl Pane {
         self.has_stepped = false;
         self.fit();
         self.take_first_energy();
-        self.apply(&self.method.clone())?;
+        let applied = self.apply(&self.method.clone());
+        if applied.is_err() {
+            let (id, options) = self.given.clone();
+            self.method = (id, options, self.session.dt());
+        }
         self.learn();
-        Ok(())
+        applied
     }
 
     fn take_first_energy(&mut self) {
@@ -292,20 +313,30 @@ impl Pane {
         }
     }
 
-    /// A command that takes effect with the first step from a simulated time (s) on.
+    /// A command that takes effect with the first step from a simulated time (s) on. One that stopped takes no more steps.
     pub(crate) fn command_at(&mut self, t: f64, command: Command) {
-        self.due.push_back((t, command));
+        if self.stopped.is_none() {
+            self.due.push_back((t, command));
+        }
     }
 
-    /// Steps up to a simulated time (s), but not beyond; a sentence where a command was refused.
-    pub(crate) fn follow(&mut self, until: f64, hands: &[Option<Course>]) -> Option<String> {
+    /// Whether it has stepped up to a simulated time (s), or takes no more steps.
+    pub(crate) fn is_at(&self, until: f64) -> bool {
+        let (t, dt) = (self.session.t(), self.session.dt());
+        self.stopped.is_some() || t + dt > until + SLACK * dt
+    }
+
+    /// Steps up to a simulated time (s), but not beyond, as long as it `may` go on; a sentence where a command was refused.
+    pub(crate) fn follow(
+        &mut self,
+        until: f64,
+        hands: &[Option<Course>],
+        may: impl Fn() -> bool,
+    ) -> Option<String> {
         let mut refused = None;
-        while self.stopped.is_none() {
-            let (t, dt) = (self.session.t(), self.session.dt());
-            let slack = 1e-6 * dt;
-            if t + dt > until + slack {
-                break;
-            }
+        while !self.is_at(until) && may() {
+            let t = self.session.t();
+            let slack = SLACK * self.session.dt();
             while self.due.front().is_some_and(|(due, _)| *due <= t + slack) {
                 if let Some((_, command)) = self.due.pop_front() {
                     self.settling.disturbed(t);
@@ -547,7 +578,7 @@ impl Pane {
             false => Light::GREY,
             true => Bounds {
                 stopped: self.stopped.is_some(),
-                saturated: self.saturated as f64,
+                is_saturated: self.saturated > 0,
                 inverted: self.shown.as_ref().map_or(0, Shown::inverted),
                 balance: self.energies.balance(),
                 scale: self.energies.scale,
@@ -568,13 +599,13 @@ impl Pane {
     }
 
     /// All commands so far.
-    pub(crate) fn log(&self) -> String {
-        self.session.log().to_text()
+    pub(crate) fn log(&self) -> &Log {
+        self.session.log()
     }
 
     /// All commands so far, where it has ended.
     pub(crate) fn into_log(self) -> Log {
-        self.session.log().clone()
+        self.session.into_log()
     }
 
     /// Checks a command before it is given.

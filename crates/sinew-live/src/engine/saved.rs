@@ -1,12 +1,13 @@
 //! A moment that is saved.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use sinew_scene::Scene;
+use sinew_scene::SceneSource;
 use sinew_scene::output::{OutputError, OutputFolder};
 
 use super::pane::Pane;
 use crate::protocol::Event;
+use crate::scene_values::SceneValues;
 
 /// Most folders that are looked through for a free name.
 const MOST: u32 = 10_000;
@@ -26,41 +27,70 @@ pub(crate) enum SaveError {
 }
 
 /// Writes the scene, and state and commands of each pane, into a new folder of the current one.
-pub(crate) fn save(scene: &Scene, panes: &[Pane]) -> Result<Event, SaveError> {
+pub(crate) fn save(scene: &SceneValues, panes: &[Pane]) -> Result<Event, SaveError> {
     let here = std::env::current_dir()?;
     let mut names = (1..=MOST).map(|number| here.join(format!("live-{number}")));
     let path = names.find(|path| path.symlink_metadata().is_err());
     let path = path.ok_or(SaveError::Full)?;
-    let folder = OutputFolder::new(&path, &scene.input_files());
-    let copy = folder.write("scene.toml", scene.source().text().as_bytes())?;
+    let folder = OutputFolder::new(&path, &scene.scene.input_files());
+    let text = scene.scene.source().text();
+    let copy = folder.write("scene.toml", text.as_bytes())?;
     let mut logs = Vec::new();
     for (number, pane) in (1..).zip(panes) {
         folder.write(&format!("state-{number}.bin"), &pane.state_bytes())?;
-        logs.push(folder.write(&format!("commands-{number}.log"), pane.log().as_bytes())?);
+        logs.push(folder.write(
+            &format!("commands-{number}.log"),
+            pane.log().to_text().as_bytes(),
+        )?);
     }
-    let scene = scene_to_run(scene, &copy);
-    let log = logs.first().map(|log| shown(log)).unwrap_or_default();
+    let log = logs.first().map(|log| word(&log.display().to_string()));
     Ok(Event::Saved {
         folder: path.display().to_string(),
-        replay: format!("sinew run {} --replay {log}", shown(&scene)),
+        replay: format!(
+            "sinew run {} --replay {}",
+            scene_to_run(scene, &copy),
+            log.unwrap_or_default()
+        ),
     })
 }
 
-/// The scene's own file, beside which its meshes lie, unless it is another text.
-fn scene_to_run(scene: &Scene, copy: &Path) -> PathBuf {
-    let source = scene.source();
+/// The scene as words of a command: its own file, beside which its meshes and tables lie, with the values that are set in it, unless the file has
+/// changed since.
+fn scene_to_run(scene: &SceneValues, copy: &Path) -> String {
+    let source = scene.scene.source();
     let own = std::fs::read_to_string(source.path());
-    match own.is_ok_and(|text| text == source.text()) {
-        true => source.path().to_owned(),
-        false => copy.to_owned(),
+    let own = own.map(|text| SceneSource::new(source.path(), text).with_values(&scene.values));
+    if !matches!(own, Ok(Ok(own)) if own.text() == source.text()) {
+        return word(&copy.display().to_string());
+    }
+    let mut words = word(&source.path().display().to_string());
+    for value in &scene.values {
+        words.push_str(" --set ");
+        words.push_str(&word(value));
+    }
+    words
+}
+
+/// A word as a shell takes it.
+fn word(text: &str) -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "_-./=+:,@%".contains(letter);
+    match text.chars().all(is_plain) {
+        true => text.to_owned(),
+        false => format!("'{}'", text.replace('\'', r"'\''")),
     }
 }
 
-/// A path as a shell takes it.
-fn shown(path: &Path) -> String {
-    let path = path.display().to_string();
-    match path.contains(|letter: char| letter.is_whitespace() || letter == '\'') {
-        true => format!("'{}'", path.replace('\'', r"'\''")),
-        false => path,
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_with_other_letters_are_quoted_for_the_shell() {
+        assert_eq!(word("scenes/press.toml"), "scenes/press.toml");
+        assert_eq!(
+            word("tool.1.shape={ plane = {} }"),
+            "'tool.1.shape={ plane = {} }'"
+        );
+        assert_eq!(word("it's $HOME"), r"'it'\''s $HOME'");
     }
 }

@@ -1,6 +1,6 @@
 //! A run beside the panes by which their errors are known.
 
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -64,6 +64,15 @@ pub(crate) struct Trusted {
     commands: Vec<(f64, Command)>,
     /// Room for displacements, which comes back when they have been compared.
     spare: Receiver<Vec<f64>>,
+    /// Whether nobody asks for it any more.
+    is_over: Arc<AtomicBool>,
+}
+
+impl Drop for Trusted {
+    fn drop(&mut self) {
+        // Spans that still wait would be stepped through for nobody.
+        self.is_over.store(true, Ordering::Relaxed);
+    }
 }
 
 impl Trusted {
@@ -88,8 +97,10 @@ impl Trusted {
             // There is room for all of them.
             let _ = compared.try_send(Vec::new());
         }
+        let is_over = Arc::new(AtomicBool::new(false));
         let follower = Follower {
             pane,
+            is_over: Arc::clone(&is_over),
             known: Arc::clone(&known),
             t: Arc::clone(&t),
             largest: 0.0,
@@ -107,6 +118,7 @@ impl Trusted {
             t,
             commands: Vec::new(),
             spare,
+            is_over,
         })
     }
 
@@ -155,7 +167,8 @@ impl Trusted {
             ),
             Err(TrySendError::Disconnected(_)) => {
                 let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-                let reason = known.failure.clone().unwrap_or_default();
+                let reason = known.failure.as_deref();
+                let reason = reason.unwrap_or("by a fault of this program; please report it");
                 Err(format!("the trusted run ended: {reason}"))
             }
         }
@@ -176,6 +189,7 @@ fn step_within(span: f64, stable_step: f64) -> f64 {
 
 struct Follower {
     pane: Pane,
+    is_over: Arc<AtomicBool>,
     known: Arc<Mutex<Known>>,
     t: Arc<AtomicU64>,
     /// The largest displacement (m) so far.
@@ -227,7 +241,12 @@ impl Follower {
     }
 
     fn go(&mut self, until: f64, hands: &[Option<Course>]) -> Result<(), String> {
-        let refused = self.pane.follow(until, hands);
+        let is_over = Arc::clone(&self.is_over);
+        let may = || !is_over.load(Ordering::Relaxed);
+        let refused = self.pane.follow(until, hands, may);
+        if !self.pane.is_at(until) {
+            return Err("nobody asks for it any more".to_owned());
+        }
         if let Some(reason) = self.pane.stopped.clone().or(refused) {
             return Err(reason);
         }

@@ -74,7 +74,7 @@ impl Colours {
     }
 
     /// The fields that a body has.
-    pub(crate) fn fields_of(laws: &[&Law], has_tools: bool) -> Vec<Field> {
+    pub(crate) fn fields_of(model: &Model, laws: &[&Law], has_tools: bool) -> Vec<Field> {
         let mut fields = vec![Field::Strain, Field::Displacement];
         let has_stress = laws.iter().all(|law| !matches!(law, Law::Springs { .. }));
         if has_stress {
@@ -82,6 +82,10 @@ impl Colours {
         }
         if laws.iter().all(|law| matches!(law, Law::Linear { .. })) {
             fields.push(Field::EnergyDensity);
+        }
+        // What a tetrahedron bears follows from itself alone where its strain does.
+        if model.is_without_averages() {
+            fields.push(Field::StepLimit);
         }
         fields.push(Field::Saturated);
         if has_tools {
@@ -103,6 +107,7 @@ impl Colours {
             }
             Field::Saturated => self.saturated(seen),
             Field::Pressure => self.pressure(seen),
+            Field::StepLimit => self.step_limit(seen.model),
         }
         self.mark_inverted(seen)
     }
@@ -170,6 +175,23 @@ impl Colours {
             let point = self.point_of[*node as usize] as usize;
             if let Some(value) = self.values.get_mut(point) {
                 *value = f32::from(u8::from(is_at_limit));
+            }
+        }
+    }
+
+    /// The largest of the tetrahedra at each point.
+    fn step_limit(&mut self, model: &Model) {
+        self.values.fill(0.0);
+        let mesh = model.mesh();
+        for (tet, nodes) in mesh.tets.iter().enumerate() {
+            let vertices = nodes.map(|node| mesh.points[node as usize]);
+            // Central difference bears steps up to 2 / omega.
+            let inverse = (model.tet_frequency(tet, &vertices) / 2.0) as f32;
+            for node in nodes {
+                let point = self.point_of[*node as usize] as usize;
+                if let Some(value) = self.values.get_mut(point) {
+                    *value = value.max(inverse);
+                }
             }
         }
     }

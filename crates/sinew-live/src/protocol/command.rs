@@ -39,6 +39,13 @@ pub(crate) enum Order {
         /// Both ends (m) after.
         to: [[f64; 3]; 2],
     },
+    /// Another shape of a tool of one part, with which all begins anew.
+    Shape {
+        /// Number of the tool.
+        tool: usize,
+        /// The shape.
+        shape: Shape,
+    },
     /// Another integrator in a pane.
     Integrator {
         /// The pane, from 0.
@@ -92,6 +99,45 @@ pub(crate) enum Order {
     Save,
 }
 
+/// The shape of a tool, as scenes have it.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Shape {
+    /// A sphere.
+    Sphere {
+        /// Its radius (m).
+        radius: f64,
+    },
+    /// A cylinder with round ends.
+    Capsule {
+        /// Its radius (m).
+        radius: f64,
+        /// Length (m) between the centres of its ends.
+        length: f64,
+    },
+    /// A half-space.
+    Plane {},
+    /// A box.
+    Box {
+        /// Its edges (m).
+        size: [f64; 3],
+    },
+}
+
+impl Shape {
+    /// The value of a tool's key `shape`.
+    pub(crate) fn to_toml(self) -> String {
+        match self {
+            Self::Sphere { radius } => format!("{{ sphere = {{ radius = {radius:?} }} }}"),
+            Self::Capsule { radius, length } => {
+                format!("{{ capsule = {{ radius = {radius:?}, length = {length:?} }} }}")
+            }
+            Self::Plane {} => "{ plane = {} }".to_owned(),
+            Self::Box { size } => format!("{{ box = {{ size = {size:?} }} }}"),
+        }
+    }
+}
+
 /// What colours show.
 #[derive(Clone, Copy, Debug, Deserialize, serde::Serialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
@@ -109,6 +155,8 @@ pub(crate) enum Field {
     Saturated,
     /// The pressure of tools (Pa).
     Pressure,
+    /// The inverse (1/s) of the largest step that central difference bears on single tetrahedra at rest.
+    StepLimit,
 }
 
 #[cfg(test)]
@@ -148,6 +196,13 @@ mod tests {
                 to: [[1.0, 0.0, 1.0], [1.0, 0.0, 0.0]],
             })
         );
+        assert_eq!(
+            said(r#"{"id":1,"do":"shape","tool":0,"shape":{"sphere":{"radius":0.01}}}"#),
+            Some(Order::Shape {
+                tool: 0,
+                shape: Shape::Sphere { radius: 0.01 },
+            })
+        );
         let field = Order::Field {
             name: Field::EnergyDensity,
         };
@@ -155,6 +210,29 @@ mod tests {
             said(r#"{"id":1,"do":"field","name":"energy_density"}"#),
             Some(field)
         );
+    }
+
+    #[test]
+    fn shapes_are_written_as_scenes_have_them() {
+        let shapes = [
+            (
+                r#"{"sphere":{"radius":1e-7}}"#,
+                "{ sphere = { radius = 1e-7 } }",
+            ),
+            (
+                r#"{"capsule":{"radius":0.002,"length":0.1}}"#,
+                "{ capsule = { radius = 0.002, length = 0.1 } }",
+            ),
+            (r#"{"plane":{}}"#, "{ plane = {} }"),
+            (
+                r#"{"box":{"size":[1,0.02,0.3]}}"#,
+                "{ box = { size = [1.0, 0.02, 0.3] } }",
+            ),
+        ];
+        for (json, toml) in shapes {
+            let shape: Shape = serde_json::from_str(json).unwrap();
+            assert_eq!(shape.to_toml(), toml);
+        }
     }
 
     #[test]

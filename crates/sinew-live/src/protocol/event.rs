@@ -40,6 +40,11 @@ pub(crate) enum Event {
         /// Why.
         reason: String,
     },
+    /// Tools became other ones.
+    Tools {
+        /// All of them.
+        tools: Vec<ToolFacts>,
+    },
     /// All went back to the beginning.
     Reset,
     /// A trusted run that ended.
@@ -69,8 +74,6 @@ pub(crate) struct Scenery {
     pub(crate) title: String,
     /// Version of this program.
     pub(crate) version: &'static str,
-    /// The client's number.
-    pub(crate) client: u32,
     /// Nodes of the whole body.
     pub(crate) nodes: usize,
     /// Its tetrahedra.

@@ -9,6 +9,11 @@ const TOPOLOGY: u32 = 0;
 /// Kind of a picture.
 const PICTURE: u32 = 1;
 
+/// Whether a message is a picture.
+pub(crate) fn is_frame(message: &[u8]) -> bool {
+    message.starts_with(&PICTURE.to_le_bytes())
+}
+
 /// Place of the last command that a picture contains, which is other for each client.
 pub(crate) const APPLIED_AT: usize = 8;
 
@@ -110,7 +115,7 @@ pub(crate) struct PaneHead {
     pub(crate) largest: f64,
     /// Share of velocities at their limit since the last picture.
     pub(crate) saturated: f64,
-    /// Kinetic energy of the last half second over that of the half second before; not a number while the hand moves.
+    /// Kinetic energy of the last quarter of a second over that of the quarter before; not a number while the hand moves.
     pub(crate) settling: f64,
     /// Colours of the three lights, two bits each.
     pub(crate) lights: u32,

@@ -7,12 +7,12 @@ mod command;
 mod event;
 mod frame;
 
-pub(crate) use command::{Field, Order, Said};
+pub(crate) use command::{Field, Order, Said, Shape};
 pub(crate) use event::{
     Event, HandFacts, Hertz, IntegratorFacts, LoadFacts, NumberFacts, OptionFacts, PaneFacts,
     PartFacts, Scenery, Stability, StepFacts, ToolFacts,
 };
 pub(crate) use frame::{
     APPLIED_AT, CutHead, FrameHead, FrameWriter, NO_TWIN, PaneHead, SurfaceShape, ToolHead,
-    topology,
+    is_frame, topology,
 };

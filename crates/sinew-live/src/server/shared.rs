@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::clients::Clients;
 use crate::inbox::Inbox;
-use crate::protocol::{Event, Scenery};
+use crate::protocol::{Event, Scenery, ToolFacts};
 
 /// What connections share with the simulation.
 #[derive(Debug)]
@@ -13,8 +13,7 @@ pub(crate) struct Shared {
     pub(crate) inbox: Inbox,
     /// Pictures come from there.
     pub(crate) clients: Clients,
-    /// What a page is told first.
-    pub(crate) scenery: Scenery,
+    scenery: Mutex<Scenery>,
     integrators: Mutex<Option<Arc<Event>>>,
 }
 
@@ -24,9 +23,28 @@ impl Shared {
         Self {
             inbox: Inbox::default(),
             clients: Clients::default(),
-            scenery,
+            scenery: Mutex::new(scenery),
             integrators: Mutex::default(),
         }
+    }
+
+    /// What a page is told first.
+    pub(crate) fn scenery(&self) -> Scenery {
+        let scenery = self.scenery.lock();
+        scenery.unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Whether there is a tool of this number.
+    pub(crate) fn has_tool(&self, tool: usize) -> bool {
+        let scenery = self.scenery.lock();
+        tool < scenery.unwrap_or_else(PoisonError::into_inner).tools.len()
+    }
+
+    /// Tells all pages of other tools, and those that come later.
+    pub(crate) fn tell_of_tools(&self, tools: Vec<ToolFacts>) {
+        let scenery = self.scenery.lock();
+        scenery.unwrap_or_else(PoisonError::into_inner).tools = tools.clone();
+        self.clients.tell_all(&Event::Tools { tools });
     }
 
     /// What a page is told of the integrators, once that is known.

@@ -11,8 +11,9 @@ use tokio::sync::mpsc::Receiver;
 use tokio::time::timeout;
 
 use super::shared::Shared;
+use crate::clients::MOST_CLIENTS;
 use crate::inbox::{Place, Request};
-use crate::protocol::{Event, Order, Said, Scenery};
+use crate::protocol::{Event, Order, Said, is_frame};
 
 /// Time for which a page may read nothing while a message is under way to it.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -20,13 +21,16 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// Talks to a page until it goes, breaks the protocol, or reads nothing while messages pile up.
 pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>) {
     let Some((id, messages)) = shared.clients.enter() else {
+        let reason = format!(
+            "{MOST_CLIENTS} pages are open, which is the most: close one, and load this one again"
+        );
+        // A page that is gone needs no reason.
+        let _ = stream
+            .send(Message::Text(Event::Refused { reason }.to_text().into()))
+            .await;
         return;
     };
-    let scenery = Scenery {
-        client: id,
-        ..shared.scenery.clone()
-    };
-    let greeting = Event::Scenery(Box::new(scenery)).to_text();
+    let greeting = Event::Scenery(Box::new(shared.scenery())).to_text();
     if stream.send(Message::Text(greeting.into())).await.is_ok() {
         // Those who came before it was known have been told.
         if let Some(integrators) = shared.integrators() {
@@ -43,9 +47,13 @@ async fn exchange(stream: WebSocket, shared: &Shared, id: u32, mut messages: Rec
     let (mut sink, mut source) = stream.split();
     let speak = pin!(async {
         while let Some(message) = messages.recv().await {
+            let is_frame = matches!(&message, Message::Binary(bytes) if is_frame(bytes));
             let sent = timeout(PATIENCE, sink.send(message)).await;
             if !matches!(sent, Ok(Ok(()))) {
                 break;
+            }
+            if is_frame {
+                shared.clients.sent(id);
             }
         }
     });
@@ -82,9 +90,13 @@ fn hear(shared: &Shared, id: u32, message: &Message) -> bool {
                         rotation: [a, b, c],
                     } => {
                         let pose = [x, y, z, a, b, c];
-                        shared
-                            .inbox
-                            .pose(Request::of(id, number, Place { tool, pose }));
+                        if shared.has_tool(tool) {
+                            shared
+                                .inbox
+                                .pose(Request::of(id, number, Place { tool, pose }));
+                        } else {
+                            refuse(format!("there is no tool {tool}"));
+                        }
                         true
                     }
                     order => shared.inbox.order(Request::of(id, number, order)),

@@ -8,9 +8,47 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use sinew_live::{Ended, Live, LiveError, Settings};
+use sinew_live::{Ended, Live, LiveError, PaneChoice, Settings};
+use sinew_scene::{Scene, SceneSource};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Error, HandshakeError, Message, WebSocket, client};
+
+/// A cube on its bottom in steps of 2 ms; further tables can follow.
+pub(crate) const CUBE: &str = r#"
+[run]
+duration = 1.0
+integrator = "symplectic-euler"
+dt = 0.002
+[mesh]
+cube = { cells = 3, edge = 0.1 }
+[[region]]
+density = 1060.0
+model = "linear"
+youngs_modulus = 3500.0
+poissons_ratio = 0.3
+[damping]
+mass = 20.0
+[[fixed]]
+group = "bottom"
+"#;
+
+/// Points of its surface.
+pub(crate) const POINTS: usize = 56;
+
+/// A scene on a free port, whose second pane is the one with any step.
+pub(crate) fn settings(text: &str) -> Settings {
+    Settings {
+        scene: Scene::parse(SceneSource::new("cube.toml", text)).unwrap(),
+        values: Vec::new(),
+        panes: vec![PaneChoice::default()],
+        second: PaneChoice {
+            integrator: Some("cnn-stabilised".to_owned()),
+            dt: None,
+        },
+        hand: None,
+        port: 0,
+    }
+}
 
 /// Place of the first pane in a picture, and the size of its numbers and of a tool.
 pub(crate) const PANE: usize = 32;

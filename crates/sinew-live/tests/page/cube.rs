@@ -3,25 +3,14 @@
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use sinew_live::{Live, LiveError, PaneChoice, Settings};
-use sinew_scene::{Scene, SceneSource};
+use sinew_live::{Live, LiveError, Settings};
 use tungstenite::Message;
 
-use crate::common::{self, Heard, NUMBERS, PANE, Page, applied, f64_at, time, u32_at};
+use crate::common::{
+    self, CUBE, Heard, NUMBERS, PANE, POINTS, Page, applied, f64_at, settings, time, u32_at,
+};
 
-const SCENE: &str = r#"
-title = "a cube under a ball"
-[mesh]
-cube = { cells = 3, edge = 0.1 }
-[[region]]
-density = 1060.0
-model = "linear"
-youngs_modulus = 3500.0
-poissons_ratio = 0.3
-[damping]
-mass = 20.0
-[[fixed]]
-group = "bottom"
+const BALL: &str = r#"
 [[load]]
 name = "push"
 group = "top"
@@ -31,35 +20,19 @@ name = "ball"
 shape = { sphere = { radius = 0.04 } }
 start = [0.05, 0.05, 0.145]
 hold = true
-[run]
-duration = 1.0
-integrator = "symplectic-euler"
-dt = 0.002
 "#;
-
-/// Points of the cube's surface.
-const POINTS: usize = 56;
 
 /// Places in a picture: the tool of the first pane, the second pane.
 const TOOL: usize = PANE + NUMBERS;
 const SECOND: usize = TOOL + common::TOOL + 16 * POINTS;
 
-fn settings(port: u16) -> Settings {
-    Settings {
-        scene: Scene::parse(SceneSource::new("cube.toml", SCENE)).unwrap(),
-        panes: vec![PaneChoice::default()],
-        second: PaneChoice {
-            integrator: Some("cnn-stabilised".to_owned()),
-            dt: None,
-        },
-        hand: None,
-        port,
-    }
+fn scene() -> String {
+    format!("{CUBE}{BALL}")
 }
 
 /// A page of the cube.
 fn open() -> Page {
-    Page::of(settings(0))
+    Page::of(settings(&scene()))
 }
 
 /// Steps of the first pane.
@@ -217,6 +190,143 @@ fn two_panes_follow_the_same_hand() {
 }
 
 #[test]
+fn another_shape_of_the_tool_is_another_scene_that_begins_anew() {
+    let mut page = open();
+    let mut client = page.connect();
+    client.say(r#"{"id":1,"do":"integrator","pane":0,"name":"cnn-stabilised"}"#);
+    client.say(r#"{"id":2,"do":"pose","tool":0,"position":[0.05,0.05,0.13],"rotation":[0,0,0]}"#);
+    client.picture(|picture| applied(picture) >= 2);
+    // Its centre is 45 mm above the cube.
+    for (shape, reason) in [
+        (r#"{"sphere":{"radius":0.05}}"#, "inside"),
+        (r#"{"sphere":{"radius":-1}}"#, "radius"),
+        (r#"{"pyramid":{}}"#, "pyramid"),
+    ] {
+        client.say(&format!(
+            r#"{{"id":3,"do":"shape","tool":0,"shape":{shape}}}"#
+        ));
+        let refused = client.event("refused")["reason"].to_string();
+        assert!(refused.contains(reason), "{refused}");
+    }
+    client.say(r#"{"id":4,"do":"shape","tool":9,"shape":{"plane":{}}}"#);
+    client.event("refused");
+    client.say(r#"{"id":5,"do":"shape","tool":0,"shape":{"sphere":{"radius":0.03}}}"#);
+    let part = client.event("tools")["tools"][0]["parts"][0].take();
+    assert_eq!(
+        (&part["kind"], &part["sizes"][0]),
+        (&"sphere".into(), &0.03.into())
+    );
+    let picture = client.picture(|picture| applied(picture) >= 5);
+    assert!((height(&picture) - 0.145).abs() < 1e-12);
+    let gap = f64_at(&picture, TOOL + 88);
+    assert!((gap - 0.015).abs() < 1e-3, "{gap} m");
+    let later = page.connect().event("scenery");
+    assert_eq!(later["tools"][0]["parts"][0]["sizes"][0], 0.03);
+    client.say(r#"{"id":6,"do":"pose","tool":0,"position":[0.05,0.05,0.12],"rotation":[0,0,0]}"#);
+    client.picture(|picture| f64_at(picture, TOOL + 64) > 0.0);
+    let ended = page.end();
+    assert_eq!(
+        ended.values,
+        ["tool.1.shape={ sphere = { radius = 0.03 } }"]
+    );
+    let log = ended.logs[0].clone();
+    assert!(log.to_text().contains("cnn-stabilised"));
+    let mut replay = sinew_session::Replay::new(ended.scene, log).unwrap();
+    while replay.step().unwrap().is_some() {}
+    assert!(replay.session().t() > 0.0);
+}
+
+#[test]
+fn colours_tell_the_step_that_single_elements_bear() {
+    let scene = settings(&scene()).scene;
+    let simulation = scene.build().unwrap();
+    let bounds = simulation.model().body().unwrap().model.element_bounds();
+    let expected = bounds.unwrap().omega_max / 2.0;
+    let page = open();
+    let mut client = page.connect();
+    client.say(r#"{"id":1,"do":"field","name":"step_limit"}"#);
+    let picture = client.picture(|picture| applied(picture) >= 1);
+    let colours = picture[SECOND - 4 * POINTS..].as_chunks::<4>().0;
+    assert_eq!(colours.len(), POINTS);
+    // All tetrahedra of the cube are congruent.
+    for colour in colours
+        .iter()
+        .map(|bytes| f64::from(f32::from_le_bytes(*bytes)))
+    {
+        assert!(
+            (colour / expected - 1.0).abs() < 1e-6,
+            "{colour} {expected}"
+        );
+    }
+}
+
+#[test]
+fn all_begin_anew_where_one_that_stopped_gets_another_method() {
+    let page = open();
+    let mut client = page.connect();
+    client.say(r#"{"id":1,"do":"panes","count":2}"#);
+    client.event("reset");
+    client.say(r#"{"id":2,"do":"load","load":"push","factor":2.5}"#);
+    // Twenty times its stable step.
+    client.say(r#"{"id":3,"do":"dt","pane":0,"dt":0.1}"#);
+    client.event("stopped");
+    let stopped = client.picture(|_| true);
+    // An option that does not exist changes nothing, the time neither.
+    client.say(r#"{"id":4,"do":"option","pane":0,"key":"soul","number":1}"#);
+    client.event("refused");
+    client.picture(|picture| f64_at(picture, SECOND + 8) > time(&stopped) + 0.3);
+    client.say(r#"{"id":5,"do":"integrator","pane":0,"name":"cnn-stabilised"}"#);
+    client.event("reset");
+    let settings = client.event("settings");
+    assert_eq!(settings["factors"][0], 1.0, "{settings}");
+    let begun = client.picture(|picture| applied(picture) >= 5);
+    for at in [PANE + 8, SECOND + 8] {
+        assert!(f64_at(&begun, at) < time(&stopped), "both panes begin anew");
+    }
+    client.picture(|picture| time(picture) > 0.3 && f64_at(picture, SECOND + 8) > 0.3);
+}
+
+#[test]
+fn panes_of_very_different_steps_do_not_keep_commands_waiting() {
+    let page = open();
+    let mut client = page.connect();
+    client.say(r#"{"id":1,"do":"panes","count":2}"#);
+    client.say(r#"{"id":2,"do":"dt","pane":0,"dt":0.000001}"#);
+    client.say(r#"{"id":3,"do":"dt","pane":1,"dt":1}"#);
+    client.picture(|picture| applied(picture) >= 3);
+    // A million steps are one of the other pane's.
+    let begun = Instant::now();
+    for id in 4..24 {
+        client.say(&format!(r#"{{"id":{id},"do":"field","name":"strain"}}"#));
+        client.picture(|picture| applied(picture) >= id);
+    }
+    assert!(begun.elapsed() < Duration::from_secs(10));
+}
+
+#[test]
+fn what_waits_for_a_step_is_not_said_to_be_in_a_picture() {
+    let page = open();
+    let mut client = page.connect();
+    client.say(r#"{"id":1,"do":"pause","on":true}"#);
+    client.picture(|picture| applied(picture) >= 1);
+    client.say(r#"{"id":2,"do":"load","load":"push","factor":2.5}"#);
+    while client.event("settings")["factors"][0] != 2.5 {}
+    let picture = client.picture(|_| true);
+    assert_eq!(applied(&picture), 1);
+    client.say(r#"{"id":3,"do":"step"}"#);
+    client.picture(|picture| applied(picture) >= 3);
+}
+
+#[test]
+fn a_field_that_the_body_lacks_is_refused() {
+    let page = Page::of(settings(CUBE));
+    let mut client = page.connect();
+    client.say(r#"{"id":1,"do":"field","name":"pressure"}"#);
+    let reason = client.event("refused")["reason"].to_string();
+    assert!(reason.contains("no such field"), "{reason}");
+}
+
+#[test]
 fn a_trusted_run_tells_the_error_which_is_not_known_without() {
     let page = open();
     let mut client = page.connect();
@@ -364,13 +474,10 @@ fn options_of_the_method_are_set_while_it_runs_and_outlive_a_reset() {
 
 #[test]
 fn a_step_that_follows_the_stiffness_is_not_said_to_be_stable_at_any_length() {
-    let text = SCENE
+    let text = scene()
         .replace("model = \"linear\"", "model = \"neo-hookean\"")
         .replace("dt = 0.002", "dt = \"auto\"");
-    let page = Page::of(Settings {
-        scene: Scene::parse(SceneSource::new("cube.toml", text)).unwrap(),
-        ..settings(0)
-    });
+    let page = Page::of(settings(&text));
     let mut client = page.connect();
     let pane = client.event("settings")["panes"][0].take();
     assert_eq!(pane["stability"], "cut", "{pane}");
@@ -416,7 +523,11 @@ fn a_page_that_reads_nothing_holds_nobody_up() {
 fn a_port_that_is_taken_is_one_sentence() {
     let page = open();
     let port = page.host().rsplit(':').next().unwrap().parse().unwrap();
-    let error = Live::open(settings(port)).err().unwrap();
+    let settings = Settings {
+        port,
+        ..settings(&scene())
+    };
+    let error = Live::open(settings).err().unwrap();
     assert!(matches!(error, LiveError::PortTaken { .. }));
     assert!(error.to_string().contains("--port 0"), "{error}");
 }

@@ -2,38 +2,21 @@
 
 use std::path::PathBuf;
 
-use sinew_live::{PaneChoice, Settings};
-use sinew_scene::{Scene, SceneSource};
+use sinew_live::Settings;
+use sinew_scene::Scene;
 
-use crate::common::{Connection, Heard, NUMBERS, PANE, Page, applied, f64_at, time, u32_at};
+use crate::common::{
+    CUBE, Connection, Heard, NUMBERS, PANE, POINTS, Page, applied, f64_at, settings, time, u32_at,
+};
 
-const SCENE: &str = r#"
-title = "a cube that is cut"
-[mesh]
-cube = { cells = 3, edge = 0.1 }
-[[region]]
-density = 1060.0
-model = "linear"
-youngs_modulus = 3500.0
-poissons_ratio = 0.3
-[damping]
-mass = 20.0
-[[fixed]]
-group = "bottom"
+const CUTTING: &str = r#"
 [[load]]
 name = "push"
 group = "top"
 traction = [20.0, 0.0, 0.0]
 [cutting]
 toughness = 100.0
-[run]
-duration = 1.0
-integrator = "symplectic-euler"
-dt = 0.002
 "#;
-
-/// Points of the whole cube's surface.
-const POINTS: u32 = 56;
 
 /// Along the cells' faces at a third of the cube, two thirds down.
 const CUT: &str = r#""do":"cut","from":[[0.03333333333333333,-0.05,0.12],[0.03333333333333333,0.15,0.12]],"to":[[0.03333333333333333,-0.05,0.03],[0.03333333333333333,0.15,0.03]]"#;
@@ -41,21 +24,12 @@ const CUT: &str = r#""do":"cut","from":[[0.03333333333333333,-0.05,0.12],[0.0333
 /// What it cuts (m2): two cells deep, three long.
 const AREA: f64 = 0.1 * 0.2 / 3.0;
 
-fn page(scene: Scene) -> Page {
-    Page::of(Settings {
-        scene,
-        panes: vec![PaneChoice::default()],
-        second: PaneChoice {
-            integrator: Some("cnn-stabilised".to_owned()),
-            dt: None,
-        },
-        hand: None,
-        port: 0,
-    })
+fn scene() -> String {
+    format!("{CUBE}{CUTTING}")
 }
 
 fn open(text: &str) -> Page {
-    page(Scene::parse(SceneSource::new("cube.toml", text)).unwrap())
+    Page::of(settings(text))
 }
 
 /// A surface as pages get it.
@@ -153,13 +127,13 @@ fn picture(client: &mut Connection, holds: impl Fn(&[u8]) -> bool) -> Vec<u8> {
 
 #[test]
 fn a_cut_changes_the_surfaces_of_all_panes_and_a_reset_makes_them_whole() {
-    let page = open(SCENE);
+    let page = open(&scene());
     let mut client = page.connect();
     assert_eq!(client.event("scenery")["cuts"], true);
     client.say(r#"{"id":1,"do":"panes","count":2}"#);
     let whole = picture(&mut client, |picture| panes(picture).len() == 2);
     let first = epoch(&whole, 12);
-    let identity: Vec<u32> = (0..POINTS).collect();
+    let identity: Vec<u32> = (0..POINTS as u32).collect();
     for surface in surfaces(&client.topology) {
         let Surface {
             points, triangles, ..
@@ -216,7 +190,7 @@ fn a_cut_changes_the_surfaces_of_all_panes_and_a_reset_makes_them_whole() {
 
 #[test]
 fn energy_adds_up_over_cuts() {
-    let page = open(&SCENE.replace("mass = 20.0", "mass = 0.0"));
+    let page = open(&scene().replace("mass = 20.0", "mass = 0.0"));
     let mut client = page.connect();
     client.say(&format!(r#"{{"id":1,{CUT}}}"#));
     let cut = picture(&mut client, |picture| changes(picture, PANE) == 1);
@@ -237,7 +211,7 @@ fn energy_adds_up_over_cuts() {
 
 #[test]
 fn what_is_taken_away_takes_its_energy_along() {
-    let text = SCENE.replace("mass = 20.0", "mass = 0.0");
+    let text = scene().replace("mass = 20.0", "mass = 0.0");
     let page = open(&text.replace("[cutting]", "[cutting]\npieces = \"remove\""));
     let mut client = page.connect();
     picture(&mut client, |picture| time(picture) > 0.1);
@@ -260,7 +234,7 @@ fn what_is_taken_away_takes_its_energy_along() {
 
 #[test]
 fn a_cut_that_leaves_nothing_stops_its_pane_with_a_sentence_and_a_reset_goes_on() {
-    let text = SCENE.replace("[[fixed]]\ngroup = \"bottom\"\n", "");
+    let text = scene().replace("[[fixed]]\ngroup = \"bottom\"\n", "");
     let page = open(&text.replace("[cutting]", "[cutting]\npieces = \"remove\""));
     let mut client = page.connect();
     client.say(&format!(r#"{{"id":1,{CUT}}}"#));
@@ -275,7 +249,7 @@ fn a_cut_that_leaves_nothing_stops_its_pane_with_a_sentence_and_a_reset_goes_on(
 
 #[test]
 fn a_page_that_comes_late_gets_the_newest_surfaces_before_anything_else() {
-    let page = open(SCENE);
+    let page = open(&scene());
     let mut first = page.connect();
     first.say(&format!(r#"{{"id":1,{CUT}}}"#));
     let cut = picture(&mut first, |picture| changes(picture, PANE) == 1);
@@ -294,7 +268,7 @@ fn a_page_that_comes_late_gets_the_newest_surfaces_before_anything_else() {
 
 #[test]
 fn many_strokes_in_one_drag_are_one_cut_and_credits_stay_two() {
-    let page = open(SCENE);
+    let page = open(&scene());
     let mut client = page.connect();
     let pose = |k: u32| {
         let z = 0.12 - 0.0045 * f64::from(k);
@@ -331,7 +305,7 @@ fn many_strokes_in_one_drag_are_one_cut_and_credits_stay_two() {
 
 #[test]
 fn the_trusted_run_is_cut_as_well_and_the_error_stays_known() {
-    let page = open(SCENE);
+    let page = open(&scene());
     let mut client = page.connect();
     client.say(r#"{"id":1,"do":"trusted","on":true}"#);
     client.say(&format!(r#"{{"id":2,{CUT}}}"#));
@@ -351,9 +325,12 @@ fn a_scene_cuts_by_its_own_table() {
     let strokes = "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n\
                    1,0.1,-0.05,-0.05,0.05,-0.05,0.15,0.05\n1,0.3,0.15,-0.05,0.05,0.15,0.15,0.05\n";
     std::fs::write(path("strokes.csv"), strokes).unwrap();
-    let text = SCENE.replace("[cutting]\n", "[cutting]\ntable = \"strokes.csv\"\n");
+    let text = scene().replace("[cutting]\n", "[cutting]\ntable = \"strokes.csv\"\n");
     std::fs::write(path("cube.toml"), text).unwrap();
-    let page = page(Scene::load(path("cube.toml")).unwrap());
+    let page = Page::of(Settings {
+        scene: Scene::load(path("cube.toml")).unwrap(),
+        ..settings(&scene())
+    });
     let mut client = page.connect();
     let apart = picture(&mut client, |picture| cuts(picture, PANE).1[1] == 2);
     assert!(changes(&apart, PANE) > 1, "several steps cut");
@@ -362,7 +339,7 @@ fn a_scene_cuts_by_its_own_table() {
 
 #[test]
 fn cuts_that_cannot_be_are_refused_by_name_and_the_session_goes_on() {
-    let page = open(SCENE);
+    let page = open(&scene());
     let mut client = page.connect();
     let far = CUT.replace("0.12", "1e7");
     for (order, named) in [
@@ -374,7 +351,7 @@ fn cuts_that_cannot_be_are_refused_by_name_and_the_session_goes_on() {
         assert!(reason.contains(named), "{reason}");
     }
     picture(&mut client, |picture| time(picture) > 0.05);
-    let whole = open(&SCENE.replace("[cutting]\ntoughness = 100.0\n", ""));
+    let whole = open(&scene().replace("[cutting]\ntoughness = 100.0\n", ""));
     let mut client = whole.connect();
     assert_eq!(client.event("scenery")["cuts"], false);
     client.say(&format!(r#"{{"id":1,{CUT}}}"#));

@@ -79,6 +79,9 @@ pub enum LogFault {
         /// Steps at the end.
         end: usize,
     },
+    /// A log that was cut off within its first lines.
+    #[error("the log is cut off before its first command: there is nothing to repeat")]
+    NoHead,
     /// A log that was cut off.
     #[error(
         "the log is cut off: expected `STEPS end` as its last line; `{least} end` repeats it as far as it goes"

@@ -1,11 +1,13 @@
 //! The log of a session.
 
 mod error;
+mod journal;
 mod read;
 mod text;
 mod words;
 
 pub use error::{LogError, LogFault};
+pub use journal::{Journal, JournalError};
 
 use sinew_scene::Scene;
 

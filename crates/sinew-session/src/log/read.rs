@@ -51,6 +51,8 @@ impl Log {
 /// A log as far as it is read.
 #[derive(Default)]
 struct Reading {
+    /// Whether the first line is that of a log.
+    is_log: bool,
     program: Option<String>,
     scene: Option<String>,
     inputs: Vec<InputFile>,
@@ -61,7 +63,9 @@ struct Reading {
 impl Reading {
     fn line(&mut self, number: usize, line: &str) -> Result<(), LogFault> {
         if number == 1 {
-            return first(line);
+            first(line)?;
+            self.is_log = true;
+            return Ok(());
         }
         if let Some(end) = self.end {
             return Err(LogFault::AfterEnd { end });
@@ -149,8 +153,11 @@ impl Reading {
     fn finish(self) -> Result<Log, LogFault> {
         let least = self.entries.last().map_or(0, |entry| entry.step);
         let (Some(program), Some(scene)) = (self.program, self.scene) else {
-            return Err(LogFault::Kind {
-                expected: format!("{KIND} {VERSION}"),
+            return Err(match self.is_log {
+                true => LogFault::NoHead,
+                false => LogFault::Kind {
+                    expected: format!("{KIND} {VERSION}"),
+                },
             });
         };
         let steps = self.end.ok_or(LogFault::NoEnd { least })?;

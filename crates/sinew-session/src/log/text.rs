@@ -25,6 +25,11 @@ pub(super) fn head(header: &Header) -> String {
     text
 }
 
+/// The last line.
+pub(super) fn end(log: &Log) -> String {
+    format!("{} end\n", log.steps)
+}
+
 /// Adds the line of a command.
 pub(super) fn push_entry(out: &mut String, entry: &Entry) {
     let _ = write!(out, "{} ", entry.step);
@@ -70,7 +75,7 @@ fn push_numbers<'n>(out: &mut String, numbers: impl IntoIterator<Item = &'n f64>
 }
 
 impl Log {
-    /// The log as text, from which [`Log::parse`] reads it back without loss.
+    /// The log as text, from which [`Log::parse`] reads all commands back without loss.
     ///
     /// First lines say what it belongs to; then there is a line for each command: the steps taken before it, the time (s) of the state then, and
     /// the command; the last line has the number of all steps.
@@ -80,7 +85,7 @@ impl Log {
         for entry in &self.entries {
             push_entry(&mut text, entry);
         }
-        let _ = writeln!(text, "{} end", self.steps);
+        text.push_str(&end(self));
         text
     }
 }

@@ -14,6 +14,8 @@ use sinew_mesh::{CellType, MshFileError, RefineError, TetMeshError, WriteMshErro
 use sinew_record::{CompareError, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
 use sinew_scene::{CuttingError, ReactionError, RefusedLoad, SceneError, StretchError, Warning};
+#[cfg(feature = "live")]
+use sinew_session::JournalError;
 use sinew_session::{LogError, ReplayError};
 
 /// Exit code for input that cannot be used.
@@ -50,6 +52,10 @@ pub(crate) enum Failure {
     /// A log of a session that cannot be read.
     #[error(transparent)]
     Log(#[from] LogError),
+    /// A log of a session that cannot be kept.
+    #[cfg(feature = "live")]
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     /// A session that cannot be repeated.
     #[error("{}: {source}", log.display())]
     Replay {
@@ -331,6 +337,8 @@ impl Failure {
             ) => REFUSED,
             #[cfg(feature = "implicit")]
             Self::Modes(_) => FAILED,
+            #[cfg(feature = "live")]
+            Self::Journal(_) => REFUSED,
             #[cfg(feature = "live")]
             Self::Live(error) if error.is_refusal() => REFUSED,
             #[cfg(feature = "live")]

@@ -55,27 +55,30 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         panes.truncate(1);
         panes.push(beside(id));
     }
-    let values = arguments.values.assignments();
     let recording = arguments
         .record
         .as_ref()
-        .map(|path| Recording::new(path, scene.clone(), values))
+        .map(|path| Recording::new(path, &scene))
         .transpose()?;
     let second = panes.get(1).cloned();
-    let live = Live::open(Settings {
+    let mut live = Live::open(Settings {
         scene,
+        values: arguments.values.assignments(),
         panes,
         second: second.unwrap_or_else(|| beside(SIDE_BY_SIDE[1])),
         hand,
         port: arguments.port,
     })?;
+    if let Some(recording) = &recording {
+        live.keep_logs(recording.journals()?);
+    }
     Voice::StandardOutput.say(&live.url())?;
     complain("open this address in a browser on this computer; Ctrl-C ends");
     let session = live.run(|| interruption.is_asked_for())?;
     interruption.is_followed();
     complain(&format!("the session ended at t = {:.6} s", session.t));
     match recording {
-        Some(recording) => recording.write(session.logs, &interruption),
+        Some(recording) => recording.write(session, &interruption),
         None => Ok(()),
     }
 }

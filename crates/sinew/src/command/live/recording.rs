@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use sinew_record::{Ended, Request, RunFolder};
 use sinew_scene::Scene;
 use sinew_scene::output::{Tenant, complain};
-use sinew_session::{Log, Replay};
+use sinew_session::{Journal, Log, Replay};
 
 use crate::command::Failure;
 use crate::command::interruption::Interruption;
@@ -16,64 +16,126 @@ use crate::command::run::replay::{in_folder, warnings_of};
 pub(super) struct Recording {
     /// A folder for each pane.
     folders: [PathBuf; 2],
-    scene: Scene,
-    /// Values that the command line set in the scene.
-    values: Vec<String>,
 }
 
 impl Recording {
     /// Checks that the folders may be written.
-    pub(super) fn new(path: &Path, scene: Scene, values: Vec<String>) -> Result<Self, Failure> {
+    pub(super) fn new(path: &Path, scene: &Scene) -> Result<Self, Failure> {
         let mut second = path.components().as_path().to_owned().into_os_string();
         second.push("-second");
         let folders = [path.to_owned(), PathBuf::from(second)];
         for folder in &folders {
-            if RunFolder::check(folder, &scene)? == Tenant::Earlier {
+            if RunFolder::check(folder, scene)? == Tenant::Earlier {
                 let path = folder.display();
                 complain(&format!(
                     "{path}: the results of an earlier run in it will be replaced"
                 ));
             }
         }
-        Ok(Self {
-            folders,
-            scene,
-            values,
-        })
+        Ok(Self { folders })
     }
 
-    /// Repeats the session of each pane into its folder.
-    pub(super) fn write(self, logs: Vec<Log>, interruption: &Interruption) -> Result<(), Failure> {
-        for (path, log) in self.folders.iter().zip(logs) {
-            complain(&format!("recording into {}", path.display()));
-            let failed = |source| Failure::Replay {
-                log: path.to_owned(),
-                source: Box::new(source),
-            };
-            let mut replay = Replay::new(self.scene.clone(), log).map_err(failed)?;
-            let request = Request {
-                threads: None,
-                warnings: warnings_of(&replay),
-                values: self.values.clone(),
-            };
-            match in_folder(path, &mut replay, &request, interruption.clone())? {
-                Ended::Finished => {}
-                Ended::Diverged { t, place } => complain(&format!(
-                    "the motion diverged at t = {t:.6} s: {place} is too far away"
-                )),
-                Ended::Refused { t, reason } => {
-                    complain(&format!("the motion ended at t = {t:.6} s: {reason}"));
-                }
-                Ended::Interrupted { t } => {
-                    let log = path.join("session.log");
-                    let remedy = format!(
-                        "; `sinew run SCENE --replay {} --out DIR` records the session as a whole",
-                        log.display()
-                    );
-                    return Err(Failure::Interrupted { t, remedy });
+    /// Creates the files in which the commands of the panes stand as long as the session lasts.
+    pub(super) fn journals(&self) -> Result<Vec<Journal>, Failure> {
+        let mut journals = Vec::new();
+        for folder in &self.folders {
+            if let Some(parent) = folder.parent() {
+                // What fails here fails below, too.
+                let _ = std::fs::create_dir_all(parent);
+            }
+            match Journal::create(log_beside(folder)) {
+                Ok(journal) => journals.push(journal),
+                Err(error) => {
+                    journals.iter().for_each(|journal| remove(journal.path()));
+                    return Err(error.into());
                 }
             }
         }
-        Ok(())
+        Ok(journals)
     }
+
+    /// Repeats the session of each pane into its folder, which holds its log from then on. What fails leaves the log beside its folder.
+    pub(super) fn write(
+        self,
+        session: sinew_live::Ended,
+        interruption: &Interruption,
+    ) -> Result<(), Failure> {
+        for error in &session.unkept {
+            complain(&format!("warning: {error}"));
+        }
+        let mut outcome = Ok(());
+        let mut logs = session.logs.into_iter();
+        for path in &self.folders {
+            let beside = log_beside(path);
+            // The second pane may be gone.
+            let Some(log) = logs.next() else {
+                remove(&beside);
+                continue;
+            };
+            let scene = (session.scene.clone(), session.values.clone());
+            let is_over = matches!(outcome, Err(Failure::Interrupted { .. }));
+            let recorded = (!is_over).then(|| record(path, scene, log, interruption));
+            // Of an interrupted recording the folder holds the log.
+            if let Some(Ok(()) | Err(Failure::Interrupted { .. })) = recorded {
+                remove(&beside);
+            } else {
+                complain(&format!(
+                    "the commands are in {}: `sinew run SCENE --replay` repeats them",
+                    beside.display()
+                ));
+            }
+            outcome = outcome.and(recorded.unwrap_or(Ok(())));
+        }
+        outcome
+    }
+}
+
+/// Repeats the session of a pane into its folder.
+fn record(
+    path: &Path,
+    (scene, values): (Scene, Vec<String>),
+    log: Log,
+    interruption: &Interruption,
+) -> Result<(), Failure> {
+    complain(&format!("recording into {}", path.display()));
+    let mut replay = Replay::new(scene, log).map_err(|source| Failure::Replay {
+        log: log_beside(path),
+        source: Box::new(source),
+    })?;
+    let request = Request {
+        threads: None,
+        warnings: warnings_of(&replay),
+        values,
+    };
+    match in_folder(path, &mut replay, &request, interruption.clone())? {
+        Ended::Finished => {}
+        Ended::Diverged { t, place } => complain(&format!(
+            "the motion diverged at t = {t:.6} s: {place} is too far away"
+        )),
+        Ended::Refused { t, reason } => {
+            complain(&format!("the motion ended at t = {t:.6} s: {reason}"));
+        }
+        Ended::Interrupted { t } => {
+            let log = path.join("session.log");
+            let remedy = format!(
+                "; `sinew run SCENE --replay {} --out DIR` records the session as a whole",
+                log.display()
+            );
+            return Err(Failure::Interrupted { t, remedy });
+        }
+    }
+    Ok(())
+}
+
+/// Where the log of a session stands as long as its folder does not hold it.
+fn log_beside(folder: &Path) -> PathBuf {
+    let mut path = folder.components().as_path().to_owned().into_os_string();
+    path.push(".session.log");
+    PathBuf::from(path)
+}
+
+/// Removes a file of this program's.
+fn remove(path: &Path) {
+    // One that stays costs room, and nothing else.
+    let _ = std::fs::remove_file(path);
 }

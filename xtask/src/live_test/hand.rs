@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use sinew_bench::output::say;
 
-use super::bench::{Bench, require};
+use super::bench::{Bench, complaints, require};
 use super::cdp::{Mouse, Tab};
 use super::served::Served;
 use crate::failure::Failure;
@@ -120,13 +120,33 @@ pub(super) fn press_hold_and_switch(bench: &Bench) -> Result<(), Failure> {
     let error = tab.value("window.sinew.lights()[2][1]")?;
     say(&format!("error beside a trusted run: {error}"))?;
 
-    for key in ["ArrowLeft", "PageUp", "Escape"] {
+    tab.value("document.getElementById('canvas').focus()")?;
+    let led = "window.sinew.led[0]";
+    for (key, axis) in [("ArrowLeft", 0), ("PageUp", 2), ("Escape", 2)] {
+        let before = tab.value(led)?;
         tab.key(key)?;
+        let after = tab.value(led)?;
+        let has_moved = before[axis] != after[axis];
+        require(has_moved == (key != "Escape"), || {
+            format!("{key} takes the tool from {before} to {after}")
+        })?;
     }
-    let errors = &tab.errors;
-    require(errors.is_empty(), || {
-        format!("the page complains: {}", errors.join("; "))
-    })
+
+    // A tenth of the body's size, from the panel.
+    tab.value("{ const slider = document.querySelector('#shape input'); slider.value = 100; slider.dispatchEvent(new Event('input')); slider.dispatchEvent(new Event('change')); }")?;
+    tab.wait_for(
+        "Math.abs(window.sinew.scenery.tools[0].parts[0].sizes[0] - 0.01) < 1e-6 && window.sinew.picture.panes[0].t < 2",
+        PATIENCE,
+    )?;
+    tab.value("{ const select = document.querySelector('#shape select'); select.value = 'capsule'; select.dispatchEvent(new Event('change')); }")?;
+    tab.wait_for(
+        "window.sinew.scenery.tools[0].parts[0].kind === 'capsule'",
+        PATIENCE,
+    )?;
+    drag(&mut tab, [0.0, 62.0], 20, Duration::from_millis(400))?;
+    tab.wait_for("window.sinew.picture.panes[0].contacts > 0", PATIENCE)?;
+    say("another radius and another shape of the tool, from the panel")?;
+    complaints(&tab)
 }
 
 /// The page without a scene: two panes under the same hand, reloaded once.
@@ -152,10 +172,7 @@ pub(super) fn side_by_side(bench: &Bench) -> Result<(), Failure> {
         "window.sinew?.ready && window.sinew.picture.panes.length === 2",
         PATIENCE,
     )?;
-    let errors = &tab.errors;
-    require(errors.is_empty(), || {
-        format!("the page complains: {}", errors.join("; "))
-    })?;
+    complaints(&tab)?;
     say("two methods side by side, one alone, two again, reloaded: both follow the same hand")?;
     Ok(())
 }
@@ -195,10 +212,7 @@ pub(super) fn random_input(bench: &Bench, seconds: u64) -> Result<(), Failure> {
         "{commands} commands at random in {seconds} s: {memory:.0} MB at the end, {grown:+.1} MB since 20 s"
     ))?;
     require(grown < 40.0, || format!("memory grew by {grown} MB"))?;
-    let errors = &tab.errors;
-    require(errors.is_empty(), || {
-        format!("the page complains: {}", errors.join("; "))
-    })?;
+    complaints(&tab)?;
     let ended = served.interrupt()?;
     require(ended.code == Some(0), || {
         format!("exit code {:?}: {}", ended.code, ended.said)
@@ -257,6 +271,7 @@ impl Chance {
                     "energy_density",
                     "saturated",
                     "pressure",
+                    "step_limit",
                     "soul",
                 ];
                 format!("'field', {{ name: '{}' }}", self.of(&fields))

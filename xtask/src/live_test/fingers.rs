@@ -1,0 +1,79 @@
+//! Fingers on the page.
+
+use std::time::Duration;
+
+use sinew_bench::output::say;
+
+use super::bench::{Bench, complaints};
+use super::blade::{SLAB, on_page};
+use super::cdp::Tab;
+use super::hand::{PATIENCE, grip, open};
+use super::served::Served;
+use crate::failure::Failure;
+
+/// Pull of the hand's loads (N).
+const PULLS: &str =
+    "window.sinew.scenery.hand.loads.map((load) => window.sinew.settings.factors[load])";
+
+/// Moves the first of some fingers by a way (CSS pixels) in equal parts; all stay down.
+fn slide(tab: &mut Tab, from: [f64; 2], by: [f64; 2]) -> Result<[f64; 2], Failure> {
+    let mut at = from;
+    for number in 1..=20 {
+        let share = f64::from(number) / 20.0;
+        at = [from[0] + share * by[0], from[1] + share * by[1]];
+        tab.touch("touchMove", &[at])?;
+        std::thread::sleep(Duration::from_millis(16));
+    }
+    Ok(at)
+}
+
+/// A finger presses, pulls and cuts; a second one turns the view, and ends a pull.
+pub(super) fn press_pull_and_cut(bench: &Bench) -> Result<(), Failure> {
+    let scene = bench.scene(6, "symplectic-euler", 0.001)?;
+    let served = Served::start(&bench.sinew, &[scene])?;
+    let mut tab = open(bench, &served)?;
+    tab.has_fingers()?;
+    let from = grip(&mut tab)?;
+    tab.touch("touchStart", &[from])?;
+    slide(&mut tab, from, [0.0, 62.0])?;
+    tab.wait_for("window.sinew.picture.panes[0].contacts > 0", PATIENCE)?;
+    tab.touch("touchEnd", &[])?;
+    complaints(&tab)?;
+
+    let served = Served::start(&bench.sinew, &[])?;
+    let mut tab = open(bench, &served)?;
+    tab.has_fingers()?;
+    tab.wait_for("window.sinew.picture.panes.length === 2", PATIENCE)?;
+    let from = grip(&mut tab)?;
+    tab.touch("touchStart", &[from])?;
+    let at = slide(&mut tab, from, [60.0, -40.0])?;
+    tab.wait_for(&format!("{PULLS}.some((pull) => pull !== 0)"), PATIENCE)?;
+    let other = [at[0] + 80.0, at[1] + 60.0];
+    tab.touch("touchStart", &[at, other])?;
+    for number in 1..=10 {
+        let wider = [other[0] + 4.0 * f64::from(number), other[1]];
+        tab.touch("touchMove", &[at, wider])?;
+    }
+    tab.touch("touchEnd", &[at])?;
+    tab.touch("touchEnd", &[])?;
+    tab.wait_for(&format!("{PULLS}.every((pull) => pull === 0)"), PATIENCE)?;
+    complaints(&tab)?;
+
+    let scene = bench.folder.path().join("slab-touched.toml");
+    std::fs::write(&scene, SLAB).map_err(Failure::chore)?;
+    let served = Served::start(&bench.sinew, &[scene])?;
+    let mut tab = open(bench, &served)?;
+    tab.has_fingers()?;
+    tab.key("c")?;
+    let [from, to] = [
+        on_page(&mut tab, [0.03, -0.01, 0.02])?,
+        on_page(&mut tab, [0.03, 0.07, 0.02])?,
+    ];
+    tab.touch("touchStart", &[from])?;
+    slide(&mut tab, from, [to[0] - from[0], to[1] - from[1]])?;
+    tab.touch("touchEnd", &[])?;
+    tab.wait_for("window.sinew.picture.panes[0].cutArea > 1e-4", PATIENCE)?;
+    complaints(&tab)?;
+    say("fingers: one presses, pulls and cuts, a second one ends the pull and turns the view")?;
+    Ok(())
+}
