@@ -2,6 +2,7 @@
 
 use sinew_core::{InputError, OptionError, StepError};
 use sinew_scene::{CuttingError, DrivenLoadError, RefusedLoad, SceneError};
+use sinew_tools::ToolsError;
 
 use crate::input_file::InputFileError;
 
@@ -27,6 +28,9 @@ pub enum SessionError {
     /// A body that cannot be cut.
     #[error(transparent)]
     Cutting(#[from] CuttingError),
+    /// Tools that do not fit the surface.
+    #[error(transparent)]
+    Tools(#[from] ToolsError),
     /// A file of the scene that could not be read for its hash.
     #[error(transparent)]
     File(#[from] InputFileError),

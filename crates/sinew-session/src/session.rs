@@ -22,7 +22,8 @@ const STRONGEST: f64 = 1e6;
 
 /// A scene that is driven while it runs: [`Command`]s between its steps, and a [`Log`] of them that repeats it bit for bit.
 ///
-/// Without commands it takes the steps that `sinew run` takes, with the same bits.
+/// Without commands it takes the steps that `sinew run` takes, with the same bits, unless a tool is finer than the surface somewhere off its path: it may be
+/// led there, and meets triangles from the beginning.
 ///
 /// ```
 /// use sinew_scene::{Scene, SceneSource};
@@ -153,7 +154,7 @@ impl Session {
         simulation.check_step_within_duration()?;
         simulation.end_at_duration();
         let mut inputs = Inputs::new();
-        let tools = simulation.steer_tools(&mut inputs).into_iter();
+        let tools = simulation.steer_tools(&mut inputs)?.into_iter();
         let tools = tools.map(|steering| Hand {
             steering,
             target: None,

@@ -74,6 +74,23 @@ fn a_tool_goes_where_it_is_told_and_stays() {
 }
 
 #[test]
+fn a_tip_that_is_led_between_nodes_far_from_its_path_does_not_pass_through() {
+    let text = CUBE
+        .replace("radius = 0.012", "radius = 0.002")
+        .replace("velocity = [0.0, 0.0, -0.05]", "hold = true")
+        .replace("start = [0.04, 0.04, 0.08]", "start = [0.034, 0.03, 0.3]");
+    let mut session = session(&text);
+    for depth in 0..10 {
+        let z = 0.064 - 1e-3 * f64::from(depth);
+        session.command(pose("ball", [0.034, 0.03, z])).unwrap();
+        steps(&mut session, 1);
+    }
+    let tools = session.simulation().model().tools().unwrap();
+    let report = tools.report(session.state(), 0);
+    assert!(report.contacts > 0 && report.force[2] > 0.0, "{report:?}");
+}
+
+#[test]
 fn sessions_are_sent_to_other_threads() {
     fn is_send<T: Send>() {}
     is_send::<Session>();

@@ -14,7 +14,7 @@ use super::cut_plan::CutPlan;
 use super::model::{BodyModel, SceneModel};
 use super::probe::Probe;
 use super::{Simulation, tool};
-use crate::scene::{Blade, Body, Cutting, LoosePieces, Subject};
+use crate::scene::{Blade, Cutting, LoosePieces, Subject};
 
 /// What was cut since a motion began.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -395,7 +395,7 @@ impl Cutter {
         };
         if let (Subject::Body(scene), Some(tools)) = (before.scene.subject(), before.model.tools())
         {
-            body = with_tools(body, scene, tools, before.settings().duration)?;
+            body = tool::touching_anew(body, scene, tools, before.settings().duration)?;
         }
         let probes = self.probes.iter();
         Ok(Simulation {
@@ -434,26 +434,6 @@ fn edge(tools: &Tools, blade: usize, t: f64, inputs: &Inputs) -> Option<[[f64; 3
     };
     let pose = tool.motion.at(t, inputs).then(&part.pose);
     Some([-0.5, 0.5].map(|share| pose.to_world([0.0, 0.0, share * length])))
-}
-
-/// Lets the tools of a body that was cut touch what is left of it.
-fn with_tools(
-    built: BodyModel,
-    body: &Body,
-    tools: &Tools,
-    duration: f64,
-) -> Result<BodyModel, ToolsError> {
-    let nodes_of: Vec<Vec<u32>> = body
-        .tools
-        .iter()
-        .enumerate()
-        // A group of which nothing is left is empty.
-        .map(|(index, _)| {
-            tool::touchable(body, index, &built).map_or_else(|_| Vec::new(), |nodes| nodes.0)
-        })
-        .collect();
-    let tools = tool::on_nodes(tools.tools().to_vec(), &nodes_of, &built, duration)?;
-    Ok(built.touched_by(Arc::new(tools)))
 }
 
 /// What tools kept before a cut, and where the cells were then.

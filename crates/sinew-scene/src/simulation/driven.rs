@@ -1,15 +1,15 @@
 //! Scenes that are driven from outside while they run.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 use sinew_core::{
     Channel, Inputs, LinearModel, LinearSystem, Load, OperatorError, Ramp, RampError,
 };
 use sinew_fem::{FemError, Item};
-use sinew_tools::Steering;
+use sinew_tools::{Steering, ToolsError};
 
-use super::Simulation;
 use super::model::{BodyModel, SceneModel};
+use super::{Simulation, tool};
 use crate::scene::Subject;
 use crate::scene::keys::GRAVITY;
 
@@ -32,22 +32,29 @@ pub enum DrivenLoadError {
 const FORCE: &str = "force";
 
 impl Simulation {
-    /// Lets inputs steer its tools, each of which follows the scene until then; their channels, in the order of the tools.
-    pub fn steer_tools(&mut self, inputs: &mut Inputs) -> Vec<Steering> {
-        let SceneModel::Body(body) = &mut self.model else {
-            return Vec::new();
+    /// Lets inputs steer its tools, each of which follows the scene until then; their channels, in the order of the tools. As they may be led anywhere,
+    /// each meets the triangles of the surface where any of these is coarser than the tool.
+    ///
+    /// # Errors
+    /// [`ToolsError`] for tools that do not fit the surface.
+    pub fn steer_tools(&mut self, inputs: &mut Inputs) -> Result<Vec<Steering>, ToolsError> {
+        let duration = self.settings().duration;
+        let (SceneModel::Body(body), Subject::Body(of_scene)) =
+            (&mut self.model, self.scene.subject())
+        else {
+            return Ok(Vec::new());
         };
         let Some(tools) = &body.tools else {
-            return Vec::new();
+            return Ok(Vec::new());
         };
         let steering: Vec<Steering> = tools
             .tools()
             .iter()
             .map(|_| Steering::new(inputs))
             .collect();
-        let steered = Arc::new(tools.steered(&steering));
-        **body = (**body).clone().touched_by(steered);
-        steering
+        let steered = tools.steered(&steering);
+        **body = tool::touching_anew((**body).clone(), of_scene, &steered, duration)?;
+        Ok(steering)
     }
 
     /// The names by which its loads can be driven: those of the scene, `load 2` for the second where it has none, `gravity` where there is one; `force` for an

@@ -112,6 +112,26 @@ pub(super) fn on_nodes(
     Tools::with_triangles(tools, cells, triangles)
 }
 
+/// Lets tools that touched a body touch it as it is, or as they are led, now.
+pub(super) fn touching_anew(
+    built: BodyModel,
+    body: &Body,
+    tools: &Tools,
+    duration: f64,
+) -> Result<BodyModel, ToolsError> {
+    let nodes_of: Vec<Vec<u32>> = body
+        .tools
+        .iter()
+        .enumerate()
+        // A group of which a cut left nothing is empty.
+        .map(|(index, _)| {
+            touchable(body, index, &built).map_or_else(|_| Vec::new(), |nodes| nodes.0)
+        })
+        .collect();
+    let tools = on_nodes(tools.tools().to_vec(), &nodes_of, &built, duration)?;
+    Ok(built.touched_by(Arc::new(tools)))
+}
+
 /// The nodes that a tool may touch: those that move freely in at least one direction, and are not moved in another.
 fn nodes(
     body: &Body,
