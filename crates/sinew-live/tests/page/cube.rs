@@ -219,9 +219,7 @@ fn another_shape_of_the_tool_is_another_scene_that_begins_anew() {
     let picture = client.picture(|picture| applied(picture) >= 5);
     assert!((height(&picture) - 0.145).abs() < 1e-12);
     let gap = f64_at(&picture, TOOL + 88);
-    // The nodes nearest to it stand at the corners of the middle cell.
-    let away = (0.045f64.powi(2) + 2.0 * (0.1 / 6.0f64).powi(2)).sqrt();
-    assert!((gap - (away - 0.03)).abs() < 1e-4, "{gap} m");
+    assert!((gap - 0.015).abs() < 1e-4, "{gap} m");
     let later = page.connect().event("scenery");
     assert_eq!(later["tools"][0]["parts"][0]["sizes"][0], 0.03);
     client.say(r#"{"id":6,"do":"pose","tool":0,"position":[0.05,0.05,0.12],"rotation":[0,0,0]}"#);
