@@ -58,7 +58,7 @@ enum Chore {
     Compare,
     /// Compare stresses and tangents of all laws with energies in 50 digits; pip installs mpmath into target/.
     Laws,
-    /// Try the live page in Chromium without a window: a hand, strangers, speed; skipped where there is no Chromium.
+    /// Try the live page in Chromium without a window: a hand, fingers, a blade, strangers, speed; skipped where there is no Chromium.
     LiveTest(live_test::Arguments),
     /// Bring the README's table and pictures up to the last bench and the last hard bench.
     Docs,

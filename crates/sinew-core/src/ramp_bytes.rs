@@ -3,14 +3,22 @@
 use crate::bytes::{BytesError, Reader, Writer};
 use crate::ramp::Ramp;
 
-/// Writes a ramp that follows no input and is the rate or a multiple of no other.
+/// The kind of a rate, before the ramp whose rate it is.
+const RATE: u8 = 6;
+
+/// Writes a ramp, which follows no input.
 pub(crate) fn write(ramp: &Ramp, out: &mut Writer) {
+    if let Ramp::Rate(of) = ramp {
+        out.flags([RATE, 0, 0, 0]);
+        return write(of, out);
+    }
     let (kind, numbers, course): (u8, &[f64], [&[f64]; 2]) = match ramp {
         Ramp::Step => (0, &[], [&[], &[]]),
         Ramp::Sin2 { rise } => (1, &[*rise], [&[], &[]]),
         Ramp::Pulse { from, to } => (2, &[*from, *to], [&[], &[]]),
         Ramp::Table { times, values } => (3, &[], [times, values]),
         Ramp::Hold { times, values } => (4, &[], [times, values]),
+        // `Ramp::check` lets no other one be scaled.
         _ => (5, &[], [&[], &[]]),
     };
     out.flags([kind, 0, 0, 0]);
@@ -26,10 +34,25 @@ pub(crate) fn write(ramp: &Ramp, out: &mut Writer) {
 
 /// Reads what [`write`] wrote.
 pub(crate) fn read(rest: &mut Reader<'_>) -> Result<Ramp, BytesError> {
-    let kind = match rest.flags()? {
-        [kind, 0, 0, 0] => kind,
-        _ => return Err(rest.impossible("ramp")),
-    };
+    Ok(match kind(rest)? {
+        // Of a rate there is none.
+        RATE => {
+            let of = kind(rest)?;
+            Ramp::Rate(Box::new(plain(of, rest)?))
+        }
+        of => plain(of, rest)?,
+    })
+}
+
+fn kind(rest: &mut Reader<'_>) -> Result<u8, BytesError> {
+    match rest.flags()? {
+        [kind, 0, 0, 0] => Ok(kind),
+        _ => Err(rest.impossible("ramp")),
+    }
+}
+
+/// Reads a ramp of a kind that is no rate.
+fn plain(kind: u8, rest: &mut Reader<'_>) -> Result<Ramp, BytesError> {
     let (mut times, mut values) = (Vec::new(), Vec::new());
     if let 3 | 4 = kind {
         for _ in 0..rest.count_of(16)? {

@@ -67,13 +67,19 @@ impl CuttableBody {
     /// Cuts faces, each given by a tetrahedron and the vertex (0 to 3) opposite. Faces of the surface stay what they are.
     ///
     /// # Errors
-    /// [`CutError::Positions`] unless there is a position for each node; nothing is changed then.
+    /// [`CutError::Positions`] unless there is a position for each node, and [`CutError::NoFace`] for a face that does not exist; nothing is changed then.
     pub fn cut_faces(
         &mut self,
         faces: impl IntoIterator<Item = (u32, usize)>,
         positions: &mut Vec<[f64; 3]>,
     ) -> Result<&Stroke, CutError> {
         self.require_positions(positions)?;
+        let faces: Vec<(u32, usize)> = faces.into_iter().collect();
+        let tets = self.tets().len();
+        let is_none = |(tet, vertex): &&(u32, usize)| *tet as usize >= tets || *vertex > 3;
+        if let Some(&(tet, vertex)) = faces.iter().find(is_none) {
+            return Err(CutError::NoFace { tet, vertex, tets });
+        }
         self.stroke.clear();
         for (tet, vertex) in faces {
             self.cut_face(tet, vertex);

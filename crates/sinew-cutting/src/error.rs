@@ -16,6 +16,18 @@ pub enum CutError {
         /// The tetrahedron.
         tet: usize,
     },
+    /// A face that no tetrahedron has.
+    #[error(
+        "face {vertex} of tetrahedron {tet} (0-based): there are {tets} tetrahedra, with faces 0 to 3"
+    )]
+    NoFace {
+        /// The tetrahedron.
+        tet: u32,
+        /// The vertex opposite.
+        vertex: usize,
+        /// Number of tetrahedra.
+        tets: usize,
+    },
     /// More or fewer positions than nodes.
     #[error("{found} positions for {expected} nodes")]
     Positions {

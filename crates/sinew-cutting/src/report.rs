@@ -9,7 +9,7 @@ pub struct Stroke {
     pub faces: Vec<(u32, u8)>,
     /// Area of these faces at rest (m^2).
     pub area: f64,
-    /// What moved nodes added to the mass (kg): rounding, but for nodes of a curved surface.
+    /// What moved nodes added to the mass (kg): rounding, but for nodes of a curved surface and where density varies within a region.
     pub mass_gained: f64,
     /// Nodes that were moved at rest onto the sheet, in this order.
     pub moved: Vec<MovedNode>,

@@ -61,7 +61,7 @@ pub struct CutReport {
     pub new_nodes: usize,
     /// Nodes that were moved at rest.
     pub moved_nodes: usize,
-    /// Mass that moved nodes added (kg): rounding, but for nodes of a curved surface.
+    /// Mass that moved nodes added (kg): rounding, but for nodes of a curved surface and where density varies within a region.
     pub mass_gained: f64,
     /// Tetrahedra that were removed.
     pub removed_tets: usize,
@@ -128,7 +128,7 @@ impl CutReport {
 /// A model whose body is cut while it moves.
 ///
 /// A cut carries the state over: displacement and velocity of a node are those of its copies. So mass, momentum and, for tetrahedra that average
-/// nothing, energy stay what they are. Frequencies and K's blocks are bounded by single tetrahedra where these bounds hold, so that stable
+/// nothing, energy stay what they are where no node is moved. Frequencies and K's blocks are bounded by single tetrahedra where these bounds hold, so that stable
 /// steps are the same before and after.
 ///
 /// Linear bodies of plain tetrahedra whose supports rest follow a split in their place, at the cost of the rows that it touches: with the bits of a
@@ -216,6 +216,10 @@ impl CutModel {
             displacements: Vec::with_capacity(nodes),
             positions: Vec::with_capacity(nodes),
         };
+        // What no tetrahedron has leaves groups with the first cut, and splits are followed by the places of the others.
+        if cut_model.mesh.mesh.groups != cut_model.model.mesh().groups {
+            cut_model.model = cut_model.model_on(&cut_model.mesh)?;
+        }
         cut_model.follow_from_here();
         Ok(cut_model)
     }
@@ -262,7 +266,7 @@ impl CutModel {
     /// Cuts by a sheet in the configuration of the state, which is carried over. The model has another revision only where something changed.
     ///
     /// # Errors
-    /// [`CutModelError`]; the body is to be given up then.
+    /// [`CutModelError`]; the body may be half changed then, and is to be discarded.
     pub fn stroke(
         &mut self,
         sheet: &Sheet,
@@ -363,7 +367,7 @@ impl CutModel {
             }
         }
         let frozen: Vec<u32> = self.frozen.keys().copied().collect();
-        // A node that were moved would have another displacement.
+        // A frozen node is not moved onto a sheet: its displacement is fixed.
         self.body.keep(&frozen);
         self.go_on_anew(self.body.nodes(), &[], &[], report, state, inputs)
     }

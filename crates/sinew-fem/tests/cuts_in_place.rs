@@ -80,22 +80,27 @@ fn some_state(model: &Model) -> State {
     state
 }
 
-/// Cuts in place, and makes the model anew beside it.
+/// Cuts in place, and makes the model anew beside it. What shares the model, if anything does, goes on with what it had.
 fn compare(
     cut: &mut CutModel,
-    uncut: &TetMesh,
+    (uncut, is_shared): (&TetMesh, bool),
     state: &mut State,
     act: impl FnOnce(&mut CutModel, &mut State),
 ) {
     let (before, nodes) = (cut.mesh().clone(), cut.body().nodes());
-    // What shares the model goes on with what it had.
-    let shared = cut.model().clone();
-    let matrix = shared.operators().stiffness().as_ref().clone();
     let mut state_before = state.clone();
     let epoch = cut.epoch();
+    let of_before = match is_shared {
+        true => cut.model().clone(),
+        false => {
+            let problem = problem().after_cuts(uncut, &before).unwrap();
+            Model::build(&before.mesh, &problem).unwrap()
+        }
+    };
+    let matrix = of_before.operators().stiffness().as_ref().clone();
     act(cut, state);
-    assert_eq!(*shared.operators().stiffness().as_ref(), matrix);
-    assert_eq!(shared.mesh(), &before.mesh);
+    assert_eq!(*of_before.operators().stiffness().as_ref(), matrix);
+    assert_eq!(of_before.mesh(), &before.mesh);
     if cut.epoch() == epoch {
         return;
     }
@@ -117,7 +122,7 @@ fn compare(
         after: &mesh.nodes,
     };
     state_before.contact = vec![1.0];
-    let expected = anew.state_after_cut(&shared, &state_before, Inputs::none(), carried);
+    let expected = anew.state_after_cut(&of_before, &state_before, Inputs::none(), carried);
     assert_eq!(*state, expected.unwrap());
 }
 
@@ -182,10 +187,12 @@ fn cuttable(cells: usize, split: Split, snap: f64) -> (Arc<TetMesh>, CutModel, S
 
 #[test]
 fn strokes_give_the_bits_of_models_that_are_made_anew() {
-    for (split, snap) in [
-        (Split::Kuhn, 0.0),
-        (Split::Mirrored, 0.25),
-        (Split::Kuhn, 0.4),
+    for (split, snap, is_shared) in [
+        (Split::Kuhn, 0.0, false),
+        (Split::Kuhn, 0.0, true),
+        (Split::Mirrored, 0.25, false),
+        (Split::Kuhn, 0.4, false),
+        (Split::Kuhn, 0.4, true),
     ] {
         let (mesh, mut cut, mut state) = cuttable(5, split, snap);
         let (mut moved, mut copied) = (0, 0);
@@ -195,7 +202,7 @@ fn strokes_give_the_bits_of_models_that_are_made_anew() {
                 [[0.041, -0.01, depth], [0.044, 0.11, depth - 0.01]]
             };
             let sheet = Sheet::swept(blade(n), blade(n + 1)).unwrap();
-            compare(&mut cut, &mesh, &mut state, |cut, state| {
+            compare(&mut cut, (&mesh, is_shared), &mut state, |cut, state| {
                 let report = cut.stroke(&sheet, state, Inputs::none()).unwrap();
                 moved += report.moved_nodes;
                 copied += report.new_nodes;
@@ -205,23 +212,32 @@ fn strokes_give_the_bits_of_models_that_are_made_anew() {
             copied > 15 && (moved > 2) == (snap > 0.0),
             "{copied} {moved}"
         );
+        // Shared rows are copied by each stroke, and others have room for most of them.
+        assert_eq!(cut.layouts() > 2, is_shared, "{}", cut.layouts());
     }
 }
 
 #[test]
 fn so_does_cutting_every_face_which_uses_up_all_room() {
+    every_face_is_cut(true);
+    // Those that nothing shares are laid out anew when their room is used up.
+    assert!(every_face_is_cut(false) > 0);
+}
+
+/// Cuts every face, and returns how often rows were laid out anew.
+fn every_face_is_cut(is_shared: bool) -> u64 {
     let (mesh, mut cut, mut state) = cuttable(2, Split::Kuhn, 0.0);
     let tets = mesh.tets.len() as u32;
     for first in 0..5 {
         let faces = (first..tets)
             .step_by(5)
             .flat_map(|tet| (0..4).map(move |face| (tet, face)));
-        compare(&mut cut, &mesh, &mut state, |cut, state| {
+        compare(&mut cut, (&mesh, is_shared), &mut state, |cut, state| {
             cut.cut_faces(faces, state, Inputs::none()).unwrap();
         });
     }
     assert_eq!(cut.mesh().nodes.len(), 4 * mesh.tets.len());
-    assert!(cut.layouts() > 0);
+    cut.layouts()
 }
 
 #[test]
@@ -276,7 +292,7 @@ fn a_model_that_was_restored_follows_strokes_as_the_one_that_was_saved() {
     let mut theirs = state.clone();
     let lower = sheet(0.06, 0.01);
     assert!(!cut.stroke(&lower, &mut state, none).unwrap().is_empty());
-    compare(&mut restored, &mesh, &mut theirs, |cut, state| {
+    compare(&mut restored, (&mesh, false), &mut theirs, |cut, state| {
         cut.stroke(&lower, state, none).unwrap();
     });
     is_model(restored.model(), cut.model());
@@ -313,12 +329,13 @@ proptest! {
         strokes in prop::collection::vec([[point(), point()], [point(), point()]], 12),
         snap in prop_oneof![Just(0.0), Just(0.25), 0.0..0.6_f64],
         is_kuhn: bool,
+        is_shared: bool,
     ) {
         let split = if is_kuhn { Split::Kuhn } else { Split::Mirrored };
         let (mesh, mut cut, mut state) = cuttable(3, split, snap);
         for [from, to] in strokes {
             let Some(sheet) = Sheet::swept(from, to) else { continue };
-            compare(&mut cut, &mesh, &mut state, |cut, state| {
+            compare(&mut cut, (&mesh, is_shared), &mut state, |cut, state| {
                 cut.stroke(&sheet, state, Inputs::none()).unwrap();
             });
         }

@@ -96,7 +96,7 @@ impl Live {
                 _ => LiveError::Listen { port, source },
             })?;
         let address = listener.local_addr().map_err(LiveError::Serve)?;
-        let session = Session::new(scene.clone())?;
+        let session = Session::new(scene.clone())?.with_values(&values);
         let simulation = Arc::clone(session.simulation());
         let body = simulation.model().body().ok_or(LiveError::NoBody)?;
         let surface = Surface::of(&body.mesh);

@@ -129,13 +129,19 @@ impl Replay {
         Ok(replay)
     }
 
-    /// A sentence where another version of the program wrote the log: bits may differ.
+    /// Sentences where another version of the program wrote the log, so that bits may differ, and where its end is missing.
     #[must_use]
-    pub fn warning(&self) -> Option<String> {
+    pub fn warnings(&self) -> Vec<String> {
         let (theirs, own) = (&self.log.header().program, env!("CARGO_PKG_VERSION"));
-        (theirs != own).then(|| {
-            format!("the log was written by sinew {theirs}, and this is {own}: the motion may differ by rounding, or take another course")
-        })
+        let mut warnings = Vec::new();
+        if theirs != own {
+            warnings.push(format!("the log was written by sinew {theirs}, and this is {own}: the motion may differ by rounding, or take another course"));
+        }
+        if self.log.is_cut_off() {
+            let steps = self.log.steps();
+            warnings.push(format!("the log has no end, as if its session had been killed: it is repeated as far as its last command, after step {steps}"));
+        }
+        warnings
     }
 
     /// Takes the next step, and gives the commands that came after it; `None` at the end.
@@ -296,7 +302,12 @@ impl Header {
     fn check(&self, scene: &Self) -> Result<(), ReplayError> {
         let other = |what: String| Err(ReplayError::OtherScene { what });
         if self.scene != scene.scene {
-            return other("its text differs".to_owned());
+            let values = self.values.iter().map(|value| format!(" --set '{value}'"));
+            let values: String = values.collect();
+            return other(match values.is_empty() {
+                true => "its text differs".to_owned(),
+                false => format!("its text differs, and the session ran with{values}"),
+            });
         }
         if self.inputs.len() != scene.inputs.len() {
             return other("it reads other files".to_owned());

@@ -201,6 +201,13 @@ impl Session {
         Ok(session)
     }
 
+    /// The same session, whose log says which values, as `KEY=VALUE`, were set in the scene's file to get the scene.
+    #[must_use]
+    pub fn with_values(mut self, values: &[String]) -> Self {
+        self.log.note_values(values.to_vec());
+        self
+    }
+
     /// The scene as it is driven: mesh, tools, loads, title. Another one from the first factor of a load on, with the same mesh and tools, and after each cut.
     #[must_use]
     pub fn simulation(&self) -> &Arc<Simulation> {

@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 
 use pressed::{Block, E, Pressed, through, tool};
 use proptest::prelude::*;
-use sinew_core::{Contact, Inputs, OptionValue, Options, State, System, vectors};
+use sinew_core::{Batch, Contact, Inputs, OptionValue, Options, State, StepError, System, vectors};
 use sinew_fem::Element;
 use sinew_fem::hyperelastic::Hyperelastic;
 use sinew_tools::{Convex, Motion, Pose};
@@ -77,6 +77,22 @@ fn a_plate_on_a_bar_presses_with_e_a_d_over_l() {
     let [x, y, z] = pressed.force(&state);
     assert!((z / expected - 1.0).abs() < 1e-7, "{z} {expected}");
     assert!(x.abs().max(y.abs()) < 1e-7 * expected);
+}
+
+/// No bound of the potential leads back from where a tool has to be.
+#[test]
+fn a_plate_that_pushes_tissue_inside_out_within_a_step_is_refused_by_the_law() {
+    let mut block = Block::of([0.06; 3], [3; 3]);
+    block.law = Some("neo-hookean");
+    let start = [0.03, 0.03, 0.061];
+    let down = [(0.0, start), (0.002, [0.03, 0.03, 0.03])];
+    let pressed = block.with(vec![tool(Convex::Plane, through(&down, [PI, 0.0, 0.0]))]);
+    let mut state = pressed.at_rest();
+    let (id, options) = energy_sweeps(8.0);
+    let mut integrator = sinew_integrators::build(id, &options).unwrap();
+    let mut batch = Batch::new(&pressed.model, Inputs::none(), 0.002, 1);
+    let refused = batch.take(&mut *integrator, &mut state).unwrap_err();
+    assert!(matches!(refused, StepError::Refused { .. }), "{refused}");
 }
 
 /// What other methods find in short steps, friction included: sweeps end with forces that fit them.

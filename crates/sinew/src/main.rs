@@ -34,7 +34,7 @@ enum Command {
     /// Find natural frequencies, mode shapes and the modes that the loads of a scene excite.
     #[cfg(feature = "implicit")]
     Modes(command::modes::Arguments),
-    /// Press on a scene by hand: a page in a browser of this computer, in real time.
+    /// Press on a scene and cut it by hand: a page in a browser of this computer, in real time.
     #[cfg(feature = "live")]
     Live(command::live::Arguments),
     /// Write a first scene for a mesh, or one of the ready scenes.

@@ -138,9 +138,9 @@ pub(super) fn press_hold_and_switch(bench: &Bench) -> Result<(), Failure> {
         "Math.abs(window.sinew.scenery.tools[0].parts[0].sizes[0] - 0.01) < 1e-6 && window.sinew.picture.panes[0].t < 2",
         PATIENCE,
     )?;
-    tab.value("{ const select = document.querySelector('#shape select'); select.value = 'capsule'; select.dispatchEvent(new Event('change')); }")?;
+    tab.value("{ const select = document.querySelector('#shape select'); select.value = 'box'; select.dispatchEvent(new Event('change')); }")?;
     tab.wait_for(
-        "window.sinew.scenery.tools[0].parts[0].kind === 'capsule'",
+        "window.sinew.scenery.tools[0].parts[0].kind === 'box'",
         PATIENCE,
     )?;
     drag(&mut tab, [0.0, 62.0], 20, Duration::from_millis(400))?;

@@ -30,7 +30,7 @@ pub struct NodesCarried<'a> {
 pub enum CutStateError {
     /// Memory of regions whose numbers do not stand in the order of tetrahedra alone.
     #[error(
-        "tissue with memory (`prony`) can be cut where its element is p1 and no tetrahedron is removed: what it remembers has another order otherwise"
+        "tissue with memory (`prony`) can be cut where its element is p1, and none of its tetrahedra can be removed: what it remembers has another order otherwise"
     )]
     Memory,
     /// A state of another model.
@@ -92,7 +92,8 @@ impl Model {
             self.carried(&field, nodes)
         };
         let internal = self.internal_variables();
-        let keeps_order = self.is_without_averages() && nodes.after.len() >= nodes.before.len();
+        // Memory stands in the order of tetrahedra, and these only go: as many numbers are the same ones.
+        let keeps_order = self.is_without_averages();
         if internal != before.internal_variables() || internal > 0 && !keeps_order {
             return Err(CutStateError::Memory);
         }

@@ -47,7 +47,7 @@ export class PaneCard {
       return { item: element("li", { "data-colour": 0 }, state, element("b", {}, name), why), why, state };
     });
     this.options = new OptionList(label, (order) => actions.option(number, order));
-    this.measure = element("button", { type: "button", class: "measure", "aria-pressed": "false", onclick: () => actions.trusted() }, "Measure the error");
+    this.measure = element("button", { type: "button", class: "measure", title: "Beside a trusted run from the beginning", "aria-pressed": "false", onclick: () => actions.trusted() }, "Measure the error");
     this.root = element(
       "section", { class: "card", "aria-label": `The ${label} pane` },
       element("div", { class: "pane-head" }, element("span", { class: "swatch" }), this.select),

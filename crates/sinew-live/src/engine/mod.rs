@@ -150,7 +150,7 @@ impl Engine {
         } = beginning;
         let mut panes = vec![Pane::new(session)?];
         while panes.len() < choices.len() {
-            panes.push(Pane::of(&scene.scene)?);
+            panes.push(Pane::of(&scene)?);
         }
         for (pane, choice) in panes.iter_mut().zip(&choices) {
             choose(pane, choice)?;
@@ -562,8 +562,7 @@ impl Engine {
                     return Err(format!("{count} panes: expected 1 or {MOST_PANES}"));
                 }
                 if count > self.panes.len() {
-                    let mut second =
-                        Pane::of(&self.scene.scene).map_err(|error| error.to_string())?;
+                    let mut second = Pane::of(&self.scene).map_err(|error| error.to_string())?;
                     choose(&mut second, &self.second).map_err(words)?;
                     self.panes.push(second);
                 }
@@ -610,7 +609,7 @@ impl Engine {
     }
 
     fn begin_trusted(&self) -> Result<Trusted, String> {
-        Trusted::begin(&self.scene.scene, self.panes.len(), self.tick())
+        Trusted::begin(&self.scene, self.panes.len(), self.tick())
     }
 
     /// Ends the trusted run.
@@ -630,10 +629,10 @@ impl Engine {
         let scene = scene.map_err(|error| error.to_string())?;
         let mut panes = Vec::with_capacity(self.panes.len());
         for pane in &self.panes {
-            panes.push(pane.on(&scene.scene)?);
+            panes.push(pane.on(&scene)?);
         }
         if self.trusted.is_some() {
-            let trusted = Trusted::begin(&scene.scene, panes.len(), self.tick());
+            let trusted = Trusted::begin(&scene, panes.len(), self.tick());
             self.trusted = Some(trusted?);
         }
         (self.scene, self.panes) = (scene, panes);

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use sinew_core::vectors::weighted_dot;
 use sinew_core::{Contact, Energy, LoadTime, Options, StableStep, System};
-use sinew_scene::{BodyModel, CutTotals, Scene, Simulation};
+use sinew_scene::{BodyModel, CutTotals, Simulation};
 use sinew_session::{Command, CommandError, Log, Session};
 use sinew_tools::Tools;
 
@@ -19,6 +19,7 @@ use crate::picture::Surface;
 use crate::protocol::{
     CutHead, Field, FrameWriter, OptionFacts, PaneFacts, PaneHead, StepFacts, ToolFacts, ToolHead,
 };
+use crate::scene_values::SceneValues;
 use crate::tool_facts::tools_of;
 
 /// Share of a step by which times may differ by rounding.
@@ -90,8 +91,8 @@ impl Energies {
 
 impl Pane {
     /// A scene of its own.
-    pub(crate) fn of(scene: &Scene) -> Result<Self, LiveError> {
-        Self::new(Session::new(scene.clone())?)
+    pub(crate) fn of(SceneValues { scene, values }: &SceneValues) -> Result<Self, LiveError> {
+        Self::new(Session::new(scene.clone())?.with_values(values))
     }
 
     pub(crate) fn new(session: Session) -> Result<Self, LiveError> {
@@ -134,7 +135,7 @@ impl Pane {
     }
 
     /// A pane of another scene at its beginning, by the same method.
-    pub(crate) fn on(&self, scene: &Scene) -> Result<Self, String> {
+    pub(crate) fn on(&self, scene: &SceneValues) -> Result<Self, String> {
         let mut pane = Self::of(scene).map_err(|error| error.to_string())?;
         let switched = pane.switch(self.method.clone());
         switched.map_err(|error| error.to_string())?;

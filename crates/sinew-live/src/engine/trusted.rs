@@ -5,12 +5,13 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
-use sinew_scene::{Scene, Simulation};
+use sinew_scene::Simulation;
 use sinew_session::Command;
 
 use super::common::Common;
 use super::course::Course;
 use super::pane::Pane;
+use crate::scene_values::SceneValues;
 
 /// The method that is trusted, in steps that are short for it.
 const METHOD: &str = "central-difference";
@@ -77,7 +78,7 @@ impl Drop for Trusted {
 
 impl Trusted {
     /// Begins where the panes begin; a sentence where that cannot be.
-    pub(crate) fn begin(scene: &Scene, panes: usize, tick: f64) -> Result<Self, String> {
+    pub(crate) fn begin(scene: &SceneValues, panes: usize, tick: f64) -> Result<Self, String> {
         let words = |error: &dyn std::error::Error| error.to_string();
         let mut pane = Pane::of(scene).map_err(|error| words(&error))?;
         // In a step that suits it, for the switch tries one.

@@ -154,19 +154,27 @@ impl Scene {
     ) -> Result<Self, SceneError> {
         let path = path.as_ref();
         match text_of(path) {
-            Ok(text) => {
-                let source = SceneSource::new(path, text);
-                match source.with_values(values) {
-                    Ok(source) => Self::parse(source),
-                    Err(error) => {
-                        let source = Arc::new(source);
-                        Err(SceneError::new(&source, Fault::Override(error)))
-                    }
-                }
-            }
+            Ok(text) => Self::parse_with(&SceneSource::new(path, text), values),
             Err(error) => {
                 let nothing = Arc::new(SceneSource::new(path, ""));
                 Err(SceneError::new(&nothing, Fault::Unreadable(error)))
+            }
+        }
+    }
+
+    /// Reads a scene in which some values are set, as [`Scene::load_with`] does; opens no file.
+    ///
+    /// # Errors
+    /// Same as [`Scene::load_with`].
+    pub fn parse_with<T: AsRef<str>>(
+        source: &SceneSource,
+        values: &[T],
+    ) -> Result<Self, SceneError> {
+        match source.with_values(values) {
+            Ok(source) => Self::parse(source),
+            Err(error) => {
+                let source = Arc::new(source.clone());
+                Err(SceneError::new(&source, Fault::Override(error)))
             }
         }
     }

@@ -82,12 +82,4 @@ pub enum LogFault {
     /// A log that was cut off within its first lines.
     #[error("the log is cut off before its first command: there is nothing to repeat")]
     NoHead,
-    /// A log that was cut off.
-    #[error(
-        "the log is cut off: expected `STEPS end` as its last line; `{least} end` repeats it as far as it goes"
-    )]
-    NoEnd {
-        /// The least number of steps that it may have.
-        least: usize,
-    },
 }

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use super::Log;
 use super::text::{end, head, push_entry};
 
-/// A file that is kept up to date with the log of a session, so that one that is killed is not lost: its last line is missing then, and
-/// [`Log::read`] says which one lets it be repeated as far as it goes.
+/// A file that is kept up to date with the log of a session, so that one that is killed is not lost: [`Log::read`] takes it as far
+/// as its last command.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,

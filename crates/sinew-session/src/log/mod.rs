@@ -23,6 +23,8 @@ pub struct Header {
     pub scene: String,
     /// The other files that the scene reads.
     pub inputs: Vec<InputFile>,
+    /// Values that were set in the scene's file to get its text, as `KEY=VALUE`, for those who repeat it.
+    pub values: Vec<String>,
 }
 
 impl Header {
@@ -37,6 +39,7 @@ impl Header {
             program: env!("CARGO_PKG_VERSION").to_owned(),
             scene: sha256(scene.source().text().as_bytes()),
             inputs: others.map(InputFile::of).collect::<Result<_, _>>()?,
+            values: Vec::new(),
         })
     }
 }
@@ -58,6 +61,7 @@ pub struct Log {
     header: Header,
     entries: Vec<Entry>,
     steps: usize,
+    is_cut_off: bool,
 }
 
 impl Log {
@@ -66,6 +70,7 @@ impl Log {
             header,
             entries: Vec::new(),
             steps: 0,
+            is_cut_off: false,
         }
     }
 
@@ -92,6 +97,16 @@ impl Log {
     /// The session has taken so many steps.
     pub(crate) fn ends_after(&mut self, steps: usize) {
         self.steps = steps;
+    }
+
+    pub(crate) fn note_values(&mut self, values: Vec<String>) {
+        self.header.values = values;
+    }
+
+    /// Whether its end is missing, as where the session was killed: it goes as far as its last command then.
+    #[must_use]
+    pub fn is_cut_off(&self) -> bool {
+        self.is_cut_off
     }
 
     /// What it belongs to.

@@ -38,7 +38,10 @@ impl Log {
             fault,
         };
         let mut last = 0;
-        for (number, line) in (1..).zip(text.lines()) {
+        // A line of which a part was written says something else, or nothing; without an end of the line only the last one of all is whole.
+        let (whole, rest) = text.rsplit_once('\n').unwrap_or(("", text));
+        let rest = (whole.is_empty() || rest.trim().ends_with("end")).then_some(rest);
+        for (number, line) in (1..).zip(whole.lines().chain(rest)) {
             last = number;
             reader
                 .line(number, line)
@@ -56,6 +59,7 @@ struct Reading {
     program: Option<String>,
     scene: Option<String>,
     inputs: Vec<InputFile>,
+    values: Vec<String>,
     entries: Vec<Entry>,
     end: Option<usize>,
 }
@@ -86,6 +90,11 @@ impl Reading {
             let sha256 = hash(&mut ahead)?;
             let path = ahead.quoted("the path of the file in quotes")?.into();
             self.inputs.push(InputFile { path, sha256 });
+            return ahead.end();
+        }
+        let mut ahead = words;
+        if ahead.word() == "value" && self.entries.is_empty() {
+            self.values.push(ahead.quoted("KEY=VALUE in quotes")?);
             return ahead.end();
         }
         self.command(words)
@@ -160,15 +169,16 @@ impl Reading {
                 },
             });
         };
-        let steps = self.end.ok_or(LogFault::NoEnd { least })?;
         Ok(Log {
             header: Header {
                 program,
                 scene,
                 inputs: self.inputs,
+                values: self.values,
             },
+            steps: self.end.unwrap_or(least),
+            is_cut_off: self.end.is_none(),
             entries: self.entries,
-            steps,
         })
     }
 }

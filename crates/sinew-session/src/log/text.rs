@@ -22,6 +22,11 @@ pub(super) fn head(header: &Header) -> String {
         push_quoted(&mut text, &file.path.to_string_lossy());
         text.push('\n');
     }
+    for value in &header.values {
+        text.push_str("value ");
+        push_quoted(&mut text, value);
+        text.push('\n');
+    }
     text
 }
 

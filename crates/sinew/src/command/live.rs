@@ -47,7 +47,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (scene, hand, mut panes) = match &arguments.scene {
         Some(path) => (arguments.values.load(path)?, None, vec![own]),
         None => {
-            let scene = Scene::parse(SceneSource::new("cube.toml", CUBE.to_owned()))?;
+            let scene = arguments
+                .values
+                .apply(&SceneSource::new("cube.toml", CUBE))?;
             (scene, Some(hand()), SIDE_BY_SIDE.map(beside).to_vec())
         }
     };

@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use sinew_scene::Scene;
+#[cfg(feature = "live")]
+use sinew_scene::SceneSource;
 
 use super::Failure;
 
@@ -35,6 +37,13 @@ impl Values {
     pub(crate) fn load(&self, path: &Path) -> Result<Scene, Failure> {
         self.check()?;
         Ok(Scene::load_with(path, &self.assignments())?)
+    }
+
+    /// Reads a scene that stands in no file with them.
+    #[cfg(feature = "live")]
+    pub(crate) fn apply(&self, source: &SceneSource) -> Result<Scene, Failure> {
+        self.check()?;
+        Ok(Scene::parse_with(source, &self.assignments())?)
     }
 
     /// Refuses two values for one key.

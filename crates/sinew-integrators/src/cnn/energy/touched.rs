@@ -38,6 +38,10 @@ pub(super) struct Touched {
     inverse: Vec<f64>,
     pushed: Vec<u32>,
     first: FirstSweep,
+    /// What contact kept in the last sweep that was taken, or before the step.
+    kept: Vec<f64>,
+    /// Why the law refused the last trial, if it did.
+    refused: Option<EvaluationError>,
 }
 
 /// What the first sweep leads to.
@@ -80,13 +84,15 @@ impl Touched {
                 reached: Point::new(dofs),
                 contact: Vec::new(),
             },
+            kept: Vec::new(),
+            refused: None,
         }
     }
 
     /// Lowers the potential by so many sweeps from the start of the step on; their end is left in `descent`.
     ///
     /// # Errors
-    /// [`EvaluationError`] when the law has no own blocks or no damping where it has a force.
+    /// [`EvaluationError`] when the law has no own blocks or no damping where it has a force, or refuses where tools push the tissue.
     pub(super) fn lower(
         &mut self,
         taken: Taken<'_>,
@@ -105,6 +111,7 @@ impl Touched {
         descent.factorise(law, quadratic, start)?;
         work.sweeps += 1;
         self.shown.clone_from(state);
+        self.kept.clone_from(&state.contact);
         self.before.fill(0.0);
         let (mut bound, mut share, mut momentum) = (FIRST_BOUND, 0.0, 1.0_f64);
         self.weigh(descent, bound, taken.step.dt);
@@ -114,13 +121,15 @@ impl Touched {
                 return Ok(Found::NotFinite);
             }
             if !self.sweep(taken, descent, &mut bound, work)? {
-                let found = if sweep == 0 {
-                    Found::Nothing
-                } else {
-                    Found::Lower
-                };
-                return Ok(found);
+                // Forces of a trial that is not taken are none.
+                self.shown.contact.clone_from(&self.kept);
+                if sweep > 0 {
+                    return Ok(Found::Lower);
+                }
+                // Where tools are does not depend on the bound: no higher one leads back to where the law is defined.
+                return self.refused.take().map_or(Ok(Found::Nothing), Err);
             }
+            self.kept.clone_from(&self.shown.contact);
             let places = self.swept.iter_mut().zip(&self.trial.u).zip(&start.u);
             for ((swept, u), start) in places {
                 *swept = u - start;
@@ -296,7 +305,8 @@ impl Touched {
             start,
             ..
         } = taken;
-        if self.trial.evaluate(law).is_err() || !self.trial.is_finite() {
+        self.refused = self.trial.evaluate(law).err();
+        if self.refused.is_some() || !self.trial.is_finite() {
             return Ok(false);
         }
         let change = &self.change;

@@ -94,7 +94,7 @@ pub(crate) fn warnings_of(replay: &Replay) -> Vec<String> {
     let mut warnings = replay.session().simulation().warnings();
     warnings.retain(|warning| warning.kind != WarningKind::NoProbe);
     let warnings = warnings.iter().map(ToString::to_string);
-    warnings.chain(replay.warning()).collect()
+    warnings.chain(replay.warnings()).collect()
 }
 
 /// Repeats a session into a folder and says what came out.
