@@ -532,7 +532,7 @@ impl Engine {
             Order::Cut { from, to } => self.give(client, id, Command::Cut { from, to })?,
             Order::Shape { tool, shape } => self.reshape(tool, shape, shared)?,
             Order::Integrator { pane, name } => {
-                self.change_method(pane, |pane| pane.use_integrator(&name).map_err(words))?
+                self.change_method(pane, |pane| pane.use_integrator(&name).map_err(words))?;
             }
             Order::Dt { pane, dt } => {
                 if !(1e-6..=1.0).contains(&dt) {

@@ -39,7 +39,7 @@ impl Log {
         };
         let mut last = 0;
         // A line of which a part was written says something else, or nothing; without an end of the line only the last one of all is whole.
-        let (whole, rest) = text.rsplit_once('\n').unwrap_or(("", text));
+        let (whole, rest) = text.split_at(text.rfind('\n').map_or(0, |end| end + 1));
         let rest = (whole.is_empty() || rest.trim().ends_with("end")).then_some(rest);
         for (number, line) in (1..).zip(whole.lines().chain(rest)) {
             last = number;
