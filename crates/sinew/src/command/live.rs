@@ -5,8 +5,8 @@ mod recording;
 use std::path::PathBuf;
 
 use sinew_live::{Hand, Live, PaneChoice, Settings};
+use sinew_scene::SceneSource;
 use sinew_scene::output::{Voice, complain};
-use sinew_scene::{Scene, SceneSource};
 
 use self::recording::Recording;
 use super::Failure;
