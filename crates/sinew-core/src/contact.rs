@@ -13,6 +13,11 @@ pub trait Contact: Debug + Send + Sync {
     /// The cells whose displacement and velocity it reads after each step.
     fn cells(&self) -> &[u32];
 
+    /// Whether a method that cannot meet it may go on without it, as with the lips of cuts, which then pass each other.
+    fn may_be_left_out(&self) -> bool {
+        false
+    }
+
     /// Numbers that it keeps in [`State::contact`].
     fn kept(&self) -> usize;
 

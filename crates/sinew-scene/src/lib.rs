@@ -59,10 +59,10 @@ pub use probe_rows::{ProbeRowError, ProbeRows};
 pub use proposal::propose;
 pub use reference::{scene_reference, scene_schema};
 pub use scene::{
-    Blade, Body, Choice, Cutting, Grasp, Initial, Instants, LoosePieces, Members, MeshChanges,
-    MeshSource, Motion, Oscillator, OutputSettings, ProbeAt, ProbePoint, Quantity, Rotation,
-    RunSettings, Scene, Selected, StartsInside, Subject, TimeStep, Tool, ToolBody, ToolPart,
-    ToolPath, ToolShape, ToolStart, Way,
+    Blade, Body, Choice, Cutting, Grasp, Initial, Instants, Lips, LoosePieces, Members,
+    MeshChanges, MeshSource, Motion, Oscillator, OutputSettings, ProbeAt, ProbePoint, Quantity,
+    Rotation, RunSettings, Scene, Selected, StartsInside, Subject, TimeStep, Tool, ToolBody,
+    ToolPart, ToolPath, ToolShape, ToolStart, Way,
 };
 pub use simulation::{
     BodyChange, BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint,

@@ -40,8 +40,8 @@ mod triangle;
 pub mod vector;
 
 pub use contact::{
-    BodyReport, Corner, Depth, Grasp, Tool, ToolBody, ToolBodyError, ToolReport, Tools, ToolsError,
-    TouchedCell, TouchedTriangle,
+    BodyReport, Corner, CutFace, Depth, Grasp, LipsReport, Tool, ToolBody, ToolBodyError,
+    ToolReport, Tools, ToolsError, TouchedCell, TouchedTriangle,
 };
 pub use motion::Motion;
 pub use pose::Pose;

@@ -50,6 +50,12 @@ impl Model {
         self.body.cells.held_nodes.binary_search(&node).is_ok()
     }
 
+    /// Whether nothing moves a node (0-based) from outside in any direction, and it is not frozen away from its place at rest.
+    #[must_use]
+    pub fn rests_in_place(&self, node: u32) -> bool {
+        (0..3).all(|axis| self.motions.courses(node, axis).is_empty())
+    }
+
     /// Shows nodes, increasing, that the problem holds where they are frozen: with these displacements (m).
     pub(crate) fn with_frozen(mut self, nodes: &[(u32, [f64; 3])]) -> Self {
         self.motions.freeze(nodes);

@@ -6,6 +6,7 @@ mod boundary_surface;
 mod collect_data;
 mod collect_groups;
 mod cut;
+mod cut_faces;
 mod error;
 mod find_data;
 mod find_group;

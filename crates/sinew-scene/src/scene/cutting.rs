@@ -24,6 +24,8 @@ pub struct Cutting {
     pub remove: Option<usize>,
     /// What becomes of pieces that nothing holds.
     pub pieces: LoosePieces,
+    /// What the lips of a cut do to each other.
+    pub lips: Lips,
 }
 
 /// The blade that cuts a body.
@@ -48,6 +50,15 @@ pub enum LoosePieces {
     Remove,
 }
 
+/// What the lips of a cut do to each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lips {
+    /// While they face each other, they do not pass each other.
+    Contact,
+    /// Nothing.
+    Free,
+}
+
 impl Cutting {
     /// Whether a tool (0-based) cuts or removes, so that it touches nothing.
     #[must_use]
@@ -61,7 +72,7 @@ pub(super) const CUTTING: TableDescription = TableDescription {
     meaning: "Cuts along the faces of tetrahedra: no tetrahedron is born, so that mass stays, and so does the energy of tetrahedra that average no strain, \
               but for what moved nodes (`snap`) change. Of linear ones the stable step stays as well: it is bounded by single tetrahedra in scenes with this table. \
               Areas, nodes, mass and energy of all cuts are in `summary.json`. Without a blade the body is cut by commands of a session only.",
-    keys: &[&SNAP, &TOUGHNESS, &TABLE, &TOOL, &REMOVE, &PIECES],
+    keys: &[&SNAP, &TOUGHNESS, &TABLE, &TOOL, &REMOVE, &PIECES, &LIPS],
     needs: Needs::Any,
     examples: &[
         "[cutting]\nsnap = 0.25\ntable = \"strokes.csv\"\n",
@@ -130,6 +141,14 @@ const PIECES: Key<Words<LoosePieces>, Or<LoosePieces>> = Key::or(
     LoosePieces::Fall,
 );
 
+const LIPS: Key<Words<Lips>, Or<Lips>> = Key::or(
+    "lips",
+    "What the lips of a cut do to each other: while they face each other, no node goes beyond the one that the cut parted it from, along the normal of the cut; or nothing. \
+     With methods that tools cannot push, nothing.",
+    Words(&[("contact", Lips::Contact), ("free", Lips::Free)]),
+    Lips::Contact,
+);
+
 const REMOVALS: TableDescription = TableDescription {
     name: "remove",
     meaning: "What takes tetrahedra away.",
@@ -164,6 +183,7 @@ pub(super) fn read(table: &Table<'_>, tools: &[Tool]) -> Result<Cutting, SceneEr
         blade,
         remove,
         pieces: table.read(&PIECES)?,
+        lips: table.read(&LIPS)?,
     })
 }
 

@@ -31,7 +31,7 @@ use std::sync::Arc;
 use sinew_fem::Problem;
 use toml::de::DeTable;
 
-pub use cutting::{Blade, Cutting, LoosePieces};
+pub use cutting::{Blade, Cutting, Lips, LoosePieces};
 pub(crate) use document::DOCUMENT;
 use document::{
     CUTTING_TABLE, DAMPING_TABLE, GRAVITY_VECTOR, INITIAL_STATES, LOADS, MESH_TABLE, MOTIONS,

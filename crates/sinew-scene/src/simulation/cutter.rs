@@ -344,7 +344,7 @@ impl Cutter {
         self.totals.report.add(&loose);
         self.totals.changes += 1;
         let cut = self.simulation(simulation, state)?;
-        if let (Some(theirs), Some(own)) = (simulation.model().tools(), cut.model().tools()) {
+        if let (Some(theirs), Some(own)) = (simulation.model().contact(), cut.model().contact()) {
             let place_of = before.places(simulation, &cut, &state.u);
             state.contact = own.carried(theirs, &before.contact, |place| place_of[place]);
         }
@@ -393,8 +393,8 @@ impl Cutter {
             tools: None,
             cut: Some(Arc::new(from)),
         };
-        if let (Subject::Body(scene), Some(tools)) = (before.scene.subject(), before.model.tools())
-        {
+        if let Subject::Body(scene) = before.scene.subject() {
+            let tools = before.model.tools().map(Arc::as_ref);
             body = tool::touching_anew(body, scene, tools, before.settings().duration)?;
         }
         let probes = self.probes.iter();

@@ -44,7 +44,7 @@ impl Simulation {
         else {
             return Ok(Vec::new());
         };
-        let Some(tools) = &body.tools else {
+        let Some(tools) = body.scene_tools() else {
             return Ok(Vec::new());
         };
         let steering: Vec<Steering> = tools
@@ -53,7 +53,7 @@ impl Simulation {
             .map(|_| Steering::new(inputs))
             .collect();
         let steered = tools.steered(&steering);
-        **body = tool::touching_anew((**body).clone(), of_scene, &steered, duration)?;
+        **body = tool::touching_anew((**body).clone(), of_scene, Some(&steered), duration)?;
         Ok(steering)
     }
 

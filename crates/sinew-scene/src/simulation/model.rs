@@ -31,7 +31,7 @@ pub struct BodyModel {
     pub problem: sinew_fem::Problem,
     /// The system to integrate.
     pub model: sinew_fem::Model,
-    /// The tools that touch it, of which the model knows; `None` where the scene has none.
+    /// The tools and lips of cuts that touch it, of which the model knows; `None` where there are none.
     pub tools: Option<Arc<Tools>>,
     /// Where its parts come from, once it was cut.
     pub cut: Option<Arc<CutFrom>>,
@@ -59,13 +59,29 @@ impl SceneModel {
     /// The tools that touch a body, where there are any.
     #[must_use]
     pub fn tools(&self) -> Option<&Arc<Tools>> {
+        self.body()?.scene_tools()
+    }
+
+    /// The tools and lips of cuts that touch a body, where there are any.
+    #[must_use]
+    pub fn contact(&self) -> Option<&Arc<Tools>> {
         self.body()?.tools.as_ref()
     }
 }
 
 impl BodyModel {
+    /// The tools of the scene, where there are any.
+    #[must_use]
+    pub fn scene_tools(&self) -> Option<&Arc<Tools>> {
+        let tools = self.tools.as_ref();
+        tools.filter(|tools| !tools.tools().is_empty())
+    }
+
     /// The same body, which these tools touch.
     pub(super) fn touched_by(self, tools: Arc<Tools>) -> Self {
+        if tools.tools().is_empty() && tools.lip_pairs() == 0 {
+            return self;
+        }
         // Blades touch nothing, so that every method goes with them.
         let model = match tools.touched_cells().is_empty() {
             true => self.model,

@@ -6,7 +6,8 @@ use sinew_core::{Inputs, State, System};
 use sinew_fem::Model;
 use sinew_mesh::{TetMesh, UnknownGroup};
 use sinew_tools::{
-    Convex, Motion, Part, Pose, Row, Shape, ShapeError, Table, Tools, ToolsError, TouchedCell,
+    Convex, Corner, CutFace, Motion, Part, Pose, Row, Shape, ShapeError, Table, Tools, ToolsError,
+    TouchedCell,
 };
 
 use super::model::BodyModel;
@@ -15,7 +16,9 @@ use super::tool_fault::ToolFault;
 use super::tool_surface::{self, moved_nodes};
 use crate::decode::Place;
 use crate::error::{Fault, SceneError};
-use crate::scene::{Body, FARTHEST, Places, StartsInside, Tool, ToolPath, ToolShape, ToolStart};
+use crate::scene::{
+    Body, FARTHEST, Lips, Places, StartsInside, Tool, ToolPath, ToolShape, ToolStart,
+};
 
 /// Share of the body's size by which a node may lie inside a tool that begins on its surface.
 pub(super) const ROUNDING: f64 = 1e-9;
@@ -65,7 +68,7 @@ pub(super) fn added_to(
         }
         tools.push(known);
     }
-    let tools = on_nodes(tools, &nodes_of, &built, duration).map_err(|error| {
+    let tools = on_nodes(tools, &nodes_of, Vec::new(), &built, duration).map_err(|error| {
         let at_fault = error.tool().and_then(|name| {
             let mut tools = body.tools.iter();
             tools.position(|tool| tool.name == name)
@@ -89,14 +92,21 @@ pub(super) fn added_to(
     Ok(built.touched_by(Arc::new(tools)))
 }
 
-/// Tools that touch these nodes of a body each, and the surface under their tips.
+/// Tools that touch these nodes of a body each, and the surface under their tips; with the cut faces whose lips touch each other.
 pub(super) fn on_nodes(
     mut tools: Vec<sinew_tools::Tool>,
     nodes_of: &[Vec<u32>],
+    cut_faces: Vec<[[u32; 3]; 2]>,
     built: &BodyModel,
     duration: f64,
 ) -> Result<Tools, ToolsError> {
-    let mut touched: Vec<u32> = nodes_of.iter().flatten().copied().collect();
+    let is_met = |node: &u32| built.model.cell_of_node(*node).is_some();
+    let lips = cut_faces
+        .iter()
+        .flatten()
+        .flatten()
+        .filter(|node| is_met(node));
+    let mut touched: Vec<u32> = nodes_of.iter().flatten().chain(lips).copied().collect();
     touched.sort_unstable();
     touched.dedup();
     for (tool, nodes) in tools.iter_mut().zip(nodes_of) {
@@ -109,14 +119,37 @@ pub(super) fn on_nodes(
         .filter_map(|node| cell(&built.model, *node))
         .collect();
     let triangles = tool_surface::under_tips(&mut tools, nodes_of, &touched, built, duration);
-    Tools::with_triangles(tools, cells, triangles)
+    let tools = Tools::with_triangles(tools, cells, triangles)?;
+    let corner = |node: u32| match touched.binary_search(&node) {
+        Ok(place) => Corner::Cell(place as u32),
+        Err(_) => Corner::Held(built.mesh.points[node as usize]),
+    };
+    let faces = cut_faces.into_iter().map(|face| CutFace {
+        corners: face.map(|corners| corners.map(corner)),
+    });
+    tools.with_cut_faces(faces.collect())
+}
+
+/// The cut faces of a body whose lips touch each other: those of which no corner is moved by the scene or rests elsewhere.
+fn cut_faces(body: &Body, built: &BodyModel) -> Vec<[[u32; 3]; 2]> {
+    let touches = body
+        .cutting
+        .as_ref()
+        .is_some_and(|cutting| cutting.lips == Lips::Contact);
+    let Some(from) = built.cut.as_ref().filter(|_| touches) else {
+        return Vec::new();
+    };
+    let rests = |node: &u32| built.model.rests_in_place(*node);
+    let mut faces = from.cut.cut_faces();
+    faces.retain(|face| face.as_flattened().iter().all(rests));
+    faces
 }
 
 /// Lets tools that touched a body touch it as it is, or as they are led, now.
 pub(super) fn touching_anew(
     built: BodyModel,
     body: &Body,
-    tools: &Tools,
+    tools: Option<&Tools>,
     duration: f64,
 ) -> Result<BodyModel, ToolsError> {
     let nodes_of: Vec<Vec<u32>> = body
@@ -128,7 +161,9 @@ pub(super) fn touching_anew(
             touchable(body, index, &built).map_or_else(|_| Vec::new(), |nodes| nodes.0)
         })
         .collect();
-    let tools = on_nodes(tools.tools().to_vec(), &nodes_of, &built, duration)?;
+    let faces = cut_faces(body, &built);
+    let tools = tools.map_or_else(Vec::new, |tools| tools.tools().to_vec());
+    let tools = on_nodes(tools, &nodes_of, faces, &built, duration)?;
     Ok(built.touched_by(Arc::new(tools)))
 }
 

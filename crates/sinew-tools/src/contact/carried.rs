@@ -22,12 +22,19 @@ impl Tools {
         let mut carried = vec![0.0; self.counts.numbers()];
         let cells = before.counts.of_cells();
         carried[..cells.start].copy_from_slice(&contact[..cells.start]);
-        let (velocities, held) = contact[cells.end..].split_at(before.counts.of_velocities().len());
+        let velocities = &contact[before.counts.of_velocities()];
+        let held = &contact[before.counts.of_held()];
+        let lips = &contact[before.counts.of_lips()];
+        if let (Some(own), false) = (carried.get_mut(self.counts.of_lips()), lips.is_empty()) {
+            let kept = own.len().min(lips.len());
+            own[..kept].copy_from_slice(&lips[..kept]);
+        }
         let forces = &contact[cells];
         let mut is_taken = vec![false; before.cells.len()];
         let own = self.counts.of_cells();
         let (own_forces, others) = carried[own.start..].split_at_mut(own.len());
-        let (own_velocities, own_held) = others.split_at_mut(self.counts.of_velocities().len());
+        let (own_velocities, others) = others.split_at_mut(self.counts.of_velocities().len());
+        let own_held = &mut others[..self.counts.of_held().len()];
         for place in 0..self.cells.len() {
             let Some(from) = of(place).filter(|from| *from < before.cells.len()) else {
                 continue;

@@ -1,9 +1,10 @@
 //! Counts of what tools do to cells.
 
 use super::links::Links;
+use super::lips::LipLink;
 use super::record::{
-    CONTACTS, DEPTH, FORCE, IMPULSE, LARGEST_RESIDUAL, OF_HELD, OF_TOOL, RESIDUAL, RIVAL, Record,
-    SEIZED, TORQUE, WORK,
+    CONTACTS, DEPTH, FORCE, IMPULSE, LARGEST_LIP_RESIDUAL, LARGEST_RESIDUAL, LIP_CONTACTS,
+    LIP_RESIDUAL, OF_HELD, OF_TOOL, RESIDUAL, RIVAL, Record, SEIZED, TORQUE, WORK,
 };
 use super::tool_step::ToolStep;
 use super::tools::{MOST_TOOLS, Tools};
@@ -67,6 +68,17 @@ impl Count<'_> {
                     let place = node.place as usize;
                     self.seize(link.tool, place, at(node.place), record);
                 }
+            }
+        }
+        if let [numbers] = record.lips {
+            let pushing = links.lips.iter().filter(|link| link.force > 0.0);
+            for (place, force) in pushing.clone().flat_map(LipLink::forces) {
+                let sum = &mut record.cells[place as usize];
+                *sum = add(*sum, force);
+            }
+            numbers[LIP_CONTACTS] = numbers[LIP_CONTACTS].max(pushing.count() as f64);
+            for place in [LIP_RESIDUAL, LARGEST_LIP_RESIDUAL] {
+                numbers[place] = numbers[place].max(links.lip_residual);
             }
         }
         let all = self.steps.iter().zip(record.tools.iter_mut()).zip(contacts);

@@ -52,6 +52,9 @@ impl Tools {
                 velocities: record.velocities,
                 shares,
             };
+            if pass == 1 {
+                search.find_lips(&mut room.links);
+            }
             self.rounds(room, &search);
             let count = Count {
                 tools: self,
@@ -90,7 +93,7 @@ impl Tools {
         for round in 0..MOST_ROUNDS {
             room.look(&self.cells, state, dt, self.counts.holds);
             let is_new = search.all(room, round == 0);
-            if !is_new && (room.links.all.is_empty() || round >= least) {
+            if !is_new && (room.links.is_empty() || round >= least) {
                 break;
             }
             let stood = |place: u32| search.stood(place as usize, search.shares[1]);
@@ -153,11 +156,16 @@ impl Search<'_> {
 
     /// Adds what is new; whether there is anything. At first, triangles that touch at the beginning: the others may not come to touch at all once these do not give way.
     fn all(&self, room: &mut Room, is_first: bool) -> bool {
-        let before = room.links.all.len();
+        let count = |links: &Links| links.all.len() + links.lips.len();
+        let before = count(&room.links);
+        self.of_lips(&mut room.links);
         for near in 0..room.near.len() {
             let place = room.near[near] as usize;
             if !room.links.is_linked(place) {
-                self.at_node(room, place, self.tools.linking);
+                // What a tool pushes at a lip may push the other lip.
+                let is_lip = self.tools.is_lip[place];
+                let tools = if is_lip { u64::MAX } else { self.tools.linking };
+                self.at_node(room, place, tools);
             }
         }
         let is_left = self.of_triangles(room, is_first);
@@ -166,7 +174,47 @@ impl Search<'_> {
             self.at_node(room, *place as usize, u64::MAX);
             next += 1;
         }
-        is_left || room.links.all.len() > before
+        is_left || count(&room.links) > before
+    }
+
+    /// Finds how cut faces lie as the step begins.
+    fn find_lips(&self, links: &mut Links) {
+        let at = |corner| self.corner(corner, |place| self.way(place).0);
+        self.tools.lips.find_normals(at, &mut links.normals);
+    }
+
+    /// Adds the pairs of lips that come together.
+    fn of_lips(&self, links: &mut Links) {
+        let [_, share] = self.shares;
+        for (number, pair) in (0..).zip(&self.tools.lips.pairs) {
+            if links.knows_lips(number) {
+                continue;
+            }
+            let from = pair
+                .nodes
+                .map(|node| self.corner(node, |place| self.way(place).0));
+            let stood = |place| self.stood(place, share);
+            let end = |place: usize| add(stood(place), links.moved[place]);
+            let stood = pair.nodes.map(|node| self.corner(node, stood));
+            let end = pair.nodes.map(|node| self.corner(node, end));
+            let compliance = |place: u32| self.compliance(place as usize);
+            let ways = [from, stood, end];
+            let met = self
+                .tools
+                .lips
+                .meet(number, &links.normals, ways, compliance);
+            if let Some(link) = met {
+                links.add_lips(link);
+            }
+        }
+    }
+
+    /// Where a corner is (m), by where the cell at a place is.
+    fn corner(&self, corner: Corner, cell: impl Fn(usize) -> Vector) -> Vector {
+        match corner {
+            Corner::Cell(place) => cell(place as usize),
+            Corner::Held(at) => at,
+        }
     }
 
     /// Adds the contacts of a node with some tools, one bit each.

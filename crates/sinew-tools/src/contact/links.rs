@@ -1,6 +1,7 @@
 //! Contacts that act on each other within a step, since they share a tool that is a body of its own, or a node.
 
 use super::body_step::BodyStep;
+use super::lips::{LipLink, Lips};
 use super::node::{CONVERGED, Compliance, Constraint, MOST_SWEEPS};
 use super::tool_step::{ToolStep, Way};
 use super::twist::Twist;
@@ -72,11 +73,19 @@ pub(super) struct Links {
     /// Of each touched cell the last contact of its own.
     last: Vec<Option<u32>>,
     is_linked: Vec<bool>,
+    /// Pairs of lips that meet.
+    pub(super) lips: Vec<LipLink>,
+    /// The normals of cut faces as the step begins, times twice their area (m^2).
+    pub(super) normals: Vec<[Vector; 2]>,
+    /// Whether each pair of lips meets.
+    meets: Vec<bool>,
+    /// What the iteration left of pairs of lips.
+    pub(super) lip_residual: f64,
 }
 
 impl Links {
-    /// Room for so many cells.
-    pub(super) fn of(cells: usize) -> Self {
+    /// Room for so many cells, and for lips.
+    pub(super) fn of(cells: usize, lips: &Lips) -> Self {
         Self {
             all: Vec::with_capacity(cells),
             places: Vec::with_capacity(cells),
@@ -85,6 +94,10 @@ impl Links {
             ways: vec![([0.0; 3], [0.0; 3]); cells],
             last: vec![None; cells],
             is_linked: vec![false; cells],
+            lips: Vec::with_capacity(lips.pairs.len()),
+            normals: Vec::with_capacity(lips.faces()),
+            meets: vec![false; lips.pairs.len()],
+            lip_residual: 0.0,
         }
     }
 
@@ -105,6 +118,36 @@ impl Links {
             (self.before[place], self.last[place]) = (self.moved[place], None);
         }
         self.all.clear();
+        for link in self.lips.drain(..) {
+            self.meets[link.pair as usize] = false;
+        }
+    }
+
+    /// Whether there is anything to solve for.
+    pub(super) fn is_empty(&self) -> bool {
+        self.all.is_empty() && self.lips.is_empty()
+    }
+
+    /// Whether a pair of lips meets.
+    pub(super) fn knows_lips(&self, pair: u32) -> bool {
+        self.meets[pair as usize]
+    }
+
+    /// Adds a pair of lips.
+    pub(super) fn add_lips(&mut self, link: LipLink) {
+        self.meets[link.pair as usize] = true;
+        link.nodes
+            .into_iter()
+            .flatten()
+            .for_each(|place| self.link(place));
+        self.lips.push(link);
+    }
+
+    /// Notes that the cell at a place is part of a contact.
+    fn link(&mut self, place: u32) {
+        if !std::mem::replace(&mut self.is_linked[place as usize], true) {
+            self.places.push(place);
+        }
     }
 
     /// Whether the cell at a place is part of any.
@@ -150,11 +193,7 @@ impl Links {
     /// Adds one.
     pub(super) fn add(&mut self, mut link: Link) {
         for node in link.nodes() {
-            let place = node.place as usize;
-            if !self.is_linked[place] {
-                self.is_linked[place] = true;
-                self.places.push(node.place);
-            }
+            self.link(node.place);
         }
         if link.triangle.is_none() {
             let last = &mut self.last[link.nodes[0].place as usize];
@@ -192,14 +231,21 @@ impl Links {
     }
 
     /// Solves for all forces by projected Gauss and Seidel's iteration (Jourdan, Alart and Jean 1998): each contact exactly for the forces of the others, in turn. Each tool
-    /// gets what was left of its contacts: the largest change of a displacement in the last sweep, as a share of the largest displacement by a contact.
+    /// gets what was left of its contacts, as the lips of cuts together do: the largest change of a displacement in the last sweep, as a share of the largest displacement by a contact.
     pub(super) fn solve(&mut self, tools: &mut [ToolStep]) {
-        if self.all.is_empty() {
+        self.lip_residual = 0.0;
+        if self.is_empty() {
             return;
         }
         for _ in 0..MOST_SWEEPS {
             tools.iter_mut().for_each(|tool| tool.residual = 0.0);
+            self.lip_residual = 0.0;
             let mut largest: f64 = 0.0;
+            for link in &mut self.lips {
+                let change = link.update(&mut self.moved);
+                self.lip_residual = self.lip_residual.max(change);
+                largest = largest.max(link.push());
+            }
             for link in &mut self.all {
                 let tool = &mut tools[link.tool];
                 let change = link.update(&self.moved, tool.body.as_ref());
@@ -219,7 +265,10 @@ impl Links {
                     body.pushed = body.pushed.minus(by);
                 }
             }
-            let mut left: f64 = 0.0;
+            if self.lip_residual > 0.0 {
+                self.lip_residual /= largest;
+            }
+            let mut left = self.lip_residual;
             for tool in tools.iter_mut().filter(|tool| tool.residual > 0.0) {
                 tool.residual /= largest;
                 left = left.max(tool.residual);

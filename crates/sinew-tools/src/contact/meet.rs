@@ -18,6 +18,10 @@ impl Contact for Tools {
         &self.numbers
     }
 
+    fn may_be_left_out(&self) -> bool {
+        self.tools.iter().all(|tool| tool.cells.is_empty()) && self.counts.lips
+    }
+
     fn kept(&self) -> usize {
         self.counts.numbers()
     }
@@ -28,7 +32,7 @@ impl Contact for Tools {
         let mut record = Record::of(&mut kept, &self.counts);
         record.forget_last_step();
         room.take(&self.tools, state, meeting, record.bodies);
-        if self.linking != 0 {
+        if self.linking != 0 || self.counts.lips {
             self.link(&mut room, meeting, state, &mut record);
         }
         room.look(&self.cells, state, meeting.dt, self.counts.holds);

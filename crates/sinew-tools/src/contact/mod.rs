@@ -8,12 +8,14 @@
 //!
 //! A tip that is finer than the surface meets triangles as well as nodes: a point of a triangle moves by the weights of its corners, so that contacts which share a node act on each
 //! other. A tool that is a body of its own moves as one more body with its own P, and couples its contacts: they are solved by an iteration, in a fixed order.
+//! So are the lips of cuts, of which one node pushes the other.
 
 mod body_step;
 mod carried;
 mod count;
 mod coupled;
 mod links;
+mod lips;
 mod meet;
 mod met;
 mod node;
@@ -26,7 +28,8 @@ mod tool_step;
 mod tools;
 mod twist;
 
-pub use report::{BodyReport, Depth, ToolReport};
+pub use lips::CutFace;
+pub use report::{BodyReport, Depth, LipsReport, ToolReport};
 pub use tool::{Corner, Grasp, Tool, ToolsError, TouchedCell, TouchedTriangle};
 pub use tool_body::{ToolBody, ToolBodyError};
 pub use tools::Tools;

@@ -7,7 +7,7 @@ pub(super) const MOST: usize = 8;
 
 /// Share of a node's largest response below which it counts as held in the direction of a normal: a normal that is all but along a held axis leaves 1e-3 of itself, and would
 /// have to be answered with a force a million times as large.
-const HELD: f64 = 1e-6;
+pub(super) const HELD: f64 = 1e-6;
 
 /// Most sweeps of an iteration for forces that act on each other.
 pub(super) const MOST_SWEEPS: usize = 500;
@@ -82,6 +82,12 @@ impl Compliance {
             block: [0, 1, 2].map(|axis| add(self.block[axis], scaled(other.block[axis], share))),
             free: [0, 1, 2].map(|axis| self.free[axis] || other.free[axis]),
         }
+    }
+
+    /// Its largest entry (m/N) along an axis.
+    pub(super) fn largest(&self) -> f64 {
+        let own = [0, 1, 2].map(|axis| self.block[axis][axis]);
+        own.into_iter().fold(0.0, f64::max)
     }
 
     /// The displacement (m) by a force (N).
@@ -166,8 +172,7 @@ impl Compliance {
 
     /// Whether a node with this response (m/N) to a unit force moves in the direction of that force.
     fn moves(&self, response: f64) -> bool {
-        let own = [0, 1, 2].map(|axis| self.block[axis][axis]);
-        response > HELD * own.into_iter().fold(0.0, f64::max)
+        response > HELD * self.largest()
     }
 
     /// Writes the force (N) of each constraint: at one exactly, with friction; at several exactly without it, and with it by an iteration, of which

@@ -38,6 +38,14 @@ pub(super) const OF_VELOCITY: usize = 3;
 /// Numbers of a cell that may be held.
 pub(super) const OF_HELD: usize = 4;
 
+/// Numbers of the lips of cuts.
+pub(super) const OF_LIPS: usize = 3;
+
+/// Their places: the pairs that pushed each other in the last step, and what the iteration left of them then and at most.
+pub(super) const LIP_CONTACTS: usize = 0;
+pub(super) const LIP_RESIDUAL: usize = 1;
+pub(super) const LARGEST_LIP_RESIDUAL: usize = 2;
+
 /// What friction works along of a cell that a step moves by `way` (m), with its velocity (m/s) before where it was kept: in staggered steps contact works at the mean of the
 /// velocities before and after, elsewhere at the latter.
 pub(super) fn swing(
@@ -66,6 +74,8 @@ pub(super) struct Record<'a> {
     pub(super) velocities: &'a mut [[f64; OF_VELOCITY]],
     /// Of each cell the tool that holds it, from 1 on, or 0, and the place (m) in that tool's frame; empty where no tool holds.
     pub(super) held: &'a mut [[f64; OF_HELD]],
+    /// Of the lips of cuts, once; empty where there are none.
+    pub(super) lips: &'a mut [[f64; OF_LIPS]],
 }
 
 /// How many there are of what a record tells of.
@@ -78,13 +88,27 @@ pub(super) struct Counts {
     pub(super) rubs: bool,
     /// Whether any tool ever holds.
     pub(super) holds: bool,
+    /// Whether there are lips of cuts.
+    pub(super) lips: bool,
 }
 
 impl Counts {
     /// Numbers of a record.
     pub(super) fn numbers(&self) -> usize {
+        self.of_lips().end
+    }
+
+    /// Places of the numbers of cells that may be held.
+    pub(super) fn of_held(&self) -> Range<usize> {
+        let first = self.of_velocities().end;
         let held = if self.holds { OF_HELD } else { 0 };
-        self.of_velocities().end + self.cells * held
+        first..first + self.cells * held
+    }
+
+    /// Places of the numbers of lips.
+    pub(super) fn of_lips(&self) -> Range<usize> {
+        let first = self.of_held().end;
+        first..first + if self.lips { OF_LIPS } else { 0 }
     }
 
     /// Places of the numbers of bodies.
@@ -110,6 +134,7 @@ impl Counts {
 impl<'a> Record<'a> {
     /// The record in these numbers, as many as [`Counts::numbers`] says.
     pub(super) fn of(numbers: &'a mut [f64], counts: &Counts) -> Self {
+        let (numbers, of_lips) = numbers.split_at_mut(counts.of_held().end);
         let (numbers, of_held) = numbers.split_at_mut(counts.of_velocities().end);
         let (numbers, of_velocities) = numbers.split_at_mut(counts.of_cells().end);
         let (numbers, of_cells) = numbers.split_at_mut(counts.of_bodies().end);
@@ -120,6 +145,7 @@ impl<'a> Record<'a> {
             cells: of_cells.as_chunks_mut().0,
             velocities: of_velocities.as_chunks_mut().0,
             held: of_held.as_chunks_mut().0,
+            lips: of_lips.as_chunks_mut().0,
         }
     }
 
@@ -131,6 +157,9 @@ impl<'a> Record<'a> {
             for place in since.chain(IMPULSE..IMPULSE + 3) {
                 numbers[place] = before[place];
             }
+        }
+        for lips in self.lips.iter_mut() {
+            (lips[LIP_CONTACTS], lips[LIP_RESIDUAL]) = (0.0, 0.0);
         }
         self.cells.as_flattened_mut().fill(0.0);
     }

@@ -53,6 +53,17 @@ pub struct BodyReport {
     pub hand_work: f64,
 }
 
+/// The lips of cuts after a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LipsReport {
+    /// Pairs of nodes that pushed each other.
+    pub contacts: usize,
+    /// What the iteration left of their contacts: see [`ToolReport::residual`].
+    pub residual: f64,
+    /// The largest such residual since the body was cut.
+    pub largest_residual: f64,
+}
+
 /// How deep a cell is in a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Depth {
@@ -96,6 +107,20 @@ impl Tools {
                 energy: body.energy,
                 hand_work: body.hand_work,
             }),
+        }
+    }
+
+    /// The lips of cuts after the last step of a state; zeros where there are none.
+    #[must_use]
+    pub fn lips_report(&self, state: &State) -> LipsReport {
+        let numbers = state.contact.get(self.counts.of_lips());
+        match numbers.unwrap_or_default() {
+            [contacts, residual, largest_residual] => LipsReport {
+                contacts: *contacts as usize,
+                residual: *residual,
+                largest_residual: *largest_residual,
+            },
+            _ => LipsReport::default(),
         }
     }
 

@@ -3,6 +3,7 @@
 use sinew_core::{Meeting, State};
 
 use super::links::Links;
+use super::lips::Lips;
 use super::record::OF_BODY;
 use super::tool::{Tool, TouchedCell};
 use super::tool_step::ToolStep;
@@ -30,13 +31,13 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Room for tools, and so many cells, of which so many may be part of contacts that act on each other.
-    pub(super) fn of(tools: &[Tool], linked: usize, cells: usize) -> Self {
+    /// Room for tools, and so many cells, of which so many may be part of contacts that act on each other, lips among them.
+    pub(super) fn of(tools: &[Tool], linked: usize, cells: usize, lips: &Lips) -> Self {
         Self {
             steps: tools.iter().map(ToolStep::of).collect(),
             bounds: None,
             near: Vec::with_capacity(cells),
-            links: Links::of(linked),
+            links: Links::of(linked, lips),
             share: 1.0,
         }
     }
@@ -102,6 +103,9 @@ impl Room {
     /// else is.
     pub(super) fn look(&mut self, cells: &[TouchedCell], state: &State, dt: f64, all: bool) {
         self.near.clear();
+        if self.steps.is_empty() {
+            return;
+        }
         let Some([low, high]) = self.bounds.filter(|_| !all) else {
             self.near.extend(0..cells.len() as u32);
             return;

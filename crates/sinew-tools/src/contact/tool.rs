@@ -66,7 +66,7 @@ impl ToolsError {
     #[must_use]
     pub fn tool(&self) -> Option<&str> {
         match self {
-            Self::TooMany { .. } => None,
+            Self::TooMany { .. } | Self::NoLip { .. } => None,
             Self::SameName { name }
             | Self::Friction { name, .. }
             | Self::Grasp { name, .. }
@@ -132,6 +132,14 @@ pub enum ToolsError {
         place: u32,
         /// Number of triangles.
         triangles: usize,
+    },
+    /// A corner of a cut face beyond the touched cells.
+    #[error("a cut face has cell {place} of {cells}: expected a place below their number")]
+    NoLip {
+        /// The place.
+        place: u32,
+        /// Number of touched cells.
+        cells: usize,
     },
     /// A place beyond the touched cells.
     #[error("\"{name}\" may touch cell {place} of {cells}: expected a place below their number")]

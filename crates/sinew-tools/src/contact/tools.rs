@@ -2,6 +2,7 @@
 
 use std::sync::Mutex;
 
+use super::lips::{CutFace, Lips};
 use super::record::{Counts, OF_HELD};
 use super::room::Room;
 use super::tool::{Corner, Grasp, Tool, ToolsError, TouchedCell, TouchedTriangle};
@@ -26,6 +27,10 @@ pub struct Tools {
     pub(super) counts: Counts,
     /// The tools whose contacts act on each other, one bit each.
     pub(super) linking: u64,
+    /// The lips of cuts.
+    pub(super) lips: Lips,
+    /// Whether each cell is part of a pair of lips.
+    pub(super) is_lip: Vec<bool>,
     pub(super) room: Mutex<Room>,
 }
 
@@ -104,7 +109,12 @@ impl Tools {
                 })? |= 1 << number;
             }
         }
-        Ok(Self::sound(tools, (cells, triangles), tools_at))
+        Ok(Self::sound(
+            tools,
+            (cells, triangles),
+            tools_at,
+            Lips::default(),
+        ))
     }
 
     /// These tools, each of which follows its own motion until it is steered.
@@ -115,7 +125,8 @@ impl Tools {
             tool.motion = Motion::Steered(Box::new(tool.motion.clone()), *steering);
         }
         let surface = (self.cells.clone(), self.triangles.clone());
-        Self::sound(tools, surface, self.tools_at.clone())
+        let (tools_at, lips) = (self.tools_at.clone(), self.lips.clone());
+        Self::sound(tools, surface, tools_at, lips)
     }
 
     /// Tools that were found to fit together.
@@ -123,11 +134,19 @@ impl Tools {
         tools: Vec<Tool>,
         (cells, triangles): (Vec<TouchedCell>, Vec<TouchedTriangle>),
         tools_at: Vec<u64>,
+        lips: Lips,
     ) -> Self {
         let is_body = |tool: &Tool| tool.body.is_some();
         let links = |tool: &Tool| is_body(tool) || !tool.triangles.is_empty();
         let linking = (0..).zip(&tools).filter(|(_, tool)| links(tool));
         let linking = linking.fold(0, |bits, (number, _)| bits | 1 << number);
+        let mut is_lip = vec![false; cells.len()];
+        for node in lips.pairs.iter().flat_map(|pair| pair.nodes) {
+            if let Corner::Cell(place) = node {
+                is_lip[place as usize] = true;
+            }
+        }
+        let has_links = linking != 0 || !lips.pairs.is_empty();
         Self {
             numbers: cells.iter().map(|cell| cell.cell).collect(),
             counts: Counts {
@@ -136,18 +155,50 @@ impl Tools {
                 cells: cells.len(),
                 rubs: tools.iter().any(|tool| tool.friction > 0.0),
                 holds: tools.iter().any(|tool| tool.grasp.is_some()),
+                lips: !lips.pairs.is_empty(),
             },
             linking,
             room: Mutex::new(Room::of(
                 &tools,
-                if linking == 0 { 0 } else { cells.len() },
+                if has_links { cells.len() } else { 0 },
                 cells.len(),
+                &lips,
             )),
             tools,
             cells,
             triangles,
             tools_at,
+            lips,
+            is_lip,
         }
+    }
+
+    /// These tools on a body with cut faces, whose lips do not pass each other. Corners are places among the touched cells.
+    ///
+    /// # Errors
+    /// [`ToolsError::NoLip`] for a corner beyond these.
+    pub fn with_cut_faces(self, faces: Vec<CutFace>) -> Result<Self, ToolsError> {
+        let count = self.cells.len();
+        let corners = faces.iter().flat_map(|face| face.corners).flatten();
+        for corner in corners {
+            if let Corner::Cell(place) = corner
+                && place as usize >= count
+            {
+                return Err(ToolsError::NoLip {
+                    place,
+                    cells: count,
+                });
+            }
+        }
+        let lips = Lips::of(faces, |place| self.cells[place as usize].rest);
+        let surface = (self.cells, self.triangles);
+        Ok(Self::sound(self.tools, surface, self.tools_at, lips))
+    }
+
+    /// Number of pairs of nodes that cuts made of one and that may not pass each other.
+    #[must_use]
+    pub fn lip_pairs(&self) -> usize {
+        self.lips.pairs.len()
     }
 
     /// The tools.
@@ -182,7 +233,7 @@ impl Tools {
 
     /// Places of the touched cells that tools have hold of at a time (s), by what they keep ([`sinew_core::State::contact`]).
     pub fn held<'s>(&'s self, contact: &'s [f64], t: f64) -> impl Iterator<Item = usize> + 's {
-        let numbers = contact.get(self.counts.of_velocities().end..);
+        let numbers = contact.get(self.counts.of_held());
         let rows = numbers.unwrap_or_default().as_chunks::<OF_HELD>().0;
         let rows = rows.iter().enumerate();
         rows.filter_map(move |(place, held)| self.holder(Some(held), t).map(|_| place))

@@ -1,0 +1,57 @@
+//! The faces that cuts opened.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
+use super::CutMesh;
+use super::surface::OUTWARD_FACES;
+
+impl CutMesh {
+    /// The faces that cuts made two of: the nodes of one, counter-clockwise as seen from outside the tissue behind it, and those of the other that came from the
+    /// same places, in the same order. Faces of tetrahedra that were taken away are none.
+    #[must_use]
+    pub fn cut_faces(&self) -> Vec<[[u32; 3]; 2]> {
+        let count = self
+            .origins
+            .iter()
+            .max()
+            .map_or(0, |last| *last as usize + 1);
+        let mut copies = vec![0_u32; count];
+        for origin in &self.origins {
+            copies[*origin as usize] += 1;
+        }
+        let origin = |node: u32| self.origins[node as usize];
+        let is_copied = |node: &u32| copies[origin(*node) as usize] > 1;
+        let mut first_at: BTreeMap<[u32; 3], [u32; 3]> = BTreeMap::new();
+        let mut cut = Vec::new();
+        for nodes in self
+            .mesh
+            .tets
+            .iter()
+            .filter(|nodes| nodes.iter().any(is_copied))
+        {
+            let faces = OUTWARD_FACES.map(|face| face.map(|corner| nodes[corner]));
+            for face in faces.into_iter().filter(|face| face.iter().any(is_copied)) {
+                let mut key = face.map(origin);
+                key.sort_unstable();
+                match first_at.entry(key) {
+                    Entry::Vacant(place) => {
+                        place.insert(face);
+                    }
+                    Entry::Occupied(first) => {
+                        let first = first.remove();
+                        let partner = |node: u32| {
+                            let mut others = face.into_iter();
+                            others.find(|other| origin(*other) == origin(node))
+                        };
+                        let second = first.map(|node| partner(node).unwrap_or(node));
+                        if second != first {
+                            cut.push([first, second]);
+                        }
+                    }
+                }
+            }
+        }
+        cut
+    }
+}
