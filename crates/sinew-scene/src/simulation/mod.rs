@@ -183,11 +183,11 @@ impl Simulation {
         step::outrun(self.system(), self.dt, integrator, state)
     }
 
-    /// Sentences of what tools could not do, up to this state.
+    /// Sentences of what tools and the lips of cuts could not do, up to this state.
     #[must_use]
     pub fn left_by_tools(&self, state: &State) -> Vec<String> {
         let size = self.system().extent().unwrap_or(0.0);
-        let tools = self.model().tools();
+        let tools = self.model().contact();
         tools.map_or_else(Vec::new, |tools| tool_end::sentences(tools, size, state))
     }
 

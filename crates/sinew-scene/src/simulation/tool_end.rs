@@ -58,5 +58,12 @@ pub(super) fn sentences(tools: &Tools, size: f64, state: &State) -> Vec<String> 
             ));
         }
     }
+    let residual = tools.lips_report(state).largest_residual;
+    if residual > CONVERGED {
+        said.push(format!(
+            "the contacts of lips of the cut are unconverged: the last sweep of a step still changed a displacement by {} of the largest",
+            short(residual)
+        ));
+    }
     said
 }

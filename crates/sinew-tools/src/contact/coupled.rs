@@ -5,10 +5,10 @@ use sinew_core::{Meeting, State};
 use super::count::Count;
 use super::links::{Link, LinkedNode, Links, Rule};
 use super::node::Compliance;
-use super::record::{OF_HELD, OF_VELOCITY, Record, swing};
+use super::record::{OF_HELD, OF_PAIR, OF_VELOCITY, Record, swing};
 use super::report::displacement_of;
 use super::room::Room;
-use super::tool::{Corner, Tool};
+use super::tool::{Corner, Tool, TouchedCell};
 use super::tool_step::{ToolStep, Way, is_near};
 use super::tools::Tools;
 use crate::shape::TriangleTouch;
@@ -50,6 +50,7 @@ impl Tools {
                 state,
                 held: record.held,
                 velocities: record.velocities,
+                pairs: record.pairs,
                 shares,
             };
             if pass == 1 {
@@ -68,6 +69,7 @@ impl Tools {
                 state,
                 held: &[],
                 velocities: &[],
+                pairs: &[],
                 shares,
             };
             let moved = &room.links.moved;
@@ -79,6 +81,15 @@ impl Tools {
         }
         if passes > 1 {
             room.pass(&self.tools, [0.0, 1.0]);
+        }
+        let began = |place: u32| {
+            let TouchedCell { cell, rest, .. } = self.cells[place as usize];
+            let to = add(rest, displacement_of(&state.u, cell));
+            sub(to, scaled(displacement_of(&state.v, cell), meeting.dt))
+        };
+        for (pair, kept) in self.lips.pairs.iter().zip(record.pairs.iter_mut()) {
+            let [one, other] = pair.nodes.map(|node| node.at(began));
+            *kept = sub(other, one);
         }
     }
 
@@ -113,6 +124,8 @@ struct Search<'a> {
     held: &'a [[f64; OF_HELD]],
     /// Velocities (m/s) before the step, where they are known.
     velocities: &'a [[f64; OF_VELOCITY]],
+    /// What is kept of each pair of lips.
+    pairs: &'a [[f64; OF_PAIR]],
     /// The shares of the step between which the pass is.
     shares: [f64; 2],
 }
@@ -179,7 +192,7 @@ impl Search<'_> {
 
     /// Finds how cut faces lie as the step begins.
     fn find_lips(&self, links: &mut Links) {
-        let at = |corner| self.corner(corner, |place| self.way(place).0);
+        let at = |corner: Corner| corner.at(|place| self.way(place as usize).0);
         self.tools.lips.find_normals(at, &mut links.normals);
     }
 
@@ -192,28 +205,21 @@ impl Search<'_> {
             }
             let from = pair
                 .nodes
-                .map(|node| self.corner(node, |place| self.way(place).0));
-            let stood = |place| self.stood(place, share);
-            let end = |place: usize| add(stood(place), links.moved[place]);
-            let stood = pair.nodes.map(|node| self.corner(node, stood));
-            let end = pair.nodes.map(|node| self.corner(node, end));
+                .map(|node| node.at(|place| self.way(place as usize).0));
+            let stood = |place: u32| self.stood(place as usize, share);
+            let end = |place: u32| add(stood(place), links.moved[place as usize]);
+            let stood = pair.nodes.map(|node| node.at(stood));
+            let end = pair.nodes.map(|node| node.at(end));
             let compliance = |place: u32| self.compliance(place as usize);
             let ways = [from, stood, end];
+            let earlier = self.pairs.get(number as usize).copied().unwrap_or_default();
             let met = self
                 .tools
                 .lips
-                .meet(number, &links.normals, ways, compliance);
+                .meet(number, &links.normals, (earlier, ways), compliance);
             if let Some(link) = met {
                 links.add_lips(link);
             }
-        }
-    }
-
-    /// Where a corner is (m), by where the cell at a place is.
-    fn corner(&self, corner: Corner, cell: impl Fn(usize) -> Vector) -> Vector {
-        match corner {
-            Corner::Cell(place) => cell(place as usize),
-            Corner::Held(at) => at,
         }
     }
 

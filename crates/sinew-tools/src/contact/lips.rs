@@ -58,10 +58,7 @@ pub(super) struct LipLink {
 impl Lips {
     /// Those of cut faces, on touched cells that rest at these places (m).
     pub(super) fn of(faces: Vec<CutFace>, rest: impl Fn(u32) -> Vector) -> Self {
-        let at = |corner: Corner| match corner {
-            Corner::Cell(place) => rest(place),
-            Corner::Held(at) => at,
-        };
+        let at = |corner: Corner| corner.at(&rest);
         let mut ends = Vec::new();
         for (face, CutFace { corners }) in (0..).zip(&faces) {
             let [first, second] = corners;
@@ -126,12 +123,12 @@ impl Lips {
         }));
     }
 
-    /// A pair that comes together on its way between places (m) of its nodes, in spite of what has moved them: see [`LipLink`].
+    /// A pair that comes together on its way between places (m) of its nodes, in spite of what has moved them, with the way (m) from one to the other as the step before began.
     pub(super) fn meet(
         &self,
         pair: u32,
         normals: &[[Vector; 2]],
-        [from, stood, end]: [[Vector; 2]; 3],
+        (earlier, [from, stood, end]): (Vector, [[Vector; 2]; 3]),
         compliance: impl Fn(u32) -> Compliance,
     ) -> Option<LipLink> {
         let Pair {
@@ -164,8 +161,9 @@ impl Lips {
         if !sides.into_iter().all(faces_it) || aside > *reach {
             return None;
         }
-        // What overlaps already may not overlap more: to push it out would bring in energy.
-        let floor = before.min(0.0);
+        // Contact works at the mean of the velocities of two steps, by what closes since the first began: it brings in no energy where it leaves nodes as far apart as they
+        // were at either beginning, or at rest. What overlaps already, as its normal has turned, may not overlap more.
+        let floor = before.min(dot(earlier, normal)).min(0.0);
         let distance = |of: [Vector; 2]| dot(sub(of[1], of[0]), normal);
         if distance(end) >= floor {
             return None;

@@ -19,7 +19,7 @@ impl Contact for Tools {
     }
 
     fn may_be_left_out(&self) -> bool {
-        self.tools.iter().all(|tool| tool.cells.is_empty()) && self.counts.lips
+        self.tools.iter().all(|tool| tool.cells.is_empty()) && self.counts.pairs > 0
     }
 
     fn kept(&self) -> usize {
@@ -32,7 +32,7 @@ impl Contact for Tools {
         let mut record = Record::of(&mut kept, &self.counts);
         record.forget_last_step();
         room.take(&self.tools, state, meeting, record.bodies);
-        if self.linking != 0 || self.counts.lips {
+        if self.linking != 0 || self.counts.pairs > 0 {
             self.link(&mut room, meeting, state, &mut record);
         }
         room.look(&self.cells, state, meeting.dt, self.counts.holds);

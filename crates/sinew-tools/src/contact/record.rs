@@ -38,8 +38,9 @@ pub(super) const OF_VELOCITY: usize = 3;
 /// Numbers of a cell that may be held.
 pub(super) const OF_HELD: usize = 4;
 
-/// Numbers of the lips of cuts.
+/// Numbers of the lips of cuts together, and of each pair.
 pub(super) const OF_LIPS: usize = 3;
+pub(super) const OF_PAIR: usize = 3;
 
 /// Their places: the pairs that pushed each other in the last step, and what the iteration left of them then and at most.
 pub(super) const LIP_CONTACTS: usize = 0;
@@ -76,6 +77,8 @@ pub(super) struct Record<'a> {
     pub(super) held: &'a mut [[f64; OF_HELD]],
     /// Of the lips of cuts, once; empty where there are none.
     pub(super) lips: &'a mut [[f64; OF_LIPS]],
+    /// Of each pair of lips from the one to the other (m), as the last step began.
+    pub(super) pairs: &'a mut [[f64; OF_PAIR]],
 }
 
 /// How many there are of what a record tells of.
@@ -88,14 +91,20 @@ pub(super) struct Counts {
     pub(super) rubs: bool,
     /// Whether any tool ever holds.
     pub(super) holds: bool,
-    /// Whether there are lips of cuts.
-    pub(super) lips: bool,
+    /// Pairs of nodes at the lips of cuts.
+    pub(super) pairs: usize,
 }
 
 impl Counts {
     /// Numbers of a record.
     pub(super) fn numbers(&self) -> usize {
-        self.of_lips().end
+        self.of_pairs().end
+    }
+
+    /// Places of the numbers of pairs of lips.
+    pub(super) fn of_pairs(&self) -> Range<usize> {
+        let first = self.of_lips().end;
+        first..first + self.pairs * OF_PAIR
     }
 
     /// Places of the numbers of cells that may be held.
@@ -108,7 +117,7 @@ impl Counts {
     /// Places of the numbers of lips.
     pub(super) fn of_lips(&self) -> Range<usize> {
         let first = self.of_held().end;
-        first..first + if self.lips { OF_LIPS } else { 0 }
+        first..first + if self.pairs > 0 { OF_LIPS } else { 0 }
     }
 
     /// Places of the numbers of bodies.
@@ -134,6 +143,7 @@ impl Counts {
 impl<'a> Record<'a> {
     /// The record in these numbers, as many as [`Counts::numbers`] says.
     pub(super) fn of(numbers: &'a mut [f64], counts: &Counts) -> Self {
+        let (numbers, of_pairs) = numbers.split_at_mut(counts.of_lips().end);
         let (numbers, of_lips) = numbers.split_at_mut(counts.of_held().end);
         let (numbers, of_held) = numbers.split_at_mut(counts.of_velocities().end);
         let (numbers, of_velocities) = numbers.split_at_mut(counts.of_cells().end);
@@ -146,6 +156,7 @@ impl<'a> Record<'a> {
             velocities: of_velocities.as_chunks_mut().0,
             held: of_held.as_chunks_mut().0,
             lips: of_lips.as_chunks_mut().0,
+            pairs: of_pairs.as_chunks_mut().0,
         }
     }
 

@@ -61,6 +61,16 @@ pub enum Corner {
     Held([f64; 3]),
 }
 
+impl Corner {
+    /// Where it is (m), by where the cell at a place is.
+    pub(super) fn at(self, cell: impl Fn(u32) -> [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::Cell(place) => cell(place),
+            Self::Held(at) => at,
+        }
+    }
+}
+
 impl ToolsError {
     /// The name of the tool at fault; `None` where it is none alone.
     #[must_use]

@@ -155,7 +155,7 @@ impl Tools {
                 cells: cells.len(),
                 rubs: tools.iter().any(|tool| tool.friction > 0.0),
                 holds: tools.iter().any(|tool| tool.grasp.is_some()),
-                lips: !lips.pairs.is_empty(),
+                pairs: lips.pairs.len(),
             },
             linking,
             room: Mutex::new(Room::of(

@@ -1,0 +1,156 @@
+//! Lips of cuts, which do not pass each other.
+
+#![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::CutRun;
+use sinew_core::{LinearSystem, System};
+use sinew_scene::{Scene, Simulation};
+
+const E: f64 = 3500.0;
+const EXPLICIT: &str = "integrator = \"symplectic-euler\"\ndt = 4e-4\n";
+
+/// A bar along z whose foot is held, cut through at `height` (m) by a blade along y before the motion begins.
+fn cut_bar(folder: &Path, height: [f64; 2], more: &str, lips: &str, run: &str) -> Simulation {
+    let [low, high] = height;
+    let strokes = format!(
+        "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n1,-2,-0.001,-0.01,{low},-0.001,0.03,{low}\n1,-1,0.021,-0.01,{high},0.021,0.03,{high}\n"
+    );
+    let text = format!(
+        "{more}[mesh]\nblock = {{ cells = [2, 2, 6], size = [0.02, 0.02, 0.06] }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
+         youngs_modulus = {E}\npoissons_ratio = 0.0\n[[fixed]]\nwhere = {{ below = {{ z = 0.0 }} }}\n{TIP}[cutting]\ntable = \"strokes.csv\"\n{lips}\n\
+         [run]\nduration = 1.5\n{run}"
+    );
+    let path = folder.join("scene.toml");
+    fs::write(folder.join("strokes.csv"), strokes).unwrap();
+    fs::write(&path, text).unwrap();
+    Scene::load(path).and_then(Scene::build).unwrap()
+}
+
+const DAMPED: &str = "[damping]\nmass = 40.0\nstiffness = 0.0\n";
+const DOWN: &str = "gravity = [0.0, 0.0, -9.81]\n";
+const TIP: &str = "[[probe]]\nname = \"tip\"\npoint = [0.02, 0.02, 0.06]\n";
+
+/// The mean displacement (m) of the top along z at the end of a run, and what of it ran.
+fn sunk(scene: Simulation) -> (f64, CutRun) {
+    let steps = scene.run().steps;
+    let mut run = CutRun::new(scene);
+    run.advance(steps);
+    let body = run.simulation.model().body().unwrap();
+    let mut u = vec![[0.0; 3]; body.mesh.points.len()];
+    let (t, state) = (run.state.t(), &run.state);
+    body.model.displacements_at(t, &state.u, &mut u).unwrap();
+    let all = body.mesh.points.iter().zip(&u);
+    let top: Vec<f64> = all
+        .filter(|(point, _)| point[2] > 0.0599)
+        .map(|(_, u)| -u[2])
+        .collect();
+    (top.iter().sum::<f64>() / top.len() as f64, run)
+}
+
+#[test]
+fn a_cut_bar_bears_what_rests_on_it_as_a_whole_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let more = format!("{DOWN}{DAMPED}");
+    let of = |height: f64, lips: &str| {
+        let scene = cut_bar(folder.path(), [height; 2], &more, lips, EXPLICIT);
+        sunk(scene)
+    };
+    // A blade above the bar cuts nothing.
+    let (whole, run) = of(0.07, "lips = \"contact\"");
+    assert_eq!(run.cutter.borrow().pieces(), 1);
+    // The tip of a column under its own weight sinks by rho g L^2 / (2 E).
+    let expected = 1000.0 * 9.81 * 0.06_f64.powi(2) / (2.0 * E);
+    assert!((whole / expected - 1.0).abs() < 0.02, "{whole} {expected}");
+    let (met, run) = of(0.03, "lips = \"contact\"");
+    assert_eq!(run.cutter.borrow().pieces(), 2);
+    // Lips slide: only what the unequal loads of corners shear across the cut is lost.
+    assert!((met / whole - 1.0).abs() < 0.01, "{met} {whole}");
+    let contact = run.simulation.model().contact().unwrap();
+    let report = contact.lips_report(&run.state);
+    assert_eq!((contact.lip_pairs(), report.contacts), (9, 9));
+    let (free, _) = of(0.03, "lips = \"free\"");
+    assert!(free > 10.0 * whole, "{free} {whole}");
+}
+
+#[test]
+fn a_plate_on_a_cut_bar_presses_with_e_a_d_over_l() {
+    let folder = tempfile::tempdir().unwrap();
+    let plate = "[damping]\nmass = 40.0\nstiffness = 0.0\n[[tool]]\nname = \"plate\"\nshape = { plane = {} }\ntable = \"plate.csv\"\n";
+    let turn = std::f64::consts::PI;
+    let poses = format!(
+        "t_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n0,0,0,0.06,{turn},0,0\n0.2,0,0,0.058,{turn},0,0\n"
+    );
+    fs::write(folder.path().join("plate.csv"), poses).unwrap();
+    let force = |lips: &str| {
+        let scene = cut_bar(folder.path(), [0.03; 2], plate, lips, EXPLICIT);
+        let (_, run) = sunk(scene);
+        let contact = run.simulation.model().contact().unwrap();
+        (
+            contact.report(&run.state, 0).force[2],
+            contact.lips_report(&run.state).largest_residual,
+        )
+    };
+    let expected = E * 4e-4 * 0.002 / 0.06;
+    let (met, residual) = force("lips = \"contact\"");
+    assert!((met / expected - 1.0).abs() < 1e-9, "{met} {expected}");
+    assert!(residual <= 1e-13, "{residual}");
+    let (free, _) = force("lips = \"free\"");
+    assert!(free < 0.01 * expected, "{free} {expected}");
+}
+
+#[test]
+fn lips_that_bounce_on_each_other_bring_in_no_energy() {
+    let folder = tempfile::tempdir().unwrap();
+    for heights in [[0.03; 2], [0.022, 0.038]] {
+        let scene = cut_bar(folder.path(), heights, DOWN, "snap = 0.25", EXPLICIT);
+        let dt = scene.run().dt;
+        let mut run = CutRun::new(scene);
+        run.advance(1);
+        assert_eq!(run.cutter.borrow().pieces(), 2);
+        let (mut before, mut energy) = (run.state.clone(), f64::INFINITY);
+        let (mut met, mut scale): (usize, f64) = (0, 0.0);
+        for _ in 0..2000 {
+            run.advance(1);
+            let model = &run.simulation.model().body().unwrap().model;
+            let (quadratic, weight) = (
+                |x: &[f64]| {
+                    let mut out = vec![0.0; x.len()];
+                    model.operators().stiffness().multiply(x, &mut out);
+                    x.iter().zip(&out).map(|(x, out)| x * out).sum::<f64>()
+                },
+                |cell: usize| 9.81 * model.mass()[cell],
+            );
+            let (u, v) = (&run.state.u, &run.state.v);
+            let mean: Vec<f64> = before.u.iter().zip(u).map(|(a, b)| 0.5 * (a + b)).collect();
+            let moving: f64 = v.iter().zip(model.mass()).map(|(v, m)| m * v * v).sum();
+            let lifted: f64 = (2..u.len()).step_by(3).map(|z| weight(z) * mean[z]).sum();
+            let kinetic = 0.5 * (moving - dt * dt / 4.0 * quadratic(v));
+            let now = kinetic + 0.5 * quadratic(&mean) + lifted;
+            scale = scale.max(kinetic);
+            assert!(
+                now <= energy + 1e-12 * scale.max(lifted.abs()),
+                "{now} {energy}"
+            );
+            let contact = run.simulation.model().contact().unwrap();
+            met += contact.lips_report(&run.state).contacts;
+            (before, energy) = (run.state.clone(), now);
+        }
+        assert!(met > 1000, "{met}");
+    }
+}
+
+#[test]
+fn a_method_that_nothing_can_push_goes_on_without_lips() {
+    let folder = tempfile::tempdir().unwrap();
+    let newmark = "integrator = \"newmark\"\ndt = 4e-3\n";
+    let more = format!("{DOWN}{DAMPED}");
+    let scene = cut_bar(folder.path(), [0.03; 2], &more, "", newmark);
+    let (sunk, _) = sunk(scene);
+    assert!(sunk > 0.05, "{sunk}");
+}
