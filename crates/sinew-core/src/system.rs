@@ -78,6 +78,12 @@ pub trait System: Send + Sync {
         None
     }
 
+    /// Whether something touches it that a method has to meet: see [`Contact::may_be_left_out`].
+    fn needs_contact(&self) -> bool {
+        let contact = self.contact();
+        contact.is_some_and(|contact| !contact.may_be_left_out())
+    }
+
     /// Energies, where the system knows them.
     fn energy(&self, _u: &[f64], _v: &[f64]) -> Option<Energy> {
         None

@@ -120,7 +120,7 @@ impl<M: Scheme> Integrator for Frame<M> {
     }
 
     fn prepare(&mut self, system: &dyn System, dt: f64) -> Result<StepReport, SetupError> {
-        if self.scheme.refuses_contact() && needs_contact(system) {
+        if self.scheme.refuses_contact() && system.needs_contact() {
             return Err(Self::no_contact());
         }
         let work = self.set_up(system, dt)?;
@@ -280,7 +280,7 @@ impl<M: Scheme> Frame<M> {
             Ready::ByHand(steps) => steps.meets_contact(),
             Ready::Not => false,
         };
-        if can_be_pushed || !needs_contact(system) {
+        if can_be_pushed || !system.needs_contact() {
             return Ok(());
         }
         Err(Self::no_contact())
@@ -324,12 +324,6 @@ impl<M: Scheme> Frame<M> {
                 reason: unfit.to_string(),
             })
     }
-}
-
-/// Whether something touches the body that no step may leave out.
-fn needs_contact(system: &dyn System) -> bool {
-    let contact = system.contact();
-    contact.is_some_and(|contact| !contact.may_be_left_out())
 }
 
 /// The first instant (s) at which a load breaks a method's condition over a step of the batch.

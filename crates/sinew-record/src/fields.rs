@@ -113,7 +113,8 @@ impl<'a> Fields<'a> {
             u: of_nodes(true),
             v: of_nodes(true),
             a: of_nodes(settings.acceleration),
-            contact: model.contact().map(|_| ContactFields::new(nodes)),
+            // Lips of cuts alone have none: frames before and after a cut have the same fields.
+            contact: model.needs_contact().then(|| ContactFields::new(nodes)),
             tets: Tets::default(),
             regions: model.region_of().iter().map(number).collect(),
             stressed: !springs,

@@ -54,7 +54,7 @@ fn set_up(
 /// which they refuse before they factorise.
 fn survey(simulation: &Simulation) -> Vec<IntegratorFacts> {
     let system = simulation.system();
-    let has_tools = system.contact().is_some();
+    let has_tools = system.needs_contact();
     let entries = sinew_integrators::entries().into_iter();
     let facts = entries.map(|entry| {
         let mut facts = IntegratorFacts {

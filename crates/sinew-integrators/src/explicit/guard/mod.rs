@@ -152,7 +152,7 @@ impl Integrator for Guarded {
             return Ok(StepReport::default());
         }
         self.prepared.forget();
-        if system.contact().is_some() {
+        if system.needs_contact() {
             return Err(SetupError::Contact {
                 integrator: self.inner.id(),
                 reason: "tools do work that the limits of a guard do not know",
