@@ -40,7 +40,7 @@ pub enum CouplingError {
     /// A coupling that would make energy in each tick.
     #[error(
         "a coupling of {stiffness} N/m and {damping} N s/m on a device with {device} N s/m and ticks of {tick} s: its forces would be held so long that they drive \
-         the device; at most {largest} N/m with this damping"
+         the device; it has to be below {largest} N/m with this damping"
     )]
     TooStiff {
         /// Its stiffness (N/m).
@@ -51,13 +51,15 @@ pub enum CouplingError {
         device: f64,
         /// A tick (s).
         tick: f64,
-        /// The largest stiffness (N/m) with that damping.
+        /// The stiffness (N/m) below which it has to be with that damping; 0: no stiffness will do.
         largest: f64,
     },
 }
 
 impl Coupling {
-    /// A coupling of this stiffness (N/m) with the damping `k T`: twice what holding the spring's force for a tick T takes from it.
+    /// A coupling of this stiffness k (N/m) with the damping `B = k T`: twice what holding the spring's force for a tick T takes from it.
+    ///
+    /// [`Self::check`] accepts it for `k < 2 b/(3 T)`, where b is the damping of the device.
     #[must_use]
     pub fn of(stiffness: f64, device: &DeviceLimits) -> Self {
         Self {
@@ -66,7 +68,7 @@ impl Coupling {
         }
     }
 
-    /// The largest stiffness (N/m) that a device renders with this damping, 0 where it renders none.
+    /// The stiffness (N/m) below which a device renders a coupling of this damping, `2 (b - |B|)/T`; 0 where it renders none. The bound itself is refused.
     ///
     /// From `b > k T/2 + |B|`: Colgate and Schenkel, Passivity of a class of sampled-data systems (Journal of Robotic Systems 14, 1997), for a spring k and a
     /// damper B whose force is held for T on a device with the damping b.
@@ -78,7 +80,7 @@ impl Coupling {
     /// Checks all numbers, and the bound of [`Self::largest_stiffness`].
     ///
     /// # Errors
-    /// [`CouplingError`] for what the device cannot render, with the largest stiffness that it can.
+    /// [`CouplingError`] for what the device cannot render, with the stiffness below which it can.
     pub fn check(&self, device: &DeviceLimits) -> Result<(), CouplingError> {
         for (name, value) in [
             ("stiffness of the coupling", self.stiffness),
@@ -127,7 +129,7 @@ mod tests {
         };
         assert_eq!(spring(1999.0).check(&DEVICE), Ok(()));
         let refused = spring(2000.0).check(&DEVICE).unwrap_err().to_string();
-        assert!(refused.contains("at most 2000 N/m"), "{refused}");
+        assert!(refused.contains("below 2000 N/m"), "{refused}");
         // Its own damper takes a share.
         let damped = Coupling {
             stiffness: 1000.0,
@@ -135,7 +137,12 @@ mod tests {
         };
         assert_eq!(damped.largest_stiffness(&DEVICE), 800.0);
         assert!(damped.check(&DEVICE).is_err());
-        assert_eq!(Coupling::of(600.0, &DEVICE).check(&DEVICE), Ok(()));
+    }
+
+    #[test]
+    fn a_coupling_with_its_own_damping_is_below_two_thirds_of_b_over_t() {
+        assert_eq!(Coupling::of(666.0, &DEVICE).check(&DEVICE), Ok(()));
+        assert!(Coupling::of(667.0, &DEVICE).check(&DEVICE).is_err());
     }
 
     #[test]

@@ -63,7 +63,6 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
             "sinew-scene",
             "sinew-session",
             "sinew-tools",
-            "sinew-cutting",
         ],
     ),
     (
