@@ -15,12 +15,20 @@ use sinew_scene::{Scene, Simulation};
 const E: f64 = 3500.0;
 const EXPLICIT: &str = "integrator = \"symplectic-euler\"\ndt = 4e-4\n";
 
-/// A bar along z whose foot is held, cut through at `height` (m) by a blade along y before the motion begins.
+/// A bar along z whose foot is held, cut through between these heights (m).
 fn cut_bar(folder: &Path, height: [f64; 2], more: &str, lips: &str, run: &str) -> Simulation {
-    let [low, high] = height;
-    let strokes = format!(
-        "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n1,-2,-0.001,-0.01,{low},-0.001,0.03,{low}\n1,-1,0.021,-0.01,{high},0.021,0.03,{high}\n"
-    );
+    bar_of_strokes(folder, &across(height), more, lips, run)
+}
+
+/// A blade along y that goes along x before the motion begins.
+fn across([low, high]: [f64; 2]) -> String {
+    format!(
+        "1,-2,-0.001,-0.01,{low},-0.001,0.03,{low}\n1,-1,0.021,-0.01,{high},0.021,0.03,{high}\n"
+    )
+}
+
+fn bar_of_strokes(folder: &Path, strokes: &str, more: &str, lips: &str, run: &str) -> Simulation {
+    let strokes = format!("stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n{strokes}");
     let text = format!(
         "{more}[mesh]\nblock = {{ cells = [2, 2, 6], size = [0.02, 0.02, 0.06] }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
          youngs_modulus = {E}\npoissons_ratio = 0.0\n[[fixed]]\nwhere = {{ below = {{ z = 0.0 }} }}\n{TIP}[cutting]\ntable = \"strokes.csv\"\n{lips}\n\
@@ -87,21 +95,30 @@ fn a_plate_on_a_cut_bar_presses_with_e_a_d_over_l() {
         "t_s,x_m,y_m,z_m,rx_rad,ry_rad,rz_rad\n0,0,0,0.06,{turn},0,0\n0.2,0,0,0.058,{turn},0,0\n"
     );
     fs::write(folder.path().join("plate.csv"), poses).unwrap();
-    let force = |lips: &str| {
-        let scene = cut_bar(folder.path(), [0.03; 2], plate, lips, EXPLICIT);
+    let crossing =
+        "2,-0.6,0.01,-0.001,-0.01,0.01,-0.001,0.07\n2,-0.5,0.01,0.021,-0.01,0.01,0.021,0.07\n";
+    let pressed = |crossing: &str, lips: &str| {
+        let strokes = across([0.03; 2]) + crossing;
+        let scene = bar_of_strokes(folder.path(), &strokes, plate, lips, EXPLICIT);
         let (_, run) = sunk(scene);
         let contact = run.simulation.model().contact().unwrap();
-        (
-            contact.report(&run.state, 0).force[2],
-            contact.lips_report(&run.state).largest_residual,
-        )
+        let force = contact.report(&run.state, 0).force[2];
+        let residual = contact.lips_report(&run.state).largest_residual;
+        let said = run.simulation.left_by_tools(&run.state).join("\n");
+        (force, residual, (run.cutter.borrow().pieces(), said))
     };
     let expected = E * 4e-4 * 0.002 / 0.06;
-    let (met, residual) = force("lips = \"contact\"");
-    assert!((met / expected - 1.0).abs() < 1e-9, "{met} {expected}");
-    assert!(residual <= 1e-13, "{residual}");
-    let (free, _) = force("lips = \"free\"");
+    // Where cuts cross, four nodes are there for one.
+    for (crossing, pieces) in [("", 2), (crossing, 4)] {
+        let (met, residual, (now, said)) = pressed(crossing, "lips = \"contact\"");
+        assert!((met / expected - 1.0).abs() < 1e-9, "{met} {expected}");
+        assert!(residual <= 1e-12, "{residual}");
+        assert_eq!((now, said.as_str()), (pieces, ""));
+    }
+    // The loose half is pushed into the other by as much as the plate moves.
+    let (free, _, (_, said)) = pressed("", "lips = \"free\"");
     assert!(free < 0.01 * expected, "{free} {expected}");
+    insta::assert_snapshot!(said, @"lips of the cut overlap by 8e-7 m3 in the end, 0.0333 of the body's volume");
 }
 
 #[test]

@@ -11,17 +11,9 @@ impl CutMesh {
     /// same places, in the same order. Faces of tetrahedra that were taken away are none.
     #[must_use]
     pub fn cut_faces(&self) -> Vec<[[u32; 3]; 2]> {
-        let count = self
-            .origins
-            .iter()
-            .max()
-            .map_or(0, |last| *last as usize + 1);
-        let mut copies = vec![0_u32; count];
-        for origin in &self.origins {
-            copies[*origin as usize] += 1;
-        }
+        let copied = self.is_copied();
         let origin = |node: u32| self.origins[node as usize];
-        let is_copied = |node: &u32| copies[origin(*node) as usize] > 1;
+        let is_copied = |node: &u32| copied[*node as usize];
         let mut first_at: BTreeMap<[u32; 3], [u32; 3]> = BTreeMap::new();
         let mut cut = Vec::new();
         for nodes in self
@@ -53,5 +45,16 @@ impl CutMesh {
             }
         }
         cut
+    }
+
+    /// Whether each node is one of several that cuts made of one.
+    pub(super) fn is_copied(&self) -> Vec<bool> {
+        let count = self.origins.iter().max();
+        let mut copies = vec![0_u32; count.map_or(0, |last| *last as usize + 1)];
+        for origin in &self.origins {
+            copies[*origin as usize] += 1;
+        }
+        let origins = self.origins.iter();
+        origins.map(|origin| copies[*origin as usize] > 1).collect()
     }
 }

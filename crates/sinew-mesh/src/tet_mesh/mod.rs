@@ -12,6 +12,7 @@ mod find_data;
 mod find_group;
 mod from_mesh;
 mod group;
+mod overlap;
 mod placement;
 mod refine;
 mod split_in_place;

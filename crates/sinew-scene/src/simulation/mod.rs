@@ -188,7 +188,13 @@ impl Simulation {
     pub fn left_by_tools(&self, state: &State) -> Vec<String> {
         let size = self.system().extent().unwrap_or(0.0);
         let tools = self.model().contact();
-        tools.map_or_else(Vec::new, |tools| tool_end::sentences(tools, size, state))
+        let mut said = tools.map_or_else(Vec::new, |tools| tool_end::sentences(tools, size, state));
+        said.extend(
+            self.model()
+                .body()
+                .and_then(|body| tool_end::of_lips(body, state)),
+        );
+        said
     }
 
     /// The steps that cover the duration. A body counts as diverged when a displacement exceeds 100

@@ -3,6 +3,7 @@
 use sinew_core::State;
 use sinew_tools::{ToolReport, Tools};
 
+use super::model::BodyModel;
 use super::tool::ROUNDING;
 use crate::number::short;
 
@@ -66,4 +67,30 @@ pub(super) fn sentences(tools: &Tools, size: f64, state: &State) -> Vec<String> 
         ));
     }
     said
+}
+
+/// Share of a body's volume in which its lips may overlap unsaid.
+const OVERLAP: f64 = 1e-6;
+
+/// A sentence about how far lips of cuts overlap in a state.
+pub(super) fn of_lips(body: &BodyModel, state: &State) -> Option<String> {
+    let cut = &body.cut.as_ref()?.cut;
+    let mut places = vec![[0.0; 3]; cut.mesh.points.len()];
+    body.model
+        .displacements_at(state.t(), &state.u, &mut places)
+        .ok()?;
+    for (place, rest) in places.iter_mut().zip(&cut.mesh.points) {
+        *place = [0, 1, 2].map(|axis| place[axis] + rest[axis]);
+    }
+    let overlap = cut.overlap_of_lips(&places);
+    let whole: f64 = (0..cut.mesh.tets.len())
+        .map(|tet| cut.mesh.volume(tet))
+        .sum();
+    (overlap > OVERLAP * whole).then(|| {
+        format!(
+            "lips of the cut overlap by {} m3 in the end, {} of the body's volume",
+            short(overlap),
+            short(overlap / whole)
+        )
+    })
 }
