@@ -17,8 +17,8 @@ pub(crate) const NONE: u32 = u32::MAX;
 
 /// A body of tetrahedra whose faces can be split and whose tetrahedra can be taken away.
 ///
-/// Tetrahedra keep their numbers, and nodes theirs; copies of nodes are appended. Room for a tenth more nodes is made at the
-/// beginning: until it is used up, strokes allocate nothing.
+/// Tetrahedra keep their numbers, and nodes theirs; copies of nodes are appended. Room for [`spare_nodes`] of them is made at
+/// the beginning: until it is used up, strokes allocate nothing.
 pub struct CuttableBody {
     pub(crate) properties: Box<dyn TetProperties>,
     /// Where the mesh had each of its own nodes.
@@ -62,6 +62,13 @@ pub(crate) struct Room {
     pub(crate) group_of: Vec<u32>,
 }
 
+/// Number of copies of nodes that room is made for beforehand, in whatever has a place for each node of a body: a tenth of the nodes, and
+/// a few for small bodies.
+#[must_use]
+pub fn spare_nodes(nodes: usize) -> usize {
+    nodes / 10 + 16
+}
+
 impl CuttableBody {
     /// The body of a mesh, uncut.
     ///
@@ -69,7 +76,7 @@ impl CuttableBody {
     /// [`CutError`] where a face has more than two tetrahedra, or a tetrahedron names a node twice.
     pub fn new(mesh: &TetMesh, properties: Box<dyn TetProperties>) -> Result<Self, CutError> {
         let (nodes, tets) = (mesh.points.len(), mesh.tets.len());
-        let spare = nodes / 10 + 16;
+        let spare = spare_nodes(nodes);
         let mut edge_at = vec![f64::INFINITY; nodes];
         let (mut longest_edge, mut largest_frequency) = (0.0_f64, 0.0_f64);
         for (tet, corners) in mesh.tets.iter().enumerate() {

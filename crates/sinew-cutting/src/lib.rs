@@ -50,11 +50,12 @@ mod tet;
 mod touch;
 mod vector;
 
-pub use body::CuttableBody;
+pub use body::{CuttableBody, spare_nodes};
 pub use error::CutError;
 pub use pieces::Pieces;
 pub use properties::TetProperties;
 pub use report::{Removal, Stroke};
 pub use saved::SavedBodyError;
 pub use sheet::Sheet;
+pub use snap::FREQUENCY_GROWTH;
 pub use strokes::{BladeAct, BladePose, Strokes, StrokesError};

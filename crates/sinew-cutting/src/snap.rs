@@ -8,8 +8,8 @@ use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES, gradients, quality, volume};
 use crate::vector::{Vector, add, cross, dot, length, scaled, sub};
 
-/// Frequency of a tetrahedron with a moved node, in terms of the mesh's largest, at most.
-const FREQUENCY: f64 = 1.25;
+/// Factor by which nodes that are moved onto sheets may raise the largest frequency of a mesh's tetrahedra, at most.
+pub const FREQUENCY_GROWTH: f64 = 1.25;
 
 /// Quality of a tetrahedron with a moved node, in terms of what the mesh had, at least.
 const QUALITY: f64 = 0.3;
@@ -226,7 +226,7 @@ impl CuttableBody {
             quality(&at_rest) >= QUALITY * quality(&at_first)
                 && volume(&at_rest) > 0.0
                 && (stands > 0.0 || stood <= 0.0)
-                && frequency <= FREQUENCY * self.largest_frequency
+                && frequency <= FREQUENCY_GROWTH * self.largest_frequency
         })
     }
 }

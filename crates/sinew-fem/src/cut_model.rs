@@ -5,17 +5,15 @@ use std::sync::Arc;
 
 use sinew_core::{Energy, Inputs, LinearSystem, LoadTime, State, System};
 use sinew_cutting::{
-    CutError, CuttableBody, Removal, SavedBodyError, Sheet, Stroke, TetProperties,
+    CutError, CuttableBody, FREQUENCY_GROWTH, Removal, SavedBodyError, Sheet, Stroke,
+    TetProperties, spare_nodes,
 };
 use sinew_mesh::{CutMesh, MovedNode, TetMesh};
 
 use crate::error::{Cause, FemError};
-use crate::in_place::{InPlace, spare};
+use crate::in_place::InPlace;
 use crate::model::{CutStateError, FieldError, NodesCarried, TetFrequencies};
 use crate::{Fixed, Model, On, Problem};
-
-/// Frequency of tetrahedra whose nodes were moved, in terms of the mesh's largest, at most.
-const SNAPPED: f64 = 1.25;
 
 /// No 4-node tetrahedron has a larger factor between its matrix and its blocks.
 const LARGEST_BLOCK_FACTOR: f64 = 4.0;
@@ -185,7 +183,7 @@ impl CutModel {
         let model = match model.element_bounds() {
             Some(mut bounds) => {
                 if snap > 0.0 {
-                    bounds.omega_max *= SNAPPED;
+                    bounds.omega_max *= FREQUENCY_GROWTH;
                     bounds.block_factor = LARGEST_BLOCK_FACTOR;
                 }
                 model.with_element_bounds(bounds)
@@ -200,7 +198,7 @@ impl CutModel {
         let mut body = CuttableBody::new(&mesh, Box::new(properties))?;
         body.keep(&kept_nodes(&mesh, &problem, &model)?);
         let cut = body.mesh(&mesh);
-        let nodes = mesh.points.len() + spare(mesh.points.len());
+        let nodes = mesh.points.len() + spare_nodes(mesh.points.len());
         let mut cut_model = Self {
             uncut: mesh,
             problem,
@@ -226,7 +224,7 @@ impl CutModel {
 
     /// Makes room in a state for the nodes that the model has room for, so that cuts allocate nothing for it either.
     pub fn make_room(&self, state: &mut State) {
-        let more = 3 * spare(self.mesh.nodes.len());
+        let more = 3 * spare_nodes(self.mesh.nodes.len());
         for values in [&mut state.u, &mut state.v, &mut state.a] {
             values.reserve(more);
         }
@@ -466,7 +464,7 @@ impl CutModel {
             can.then(|| InPlace::new(&self.problem, &self.uncut, &self.mesh, &self.densities));
         self.in_place = in_place.flatten().map(Box::new);
         if self.in_place.is_some() {
-            self.mesh.reserve(spare(self.mesh.nodes.len()));
+            self.mesh.reserve(spare_nodes(self.mesh.nodes.len()));
             self.model.make_room_for_splits();
         }
     }

@@ -183,11 +183,15 @@ impl BlockMatrix {
     }
 
     /// Takes over rows, whose matrix is to be symmetric afterwards as it was. Returns whether all rows were laid out anew, which makes room
-    /// for a tenth more cells: without it nothing is allocated.
+    /// for `spare_cells` more than these: without it nothing is allocated.
     ///
     /// # Errors
     /// [`AssemblyError::Row`] and [`AssemblyError::CellOutOfRange`] where rows have other columns than they may; nothing is changed then.
-    pub fn take_rows(&mut self, rows: &RowsOfCells) -> Result<bool, AssemblyError> {
+    pub fn take_rows(
+        &mut self,
+        rows: &RowsOfCells,
+        spare_cells: usize,
+    ) -> Result<bool, AssemblyError> {
         let len = self.layers.block_len();
         let cells = rows.check(&self.pattern, len)?;
         let appended = cells - self.pattern.cells();
@@ -198,7 +202,7 @@ impl BlockMatrix {
             && Arc::get_mut(&mut self.pattern)
                 .is_some_and(|pattern| pattern.has_room(appended, needed));
         if !has_room {
-            *self = self.packed(appended, needed);
+            *self = self.packed(appended, needed, spare_cells);
         }
         let pattern = Arc::make_mut(&mut self.pattern);
         for row in rows.iter() {
@@ -212,16 +216,15 @@ impl BlockMatrix {
         Ok(!has_room)
     }
 
-    /// The same matrix on a pattern of its own, with room for a tenth more cells: [`BlockMatrix::take_rows`] allocates nothing until it is
+    /// The same matrix on a pattern of its own, with room for so many more cells: [`BlockMatrix::take_rows`] allocates nothing until it is
     /// used up.
     #[must_use]
-    pub fn with_room(&self) -> Self {
-        self.packed(0, 0)
+    pub fn with_room(&self, cells: usize) -> Self {
+        self.packed(0, 0, cells)
     }
 
-    /// The same with room for at least so many cells and blocks.
-    fn packed(&self, cells: usize, blocks: usize) -> Self {
-        let spare = self.pattern.cells() / 10 + 16;
+    /// The same with room for so many cells and blocks, and for spare cells with as many blocks as others have.
+    fn packed(&self, cells: usize, blocks: usize, spare: usize) -> Self {
         let (cells, blocks) = (
             cells + spare,
             blocks + spare * self.pattern.blocks_of_new_cell(),

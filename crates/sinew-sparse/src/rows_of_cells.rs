@@ -133,12 +133,12 @@ mod tests {
 
     #[test]
     fn rows_that_shrink_grow_and_are_appended_make_the_matrix_that_they_are_of() {
-        let mut matrix = chain(4, &[[0, 1], [1, 2], [2, 3]]).with_room();
+        let mut matrix = chain(4, &[[0, 1], [1, 2], [2, 3]]).with_room(16);
         let pattern = Arc::as_ptr(matrix.pattern());
         // Cell 1 is split, 2 has both of its parts.
         let split = chain(5, &[[0, 1], [4, 2], [2, 3]]);
         assert_ne!(matrix, split);
-        assert!(!matrix.take_rows(&rows(&split, &[1, 2, 4])).unwrap());
+        assert!(!matrix.take_rows(&rows(&split, &[1, 2, 4]), 16).unwrap());
         assert_eq!(matrix, split);
         assert_eq!(matrix.pattern(), split.pattern());
         assert_eq!(matrix.pattern().blocks(), split.pattern().blocks());
@@ -148,7 +148,7 @@ mod tests {
         split.multiply(&x, &mut out[1]);
         assert_eq!(out[0], out[1]);
         let more = chain(5, &[[0, 1], [4, 2], [2, 3], [0, 2], [0, 3]]);
-        matrix.take_rows(&rows(&more, &[0, 2, 3])).unwrap();
+        matrix.take_rows(&rows(&more, &[0, 2, 3]), 16).unwrap();
         assert_eq!(matrix, more);
     }
 
@@ -161,7 +161,7 @@ mod tests {
             let longer = chain(cells, &springs[..cells - 1]);
             let last = cells as u32 - 1;
             let changed = rows(&longer, &[last - 1, last]);
-            if matrix.take_rows(&changed).unwrap() {
+            if matrix.take_rows(&changed, 16).unwrap() {
                 laid_out.push(cells);
             }
             assert_eq!(matrix, longer);
@@ -172,9 +172,9 @@ mod tests {
 
     #[test]
     fn a_clone_keeps_its_rows() {
-        let mut matrix = chain(3, &[[0, 1], [1, 2]]).with_room();
+        let mut matrix = chain(3, &[[0, 1], [1, 2]]).with_room(16);
         let (before, other) = (matrix.clone(), chain(3, &[[0, 1], [0, 2]]));
-        matrix.take_rows(&rows(&other, &[0, 1, 2])).unwrap();
+        matrix.take_rows(&rows(&other, &[0, 1, 2]), 16).unwrap();
         assert_eq!(matrix, other);
         assert_eq!(before, chain(3, &[[0, 1], [1, 2]]));
     }
@@ -187,7 +187,7 @@ mod tests {
             let mut rows = RowsOfCells::default();
             let blocks = vec![1.0; entries];
             rows.push(cell, columns.iter().map(|column| (*column, &blocks[..])));
-            matrix.take_rows(&rows).unwrap_err()
+            matrix.take_rows(&rows, 16).unwrap_err()
         };
         let row = AssemblyError::Row { row: 1 };
         assert_eq!(refused(1, &[1, 0], 1), row);

@@ -53,20 +53,26 @@ impl CutRows {
 }
 
 impl LinearOperators {
-    /// Makes room for a tenth more cells, so that [`LinearOperators::take_cut_rows`] allocates nothing until it is used up.
-    pub fn make_room_for_cuts(&mut self) {
+    /// Makes room for so many more cells, so that [`LinearOperators::take_cut_rows`] allocates nothing until it is used up.
+    pub fn make_room_for_cuts(&mut self, cells: usize) {
         let matrices = Arc::make_mut(&mut self.matrices);
-        matrices.stiffness = Arc::new(matrices.stiffness.with_room());
-        matrices.mass.reserve(matrices.mass.len() / 10 + 48);
+        matrices.stiffness = Arc::new(matrices.stiffness.with_room(cells));
+        let layers = matrices.stiffness.layers().count();
+        matrices.mass.reserve(layers * cells);
     }
 
     /// Takes over rows of a body that was cut, and appends those of new cells, at the cost of these rows while no other clone shares the
     /// matrices, and of a copy otherwise. These are other matrices afterwards, which know no earlier revision, with bounds by elements as before, which no cut
-    /// passes. Loads are carried over by [`LinearOperators::change_loads`]. Returns whether all rows were laid out anew.
+    /// passes. Loads are carried over by [`LinearOperators::change_loads`]. Returns whether all rows were laid out anew, which makes room for
+    /// `spare_cells` more than these.
     ///
     /// # Errors
     /// [`OperatorError`] where the rows fit neither each other nor the matrix, or where damping has a matrix of its own; nothing is changed then.
-    pub fn take_cut_rows(&mut self, cut: &CutRows) -> Result<bool, OperatorError> {
+    pub fn take_cut_rows(
+        &mut self,
+        cut: &CutRows,
+        spare_cells: usize,
+    ) -> Result<bool, OperatorError> {
         let layers = self.stiffness().layers().count();
         if self.damping().extra.is_some() {
             return Err(OperatorError::Pattern);
@@ -81,9 +87,10 @@ impl LinearOperators {
         let matrices = Arc::make_mut(&mut self.matrices);
         let is_shared = Arc::get_mut(&mut matrices.stiffness).is_none();
         if is_shared {
-            matrices.stiffness = Arc::new(matrices.stiffness.with_room());
+            matrices.stiffness = Arc::new(matrices.stiffness.with_room(spare_cells));
         }
-        let laid_out = Arc::make_mut(&mut matrices.stiffness).take_rows(&cut.rows)? || is_shared;
+        let laid_out =
+            Arc::make_mut(&mut matrices.stiffness).take_rows(&cut.rows, spare_cells)? || is_shared;
         for (cell, mass) in cut.cells().iter().zip(cut.mass.chunks_exact(layers)) {
             let first = *cell as usize * layers;
             match matrices.mass.get_mut(first..first + layers) {

@@ -9,7 +9,7 @@ mod touched;
 use std::sync::Arc;
 
 use sinew_core::{LinearOperators, Pattern};
-use sinew_cutting::{CuttableBody, Stroke};
+use sinew_cutting::{CuttableBody, Stroke, spare_nodes};
 use sinew_mesh::{CutMesh, Split, SplitFollower, TetMesh};
 
 use crate::Problem;
@@ -62,7 +62,7 @@ impl InPlace {
         densities: &Arc<[f64]>,
     ) -> Option<Self> {
         let (nodes, tets) = (cut.mesh.points.len(), cut.mesh.tets.len());
-        let spare = spare(nodes);
+        let spare = spare_nodes(nodes);
         let no_pattern = Pattern::from_elements::<[u32; 0]>(0, []).ok()?;
         Some(Self {
             follower: SplitFollower::new(uncut),
@@ -131,7 +131,8 @@ impl InPlace {
         // The matrix has its pattern for itself while it changes.
         of_model.pattern = Arc::clone(&self.no_pattern);
         of_model.linear_pattern = Arc::clone(&self.no_pattern);
-        let taken = operators.take_cut_rows(&self.gathering.rows);
+        let spare_cells = spare_nodes(operators.stiffness().pattern().cells());
+        let taken = operators.take_cut_rows(&self.gathering.rows, spare_cells);
         of_model.pattern = Arc::clone(operators.stiffness().pattern());
         of_model.linear_pattern = Arc::clone(&of_model.pattern);
         let laid_out = taken.map_err(|error| FemError::new(Item::Mesh, Cause::Operators(error)))?;
@@ -176,11 +177,6 @@ fn split_of(body: &CuttableBody) -> Split<'_> {
         moved,
         tets: changed_tets,
     }
-}
-
-/// Nodes for which room is made.
-pub(crate) fn spare(nodes: usize) -> usize {
-    nodes / 10 + 16
 }
 
 /// The shortest edge (m) at a node of these tetrahedra.

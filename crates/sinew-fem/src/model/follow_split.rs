@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use sinew_core::{Acceleration, Energy, State};
-use sinew_cutting::{CuttableBody, Stroke};
+use sinew_cutting::{CuttableBody, Stroke, spare_nodes};
 
 use super::Model;
 use super::field_error::FieldError;
 use crate::error::FemError;
-use crate::in_place::{InMotion, InPlace, ModelParts, spare};
+use crate::in_place::{InMotion, InPlace, ModelParts};
 
 impl Model {
     /// Whether splits can be followed: in linear bodies of plain tetrahedra whose supports rest. Springs, hyperelastic regions, elements that
@@ -26,12 +26,13 @@ impl Model {
             })
     }
 
-    /// Makes room for a tenth more nodes, so that following splits allocates nothing until it is used up.
+    /// Makes room for [`spare_nodes`], so that following splits allocates nothing until it is used up.
     pub(crate) fn make_room_for_splits(&mut self) {
-        let spare = spare(self.mesh.points.len());
+        let spare = spare_nodes(self.mesh.points.len());
         Arc::make_mut(&mut self.mesh).reserve(spare);
         self.masses.reserve(spare);
-        self.operators.make_room_for_cuts();
+        let cells = self.operators.stiffness().pattern().cells();
+        self.operators.make_room_for_cuts(spare_nodes(cells));
         self.operators
             .change_loads(|_, entries| entries.reserve(3 * spare));
         for load in &mut self.supports.loads {
