@@ -29,6 +29,7 @@ pub mod closed_form;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 mod contact;
+mod counting_allocator;
 mod derived;
 mod elastic_law;
 mod element_bounds;
@@ -77,6 +78,7 @@ pub use bytes::BytesError;
 pub use channel_record::{Between, InputError};
 pub use clock::Clock;
 pub use contact::{Contact, Inertia, Meeting};
+pub use counting_allocator::CountingAllocator;
 pub use elastic_law::{Deformed, ElasticLaw, TangentKind};
 pub use element_bounds::ElementBounds;
 pub use element_forces::{ElementForces, ElementPrecision, ElementSweep, SweepShape, sweep_alone};

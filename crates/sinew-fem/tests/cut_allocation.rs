@@ -1,52 +1,20 @@
 //! Models that follow strokes in their place allocate nothing until the room for new nodes is used up.
 
 #![cfg(test)]
-#![allow(
-    clippy::unwrap_used,
-    unsafe_code,
-    reason = "a test ends where something fails; the allocator that counts must be unsafe"
-)]
+#![allow(clippy::unwrap_used, reason = "a test")]
 
 mod common;
 
-use std::alloc::{GlobalAlloc, Layout, System as Allocator};
-use std::cell::Cell;
 use std::sync::Arc;
 
 use common::{body, held, linear, load};
-use sinew_core::{Inputs, State, System};
+use sinew_core::{CountingAllocator, Inputs, State, System};
 use sinew_cutting::Sheet;
 use sinew_fem::{CutModel, LoadKind, Problem};
 use sinew_mesh::structured::{self, Split};
 
-/// The system's allocator, with a count of what this thread asks for.
-struct Counting;
-
-thread_local! {
-    static ASKED: Cell<usize> = const { Cell::new(0) };
-}
-
-fn count() {
-    // A thread that ends has no count any more.
-    let _ = ASKED.try_with(|asked| asked.set(asked.get() + 1));
-}
-
-// SAFETY: everything is passed on to the system's allocator as it comes.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        // SAFETY: the caller's promises are passed on.
-        unsafe { Allocator.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        // SAFETY: the caller's promises are passed on.
-        unsafe { Allocator.dealloc(block, layout) }
-    }
-}
-
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 fn cuttable() -> (CutModel, State) {
     let mesh = Arc::new(structured::cube(10, 0.1, Split::Kuhn).unwrap());
@@ -73,19 +41,16 @@ fn strokes_allocate_nothing_until_a_tenth_more_nodes_are_used_up_and_one_layout_
         [[x + 0.0007, -0.01, depth], [x + 0.0012, 0.11, depth]]
     };
     let mut slit = |x: f64| {
-        let before = ASKED.with(Cell::get);
         let (mut copies, layouts) = (0, cut.layouts());
-        for n in 0..26 {
-            let sheet = Sheet::swept(blade(x, n), blade(x, n + 1)).unwrap();
-            let report = cut.stroke(&sheet, &mut state, Inputs::none()).unwrap();
-            copies += report.new_nodes;
-        }
-        cut.lift();
-        (
-            copies,
-            cut.layouts() - layouts,
-            ASKED.with(Cell::get) - before,
-        )
+        let asked = CountingAllocator::count(|| {
+            for n in 0..26 {
+                let sheet = Sheet::swept(blade(x, n), blade(x, n + 1)).unwrap();
+                let report = cut.stroke(&sheet, &mut state, Inputs::none()).unwrap();
+                copies += report.new_nodes;
+            }
+            cut.lift();
+        });
+        (copies, cut.layouts() - layouts, asked)
     };
     let (copies, layouts, asked) = slit(0.05);
     assert!((55..=100).contains(&copies), "{copies}");

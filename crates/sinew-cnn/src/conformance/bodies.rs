@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use sinew_core::{Batch, Inputs, State, StepError, StepReport, System};
+use sinew_core::{Batch, CountingAllocator, Inputs, State, StepError, StepReport, System};
 
-use super::allocation::CountingAllocator;
 use super::run::{bits, largest};
 use super::{Make, Method};
 use crate::program::Program;

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use sinew_core::{Acceleration, Batch, Inputs, Layers};
+use sinew_core::{Acceleration, Batch, CountingAllocator, Inputs, Layers};
 
-use super::allocation::CountingAllocator;
 use super::run::{Run, STEPS, all_runs, bits, everything_runs};
 use super::systems::{Changing, Damped, Kind, LONG};
 use super::{Make, Method};

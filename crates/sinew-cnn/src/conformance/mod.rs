@@ -28,7 +28,6 @@
 //! sinew_cnn::machine_conformance!(reference, methods(), || Box::new(ReferenceMachine::default()));
 //! ```
 
-mod allocation;
 mod bodies;
 mod convergence;
 mod dense;
@@ -42,7 +41,6 @@ mod work;
 
 use sinew_core::{Properties, System};
 
-pub use allocation::CountingAllocator;
 pub use bodies::{
     Body, a_refused_body_leaves_the_machine_usable, batches_of_bodies_allocate_nothing,
     batches_of_bodies_change_not_a_bit, bodies_move_as_by_the_reference,
@@ -53,6 +51,7 @@ pub use laws::{
     steps_of_many_cells_are_those_of_the_definition,
 };
 pub use refusing::a_refused_trial_leaves_the_machine_usable;
+pub use sinew_core::CountingAllocator;
 pub use work::work_is_counted;
 
 use crate::{Machine, Program};

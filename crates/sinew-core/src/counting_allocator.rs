@@ -1,4 +1,4 @@
-//! Counting allocations.
+//! An allocator that counts, for tests of what allocates.
 
 #![allow(
     unsafe_code,
@@ -17,10 +17,10 @@ thread_local! {
 static LIVE: AtomicUsize = AtomicUsize::new(0);
 
 /// The system's allocator, which counts what each thread allocates: the global allocator of a test
-/// that asks whether batches allocate.
+/// that asks whether steps or cuts allocate.
 ///
 /// ```
-/// use sinew_cnn::conformance::CountingAllocator;
+/// use sinew_core::CountingAllocator;
 ///
 /// #[global_allocator]
 /// static ALLOCATOR: CountingAllocator = CountingAllocator;
