@@ -296,9 +296,9 @@ fn check_width(tool: &sinew_tools::Tool, built: &BodyModel) -> Result<(), (usize
         return Ok(());
     };
     for (number, part) in tool.shape.parts().iter().enumerate() {
-        let width = part.convex.width();
-        if width < THINNEST * body {
-            return Err((number, ToolFault::Tiny { width, body }));
+        let half_width = part.convex.half_width();
+        if half_width < THINNEST * body {
+            return Err((number, ToolFault::Tiny { half_width, body }));
         }
     }
     Ok(())

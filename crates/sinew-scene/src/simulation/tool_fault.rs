@@ -34,12 +34,12 @@ pub enum ToolFault {
     /// A tool that is thinner than places are known.
     #[error(
         "a radius or half a thickness of {} m, less than 1e-9 of the body, {} m: expected more; are its lengths in m?",
-        short(*width),
+        short(*half_width),
         short(*body)
     )]
     Tiny {
         /// The radius or half the thickness (m).
-        width: f64,
+        half_width: f64,
         /// The size of the body (m).
         body: f64,
     },

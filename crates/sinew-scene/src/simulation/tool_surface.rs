@@ -26,11 +26,11 @@ pub(super) fn under_tips(
     let mut surface: Option<Vec<[u32; 3]>> = None;
     let points = &built.mesh.points;
     for (tool, nodes) in tools.iter_mut().zip(nodes_of) {
-        if tool.shape.smallest_width().is_infinite() {
+        if tool.shape.smallest_half_width().is_infinite() {
             continue;
         }
         let surface = surface.get_or_insert_with(|| without_moved(built));
-        if longest_edge(tool, surface, points, built, duration) <= tool.shape.smallest_width()
+        if longest_edge(tool, surface, points, built, duration) <= tool.shape.smallest_half_width()
             || meets_with_wide_faces(tool, surface, points, built, duration)
         {
             continue;
@@ -142,7 +142,7 @@ fn meets_with_wide_faces(
             let edge = longest_of(&corners);
             tool.shape.parts().iter().all(|part| {
                 let own = before.then(&part.pose).turned_back(outward);
-                part.convex.width_across(own) >= edge
+                part.convex.half_width_across(own) >= edge
             })
         })
     })

@@ -10,7 +10,7 @@ use super::tool_step::ToolStep;
 use crate::swept_box::around;
 use crate::vector::Vector;
 
-/// The longest way of a tool that meets triangles in a pass, in its smallest radii.
+/// The longest way of a tool that meets triangles in a pass, in its smallest half widths.
 const LONGEST_WAY: f64 = 0.5;
 
 /// Most passes of a step.
@@ -77,12 +77,12 @@ impl Room {
         self.bound();
     }
 
-    /// The passes in which a step is taken where tools meet triangles: in each of them such a tool moves by half its width at most.
+    /// The passes in which a step is taken where tools meet triangles: in each of them such a tool moves by a quarter of its smallest width at most.
     pub(super) fn passes_between_nodes(&self, tools: &[Tool]) -> u32 {
         let thin = tools.iter().zip(&self.steps);
         let thin = thin.filter(|(tool, _)| !tool.triangles.is_empty());
-        let passes =
-            thin.map(|(tool, step)| step.way(tool) / (LONGEST_WAY * tool.shape.smallest_width()));
+        let passes = thin
+            .map(|(tool, step)| step.way(tool) / (LONGEST_WAY * tool.shape.smallest_half_width()));
         passes.fold(1.0, f64::max).ceil().min(MOST_PASSES) as u32
     }
 

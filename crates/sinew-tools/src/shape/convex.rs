@@ -175,33 +175,33 @@ impl Convex {
     /// Half the smallest width (m) of what hides behind the shape along a direction in its own frame: nodes that are nearer to each other do not let it pass between them that way.
     /// Infinite for a plane.
     ///
-    /// Across a direction d a cuboid is `sum a_i |e_i|` wide along e, between whose kinks that is a sine above 0: so it is least at one of them, where e is across d and an edge.
+    /// That of a cuboid with half edges a_i is `sum a_i |e_i|` along e, across d; between its kinks that is a sine above 0: so it is least at one of them, where e is across d and an edge.
     #[must_use]
-    pub fn width_across(&self, direction: [f64; 3]) -> f64 {
+    pub fn half_width_across(&self, direction: [f64; 3]) -> f64 {
         let Self::Cuboid { size } = *self else {
-            return self.width();
+            return self.half_width();
         };
         let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let widths = axes.into_iter().filter_map(|axis| {
+        let half_widths = axes.into_iter().filter_map(|axis| {
             let across = cross(direction, axis);
             let size_of_it = length(across);
             // Along an edge all directions across are those of the other two.
             (size_of_it > 1e-9 * length(direction)).then(|| {
-                let width = (0..3).map(|x| size[x] / 2.0 * across[x].abs());
-                width.sum::<f64>() / size_of_it
+                let half_width = (0..3).map(|x| size[x] / 2.0 * across[x].abs());
+                half_width.sum::<f64>() / size_of_it
             })
         });
-        let least = widths.fold(f64::INFINITY, f64::min);
+        let least = half_widths.fold(f64::INFINITY, f64::min);
         if least.is_finite() {
             least
         } else {
-            self.width()
+            self.half_width()
         }
     }
 
-    /// The radius (m) of a round shape, or half the smallest edge of a cuboid; infinite for a plane.
+    /// Half the smallest width (m): the radius of a round shape, or half the smallest edge of a cuboid; infinite for a plane.
     #[must_use]
-    pub fn width(&self) -> f64 {
+    pub fn half_width(&self) -> f64 {
         match *self {
             Self::Sphere { radius } | Self::Capsule { radius, .. } => radius,
             Self::Plane => f64::INFINITY,
@@ -252,13 +252,16 @@ mod tests {
     }
 
     #[test]
-    fn a_cuboid_is_as_wide_across_a_direction_as_its_shadow() {
+    fn half_a_cuboid_is_as_wide_across_a_direction_as_half_its_shadow() {
         let plate = Convex::cuboid([0.2, 0.3, 0.01]).unwrap();
-        assert!((plate.width_across([0.0, 0.0, -2.0]) - 0.1).abs() < 1e-15);
-        assert!((plate.width_across([1.0, 0.0, 0.0]) - 0.005).abs() < 1e-15);
-        assert_eq!(plate.width_across([0.0; 3]), 0.005);
-        assert_eq!(Convex::Plane.width_across([1.0; 3]), f64::INFINITY);
-        assert_eq!(Convex::sphere(0.1).unwrap().width_across([1.0; 3]), 0.1);
+        assert!((plate.half_width_across([0.0, 0.0, -2.0]) - 0.1).abs() < 1e-15);
+        assert!((plate.half_width_across([1.0, 0.0, 0.0]) - 0.005).abs() < 1e-15);
+        assert_eq!(plate.half_width_across([0.0; 3]), 0.005);
+        assert_eq!(Convex::Plane.half_width_across([1.0; 3]), f64::INFINITY);
+        assert_eq!(
+            Convex::sphere(0.1).unwrap().half_width_across([1.0; 3]),
+            0.1
+        );
         // The least over all directions across, by looking at many.
         for direction in [[1.0, 2.0, 3.0], [-0.1, 0.3, 0.02], [1.0, 1.0, 0.0]] {
             let first = cross(direction, [0.3, -0.5, 0.8]);
@@ -273,7 +276,7 @@ mod tests {
                     .sum::<f64>()
             });
             let least = least.fold(f64::INFINITY, f64::min);
-            assert!((plate.width_across(direction) - least).abs() < 1e-4);
+            assert!((plate.half_width_across(direction) - least).abs() < 1e-4);
         }
     }
 

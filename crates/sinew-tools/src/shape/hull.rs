@@ -71,7 +71,7 @@ impl Hull {
             }),
             Convex::Plane => None,
             Convex::Cuboid { size } => {
-                let radius = ROUNDED * convex.width();
+                let radius = ROUNDED * convex.half_width();
                 Some(Self {
                     half: size.map(|edge| edge / 2.0 - radius),
                     core: Core::Box,

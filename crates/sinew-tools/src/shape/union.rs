@@ -75,11 +75,11 @@ impl Shape {
         reaches.reduce(|a, b| Some(a?.max(b?)))?
     }
 
-    /// The smallest radius (m) of its parts, or half the smallest edge of a cuboid; infinite for planes alone.
+    /// The least half width (m) of its parts, radii or half edges of cuboids; infinite for planes alone.
     #[must_use]
-    pub fn smallest_width(&self) -> f64 {
-        let widths = self.parts.iter().map(|part| part.convex.width());
-        widths.fold(f64::INFINITY, f64::min)
+    pub fn smallest_half_width(&self) -> f64 {
+        let half_widths = self.parts.iter().map(|part| part.convex.half_width());
+        half_widths.fold(f64::INFINITY, f64::min)
     }
 
     /// The parts, at least one.

@@ -35,18 +35,18 @@ pub(super) fn warnings(simulation: &Simulation, built: &BodyModel) -> Vec<Warnin
         }));
         warnings.extend(unmet(simulation, built, index));
         if !tool.triangles.is_empty() {
-            let width = tool.shape.smallest_width();
+            let half_width = tool.shape.smallest_half_width();
             let what = format!(
                 "tool `{name}` has a radius or half a thickness of {} m, below the longest edge of the surface within its reach: it meets triangles as well as \
                  nodes, and how deep it gets depends on the mesh",
-                short(width)
+                short(half_width)
             );
             let warning = Warning::new(
                 WarningKind::SmallTool,
                 what,
                 "refine the mesh where it presses",
             );
-            warnings.push(warning.with(&[("radius_m", width)]));
+            warnings.push(warning.with(&[("radius_m", half_width)]));
         }
         let way = highest_speed(&tool.motion) * simulation.dt();
         let size = built.model.extent().unwrap_or(f64::INFINITY);
