@@ -66,14 +66,9 @@ impl Sheet {
         }
     }
 
-    /// Whether a point, brought to the plane along the normal, lies in the sheet.
-    #[must_use]
-    pub fn covers(&self, point: [f64; 3]) -> bool {
-        self.passes(point, [0.0; 3])
-    }
-
-    /// Whether the blade passes a point of tissue that has moved so far since the blade was where the sheet begins: seen from there, the blade
-    /// began so much farther on. Without that, tissue which comes towards a blade would slip through between two sheets.
+    /// Whether the blade passes a point, brought to the plane along the normal, of tissue that has moved so far since the blade was where
+    /// the sheet begins: seen from there, the blade began so much farther on. Without that, tissue which comes towards a blade would slip
+    /// through between two sheets.
     pub(crate) fn passes(&self, point: Vector, moved: Vector) -> bool {
         let flat = |vector: Vector| self.axes.map(|axis| dot(axis, vector));
         let place = flat(sub(point, self.centre));
@@ -133,21 +128,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sheet_covers_what_lies_over_it_and_nothing_else() {
+    fn a_blade_passes_what_lies_over_its_sheet_and_nothing_else() {
         let sheet = Sheet::swept(
             [[0.0, 0.0, 1.0], [0.0, 2.0, 1.0]],
             [[3.0, 0.0, 1.0], [3.0, 2.0, 1.0]],
         );
         let sheet = sheet.unwrap();
         assert_eq!(sheet.normal(), [0.0, 0.0, -1.0]);
-        for (place, is_covered) in [
+        for (place, is_passed) in [
             ([1.0, 1.0, 5.0], true),
             ([3.0, 2.0, 1.0], true),
             ([3.1, 1.0, 1.0], false),
             ([1.0, -0.1, 1.0], false),
             ([f64::NAN; 3], false),
         ] {
-            assert_eq!(sheet.covers(place), is_covered, "{place:?}");
+            assert_eq!(sheet.passes(place, [0.0; 3]), is_passed, "{place:?}");
         }
         assert!((sheet.distance([9.0, 9.0, 4.0]) + 3.0).abs() < 1e-15);
     }
