@@ -17,6 +17,8 @@
 //! | `run.json`, `scene.toml` | what was run |
 //! | `checkpoint.bin` | where an unfinished run stands |
 //!
+//! `docs/run-folder.md` in the repository names every column, array and key.
+//!
 //! ```
 //! use sinew_record::{Ended, Request, RunFolder};
 //! use sinew_scene::{Scene, SceneSource};
