@@ -35,6 +35,11 @@ pub(crate) fn find(name: &str) -> Option<&'static Asset> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use sinew_core::Hash;
+
     use super::*;
 
     #[test]
@@ -63,5 +68,32 @@ mod tests {
         assert!(bundle.contains(include_str!("../../page/THREE-LICENSE").trim()));
         assert!(bundle.contains("three.js authors"));
         assert!(bundle.contains("Permission is hereby granted"));
+    }
+
+    /// What `npm run build` wrote of the sources and of the bundle that it made of them.
+    #[test]
+    fn the_bundle_is_built_from_the_sources() {
+        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("page");
+        let read = |name: &str| fs::read(page.join(name)).unwrap();
+        let mut scripts: Vec<String> = fs::read_dir(page.join("src"))
+            .unwrap()
+            .map(|entry| format!("src/{}", entry.unwrap().file_name().display()))
+            .collect();
+        scripts.sort();
+        let others = ["THREE-LICENSE", "package-lock.json", "package.json"];
+        let mut sources = Hash::new();
+        for name in others.into_iter().chain(scripts.iter().map(String::as_str)) {
+            sources.add(format!("{name}\n").as_bytes());
+            sources.add(&read(name));
+        }
+        let mut bundle = Hash::new();
+        bundle.add(ASSETS[2].content);
+        let (sources, bundle) = (sources.value(), bundle.value());
+        let found = format!("sources {sources:016x}\nlive.js {bundle:016x}\n");
+        assert_eq!(
+            String::from_utf8(read("dist/hashes.txt")).unwrap(),
+            found,
+            "`npm ci && npm run build` in crates/sinew-live/page makes the bundle anew"
+        );
     }
 }
