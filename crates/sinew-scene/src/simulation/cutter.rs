@@ -346,7 +346,7 @@ impl Cutter {
         let cut = self.simulation(simulation, state)?;
         if let (Some(theirs), Some(own)) = (simulation.model().contact(), cut.model().contact()) {
             let place_of = before.places(simulation, &cut, &state.u);
-            state.contact = own.carried(theirs, &before.contact, |place| place_of[place]);
+            state.contact = own.carried(theirs, &before.contact, state, |place| place_of[place]);
         }
         Ok(Some(cut))
     }

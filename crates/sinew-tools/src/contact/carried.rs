@@ -1,11 +1,16 @@
 //! What tools keep, carried to other cells.
 
-use super::record::{OF_CELL, OF_HELD, OF_VELOCITY};
+use sinew_core::State;
+
+use super::record::{OF_CELL, OF_HELD, OF_PAIR, OF_VELOCITY};
+use super::report::displacement_of;
 use super::tools::Tools;
+use crate::vector::{add, scaled, sub};
 
 impl Tools {
-    /// What these tools keep ([`sinew_core::State::contact`]), where `before` are the same tools on the cells that there were before a cut, and `contact` is what
-    /// they kept. `of` tells for a touched cell which one of those it is, by its place, or a copy of; `None` for a cell that could not be touched.
+    /// What these tools keep ([`sinew_core::State::contact`]), where `before` are the same tools on the cells that there were before a cut, `contact` is what
+    /// they kept, and `state` is how the body goes on. `of` tells for a touched cell which one of those it is, by its place, or a copy of; `None` for a cell that
+    /// could not be touched.
     ///
     /// Forces of the last step stay with the first of several copies, and a tool that holds a cell holds all of its copies.
     #[must_use]
@@ -13,6 +18,7 @@ impl Tools {
         &self,
         before: &Self,
         contact: &[f64],
+        state: &State,
         of: impl Fn(usize) -> Option<usize>,
     ) -> Vec<f64> {
         let is_theirs = contact.len() == before.counts.numbers();
@@ -45,7 +51,25 @@ impl Tools {
             copy::<OF_VELOCITY>(velocities, from, own_velocities, place);
             copy::<OF_HELD>(held, from, own_held, place);
         }
+        if let Some(dt) = state.clock.last_step() {
+            let pairs = self.counts.of_pairs();
+            let pairs = carried[pairs].as_chunks_mut().0;
+            self.keep_pairs(state, dt, pairs);
+        }
         carried
+    }
+
+    /// Keeps of each pair of lips the way (m) from the one to the other as the step of `dt` (s) began that led to the state.
+    pub(super) fn keep_pairs(&self, state: &State, dt: f64, pairs: &mut [[f64; OF_PAIR]]) {
+        let began = |place: u32| {
+            let touched = &self.cells[place as usize];
+            let to = add(touched.rest, displacement_of(&state.u, touched.cell));
+            sub(to, scaled(displacement_of(&state.v, touched.cell), dt))
+        };
+        for (pair, kept) in self.lips.pairs.iter().zip(pairs) {
+            let [one, other] = pair.nodes.map(|node| node.at(began));
+            *kept = sub(other, one);
+        }
     }
 }
 

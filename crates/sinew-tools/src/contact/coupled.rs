@@ -8,7 +8,7 @@ use super::node::Compliance;
 use super::record::{OF_HELD, OF_PAIR, OF_VELOCITY, Record, swing};
 use super::report::displacement_of;
 use super::room::Room;
-use super::tool::{Corner, Tool, TouchedCell};
+use super::tool::{Corner, Tool};
 use super::tool_step::{ToolStep, Way, is_near};
 use super::tools::Tools;
 use crate::shape::TriangleTouch;
@@ -82,15 +82,7 @@ impl Tools {
         if passes > 1 {
             room.pass(&self.tools, [0.0, 1.0]);
         }
-        let began = |place: u32| {
-            let TouchedCell { cell, rest, .. } = self.cells[place as usize];
-            let to = add(rest, displacement_of(&state.u, cell));
-            sub(to, scaled(displacement_of(&state.v, cell), meeting.dt))
-        };
-        for (pair, kept) in self.lips.pairs.iter().zip(record.pairs.iter_mut()) {
-            let [one, other] = pair.nodes.map(|node| node.at(began));
-            *kept = sub(other, one);
-        }
+        self.keep_pairs(state, meeting.dt, record.pairs);
     }
 
     /// Finds the contacts of a pass and solves for their forces.
