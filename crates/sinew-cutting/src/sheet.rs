@@ -5,7 +5,7 @@ use crate::vector::{Vector, add, cross, dot, length, mean, scaled, sub};
 /// Share of its size by which the rim of a sheet reaches out, so that nothing is lost between two that follow each other.
 const RIM: f64 = 1e-9;
 
-/// The quadrilateral that a blade, a segment, sweeps from one pose to the next, in its mean plane.
+/// The quadrilateral that a blade, a segment, sweeps from one pose to the next, in its mean plane; two triangles where it turns about a point of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Sheet {
     corners: [Vector; 4],
@@ -24,13 +24,15 @@ impl Sheet {
     pub fn swept(before: [[f64; 3]; 2], after: [[f64; 3]; 2]) -> Option<Self> {
         let corners = [before[0], before[1], after[1], after[0]];
         let diagonals = [sub(corners[2], corners[0]), sub(corners[3], corners[1])];
-        let size = length(diagonals[0]).max(length(diagonals[1]));
-        let normal = cross(diagonals[0], diagonals[1]);
+        let [first, second] = diagonals.map(length);
+        let size = first.max(second);
+        let normal = turned_over(&corners).unwrap_or_else(|| cross(diagonals[0], diagonals[1]));
         let doubled = length(normal);
         let has_area = size.is_finite() && doubled > 1e-12 * size * size;
         let normal = has_area.then(|| scaled(normal, 1.0 / doubled))?;
         let centre = mean(corners);
-        let along = diagonals[0];
+        // One of them is as short as nothing where the ends change places.
+        let along = diagonals[usize::from(second > 1e3 * first)];
         let along = sub(along, scaled(normal, dot(along, normal)));
         let along = scaled(along, 1.0 / length(along));
         let axes = [along, cross(normal, along)];
@@ -75,7 +77,13 @@ impl Sheet {
         let [dx, dy] = flat(moved);
         let [a, b, c, d] = self.flat;
         let [a, b] = [a, b].map(|[x, y]| [x + dx, y + dy]);
-        self.is_within(place, [a, b, c]) || self.is_within(place, [a, c, d])
+        let triangles = match crossing([a, b], [d, c]) {
+            Some(pivot) => [[a, pivot, d], [pivot, b, c]],
+            None => [[a, b, c], [a, c, d]],
+        };
+        triangles
+            .into_iter()
+            .any(|triangle| self.is_within(place, triangle))
     }
 
     /// Whether a point of the plane is ahead of where the blade is in the end.
@@ -83,8 +91,17 @@ impl Sheet {
         let from_centre = sub(point, self.centre);
         let place = self.axes.map(|axis| dot(axis, from_centre));
         let [a, b, c, d] = self.flat;
-        let side = |[x, y]: [f64; 2]| (c[0] - d[0]) * (y - d[1]) - (c[1] - d[1]) * (x - d[0]);
-        side(place) * (side(a) + side(b)) < 0.0
+        let side = |from: [f64; 2], to: [f64; 2]| {
+            let way = [c[0] - d[0], c[1] - d[1]];
+            way[0] * (to[1] - from[1]) - way[1] * (to[0] - from[0])
+        };
+        let along = |[x, y]: [f64; 2]| (c[0] - d[0]) * x + (c[1] - d[1]) * y;
+        let behind = match crossing([a, b], [d, c]) {
+            Some(pivot) if along(place) < along(pivot) => side(d, a),
+            Some(_) => side(d, b),
+            None => side(d, a) + side(d, b),
+        };
+        side(d, place) * behind < 0.0
     }
 
     fn is_within(&self, place: [f64; 2], [a, b, c]: [[f64; 2]; 3]) -> bool {
@@ -123,6 +140,26 @@ impl Sheet {
     }
 }
 
+/// A normal of what a blade sweeps whose ends go to opposite sides, as where it turns about its middle: halves count alike, for by their signs they would
+/// cancel. `None` where both go to one side.
+fn turned_over(&[a, b, c, d]: &[Vector; 4]) -> Option<Vector> {
+    let blade = scaled(add(sub(b, a), sub(c, d)), 0.5);
+    let [of_first, of_second] = [sub(d, a), sub(c, b)].map(|way| cross(blade, way));
+    (dot(of_first, of_second) < 0.0).then(|| sub(of_second, of_first))
+}
+
+/// Where two segments cross between their ends.
+fn crossing([a, b]: [[f64; 2]; 2], [d, c]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+    let way = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
+    let turn = |[x, y]: [f64; 2], [p, q]: [f64; 2]| x * q - y * p;
+    let of_ends = [a, b].map(|end| turn(way(d, c), way(d, end)));
+    let of_others = [d, c].map(|end| turn(way(a, b), way(a, end)));
+    let part = |[one, other]: [f64; 2]| (one * other < 0.0).then(|| one / (one - other));
+    let (share, _) = (part(of_ends)?, part(of_others)?);
+    let [x, y] = way(a, b);
+    Some([a[0] + share * x, a[1] + share * y])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -145,6 +182,41 @@ mod tests {
             assert_eq!(sheet.passes(place, [0.0; 3]), is_passed, "{place:?}");
         }
         assert!((sheet.distance([9.0, 9.0, 4.0]) + 3.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_blade_that_turns_about_a_point_of_its_own_passes_what_is_on_both_sides_of_it() {
+        // About the origin by 90 degrees, the ends one and two away from it.
+        let blade = |x: f64, y: f64| [[-x, -y, 0.0], [2.0 * x, 2.0 * y, 0.0]];
+        for (share, before, after) in [
+            (1.0, blade(1.0, 0.0), blade(0.0, 1.0)),
+            (0.5, blade(1.0, 0.0), blade(0.5, 0.5)),
+        ] {
+            let sheet = Sheet::swept(before, after).unwrap();
+            assert_eq!(sheet.normal().map(f64::abs), [0.0, 0.0, 1.0]);
+            let passes = |x: f64, y: f64| sheet.passes([x, y, 0.3], [0.0; 3]);
+            for scale in [1e-3, 0.1, 0.4] {
+                assert!(passes(1.9 * scale, 0.5 * share * scale), "{scale}");
+                assert!(passes(-0.9 * scale, -0.5 * share * scale), "{scale}");
+                assert!(!passes(scale, -0.1 * scale), "{scale}");
+                assert!(!passes(-scale, 0.1 * scale), "{scale}");
+                assert!(!passes(-0.1 * scale, scale), "{scale}");
+            }
+            let ahead = |x: f64, y: f64| sheet.is_beyond_end([x, y, 0.0]);
+            let [_, [x, y, _]] = after;
+            assert!(ahead(0.5 * x - 0.01, 0.5 * y) && !ahead(0.5 * x + 0.01, 0.5 * y));
+            assert!(ahead(0.01 - 0.4 * x, -0.4 * y) && !ahead(-0.4 * x - 0.01, -0.4 * y));
+        }
+        // About its middle: both halves have the same size.
+        let about_middle = Sheet::swept(
+            [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
+            [[-1.0, -0.1, 0.0], [1.0, 0.1, 0.0]],
+        );
+        let about_middle = about_middle.unwrap();
+        for x in [-0.7, -0.01, 0.01, 0.7] {
+            assert!(about_middle.passes([x, 0.05 * x, 0.0], [0.0; 3]), "{x}");
+            assert!(!about_middle.passes([x, -0.05 * x, 0.0], [0.0; 3]), "{x}");
+        }
     }
 
     #[test]

@@ -116,6 +116,26 @@ fn a_cut_through_makes_two_pieces_and_one_inside_a_void() {
 }
 
 #[test]
+fn a_blade_that_turns_half_round_about_a_point_of_its_own_cuts_through() {
+    let mesh = kuhn_cube();
+    for (steps, before) in [(7, 0.15), (100, 0.15), (100, 0.11)] {
+        let (mut body, mut positions) = (body(&mesh, 0.25), mesh.points.clone());
+        let blade = |step: u32| {
+            let turned = std::f64::consts::PI * f64::from(step) / f64::from(steps);
+            let at = |x: f64| [0.05, 0.0483 + x * turned.cos(), 0.0517 + x * turned.sin()];
+            [at(-before), at(0.15)]
+        };
+        let faces = (0..steps).map(|step| {
+            let sheet = Sheet::swept(blade(step), blade(step + 1)).unwrap();
+            let stroke = body.stroke(&sheet, &mut positions, 0.25).unwrap();
+            stroke.faces.len()
+        });
+        let faces: usize = faces.sum();
+        assert_eq!((faces, body.pieces().count), (200, 2), "{steps} {before}");
+    }
+}
+
+#[test]
 fn strokes_in_the_same_place_cut_nothing_more() {
     let mesh = kuhn_cube();
     let (mut body, mut positions) = (body(&mesh, 0.25), mesh.points.clone());
