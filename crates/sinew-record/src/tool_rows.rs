@@ -25,7 +25,7 @@ impl<'a> ToolRows<'a> {
     /// The names of the columns.
     pub(crate) fn columns(&self) -> Vec<String> {
         let mut columns = vec!["t_s".to_owned()];
-        for (index, tool) in self.tools.tools().iter().enumerate() {
+        for tool in self.tools.tools() {
             let mut add = |part: &str, unit: &str| {
                 let axes = ["x", "y", "z"];
                 columns.extend(axes.map(|axis| format!("{}_{part}{axis}_{unit}", tool.name)));
@@ -39,8 +39,7 @@ impl<'a> ToolRows<'a> {
             let single = ["work_J", "contacts", "gap_m", "passes"];
             let of_bodies = ["hand_work_J", "energy_J"];
             let of_bodies = of_bodies.into_iter().filter(|_| tool.body.is_some());
-            let residual = self.tools.links(index).then_some("residual");
-            let all = single.into_iter().chain(of_bodies).chain(residual);
+            let all = single.into_iter().chain(of_bodies).chain(["residual"]);
             columns.extend(all.map(|name| format!("{}_{name}", tool.name)));
         }
         columns
@@ -49,23 +48,17 @@ impl<'a> ToolRows<'a> {
     /// Lines that say what is in the columns, and the line of their names.
     pub(crate) fn head(&self) -> String {
         let mut text = String::new();
-        for (index, Tool { name, body, .. }) in self.tools.tools().iter().enumerate() {
+        for Tool { name, body, .. } in self.tools.tools() {
             let _ = writeln!(
                 text,
                 "# {name}: force and torque about its own origin are those on the tool, means over the step before; work is done on the body; \
-                 the gap is that of its deepest node; passes are the pieces in which its stroke is followed"
+                 the gap is that of its deepest node; passes are the pieces in which its stroke is followed; the residual is what an iteration for its contacts left, a share of the largest displacement by a contact"
             );
             if body.is_some() {
                 let _ = writeln!(
                     text,
                     "# {name}: a body on a coupling; the hand's work is done on its path, and its energy is kinetic and of the coupling, in the middle of the step before, or at its end where the method's \
                      velocities hold there"
-                );
-            }
-            if self.tools.links(index) {
-                let _ = writeln!(
-                    text,
-                    "# {name}: the residual is what the iteration for its contacts left, a share of the largest displacement by a contact"
                 );
             }
         }
@@ -95,8 +88,7 @@ impl<'a> ToolRows<'a> {
             let _ = write!(out, ",{}", report.passes);
             let body = self.tools.body_report(state, inputs, index);
             let body = body.map(|body| [body.hand_work, body.energy]);
-            let residual = self.tools.links(index).then_some(report.residual);
-            for value in body.into_iter().flatten().chain(residual) {
+            for value in body.into_iter().flatten().chain([report.residual]) {
                 out.push(',');
                 tables::push(out, value);
             }

@@ -125,6 +125,16 @@ impl Stroke {
         Hull::of(&self.part.convex)?.overlap(&own)
     }
 
+    /// Half the width (m) of the part where it is thinnest; infinite for a plane.
+    pub(crate) fn half_width(&self) -> f64 {
+        self.part.convex.half_width()
+    }
+
+    /// The depth (m) in the part up to which triangles are left in it by a step, and pushed out by the next; infinite for a plane.
+    pub(crate) fn left_to_triangles(&self) -> f64 {
+        Hull::of(&self.part.convex).map_or(f64::INFINITY, |hull| hull.left())
+    }
+
     /// A box (m, lowest and highest corner) that contains the part during the whole step; none for a plane.
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {

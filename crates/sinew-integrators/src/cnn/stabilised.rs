@@ -77,7 +77,7 @@ const MOST_SWEEPS: u32 = 10_000;
 const INNER_OPTION: OptionHelp = OptionHelp {
     key: INNER,
     help: "the iteration that solves with the stabilising matrix; two or more sweeps are of order 2 with any damping; in long steps \"gauss-seidel\" depends on the numbering of the nodes",
-    expected: "{ kind = \"block\" }, or kind = \"jacobi\", \"chebyshev\" or \"gauss-seidel\" with sweeps = a whole number from 1 on",
+    expected: "{ kind = \"block\" }, or kind = \"jacobi\", \"chebyshev\" or \"gauss-seidel\" with sweeps = a whole number from 1 to 10000",
     kind: OptionKind::Table(&[
         (
             "kind",

@@ -12,6 +12,9 @@ use crate::{OptionDefault, OptionHelp, OptionKind, Stepper};
 /// Share of the stable step that automatic sub-steps stay below.
 const MARGIN: f64 = 0.9;
 
+/// Most parts that can be asked for: a run is interrupted between steps, never in the midst of one.
+const MOST_FIXED: u32 = 10_000;
+
 /// Number of parts into which a step is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Substeps {
@@ -30,8 +33,8 @@ impl Substeps {
     pub(crate) const HELP: OptionHelp = OptionHelp {
         key: Self::KEY,
         help: "equal parts into which each step is cut; \"auto\" for as many as keep them stable, by the current stiffness where that changes",
-        expected: "a whole number from 1 on, or \"auto\"",
-        kind: OptionKind::Either(&[OptionKind::Count(u32::MAX), OptionKind::Words(&["auto"])]),
+        expected: "a whole number from 1 to 10000, or \"auto\"",
+        kind: OptionKind::Either(&[OptionKind::Count(MOST_FIXED), OptionKind::Words(&["auto"])]),
         default: OptionDefault::Value("1"),
         example: "substeps = 4",
         shown_default: None,
@@ -82,11 +85,11 @@ impl Substeps {
     /// Takes the option out of the others; `None` where it is absent.
     ///
     /// # Errors
-    /// [`OptionError::Value`] for anything but a whole number from 1 on or "auto".
+    /// [`OptionError::Value`] for anything but a whole number from 1 to 10000 or "auto".
     pub fn take_from(options: &mut Options, integrator: &str) -> Result<Option<Self>, OptionError> {
         let substeps = Self::HELP.read(options, integrator, |value| match value.word() {
             Some(_) => Some(Self::Auto),
-            None => value.count(u32::MAX).map(Self::Fixed),
+            None => value.count(MOST_FIXED).map(Self::Fixed),
         })?;
         options.remove(Self::KEY);
         Ok(substeps)

@@ -69,6 +69,32 @@ fn the_energy_of_a_split_body_adds_up_and_its_frames_have_the_nodes_that_it_had(
     assert!((start - 1.0).abs() < 1e-12 && (end - start).abs() < 1e-14);
 }
 
+/// The cut opens edges of 43 mm, beside those of 35 mm that the surface had, under a ball of 40 mm.
+#[test]
+fn a_tool_meets_what_a_cut_lays_open_under_it_as_it_met_the_surface_before() {
+    let place = tempfile::tempdir().unwrap();
+    let strokes = "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n1,0.03,-0.01,-0.01,0.055,-0.01,0.11,0.055\n1,0.05,0.11,-0.01,0.095,0.11,0.11,0.095\n";
+    fs::write(place.path().join("strokes.csv"), strokes).unwrap();
+    let text = "[mesh]\ncube = { cells = 4, edge = 0.1 }\n[[region]]\ndensity = 1060.0\nmodel = \"linear\"\nyoungs_modulus = 3500.0\n\
+         poissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[cutting]\ntable = \"strokes.csv\"\n[[tool]]\nname = \"probe\"\n\
+         shape = { sphere = { radius = 0.04 } }\nstart = [0.05, 0.05, 0.141]\nvelocity = [0.0, 0.0, -0.2]\n\
+         [run]\nduration = 0.06\nintegrator = \"central-difference\"\ndt = 1e-4\n";
+    let scene = place.path().join("scene.toml");
+    fs::write(&scene, text).unwrap();
+    let simulation = Scene::load(scene).and_then(Scene::build).unwrap();
+    let path = place.path().join("cut");
+    let end = run(&path, &simulation, &mut ());
+    assert_eq!(end.ended, Ended::Finished);
+    let rows = table(&path.join("tools.csv"));
+    assert_eq!(rows["t_s"].len(), 601);
+    assert!(rows["probe_residual"].iter().all(|left| *left < 1e-9));
+    let energy = table(&path.join("energy.csv"));
+    let energy = energy["kinetic_J"].iter().zip(&energy["elastic_J"]);
+    let work = rows["probe_work_J"].last().unwrap();
+    let most = energy.map(|(a, b)| a + b).fold(0.0, f64::max);
+    assert!(most < 1.05 * work, "{most} of {work}");
+}
+
 #[test]
 fn what_is_taken_away_takes_its_energy_along() {
     let place = tempfile::tempdir().unwrap();

@@ -395,7 +395,7 @@ impl Cutter {
         };
         if let Subject::Body(scene) = before.scene.subject() {
             let tools = before.model.tools().map(Arc::as_ref);
-            body = tool::touching_anew(body, scene, tools, before.settings().duration)?;
+            body = tool::touching_anew(body, scene, tools)?;
         }
         let probes = self.probes.iter();
         Ok(Simulation {

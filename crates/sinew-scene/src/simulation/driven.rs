@@ -53,7 +53,7 @@ impl Simulation {
             .map(|_| Steering::new(inputs))
             .collect();
         let steered = tools.steered(&steering);
-        **body = tool::touching_anew((**body).clone(), of_scene, Some(&steered), duration)?;
+        **body = tool::led_anew((**body).clone(), of_scene, &steered, duration)?;
         Ok(steering)
     }
 

@@ -68,7 +68,8 @@ pub(super) fn added_to(
         }
         tools.push(known);
     }
-    let tools = on_nodes(tools, &nodes_of, Vec::new(), &built, duration).map_err(|error| {
+    let are_fine = tool_surface::are_fine(&tools, &built, duration, body.cutting.is_some());
+    let tools = on_nodes(tools, &are_fine, &nodes_of, Vec::new(), &built).map_err(|error| {
         let at_fault = error.tool().and_then(|name| {
             let mut tools = body.tools.iter();
             tools.position(|tool| tool.name == name)
@@ -92,13 +93,13 @@ pub(super) fn added_to(
     Ok(built.touched_by(Arc::new(tools)))
 }
 
-/// Tools that touch these nodes of a body each, and the surface under their tips; with the cut faces whose lips touch each other.
-pub(super) fn on_nodes(
+/// Tools that touch these nodes of a body each, and the surface where they are fine; with the cut faces whose lips touch each other.
+fn on_nodes(
     mut tools: Vec<sinew_tools::Tool>,
+    are_fine: &[bool],
     nodes_of: &[Vec<u32>],
     cut_faces: Vec<[[u32; 3]; 2]>,
     built: &BodyModel,
-    duration: f64,
 ) -> Result<Tools, ToolsError> {
     let is_met = |node: &u32| built.model.cell_of_node(*node).is_some();
     let lips = cut_faces
@@ -118,7 +119,7 @@ pub(super) fn on_nodes(
         .iter()
         .filter_map(|node| cell(&built.model, *node))
         .collect();
-    let triangles = tool_surface::under_tips(&mut tools, nodes_of, &touched, built, duration);
+    let triangles = tool_surface::under_tips(&mut tools, are_fine, nodes_of, &touched, built);
     let tools = Tools::with_triangles(tools, cells, triangles)?;
     let corner = |node: u32| match touched.binary_search(&node) {
         Ok(place) => Corner::Cell(place as u32),
@@ -145,12 +146,37 @@ fn cut_faces(body: &Body, built: &BodyModel) -> Vec<[[u32; 3]; 2]> {
     faces
 }
 
-/// Lets tools that touched a body touch it as it is, or as they are led, now.
+/// Lets tools that touched a body touch it as it is now; they meet triangles as before, so that nothing is laid upon a tool which was not there.
 pub(super) fn touching_anew(
     built: BodyModel,
     body: &Body,
     tools: Option<&Tools>,
+) -> Result<BodyModel, ToolsError> {
+    let tools = tools.map_or_else(Vec::new, |tools| tools.tools().to_vec());
+    let are_fine: Vec<bool> = tools
+        .iter()
+        .map(|tool| !tool.triangles.is_empty())
+        .collect();
+    touched_by(built, body, tools, &are_fine)
+}
+
+/// Lets tools that are led in another way touch a body.
+pub(super) fn led_anew(
+    built: BodyModel,
+    body: &Body,
+    tools: &Tools,
     duration: f64,
+) -> Result<BodyModel, ToolsError> {
+    let tools = tools.tools().to_vec();
+    let are_fine = tool_surface::are_fine(&tools, &built, duration, body.cutting.is_some());
+    touched_by(built, body, tools, &are_fine)
+}
+
+fn touched_by(
+    built: BodyModel,
+    body: &Body,
+    tools: Vec<sinew_tools::Tool>,
+    are_fine: &[bool],
 ) -> Result<BodyModel, ToolsError> {
     let nodes_of: Vec<Vec<u32>> = body
         .tools
@@ -162,8 +188,7 @@ pub(super) fn touching_anew(
         })
         .collect();
     let faces = cut_faces(body, &built);
-    let tools = tools.map_or_else(Vec::new, |tools| tools.tools().to_vec());
-    let tools = on_nodes(tools, &nodes_of, faces, &built, duration)?;
+    let tools = on_nodes(tools, are_fine, &nodes_of, faces, &built)?;
     Ok(built.touched_by(Arc::new(tools)))
 }
 

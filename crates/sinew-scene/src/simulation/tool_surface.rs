@@ -1,6 +1,7 @@
 //! The surface under tips of tools that are finer than it.
 
 use sinew_core::{Inputs, System};
+use sinew_mesh::TetMesh;
 use sinew_tools::vector::{cross, dot};
 use sinew_tools::{Corner, Motion, Tool, TouchedTriangle, swept_box};
 
@@ -13,28 +14,51 @@ const BEYOND: f64 = 0.1;
 /// Instants at which a path is looked at, besides those of its table.
 const LOOKS: u32 = 64;
 
-/// Gives tools that are finer than the surface within their reach its triangles, as far as they touch their corners (`nodes_of` each) or these are held; all triangles that
+/// Whether each tool is finer than the surface within its reach in a time (s), which cuts may enlarge by any face of the body.
+pub(super) fn are_fine(
+    tools: &[Tool],
+    built: &BodyModel,
+    duration: f64,
+    may_be_cut: bool,
+) -> Vec<bool> {
+    let (mut surface, mut faces) = (None, None);
+    let points = &built.mesh.points;
+    let is_fine = |tool: &Tool| {
+        if tool.shape.smallest_half_width().is_infinite() {
+            return false;
+        }
+        let surface: &Vec<_> = surface.get_or_insert_with(|| without_moved(built));
+        let faces = match may_be_cut {
+            true => faces.get_or_insert_with(|| all_faces(&built.mesh)),
+            false => surface,
+        };
+        longest_edge(tool, faces, points, built, duration) > tool.shape.smallest_half_width()
+            && !meets_with_wide_faces(tool, surface, points, built, duration)
+    };
+    tools.iter().map(is_fine).collect()
+}
+
+/// The faces of all tetrahedra.
+fn all_faces(mesh: &TetMesh) -> Vec<[u32; 3]> {
+    let of_tet = |[a, b, c, d]: &[u32; 4]| [[*a, *b, *c], [*a, *b, *d], [*a, *c, *d], [*b, *c, *d]];
+    mesh.tets.iter().flat_map(of_tet).collect()
+}
+
+/// Gives fine tools the triangles of the surface, as far as they touch their corners (`nodes_of` each) or these are held; all triangles that
 /// any of them touches, whose corners are places among `touched`.
 pub(super) fn under_tips(
     tools: &mut [Tool],
+    are_fine: &[bool],
     nodes_of: &[Vec<u32>],
     touched: &[u32],
     built: &BodyModel,
-    duration: f64,
 ) -> Vec<TouchedTriangle> {
     let mut triangles = Vec::new();
     let mut surface: Option<Vec<[u32; 3]>> = None;
     let points = &built.mesh.points;
-    for (tool, nodes) in tools.iter_mut().zip(nodes_of) {
-        if tool.shape.smallest_half_width().is_infinite() {
-            continue;
-        }
+    let fine = tools.iter_mut().zip(nodes_of).zip(are_fine);
+    for ((tool, nodes), _) in fine.filter(|(_, is_fine)| **is_fine) {
         let surface = surface.get_or_insert_with(|| without_moved(built));
-        if longest_edge(tool, surface, points, built, duration) <= tool.shape.smallest_half_width()
-            || meets_with_wide_faces(tool, surface, points, built, duration)
-        {
-            continue;
-        }
         for corners in surface.iter() {
             let is_touched = |node: &u32| {
                 nodes.binary_search(node).is_ok() || built.model.cell_of_node(*node).is_none()

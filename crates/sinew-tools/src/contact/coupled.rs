@@ -278,7 +278,7 @@ impl Search<'_> {
                 let (from, end) = (ways.map(|way| way.0), ways.map(|way| way.1));
                 // What contacts of rounds before have moved may be in the tool elsewhere.
                 if !links.all.is_empty() {
-                    for (part, touch) in step.triangle_overlaps(&end) {
+                    for (part, touch) in step.triangle_overlaps(&from, &end) {
                         let known = links.of_triangle(*triangle, (number, part));
                         if (1..MOST_ON_TRIANGLE).contains(&known) {
                             self.add_triangle(links, step, (number, part, *triangle), &touch);

@@ -55,7 +55,7 @@ impl Met {
                 if self.count == MOST || is_known {
                     continue;
                 }
-                if let Some(touch) = stroke.first_contact(from, end) {
+                if let Some(touch) = step.touch(stroke, (from, end)) {
                     let last = stroke.pose_at(1.0);
                     let stick = sub(last.to_world(touch.point), to);
                     let normal = last.turned(touch.normal);

@@ -53,6 +53,7 @@ impl Room {
         let Meeting { inputs, dt, .. } = *meeting;
         let t = state.t();
         let last = state.clock.last_step();
+        let is_first = last.is_none();
         let last = last.filter(|_| meeting.is_staggered);
         let mut bodies = bodies.iter();
         for (tool, step) in tools.iter().zip(&mut self.steps) {
@@ -64,6 +65,7 @@ impl Room {
                 [at(t), at(t + dt)],
                 earlier,
                 (kept, dt, meeting.is_staggered),
+                is_first,
             );
         }
         self.bound();

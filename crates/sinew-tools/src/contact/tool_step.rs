@@ -11,6 +11,10 @@ use crate::vector::{Vector, add, dot, length, scaled, sub};
 /// The way (m) of a cell in a step, straight from one place to another.
 pub(super) type Way = (Vector, Vector);
 
+/// How deep a node may be in a part as a step begins, as a share of the part's half width, to be pushed out: contact leaves none so deep, where nodes have room between
+/// surfaces.
+const LEFT: f64 = 1e-3;
+
 /// A tool during a step.
 #[derive(Debug)]
 pub(super) struct ToolStep {
@@ -26,6 +30,8 @@ pub(super) struct ToolStep {
     /// The step of a tool that is a body of its own.
     pub(super) body: Option<BodyStep>,
     pub(super) friction: f64,
+    /// Whether the motion begins with this step.
+    is_first: bool,
     /// What is left of contacts that act on each other.
     pub(super) residual: f64,
     strokes: Vec<(Stroke, Near)>,
@@ -90,20 +96,23 @@ impl ToolStep {
             steps_at_work: 1.0,
             body: None,
             friction: tool.friction,
+            is_first: true,
             residual: 0.0,
             strokes: Vec::with_capacity(tool.shape.parts().len()),
         }
     }
 
     /// Begins a step with the poses of the path before and after it, the pose before the last one with its length (s), and with what a body keeps, the length (s) of the step, and whether
-    /// velocities are staggered.
+    /// velocities are staggered; the motion may begin with it.
     pub(super) fn begin(
         &mut self,
         tool: &Tool,
         path: [Pose; 2],
         earlier: Option<(Pose, f64)>,
         (kept, dt, is_staggered): (Option<&[f64; OF_BODY]>, f64, bool),
+        is_first: bool,
     ) {
+        self.is_first = is_first;
         self.residual = 0.0;
         self.earlier = earlier;
         self.steps_at_work = if is_staggered { 2.0 } else { 1.0 };
@@ -174,10 +183,38 @@ impl ToolStep {
 
     /// Where a way (m) meets its parts, by their numbers.
     pub(super) fn touches(&self, way: Way) -> impl Iterator<Item = (usize, Touch)> {
-        self.near_strokes(way).filter_map(move |(part, stroke)| {
-            let touch = stroke.first_contact(way.0, way.1)?;
-            Some((part, touch))
-        })
+        self.near_strokes(way)
+            .filter_map(move |(part, stroke)| Some((part, self.touch(stroke, way)?)))
+    }
+
+    /// Where a way (m) meets the part of a stroke.
+    pub(super) fn touch(&self, stroke: &Stroke, way: Way) -> Option<Touch> {
+        let touch = stroke.first_contact(way.0, way.1)?;
+        let most = LEFT * stroke.half_width();
+        let (point, normal) = (touch.point, touch.normal);
+        let point = match touch.share {
+            0.0 => self.reached(stroke, way.0, (point, normal), most),
+            _ => point,
+        };
+        Some(Touch { point, ..touch })
+    }
+
+    /// The point on a part's surface, with the normal there, that tissue which began the pass at a place (m) may not pass; or, where it began deeper in the part than `most` (m), as deep below it.
+    /// What a cut lays open within a tool, or an iteration left there, gets no deeper: to throw it out at once would bring in energy, the more so the shorter the step. Only what a motion begins with
+    /// is pushed out.
+    fn reached(
+        &self,
+        stroke: &Stroke,
+        began: Vector,
+        (point, normal): (Vector, Vector),
+        most: f64,
+    ) -> Vector {
+        let depth = dot(normal, sub(point, stroke.pose_at(0.0).to_own(began)));
+        if self.is_first || depth <= most {
+            point
+        } else {
+            sub(point, scaled(normal, depth))
+        }
     }
 
     /// Passes of its stroke.
@@ -193,16 +230,43 @@ impl ToolStep {
         to: &Triangle,
     ) -> impl Iterator<Item = (usize, TriangleTouch)> {
         let near = self.near_triangle(from, to);
-        near.filter_map(move |(part, stroke)| Some((part, stroke.first_triangle(from, to)?)))
+        near.filter_map(move |(part, stroke)| {
+            let touch = stroke.first_triangle(from, to)?;
+            let touch = match touch.share {
+                0.0 => self.reached_by_triangle(stroke, from, touch),
+                _ => touch,
+            };
+            Some((part, touch))
+        })
     }
 
-    /// Where a triangle (m) is in its parts, by their numbers, after the step.
+    /// Where a triangle (m), which began the pass elsewhere, is in its parts, by their numbers, after the step.
     pub(super) fn triangle_overlaps(
         &self,
+        from: &Triangle,
         corners: &Triangle,
     ) -> impl Iterator<Item = (usize, TriangleTouch)> {
         let near = self.near_triangle(corners, corners);
-        near.filter_map(move |(part, stroke)| Some((part, stroke.triangle_at_end(corners)?)))
+        near.filter_map(move |(part, stroke)| {
+            let touch = stroke.triangle_at_end(corners)?;
+            Some((part, self.reached_by_triangle(stroke, from, touch)))
+        })
+    }
+
+    /// The same contact, as deep in the part as the triangle was there as the pass began, where that is deeper than rounds leave any: see [`Self::reached`].
+    fn reached_by_triangle(
+        &self,
+        stroke: &Stroke,
+        from: &Triangle,
+        touch: TriangleTouch,
+    ) -> TriangleTouch {
+        let began = from.iter().zip(touch.weights);
+        let began = began.fold([0.0; 3], |sum, (corner, weight)| {
+            add(sum, scaled(*corner, weight))
+        });
+        let most = stroke.left_to_triangles();
+        let point = self.reached(stroke, began, (touch.point, touch.normal), most);
+        TriangleTouch { point, ..touch }
     }
 
     /// The strokes whose boxes the box of a triangle's way (m) meets, by the numbers of their parts.
@@ -242,5 +306,64 @@ impl ToolStep {
             Some(body) => body.swing(sub(place, self.now.position())),
             None => scaled(self.velocity(place, dt), self.steps_at_work * dt),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::Motion;
+    use crate::shape::{Convex, Shape};
+
+    /// How far from its middle (m) a ball of 10 mm leaves a node, and the middle of a triangle, which a step takes from one height above it to another.
+    fn left_at(is_first: bool, from: f64, to: f64) -> [Option<f64>; 2] {
+        let ball = Tool {
+            name: "ball".into(),
+            shape: Shape::of(Convex::Sphere { radius: 0.01 }),
+            motion: Motion::Held(Pose::identity()),
+            friction: 0.0,
+            cells: Vec::new(),
+            grasp: None,
+            body: None,
+            triangles: Vec::new(),
+        };
+        let mut step = ToolStep::of(&ball);
+        step.begin(
+            &ball,
+            [Pose::identity(); 2],
+            None,
+            (None, 1e-3, true),
+            is_first,
+        );
+        let node = step.touches(([0.0, 0.0, from], [0.0, 0.0, to])).next();
+        // Tissue above, its surface towards the ball.
+        let triangle = |z: f64| [[0.0, 0.3, z], [0.3, -0.3, z], [-0.3, -0.3, z]];
+        let (from, to) = (triangle(from), triangle(to));
+        let triangle = step.triangle_touches(&from, &to).next();
+        [
+            node.map(|(_, touch)| length(touch.point)),
+            triangle.map(|(_, touch)| length(touch.point)),
+        ]
+    }
+
+    #[test]
+    fn what_is_deep_in_a_tool_as_a_step_begins_gets_no_deeper_and_is_pushed_out_in_the_first_one_alone()
+     {
+        let [surface, deep] = [0.01, 0.006];
+        for (is_first, from, expected) in [
+            (true, deep, [surface; 2]),
+            (false, deep, [deep; 2]),
+            (false, surface - 1e-6, [surface; 2]),
+            // Rounds leave triangles a tenth deep.
+            (false, 0.009, [0.009, surface]),
+            (false, 0.012, [surface; 2]),
+        ] {
+            let found = left_at(is_first, from, 0.004);
+            for (found, expected) in found.into_iter().zip(expected) {
+                let off = found.unwrap() - expected;
+                assert!(off.abs() < 1e-15, "{is_first} {from}: {found:?}");
+            }
+        }
+        assert_eq!(left_at(false, 0.012, 0.011), [None; 2]);
     }
 }

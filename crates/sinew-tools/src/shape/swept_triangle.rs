@@ -64,6 +64,11 @@ impl Hull {
         (gap < -OVERLAPS * self.radius).then_some(touch)
     }
 
+    /// Twice the depth (m) from which on a triangle is given another contact: what is deeper as a step begins was not left to it by the one before.
+    pub(crate) fn left(&self) -> f64 {
+        2.0 * OVERLAPS * self.radius
+    }
+
     /// The gap (m) to a triangle that is seen from outside, and where it is smallest.
     pub(crate) fn look(&self, triangle: &Triangle) -> Option<(f64, TriangleTouch)> {
         let outward = doubled_area(triangle);

@@ -95,7 +95,7 @@ const KIND: OptionHelp = OptionHelp {
 const SWEEPS: OptionHelp = OptionHelp {
     key: "sweeps",
     help: "sweeps of the cells a step, each of a force and a tangent product; more of them come nearer to the formula, and the energy never rises with any number",
-    expected: "a whole number from 1 on",
+    expected: "a whole number from 1 to 10000",
     kind: OptionKind::Count(MOST_SWEEPS),
     default: OptionDefault::Value("4"),
     example: "sweeps = 16",
