@@ -3,8 +3,8 @@
 use crate::guard::Guarding;
 use crate::system::loads_revision;
 use crate::{
-    Acceleration, Contact, Inertia, Inputs, LoadTime, Meeting, Revision, SetupError, State,
-    StepError, StepReport, SynchroniseError, System, Trial, VelocityTime, Watch,
+    Acceleration, Contact, Inertia, Inputs, LoadTime, Meeting, Revision, SetupError, ShowCells,
+    State, StepError, StepReport, SynchroniseError, System, Trial, VelocityTime, Watch,
 };
 
 /// Steps to take, and the work around each: sizes are checked, the clock is kept, a guard
@@ -296,10 +296,10 @@ impl<'a> Batch<'a> {
     }
 
     /// Lets what touches the system push cells of a trial state, before [`Batch::end_step`]; `pushed` are the cells that it
-    /// did push afterwards. `kick` is the time (s) by which a change of velocity is divided in an acceleration that the state keeps.
+    /// did push afterwards, and `cells` shows it those that it asks for. `kick` is the time (s) by which a change of velocity is divided in an acceleration that the state keeps.
     pub fn meet(
         &self,
-        state: &mut State,
+        (state, cells): (&mut State, &mut dyn ShowCells),
         inertia: Inertia<'_>,
         kick: Option<f64>,
         pushed: &mut Vec<u32>,
@@ -314,7 +314,7 @@ impl<'a> Batch<'a> {
                 kick,
                 is_staggered: true,
             };
-            contact.meet(&meeting, state, pushed);
+            contact.meet(&meeting, cells, state, pushed);
         }
     }
 

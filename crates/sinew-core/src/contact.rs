@@ -13,6 +13,9 @@ pub trait Contact: Debug + Send + Sync {
     /// The cells whose displacement and velocity it reads after each step.
     fn cells(&self) -> &[u32];
 
+    /// Where each of them rests (m).
+    fn rest(&self) -> &[[f64; 3]];
+
     /// Whether a method that cannot meet it may go on without it, as with the lips of cuts, which then pass each other.
     fn may_be_left_out(&self) -> bool {
         false
@@ -21,9 +24,15 @@ pub trait Contact: Debug + Send + Sync {
     /// Numbers that it keeps in [`State::contact`].
     fn kept(&self) -> usize;
 
-    /// Changes u and v of a trial state and what it keeps in [`State::contact`], which is zeros before the first step, and adds the cells that it pushed
+    /// Changes u and v of a trial state, whose `cells` it asks for, and what it keeps in [`State::contact`], which is zeros before the first step, and adds the cells that it pushed
     /// to `pushed`.
-    fn meet(&self, meeting: &Meeting<'_>, state: &mut State, pushed: &mut Vec<u32>);
+    fn meet(
+        &self,
+        meeting: &Meeting<'_>,
+        cells: &mut dyn ShowCells,
+        state: &mut State,
+        pushed: &mut Vec<u32>,
+    );
 
     /// The impulse (N s) that each thing which touches the body has received from it since the motion began.
     fn impulses(&self, state: &State) -> Vec<[f64; 3]>;
@@ -33,6 +42,38 @@ pub trait Contact: Debug + Send + Sync {
 
     /// Adds the forces (N) of the last step to those on all degrees of freedom, with or without those in directions that are held.
     fn add_forces(&self, state: &State, with_held: bool, out: &mut [f64]);
+}
+
+/// Shows contact the cells of a trial state: a machine that keeps its own vectors writes no more of them than a step asks for.
+pub trait ShowCells {
+    /// Writes u and v of the cells that contact reads into the state: of all; or of those at least whose ways meet a box (m), with their places among these cells, increasing, where it is
+    /// given and there is less to write then. A way leads straight to where a step of `dt` (s) ended, from `u - dt v`.
+    fn show(
+        &mut self,
+        within: Option<[[f64; 3]; 2]>,
+        dt: f64,
+        state: &mut State,
+        near: &mut Vec<u32>,
+    ) -> Shown;
+}
+
+/// Which cells are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// All that contact reads.
+    All,
+    /// Those that were listed.
+    Listed,
+}
+
+/// A trial state that shows all of its cells.
+#[derive(Clone, Copy, Debug)]
+pub struct AllShown;
+
+impl ShowCells for AllShown {
+    fn show(&mut self, _: Option<[[f64; 3]; 2]>, _: f64, _: &mut State, _: &mut Vec<u32>) -> Shown {
+        Shown::All
+    }
 }
 
 /// A step that led to a trial state, whose clock still shows the beginning.

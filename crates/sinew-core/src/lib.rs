@@ -77,7 +77,7 @@ pub use batch::{Batch, Step, Stepped, worst_beyond};
 pub use bytes::BytesError;
 pub use channel_record::{Between, InputError};
 pub use clock::Clock;
-pub use contact::{Contact, Inertia, Meeting};
+pub use contact::{AllShown, Contact, Inertia, Meeting, ShowCells, Shown};
 pub use counting_allocator::CountingAllocator;
 pub use elastic_law::{Deformed, ElasticLaw, TangentKind};
 pub use element_bounds::ElementBounds;

@@ -7,9 +7,9 @@ use sinew_cnn::{
     self as program, FollowedLoad, LoadAt, Loads, Machine, Program, Register, StepTime, Sweep,
 };
 use sinew_core::{
-    Acceleration, Batch, ElementForces, ElementPrecision, ElementSweep, Equations, LinearOperators,
-    LoadTime, Revision, State, Step, StepError, StepReport, Stepped, SweepShape, System,
-    VelocityTime,
+    Acceleration, Batch, Contact, ElementForces, ElementPrecision, ElementSweep, Equations,
+    LinearOperators, LoadTime, Revision, ShowCells, Shown, State, Step, StepError, StepReport,
+    Stepped, SweepShape, System, VelocityTime,
 };
 use sinew_sparse::simd::InstructionSet;
 use sinew_sparse::sweep::{self as kernel, Field, Fields, Outcome, Precision, Rows};
@@ -18,6 +18,7 @@ use crate::compiled::{BesideElements, Compiled, Constant, ELEMENTS, Variant};
 use crate::crew::{Crew, Host, Patience};
 use crate::forces::Forces;
 use crate::layout::Layout;
+use crate::touched::Touched;
 
 /// Runs programs on the cells of a system in the order of a [`Layout`], each sweep in one pass over matrices; where forces are sums
 /// over elements, after the passes over these.
@@ -50,8 +51,8 @@ struct Loaded<T> {
     /// The sweep under way.
     current: Current<T>,
     work: Work,
-    /// Positions of the cells that contact reads.
-    touched: Vec<u32>,
+    /// The cells that contact reads.
+    touched: Touched<T>,
     /// Cells that were pushed in the last step.
     pushed: Vec<u32>,
 }
@@ -226,7 +227,7 @@ impl<T: ElementPrecision> Machine for FastMachine<T> {
             state.a.resize(state.u.len(), 0.0);
         }
         if let Some(contact) = batch.contact() {
-            own(loaded).touch(&self.layout, contact.cells());
+            own(loaded).touch(&self.layout, contact);
         }
         let (layout, set) = (&*self.layout, self.set);
         let chunks = own(loaded).chunks();
@@ -245,6 +246,7 @@ impl<T: ElementPrecision> Machine for FastMachine<T> {
                 let running = Running {
                     loaded,
                     layout,
+                    set,
                     operators,
                     host,
                 };
@@ -313,7 +315,7 @@ impl<T: ElementPrecision> Loaded<T> {
             forces: Forces::new::<T>(operators, positions),
             elements: elements.map(|elements| (elements, table[registers + ELEMENTS] as usize)),
             work: Work::Cells,
-            touched: Vec::new(),
+            touched: Touched::none(),
             pushed: Vec::new(),
             followed: FollowedLoad::of(&program),
             current: Current {
@@ -384,6 +386,7 @@ impl<T: ElementPrecision> Loaded<T> {
 struct Running<'a, 'c, T> {
     loaded: &'a RwLock<Loaded<T>>,
     layout: &'a Layout<T>,
+    set: InstructionSet,
     operators: &'a LinearOperators,
     host: &'a mut Host<'c>,
 }
@@ -460,14 +463,20 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
                 acceleration,
             };
             written = is_last || exceeded || batch.looks_at_steps();
-            if let (Some(contact), Some(inertia)) = (batch.contact(), program.inertia()) {
+            if let (Some(_), Some(inertia)) = (batch.contact(), program.inertia()) {
                 let mut loaded = write(self.loaded);
-                match written {
-                    true => loaded.show(self.layout, state),
-                    false => loaded.show_touched(contact.cells(), state),
+                if written {
+                    loaded.show(self.layout, state);
                 }
                 let kick = kick.filter(|_| is_last);
-                batch.meet(state, inertia, kick, &mut loaded.pushed);
+                let mut pushed = std::mem::take(&mut loaded.pushed);
+                let mut cells = TouchedCells {
+                    loaded: &mut loaded,
+                    set: self.set,
+                    are_shown: written,
+                };
+                batch.meet((state, &mut cells), inertia, kick, &mut pushed);
+                loaded.pushed = pushed;
                 loaded.take_pushed(self.layout, state);
                 if !written {
                     loaded.show_watched(self.layout, batch.watched(), state);
@@ -696,27 +705,10 @@ impl<T: ElementPrecision> Loaded<T> {
     }
 
     /// Finds the cells that contact reads.
-    fn touch(&mut self, layout: &Layout<T>, cells: &[u32]) {
-        self.touched.clear();
-        let positions = cells.iter().map(|cell| layout.numbering.position(*cell));
-        self.touched
-            .extend(positions.map(|position| position as u32));
+    fn touch(&mut self, layout: &Layout<T>, contact: &dyn Contact) {
+        let cells = contact.cells();
+        self.touched.take(&layout.numbering, cells, contact.rest());
         self.pushed.reserve(cells.len());
-    }
-
-    /// Writes u and v of the cells that contact reads.
-    fn show_touched(&mut self, cells: &[u32], state: &mut State) {
-        let layers = self.fields.layers();
-        for (register, values) in [&mut state.u, &mut state.v].into_iter().enumerate() {
-            let field = self.field(register);
-            for layer in 0..layers {
-                let from = self.fields.layer(field, layer);
-                for (cell, position) in cells.iter().zip(&self.touched) {
-                    let value = from[*position as usize].to_f64();
-                    values[*cell as usize * layers + layer] = value;
-                }
-            }
-        }
     }
 
     /// Takes u and v of the cells that were pushed, rounds them in the state, too, and takes what follows from them.
@@ -781,6 +773,42 @@ impl<T> Current<T> {
             Part::Step => &sweeps.step[self.number],
         };
         &sweep.variants[usize::from(self.is_last)]
+    }
+}
+
+/// The cells that contact reads, after the sweeps of a step.
+struct TouchedCells<'a, T> {
+    loaded: &'a mut Loaded<T>,
+    set: InstructionSet,
+    /// Whether the state shows all cells already.
+    are_shown: bool,
+}
+
+impl<T: ElementPrecision> ShowCells for TouchedCells<'_, T> {
+    fn show(
+        &mut self,
+        within: Option<[[f64; 3]; 2]>,
+        dt: f64,
+        state: &mut State,
+        near: &mut Vec<u32>,
+    ) -> Shown {
+        if self.are_shown {
+            return Shown::All;
+        }
+        let vectors = [0, 1].map(|register| self.loaded.field(register));
+        let Loaded {
+            touched, fields, ..
+        } = &mut *self.loaded;
+        match within {
+            None => {
+                touched.show_all(fields, vectors, state);
+                Shown::All
+            }
+            Some(within) => {
+                touched.show_near(self.set, (fields, vectors), (within, dt), state, near);
+                Shown::Listed
+            }
+        }
     }
 }
 

@@ -12,6 +12,7 @@ mod crew;
 mod fast;
 mod forces;
 mod layout;
+mod touched;
 mod unfit;
 
 pub use chosen::{Chosen, Kind, PrecisionName, Settings, Threads};

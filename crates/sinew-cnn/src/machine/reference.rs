@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use sinew_core::{
-    Acceleration, Batch, BlockMatrix, Equations, State, Step, StepError, StepReport, Stepped,
-    System, VelocityTime,
+    Acceleration, AllShown, Batch, BlockMatrix, Equations, State, Step, StepError, StepReport,
+    Stepped, System, VelocityTime,
 };
 
 use super::Machine;
@@ -90,7 +90,8 @@ impl ReferenceMachine {
             };
             if let Some(inertia) = program.inertia() {
                 let kick = kick.filter(|_| is_last);
-                batch.meet(state, inertia, kick, &mut self.pushed);
+                let shown = (&mut *state, &mut AllShown as _);
+                batch.meet(shown, inertia, kick, &mut self.pushed);
                 if !self.pushed.is_empty() {
                     self.cells(program, batch.system(), state)
                         .enter(&program.entry);

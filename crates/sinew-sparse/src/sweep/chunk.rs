@@ -8,7 +8,7 @@ use super::clamp::{ROUNDING, clamp_within};
 use super::map::{CellMap, Clamp, Field, Quotient, Update};
 use super::rows::Rows;
 use super::{CHUNK, Fields};
-use crate::simd::{At, InstructionSet, Lanes, Real};
+use crate::simd::{At, InstructionSet, Lanes, Real, WithReal};
 
 /// A sweep over the vectors of all cells.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +36,9 @@ pub trait Precision: Real {
     /// As for [`Sweep::run`], on an instruction set that is available.
     #[doc(hidden)]
     unsafe fn run(sweep: &Sweep<'_, Self>, set: InstructionSet, chunks: Range<usize>) -> Outcome;
+
+    /// Does work with vectors of this precision, or with plain numbers where there are only the instructions of the build.
+    fn with_vectors<W: WithReal<Self>>(set: InstructionSet, work: W) -> W::Output;
 
     /// [`super::multiply_adds`].
     ///

@@ -135,6 +135,15 @@ impl<T: Real> Fields<T> {
         unsafe { first.add(layer * self.stride + positions.start) }
     }
 
+    /// The values of several layers, each by the number of its vector and its own, one for each position.
+    #[must_use]
+    pub fn layers_of<const N: usize>(&mut self, layers: [(usize, usize); N]) -> [&[T]; N] {
+        layers.map(|(field, layer)| {
+            // SAFETY: `self` is borrowed for as long as the slices live, which are read alone.
+            unsafe { self.read(field, layer, 0..self.positions) }
+        })
+    }
+
     /// The values of a layer, one for each position.
     #[must_use]
     pub fn layer(&mut self, field: usize, layer: usize) -> &mut [T] {

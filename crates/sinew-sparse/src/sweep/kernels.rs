@@ -8,7 +8,7 @@ use super::chunk::{Outcome, Precision, Sweep, run};
 #[cfg(target_arch = "x86_64")]
 use super::peak::{AVX2, AVX512};
 use super::peak::{PORTABLE, chains, sum_all};
-use crate::simd::{Array, InstructionSet};
+use crate::simd::{Array, InstructionSet, Vectors, WithReal};
 #[cfg(target_arch = "x86_64")]
 use crate::simd::{Avx2, Avx512};
 
@@ -90,6 +90,10 @@ macro_rules! precision {
                         _ => chains::<$number, Array<$number, $lanes>, PORTABLE>(rounds),
                     }
                 }
+            }
+
+            fn with_vectors<W: WithReal<Self>>(set: InstructionSet, work: W) -> W::Output {
+                Self::with_vectors_or_numbers(set, work)
             }
 
             unsafe fn read_all(set: InstructionSet, values: &[Self]) -> Self {

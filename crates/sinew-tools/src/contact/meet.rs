@@ -2,7 +2,7 @@
 
 use std::sync::PoisonError;
 
-use sinew_core::{Contact, Meeting, State};
+use sinew_core::{Contact, Meeting, ShowCells, State};
 
 use super::count::{Count, note_residual};
 use super::met::Met;
@@ -18,6 +18,10 @@ impl Contact for Tools {
         &self.numbers
     }
 
+    fn rest(&self) -> &[[f64; 3]] {
+        &self.rest
+    }
+
     fn may_be_left_out(&self) -> bool {
         self.tools.iter().all(|tool| tool.cells.is_empty()) && self.counts.pairs > 0
     }
@@ -26,13 +30,21 @@ impl Contact for Tools {
         self.counts.numbers()
     }
 
-    fn meet(&self, meeting: &Meeting<'_>, state: &mut State, pushed: &mut Vec<u32>) {
+    fn meet(
+        &self,
+        meeting: &Meeting<'_>,
+        cells: &mut dyn ShowCells,
+        state: &mut State,
+        pushed: &mut Vec<u32>,
+    ) {
         let mut room = self.room.lock().unwrap_or_else(PoisonError::into_inner);
         let mut kept = std::mem::take(&mut state.contact);
         let mut record = Record::of(&mut kept, &self.counts);
         record.forget_last_step();
         room.take(&self.tools, state, meeting, record.bodies);
-        if self.linking != 0 || self.counts.pairs > 0 {
+        let has_links = self.linking != 0 || self.counts.pairs > 0;
+        room.show(cells, state, meeting.dt, has_links || self.counts.holds);
+        if has_links {
             self.link(&mut room, meeting, state, &mut record);
         }
         room.look(&self.cells, state, meeting.dt, self.counts.holds);

@@ -1,6 +1,6 @@
 //! Room for a meeting of tools and cells, used again by the next.
 
-use sinew_core::{Meeting, State};
+use sinew_core::{Meeting, ShowCells, Shown, State};
 
 use super::links::Links;
 use super::lips::Lips;
@@ -24,6 +24,9 @@ pub(super) struct Room {
     bounds: Option<[Vector; 2]>,
     /// Places of the cells that may meet a tool in the step.
     pub(super) near: Vec<u32>,
+    /// Places of the cells that are shown, where these are not all.
+    shown: Vec<u32>,
+    are_all_shown: bool,
     /// Contacts that act on each other.
     pub(super) links: Links,
     /// The share of the step at which the pass ends.
@@ -37,6 +40,8 @@ impl Room {
             steps: tools.iter().map(ToolStep::of).collect(),
             bounds: None,
             near: Vec::with_capacity(cells),
+            shown: Vec::with_capacity(cells),
+            are_all_shown: true,
             links: Links::of(linked, lips),
             share: 1.0,
         }
@@ -101,30 +106,56 @@ impl Room {
         self.bounds = around(self.steps.iter().flat_map(ToolStep::bounds));
     }
 
-    /// Lists the cells that may meet a tool, all where that is not known of a tool or `all` are asked for: this is done for each cell in each step, and little
+    /// Has the cells shown that may meet a tool in the step, or `all`.
+    pub(super) fn show(
+        &mut self,
+        cells: &mut dyn ShowCells,
+        state: &mut State,
+        dt: f64,
+        all: bool,
+    ) {
+        self.shown.clear();
+        let within = self.bounds.filter(|_| !all);
+        self.are_all_shown = cells.show(within, dt, state, &mut self.shown) == Shown::All;
+    }
+
+    /// Lists the cells that may meet a tool, all where that is not known of a tool or `all` are asked for: this is done for each cell that is shown in each step, and little
     /// else is.
     pub(super) fn look(&mut self, cells: &[TouchedCell], state: &State, dt: f64, all: bool) {
         self.near.clear();
         if self.steps.is_empty() {
             return;
         }
-        let Some([low, high]) = self.bounds.filter(|_| !all) else {
+        let Some(bounds) = self.bounds.filter(|_| !all) else {
             self.near.extend(0..cells.len() as u32);
             return;
         };
-        let (u, v) = (state.u.as_chunks::<3>().0, state.v.as_chunks::<3>().0);
-        for (place, TouchedCell { cell, rest, .. }) in (0..).zip(cells) {
-            let (u, v) = (&u[*cell as usize], &v[*cell as usize]);
-            let mut is_near = true;
-            for axis in 0..3 {
-                let to = rest[axis] + u[axis];
-                let from = to - dt * v[axis];
-                is_near &= from.min(to) <= high[axis];
-                is_near &= from.max(to) >= low[axis];
-            }
-            if is_near {
-                self.near.push(place);
-            }
+        let near = &mut self.near;
+        let is_near = |place: &u32| is_near(&cells[*place as usize], state, dt, &bounds);
+        if self.are_all_shown {
+            near.extend((0..cells.len() as u32).filter(is_near));
+        } else {
+            near.extend(self.shown.iter().copied().filter(is_near));
         }
     }
+}
+
+/// Whether the way of a cell in a step of `dt` (s) that led to a state meets a box (m).
+#[inline]
+fn is_near(
+    TouchedCell { cell, rest, .. }: &TouchedCell,
+    state: &State,
+    dt: f64,
+    [low, high]: &[Vector; 2],
+) -> bool {
+    let (u, v) = (state.u.as_chunks::<3>().0, state.v.as_chunks::<3>().0);
+    let (u, v) = (&u[*cell as usize], &v[*cell as usize]);
+    let mut is_near = true;
+    for axis in 0..3 {
+        let to = rest[axis] + u[axis];
+        let from = to - dt * v[axis];
+        is_near &= from.min(to) <= high[axis];
+        is_near &= from.max(to) >= low[axis];
+    }
+    is_near
 }

@@ -19,8 +19,9 @@ pub struct Tools {
     pub(super) tools: Vec<Tool>,
     pub(super) cells: Vec<TouchedCell>,
     pub(super) triangles: Vec<TouchedTriangle>,
-    /// The numbers of `cells`.
+    /// The numbers of `cells`, and where they rest (m).
     pub(super) numbers: Vec<u32>,
+    pub(super) rest: Vec<[f64; 3]>,
     /// The tools that may touch each cell, one bit each.
     pub(super) tools_at: Vec<u64>,
     /// Numbers of what is kept.
@@ -149,6 +150,7 @@ impl Tools {
         let has_links = linking != 0 || !lips.pairs.is_empty();
         Self {
             numbers: cells.iter().map(|cell| cell.cell).collect(),
+            rest: cells.iter().map(|cell| cell.rest).collect(),
             counts: Counts {
                 tools: tools.len(),
                 bodies: tools.iter().filter(|tool| is_body(tool)).count(),

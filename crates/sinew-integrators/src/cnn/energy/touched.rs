@@ -1,7 +1,7 @@
 //! Sweeps that lower a step's potential while something pushes cells from outside.
 
 use sinew_core::vectors::{dot, norm, weighted_dot};
-use sinew_core::{Contact, EvaluationError, Inertia, Meeting, State, Step, StepReport};
+use sinew_core::{AllShown, Contact, EvaluationError, Inertia, Meeting, State, Step, StepReport};
 
 use super::descent::{Descent, Found, MOST_HALVINGS, Quadratic, ROUNDING};
 use super::point::{Law, Point};
@@ -192,7 +192,7 @@ impl Touched {
             kick: None,
             is_staggered: false,
         };
-        contact.meet(&meeting, &mut self.shown, &mut self.pushed);
+        contact.meet(&meeting, &mut AllShown, &mut self.shown, &mut self.pushed);
     }
 
     /// The state after the sweeps as contact left it, at the clock of the start.

@@ -1,0 +1,278 @@
+//! The cells that contact reads, in the order of a machine.
+
+use sinew_core::State;
+use sinew_sparse::simd::{InstructionSet, Number, Real, WithReal};
+use sinew_sparse::sweep::{Fields, Numbering, Precision};
+
+/// Coordinate (m) of a position at which no cell is touched: outside of any box.
+const NOWHERE: f64 = 1e30;
+
+/// A position at which no cell is touched.
+const NONE: u32 = u32::MAX;
+
+/// The cells that contact reads, and the blocks of positions that hold any, so that a box is compared with whole vectors of them.
+#[derive(Debug)]
+pub(crate) struct Touched<T> {
+    cells: Vec<u32>,
+    /// Where they rest (m).
+    rest: Vec<[f64; 3]>,
+    positions: Vec<u32>,
+    /// The first position of each block of [`sinew_sparse::simd::Real::LANES`].
+    blocks: Vec<u32>,
+    /// Coordinates (m) at rest of the positions of all blocks, along each axis.
+    at_rest: [Vec<T>; 3],
+    /// Places of their cells.
+    places: Vec<u32>,
+    /// The lowest and the highest coordinates (m) at rest.
+    extent: [[f64; 3]; 2],
+}
+
+impl<T: Precision> Touched<T> {
+    /// None.
+    pub(crate) fn none() -> Self {
+        Self {
+            cells: Vec::new(),
+            rest: Vec::new(),
+            positions: Vec::new(),
+            blocks: Vec::new(),
+            at_rest: [Vec::new(), Vec::new(), Vec::new()],
+            places: Vec::new(),
+            extent: [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]],
+        }
+    }
+
+    /// Takes cells that rest at these places (m), where they are not the same already.
+    pub(crate) fn take(&mut self, numbering: &Numbering, cells: &[u32], rest: &[[f64; 3]]) {
+        if self.cells == cells && self.rest == rest {
+            return;
+        }
+        *self = Self::none();
+        self.cells.extend(cells);
+        self.rest.extend(rest);
+        let position = |cell: &u32| numbering.position(*cell) as u32;
+        self.positions.extend(self.cells.iter().map(position));
+        let mut order: Vec<(u32, u32)> = self.positions.iter().copied().zip(0..).collect();
+        order.sort_unstable();
+        let lanes = T::LANES as u32;
+        for (position, place) in order {
+            let first = position - position % lanes;
+            if self.blocks.last() != Some(&first) {
+                self.blocks.push(first);
+                let end = self.blocks.len() * lanes as usize;
+                self.places.resize(end, NONE);
+                for of_axis in &mut self.at_rest {
+                    of_axis.resize(end, T::of(NOWHERE));
+                }
+            }
+            let at = (self.blocks.len() - 1) * lanes as usize + (position - first) as usize;
+            self.places[at] = place;
+            let rest = self.rest[place as usize];
+            for axis in 0..3 {
+                self.at_rest[axis][at] = T::of(rest[axis]);
+                self.extent[0][axis] = self.extent[0][axis].min(rest[axis]);
+                self.extent[1][axis] = self.extent[1][axis].max(rest[axis]);
+            }
+        }
+    }
+
+    /// Writes u and v of all of them into a state, from these vectors.
+    pub(crate) fn show_all(&self, fields: &mut Fields<T>, [u, v]: [usize; 2], state: &mut State) {
+        let layers = layers_of(fields, [u, v]);
+        for place in 0..self.cells.len() {
+            self.show(place, &layers, state);
+        }
+    }
+
+    /// Lists the places of those whose ways in a step of `dt` (s) may meet a box (m), increasing, and writes their u and v into a state.
+    pub(crate) fn show_near(
+        &self,
+        set: InstructionSet,
+        (fields, [u, v]): (&mut Fields<T>, [usize; 2]),
+        (within, dt): ([[f64; 3]; 2], f64),
+        state: &mut State,
+        near: &mut Vec<u32>,
+    ) {
+        let layers = layers_of(fields, [u, v]);
+        let search = Search {
+            touched: self,
+            layers: &layers,
+            bounds: self.with_roundings(within),
+            dt,
+            axes: self.narrowest_first(within),
+            near,
+        };
+        T::with_vectors(set, search);
+        near.sort_unstable();
+        for place in near.iter() {
+            self.show(*place as usize, &layers, state);
+        }
+    }
+
+    #[inline]
+    fn show(&self, place: usize, layers: &Layers<'_, T>, state: &mut State) {
+        let (first, position) = (
+            3 * self.cells[place] as usize,
+            self.positions[place] as usize,
+        );
+        for axis in 0..3 {
+            state.u[first + axis] = layers[0][axis][position].to_f64();
+            state.v[first + axis] = layers[1][axis][position].to_f64();
+        }
+    }
+
+    /// A box wider by more than ways are rounded by in this precision: what is listed in vain is left out by contact.
+    fn with_roundings(&self, [low, high]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
+        let sizes = self.extent.iter().chain([&low, &high]).flatten();
+        let largest = sizes.fold(0.0_f64, |largest, x| largest.max(x.abs()));
+        let room = 32.0 * T::ROUNDING * largest;
+        [low.map(|x| x - room), high.map(|x| x + room)]
+    }
+
+    /// The axes, that first along which a box is the smallest part of the touched cells.
+    fn narrowest_first(&self, [low, high]: [[f64; 3]; 2]) -> [usize; 3] {
+        let [lowest, highest] = self.extent;
+        let share = |axis: &usize| (high[*axis] - low[*axis]) / (highest[*axis] - lowest[*axis]);
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|one, other| share(one).total_cmp(&share(other)));
+        axes
+    }
+}
+
+/// Values of u and v along each axis, one for each position.
+type Layers<'f, T> = [[&'f [T]; 3]; 2];
+
+fn layers_of<T: Real>(fields: &mut Fields<T>, [u, v]: [usize; 2]) -> Layers<'_, T> {
+    let of = |field: usize| [(field, 0), (field, 1), (field, 2)];
+    let [a, b, c] = of(u);
+    let [d, e, f] = of(v);
+    let [a, b, c, d, e, f] = fields.layers_of([a, b, c, d, e, f]);
+    [[a, b, c], [d, e, f]]
+}
+
+/// The search for the blocks in which a way may meet a box.
+struct Search<'a, T> {
+    touched: &'a Touched<T>,
+    layers: &'a Layers<'a, T>,
+    bounds: [[f64; 3]; 2],
+    dt: f64,
+    axes: [usize; 3],
+    near: &'a mut Vec<u32>,
+}
+
+impl<T: Precision> WithReal<T> for Search<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<N: Number<Real = T>>(self) {
+        let Self {
+            touched,
+            layers: [us, vs],
+            bounds: [low, high],
+            axes,
+            near,
+            ..
+        } = self;
+        let (size, zero) = (T::LANES, N::of(0.0));
+        let [low, high] = [low, high].map(|corner| corner.map(|x| N::of(x)));
+        let back = N::of(-self.dt);
+        for (block, first) in touched.blocks.iter().enumerate() {
+            let mut is_met = false;
+            for part in (0..size).step_by(N::LANES) {
+                let (lane, position) = (block * size + part, *first as usize + part);
+                // How far, along the axis where it is farthest, a way stays from the box; at most 0 where it meets it.
+                let mut apart = None;
+                for axis in axes {
+                    let [u, v] = [us, vs].map(|layers| N::load(&layers[axis][position..]));
+                    let to = N::load(&touched.at_rest[axis][lane..]) + u;
+                    let from = v.mul_add(back, to);
+                    let (least, most) = (from.min(to), from.max(to));
+                    let along = (least - high[axis]).max(low[axis] - most);
+                    let now = apart.map_or(along, |apart: N| apart.max(along));
+                    if !N::any_le(now, zero) {
+                        apart = None;
+                        break;
+                    }
+                    apart = Some(now);
+                }
+                is_met |= apart.is_some();
+            }
+            if is_met {
+                let places = &touched.places[block * size..(block + 1) * size];
+                near.extend(places.iter().filter(|place| **place != NONE));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every way that meets a box is listed, in every precision and by all instructions, and few others.
+    fn lists_what_meets_a_box<T: Precision>() {
+        let mut seed = 3_u64;
+        let mut random = || {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let (cells, positions) = (70, 96);
+        let order: Vec<u32> = (0..cells).map(|cell| (cell * 37) % 89).collect();
+        let numbering = Numbering::at(order, positions);
+        let all: Vec<u32> = (0..cells).filter(|cell| cell % 3 != 1).collect();
+        let rest: Vec<[f64; 3]> = all.iter().map(|_| [0; 3].map(|_: i32| random())).collect();
+        let mut touched = Touched::<T>::none();
+        touched.take(&numbering, &all, &rest);
+        let mut fields = Fields::<T>::new(2, 3, positions, 0);
+        for field in 0..2 {
+            for layer in 0..3 {
+                let size = if field == 0 { 0.2 } else { 20.0 };
+                let layer = fields.layer(field, layer);
+                layer.fill_with(|| T::of(size * (random() - 0.5)));
+            }
+        }
+        let dt = 0.01;
+        let mut met = 0;
+        for _ in 0..40 {
+            let low = [0; 3].map(|_: i32| 0.6 * random());
+            let high = low.map(|x| x + 0.6 * random());
+            let dofs = 3 * cells as usize;
+            let mut state = State::at_rest(dofs);
+            touched.show_all(&mut fields, [0, 1], &mut state);
+            let meets = |place: usize| {
+                (0..3).all(|axis| {
+                    let dof = 3 * all[place] as usize + axis;
+                    let to = rest[place][axis] + state.u[dof];
+                    let from = to - dt * state.v[dof];
+                    from.min(to) <= high[axis] && from.max(to) >= low[axis]
+                })
+            };
+            let expected: Vec<u32> = (0..all.len())
+                .filter(|place| meets(*place))
+                .map(|place| place as u32)
+                .collect();
+            met += expected.len();
+            for set in InstructionSet::available() {
+                let (mut near, mut shown) = (Vec::new(), State::at_rest(dofs));
+                let vectors = (&mut fields, [0, 1]);
+                touched.show_near(set, vectors, ([low, high], dt), &mut shown, &mut near);
+                assert!(near.is_sorted());
+                assert!(expected.iter().all(|place| near.contains(place)), "{set:?}");
+                assert!(near.len() <= T::LANES * expected.len());
+                for place in near {
+                    let first = 3 * all[place as usize] as usize;
+                    assert_eq!(shown.u[first..first + 3], state.u[first..first + 3]);
+                    assert_eq!(shown.v[first..first + 3], state.v[first..first + 3]);
+                }
+            }
+        }
+        assert!(met > 40, "{met}");
+    }
+
+    #[test]
+    fn what_meets_a_box_is_listed() {
+        lists_what_meets_a_box::<f64>();
+        lists_what_meets_a_box::<f32>();
+    }
+}
