@@ -20,6 +20,12 @@ use crate::forces::Forces;
 use crate::layout::Layout;
 use crate::touched::Touched;
 
+/// The size to which displacements rise unseen, as a share of that of the touched cells.
+const LEAST_REACH: f64 = 1e-3;
+
+/// Room for displacements to grow unseen, as a factor: where one exceeds it the whole state is shown and looked at again.
+const ROOM: f64 = 1.25;
+
 /// Runs programs on the cells of a system in the order of a [`Layout`], each sweep in one pass over matrices; where forces are sums
 /// over elements, after the passes over these.
 #[derive(Debug)]
@@ -55,6 +61,8 @@ struct Loaded<T> {
     touched: Touched<T>,
     /// Cells that were pushed in the last step.
     pushed: Vec<u32>,
+    /// A size (m) that no component of a displacement exceeded as the last step ended, where contact is asked for what is near.
+    largest: f64,
 }
 
 /// What threads do.
@@ -317,6 +325,7 @@ impl<T: ElementPrecision> Loaded<T> {
             work: Work::Cells,
             touched: Touched::none(),
             pushed: Vec::new(),
+            largest: f64::INFINITY,
             followed: FollowedLoad::of(&program),
             current: Current {
                 part: Part::Entry,
@@ -413,14 +422,18 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
     ) -> Result<(), StepError> {
         let running = program.velocity != VelocityTime::Same && state.is_staggered_by(batch.dt());
         let mut starts = !program.start.is_empty() && !running;
-        let limit = T::of(batch.divergence_limit().min(T::LARGEST));
+        let most = batch.divergence_limit().min(T::LARGEST);
+        let has_contact = batch.contact().is_some() && program.inertia().is_some();
         let entry = Current {
             part: Part::Entry,
             number: 0,
             is_last: true,
-            limit,
+            limit: T::of(most),
         };
         write(self.loaded).begin(self.layout, state);
+        if has_contact {
+            write(self.loaded).look_at_largest(&state.u);
+        }
         if !program.entry.is_empty() {
             self.make(entry);
         }
@@ -436,6 +449,10 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
             let (step, is_last) = (batch.step(), batch.is_last());
             let mut work = StepReport::default();
             let mut exceeded = false;
+            let limit = match has_contact {
+                true => T::of(read(self.loaded).largest.min(most)),
+                false => T::of(most),
+            };
             for (number, sweep) in sweeps.iter().enumerate() {
                 let current = Current {
                     part,
@@ -463,10 +480,13 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
                 acceleration,
             };
             written = is_last || exceeded || batch.looks_at_steps();
-            if let (Some(_), Some(inertia)) = (batch.contact(), program.inertia()) {
+            if let Some(inertia) = program.inertia().filter(|_| has_contact) {
                 let mut loaded = write(self.loaded);
                 if written {
                     loaded.show(self.layout, state);
+                }
+                if exceeded {
+                    loaded.look_at_largest(&state.u);
                 }
                 let kick = kick.filter(|_| is_last);
                 let mut pushed = std::mem::take(&mut loaded.pushed);
@@ -711,6 +731,12 @@ impl<T: ElementPrecision> Loaded<T> {
         self.pushed.reserve(cells.len());
     }
 
+    /// Finds a size that no component of a displacement exceeds, with room for some more motion.
+    fn look_at_largest(&mut self, u: &[f64]) {
+        let largest = u.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
+        self.largest = (ROOM * largest).max(LEAST_REACH * self.touched.size());
+    }
+
     /// Takes u and v of the cells that were pushed, rounds them in the state, too, and takes what follows from them.
     fn take_pushed(&mut self, layout: &Layout<T>, state: &mut State) {
         let layers = self.fields.layers();
@@ -722,6 +748,9 @@ impl<T: ElementPrecision> Loaded<T> {
                 for cell in &self.pushed {
                     let value = &mut values[*cell as usize * layers + layer];
                     let rounded = T::of(*value);
+                    if register == 0 && value.abs() > self.largest {
+                        self.largest = ROOM * value.abs();
+                    }
                     to[layout.numbering.position(*cell)] = rounded;
                     *value = rounded.to_f64();
                 }
@@ -797,7 +826,10 @@ impl<T: ElementPrecision> ShowCells for TouchedCells<'_, T> {
         }
         let vectors = [0, 1].map(|register| self.loaded.field(register));
         let Loaded {
-            touched, fields, ..
+            touched,
+            fields,
+            largest,
+            ..
         } = &mut *self.loaded;
         match within {
             None => {
@@ -805,7 +837,8 @@ impl<T: ElementPrecision> ShowCells for TouchedCells<'_, T> {
                 Shown::All
             }
             Some(within) => {
-                touched.show_near(self.set, (fields, vectors), (within, dt), state, near);
+                let search = (within, dt, *largest);
+                touched.show_near(self.set, (fields, vectors), search, state, near);
                 Shown::Listed
             }
         }

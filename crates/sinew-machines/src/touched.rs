@@ -23,6 +23,8 @@ pub(crate) struct Touched<T> {
     at_rest: [Vec<T>; 3],
     /// Places of their cells.
     places: Vec<u32>,
+    /// The lowest and the highest coordinates (m) at rest in each block, along each axis, for whole vectors of blocks.
+    ends: [[Vec<T>; 3]; 2],
     /// The lowest and the highest coordinates (m) at rest.
     extent: [[f64; 3]; 2],
 }
@@ -37,6 +39,7 @@ impl<T: Precision> Touched<T> {
             blocks: Vec::new(),
             at_rest: [Vec::new(), Vec::new(), Vec::new()],
             places: Vec::new(),
+            ends: Default::default(),
             extent: [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]],
         }
     }
@@ -67,12 +70,39 @@ impl<T: Precision> Touched<T> {
             let at = (self.blocks.len() - 1) * lanes as usize + (position - first) as usize;
             self.places[at] = place;
             let rest = self.rest[place as usize];
-            for axis in 0..3 {
-                self.at_rest[axis][at] = T::of(rest[axis]);
-                self.extent[0][axis] = self.extent[0][axis].min(rest[axis]);
-                self.extent[1][axis] = self.extent[1][axis].max(rest[axis]);
+            for (of_axis, rest) in self.at_rest.iter_mut().zip(rest) {
+                of_axis[at] = T::of(rest);
             }
         }
+        self.find_ends();
+    }
+
+    /// Finds how far blocks reach at rest, from their cells.
+    fn find_ends(&mut self) {
+        let whole = self.blocks.len().next_multiple_of(T::LANES);
+        for of_axis in self.ends.as_flattened_mut() {
+            of_axis.resize(whole, T::of(NOWHERE));
+        }
+        for (block, places) in self.places.chunks_exact(T::LANES).enumerate() {
+            let of_cells = places.iter().filter(|place| **place != NONE);
+            let rest = of_cells.map(|place| self.rest[*place as usize]);
+            for axis in 0..3 {
+                let along = rest.clone().map(|rest| rest[axis]);
+                let lowest = along.clone().fold(f64::INFINITY, f64::min);
+                let highest = along.fold(f64::NEG_INFINITY, f64::max);
+                self.ends[0][axis][block] = T::of(lowest);
+                self.ends[1][axis][block] = T::of(highest);
+                self.extent[0][axis] = self.extent[0][axis].min(lowest);
+                self.extent[1][axis] = self.extent[1][axis].max(highest);
+            }
+        }
+    }
+
+    /// The length (m) of the longest edge of the box around all of them at rest.
+    pub(crate) fn size(&self) -> f64 {
+        let [lowest, highest] = self.extent;
+        let edges = [0, 1, 2].map(|axis| highest[axis] - lowest[axis]);
+        edges.into_iter().fold(0.0, f64::max)
     }
 
     /// Writes u and v of all of them into a state, from these vectors.
@@ -83,12 +113,13 @@ impl<T: Precision> Touched<T> {
         }
     }
 
-    /// Lists the places of those whose ways in a step of `dt` (s) may meet a box (m), increasing, and writes their u and v into a state.
+    /// Lists the places of those whose ways in a step of `dt` (s) may meet a box (m), increasing, and writes their u and v into a state. No component of a displacement is larger than `largest` (m) at
+    /// either end of a way: where all of a block stays away from the box then, its ways are not looked at.
     pub(crate) fn show_near(
         &self,
         set: InstructionSet,
         (fields, [u, v]): (&mut Fields<T>, [usize; 2]),
-        (within, dt): ([[f64; 3]; 2], f64),
+        (within, dt, largest): ([[f64; 3]; 2], f64, f64),
         state: &mut State,
         near: &mut Vec<u32>,
     ) {
@@ -98,7 +129,7 @@ impl<T: Precision> Touched<T> {
             layers: &layers,
             bounds: self.with_roundings(within),
             dt,
-            axes: self.narrowest_first(within),
+            largest,
             near,
         };
         T::with_vectors(set, search);
@@ -114,9 +145,10 @@ impl<T: Precision> Touched<T> {
             3 * self.cells[place] as usize,
             self.positions[place] as usize,
         );
-        for axis in 0..3 {
-            state.u[first + axis] = layers[0][axis][position].to_f64();
-            state.v[first + axis] = layers[1][axis][position].to_f64();
+        for (values, layers) in [&mut state.u, &mut state.v].into_iter().zip(layers) {
+            for (value, layer) in values[first..first + 3].iter_mut().zip(layers) {
+                *value = layer[position].to_f64();
+            }
         }
     }
 
@@ -126,15 +158,6 @@ impl<T: Precision> Touched<T> {
         let largest = sizes.fold(0.0_f64, |largest, x| largest.max(x.abs()));
         let room = 32.0 * T::ROUNDING * largest;
         [low.map(|x| x - room), high.map(|x| x + room)]
-    }
-
-    /// The axes, that first along which a box is the smallest part of the touched cells.
-    fn narrowest_first(&self, [low, high]: [[f64; 3]; 2]) -> [usize; 3] {
-        let [lowest, highest] = self.extent;
-        let share = |axis: &usize| (high[*axis] - low[*axis]) / (highest[*axis] - lowest[*axis]);
-        let mut axes = [0, 1, 2];
-        axes.sort_by(|one, other| share(one).total_cmp(&share(other)));
-        axes
     }
 }
 
@@ -155,7 +178,7 @@ struct Search<'a, T> {
     layers: &'a Layers<'a, T>,
     bounds: [[f64; 3]; 2],
     dt: f64,
-    axes: [usize; 3],
+    largest: f64,
     near: &'a mut Vec<u32>,
 }
 
@@ -163,45 +186,75 @@ impl<T: Precision> WithReal<T> for Search<'_, T> {
     type Output = ();
 
     #[inline(always)]
-    fn run<N: Number<Real = T>>(self) {
-        let Self {
-            touched,
-            layers: [us, vs],
-            bounds: [low, high],
-            axes,
-            near,
-            ..
-        } = self;
-        let (size, zero) = (T::LANES, N::of(0.0));
-        let [low, high] = [low, high].map(|corner| corner.map(|x| N::of(x)));
-        let back = N::of(-self.dt);
-        for (block, first) in touched.blocks.iter().enumerate() {
-            let mut is_met = false;
-            for part in (0..size).step_by(N::LANES) {
-                let (lane, position) = (block * size + part, *first as usize + part);
-                // How far, along the axis where it is farthest, a way stays from the box; at most 0 where it meets it.
-                let mut apart = None;
-                for axis in axes {
-                    let [u, v] = [us, vs].map(|layers| N::load(&layers[axis][position..]));
-                    let to = N::load(&touched.at_rest[axis][lane..]) + u;
-                    let from = v.mul_add(back, to);
-                    let (least, most) = (from.min(to), from.max(to));
-                    let along = (least - high[axis]).max(low[axis] - most);
-                    let now = apart.map_or(along, |apart: N| apart.max(along));
-                    if !N::any_le(now, zero) {
-                        apart = None;
-                        break;
-                    }
-                    apart = Some(now);
-                }
-                is_met |= apart.is_some();
+    fn run<N: Number<Real = T>>(mut self) {
+        let blocks = &self.touched.blocks;
+        let [low, high] = self.bounds;
+        let (low, high) = (
+            low.map(|x| x - self.largest),
+            high.map(|x| x + self.largest),
+        );
+        let [lowest, highest] = &self.touched.ends;
+        for first in (0..blocks.len()).step_by(N::LANES) {
+            let ends = |axis: usize| {
+                let [lowest, highest] = [lowest, highest].map(|of| N::load(&of[axis][first..]));
+                (lowest, highest)
+            };
+            if !is_any_met([low, high], ends) {
+                continue;
             }
-            if is_met {
-                let places = &touched.places[block * size..(block + 1) * size];
-                near.extend(places.iter().filter(|place| **place != NONE));
+            for block in first..blocks.len().min(first + N::LANES) {
+                let is_met = (0..3).all(|axis| {
+                    let [from, to] = [lowest, highest].map(|of| of[axis][block].to_f64());
+                    from <= high[axis] && to >= low[axis]
+                });
+                if is_met {
+                    self.look_at::<N>(block);
+                }
             }
         }
     }
+}
+
+impl<T: Precision> Search<'_, T> {
+    /// Lists the cells of a block of which a way meets the box.
+    #[inline(always)]
+    fn look_at<N: Number<Real = T>>(&mut self, block: usize) {
+        let (touched, [us, vs]) = (self.touched, self.layers);
+        let (first, back) = (touched.blocks[block] as usize, N::of(-self.dt));
+        let is_met = (0..T::LANES).step_by(N::LANES).any(|part| {
+            let (lane, position) = (block * T::LANES + part, first + part);
+            let ends = |axis: usize| {
+                let [u, v] = [us, vs].map(|layers| N::load(&layers[axis][position..]));
+                let to = N::load(&touched.at_rest[axis][lane..]) + u;
+                let from = v.mul_add(back, to);
+                (from.min(to), from.max(to))
+            };
+            is_any_met(self.bounds, ends)
+        });
+        if is_met {
+            let places = &touched.places[block * T::LANES..(block + 1) * T::LANES];
+            self.near
+                .extend(places.iter().filter(|place| **place != NONE));
+        }
+    }
+}
+
+/// Whether any of several boxes, by their lowest and highest coordinates along an axis, meets another one.
+#[inline(always)]
+fn is_any_met<N: Number>([low, high]: [[f64; 3]; 2], ends: impl Fn(usize) -> (N, N)) -> bool {
+    let zero = N::of(0.0);
+    // How far boxes stay from it, along the axis where that is most; at most 0 where they meet.
+    let mut apart: Option<N> = None;
+    for axis in 0..3 {
+        let (lowest, highest) = ends(axis);
+        let along = (lowest - N::of(high[axis])).max(N::of(low[axis]) - highest);
+        let now = apart.map_or(along, |apart| apart.max(along));
+        if !N::any_le(now, zero) {
+            return false;
+        }
+        apart = Some(now);
+    }
+    true
 }
 
 #[cfg(test)]
@@ -256,7 +309,7 @@ mod tests {
             for set in InstructionSet::available() {
                 let (mut near, mut shown) = (Vec::new(), State::at_rest(dofs));
                 let vectors = (&mut fields, [0, 1]);
-                touched.show_near(set, vectors, ([low, high], dt), &mut shown, &mut near);
+                touched.show_near(set, vectors, ([low, high], dt, 0.2), &mut shown, &mut near);
                 assert!(near.is_sorted());
                 assert!(expected.iter().all(|place| near.contains(place)), "{set:?}");
                 assert!(near.len() <= T::LANES * expected.len());

@@ -51,12 +51,31 @@ impl Tools {
             copy::<OF_VELOCITY>(velocities, from, own_velocities, place);
             copy::<OF_HELD>(held, from, own_held, place);
         }
+        self.list_carried(&mut carried);
         if let Some(dt) = state.clock.last_step() {
             let pairs = self.counts.of_pairs();
             let pairs = carried[pairs].as_chunks_mut().0;
             self.keep_pairs(state, dt, pairs);
         }
         carried
+    }
+
+    /// Lists the cells that have a force or a velocity.
+    fn list_carried(&self, carried: &mut [f64]) {
+        let cells = carried[self.counts.of_cells()].as_chunks::<OF_CELL>().0;
+        let velocities = &carried[self.counts.of_velocities()];
+        let velocities = velocities.as_chunks::<OF_VELOCITY>().0;
+        let has_any = |place: &usize| {
+            let is_some = |row: Option<&[f64; 3]>| row.is_some_and(|row| *row != [0.0; 3]);
+            is_some(cells.get(*place)) || is_some(velocities.get(*place))
+        };
+        let listed: Vec<f64> = (0..self.cells.len())
+            .filter(has_any)
+            .map(|place| place as f64)
+            .collect();
+        let own = &mut carried[self.counts.of_listed()];
+        own[0] = listed.len() as f64;
+        own[1..=listed.len()].copy_from_slice(&listed);
     }
 
     /// Keeps of each pair of lips the way (m) from the one to the other as the step of `dt` (s) began that led to the state.

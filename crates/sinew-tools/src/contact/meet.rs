@@ -7,8 +7,9 @@ use sinew_core::{Contact, Meeting, ShowCells, State};
 use super::count::{Count, note_residual};
 use super::met::Met;
 use super::node::Compliance;
-use super::record::{DEPTH, OF_HELD, OF_VELOCITY, PASSES, RIVAL, Record, swing};
+use super::record::{DEPTH, OF_HELD, PASSES, RIVAL, Record, swing};
 use super::report::displacement_of;
+use super::room::Room;
 use super::tool_step::{ToolStep, Way, is_near};
 use super::tools::Tools;
 use crate::vector::{Vector, add, scaled, sub};
@@ -48,18 +49,25 @@ impl Contact for Tools {
             self.link(&mut room, meeting, state, &mut record);
         }
         room.look(&self.cells, state, meeting.dt, self.counts.holds);
+        let Room {
+            steps,
+            near,
+            met,
+            links,
+            ..
+        } = &mut *room;
         let step = Step {
             tools: self,
-            steps: &room.steps,
+            steps,
             meeting,
             end: state.t() + meeting.dt,
         };
-        for (numbers, step) in record.tools.iter_mut().zip(&room.steps) {
+        for (numbers, step) in record.tools.iter_mut().zip(&*steps) {
             numbers[PASSES] = step.passes();
         }
-        for place in &room.near {
+        for place in &*near {
             let place = *place as usize;
-            if room.links.is_linked(place) {
+            if links.is_linked(place) {
                 continue;
             }
             let touched = &self.cells[place];
@@ -68,29 +76,28 @@ impl Contact for Tools {
                 to,
                 scaled(displacement_of(&state.v, touched.cell), meeting.dt),
             );
-            let moved = step.meet(place, (from, to), &mut record);
+            let moved = step.meet(place, (from, to), met, &mut record);
             if moved == [0.0; 3] {
                 continue;
             }
             pushed.push(touched.cell);
             push(state, touched.cell, moved, meeting);
         }
-        for place in &room.links.places {
+        for place in &links.places {
             let cell = self.cells[*place as usize].cell;
-            let moved = room.links.moved[*place as usize];
+            let moved = links.moved[*place as usize];
             if moved != [0.0; 3] {
                 pushed.push(cell);
                 push(state, cell, moved, meeting);
             }
         }
-        if self.counts.rubs {
-            record.velocities.fill([0.0; OF_VELOCITY]);
-            for place in room.near.iter().chain(&room.links.places) {
-                let cell = self.cells[*place as usize].cell;
-                record.velocities[*place as usize] = displacement_of(&state.v, cell);
-            }
-        }
-        let bodies = room.steps.iter().filter_map(|step| step.body.as_ref());
+        let alone = near
+            .iter()
+            .filter(|place| !links.is_linked(**place as usize));
+        record.list(alone.chain(&links.places).copied(), |place| {
+            displacement_of(&state.v, self.cells[place as usize].cell)
+        });
+        let bodies = steps.iter().filter_map(|step| step.body.as_ref());
         for (body, numbers) in bodies.zip(record.bodies.iter_mut()) {
             body.keep(numbers);
         }
@@ -142,24 +149,37 @@ struct Step<'a> {
 
 impl Step<'_> {
     /// The displacement (m) by which a cell is pushed that a step took from one place (m) to another.
-    fn meet(&self, place: usize, (from, to): (Vector, Vector), record: &mut Record<'_>) -> Vector {
+    fn meet(
+        &self,
+        place: usize,
+        (from, to): (Vector, Vector),
+        met: &mut Met,
+        record: &mut Record<'_>,
+    ) -> Vector {
+        let let_go = |record: &mut Record<'_>| {
+            if let Some(held) = record.held.get_mut(place) {
+                *held = [0.0; OF_HELD];
+            }
+            [0.0; 3]
+        };
         let holder = self.tools.holder(record.held.get(place), self.end);
         // Those whose contacts act on each other do not meet it.
         let tools = self.tools.tools_at[place] & !self.tools.linking;
         if holder.is_none() && !is_near(self.steps, tools, (from, to)) {
-            if let Some(held) = record.held.get_mut(place) {
-                *held = [0.0; OF_HELD];
-            }
-            return [0.0; 3];
+            return let_go(record);
         }
-        let touched = &self.tools.cells[place];
-        let inverse = self.meeting.inverse_block(touched.cell as usize);
-        let compliance = Compliance::new(inverse, touched.free, self.meeting.dt);
-        let mut met = Met::none();
-        match (holder, record.held.get(place)) {
+        let compliance = || {
+            let touched = &self.tools.cells[place];
+            let inverse = self.meeting.inverse_block(touched.cell as usize);
+            Compliance::new(inverse, touched.free, self.meeting.dt)
+        };
+        met.clear();
+        let compliance = match (holder, record.held.get(place)) {
             (Some(tool), Some([_, x, y, z])) => {
                 let place = self.steps[tool].after.to_world([*x, *y, *z]);
+                let compliance = compliance();
                 met.hold(tool, compliance.force(sub(place, to)));
+                compliance
             }
             _ => {
                 // What one surface pushes back may meet another there.
@@ -167,16 +187,22 @@ impl Step<'_> {
                 let kept = record.velocities.get(place);
                 let swing = swing(self.meeting, kept, sub(to, from));
                 let swing = (swing, self.meeting.dt);
+                let mut known = None;
                 while met.touches(self.steps, tools, (from, to), end, swing) {
-                    met.solve(&compliance);
+                    let compliance = known.get_or_insert_with(compliance);
+                    met.solve(compliance);
                     end = add(to, met.sum(|force| compliance.displacement(force)));
                 }
+                let Some(compliance) = known else {
+                    return let_go(record);
+                };
                 for (tool, depth) in met.depths(sub(end, to)) {
                     let deepest = &mut record.tools[tool][DEPTH];
                     *deepest = deepest.max(depth);
                 }
+                compliance
             }
-        }
+        };
         let moved = met.sum(|force| compliance.displacement(force));
         let end = add(to, moved);
         let count = Count {

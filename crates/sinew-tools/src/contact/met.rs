@@ -4,7 +4,8 @@ use super::node::{Compliance, Constraint, MOST};
 use super::tool_step::{ToolStep, Way};
 use crate::vector::{Vector, add, dot, sub};
 
-/// What a node met in a step.
+/// What a node met in a step; the same room is used for the next.
+#[derive(Debug)]
 pub(super) struct Met {
     count: usize,
     /// Tool and part of each surface.
@@ -33,6 +34,11 @@ impl Met {
             forces: [[0.0; 3]; MOST],
             residual: 0.0,
         }
+    }
+
+    /// Forgets the node before.
+    pub(super) fn clear(&mut self) {
+        (self.count, self.residual) = (0, 0.0);
     }
 
     /// Finds what a node meets on its way (m) to where it is pushed, among some tools, one bit each, and has not met before; whether there is anything new.

@@ -300,6 +300,10 @@ fn sum_of(constraints: &[Constraint], active: [usize; 3], lambda: Vector) -> Vec
 /// `A^-1 b` of a symmetric positive definite matrix by its Cholesky factor; `None` where it is singular.
 fn solved(a: [Vector; 3], b: Vector) -> Option<Vector> {
     let positive = |pivot: f64, of: f64| (pivot > 1e-13 * of).then(|| pivot.sqrt());
+    if [a[1][0], a[2][0], a[2][1]] == [0.0; 3] {
+        let is_sound = (0..3).all(|axis| a[axis][axis] > 0.0);
+        return is_sound.then(|| [0, 1, 2].map(|axis| b[axis] / a[axis][axis]));
+    }
     let l00 = positive(a[0][0], 0.0)?;
     let (l10, l20) = (a[1][0] / l00, a[2][0] / l00);
     let l11 = positive(a[1][1] - l10 * l10, a[1][1])?;

@@ -79,6 +79,8 @@ pub(super) struct Record<'a> {
     pub(super) lips: &'a mut [[f64; OF_LIPS]],
     /// Of each pair of lips from the one to the other (m), as the last step began.
     pub(super) pairs: &'a mut [[f64; OF_PAIR]],
+    /// How many cells were near a tool in the last step or linked to others, and their places: of no others there are forces or velocities.
+    listed: &'a mut [f64],
 }
 
 /// How many there are of what a record tells of.
@@ -98,7 +100,13 @@ pub(super) struct Counts {
 impl Counts {
     /// Numbers of a record.
     pub(super) fn numbers(&self) -> usize {
-        self.of_pairs().end
+        self.of_listed().end
+    }
+
+    /// Places of the numbers that list cells.
+    pub(super) fn of_listed(&self) -> Range<usize> {
+        let first = self.of_pairs().end;
+        first..first + 1 + self.cells
     }
 
     /// Places of the numbers of pairs of lips.
@@ -143,6 +151,7 @@ impl Counts {
 impl<'a> Record<'a> {
     /// The record in these numbers, as many as [`Counts::numbers`] says.
     pub(super) fn of(numbers: &'a mut [f64], counts: &Counts) -> Self {
+        let (numbers, listed) = numbers.split_at_mut(counts.of_pairs().end);
         let (numbers, of_pairs) = numbers.split_at_mut(counts.of_lips().end);
         let (numbers, of_lips) = numbers.split_at_mut(counts.of_held().end);
         let (numbers, of_held) = numbers.split_at_mut(counts.of_velocities().end);
@@ -157,6 +166,7 @@ impl<'a> Record<'a> {
             held: of_held.as_chunks_mut().0,
             lips: of_lips.as_chunks_mut().0,
             pairs: of_pairs.as_chunks_mut().0,
+            listed,
         }
     }
 
@@ -172,8 +182,42 @@ impl<'a> Record<'a> {
         for lips in self.lips.iter_mut() {
             (lips[LIP_CONTACTS], lips[LIP_RESIDUAL]) = (0.0, 0.0);
         }
-        self.cells.as_flattened_mut().fill(0.0);
+        for place in places(self.listed) {
+            if let Some(force) = self.cells.get_mut(place) {
+                *force = [0.0; OF_CELL];
+            }
+        }
     }
+
+    /// Lists the cells that were near a tool in this step or linked to others, each once, with their velocities (m/s) after it where something rubs.
+    pub(super) fn list(
+        &mut self,
+        listed: impl Iterator<Item = u32>,
+        velocity: impl Fn(u32) -> Vector,
+    ) {
+        for place in places(self.listed) {
+            if let Some(velocity) = self.velocities.get_mut(place) {
+                *velocity = [0.0; OF_VELOCITY];
+            }
+        }
+        let Some((count, own)) = self.listed.split_first_mut() else {
+            return;
+        };
+        *count = 0.0;
+        for (place, own) in listed.zip(own) {
+            (*count, *own) = (*count + 1.0, f64::from(place));
+            if let Some(kept) = self.velocities.get_mut(place as usize) {
+                *kept = velocity(place);
+            }
+        }
+    }
+}
+
+/// The places in a list of them behind their number.
+fn places(listed: &[f64]) -> impl Iterator<Item = usize> + '_ {
+    let count = listed.first().map_or(0, |count| *count as usize);
+    let listed = listed.iter().skip(1).take(count);
+    listed.map(|place| *place as usize)
 }
 
 /// What a tool that is a body of its own keeps.

@@ -4,6 +4,7 @@ use sinew_core::{Meeting, ShowCells, Shown, State};
 
 use super::links::Links;
 use super::lips::Lips;
+use super::met::Met;
 use super::record::OF_BODY;
 use super::tool::{Tool, TouchedCell};
 use super::tool_step::ToolStep;
@@ -27,6 +28,8 @@ pub(super) struct Room {
     /// Places of the cells that are shown, where these are not all.
     shown: Vec<u32>,
     are_all_shown: bool,
+    /// What one node meets.
+    pub(super) met: Met,
     /// Contacts that act on each other.
     pub(super) links: Links,
     /// The share of the step at which the pass ends.
@@ -42,6 +45,7 @@ impl Room {
             near: Vec::with_capacity(cells),
             shown: Vec::with_capacity(cells),
             are_all_shown: true,
+            met: Met::none(),
             links: Links::of(linked, lips),
             share: 1.0,
         }
