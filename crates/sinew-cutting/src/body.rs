@@ -10,6 +10,7 @@ use crate::marks::Marks;
 use crate::properties::TetProperties;
 use crate::report::{Removal, Stroke};
 use crate::tet::{EDGES, FACES};
+use crate::touch::Passed;
 use crate::vector::{Vector, length, sub};
 
 /// Stands for no tetrahedron.
@@ -53,7 +54,7 @@ pub(crate) struct Room {
     pub(crate) look: u32,
     /// Tetrahedra that are to be looked at.
     pub(crate) queue: Vec<u32>,
-    pub(crate) touched: Vec<u32>,
+    pub(crate) touched: Vec<(u32, Passed)>,
     /// Nodes that may be moved, with their distance from the sheet by their shortest edge.
     pub(crate) near: Vec<(f64, u32)>,
     /// Nodes of faces that were cut.

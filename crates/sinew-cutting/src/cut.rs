@@ -5,6 +5,7 @@ use crate::error::CutError;
 use crate::report::Stroke;
 use crate::sheet::Sheet;
 use crate::tet::FACES;
+use crate::touch::Passed;
 use crate::vector::{Vector, cross, dot, length, sub};
 
 /// Passes over the tetrahedra that a sheet touches in which these may change sides.
@@ -37,20 +38,23 @@ impl CuttableBody {
         self.find_touched(&sheet, positions);
         if snap > 0.0 {
             self.snap(&sheet, positions, snap);
+            if !self.stroke.moved.is_empty() {
+                self.look_again(&sheet, positions);
+            }
         }
         let touched = std::mem::take(&mut self.room.touched);
-        for tet in &touched {
-            self.settle_nodes(*tet, &sheet, positions);
+        for of_tet in &touched {
+            self.settle_nodes(*of_tet, &sheet, positions);
         }
-        for tet in &touched {
-            self.mark(*tet, &sheet, positions);
+        for of_tet in &touched {
+            self.mark(*of_tet, &sheet, positions);
         }
         for _ in 0..SMOOTHING {
-            for tet in &touched {
+            for (tet, _) in &touched {
                 self.smooth(*tet, &sheet, positions);
             }
         }
-        for tet in &touched {
+        for (tet, _) in &touched {
             self.cut_faces_of(*tet, &sheet, positions);
         }
         self.room.touched = touched;
@@ -97,18 +101,13 @@ impl CuttableBody {
         self.stroke = stroke;
     }
 
-    fn mark(&mut self, tet: u32, sheet: &Sheet, positions: &[Vector]) {
-        let beside = self.beside(tet, sheet, positions);
+    fn mark(&mut self, (tet, passed): (u32, Passed), sheet: &Sheet, positions: &[Vector]) {
         let mut mark = self.marks.of(tet);
-        beside
-            .crossed_edges(sheet)
-            .for_each(|edge| mark.cross(edge));
-        beside
-            .vertices_on(sheet)
-            .for_each(|vertex| mark.lay(vertex));
-        beside.faces_under(sheet).for_each(|face| mark.sweep(face));
+        passed.edges().for_each(|edge| mark.cross(edge));
+        passed.vertices().for_each(|vertex| mark.lay(vertex));
+        passed.faces().for_each(|face| mark.sweep(face));
         if mark.side == 0 {
-            mark.side = beside.side();
+            mark.side = self.beside(tet, sheet, positions).side();
         }
         self.marks.set(tet, mark);
     }

@@ -152,10 +152,9 @@ fn turned_over(&[a, b, c, d]: &[Vector; 4]) -> Option<Vector> {
 fn crossing([a, b]: [[f64; 2]; 2], [d, c]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
     let way = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
     let turn = |[x, y]: [f64; 2], [p, q]: [f64; 2]| x * q - y * p;
-    let of_ends = [a, b].map(|end| turn(way(d, c), way(d, end)));
-    let of_others = [d, c].map(|end| turn(way(a, b), way(a, end)));
     let part = |[one, other]: [f64; 2]| (one * other < 0.0).then(|| one / (one - other));
-    let (share, _) = (part(of_ends)?, part(of_others)?);
+    let share = part([a, b].map(|end| turn(way(d, c), way(d, end))))?;
+    part([d, c].map(|end| turn(way(a, b), way(a, end))))?;
     let [x, y] = way(a, b);
     Some([a[0] + share * x, a[1] + share * y])
 }

@@ -48,9 +48,9 @@ impl CuttableBody {
     pub(crate) fn snap(&mut self, sheet: &Sheet, positions: &mut [Vector], snap: f64) {
         let mut near = std::mem::take(&mut self.room.near);
         near.clear();
-        for tet in &self.room.touched {
+        for (tet, passed) in &self.room.touched {
             let beside = self.beside(*tet, sheet, positions);
-            for edge in beside.crossed_edges(sheet) {
+            for edge in passed.edges() {
                 for end in EDGES[edge] {
                     let node = self.tets[*tet as usize][end];
                     let share = beside.distances[end].abs() / self.edge_at(node);

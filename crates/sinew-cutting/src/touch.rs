@@ -9,6 +9,42 @@ use crate::vector::{Vector, mean};
 /// Share of its shortest edge within which a node lies on a sheet.
 const ON_SHEET: f64 = 1e-6;
 
+/// What a sheet passes of a tetrahedron, one bit each: it is told once, and asked for by all that follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Passed {
+    /// Edges that the plane crosses within the sheet.
+    edges: u8,
+    /// Vertices on the sheet.
+    vertices: u8,
+    /// Faces, by the vertex opposite, whose centroid the sheet covers.
+    faces: u8,
+}
+
+impl Passed {
+    fn is_any(self) -> bool {
+        self != Self::default()
+    }
+
+    /// The edges that the plane crosses within the sheet.
+    pub(crate) fn edges(self) -> impl Iterator<Item = usize> {
+        bits(self.edges)
+    }
+
+    /// The vertices on the sheet.
+    pub(crate) fn vertices(self) -> impl Iterator<Item = usize> {
+        bits(self.vertices)
+    }
+
+    /// The faces, by the vertex opposite, whose centroid the sheet covers.
+    pub(crate) fn faces(self) -> impl Iterator<Item = usize> {
+        bits(self.faces)
+    }
+}
+
+fn bits(of: u8) -> impl Iterator<Item = usize> {
+    (0..8).filter(move |bit| of >> bit & 1 == 1)
+}
+
 /// A tetrahedron beside a sheet, as it lies now.
 pub(crate) struct Beside {
     pub(crate) vertices: [Vector; 4],
@@ -39,9 +75,17 @@ impl Beside {
         self.is_divided() || self.distances.contains(&0.0)
     }
 
-    /// The edges that the plane crosses within a sheet.
-    pub(crate) fn crossed_edges(&self, sheet: &Sheet) -> impl Iterator<Item = usize> {
-        let crossed = |[i, j]: [usize; 2]| {
+    /// What a sheet passes of it.
+    fn passed_by(&self, sheet: &Sheet) -> Passed {
+        if !self.is_at_plane() {
+            return Passed::default();
+        }
+        let set = |count: usize, is: &dyn Fn(usize) -> bool| {
+            let bits = (0..count).filter(|bit| is(*bit));
+            bits.fold(0, |all, bit| all | 1 << bit)
+        };
+        let is_crossed = |edge: usize| {
+            let [i, j] = EDGES[edge];
             let distances = [self.distances[i], self.distances[j]];
             distances[0] * distances[1] < 0.0
                 && sheet.meets(
@@ -50,32 +94,18 @@ impl Beside {
                     distances,
                 )
         };
-        (0..EDGES.len()).filter(move |edge| crossed(EDGES[*edge]))
-    }
-
-    /// The vertices on a sheet.
-    pub(crate) fn vertices_on(&self, sheet: &Sheet) -> impl Iterator<Item = usize> {
-        let is_on = |vertex: &usize| {
-            self.distances[*vertex] == 0.0
-                && sheet.passes(self.vertices[*vertex], self.moved[*vertex])
+        let is_on = |vertex: usize| {
+            self.distances[vertex] == 0.0 && sheet.passes(self.vertices[vertex], self.moved[vertex])
         };
-        (0..4).filter(is_on)
-    }
-
-    /// The faces, by the vertex opposite, whose centroid a sheet covers.
-    pub(crate) fn faces_under(&self, sheet: &Sheet) -> impl Iterator<Item = usize> {
-        let is_under = |face: &usize| {
-            let middle = |of: &[Vector; 4]| mean(FACES[*face].map(|corner| of[corner]));
+        let is_under = |face: usize| {
+            let middle = |of: &[Vector; 4]| mean(FACES[face].map(|corner| of[corner]));
             sheet.passes(middle(&self.vertices), middle(&self.moved))
         };
-        (0..4).filter(is_under)
-    }
-
-    fn is_touched(&self, sheet: &Sheet) -> bool {
-        self.is_at_plane()
-            && (self.crossed_edges(sheet).next().is_some()
-                || self.vertices_on(sheet).next().is_some()
-                || self.faces_under(sheet).next().is_some())
+        Passed {
+            edges: set(EDGES.len(), &is_crossed),
+            vertices: set(4, &is_on),
+            faces: set(4, &is_under),
+        }
     }
 }
 
@@ -105,15 +135,20 @@ impl CuttableBody {
     /// Settles, until the blade is lifted, the sides of nodes at edges of a tetrahedron that the sheet crosses, and of those on it. Tissue
     /// moves while it is cut: a node that came to lie just beyond the sheet would else have one side for some of its edges and the
     /// other for the rest.
-    pub(crate) fn settle_nodes(&mut self, tet: u32, sheet: &Sheet, positions: &[Vector]) {
+    pub(crate) fn settle_nodes(
+        &mut self,
+        (tet, passed): (u32, Passed),
+        sheet: &Sheet,
+        positions: &[Vector],
+    ) {
         let beside = self.beside(tet, sheet, positions);
         let nodes = self.tets[tet as usize];
-        for edge in beside.crossed_edges(sheet) {
+        for edge in passed.edges() {
             for end in EDGES[edge] {
                 self.marks.settle_node(nodes[end], beside.distances[end]);
             }
         }
-        for vertex in beside.vertices_on(sheet) {
+        for vertex in passed.vertices() {
             self.marks.settle_node(nodes[vertex], 0.0);
         }
     }
@@ -147,17 +182,27 @@ impl CuttableBody {
             }
         }
         while let Some(tet) = room.queue.pop() {
-            if !self.beside(tet, sheet, positions).is_touched(sheet) {
+            let passed = self.beside(tet, sheet, positions).passed_by(sheet);
+            if !passed.is_any() {
                 continue;
             }
-            room.touched.push(tet);
+            room.touched.push((tet, passed));
             for neighbour in self.neighbours[tet as usize] {
                 if neighbour != NONE {
                     see(neighbour, &mut room.queue);
                 }
             }
         }
-        room.touched.sort_unstable();
+        room.touched.sort_unstable_by_key(|(tet, _)| *tet);
         self.room = room;
+    }
+
+    /// Sees again what the sheet passes of the tetrahedra that it touched, some of whose nodes were moved.
+    pub(crate) fn look_again(&mut self, sheet: &Sheet, positions: &[Vector]) {
+        let mut touched = std::mem::take(&mut self.room.touched);
+        for (tet, passed) in &mut touched {
+            *passed = self.beside(*tet, sheet, positions).passed_by(sheet);
+        }
+        self.room.touched = touched;
     }
 }

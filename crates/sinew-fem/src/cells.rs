@@ -108,10 +108,15 @@ impl Cells {
 
     /// The three components of a vector over the degrees of freedom at a node; zero where they are held.
     pub(crate) fn at_node(&self, values: &[f64], node: u32) -> [f64; 3] {
-        let Some(cell) = self.of_node(node) else {
-            return [0.0; 3];
-        };
-        let first = 3 * cell as usize;
+        match self.of_node(node) {
+            Some(cell) => self.at_cell(values, cell as usize),
+            None => [0.0; 3],
+        }
+    }
+
+    /// The three components of a vector over the degrees of freedom at a cell; zero where they are held.
+    pub(crate) fn at_cell(&self, values: &[f64], cell: usize) -> [f64; 3] {
+        let first = 3 * cell;
         let free = |axis: usize| !self.pinned[first + axis];
         std::array::from_fn(|axis| {
             if free(axis) {

@@ -110,6 +110,12 @@ impl Motions {
         Some(&self.frozen.get(place.ok()?)?.1)
     }
 
+    /// The nodes that are moved, or held away from where they are at rest.
+    pub(crate) fn moved(&self) -> impl Iterator<Item = u32> {
+        let moved = self.nodes.iter().map(|(node, _)| *node);
+        moved.chain(self.frozen.iter().map(|(node, _)| *node))
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }

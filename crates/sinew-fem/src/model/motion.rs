@@ -169,9 +169,15 @@ impl Model {
     ) -> Result<(), FieldError> {
         self.require_dofs("the vector", values)?;
         self.require_nodes("the output", out)?;
-        let at_node = self.at_nodes(when, order, Some(values))?;
-        for (node, out) in (0..).zip(out) {
-            *out = at_node(node);
+        require_inputs(self.motions.ramps(), when.inputs())?;
+        out.fill([0.0; 3]);
+        for (cell, node) in self.body.cells.nodes.iter().enumerate() {
+            out[*node as usize] = self.body.cells.at_cell(values, cell);
+        }
+        let at = self.motions.at(when);
+        for node in self.motions.moved() {
+            let out = &mut out[node as usize];
+            *out = sum(*out, self.motions.field(&at, order, node));
         }
         Ok(())
     }
