@@ -107,6 +107,22 @@ struct Cost {
     faces: usize,
     new_nodes: usize,
     rows: usize,
+    /// Time (us) to cut the same faces where they are given: what the blade takes is left out.
+    of_faces: Option<f64>,
+}
+
+/// Time (us) to cut faces of a body that are given.
+fn given(mesh: &Arc<TetMesh>, faces: &[(u32, u8)]) -> f64 {
+    let mut cut = CutModel::new(Arc::clone(mesh), problem(), 0.0).expect("it can be cut");
+    let mut state = State::at_rest(cut.model().dofs());
+    cut.make_room(&mut state);
+    let faces = faces
+        .iter()
+        .map(|(tet, vertex)| (*tet, usize::from(*vertex)));
+    let begin = Instant::now();
+    cut.cut_faces(faces, &mut state, Inputs::none())
+        .expect("they are there");
+    begin.elapsed().as_secs_f64() * 1e6
 }
 
 /// A slit to half the depth in some strokes, over a share of the cube's width.
@@ -148,6 +164,8 @@ fn slit(mesh: &Arc<TetMesh>, (name, x, snap): (&str, f64, f64), (strokes, width)
                 faces: report.faces,
                 new_nodes: report.new_nodes,
                 rows: nodes.collect::<BTreeSet<u32>>().len(),
+                of_faces: (strokes == 1 && snap == 0.0)
+                    .then(|| given(mesh, &cut.body().last_stroke().faces)),
             });
         }
     }
@@ -158,13 +176,18 @@ fn slit(mesh: &Arc<TetMesh>, (name, x, snap): (&str, f64, f64), (strokes, width)
         faces,
         new_nodes,
         rows,
+        of_faces,
     }) = costs.get(costs.len() / 2)
     else {
         return;
     };
+    let of_faces = of_faces.map_or(String::new(), |micros| {
+        let by_row = micros / *rows as f64;
+        format!("; the same faces without a blade {micros:.0} us, {by_row:.2} us a row")
+    });
     println!(
         "  {name}, {strokes} strokes over {width} of the width: {micros:.0} us (at most {most:.0}) for {faces} faces, {new_nodes} new nodes, \
-         {rows} rows: {:.2} us a row",
+         {rows} rows: {:.2} us a row{of_faces}",
         micros / *rows as f64
     );
 }
