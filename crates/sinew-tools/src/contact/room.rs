@@ -37,10 +37,12 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Room for tools, and so many cells, of which so many may be part of contacts that act on each other, lips among them.
-    pub(super) fn of(tools: &[Tool], linked: usize, cells: usize, lips: &Lips) -> Self {
+    /// Room for tools, and cells, of which so many may be part of contacts that act on each other, lips among them.
+    pub(super) fn of(tools: &[Tool], linked: usize, cells: &[TouchedCell], lips: &Lips) -> Self {
+        let (tissue, cells) = (size(cells), cells.len());
+        let step = |tool: &Tool| ToolStep::of(tool, tissue);
         Self {
-            steps: tools.iter().map(ToolStep::of).collect(),
+            steps: tools.iter().map(step).collect(),
             bounds: None,
             near: Vec::with_capacity(cells),
             shown: Vec::with_capacity(cells),
@@ -142,6 +144,16 @@ impl Room {
             near.extend(self.shown.iter().copied().filter(is_near));
         }
     }
+}
+
+/// The length (m) of the longest edge of the box around cells at rest.
+fn size(cells: &[TouchedCell]) -> f64 {
+    let edges = (0..3).map(|axis| {
+        let along = || cells.iter().map(|cell| cell.rest[axis]);
+        let highest = along().fold(f64::NEG_INFINITY, f64::max);
+        (highest - along().fold(f64::INFINITY, f64::min)).max(0.0)
+    });
+    edges.fold(0.0, f64::max)
 }
 
 /// Whether the way of a cell in a step of `dt` (s) that led to a state meets a box (m).

@@ -11,9 +11,9 @@ use crate::vector::{Vector, add, dot, length, scaled, sub};
 /// The way (m) of a cell in a step, straight from one place to another.
 pub(super) type Way = (Vector, Vector);
 
-/// How deep a node may be in a part as a step begins, as a share of the part's half width, to be pushed out: contact leaves none so deep, where nodes have room between
-/// surfaces.
-const LEFT: f64 = 1e-3;
+/// How deep a node may be in a part as a step begins, as a share of the part's half width or of the tissue, to be pushed out: contact leaves none so deep where nodes have room between
+/// surfaces, in single precision neither.
+const LEFT: f64 = 1e-4;
 
 /// A tool during a step.
 #[derive(Debug)]
@@ -32,6 +32,8 @@ pub(super) struct ToolStep {
     pub(super) friction: f64,
     /// Whether the motion begins with this step.
     is_first: bool,
+    /// The size (m) of the tissue that it may touch, at rest.
+    tissue: f64,
     /// What is left of contacts that act on each other.
     pub(super) residual: f64,
     strokes: Vec<(Stroke, Near)>,
@@ -85,8 +87,8 @@ pub(super) fn is_near(steps: &[ToolStep], tools: u64, way: Way) -> bool {
 }
 
 impl ToolStep {
-    /// A step that is still to begin.
-    pub(super) fn of(tool: &Tool) -> Self {
+    /// A step that is still to begin, beside tissue of a size (m).
+    pub(super) fn of(tool: &Tool, tissue: f64) -> Self {
         Self {
             before: Pose::identity(),
             after: Pose::identity(),
@@ -97,6 +99,7 @@ impl ToolStep {
             body: None,
             friction: tool.friction,
             is_first: true,
+            tissue,
             residual: 0.0,
             strokes: Vec::with_capacity(tool.shape.parts().len()),
         }
@@ -190,7 +193,7 @@ impl ToolStep {
     /// Where a way (m) meets the part of a stroke.
     pub(super) fn touch(&self, stroke: &Stroke, way: Way) -> Option<Touch> {
         let touch = stroke.first_contact(way.0, way.1)?;
-        let most = LEFT * stroke.half_width();
+        let most = LEFT * stroke.half_width().min(self.tissue);
         let (point, normal) = (touch.point, touch.normal);
         let point = match touch.share {
             0.0 => self.reached(stroke, way.0, (point, normal), most),
@@ -315,11 +318,11 @@ mod tests {
     use crate::motion::Motion;
     use crate::shape::{Convex, Shape};
 
-    /// How far from its middle (m) a ball of 10 mm leaves a node, and the middle of a triangle, which a step takes from one height above it to another.
-    fn left_at(is_first: bool, from: f64, to: f64) -> [Option<f64>; 2] {
-        let ball = Tool {
-            name: "ball".into(),
-            shape: Shape::of(Convex::Sphere { radius: 0.01 }),
+    /// A step of a tool at rest beside tissue of 0.6 m.
+    fn step(convex: Convex, is_first: bool) -> ToolStep {
+        let tool = Tool {
+            name: "tool".into(),
+            shape: Shape::of(convex),
             motion: Motion::Held(Pose::identity()),
             friction: 0.0,
             cells: Vec::new(),
@@ -327,14 +330,15 @@ mod tests {
             body: None,
             triangles: Vec::new(),
         };
-        let mut step = ToolStep::of(&ball);
-        step.begin(
-            &ball,
-            [Pose::identity(); 2],
-            None,
-            (None, 1e-3, true),
-            is_first,
-        );
+        let mut step = ToolStep::of(&tool, 0.6);
+        let path = [Pose::identity(); 2];
+        step.begin(&tool, path, None, (None, 1e-3, true), is_first);
+        step
+    }
+
+    /// How far from its middle (m) a ball of 10 mm leaves a node, and the middle of a triangle, which a step takes from one height above it to another.
+    fn left_at(is_first: bool, from: f64, to: f64) -> [Option<f64>; 2] {
+        let step = step(Convex::Sphere { radius: 0.01 }, is_first);
         let node = step.touches(([0.0, 0.0, from], [0.0, 0.0, to])).next();
         // Tissue above, its surface towards the ball.
         let triangle = |z: f64| [[0.0, 0.3, z], [0.3, -0.3, z], [-0.3, -0.3, z]];
@@ -353,7 +357,7 @@ mod tests {
         for (is_first, from, expected) in [
             (true, deep, [surface; 2]),
             (false, deep, [deep; 2]),
-            (false, surface - 1e-6, [surface; 2]),
+            (false, surface - 1e-7, [surface; 2]),
             // Rounds leave triangles a tenth deep.
             (false, 0.009, [0.009, surface]),
             (false, 0.012, [surface; 2]),
@@ -365,5 +369,25 @@ mod tests {
             }
         }
         assert_eq!(left_at(false, 0.012, 0.011), [None; 2]);
+    }
+
+    #[test]
+    fn planes_and_thick_boxes_throw_nothing_out_either() {
+        let thick = Convex::Cuboid {
+            size: [100.0, 100.0, 100.0],
+        };
+        for (convex, surface) in [(Convex::Plane, 0.0), (thick, 50.0)] {
+            for (is_first, depth, left) in [
+                (true, 0.012, 0.0),
+                (false, 0.012, 0.012),
+                (false, 1e-5, 0.0),
+            ] {
+                let from = [0.0, 0.0, surface - depth];
+                let way = (from, [0.0, 0.0, surface - 0.02]);
+                let (_, touch) = step(convex, is_first).touches(way).next().unwrap();
+                let off = touch.point[2] - (surface - left);
+                assert!(off.abs() < 1e-13, "{convex:?} {is_first} {depth}: {off}");
+            }
+        }
     }
 }

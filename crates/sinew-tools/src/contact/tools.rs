@@ -163,7 +163,7 @@ impl Tools {
             room: Mutex::new(Room::of(
                 &tools,
                 if has_links { cells.len() } else { 0 },
-                cells.len(),
+                &cells,
                 &lips,
             )),
             tools,
