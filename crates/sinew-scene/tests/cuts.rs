@@ -537,3 +537,15 @@ fn a_plan_shows_the_step_before_and_after_cuts_beside_that_of_the_body() {
     assert!(lines[1].contains(": 0.001216 s;"), "{lines:?}");
     assert!(lines[1].ends_with(" 0.001821 s"), "{lines:?}");
 }
+
+#[test]
+fn the_certificate_counts_steps_before_and_after_cuts() {
+    let folder = tempfile::tempdir().unwrap();
+    let cutting = "[cutting]\ntable = \"strokes.csv\"\n";
+    let text = bar(cutting, "integrator = \"cnn-energy\"\ndt = 1e-3\n");
+    let mut run = CutRun::new(load(folder.path(), &text, &across(0.01, 0.02)));
+    run.advance(40);
+    assert_eq!(run.cutter.borrow().pieces(), 2);
+    let said = run.integrator.remarks().join("\n");
+    assert!(said.contains("in 40 steps it rose by"), "{said}");
+}

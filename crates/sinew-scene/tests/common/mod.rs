@@ -47,7 +47,7 @@ pub(crate) struct CutRun {
     pub(crate) simulation: Simulation,
     pub(crate) state: State,
     pub(crate) cutter: RefCell<Cutter>,
-    integrator: Box<dyn Stepper>,
+    pub(crate) integrator: Box<dyn Stepper>,
     is_seen: bool,
 }
 

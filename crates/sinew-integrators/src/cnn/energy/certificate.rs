@@ -2,7 +2,7 @@
 
 use sinew_core::{Fact, StepReport};
 
-/// Counts of the steps since set-up.
+/// Counts of the steps since the first set-up.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Certificate {
     steps: u64,

@@ -150,7 +150,7 @@ impl Scheme for CnnEnergy {
         &mut self,
         system: &dyn System,
         _dt: f64,
-        _before: Option<EnergySteps>,
+        before: Option<EnergySteps>,
     ) -> Result<SetUp<EnergySteps>, SetupError> {
         if system.as_linear().is_none() && system.internal_variables() > 0 {
             return Err(SetupError::Lacks {
@@ -167,7 +167,7 @@ impl Scheme for CnnEnergy {
                         takes the surface at the beginning of each step; `generalized-alpha`, `newmark` and explicit methods follow it)",
             });
         }
-        let steps = EnergySteps::new(Self::ID, system, self.kind, self.sweeps);
+        let steps = EnergySteps::new(Self::ID, system, (self.kind, self.sweeps), before);
         Ok(SetUp::by_hand(steps, StepReport::default()))
     }
 }

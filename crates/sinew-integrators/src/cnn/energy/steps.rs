@@ -53,7 +53,13 @@ impl Attempt {
 }
 
 impl EnergySteps {
-    pub(super) fn new(id: &'static str, system: &dyn System, kind: Kind, sweeps: u32) -> Self {
+    /// Steps of a system, which go on counting for the certificate where those `before` end, as at a cut.
+    pub(super) fn new(
+        id: &'static str,
+        system: &dyn System,
+        (kind, sweeps): (Kind, u32),
+        before: Option<Self>,
+    ) -> Self {
         let zeros = || vec![0.0; system.dofs()];
         Self {
             id,
@@ -69,7 +75,7 @@ impl EnergySteps {
             damped: zeros(),
             v: zeros(),
             a: zeros(),
-            certificate: Certificate::default(),
+            certificate: before.map_or_else(Certificate::default, |before| before.certificate),
         }
     }
 
