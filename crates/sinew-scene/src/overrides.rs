@@ -16,8 +16,10 @@ pub enum OverrideError {
         text: String,
     },
     /// A scene that is not TOML.
-    #[error("the scene is not TOML: {message}")]
+    #[error("the scene is not TOML in line {line}: {message}")]
     Syntax {
+        /// The line, from 1 on.
+        line: usize,
         /// The message of the TOML parser.
         message: String,
     },
@@ -86,11 +88,14 @@ impl SceneSource {
             return Ok(self.clone());
         }
         let mut document: DocumentMut =
-            self.text()
-                .parse()
-                .map_err(|error: toml_edit::TomlError| OverrideError::Syntax {
+            self.text().parse().map_err(|error: toml_edit::TomlError| {
+                let end = error.span().map_or(0, |span| span.start);
+                let before = self.text().as_bytes().iter().take(end);
+                OverrideError::Syntax {
+                    line: 1 + before.filter(|byte| **byte == b'\n').count(),
                     message: error.message().to_owned(),
-                })?;
+                }
+            })?;
         for text in values {
             let text = text.as_ref();
             let form = || OverrideError::Form {
@@ -241,5 +246,12 @@ mod tests {
             let error = with(&[value]).unwrap_err();
             assert!(error.contains(expected), "{value}: {error}");
         }
+    }
+
+    #[test]
+    fn a_scene_that_is_not_toml_is_told_by_its_line() {
+        let broken = SceneSource::new("a.toml", "[run]\ndt = 1\ndt = 2\n");
+        let error = broken.with_values(&["run.dt=3"]).unwrap_err().to_string();
+        assert_eq!(error, "the scene is not TOML in line 3: duplicate key");
     }
 }
