@@ -7,10 +7,10 @@ use sinew_mesh::{CutBody, CutMesh, TetMesh};
 use crate::error::CutError;
 use crate::incidence::Incidence;
 use crate::marks::Marks;
+use crate::passed::Passed;
 use crate::properties::TetProperties;
 use crate::report::{Removal, Stroke};
 use crate::tet::{EDGES, FACES};
-use crate::touch::Passed;
 use crate::vector::{Vector, length, sub};
 
 /// Stands for no tetrahedron.

@@ -2,10 +2,10 @@
 
 use crate::body::{CuttableBody, NONE};
 use crate::error::CutError;
+use crate::passed::Passed;
 use crate::report::Stroke;
 use crate::sheet::Sheet;
 use crate::tet::FACES;
-use crate::touch::Passed;
 use crate::vector::{Vector, cross, dot, length, sub};
 
 /// Passes over the tetrahedra that a sheet touches in which these may change sides.

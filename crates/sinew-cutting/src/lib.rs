@@ -37,6 +37,7 @@ mod cut;
 mod error;
 mod incidence;
 mod marks;
+mod passed;
 mod pieces;
 mod properties;
 mod remove;

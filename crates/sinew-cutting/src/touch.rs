@@ -2,48 +2,13 @@
 
 use crate::body::{CuttableBody, NONE};
 use crate::marks::NodeSide;
+use crate::passed::Passed;
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES};
 use crate::vector::{Vector, mean};
 
 /// Share of its shortest edge within which a node lies on a sheet.
 const ON_SHEET: f64 = 1e-6;
-
-/// What a sheet passes of a tetrahedron, one bit each: it is told once, and asked for by all that follows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Passed {
-    /// Edges that the plane crosses within the sheet.
-    edges: u8,
-    /// Vertices on the sheet.
-    vertices: u8,
-    /// Faces, by the vertex opposite, whose centroid the sheet covers.
-    faces: u8,
-}
-
-impl Passed {
-    fn is_any(self) -> bool {
-        self != Self::default()
-    }
-
-    /// The edges that the plane crosses within the sheet.
-    pub(crate) fn edges(self) -> impl Iterator<Item = usize> {
-        bits(self.edges)
-    }
-
-    /// The vertices on the sheet.
-    pub(crate) fn vertices(self) -> impl Iterator<Item = usize> {
-        bits(self.vertices)
-    }
-
-    /// The faces, by the vertex opposite, whose centroid the sheet covers.
-    pub(crate) fn faces(self) -> impl Iterator<Item = usize> {
-        bits(self.faces)
-    }
-}
-
-fn bits(of: u8) -> impl Iterator<Item = usize> {
-    (0..8).filter(move |bit| of >> bit & 1 == 1)
-}
 
 /// A tetrahedron beside a sheet, as it lies now.
 pub(crate) struct Beside {
@@ -102,9 +67,9 @@ impl Beside {
             sheet.passes(middle(&self.vertices), middle(&self.moved))
         };
         Passed {
-            edges: set(EDGES.len(), &is_crossed),
-            vertices: set(4, &is_on),
-            faces: set(4, &is_under),
+            crossed: set(EDGES.len(), &is_crossed),
+            on: set(4, &is_on),
+            under: set(4, &is_under),
         }
     }
 }

@@ -14,6 +14,7 @@ use super::cut_plan::CutPlan;
 use super::model::{BodyModel, SceneModel};
 use super::probe::Probe;
 use super::{Simulation, tool};
+use crate::number::length;
 use crate::scene::{Blade, Cutting, LoosePieces, Subject};
 
 /// What was cut since a motion began.
@@ -182,13 +183,25 @@ impl Cutter {
         }
         let tools = simulation.model().tools();
         if let (Blade::Tool(blade), Some(tools)) = (&plan.cutting.blade, tools) {
-            let ends = [followed.unwrap_or(t), end].map(|t| edge(tools, *blade, t, inputs));
-            if let [Some(from), Some(to)] = ends
-                && let Some(sheet) = Sheet::swept(from, to)
-            {
-                self.sweep(&sheet, state, inputs)?;
-                if !self.cut.body().is_touched() {
-                    self.cut.lift();
+            let begin = followed.unwrap_or(t);
+            let parts = parts_of_turn(tools, *blade, [begin, end], inputs);
+            let at = |part: u32| {
+                let share = f64::from(part) / f64::from(parts);
+                let t = if part == parts {
+                    end
+                } else {
+                    begin + share * (end - begin)
+                };
+                edge(tools, *blade, t, inputs)
+            };
+            for part in 0..parts {
+                if let [Some(from), Some(to)] = [part, part + 1].map(at)
+                    && let Some(sheet) = Sheet::swept(from, to)
+                {
+                    self.sweep(&sheet, state, inputs)?;
+                    if !self.cut.body().is_touched() {
+                        self.cut.lift();
+                    }
                 }
             }
         }
@@ -423,6 +436,19 @@ impl Cutter {
         }
         Ok(left)
     }
+}
+
+/// The largest turn (rad) of a blade that one sheet follows: its ends go straight.
+const LARGEST_TURN: f64 = 0.25;
+
+/// The equal parts of a time from one instant to another (s) in which a blade turns by no more than a sheet follows.
+fn parts_of_turn(tools: &Tools, blade: usize, times: [f64; 2], inputs: &Inputs) -> u32 {
+    let Some(tool) = tools.tools().get(blade) else {
+        return 1;
+    };
+    let [before, after] = times.map(|t| tool.motion.at(t, inputs));
+    let turn = length(before.turn_to(&after));
+    (turn / LARGEST_TURN).ceil().max(1.0) as u32
 }
 
 /// Both ends (m) of a blade at a time (s).

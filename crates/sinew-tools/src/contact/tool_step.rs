@@ -6,7 +6,7 @@ use super::tool::Tool;
 use crate::pose::Pose;
 use crate::shape::{Touch, Triangle, TriangleTouch};
 use crate::stroke::Stroke;
-use crate::vector::{Vector, add, dot, length, scaled, sub};
+use crate::vector::{Vector, add, between, dot, length, scaled, sub};
 
 /// The way (m) of a cell in a step, straight from one place to another.
 pub(super) type Way = (Vector, Vector);
@@ -196,23 +196,23 @@ impl ToolStep {
         let most = LEFT * stroke.half_width().min(self.tissue);
         let (point, normal) = (touch.point, touch.normal);
         let point = match touch.share {
-            0.0 => self.reached(stroke, way.0, (point, normal), most),
+            0.0 => self.reached(stroke, (0.0, way.0), (point, normal), most),
             _ => point,
         };
         Some(Touch { point, ..touch })
     }
 
-    /// The point on a part's surface, with the normal there, that tissue which began the pass at a place (m) may not pass; or, where it began deeper in the part than `most` (m), as deep below it.
+    /// The point on a part's surface, with the normal there, that tissue which was at a place (m) at a share of the pass may not pass; or, where it was deeper in the part than `most` (m), as deep below it.
     /// What a cut lays open within a tool, or an iteration left there, gets no deeper: to throw it out at once would bring in energy, the more so the shorter the step. Only what a motion begins with
     /// is pushed out.
     fn reached(
         &self,
         stroke: &Stroke,
-        began: Vector,
+        (share, place): (f64, Vector),
         (point, normal): (Vector, Vector),
         most: f64,
     ) -> Vector {
-        let depth = dot(normal, sub(point, stroke.pose_at(0.0).to_own(began)));
+        let depth = dot(normal, sub(point, stroke.pose_at(share).to_own(place)));
         if self.is_first || depth <= most {
             point
         } else {
@@ -235,11 +235,9 @@ impl ToolStep {
         let near = self.near_triangle(from, to);
         near.filter_map(move |(part, stroke)| {
             let touch = stroke.first_triangle(from, to)?;
-            let touch = match touch.share {
-                0.0 => self.reached_by_triangle(stroke, from, touch),
-                _ => touch,
-            };
-            Some((part, touch))
+            // One that is inside out is met where it turns, deep in the part.
+            let corners = [0, 1, 2].map(|at| between(from[at], to[at], touch.share));
+            Some((part, self.reached_by_triangle(stroke, &corners, touch)))
         })
     }
 
@@ -256,19 +254,20 @@ impl ToolStep {
         })
     }
 
-    /// The same contact, as deep in the part as the triangle was there as the pass began, where that is deeper than rounds leave any: see [`Self::reached`].
+    /// The same contact, as deep in the part as the triangle, with its corners at the contact's share of the pass, was there, where that is deeper than rounds leave any: see [`Self::reached`].
     fn reached_by_triangle(
         &self,
         stroke: &Stroke,
-        from: &Triangle,
+        corners: &Triangle,
         touch: TriangleTouch,
     ) -> TriangleTouch {
-        let began = from.iter().zip(touch.weights);
-        let began = began.fold([0.0; 3], |sum, (corner, weight)| {
+        let place = corners.iter().zip(touch.weights);
+        let place = place.fold([0.0; 3], |sum, (corner, weight)| {
             add(sum, scaled(*corner, weight))
         });
         let most = stroke.left_to_triangles();
-        let point = self.reached(stroke, began, (touch.point, touch.normal), most);
+        let surface = (touch.point, touch.normal);
+        let point = self.reached(stroke, (touch.share, place), surface, most);
         TriangleTouch { point, ..touch }
     }
 
