@@ -296,11 +296,11 @@ impl<'a> Batch<'a> {
     }
 
     /// Lets what touches the system push cells of a trial state, before [`Batch::end_step`]; `pushed` are the cells that it
-    /// did push afterwards, and `cells` shows it those that it asks for. `kick` is the time (s) by which a change of velocity is divided in an acceleration that the state keeps.
+    /// did push afterwards, and `cells` shows it those that it asks for. Velocities move displacements up to a size of `saturation` (m/s); `kick` is the time (s) by which a change of velocity is divided in an acceleration that the state keeps.
     pub fn meet(
         &self,
         (state, cells): (&mut State, &mut dyn ShowCells),
-        inertia: Inertia<'_>,
+        (inertia, saturation): (Inertia<'_>, f64),
         kick: Option<f64>,
         pushed: &mut Vec<u32>,
     ) {
@@ -312,6 +312,7 @@ impl<'a> Batch<'a> {
                 mass: self.system.mass(),
                 inertia,
                 kick,
+                saturation,
                 is_staggered: true,
             };
             contact.meet(&meeting, cells, state, pushed);

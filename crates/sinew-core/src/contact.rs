@@ -47,11 +47,11 @@ pub trait Contact: Debug + Send + Sync {
 /// Shows contact the cells of a trial state: a machine that keeps its own vectors writes no more of them than a step asks for.
 pub trait ShowCells {
     /// Writes u and v of the cells that contact reads into the state: of all; or of those at least whose ways meet a box (m), with their places among these cells, increasing, where it is
-    /// given and there is less to write then. A way leads straight to where a step of `dt` (s) ended, from `u - dt v`.
+    /// given and there is less to write then. A way leads straight to where the step ended, from `u` less [`Meeting::way`] of `v`.
     fn show(
         &mut self,
         within: Option<[[f64; 3]; 2]>,
-        dt: f64,
+        meeting: &Meeting<'_>,
         state: &mut State,
         near: &mut Vec<u32>,
     ) -> Shown;
@@ -71,7 +71,13 @@ pub enum Shown {
 pub struct AllShown;
 
 impl ShowCells for AllShown {
-    fn show(&mut self, _: Option<[[f64; 3]; 2]>, _: f64, _: &mut State, _: &mut Vec<u32>) -> Shown {
+    fn show(
+        &mut self,
+        _: Option<[[f64; 3]; 2]>,
+        _: &Meeting<'_>,
+        _: &mut State,
+        _: &mut Vec<u32>,
+    ) -> Shown {
         Shown::All
     }
 }
@@ -89,6 +95,8 @@ pub struct Meeting<'a> {
     pub inertia: Inertia<'a>,
     /// The time (s) by which a change of velocity is divided in an acceleration that the state keeps; `None` where it keeps none.
     pub kick: Option<f64>,
+    /// The size (m/s) up to which a component of a velocity moves the displacement: infinite but for a network that saturates.
+    pub saturation: f64,
     /// Whether velocities hold in the middle of steps, so that what touches works at the mean of its own velocities in this step and the last, and not at that in this step.
     pub is_staggered: bool,
 }
@@ -103,6 +111,12 @@ pub enum Inertia<'a> {
 }
 
 impl Meeting<'_> {
+    /// How far (m) a component of a velocity (m/s) after the step moved the displacement in it.
+    #[must_use]
+    pub fn way(&self, velocity: f64) -> f64 {
+        self.dt * velocity.min(self.saturation).max(-self.saturation)
+    }
+
     /// The block of `P^-1` (1/kg) of a cell of three layers.
     #[must_use]
     pub fn inverse_block(&self, cell: usize) -> [[f64; 3]; 3] {

@@ -8,8 +8,8 @@ use sinew_cnn::{
 };
 use sinew_core::{
     Acceleration, Batch, Contact, ElementForces, ElementPrecision, ElementSweep, Equations,
-    LinearOperators, LoadTime, Revision, ShowCells, Shown, State, Step, StepError, StepReport,
-    Stepped, SweepShape, System, VelocityTime,
+    LinearOperators, LoadTime, Meeting, Revision, ShowCells, Shown, State, Step, StepError,
+    StepReport, Stepped, SweepShape, System, VelocityTime,
 };
 use sinew_sparse::simd::InstructionSet;
 use sinew_sparse::sweep::{self as kernel, Field, Fields, Outcome, Precision, Rows};
@@ -424,6 +424,7 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
         let mut starts = !program.start.is_empty() && !running;
         let most = batch.divergence_limit().min(T::LARGEST);
         let has_contact = batch.contact().is_some() && program.inertia().is_some();
+        let saturation = program.saturation();
         let entry = Current {
             part: Part::Entry,
             number: 0,
@@ -495,7 +496,8 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
                     set: self.set,
                     are_shown: written,
                 };
-                batch.meet((state, &mut cells), inertia, kick, &mut pushed);
+                let step = (inertia, saturation);
+                batch.meet((state, &mut cells), step, kick, &mut pushed);
                 loaded.pushed = pushed;
                 loaded.take_pushed(self.layout, state);
                 if !written {
@@ -817,7 +819,7 @@ impl<T: ElementPrecision> ShowCells for TouchedCells<'_, T> {
     fn show(
         &mut self,
         within: Option<[[f64; 3]; 2]>,
-        dt: f64,
+        meeting: &Meeting<'_>,
         state: &mut State,
         near: &mut Vec<u32>,
     ) -> Shown {
@@ -837,7 +839,7 @@ impl<T: ElementPrecision> ShowCells for TouchedCells<'_, T> {
                 Shown::All
             }
             Some(within) => {
-                let search = (within, dt, *largest);
+                let search = (within, meeting, *largest);
                 touched.show_near(self.set, (fields, vectors), search, state, near);
                 Shown::Listed
             }

@@ -1,6 +1,6 @@
 //! The cells that contact reads, in the order of a machine.
 
-use sinew_core::State;
+use sinew_core::{Meeting, State};
 use sinew_sparse::simd::{InstructionSet, Number, Real, WithReal};
 use sinew_sparse::sweep::{Fields, Numbering, Precision};
 
@@ -113,13 +113,13 @@ impl<T: Precision> Touched<T> {
         }
     }
 
-    /// Lists the places of those whose ways in a step of `dt` (s) may meet a box (m), increasing, and writes their u and v into a state. No component of a displacement is larger than `largest` (m) at
+    /// Lists the places of those whose ways in the step may meet a box (m), increasing, and writes their u and v into a state. No component of a displacement is larger than `largest` (m) at
     /// either end of a way: where all of a block stays away from the box then, its ways are not looked at.
     pub(crate) fn show_near(
         &self,
         set: InstructionSet,
         (fields, [u, v]): (&mut Fields<T>, [usize; 2]),
-        (within, dt, largest): ([[f64; 3]; 2], f64, f64),
+        (within, meeting, largest): ([[f64; 3]; 2], &Meeting<'_>, f64),
         state: &mut State,
         near: &mut Vec<u32>,
     ) {
@@ -128,7 +128,8 @@ impl<T: Precision> Touched<T> {
             touched: self,
             layers: &layers,
             bounds: self.with_roundings(within),
-            dt,
+            dt: meeting.dt,
+            saturation: meeting.saturation.min(T::LARGEST),
             largest,
             near,
         };
@@ -178,6 +179,7 @@ struct Search<'a, T> {
     layers: &'a Layers<'a, T>,
     bounds: [[f64; 3]; 2],
     dt: f64,
+    saturation: f64,
     largest: f64,
     near: &'a mut Vec<u32>,
 }
@@ -221,12 +223,13 @@ impl<T: Precision> Search<'_, T> {
     fn look_at<N: Number<Real = T>>(&mut self, block: usize) {
         let (touched, [us, vs]) = (self.touched, self.layers);
         let (first, back) = (touched.blocks[block] as usize, N::of(-self.dt));
+        let [least, most] = [-self.saturation, self.saturation].map(N::of);
         let is_met = (0..T::LANES).step_by(N::LANES).any(|part| {
             let (lane, position) = (block * T::LANES + part, first + part);
             let ends = |axis: usize| {
                 let [u, v] = [us, vs].map(|layers| N::load(&layers[axis][position..]));
                 let to = N::load(&touched.at_rest[axis][lane..]) + u;
-                let from = v.mul_add(back, to);
+                let from = v.min(most).max(least).mul_add(back, to);
                 (from.min(to), from.max(to))
             };
             is_any_met(self.bounds, ends)
@@ -259,6 +262,8 @@ fn is_any_met<N: Number>([low, high]: [[f64; 3]; 2], ends: impl Fn(usize) -> (N,
 
 #[cfg(test)]
 mod tests {
+    use sinew_core::{Inertia, Inputs};
+
     use super::*;
 
     /// Every way that meets a box is listed, in every precision and by all instructions, and few others.
@@ -285,7 +290,16 @@ mod tests {
                 layer.fill_with(|| T::of(size * (random() - 0.5)));
             }
         }
-        let dt = 0.01;
+        let (inputs, mass) = (Inputs::default(), vec![1.0; 3 * cells as usize]);
+        let meeting = Meeting {
+            inputs: &inputs,
+            dt: 0.01,
+            mass: &mass,
+            inertia: Inertia::Mass(1.0),
+            kick: None,
+            saturation: 7.0,
+            is_staggered: true,
+        };
         let mut met = 0;
         for _ in 0..40 {
             let low = [0; 3].map(|_: i32| 0.6 * random());
@@ -297,7 +311,7 @@ mod tests {
                 (0..3).all(|axis| {
                     let dof = 3 * all[place] as usize + axis;
                     let to = rest[place][axis] + state.u[dof];
-                    let from = to - dt * state.v[dof];
+                    let from = to - meeting.way(state.v[dof]);
                     from.min(to) <= high[axis] && from.max(to) >= low[axis]
                 })
             };
@@ -309,7 +323,8 @@ mod tests {
             for set in InstructionSet::available() {
                 let (mut near, mut shown) = (Vec::new(), State::at_rest(dofs));
                 let vectors = (&mut fields, [0, 1]);
-                touched.show_near(set, vectors, ([low, high], dt, 0.2), &mut shown, &mut near);
+                let search = ([low, high], &meeting, 0.2);
+                touched.show_near(set, vectors, search, &mut shown, &mut near);
                 assert!(near.is_sorted());
                 assert!(expected.iter().all(|place| near.contains(place)), "{set:?}");
                 assert!(near.len() <= T::LANES * expected.len());

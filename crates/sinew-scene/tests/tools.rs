@@ -285,3 +285,22 @@ fn a_thin_plate_meets_triangles_where_it_comes_with_its_edge() {
     // Tissue may come from anywhere to what stays.
     assert!(triangles("start = [0.05, 0.05, 0.106]\nhold = true") > 0);
 }
+
+/// A network moves displacements by a clamped velocity: where a cell was is told by that, not by the velocity that it keeps.
+#[test]
+fn what_flies_away_faster_than_a_network_saturates_is_caught_by_no_tool() {
+    let text = "[mesh]\ncube = { cells = 3, edge = 0.1 }\n[[region]]\ndensity = 1060.0\nmodel = \"linear\"\nyoungs_modulus = 3500.0\n\
+                poissons_ratio = 0.3\n[[initial]]\nvelocity = [0.0, 0.0, 20.0]\n[[tool]]\nname = \"plate\"\n\
+                shape = { box = { size = [0.3, 0.3, 0.005] } }\nstart = [0.05, 0.05, -0.0035]\nhold = true\n[run]\nduration = 0.01\n\
+                integrator = \"cnn-symplectic\"\ndt = 5e-4\nfree_flight = true\n";
+    for more in ["", "machine = \"reference\"\n"] {
+        let simulation = build(&format!("{text}{more}"));
+        let folder = tempfile::tempdir().unwrap();
+        let (state, ..) = common::run(&simulation, folder.path());
+        let report = simulation.model().tools().unwrap().report(&state, 0);
+        assert_eq!(report.impulse, [0.0; 3]);
+        // The network's own limit: 4 m/s.
+        let rise = state.u.iter().skip(2).step_by(3);
+        assert!(rise.clone().all(|z| (z - 0.04).abs() < 1e-12), "{more}");
+    }
+}

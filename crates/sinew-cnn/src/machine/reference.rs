@@ -91,7 +91,8 @@ impl ReferenceMachine {
             if let Some(inertia) = program.inertia() {
                 let kick = kick.filter(|_| is_last);
                 let shown = (&mut *state, &mut AllShown as _);
-                batch.meet(shown, inertia, kick, &mut self.pushed);
+                let step = (inertia, program.saturation());
+                batch.meet(shown, step, kick, &mut self.pushed);
                 if !self.pushed.is_empty() {
                     self.cells(program, batch.system(), state)
                         .enter(&program.entry);

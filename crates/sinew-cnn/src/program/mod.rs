@@ -126,6 +126,17 @@ impl Program {
         }
     }
 
+    /// The size (m/s) beyond which a component of the velocity moves the displacement no faster; infinite where nothing saturates.
+    #[must_use]
+    pub fn saturation(&self) -> f64 {
+        let updates = self.step.iter().flat_map(|sweep| &sweep.updates);
+        let limits = updates.filter_map(|update| match update.clamp {
+            Some(Clamp::Component(limit)) => Some(limit),
+            Some(Clamp::Vector { .. }) | None => None,
+        });
+        limits.fold(f64::INFINITY, f64::min)
+    }
+
     /// The time (s) by which a change of velocity is divided in the acceleration that a step of `dt` (s) keeps; `starts` in a first step
     /// from a velocity at the displacement's time.
     #[must_use]

@@ -69,6 +69,28 @@ fn the_energy_of_a_split_body_adds_up_and_its_frames_have_the_nodes_that_it_had(
     assert!((start - 1.0).abs() < 1e-12 && (end - start).abs() < 1e-14);
 }
 
+#[test]
+fn a_run_whose_body_is_taken_away_whole_ends_with_the_state_before() {
+    let place = tempfile::tempdir().unwrap();
+    for pieces in ["remove", "freeze"] {
+        let text = format!(
+            "[mesh]\ncube = {{ cells = 3, edge = 0.1 }}\n[[region]]\ndensity = 1060.0\nmodel = \"neo-hookean\"\nyoungs_modulus = 3500.0\n\
+             poissons_ratio = 0.3\n[cutting]\nremove = {{ tool = \"burner\" }}\npieces = \"{pieces}\"\n[[tool]]\nname = \"burner\"\n\
+             shape = {{ sphere = {{ radius = 0.08 }} }}\nstart = [0.1, 0.1, 0.13]\nvelocity = [0.0, 0.0, -0.5]\n\
+             [run]\nduration = 0.1\nintegrator = \"central-difference\"\ndt = \"auto\"\n"
+        );
+        let simulation = build(&text);
+        let path = place.path().join(pieces);
+        let end = run(&path, &simulation, &mut ());
+        assert!(
+            matches!(&end.ended, Ended::Refused { t, .. } if *t == 0.0),
+            "{:?}",
+            end.ended
+        );
+        assert!(path.join("summary.json").exists());
+    }
+}
+
 /// The cut opens edges of 43 mm, beside those of 35 mm that the surface had, under a ball of 40 mm.
 #[test]
 fn a_tool_meets_what_a_cut_lays_open_under_it_as_it_met_the_surface_before() {

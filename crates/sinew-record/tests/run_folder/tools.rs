@@ -50,7 +50,7 @@ fn a_plate_feels_hookes_law() {
     let text = fs::read_to_string(out.join("tools.csv")).unwrap();
     let head = text.lines().find(|line| !line.starts_with('#')).unwrap();
     let expected = "t_s,plate_x_m,plate_y_m,plate_z_m,plate_rx_rad,plate_ry_rad,plate_rz_rad,plate_force_x_N,plate_force_y_N,\
-                    plate_force_z_N,plate_torque_x_Nm,plate_torque_y_Nm,plate_torque_z_Nm,plate_work_J,plate_contacts,plate_gap_m,plate_passes";
+                    plate_force_z_N,plate_torque_x_Nm,plate_torque_y_Nm,plate_torque_z_Nm,plate_work_J,plate_contacts,plate_gap_m,plate_passes,plate_residual";
     assert_eq!(head, expected);
     let rows = table(&out.join("tools.csv"));
     let t = &rows["t_s"];

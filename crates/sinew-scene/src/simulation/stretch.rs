@@ -91,7 +91,11 @@ impl Simulation {
                     if idle < end {
                         before.clone_from(state);
                         let cut = cutter.follow(self, state, Inputs::none(), end);
-                        let cut = cut.map_err(|source| StretchError::Cutting { t, source })?;
+                        let cut = cut.map_err(|source| {
+                            // The scene is that before the cut, and so is its state.
+                            state.clone_from(&before);
+                            StretchError::Cutting { t, source }
+                        })?;
                         if let Some(simulation) = cut {
                             let change = Box::new(BodyChange { simulation, before });
                             return Ok(Stretch {

@@ -55,7 +55,7 @@ impl Tools {
         if let Some(dt) = state.clock.last_step() {
             let pairs = self.counts.of_pairs();
             let pairs = carried[pairs].as_chunks_mut().0;
-            self.keep_pairs(state, dt, pairs);
+            self.keep_pairs(state, (dt, f64::INFINITY), pairs);
         }
         carried
     }
@@ -78,12 +78,19 @@ impl Tools {
         own[1..=listed.len()].copy_from_slice(&listed);
     }
 
-    /// Keeps of each pair of lips the way (m) from the one to the other as the step of `dt` (s) began that led to the state.
-    pub(super) fn keep_pairs(&self, state: &State, dt: f64, pairs: &mut [[f64; OF_PAIR]]) {
+    /// Keeps of each pair of lips the way (m) from the one to the other as the step of `dt` (s) began that led to the state, by velocities that move displacements up to a size of `saturation` (m/s).
+    pub(super) fn keep_pairs(
+        &self,
+        state: &State,
+        (dt, saturation): (f64, f64),
+        pairs: &mut [[f64; OF_PAIR]],
+    ) {
         let began = |place: u32| {
             let touched = &self.cells[place as usize];
             let to = add(touched.rest, displacement_of(&state.u, touched.cell));
-            sub(to, scaled(displacement_of(&state.v, touched.cell), dt))
+            let velocity = displacement_of(&state.v, touched.cell);
+            let velocity = velocity.map(|v| v.min(saturation).max(-saturation));
+            sub(to, scaled(velocity, dt))
         };
         for (pair, kept) in self.lips.pairs.iter().zip(pairs) {
             let [one, other] = pair.nodes.map(|node| node.at(began));

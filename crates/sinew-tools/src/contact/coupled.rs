@@ -4,6 +4,7 @@ use sinew_core::{Meeting, State};
 
 use super::count::Count;
 use super::links::{Link, LinkedNode, Links, Rule};
+use super::meet::way_of;
 use super::node::Compliance;
 use super::record::{OF_HELD, OF_PAIR, OF_VELOCITY, Record, swing};
 use super::report::displacement_of;
@@ -82,7 +83,7 @@ impl Tools {
         if passes > 1 {
             room.pass(&self.tools, [0.0, 1.0]);
         }
-        self.keep_pairs(state, meeting.dt, record.pairs);
+        self.keep_pairs(state, (meeting.dt, meeting.saturation), record.pairs);
     }
 
     /// Finds the contacts of a pass and solves for their forces.
@@ -94,7 +95,7 @@ impl Tools {
         };
         let (state, dt) = (search.state, search.meeting.dt);
         for round in 0..MOST_ROUNDS {
-            room.look(&self.cells, state, dt, self.counts.holds);
+            room.look(&self.cells, state, search.meeting, self.counts.holds);
             let is_new = search.all(room, round == 0);
             if !is_new && (room.links.is_empty() || round >= least) {
                 break;
@@ -127,8 +128,8 @@ impl Search<'_> {
     fn way(&self, place: usize) -> Way {
         let touched = &self.tools.cells[place];
         let to = add(touched.rest, displacement_of(&self.state.u, touched.cell));
-        let back = displacement_of(&self.state.v, touched.cell);
-        (sub(to, scaled(back, self.meeting.dt)), to)
+        let back = way_of(self.meeting, self.state, touched.cell);
+        (sub(to, back), to)
     }
 
     /// Where a cell is at a share of the step (m), without contact.
@@ -224,7 +225,7 @@ impl Search<'_> {
                 let link = Link::of_node(
                     (place as u32, self.compliance(place)),
                     (tool, 0),
-                    [*x, *y, *z],
+                    ([*x, *y, *z], 0.0),
                     (Rule::Held, 0.0),
                 );
                 room.links.add(link);
@@ -248,7 +249,7 @@ impl Search<'_> {
                 let link = Link::of_node(
                     (place as u32, self.compliance(place)),
                     (number, part),
-                    pose.to_world(touch.point),
+                    (pose.to_world(touch.point), touch.below),
                     (Rule::Outside(pose.turned(touch.normal)), step.friction),
                 );
                 links.add(link);
@@ -278,18 +279,23 @@ impl Search<'_> {
                 let (from, end) = (ways.map(|way| way.0), ways.map(|way| way.1));
                 // What contacts of rounds before have moved may be in the tool elsewhere.
                 if !links.all.is_empty() {
-                    for (part, touch) in step.triangle_overlaps(&from, &end) {
+                    for (part, touch, below) in step.triangle_overlaps(&from, &end) {
                         let known = links.of_triangle(*triangle, (number, part));
                         if (1..MOST_ON_TRIANGLE).contains(&known) {
-                            self.add_triangle(links, step, (number, part, *triangle), &touch);
+                            self.add_triangle(
+                                links,
+                                step,
+                                (number, part, *triangle),
+                                (&touch, below),
+                            );
                         }
                     }
                 }
-                for (part, touch) in step.triangle_touches(&from, &end) {
+                for (part, touch, below) in step.triangle_touches(&from, &end) {
                     if at_beginning && touch.share > BEGINNING {
                         is_left = true;
                     } else if links.of_triangle(*triangle, (number, part)) == 0 {
-                        self.add_triangle(links, step, (number, part, *triangle), &touch);
+                        self.add_triangle(links, step, (number, part, *triangle), (&touch, below));
                     }
                 }
             }
@@ -302,7 +308,7 @@ impl Search<'_> {
         links: &mut Links,
         step: &ToolStep,
         (number, part, triangle): (usize, usize, u32),
-        touch: &TriangleTouch,
+        (touch, below): (&TriangleTouch, f64),
     ) {
         let corners = self.tools.triangles[triangle as usize].corners;
         let mut still = [0.0; 3];
@@ -328,7 +334,7 @@ impl Search<'_> {
         let of_first = Link::of_node(
             (first.place, first.compliance),
             (number, part),
-            pose.to_world(touch.point),
+            (pose.to_world(touch.point), below),
             (Rule::Outside(pose.turned(touch.normal)), step.friction),
         );
         // Triangles that share an edge or a node meet a tool there as one.

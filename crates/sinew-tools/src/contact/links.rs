@@ -45,6 +45,8 @@ pub(super) struct Link {
     pub(super) triangle: Option<u32>,
     /// The place (m) of the contact in the tool's frame.
     own: Vector,
+    /// How deep (m) in the tool that lies.
+    below: f64,
     rule: Rule,
     /// The surface as it is seen from where the step led, without any force.
     constraint: Constraint,
@@ -285,7 +287,7 @@ impl Link {
     pub(super) fn of_node(
         node: (u32, Compliance),
         (tool, part): (usize, usize),
-        own: Vector,
+        (own, below): (Vector, f64),
         (rule, friction): (Rule, f64),
     ) -> Self {
         let (place, compliance) = node;
@@ -305,6 +307,7 @@ impl Link {
             part,
             triangle: None,
             own,
+            below,
             rule,
             constraint: Constraint {
                 normal: [0.0; 3],
@@ -361,7 +364,9 @@ impl Link {
     /// How deep (m) tissue at a point (m) is left in the tool.
     pub(super) fn depth(&self, tool: &ToolStep, at: Vector) -> f64 {
         match self.rule {
-            Rule::Outside(normal) => dot(tool.now.turned(normal), sub(self.place(tool), at)),
+            Rule::Outside(normal) => {
+                self.below + dot(tool.now.turned(normal), sub(self.place(tool), at))
+            }
             Rule::Held => 0.0,
         }
     }

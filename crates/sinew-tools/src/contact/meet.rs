@@ -12,7 +12,7 @@ use super::report::displacement_of;
 use super::room::Room;
 use super::tool_step::{ToolStep, Way, is_near};
 use super::tools::Tools;
-use crate::vector::{Vector, add, scaled, sub};
+use crate::vector::{Vector, add, sub};
 
 impl Contact for Tools {
     fn cells(&self) -> &[u32] {
@@ -44,11 +44,11 @@ impl Contact for Tools {
         record.forget_last_step();
         room.take(&self.tools, state, meeting, record.bodies);
         let has_links = self.linking != 0 || self.counts.pairs > 0;
-        room.show(cells, state, meeting.dt, has_links || self.counts.holds);
+        room.show(cells, state, meeting, has_links || self.counts.holds);
         if has_links {
             self.link(&mut room, meeting, state, &mut record);
         }
-        room.look(&self.cells, state, meeting.dt, self.counts.holds);
+        room.look(&self.cells, state, meeting, self.counts.holds);
         let Room {
             steps,
             near,
@@ -72,10 +72,7 @@ impl Contact for Tools {
             }
             let touched = &self.cells[place];
             let to = add(touched.rest, displacement_of(&state.u, touched.cell));
-            let from = sub(
-                to,
-                scaled(displacement_of(&state.v, touched.cell), meeting.dt),
-            );
+            let from = sub(to, way_of(meeting, state, touched.cell));
             let moved = step.meet(place, (from, to), met, &mut record);
             if moved == [0.0; 3] {
                 continue;
@@ -122,6 +119,11 @@ impl Contact for Tools {
             }
         }
     }
+}
+
+/// How far (m) the velocity of a cell moved it in the step that led to a state.
+pub(super) fn way_of(meeting: &Meeting<'_>, state: &State, cell: u32) -> Vector {
+    displacement_of(&state.v, cell).map(|velocity| meeting.way(velocity))
 }
 
 /// Moves a cell of a trial state by a displacement (m).

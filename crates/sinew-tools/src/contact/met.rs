@@ -11,6 +11,8 @@ pub(super) struct Met {
     /// Tool and part of each surface.
     parts: [(usize, usize); MOST],
     constraints: [Constraint; MOST],
+    /// How deep (m) in its tool each of them lies.
+    below: [f64; MOST],
     /// The forces (N) on the node.
     forces: [Vector; MOST],
     /// What an iteration for them left.
@@ -31,6 +33,7 @@ impl Met {
             count: 0,
             parts: [(0, 0); MOST],
             constraints: [nothing; MOST],
+            below: [0.0; MOST],
             forces: [[0.0; 3]; MOST],
             residual: 0.0,
         }
@@ -67,6 +70,7 @@ impl Met {
                     let normal = last.turned(touch.normal);
                     let swing = sub(swing, step.swing(add(to, stick), dt));
                     self.parts[self.count] = (number, part);
+                    self.below[self.count] = touch.below;
                     self.constraints[self.count] = Constraint {
                         normal,
                         gap: -dot(normal, stick),
@@ -100,8 +104,12 @@ impl Met {
 
     /// How deep (m) the node is left in each surface by a displacement (m).
     pub(super) fn depths(&self, moved: Vector) -> impl Iterator<Item = (usize, f64)> {
-        let met = self.parts[..self.count].iter().zip(&self.constraints);
-        met.map(move |((tool, _), surface)| (*tool, -(surface.gap + dot(surface.normal, moved))))
+        let met = self.parts[..self.count].iter();
+        let met = met.zip(self.constraints.iter().zip(&self.below));
+        met.map(move |((tool, _), (surface, below))| {
+            let gap = surface.gap + dot(surface.normal, moved);
+            (*tool, below - gap)
+        })
     }
 
     /// The sum of what follows from each force (N).

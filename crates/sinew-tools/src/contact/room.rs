@@ -117,17 +117,23 @@ impl Room {
         &mut self,
         cells: &mut dyn ShowCells,
         state: &mut State,
-        dt: f64,
+        meeting: &Meeting<'_>,
         all: bool,
     ) {
         self.shown.clear();
         let within = self.bounds.filter(|_| !all);
-        self.are_all_shown = cells.show(within, dt, state, &mut self.shown) == Shown::All;
+        self.are_all_shown = cells.show(within, meeting, state, &mut self.shown) == Shown::All;
     }
 
     /// Lists the cells that may meet a tool, all where that is not known of a tool or `all` are asked for: this is done for each cell that is shown in each step, and little
     /// else is.
-    pub(super) fn look(&mut self, cells: &[TouchedCell], state: &State, dt: f64, all: bool) {
+    pub(super) fn look(
+        &mut self,
+        cells: &[TouchedCell],
+        state: &State,
+        meeting: &Meeting<'_>,
+        all: bool,
+    ) {
         self.near.clear();
         if self.steps.is_empty() {
             return;
@@ -137,7 +143,7 @@ impl Room {
             return;
         };
         let near = &mut self.near;
-        let is_near = |place: &u32| is_near(&cells[*place as usize], state, dt, &bounds);
+        let is_near = |place: &u32| is_near(&cells[*place as usize], state, meeting, &bounds);
         if self.are_all_shown {
             near.extend((0..cells.len() as u32).filter(is_near));
         } else {
@@ -156,12 +162,12 @@ fn size(cells: &[TouchedCell]) -> f64 {
     edges.fold(0.0, f64::max)
 }
 
-/// Whether the way of a cell in a step of `dt` (s) that led to a state meets a box (m).
+/// Whether the way of a cell in a step that led to a state meets a box (m).
 #[inline]
 fn is_near(
     TouchedCell { cell, rest, .. }: &TouchedCell,
     state: &State,
-    dt: f64,
+    meeting: &Meeting<'_>,
     [low, high]: &[Vector; 2],
 ) -> bool {
     let (u, v) = (state.u.as_chunks::<3>().0, state.v.as_chunks::<3>().0);
@@ -169,7 +175,7 @@ fn is_near(
     let mut is_near = true;
     for axis in 0..3 {
         let to = rest[axis] + u[axis];
-        let from = to - dt * v[axis];
+        let from = to - meeting.way(v[axis]);
         is_near &= from.min(to) <= high[axis];
         is_near &= from.max(to) >= low[axis];
     }

@@ -15,6 +15,16 @@ pub(super) type Way = (Vector, Vector);
 /// surfaces, in single precision neither.
 const LEFT: f64 = 1e-4;
 
+/// The surface that a node meets, in the frame of a part of a tool.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface {
+    /// A point of it (m), and its normal there.
+    pub(super) point: Vector,
+    pub(super) normal: Vector,
+    /// How deep (m) in the part it lies: above 0 where what began the step there is left there.
+    pub(super) below: f64,
+}
+
 /// A tool during a step.
 #[derive(Debug)]
 pub(super) struct ToolStep {
@@ -185,21 +195,27 @@ impl ToolStep {
     }
 
     /// Where a way (m) meets its parts, by their numbers.
-    pub(super) fn touches(&self, way: Way) -> impl Iterator<Item = (usize, Touch)> {
+    pub(super) fn touches(&self, way: Way) -> impl Iterator<Item = (usize, Surface)> {
         self.near_strokes(way)
             .filter_map(move |(part, stroke)| Some((part, self.touch(stroke, way)?)))
     }
 
     /// Where a way (m) meets the part of a stroke.
-    pub(super) fn touch(&self, stroke: &Stroke, way: Way) -> Option<Touch> {
-        let touch = stroke.first_contact(way.0, way.1)?;
+    pub(super) fn touch(&self, stroke: &Stroke, way: Way) -> Option<Surface> {
+        let Touch {
+            share,
+            point,
+            normal,
+        } = stroke.first_contact(way.0, way.1)?;
         let most = LEFT * stroke.half_width().min(self.tissue);
-        let (point, normal) = (touch.point, touch.normal);
-        let point = match touch.share {
+        Some(match share {
             0.0 => self.reached(stroke, (0.0, way.0), (point, normal), most),
-            _ => point,
-        };
-        Some(Touch { point, ..touch })
+            _ => Surface {
+                point,
+                normal,
+                below: 0.0,
+            },
+        })
     }
 
     /// The point on a part's surface, with the normal there, that tissue which was at a place (m) at a share of the pass may not pass; or, where it was deeper in the part than `most` (m), as deep below it.
@@ -211,12 +227,17 @@ impl ToolStep {
         (share, place): (f64, Vector),
         (point, normal): (Vector, Vector),
         most: f64,
-    ) -> Vector {
+    ) -> Surface {
         let depth = dot(normal, sub(point, stroke.pose_at(share).to_own(place)));
-        if self.is_first || depth <= most {
-            point
+        let below = if self.is_first || depth <= most {
+            0.0
         } else {
-            sub(point, scaled(normal, depth))
+            depth
+        };
+        Surface {
+            point: sub(point, scaled(normal, below)),
+            normal,
+            below,
         }
     }
 
@@ -226,49 +247,52 @@ impl ToolStep {
         f64::from(passes.max().unwrap_or(1))
     }
 
-    /// Where a triangle meets its parts, by their numbers, on its way from one place to another (m).
+    /// Where a triangle meets its parts, by their numbers, on its way from one place to another (m), and how deep (m) in them it is left.
     pub(super) fn triangle_touches(
         &self,
         from: &Triangle,
         to: &Triangle,
-    ) -> impl Iterator<Item = (usize, TriangleTouch)> {
+    ) -> impl Iterator<Item = (usize, TriangleTouch, f64)> {
         let near = self.near_triangle(from, to);
         near.filter_map(move |(part, stroke)| {
             let touch = stroke.first_triangle(from, to)?;
             // One that is inside out is met where it turns, deep in the part.
             let corners = [0, 1, 2].map(|at| between(from[at], to[at], touch.share));
-            Some((part, self.reached_by_triangle(stroke, &corners, touch)))
+            let (touch, below) = self.reached_by_triangle(stroke, &corners, touch);
+            Some((part, touch, below))
         })
     }
 
-    /// Where a triangle (m), which began the pass elsewhere, is in its parts, by their numbers, after the step.
+    /// Where a triangle (m), which began the pass elsewhere, is in its parts, by their numbers, after the step, and how deep (m) in them it is left.
     pub(super) fn triangle_overlaps(
         &self,
         from: &Triangle,
         corners: &Triangle,
-    ) -> impl Iterator<Item = (usize, TriangleTouch)> {
+    ) -> impl Iterator<Item = (usize, TriangleTouch, f64)> {
         let near = self.near_triangle(corners, corners);
         near.filter_map(move |(part, stroke)| {
             let touch = stroke.triangle_at_end(corners)?;
-            Some((part, self.reached_by_triangle(stroke, from, touch)))
+            let (touch, below) = self.reached_by_triangle(stroke, from, touch);
+            Some((part, touch, below))
         })
     }
 
-    /// The same contact, as deep in the part as the triangle, with its corners at the contact's share of the pass, was there, where that is deeper than rounds leave any: see [`Self::reached`].
+    /// The same contact, and how deep (m) it lies: as deep in the part as the triangle, with its corners at the contact's share of the pass, was there, where that is deeper than rounds leave any: see [`Self::reached`].
     fn reached_by_triangle(
         &self,
         stroke: &Stroke,
         corners: &Triangle,
         touch: TriangleTouch,
-    ) -> TriangleTouch {
+    ) -> (TriangleTouch, f64) {
         let place = corners.iter().zip(touch.weights);
         let place = place.fold([0.0; 3], |sum, (corner, weight)| {
             add(sum, scaled(*corner, weight))
         });
         let most = stroke.left_to_triangles();
         let surface = (touch.point, touch.normal);
-        let point = self.reached(stroke, (touch.share, place), surface, most);
-        TriangleTouch { point, ..touch }
+        let Surface { point, below, .. } =
+            self.reached(stroke, (touch.share, place), surface, most);
+        (TriangleTouch { point, ..touch }, below)
     }
 
     /// The strokes whose boxes the box of a triangle's way (m) meets, by the numbers of their parts.
@@ -345,7 +369,7 @@ mod tests {
         let triangle = step.triangle_touches(&from, &to).next();
         [
             node.map(|(_, touch)| length(touch.point)),
-            triangle.map(|(_, touch)| length(touch.point)),
+            triangle.map(|(_, touch, _)| length(touch.point)),
         ]
     }
 

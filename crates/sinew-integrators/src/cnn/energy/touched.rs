@@ -190,6 +190,7 @@ impl Touched {
             mass: step.system.mass(),
             inertia: Inertia::InverseBlocks(&self.inverse),
             kick: None,
+            saturation: f64::INFINITY,
             is_staggered: false,
         };
         contact.meet(&meeting, &mut AllShown, &mut self.shown, &mut self.pushed);
