@@ -130,9 +130,12 @@ impl Stroke {
         self.part.convex.half_width()
     }
 
-    /// The depth (m) in the part up to which triangles are left in it by a step, and pushed out by the next; infinite for a plane.
-    pub(crate) fn left_to_triangles(&self) -> f64 {
-        Hull::of(&self.part.convex).map_or(f64::INFINITY, |hull| hull.left())
+    /// The depth (m) in the part up to which triangles that go so far (m) in a step are left in it, and pushed out by the next; infinite for a plane.
+    pub(crate) fn left_to_triangles(&self, way: f64) -> f64 {
+        let [before, after] = self.tool.map(|pose| pose.position());
+        let own = length(sub(after, before)) + self.largest_arc().unwrap_or(0.0);
+        let hull = Hull::of(&self.part.convex);
+        hull.map_or(f64::INFINITY, |hull| hull.left(way + own))
     }
 
     /// A box (m, lowest and highest corner) that contains the part during the whole step; none for a plane.

@@ -258,7 +258,8 @@ impl ToolStep {
             let touch = stroke.first_triangle(from, to)?;
             // One that is inside out is met where it turns, deep in the part.
             let corners = [0, 1, 2].map(|at| between(from[at], to[at], touch.share));
-            let (touch, below) = self.reached_by_triangle(stroke, &corners, touch);
+            let way = longest_way(from, to);
+            let (touch, below) = self.reached_by_triangle(stroke, (&corners, way), touch);
             Some((part, touch, below))
         })
     }
@@ -272,23 +273,25 @@ impl ToolStep {
         let near = self.near_triangle(corners, corners);
         near.filter_map(move |(part, stroke)| {
             let touch = stroke.triangle_at_end(corners)?;
-            let (touch, below) = self.reached_by_triangle(stroke, from, touch);
+            let way = longest_way(from, corners);
+            let (touch, below) = self.reached_by_triangle(stroke, (from, way), touch);
             Some((part, touch, below))
         })
     }
 
-    /// The same contact, and how deep (m) it lies: as deep in the part as the triangle, with its corners at the contact's share of the pass, was there, where that is deeper than rounds leave any: see [`Self::reached`].
+    /// The same contact, and how deep (m) it lies: as deep in the part as the triangle, with its corners at the contact's share of the pass and a way (m) in it, was there, where that is deeper
+    /// than rounds leave any that comes so far in a pass: see [`Self::reached`].
     fn reached_by_triangle(
         &self,
         stroke: &Stroke,
-        corners: &Triangle,
+        (corners, way): (&Triangle, f64),
         touch: TriangleTouch,
     ) -> (TriangleTouch, f64) {
         let place = corners.iter().zip(touch.weights);
         let place = place.fold([0.0; 3], |sum, (corner, weight)| {
             add(sum, scaled(*corner, weight))
         });
-        let most = stroke.left_to_triangles();
+        let most = stroke.left_to_triangles(way);
         let surface = (touch.point, touch.normal);
         let Surface { point, below, .. } =
             self.reached(stroke, (touch.share, place), surface, most);
@@ -333,6 +336,15 @@ impl ToolStep {
             None => scaled(self.velocity(place, dt), self.steps_at_work * dt),
         }
     }
+}
+
+/// The longest way (m) of a corner of a triangle.
+fn longest_way(from: &Triangle, to: &Triangle) -> f64 {
+    let ways = from
+        .iter()
+        .zip(to)
+        .map(|(from, to)| length(sub(*to, *from)));
+    ways.fold(0.0, f64::max)
 }
 
 #[cfg(test)]

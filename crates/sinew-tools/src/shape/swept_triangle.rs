@@ -10,6 +10,9 @@ const TOUCHES: f64 = 1e-9;
 /// apart.
 const OVERLAPS: f64 = 0.1;
 
+/// Depth, as a share of a hull's radius, up to which a triangle is pushed out however little it moves.
+const LEFT: f64 = 1e-3;
+
 /// Most advances towards a first contact; what is still on its way then counts as touching.
 const MOST_ADVANCES: usize = 200;
 
@@ -64,9 +67,10 @@ impl Hull {
         (gap < -OVERLAPS * self.radius).then_some(touch)
     }
 
-    /// Twice the depth (m) from which on a triangle is given another contact: what is deeper as a step begins was not left to it by the one before.
-    pub(crate) fn left(&self) -> f64 {
-        2.0 * OVERLAPS * self.radius
+    /// The depth (m) beyond which a triangle that a step begins with was not left to it by the one before, if both go so far (m) against the shape: twice the depth from which on it would have been
+    /// given another contact, and no deeper than it can have come.
+    pub(crate) fn left(&self, way: f64) -> f64 {
+        (2.0 * OVERLAPS * self.radius).min(way + LEFT * self.radius)
     }
 
     /// The gap (m) to a triangle that is seen from outside, and where it is smallest.
