@@ -317,11 +317,8 @@ mod tests {
         let steps = steps(&root()).unwrap();
         for name in ["sinew-sparse", "sinew-fem", "sinew-integrators"] {
             let expected = format!("test --no-default-features -p {name}");
-            assert!(
-                steps
-                    .iter()
-                    .any(|step| step.arguments.join(" ") == expected)
-            );
+            let runs = steps.iter().map(|step| step.arguments.join(" "));
+            assert!(runs.into_iter().any(|run| run.starts_with(&expected)));
         }
     }
 }
