@@ -275,7 +275,7 @@ mod tests {
         assert_eq!(examples(root.path()).unwrap(), ["one", "two"]);
         let steps = steps(root.path()).unwrap();
         for kind in ["test", "run"] {
-            let runs = steps.iter().map(|step| step.arguments.join(" "));
+            let mut runs = steps.iter().map(|step| step.arguments.join(" "));
             let start = format!("{kind} --quiet --manifest-path examples/");
             let runs: Vec<String> = runs.filter(|run| run.starts_with(&start)).collect();
             assert_eq!(runs.len(), 2);
@@ -317,8 +317,8 @@ mod tests {
         let steps = steps(&root()).unwrap();
         for name in ["sinew-sparse", "sinew-fem", "sinew-integrators"] {
             let expected = format!("test --no-default-features -p {name}");
-            let runs = steps.iter().map(|step| step.arguments.join(" "));
-            assert!(runs.into_iter().any(|run| run.starts_with(&expected)));
+            let mut runs = steps.iter().map(|step| step.arguments.join(" "));
+            assert!(runs.any(|run| run.starts_with(&expected)));
         }
     }
 }
