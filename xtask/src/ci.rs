@@ -275,7 +275,7 @@ mod tests {
         assert_eq!(examples(root.path()).unwrap(), ["one", "two"]);
         let steps = steps(root.path()).unwrap();
         for kind in ["test", "run"] {
-            let mut runs = steps.iter().map(|step| step.arguments.join(" "));
+            let runs = steps.iter().map(|step| step.arguments.join(" "));
             let start = format!("{kind} --quiet --manifest-path examples/");
             let runs: Vec<String> = runs.filter(|run| run.starts_with(&start)).collect();
             assert_eq!(runs.len(), 2);
