@@ -5,7 +5,7 @@ use sinew_core::State;
 use super::record::{OF_CELL, OF_HELD, OF_PAIR, OF_VELOCITY};
 use super::report::displacement_of;
 use super::tools::Tools;
-use crate::vector::{add, scaled, sub};
+use crate::vector::{add, sub};
 
 impl Tools {
     /// What these tools keep ([`sinew_core::State::contact`]), where `before` are the same tools on the cells that there were before a cut, `contact` is what
@@ -55,7 +55,7 @@ impl Tools {
         if let Some(dt) = state.clock.last_step() {
             let pairs = self.counts.of_pairs();
             let pairs = carried[pairs].as_chunks_mut().0;
-            self.keep_pairs(state, (dt, f64::INFINITY), pairs);
+            self.keep_pairs(state, |velocity| dt * velocity, pairs);
         }
         carried
     }
@@ -78,19 +78,17 @@ impl Tools {
         own[1..=listed.len()].copy_from_slice(&listed);
     }
 
-    /// Keeps of each pair of lips the way (m) from the one to the other as the step of `dt` (s) began that led to the state, by velocities that move displacements up to a size of `saturation` (m/s).
+    /// Keeps of each pair of lips the way (m) from the one to the other as the step began that led to the state, in which a component of a velocity (m/s) moved the displacement by `way` (m).
     pub(super) fn keep_pairs(
         &self,
         state: &State,
-        (dt, saturation): (f64, f64),
+        way: impl Fn(f64) -> f64,
         pairs: &mut [[f64; OF_PAIR]],
     ) {
         let began = |place: u32| {
             let touched = &self.cells[place as usize];
             let to = add(touched.rest, displacement_of(&state.u, touched.cell));
-            let velocity = displacement_of(&state.v, touched.cell);
-            let velocity = velocity.map(|v| v.min(saturation).max(-saturation));
-            sub(to, scaled(velocity, dt))
+            sub(to, displacement_of(&state.v, touched.cell).map(&way))
         };
         for (pair, kept) in self.lips.pairs.iter().zip(pairs) {
             let [one, other] = pair.nodes.map(|node| node.at(began));

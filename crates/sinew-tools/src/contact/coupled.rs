@@ -83,7 +83,7 @@ impl Tools {
         if passes > 1 {
             room.pass(&self.tools, [0.0, 1.0]);
         }
-        self.keep_pairs(state, (meeting.dt, meeting.saturation), record.pairs);
+        self.keep_pairs(state, |velocity| meeting.way(velocity), record.pairs);
     }
 
     /// Finds the contacts of a pass and solves for their forces.
