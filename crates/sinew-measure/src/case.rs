@@ -12,8 +12,7 @@ use crate::number;
 use crate::reference::{Course, Pace, ReferenceError, ReferenceMethod, Track, follow_by};
 use crate::row::CaseInfo;
 
-/// Displacement over the reference's largest at which an oscillator counts as diverged; a body
-/// counts as diverged at a hundred times its size.
+/// Displacement over the reference's largest at which an oscillator counts as diverged.
 const OSCILLATOR_LIMIT: f64 = 1e6;
 
 /// Tetrahedra from which on a reference is solved by Faber series: by the Taylor series it would take
@@ -273,10 +272,8 @@ impl Case {
     #[must_use]
     pub fn run(&self, dt: f64) -> Run {
         let run = Run::covering(self.span.duration, dt);
-        run.with_divergence_limit(match self.simulation.system().extent() {
-            Some(extent) => 100.0 * extent,
-            None => OSCILLATOR_LIMIT * self.samples.max_u,
-        })
+        let limit = self.simulation.divergence_limit();
+        run.with_divergence_limit(limit.unwrap_or(OSCILLATOR_LIMIT * self.samples.max_u))
     }
 
     /// The reference for a run in steps of `dt` (s): the one at the case's instants and

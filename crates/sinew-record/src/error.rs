@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use sinew_core::{EvaluationError, OptionError, SetupError, SimulateError, StateBytesError};
+use sinew_core::{EvaluationError, OptionError, SimulateError, StateBytesError};
 use sinew_fem::FieldError;
 use sinew_mesh::vtu::WriteVtuError;
 use sinew_scene::output::OutputError;
@@ -22,9 +22,6 @@ pub enum RecordRunError {
     /// An option that the integrator refuses.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// A scene that the integrator cannot be set up for.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
     /// A step or a recorder that failed.
     #[error(transparent)]
     Simulate(#[from] SimulateError),

@@ -207,7 +207,7 @@ impl RunFolder {
             from = From::Row(checkpoint.row);
         }
         let begins_on = cut.as_ref().unwrap_or(simulation);
-        integrator.prepare(begins_on.system(), simulation.dt())?;
+        begins_on.set_up(integrator)?;
         let (before, begins_at) = (progress.steps, state.t());
         let mut run = simulation.run();
         run.steps -= before.min(run.steps);

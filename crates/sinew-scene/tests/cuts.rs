@@ -95,6 +95,18 @@ fn centre(ended: &Ended, picks: impl Fn([f64; 3]) -> bool) -> [f64; 3] {
     sum.map(|sum| sum / whole)
 }
 
+/// Beyond 100 of its sizes, at which a body that is held counts as diverged.
+#[test]
+fn a_piece_may_fall_far() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = bar("[cutting]\ntable = \"strokes.csv\"\n", EXPLICIT)
+        .replace("duration = 0.05", "duration = 1.3");
+    let ended = run(load(folder.path(), &text, &across(0.0, 2e-4)));
+    let fallen = ended.state.u.iter().copied().fold(0.0, f64::max);
+    let expected = 0.5 * 9.81 * ended.state.t() * (ended.state.t() + 2e-4);
+    assert!((fallen / expected - 1.0).abs() < 1e-3, "{fallen} m");
+}
+
 #[test]
 fn a_piece_that_is_cut_off_falls_as_galileo_says() {
     let folder = tempfile::tempdir().unwrap();

@@ -182,9 +182,9 @@ pub enum Fault {
     /// dt = "auto" with an integrator that sets no step on this scene.
     #[error("dt = \"auto\" needs an integrator with a largest stable step: {0}")]
     NoStableStep(#[from] NoStableStep),
-    /// A method that tools cannot push.
+    /// A method that cannot be set up for the scene.
     #[error(transparent)]
-    Touched(sinew_core::SetupError),
+    SetUp(sinew_core::SetupError),
     /// A step longer than the duration where steps go on beyond that.
     #[error("dt = {dt} s is longer than the duration, {duration} s: expected a step within it")]
     LongStep {

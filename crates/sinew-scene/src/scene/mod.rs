@@ -25,6 +25,7 @@ mod tool;
 mod tool_body;
 mod tool_shape;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -200,6 +201,15 @@ impl Scene {
     #[must_use]
     pub fn title(&self) -> &str {
         &self.title
+    }
+
+    /// The title; the path of the file where the scene has none.
+    #[must_use]
+    pub fn title_or_path(&self) -> Cow<'_, str> {
+        match self.title.as_str() {
+            "" => self.source().path().to_string_lossy(),
+            title => title.into(),
+        }
     }
 
     /// The thing that moves.

@@ -17,6 +17,7 @@ mod probe;
 mod reaction;
 mod refined;
 mod selected;
+mod set_up;
 mod start;
 mod step;
 mod stretch;
@@ -197,15 +198,32 @@ impl Simulation {
         said
     }
 
-    /// The steps that cover the duration. A body counts as diverged when a displacement exceeds 100
-    /// times its size.
+    /// The steps that cover the duration, up to [`Simulation::divergence_limit`].
     #[must_use]
     pub fn run(&self) -> Run {
         let run = Run::covering(self.settings().duration, self.dt);
-        match self.system().extent() {
-            Some(extent) => run.with_divergence_limit(100.0 * extent),
+        match self.divergence_limit() {
+            Some(limit) => run.with_divergence_limit(limit),
             None => run,
         }
+    }
+
+    /// The displacement (m) at which a body counts as diverged: 100 of its sizes. Of a body that may fly off, since nothing holds it along an axis or
+    /// cuts may take pieces off, 1e6: a fall is no divergence, and what grows at every step gets there soon all the same.
+    #[must_use]
+    pub fn divergence_limit(&self) -> Option<f64> {
+        let extent = self.system().extent()?;
+        let problem = &self.model().body()?.problem;
+        let axes = problem.fixed.iter().map(|fixed| fixed.axes);
+        let axes: Vec<_> = axes
+            .chain(problem.moves.iter().map(|moving| moving.axes))
+            .collect();
+        let is_held = (0..3).all(|axis| axes.iter().any(|axes| axes[axis]));
+        let sizes = match is_held && self.cutting.is_none() {
+            true => 100.0,
+            false => 1e6,
+        };
+        Some(sizes * extent)
     }
 
     /// The times (s) at which errors are measured, from 0 to the duration.

@@ -7,8 +7,9 @@ use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Region, Tissue};
 use sinew_mesh::structured::{Split, block};
 use sinew_tools::Tools;
 
+use super::set_up::{at_key, refusal};
 use crate::decode::Place;
-use crate::error::{Fault, SceneError};
+use crate::error::SceneError;
 use crate::scene::RunSettings;
 
 /// A step (s) that is stable on the stand-in.
@@ -16,31 +17,17 @@ const STEP: f64 = 1e-6;
 
 /// Refuses a method that tools cannot push, at the key that makes it one: on a body of one cube, since that is a matter of the method and its options.
 pub(super) fn check(settings: &RunSettings, run: &Place) -> Result<(), SceneError> {
-    let RunSettings {
-        integrator,
-        options,
-        ..
-    } = settings;
     let Some(stand_in) = stand_in() else {
         return Ok(());
     };
-    let refusal = |options: &Options| {
-        let mut method = sinew_integrators::build(integrator, options).ok()?;
-        match method.prepare(&stand_in, STEP) {
-            Err(refusal @ SetupError::Contact { .. }) => Some(refusal),
-            _ => None,
-        }
+    let refusal = |options: &Options| match refusal(settings, options, &stand_in, STEP) {
+        Some(refusal @ SetupError::Contact { .. }) => Some(refusal),
+        _ => None,
     };
-    let Some(refused) = refusal(options) else {
-        return Ok(());
-    };
-    let is_at_fault = |key: &&str| {
-        let mut others = options.clone();
-        others.remove(key);
-        refusal(&others).is_none()
-    };
-    let key = options.iter().map(|(key, _)| key).find(is_at_fault);
-    Err(run.value_fault(key.unwrap_or("integrator"), Fault::Touched(refused)))
+    match refusal(&settings.options) {
+        Some(refused) => Err(at_key(run, &settings.options, refusal, refused)),
+        None => Ok(()),
+    }
 }
 
 /// A cube that no tool touches, but which could be; `None` never.

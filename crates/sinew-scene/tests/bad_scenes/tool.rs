@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use sinew_scene::Scene;
+use sinew_scene::{Scene, SceneSource};
 
 use crate::scenes::{OSCILLATOR, TOUCHED};
 use crate::{message, refusal};
@@ -249,8 +249,25 @@ fn numbers_beyond_all_bounds() {
 #[test]
 fn methods_that_tools_cannot_push() {
     let method = "integrator = \"symplectic-euler\"";
-    insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"newmark\""), @r#"scene.toml:26: [run]: `newmark`: tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity; take `central-difference`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
-    insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"cnn-energy\"\nkind = \"trap\""), @r#"scene.toml:26: [run]: `cnn-energy`: tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity; take `central-difference`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
+    insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"newmark\""), @r#"scene.toml:26: [run]: `newmark`: tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
+    insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"cnn-energy\"\nkind = \"trap\""), @r#"scene.toml:26: [run]: `cnn-energy`: tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
     insta::assert_snapshot!(refusal(TOUCHED, method, &format!("{method}\nsaturation = \"auto\"")), @r#"scene.toml:27: [run]: `symplectic-euler`: tools do work that the limits of a guard do not know; take saturation = "off", or leave it out"#);
-    insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"rk4\""), @r#"scene.toml:26: [run]: `rk4`: tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity; take `central-difference`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
+    insta::assert_snapshot!(refusal(TOUCHED, method, "integrator = \"rk4\""), @r#"scene.toml:26: [run]: `rk4`: tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
+}
+
+/// Patches are made as the method is set up, since they depend on the body.
+#[test]
+fn patches_that_a_body_needs_and_tools_cannot_push() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../scenes/ready/slivers.toml"
+    );
+    let tool = "[[tool]]\nname = \"lid\"\nshape = { plane = {} }\nrotation = [3.14159, 0.0, 0.0]\nstart = [0.02, 0.02, 0.03]\nhold = true\n";
+    let text = fs::read_to_string(path).unwrap() + tool;
+    let scene = Scene::parse(SceneSource::new(path, text)).unwrap();
+    let simulation = scene.build().unwrap();
+    let mut integrator = simulation.integrator().unwrap();
+    let refused = simulation.set_up(&mut *integrator).unwrap_err();
+    let said = message(&refused).replace(path, "slivers.toml");
+    insta::assert_snapshot!(said, @r#"slivers.toml:46: [run]: `central-difference`: tools push cells in closed form, which takes a step that divides forces by one block for each cell and then moves by the new velocity; take `central-difference` without `patches`, `symplectic-euler`, `cnn-symplectic`, `cnn-stabilised` with one block for each cell, or `cnn-energy` with kind = "ie""#);
 }

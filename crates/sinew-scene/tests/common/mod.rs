@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use std::fs;
 use std::path::Path;
 
-use sinew_core::{Run, State, simulate};
+use sinew_core::{Outcome, Run, State, simulate};
 use sinew_integrators::Stepper;
 use sinew_scene::output::{Delivery, Destination};
 use sinew_scene::{Cutter, ProbeCsv, ProbeRows, Scene, SceneError, SceneSource, Seen, Simulation};
@@ -81,6 +81,7 @@ impl CutRun {
             };
             let stretch = self.simulation.stretch(moving, &run, (&mut (), seen));
             let stretch = stretch.unwrap();
+            assert_eq!(stretch.report.outcome, Outcome::Finished);
             left -= stretch.report.steps;
             self.is_seen = true;
             if let Some(change) = stretch.change {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
-use sinew_core::{OptionError, SetupError, SimulateError};
+use sinew_core::{OptionError, SimulateError};
 use sinew_measure::advice::AdviceError;
 use sinew_measure::convergence::ConvergeError;
 use sinew_mesh::vtu::WriteVtuError;
@@ -79,9 +79,6 @@ pub(crate) enum Failure {
         /// How many there are.
         count: usize,
     },
-    /// A scene that the integrator cannot be set up for.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
     /// A scene for which there is no advice.
     #[error("{}: {source}", scene.display())]
     Advice {
@@ -304,7 +301,6 @@ impl Failure {
             | Self::Load(_)
             | Self::Cutting(_)
             | Self::Option(_)
-            | Self::Setup(_)
             | Self::Warnings { .. }
             | Self::Advice { .. }
             | Self::LongConverge { .. }
@@ -328,7 +324,6 @@ impl Failure {
             Self::Record(
                 RecordRunError::Scene(_)
                 | RecordRunError::Option(_)
-                | RecordRunError::Setup(_)
                 | RecordRunError::Checkpoint { .. }
                 | RecordRunError::Unusable { .. }
                 | RecordRunError::OtherInput { .. }

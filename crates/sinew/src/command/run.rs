@@ -75,7 +75,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match (destination, &arguments.out) {
         (None, Some(path)) => {
             // Before the folder is made, so that what cannot run leaves none.
-            integrator.prepare(simulation.system(), simulation.dt())?;
+            simulation.set_up(&mut *integrator)?;
             let request = Request {
                 threads: arguments.threads.as_ref().map(in_words),
                 warnings: warnings.iter().map(ToString::to_string).collect(),
@@ -140,7 +140,7 @@ pub(crate) fn run_for_comparison(
     }
     simulation.end_at_duration();
     let mut integrator = integrator(&simulation, None)?;
-    integrator.prepare(simulation.system(), simulation.dt())?;
+    simulation.set_up(&mut *integrator)?;
     let folder = RunFolder::create(folder, &simulation, &Request::default())?;
     let duration = simulation.settings().duration;
     let mut onlooker = Onlooker::new(interruption, simulation.run().steps, duration);
@@ -166,7 +166,7 @@ fn probes_alone(
     interruption: Interruption,
 ) -> Result<(), Failure> {
     let voice = Voice::apart_from(&destination);
-    integrator.prepare(simulation.system(), simulation.dt())?;
+    simulation.set_up(integrator)?;
     let cutter = simulation.cutter()?.map(RefCell::new);
     let mut output = ProbeCsv::new(destination.open()?, ProbeRows::new(simulation))?.without_rows();
     let mut state = simulation.initial_state().clone();

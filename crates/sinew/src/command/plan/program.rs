@@ -11,7 +11,7 @@ use crate::command::Failure;
 /// Prints it, in words or as JSON.
 pub(super) fn print(simulation: &Simulation, as_json: bool) -> Result<(), Failure> {
     let mut integrator = simulation.integrator()?;
-    integrator.prepare(simulation.system(), simulation.dt())?;
+    simulation.set_up(&mut *integrator)?;
     // The limits of a guard follow from the motion's start, which a batch of no steps shows it. What is
     // refused leaves the program as it is, and the run will say why.
     let mut start = simulation.initial_state().clone();

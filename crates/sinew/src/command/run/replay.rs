@@ -72,7 +72,7 @@ pub(super) fn run(
     if csv.finish()? == Delivery::Whole {
         voice.say(&format!(
             "{}: {} steps repeated, {} of them since the last reset, {} commands; t = {:.6} s",
-            simulation.scene().title(),
+            simulation.scene().title_or_path(),
             session.steps(),
             followed.steps,
             session.log().entries().len(),

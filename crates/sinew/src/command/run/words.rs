@@ -25,7 +25,7 @@ pub(super) fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> 
     let mut lines = vec![
         format!(
             "{}: {} steps of {} s by `{}`: {sweeps} sweeps, {solves} solves",
-            simulation.scene().title(),
+            simulation.scene().title_or_path(),
             end.steps,
             simulation.dt(),
             simulation.settings().integrator,
@@ -70,7 +70,7 @@ pub(super) fn summary(simulation: &Simulation, report: &RunReport) -> String {
     let work = report.work;
     let mut text = format!(
         "{}: {} steps of {} s by `{}`: {} sweeps, {} solves",
-        simulation.scene().title(),
+        simulation.scene().title_or_path(),
         report.steps,
         simulation.dt(),
         settings.integrator,

@@ -1,0 +1,63 @@
+//! Methods that cannot be set up for a scene, told at the keys that are at fault.
+
+use sinew_core::{Options, SetupError, StepReport, System};
+use sinew_integrators::Stepper;
+
+use super::Simulation;
+use crate::decode::Place;
+use crate::error::{Fault, SceneError};
+use crate::scene::RunSettings;
+
+impl Simulation {
+    /// Sets the scene's integrator up for its body and step.
+    ///
+    /// # Errors
+    /// [`SceneError`] at the key for which it is refused.
+    pub fn set_up(&self, integrator: &mut dyn Stepper) -> Result<StepReport, SceneError> {
+        let prepared = integrator.prepare(self.system(), self.dt);
+        prepared.map_err(|refused| {
+            // The matrix of a step is not factorised once more to find a key.
+            let refuses = |options: &Options| match refused {
+                SetupError::Factorization { .. } => None,
+                _ => refusal(self.settings(), options, self.system(), self.dt),
+            };
+            let place = &self.scene.places().run;
+            at_key(place, &self.settings().options, refuses, refused.clone())
+        })
+    }
+}
+
+/// What an integrator of these settings, with other options, refuses about a system.
+pub(super) fn refusal(
+    settings: &RunSettings,
+    options: &Options,
+    system: &dyn System,
+    dt: f64,
+) -> Option<SetupError> {
+    let mut method = sinew_integrators::build(&settings.integrator, options).ok()?;
+    method.prepare(system, dt).err()
+}
+
+/// The refusal at the first option without which there is none of its kind; at the integrator where there is no such option.
+pub(super) fn at_key(
+    run: &Place,
+    options: &Options,
+    refusal: impl Fn(&Options) -> Option<SetupError>,
+    refused: SetupError,
+) -> SceneError {
+    let is_refused = |options: &Options| {
+        refusal(options)
+            .is_some_and(|other| std::mem::discriminant(&other) == std::mem::discriminant(&refused))
+    };
+    let is_at_fault = |key: &&str| {
+        let mut others = options.clone();
+        others.remove(key);
+        !is_refused(&others)
+    };
+    let mut keys = options.iter().map(|(key, _)| key);
+    let key = match is_refused(options) {
+        true => keys.find(is_at_fault),
+        false => None,
+    };
+    run.value_fault(key.unwrap_or("integrator"), Fault::SetUp(refused))
+}
