@@ -35,6 +35,10 @@ pub struct CuttableBody {
     pub(crate) origins: Vec<u32>,
     /// Whether each node stays where it is at rest: on a face that was cut, at a tetrahedron that was removed, or as was asked.
     pub(crate) is_kept: Vec<bool>,
+    /// Nodes, increasing, that stay where they are at rest for now.
+    pub(crate) held: Vec<u32>,
+    /// The node that each one was copied from in this life of the body; itself, where it was none or is one of a body that was read back.
+    pub(crate) copied_from: Vec<u32>,
     pub(crate) tets: Vec<[u32; 4]>,
     pub(crate) is_removed: Vec<bool>,
     /// The tetrahedron beyond the face opposite each vertex.
@@ -57,10 +61,21 @@ pub(crate) struct Room {
     pub(crate) touched: Vec<(u32, Passed)>,
     /// Nodes that may be moved, with their distance from the sheet by their shortest edge.
     pub(crate) near: Vec<(f64, u32)>,
-    /// Nodes of faces that were cut.
+    /// Nodes of faces that were cut, each once.
     pub(crate) corners: Vec<u32>,
+    /// Whether each node is listed.
+    pub(crate) is_listed: Vec<bool>,
     /// Group of each tetrahedron at the node at hand.
     pub(crate) group_of: Vec<u32>,
+}
+
+impl Room {
+    /// Lists a corner of a face that was cut, where it is not listed yet.
+    pub(crate) fn list_corner(&mut self, node: u32) {
+        if !std::mem::replace(&mut self.is_listed[node as usize], true) {
+            self.corners.push(node);
+        }
+    }
 }
 
 /// Number of copies of nodes that room is made for beforehand, in whatever has a place for each node of a body: a tenth of the nodes, and
@@ -95,24 +110,29 @@ impl CuttableBody {
             }
             largest_frequency = largest_frequency.max(properties.frequency(tet, &vertices));
         }
-        let with_spare = |points: &[Vector]| {
-            let mut copy = Vec::with_capacity(nodes + spare);
-            copy.extend_from_slice(points);
-            copy
+        let mut points = Vec::with_capacity(nodes + spare);
+        points.extend_from_slice(&mesh.points);
+        let itself = || {
+            let mut itself = Vec::with_capacity(nodes + spare);
+            itself.extend(0..nodes as u32);
+            itself
         };
-        let mut origins = Vec::with_capacity(nodes + spare);
-        origins.extend(0..nodes as u32);
-        let mut is_kept = Vec::with_capacity(nodes + spare);
-        is_kept.resize(nodes, false);
+        let none = || {
+            let mut none = Vec::with_capacity(nodes + spare);
+            none.resize(nodes, false);
+            none
+        };
         Ok(Self {
             properties,
             first_places: mesh.points.clone(),
             edge_at,
             longest_edge,
             largest_frequency,
-            points: with_spare(&mesh.points),
-            origins,
-            is_kept,
+            points,
+            origins: itself(),
+            is_kept: none(),
+            held: Vec::new(),
+            copied_from: itself(),
             tets: mesh.tets.clone(),
             is_removed: vec![false; tets],
             neighbours: neighbours(&mesh.tets)?,
@@ -125,8 +145,9 @@ impl CuttableBody {
                 group_of: vec![0; tets],
                 queue: Vec::with_capacity(tets),
                 touched: Vec::with_capacity(tets),
-                near: Vec::with_capacity(4 * spare),
-                corners: Vec::with_capacity(4 * spare),
+                near: Vec::with_capacity(nodes + spare),
+                corners: Vec::with_capacity(nodes + spare),
+                is_listed: none(),
                 look: 0,
             },
         })
@@ -137,6 +158,13 @@ impl CuttableBody {
         for node in nodes {
             self.is_kept[*node as usize] = true;
         }
+    }
+
+    /// Keeps these nodes, and no others than [`CuttableBody::keep`] names, where they are at rest until this is called again: those that a tool has hold of.
+    pub fn hold(&mut self, nodes: impl IntoIterator<Item = u32>) {
+        self.held.clear();
+        self.held.extend(nodes);
+        self.held.sort_unstable();
     }
 
     /// Number of nodes, copies and nodes that lost their last tetrahedron included.
@@ -167,6 +195,12 @@ impl CuttableBody {
     #[must_use]
     pub fn origins(&self) -> &[u32] {
         &self.origins
+    }
+
+    /// The node that a node was copied from; itself where it is none of the copies that this body has made.
+    #[must_use]
+    pub fn copied_from(&self, node: u32) -> u32 {
+        self.copied_from[node as usize]
     }
 
     /// The tetrahedra at a node, increasing.

@@ -194,7 +194,9 @@ impl CuttableBody {
         let [a, b, c] = corners.map(|node| self.points[node as usize]);
         self.stroke.area += length(cross(sub(b, a), sub(c, a))) / 2.0;
         self.stroke.faces.push((tet, vertex as u8));
-        self.room.corners.extend(corners);
+        corners
+            .into_iter()
+            .for_each(|node| self.room.list_corner(node));
         for beside in [tet, self.neighbours[tet as usize][vertex]] {
             let mut mark = self.marks.of(beside);
             mark.settle();

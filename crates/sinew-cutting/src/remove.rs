@@ -17,11 +17,14 @@ impl CuttableBody {
         positions: &mut Vec<[f64; 3]>,
     ) -> Result<&Removal, CutError> {
         self.require_positions(positions)?;
-        let tets = self.tets.iter();
-        let inside: Vec<bool> = tets
-            .map(|nodes| is_inside(mean(nodes.map(|node| positions[node as usize]))))
-            .collect();
-        self.remove_tets(|tet| inside[tet as usize], positions)
+        let mut removal = self.next_removal();
+        let left = (0..).zip(&self.tets).zip(&self.is_removed);
+        let left = left.filter(|(_, is_removed)| !**is_removed);
+        removal.tets.extend(left.filter_map(|((tet, nodes), _)| {
+            let middle = mean(nodes.map(|node| positions[node as usize]));
+            is_inside(middle).then_some(tet)
+        }));
+        Ok(self.take_away(removal, positions))
     }
 
     /// Removes the tetrahedra (0-based) that `is_gone` names, as [`CuttableBody::remove`].
@@ -34,16 +37,26 @@ impl CuttableBody {
         positions: &mut Vec<[f64; 3]>,
     ) -> Result<&Removal, CutError> {
         self.require_positions(positions)?;
+        let mut removal = self.next_removal();
+        let left = (0..).zip(&self.is_removed);
+        let left = left.filter_map(|(tet, is_removed)| (!is_removed).then_some(tet));
+        removal.tets.extend(left.filter(|tet| is_gone(*tet)));
+        Ok(self.take_away(removal, positions))
+    }
+
+    /// An empty removal, in the room of the last one.
+    fn next_removal(&mut self) -> Removal {
         let mut removal = std::mem::take(&mut self.removal);
         removal.tets.clear();
         removal.copied.clear();
         removal.mass = 0.0;
-        for tet in 0..self.tets.len() as u32 {
+        removal
+    }
+
+    /// Takes the tetrahedra of a removal away.
+    fn take_away(&mut self, mut removal: Removal, positions: &mut Vec<[f64; 3]>) -> &Removal {
+        for tet in removal.tets.iter().copied() {
             let nodes = self.tets[tet as usize];
-            if self.is_removed[tet as usize] || !is_gone(tet) {
-                continue;
-            }
-            removal.tets.push(tet);
             removal.mass += self.mass_of(tet);
             self.is_removed[tet as usize] = true;
             for (vertex, node) in nodes.into_iter().enumerate() {
@@ -52,10 +65,12 @@ impl CuttableBody {
                 }
                 self.incidence.remove(node, tet);
             }
-            self.room.corners.extend(nodes);
+            nodes
+                .into_iter()
+                .for_each(|node| self.room.list_corner(node));
         }
         self.split_corners(positions, &mut removal.copied, |_| {});
         self.removal = removal;
-        Ok(&self.removal)
+        &self.removal
     }
 }

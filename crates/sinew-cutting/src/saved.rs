@@ -98,6 +98,11 @@ impl CuttableBody {
         self.origins.extend(origins);
         self.is_kept.clear();
         self.is_kept.extend(is_kept);
+        self.held.clear();
+        self.copied_from.clear();
+        self.copied_from.extend(0..nodes as u32);
+        self.room.is_listed.clear();
+        self.room.is_listed.resize(nodes, false);
         self.neighbours = neighbours.as_chunks::<4>().0.to_vec();
         (self.tets, self.is_removed, self.marks) = (corners, is_removed, marks);
         Ok(())

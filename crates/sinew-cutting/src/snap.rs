@@ -44,7 +44,7 @@ impl Freedom {
 impl CuttableBody {
     /// Moves nodes of crossed edges that are within a share `snap` of their shortest edge onto the sheet, nearest first. Space is moved
     /// through the tissue: each goes, at rest, to the point that lies on the sheet now. Nodes of the surface stay in their face, and
-    /// those of an earlier cut where they are, for its lips fit each other.
+    /// those of an earlier cut where they are, for its lips fit each other, as do those that are kept or held.
     pub(crate) fn snap(&mut self, sheet: &Sheet, positions: &mut [Vector], snap: f64) {
         let mut near = std::mem::take(&mut self.room.near);
         near.clear();
@@ -55,16 +55,18 @@ impl CuttableBody {
                     let node = self.tets[*tet as usize][end];
                     let share = beside.distances[end].abs() / self.edge_at(node);
                     let is_free = self.marks.side_of_node(node) == NodeSide::Open
-                        && !self.is_kept[node as usize];
-                    if share <= snap && is_free {
+                        && !self.is_kept[node as usize]
+                        && self.held.binary_search(&node).is_err();
+                    let is_listed = &mut self.room.is_listed[node as usize];
+                    if share <= snap && is_free && !std::mem::replace(is_listed, true) {
                         near.push((share, node));
                     }
                 }
             }
         }
         near.sort_unstable_by(|(a, node), (b, other)| a.total_cmp(b).then(node.cmp(other)));
-        near.dedup_by_key(|(_, node)| *node);
         for (_, node) in &near {
+            self.room.is_listed[*node as usize] = false;
             self.move_onto(*node, sheet, positions);
         }
         self.room.near = near;

@@ -18,8 +18,8 @@ impl CuttableBody {
     ) {
         let mut corners = std::mem::take(&mut self.room.corners);
         corners.sort_unstable();
-        corners.dedup();
         for node in corners.drain(..) {
+            self.room.is_listed[node as usize] = false;
             self.is_kept[node as usize] = true;
             let groups = self.group(node);
             if groups < 2 {
@@ -44,6 +44,8 @@ impl CuttableBody {
                 self.points.push(self.points[node as usize]);
                 self.origins.push(self.origins[node as usize]);
                 self.is_kept.push(true);
+                self.copied_from.push(node);
+                self.room.is_listed.push(false);
                 positions.push(positions[node as usize]);
                 self.marks.copy_node(node);
                 copied.push(node);

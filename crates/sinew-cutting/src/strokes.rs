@@ -1,5 +1,7 @@
 //! Strokes of a blade over time.
 
+use std::collections::HashSet;
+
 use crate::sheet::Sheet;
 
 /// Largest coordinate of a blade's end (m).
@@ -114,7 +116,8 @@ impl Strokes {
     /// # Errors
     /// [`StrokesError`] with the first row at fault.
     pub fn new(poses: Vec<BladePose>) -> Result<Self, StrokesError> {
-        let mut ended: Vec<f64> = Vec::new();
+        // By its bits: -0 and 0 are one number.
+        let mut ended: HashSet<u64> = HashSet::new();
         for (index, pose) in poses.iter().enumerate() {
             let row = index + 1;
             let numbers = [pose.stroke, pose.t];
@@ -139,20 +142,19 @@ impl Strokes {
                 |other: Option<&BladePose>| other.is_some_and(|other| other.stroke == pose.stroke);
             let stroke = pose.stroke;
             if !same(before) {
-                if ended.contains(&stroke) {
+                if !ended.insert((stroke + 0.0).to_bits()) {
                     return Err(StrokesError::Again { row, stroke });
                 }
                 if !same(after) {
                     return Err(StrokesError::OnePose { row, stroke });
                 }
-                ended.push(stroke);
             }
         }
         Ok(Self(poses))
     }
 
-    /// What the blade does after `from` and up to `to` (s), in order: a sheet for each straight line of which a part falls into that time.
-    /// Cut at any instants, a time has the same sheets put together.
+    /// What the blade does after `from` and up to `to` (s), in order: a sheet for each straight line of which a part falls into that time, and a lift where
+    /// a stroke ends from `from` on. Cut at any instants, a time has the same sheets and lifts put together.
     pub fn between(&self, from: f64, to: f64) -> impl Iterator<Item = BladeAct> {
         let first = self
             .0
@@ -164,7 +166,7 @@ impl Strokes {
         lines.filter_map(move |line| {
             let [start, end] = line else { return None };
             if start.stroke != end.stroke {
-                return (end.t > from).then_some(BladeAct::Lift);
+                return (start.t >= from).then_some(BladeAct::Lift);
             }
             let at = |t: f64| {
                 let share = (t - start.t) / (end.t - start.t);
@@ -191,8 +193,10 @@ impl Strokes {
     /// The time (s) from which on the blade is next in the middle of a stroke, or is lifted; `None` after the last stroke.
     #[must_use]
     pub fn next_from(&self, t: f64) -> Option<f64> {
-        let line = self.0.windows(2).find(|line| line[1].t > t)?;
-        Some(line[0].t.max(t))
+        let end = self.0.partition_point(|pose| pose.t <= t).max(1);
+        let (start, end) = (self.0.get(end - 1)?, self.0.get(end)?);
+        let is_lifted = start.stroke != end.stroke && start.t < t;
+        Some(if is_lifted { end.t } else { start.t.max(t) })
     }
 
     /// Times (s) at which the first stroke begins and the last one ends.
@@ -247,6 +251,11 @@ mod tests {
         assert_eq!(swept(&strokes, 0.0, 0.1), []);
         assert_eq!(swept(&strokes, 0.6, 9.0), []);
         assert_eq!(swept(&strokes, 0.3, 0.4), [None], "lifted");
+        assert_eq!(swept(&strokes, 0.4, 0.45), [], "once");
+        let next = [0.0, 0.15, 0.3, 0.31, 0.5, 0.6].map(|t| strokes.next_from(t));
+        let expected = [Some(0.1), Some(0.15), Some(0.3), Some(0.5), Some(0.5), None];
+        assert_eq!(next, expected);
+        assert_eq!(Strokes::default().next_from(0.0), None);
         let within = swept(&strokes, 0.125, 0.175);
         assert!(
             matches!(within[..], [Some([low, high])] if (low - 0.5).abs() < 1e-12 && (high - 1.5).abs() < 1e-12)

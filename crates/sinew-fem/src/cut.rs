@@ -3,7 +3,7 @@
 use sinew_mesh::{CutMesh, TetMesh};
 
 use crate::error::Cause;
-use crate::{LoadKind, On, Problem};
+use crate::{LoadKind, LoadSpec, On, Problem};
 
 impl Problem {
     /// The problem of a body that was cut, of which `uncut` is the mesh that this problem is on.
@@ -22,15 +22,36 @@ impl Problem {
         problem.fixed.retain(|fixed| !is_nothing(&fixed.on));
         problem.moves.retain(|moving| !is_nothing(&moving.on));
         for load in &mut problem.loads {
-            load.on = match load.kind {
-                LoadKind::Force(_) => On::Nodes(cut.without_copies(uncut, &load.on.nodes(uncut)?)),
-                LoadKind::Traction(_) | LoadKind::Pressure(_) | LoadKind::FollowingPressure(_) => {
-                    On::Triangles(cut.triangles(uncut, &load.on.triangles(uncut)?))
-                }
-            };
+            load.on = load.on_after_cuts(uncut, cut)?;
         }
         problem.loads.retain(|load| !is_nothing(&load.on));
         Ok(problem)
+    }
+
+    /// The places of the loads that [`Problem::after_cuts`] leaves.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn loads_after_cuts(&self, uncut: &TetMesh, cut: &CutMesh) -> Result<Vec<usize>, Cause> {
+        let mut left = Vec::new();
+        for (place, load) in self.loads.iter().enumerate() {
+            if !is_nothing(&load.on_after_cuts(uncut, cut)?) {
+                left.push(place);
+            }
+        }
+        Ok(left)
+    }
+}
+
+impl LoadSpec {
+    /// What it is on after cuts.
+    fn on_after_cuts(&self, uncut: &TetMesh, cut: &CutMesh) -> Result<On, Cause> {
+        Ok(match self.kind {
+            LoadKind::Force(_) => On::Nodes(cut.without_copies(uncut, &self.on.nodes(uncut)?)),
+            LoadKind::Traction(_) | LoadKind::Pressure(_) | LoadKind::FollowingPressure(_) => {
+                On::Triangles(cut.triangles(uncut, &self.on.triangles(uncut)?))
+            }
+        })
     }
 }
 

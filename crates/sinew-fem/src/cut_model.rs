@@ -430,6 +430,11 @@ impl CutModel {
         Ok(())
     }
 
+    /// Leaves these nodes of the body where they are at rest, until this is called again: those that a tool has hold of.
+    pub fn hold(&mut self, nodes: impl IntoIterator<Item = u32>) {
+        self.body.hold(nodes);
+    }
+
     /// The model of what is left of the body.
     fn model_on(&self, mesh: &CutMesh) -> Result<Model, CutModelError> {
         if mesh.tets.is_empty() {
@@ -445,11 +450,11 @@ impl CutModel {
                 axes: [true; 3],
             });
         }
-        let model = Model::build(&mesh.mesh, &problem).map_err(|error| match error.cause() {
+        let built = Model::build_after_cuts(&mesh.mesh, &problem, &frozen);
+        let model = built.map_err(|error| match error.cause() {
             Cause::NothingFree { .. } => CutModelError::NothingLeft,
             _ => error.into(),
         })?;
-        let model = model.with_frozen(&frozen);
         Ok(match self.model.operators().element_bounds() {
             Some(bounds) => model.with_element_bounds(bounds),
             None => model,

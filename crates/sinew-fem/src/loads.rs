@@ -33,11 +33,11 @@ pub(crate) struct LoadsOnBody {
 
 impl LoadsOnBody {
     /// Shares out the loads and, with the lumped `masses` of the nodes (kg), gravity. Notes in the facts of the
-    /// prescribed motions the loads that fall on them.
+    /// prescribed motions the loads that fall on them. Refuses a load on supports alone, where the body is not cut.
     pub(crate) fn new(
         mesh: &TetMesh,
         body: &Body,
-        (problem, region_of): (&Problem, &[u32]),
+        (problem, region_of, is_cut): (&Problem, &[u32], bool),
         masses: &[f64],
         motions: &Motions,
         moves: &mut [MoveFacts],
@@ -62,7 +62,7 @@ impl LoadsOnBody {
                     facts.loads.push(index);
                 }
             }
-            if parts.moving.entries.is_empty() && !on_moved {
+            if parts.moving.entries.is_empty() && !on_moved && !is_cut {
                 let on = spec.on.clone();
                 return Err(FemError::new(item, Cause::NothingLoaded { on }));
             }
@@ -131,7 +131,9 @@ fn assemble(
         }
         LoadKind::Force(force) => {
             let nodes = on.nodes(mesh).map_err(FemError::at(item))?;
-            let is_moved = |node: u32| (0..3).any(|axis| motions.part_of(node, axis).is_some());
+            let is_moved = |node: u32| {
+                (0..3).any(|axis| motions.part_of(node, axis).is_some()) || motions.is_frozen(node)
+            };
             let free = nodes
                 .into_iter()
                 .filter(|node| cells.of_node(*node).is_some() || is_moved(*node));

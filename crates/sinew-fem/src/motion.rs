@@ -82,8 +82,8 @@ impl Motions {
         })
     }
 
-    /// Holds nodes, increasing, at these displacements (m): each piece of the body as a whole, or not at all.
-    pub(crate) fn freeze(&mut self, frozen: &[(u32, [f64; 3])]) {
+    /// The same, with nodes, increasing, that are held at these displacements (m): each piece of the body as a whole, or not at all.
+    pub(crate) fn with_frozen(mut self, frozen: &[(u32, [f64; 3])]) -> Self {
         let held = |(node, displacement): &(u32, [f64; 3])| {
             let along = |axis: usize| Course {
                 displacement: std::array::from_fn(
@@ -94,6 +94,12 @@ impl Motions {
             (*node, [0, 1, 2].map(along))
         };
         self.frozen = frozen.iter().map(held).collect();
+        self
+    }
+
+    /// Whether a node is held where it was frozen.
+    pub(crate) fn is_frozen(&self, node: u32) -> bool {
+        self.frozen(node).is_some()
     }
 
     /// The courses of a component of a node; none where it is held at rest or moves by itself.

@@ -500,7 +500,10 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
                 batch.meet((state, &mut cells), step, kick, &mut pushed);
                 loaded.pushed = pushed;
                 loaded.take_pushed(self.layout, state);
-                if !written {
+                exceeded |= loaded.are_beyond(most, state);
+                if !written && exceeded {
+                    loaded.show(self.layout, state);
+                } else if !written {
                     loaded.show_watched(self.layout, batch.watched(), state);
                 }
             } else if written {
@@ -737,6 +740,14 @@ impl<T: ElementPrecision> Loaded<T> {
     fn look_at_largest(&mut self, u: &[f64]) {
         let largest = u.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
         self.largest = (ROOM * largest).max(LEAST_REACH * self.touched.size());
+    }
+
+    /// Whether a displacement of a cell that was pushed is none within the limit (m).
+    fn are_beyond(&self, limit: f64, state: &State) -> bool {
+        let layers = self.fields.layers();
+        let of_cell = |cell: &u32| &state.u[*cell as usize * layers..][..layers];
+        let mut all = self.pushed.iter().flat_map(of_cell);
+        !all.all(|u| u.abs() <= limit)
     }
 
     /// Takes u and v of the cells that were pushed, rounds them in the state, too, and takes what follows from them.

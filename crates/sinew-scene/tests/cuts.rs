@@ -8,7 +8,7 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use common::CutRun;
+use common::{CutRun, build};
 use sinew_core::{Inputs, State};
 use sinew_scene::{CutTotals, Cutter, Scene, Simulation};
 
@@ -341,6 +341,49 @@ fn a_frozen_piece_stays_where_it_came_off_and_keeps_its_mass() {
     assert_eq!(frozen.state.u, removed.state.u);
 }
 
+/// What the load would have done to it falls on nothing that moves, as where the piece is taken away with its load.
+#[test]
+fn a_frozen_piece_keeps_the_loads_that_were_on_it() {
+    let folder = tempfile::tempdir().unwrap();
+    for load_on_top in [
+        "traction = [0.0, 0.0, 5.0]",
+        "force = [0.0, 0.0, 0.002]",
+        "pressure = 5.0",
+    ] {
+        let ended = |pieces: &str| {
+            let cutting = format!(
+                "[[load]]\ngroup = \"top\"\n{load_on_top}\n[cutting]\ntable = \"strokes.csv\"\npieces = \"{pieces}\"\n"
+            );
+            run(load(
+                folder.path(),
+                &bar(&cutting, EXPLICIT),
+                &across(0.02, 0.0202),
+            ))
+        };
+        let [frozen, removed] = ["freeze", "remove"].map(ended);
+        assert_eq!((frozen.pieces, removed.pieces), (2, 1), "{load_on_top}");
+        assert_eq!(frozen.state.u, removed.state.u, "{load_on_top}");
+    }
+    // What of a force fell on nodes that were frozen does not fall on the others.
+    let cutting = "[[load]]\nwhere = { above = { x = 0.02 } }\nforce = [0.1, 0.0, 0.0]\n[cutting]\ntable = \"strokes.csv\"\npieces = \"freeze\"\n";
+    let ended = run(load(
+        folder.path(),
+        &bar(cutting, EXPLICIT),
+        &across(0.0, 2e-4),
+    ));
+    let linear = ended.simulation.system().as_linear().unwrap();
+    let [on_side, ..] = linear.operators().loads() else {
+        panic!("the load and gravity");
+    };
+    let along_x = on_side.entries.iter().map(|(_, force)| *force);
+    assert!((6..=9).contains(&along_x.len()));
+    assert!(
+        along_x
+            .into_iter()
+            .all(|force| (force - 0.1 / 18.0).abs() < 1e-15)
+    );
+}
+
 #[test]
 fn toughness_is_the_work_of_the_blade_and_leaves_the_motion_alone() {
     let folder = tempfile::tempdir().unwrap();
@@ -424,6 +467,56 @@ fn a_grasp_outlives_a_cut() {
         let probe = ended.simulation.probes()[0].displacement(state.t(), &state.u);
         assert!((probe.last().unwrap() - 0.003).abs() < 1.1e-3);
     }
+}
+
+/// A blade of the scene that is out of the tissue is not lifted over and over: what a hand has entered in part stays entered.
+#[test]
+fn a_blade_in_the_air_leaves_the_cut_of_a_hand_alone() {
+    let area = |tables: &str| {
+        let simulation = build(&bar(tables, EXPLICIT));
+        let mut cutter = simulation.cutter().unwrap().unwrap();
+        let mut state = simulation.initial_state().clone();
+        let blade = |x: f64| [[x, -0.01, 0.032], [x, 0.03, 0.032]];
+        let mut now: Option<Simulation> = None;
+        for n in 0..60 {
+            let [from, to] = [n, n + 1].map(|n| blade(-0.001 + 4e-4 * f64::from(n)));
+            let before = now.as_ref().unwrap_or(&simulation);
+            let cut = cutter.cut([from, to], before, &mut state, Inputs::none());
+            now = cut.unwrap().or(now);
+            let before = now.as_ref().unwrap_or(&simulation);
+            let end = 1e-4 * f64::from(n + 1);
+            let cut = cutter.follow(before, &mut state, Inputs::none(), end);
+            assert!(cut.unwrap().is_none());
+        }
+        cutter.totals().report.area
+    };
+    let alone = area("[cutting]\n");
+    assert!(alone > 3.9e-4, "{alone}");
+    let scalpel = "[[tool]]\nname = \"scalpel\"\nshape = { blade = { length = 0.02 } }\nstart = [0.1, 0.1, 0.1]\nvelocity = [0.01, 0.0, 0.0]\n\
+                   [cutting]\ntool = \"scalpel\"\n";
+    assert_eq!(area(scalpel), alone);
+}
+
+/// A node that a jaw has hold of would be thrown where it was moved at rest: snapping leaves it where it is, and its copy is held as well.
+#[test]
+fn what_a_jaw_holds_is_not_snapped() {
+    let folder = tempfile::tempdir().unwrap();
+    write_jaw(folder.path());
+    let strokes = format!(
+        "{STROKES}1,0.02,0.0122,-0.01,0.07,0.0122,0.03,0.07\n1,0.022,0.0122,-0.01,0.035,0.0122,0.03,0.035\n"
+    );
+    let tables = "[[tool]]\nname = \"jaw\"\nshape = { plane = {} }\ntable = \"jaw.csv\"\ngrasp = { from = 0.001, to = 1.0 }\n\
+                  [cutting]\ntable = \"strokes.csv\"\nsnap = 0.3\n";
+    let ended = run(load(folder.path(), &bar(tables, EXPLICIT), &strokes));
+    assert!(ended.totals.report.moved_nodes > 0);
+    let body = ended.simulation.model().body().unwrap();
+    let top = body.mesh.points.iter().filter(|place| place[2] > 0.0599);
+    let top: Vec<_> = top.collect();
+    assert!(top.len() > 9);
+    let on_grid = |x: f64| (100.0 * x - (100.0 * x).round()).abs() < 1e-12;
+    assert!(top.iter().all(|place| on_grid(place[0])), "{top:?}");
+    let report = body.tools.as_ref().unwrap().report(&ended.state, 0);
+    assert_eq!((report.contacts, report.seized), (top.len(), 9));
 }
 
 fn refusal(text: &str, strokes: &str) -> String {
@@ -539,7 +632,7 @@ fn a_plan_shows_the_step_before_and_after_cuts_beside_that_of_the_body() {
     let text = "[mesh]\ncube = { cells = 10, edge = 0.1, split = \"kuhn\" }\n[[region]]\ndensity = 1060.0\nmodel = \"linear\"\n\
                 youngs_modulus = 3500.0\npoissons_ratio = 0.45\n[[fixed]]\ngroup = \"bottom\"\n[cutting]\n[run]\nduration = 0.1\n\
                 integrator = \"central-difference\"\ndt = 0.001\n";
-    let plan = common::build(text).plan();
+    let plan = build(text).plan();
     let section = plan
         .sections
         .iter()

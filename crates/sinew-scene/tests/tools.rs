@@ -8,7 +8,7 @@ mod common;
 use std::fs;
 
 use common::build;
-use sinew_core::{Inputs, System};
+use sinew_core::{Inputs, Outcome, System, simulate};
 use sinew_scene::{Scene, Simulation};
 
 fn scene(tools: &str) -> String {
@@ -122,6 +122,36 @@ fn thin_fast_and_pushing_tools_are_warned_about() {
 }
 
 /// A ball whose lowest point lies on a node begins outside, whatever rounding makes of it.
+/// A plane that is moved by 200 sizes of the body within the only step takes it along.
+#[test]
+fn what_a_tool_carries_away_has_diverged_by_any_machine() {
+    for machine in ["auto", "general", "reference"] {
+        let plane = "[[tool]]\nname = \"lid\"\nshape = { plane = {} }\nstart = [0.05, 0.05, 0.12]\nrotation = [3.141592653589793, 0.0, 0.0]\n\
+                     velocity = [0.0, 0.0, -2e4]\n";
+        let text = scene(plane).replace(
+            "duration = 0.1",
+            &format!("duration = 0.001\nmachine = \"{machine}\""),
+        );
+        let simulation = build(&text);
+        let mut state = simulation.initial_state().clone();
+        let mut integrator = simulation.integrator().unwrap();
+        let run = simulation.run();
+        assert_eq!(run.steps, 1);
+        let report = simulate(
+            simulation.system(),
+            &mut *integrator,
+            &mut state,
+            &run,
+            &mut (),
+        );
+        let outcome = report.unwrap().outcome;
+        assert!(
+            matches!(outcome, Outcome::Diverged { .. }),
+            "{machine}: {outcome:?}"
+        );
+    }
+}
+
 #[test]
 fn a_tool_that_begins_on_the_surface_is_not_inside() {
     for radius in [0.01, 0.03, 0.07, 0.11] {

@@ -52,6 +52,12 @@ impl Stroke {
         self.passes
     }
 
+    /// The straight pieces in which the way of a node is followed in the part's own frame: where the tool does not turn it is straight.
+    #[must_use]
+    pub fn pieces(&self) -> u32 {
+        if self.turns() { self.passes } else { 1 }
+    }
+
     /// The pose of the part in the world at a share of the step.
     #[must_use]
     pub fn pose_at(&self, share: f64) -> Pose {
@@ -70,11 +76,10 @@ impl Stroke {
     /// The first contact of a node that moves straight from `from` to `to` (m, in the world) over the step.
     ///
     /// The share is that of the step; point and normal are in the part's own frame, [`Self::pose_at`] takes them to the
-    /// world. In that frame the way of the node is straight where the tool does not turn; elsewhere it is followed by as
-    /// many straight pieces as there are passes.
+    /// world. In that frame the way of the node is followed by straight [`Self::pieces`].
     #[must_use]
     pub fn first_contact(&self, from: [f64; 3], to: [f64; 3]) -> Option<Touch> {
-        let pieces = if self.turns() { self.passes } else { 1 };
+        let pieces = self.pieces();
         let mut start = self.pose_at(0.0).to_own(from);
         for piece in 1..=pieces {
             let (share, node) = if piece == pieces {
@@ -96,7 +101,7 @@ impl Stroke {
     /// The first contact of a triangle whose corners move straight (m, in the world) over the step; point and normal are in the part's own frame. None for a plane.
     pub(crate) fn first_triangle(&self, from: &Triangle, to: &Triangle) -> Option<TriangleTouch> {
         let hull = Hull::of(&self.part.convex)?;
-        let pieces = if self.turns() { self.passes } else { 1 };
+        let pieces = self.pieces();
         let own = |share: f64, corners: &Triangle| {
             let pose = self.pose_at(share);
             corners.map(|corner| pose.to_own(corner))

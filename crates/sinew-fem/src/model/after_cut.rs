@@ -56,12 +56,6 @@ impl Model {
         (0..3).all(|axis| self.motions.courses(node, axis).is_empty())
     }
 
-    /// Shows nodes, increasing, that the problem holds where they are frozen: with these displacements (m).
-    pub(crate) fn with_frozen(mut self, nodes: &[(u32, [f64; 3])]) -> Self {
-        self.motions.freeze(nodes);
-        self
-    }
-
     /// The density (kg/m^3) of each tetrahedron, by the problem that the model was made of.
     pub(crate) fn densities(&self, problem: &Problem) -> Result<Vec<f64>, FemError> {
         let by_tet = ByTet::new(&self.mesh, problem, &self.region_of)?;

@@ -83,7 +83,17 @@ impl Model {
     /// # Errors
     /// [`FemError`] with the part of the problem at fault.
     pub fn build(mesh: &TetMesh, problem: &Problem) -> Result<Self, FemError> {
-        Self::build_keeping(mesh, problem, || Arc::new(mesh.clone()))
+        Self::build_keeping(mesh, problem, None, || Arc::new(mesh.clone()))
+    }
+
+    /// Assembles the problem of a body that was cut. `frozen` nodes, increasing, which the problem holds, are held at these displacements (m). A load that
+    /// falls on supports alone is none of the problem's mistakes then: what else it acted on was taken away or frozen.
+    pub(crate) fn build_after_cuts(
+        mesh: &TetMesh,
+        problem: &Problem,
+        frozen: &[(u32, [f64; 3])],
+    ) -> Result<Self, FemError> {
+        Self::build_keeping(mesh, problem, Some(frozen), || Arc::new(mesh.clone()))
     }
 
     /// Assembles a problem on a mesh that the model shares with its owner, to the same result as [`Model::build`].
@@ -91,12 +101,13 @@ impl Model {
     /// # Errors
     /// Same as [`Model::build`].
     pub fn build_on(mesh: Arc<TetMesh>, problem: &Problem) -> Result<Self, FemError> {
-        Self::build_keeping(&mesh, problem, || Arc::clone(&mesh))
+        Self::build_keeping(&mesh, problem, None, || Arc::clone(&mesh))
     }
 
     fn build_keeping(
         mesh: &TetMesh,
         problem: &Problem,
+        frozen: Option<&[(u32, [f64; 3])]>,
         kept: impl FnOnce() -> Arc<TetMesh>,
     ) -> Result<Self, FemError> {
         check::numbers(problem)?;
@@ -104,7 +115,7 @@ impl Model {
         let region_of = regions(mesh, problem)?;
         let mut graph = Graph::of(mesh);
         let body = Arc::new(Body::new(mesh, graph.pattern()?, problem, &region_of)?);
-        Self::on_body(mesh, graph, body, problem, region_of, kept)
+        Self::on_body(mesh, graph, body, (problem, frozen), region_of, kept)
     }
 
     /// Assembles another problem on the mesh of this model in which the same components move by themselves, for
@@ -127,7 +138,7 @@ impl Model {
                 } else {
                     Arc::new(Body::new(mesh, graph.pattern()?, problem, &region_of)?)
                 };
-                Self::on_body(mesh, graph, body, problem, region_of, kept)
+                Self::on_body(mesh, graph, body, (problem, None), region_of, kept)
             }
             Some(node) => {
                 let ordinal = u64::from(node) + 1;
@@ -165,13 +176,13 @@ impl Model {
             || self.region_of == region_of && own().map(kind).eq(wanted().map(kind))
     }
 
-    /// Assembles the materials and loads of a problem, whose numbers were checked. `kept` gives the mesh that the model is
+    /// Assembles the materials and loads of a problem, whose numbers were checked, with the frozen nodes of a body that was cut. `kept` gives the mesh that the model is
     /// to have; a copy is made at the end, when all that only building needs is gone.
     fn on_body(
         mesh: &TetMesh,
         graph: Graph<'_>,
         body: Arc<Body>,
-        problem: &Problem,
+        (problem, frozen): (&Problem, Option<&[(u32, [f64; 3])]>),
         region_of: Vec<u32>,
         kept: impl FnOnce() -> Arc<TetMesh>,
     ) -> Result<Self, FemError> {
@@ -186,7 +197,7 @@ impl Model {
             facts,
         } = assemble(mesh, &body, problem, graph, (&region_of, &by_tet), &lumped)?;
         let Lumped { masses, volume, .. } = lumped;
-        let motions = Motions::new(mesh, problem)?;
+        let motions = Motions::new(mesh, problem)?.with_frozen(frozen.unwrap_or_default());
         let facts_of = |part: &MovedPart| MoveFacts {
             nodes: part.nodes.len(),
             jump: part.first_jump(),
@@ -196,7 +207,7 @@ impl Model {
         let loads = LoadsOnBody::new(
             mesh,
             &body,
-            (problem, &region_of),
+            (problem, &region_of, frozen.is_some()),
             &masses,
             &motions,
             &mut moves,

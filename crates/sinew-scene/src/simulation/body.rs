@@ -1,6 +1,6 @@
 //! The matrices of a body on its mesh.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use sinew_fem::{Cause, Course, CutModel, CutModelError, FemError, Item, Model, Moving, On};
 
@@ -55,6 +55,7 @@ pub(super) fn build(
         model,
         tools: None,
         cut: None,
+        surface: OnceLock::new(),
     })
 }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use sinew_core::{Energy, Inputs, State, System};
 use sinew_cutting::{BladeAct, SavedBodyError, Sheet};
 use sinew_fem::{CutModel, CutModelError, CutReport, Problem};
-use sinew_mesh::{CutMesh, TetMesh};
+use sinew_mesh::TetMesh;
 use sinew_tools::{Convex, Tools, ToolsError};
 
 use super::cut_from::CutFrom;
@@ -92,6 +92,10 @@ pub struct Cutter {
     probes: Vec<Probe>,
     /// Time (s) up to which the blade was followed; `None` before the first step.
     pub(super) followed: Option<f64>,
+    /// Whether the tool that is the blade was in the tissue when it was followed last.
+    is_in: bool,
+    /// What tools kept before what is cut at the moment.
+    before: Before,
     pub(super) totals: CutTotals,
 }
 
@@ -112,6 +116,8 @@ impl Simulation {
             problem,
             probes: self.probes.clone(),
             followed: None,
+            is_in: false,
+            before: Before::default(),
             totals: CutTotals::default(),
         }))
     }
@@ -169,8 +175,7 @@ impl Cutter {
     ) -> Result<Option<Simulation>, CuttingError> {
         let t = state.t();
         let followed = self.followed.replace(end);
-        let before = Before::of(self.cut.body().nodes(), state);
-        let epoch = self.cut.epoch();
+        let epoch = self.begin(simulation, state);
         let plan = Arc::clone(&self.plan);
         if let Some(strokes) = &plan.strokes {
             // What comes before the motion cuts the body that it starts with.
@@ -199,7 +204,9 @@ impl Cutter {
                     && let Some(sheet) = Sheet::swept(from, to)
                 {
                     self.sweep(&sheet, state, inputs)?;
-                    if !self.cut.body().is_touched() {
+                    let is_in = self.cut.body().is_touched();
+                    // Once, as it comes out: another blade may be in.
+                    if std::mem::replace(&mut self.is_in, is_in) && !is_in {
                         self.cut.lift();
                     }
                 }
@@ -213,7 +220,7 @@ impl Cutter {
             let report = self.cut.remove(is_inside, state, inputs)?;
             self.totals.report.add(&report);
         }
-        self.go_on(epoch, simulation, before, state, inputs)
+        self.go_on(epoch, simulation, state, inputs)
     }
 
     /// Cuts by the sheet that a blade sweeps from one place to another (its two ends, m), in the configuration of the state. Where the
@@ -228,12 +235,11 @@ impl Cutter {
         state: &mut State,
         inputs: &Inputs,
     ) -> Result<Option<Simulation>, CuttingError> {
-        let before = Before::of(self.cut.body().nodes(), state);
-        let epoch = self.cut.epoch();
+        let epoch = self.begin(simulation, state);
         if let Some(sheet) = Sheet::swept(from, to) {
             self.sweep(&sheet, state, inputs)?;
         }
-        self.go_on(epoch, simulation, before, state, inputs)
+        self.go_on(epoch, simulation, state, inputs)
     }
 
     /// Lifts a blade from outside: its next sheet goes on with no tetrahedron that it left entered in part.
@@ -331,12 +337,19 @@ impl Cutter {
         Ok(())
     }
 
+    /// Notes what tools keep before anything is cut, and leaves what they have hold of where it is at rest; the epoch of the body.
+    fn begin(&mut self, simulation: &Simulation, state: &State) -> u64 {
+        self.before.take(self.cut.body().nodes(), state);
+        let held = held_by_tools(simulation, state.t(), &self.before.contact);
+        self.cut.hold(held);
+        self.cut.epoch()
+    }
+
     /// The scene as it goes on, where the body is another one than in this epoch.
     fn go_on(
         &mut self,
         epoch: u64,
         simulation: &Simulation,
-        before: Before,
         state: &mut State,
         inputs: &Inputs,
     ) -> Result<Option<Simulation>, CuttingError> {
@@ -346,11 +359,11 @@ impl Cutter {
         let loose = match self.plan.cutting.pieces {
             LoosePieces::Fall => CutReport::default(),
             LoosePieces::Freeze => {
-                let held = self.held_by_tools(simulation, &before, state);
+                let held = self.held_with_copies(simulation, state);
                 self.cut.freeze_loose(&held, state, inputs)?
             }
             LoosePieces::Remove => {
-                let held = self.held_by_tools(simulation, &before, state);
+                let held = self.held_with_copies(simulation, state);
                 self.cut.remove_loose(&held, state, inputs)?
             }
         };
@@ -358,27 +371,38 @@ impl Cutter {
         self.totals.changes += 1;
         let cut = self.simulation(simulation, state)?;
         if let (Some(theirs), Some(own)) = (simulation.model().contact(), cut.model().contact()) {
-            let place_of = before.places(simulation, &cut, &state.u);
-            state.contact = own.carried(theirs, &before.contact, state, |place| place_of[place]);
+            let place_of = self.places_before(simulation, &cut);
+            state.contact = own.carried(theirs, &self.before.contact, |place| place_of[place]);
         }
         Ok(Some(cut))
     }
 
     /// Nodes of the body that tools have hold of, and their new copies.
-    fn held_by_tools(&self, simulation: &Simulation, before: &Before, state: &State) -> Vec<u32> {
-        let Some(tools) = simulation.model().tools() else {
+    fn held_with_copies(&self, simulation: &Simulation, state: &State) -> Vec<u32> {
+        let held = held_by_tools(simulation, state.t(), &self.before.contact);
+        let held: HashSet<u32> = held.into_iter().collect();
+        if held.is_empty() {
             return Vec::new();
-        };
-        let mut held: Vec<usize> = tools.held(&before.contact, state.t()).collect();
-        held.sort_unstable();
-        let known = touched(simulation, &before.u);
-        let known = known.filter(|(place, ..)| held.binary_search(place).is_ok());
-        let (mut nodes, origins): (Vec<u32>, HashSet<u32>) =
-            known.map(|(_, [node, origin], _)| (node, origin)).unzip();
-        let of_body = (0..).zip(self.cut.body().origins());
-        let copies = of_body.skip(before.nodes);
-        nodes.extend(copies.filter_map(|(node, origin)| origins.contains(origin).then_some(node)));
-        nodes
+        }
+        let all = 0..self.cut.body().nodes() as u32;
+        all.filter(|node| held.contains(&self.before_copies(*node)))
+            .collect()
+    }
+
+    /// The node of the body before what is cut at the moment that a node is, or is a copy of.
+    fn before_copies(&self, mut node: u32) -> u32 {
+        while node as usize >= self.before.nodes {
+            node = self.cut.body().copied_from(node);
+        }
+        node
+    }
+
+    /// The place in the scene before that each touched cell of the scene after has, or that of which it is a copy.
+    fn places_before(&self, before: &Simulation, after: &Simulation) -> Vec<Option<usize>> {
+        let known = touched(before).map(|[node, place]| (node, place as usize));
+        let known: HashMap<u32, usize> = known.collect();
+        let place = |[node, _]: [u32; 2]| known.get(&self.before_copies(node)).copied();
+        touched(after).map(place).collect()
     }
 
     /// The scene on the body as it is, with a state to go on from.
@@ -391,7 +415,10 @@ impl Cutter {
         let from = CutFrom {
             uncut: Arc::clone(&self.uncut),
             cut: cut.clone(),
-            loads: self.loads_left(cut)?,
+            loads: self
+                .problem
+                .loads_after_cuts(&self.uncut, cut)
+                .map_err(CutModelError::from)?,
         };
         let theirs = before.model.body();
         let mut body = BodyModel {
@@ -405,36 +432,30 @@ impl Cutter {
             model: model.clone(),
             tools: None,
             cut: Some(Arc::new(from)),
+            surface: OnceLock::new(),
         };
         if let Subject::Body(scene) = before.scene.subject() {
             let tools = before.model.tools().map(Arc::as_ref);
             body = tool::touching_anew(body, scene, tools)?;
         }
+        let mut first = HashMap::new();
+        if !self.probes.is_empty() {
+            for (node, origin) in (0..).zip(&cut.origins) {
+                first.entry(*origin).or_insert(node);
+            }
+        }
+        let node_of = |origin: u32| first.get(&origin).copied();
         let probes = self.probes.iter();
+        let probes = probes.map(|probe| probe.after_cut(cut, node_of, model));
         Ok(Simulation {
             scene: before.scene.clone(),
-            probes: probes.map(|probe| probe.after_cut(cut, model)).collect(),
+            probes: probes.collect(),
             model: SceneModel::Body(Box::new(body)),
             initial: state.clone(),
             dt: before.dt,
             stable_step: OnceLock::new(),
             cutting: before.cutting.clone(),
         })
-    }
-
-    /// The places of the loads that still act on something.
-    fn loads_left(&self, cut: &CutMesh) -> Result<Vec<usize>, CutModelError> {
-        let mut left = Vec::new();
-        for (place, load) in self.problem.loads.iter().enumerate() {
-            let alone = Problem {
-                loads: vec![load.clone()],
-                ..Problem::default()
-            };
-            if !alone.after_cuts(&self.uncut, cut)?.loads.is_empty() {
-                left.push(place);
-            }
-        }
-        Ok(left)
     }
 }
 
@@ -462,65 +483,47 @@ fn edge(tools: &Tools, blade: usize, t: f64, inputs: &Inputs) -> Option<[[f64; 3
     Some([-0.5, 0.5].map(|share| pose.to_world([0.0, 0.0, share * length])))
 }
 
-/// What tools kept before a cut, and where the cells were then.
+/// What tools kept before a cut.
+#[derive(Default)]
 struct Before {
     /// Number of nodes of the body, gone ones included.
     nodes: usize,
     contact: Vec<f64>,
-    /// Displacements (m); empty where tools kept nothing.
-    u: Vec<f64>,
 }
 
 impl Before {
-    fn of(nodes: usize, state: &State) -> Self {
-        let contact = state.contact.clone();
-        let u = match contact.is_empty() {
-            true => Vec::new(),
-            false => state.u.clone(),
-        };
-        Self { nodes, contact, u }
-    }
-
-    /// The place in the scene before that each touched cell of the scene after has, or that of which it is a copy: copies lie where it lies.
-    fn places(&self, before: &Simulation, after: &Simulation, u: &[f64]) -> Vec<Option<usize>> {
-        let mut by_node = HashMap::new();
-        let mut by_origin = HashMap::new();
-        for (place, [node, origin], u) in touched(before, &self.u) {
-            by_node.insert(node, place);
-            by_origin.entry((origin, u)).or_insert(place);
-        }
-        let known = touched(after, u).map(|(_, [node, origin], u)| {
-            let same = by_node.get(&node);
-            same.or_else(|| by_origin.get(&(origin, u))).copied()
-        });
-        known.collect()
+    fn take(&mut self, nodes: usize, state: &State) {
+        self.nodes = nodes;
+        self.contact.clone_from(&state.contact);
     }
 }
 
-/// The place of each touched cell, the numbers of its node in the body and in the uncut mesh, and the bits of its displacement.
-fn touched<'a>(
-    simulation: &'a Simulation,
-    u: &'a [f64],
-) -> impl Iterator<Item = (usize, [u32; 2], [u64; 3])> + 'a {
+/// The nodes in the body of the cells that tools have hold of at a time (s).
+fn held_by_tools(simulation: &Simulation, t: f64, contact: &[f64]) -> Vec<u32> {
+    let tools = simulation.model().tools().into_iter();
+    let held: Vec<usize> = tools.flat_map(|tools| tools.held(contact, t)).collect();
+    if held.is_empty() {
+        return Vec::new();
+    }
+    let is_held = |place: u32| held.binary_search(&(place as usize)).is_ok();
+    let all = touched(simulation);
+    all.filter_map(|[node, place]| is_held(place).then_some(node))
+        .collect()
+}
+
+/// The node in the body of each touched cell, and the cell's place among them.
+fn touched(simulation: &Simulation) -> impl Iterator<Item = [u32; 2]> + '_ {
     let body = simulation.model.body();
     let both = body.and_then(|body| Some((body, body.tools.as_ref()?)));
-    both.into_iter().flat_map(move |(body, tools)| {
-        tools
-            .touched_cells()
-            .iter()
-            .enumerate()
-            .map(move |(place, cell)| {
-                let node = body.model.nodes()[cell.cell as usize];
-                let numbers = match &body.cut {
-                    Some(from) => {
-                        let node = node as usize;
-                        [from.cut.nodes[node], from.cut.origins[node]]
-                    }
-                    None => [node; 2],
-                };
-                let first = 3 * cell.cell as usize;
-                let u = [0, 1, 2].map(|axis| u.get(first + axis).map_or(0, |u| u.to_bits()));
-                (place, numbers, u)
-            })
+    both.into_iter().flat_map(|(body, tools)| {
+        let cells = tools.touched_cells().iter();
+        let nodes = cells.map(|cell| {
+            let node = body.model.nodes()[cell.cell as usize];
+            match &body.cut {
+                Some(from) => from.cut.nodes[node as usize],
+                None => node,
+            }
+        });
+        nodes.zip(0..).map(|(node, place)| [node, place])
     })
 }

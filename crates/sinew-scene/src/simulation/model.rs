@@ -1,6 +1,6 @@
 //! The models that integrators move.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use sinew_core::{Contact, LinearModel, State, System};
 use sinew_mesh::{TetMesh, UnknownGroup};
@@ -21,7 +21,7 @@ pub enum SceneModel {
 /// A body of tetrahedra: its mesh and its matrices.
 #[derive(Debug, Clone)]
 pub struct BodyModel {
-    /// The mesh, shared with the model.
+    /// The mesh.
     pub mesh: Arc<TetMesh>,
     /// Warnings of the reader of the mesh file.
     pub mesh_warnings: Vec<String>,
@@ -35,6 +35,15 @@ pub struct BodyModel {
     pub tools: Option<Arc<Tools>>,
     /// Where its parts come from, once it was cut.
     pub cut: Option<Arc<CutFrom>>,
+    /// See [`BodyModel::surface`].
+    pub(super) surface: OnceLock<Vec<[u32; 3]>>,
+}
+
+impl BodyModel {
+    /// The triangles of the surface, found at the first request.
+    pub(super) fn surface(&self) -> &[[u32; 3]] {
+        self.surface.get_or_init(|| self.mesh.boundary(None))
+    }
 }
 
 impl SceneModel {

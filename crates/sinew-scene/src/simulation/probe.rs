@@ -82,11 +82,14 @@ impl ProbeNode {
 impl Probe {
     /// The same probe, which is one of the uncut body, on what is left of it: it stays with its own nodes, of which a copy stands for one that lost its
     /// tetrahedra, and with its own tetrahedra. Where all are gone it has no value.
-    pub(super) fn after_cut(&self, cut: &CutMesh, model: &Model) -> Self {
-        let node_of = |origin: u32| -> Option<u32> {
-            let place = cut.origins.iter().position(|other| *other == origin)?;
-            Some(place as u32)
-        };
+    ///
+    /// `node_of` gives the first node of the mesh that is one of the uncut mesh or a copy of it.
+    pub(super) fn after_cut(
+        &self,
+        cut: &CutMesh,
+        node_of: impl Fn(u32) -> Option<u32>,
+        model: &Model,
+    ) -> Self {
         let nodes: Vec<(u32, f64)> = self
             .nodes
             .iter()

@@ -227,7 +227,7 @@ pub(super) fn nodes_of(
 ) -> Result<(Vec<u32>, Vec<u32>), UnknownGroup> {
     let mesh = &built.mesh;
     let mut nodes = match &tool.touches {
-        None => mesh.boundary(None).into_flattened(),
+        None => built.surface().as_flattened().to_vec(),
         Some(name) => mesh.group_nodes(mesh.group(name)?),
     };
     nodes.sort_unstable();

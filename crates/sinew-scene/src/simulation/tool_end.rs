@@ -21,6 +21,7 @@ pub(super) fn sentences(tools: &Tools, size: f64, state: &State) -> Vec<String> 
         let name = &tool.name;
         let ToolReport {
             depth,
+            needed_passes,
             largest_residual,
             seized,
             rival,
@@ -34,6 +35,11 @@ pub(super) fn sentences(tools: &Tools, size: f64, state: &State) -> Vec<String> 
             said.push(format!(
                 "tool `{name}` left a node up to {} m in it: one that is held in that direction, or has no room between its surfaces",
                 short(depth)
+            ));
+        }
+        if needed_passes > 0.0 {
+            said.push(format!(
+                "tool `{name}` was so fast for its size that triangles may have got round it: a step would have needed {needed_passes} passes; take shorter steps"
             ));
         }
         if largest_residual > CONVERGED {

@@ -60,11 +60,9 @@ pub(super) fn under_tips(
     for ((tool, nodes), _) in fine.filter(|(_, is_fine)| **is_fine) {
         let surface = surface.get_or_insert_with(|| without_moved(built));
         for corners in surface.iter() {
-            let is_touched = |node: &u32| {
-                nodes.binary_search(node).is_ok() || built.model.cell_of_node(*node).is_none()
-            };
             let is_held = |node: &u32| built.model.cell_of_node(*node).is_none();
-            if !corners.iter().all(is_touched) || corners.iter().all(is_held) {
+            let is_bounded = |node: &u32| nodes.binary_search(node).is_ok() || is_held(node);
+            if !corners.iter().all(is_bounded) || corners.iter().all(is_held) {
                 continue;
             }
             tool.triangles.push(triangles.len() as u32);
@@ -82,13 +80,12 @@ pub(super) fn under_tips(
 /// The triangles of the surface of which no corner is moved: where these are is no matter of the degrees of freedom alone.
 fn without_moved(built: &BodyModel) -> Vec<[u32; 3]> {
     let moved = moved_nodes(built);
-    let mut surface = built.mesh.boundary(None);
-    surface.retain(|corners| {
-        corners
-            .iter()
-            .all(|node| moved.binary_search(node).is_err())
-    });
+    let is_moved = |node: &u32| moved.binary_search(node).is_ok();
+    let surface = built.surface().iter();
     surface
+        .filter(|corners| !corners.iter().any(is_moved))
+        .copied()
+        .collect()
 }
 
 /// The longest edge (m) of the triangles within reach of a tool in a time (s); 0 where there is none.
@@ -138,7 +135,11 @@ fn meets_with_wide_faces(
     let margin = BEYOND * built.model.extent().unwrap_or(0.0);
     let times = instants(tool, duration);
     let stride = times.len().div_ceil(MOST_WAYS);
-    let times: Vec<f64> = times.into_iter().step_by(stride).collect();
+    let last = times.last().copied();
+    let looked_at = times.into_iter().step_by(stride);
+    // Its end is never left out.
+    let mut times: Vec<f64> = looked_at.chain(last).collect();
+    times.dedup();
     times.windows(2).all(|ends| {
         let [before, after] = [ends[0], ends[1]].map(|t| tool.motion.at(t, Inputs::none()));
         let Some([low, high]) = swept_box(&tool.shape, &before, &after) else {

@@ -1,15 +1,18 @@
 //! What tools keep, carried to other cells.
 
-use sinew_core::State;
+use std::collections::HashMap;
 
+use sinew_core::{Meeting, State};
+
+use super::meet::way_of;
 use super::record::{OF_CELL, OF_HELD, OF_PAIR, OF_VELOCITY};
-use super::report::displacement_of;
+use super::tool::Corner;
 use super::tools::Tools;
-use crate::vector::{add, sub};
+use crate::vector::sub;
 
 impl Tools {
-    /// What these tools keep ([`sinew_core::State::contact`]), where `before` are the same tools on the cells that there were before a cut, `contact` is what
-    /// they kept, and `state` is how the body goes on. `of` tells for a touched cell which one of those it is, by its place, or a copy of; `None` for a cell that
+    /// What these tools keep ([`sinew_core::State::contact`]), where `before` are the same tools on the cells that there were before a cut, and `contact` is what
+    /// they kept. `of` tells for a touched cell which one of those it is, by its place, or a copy of; `None` for a cell that
     /// could not be touched.
     ///
     /// Forces of the last step stay with the first of several copies, and a tool that holds a cell holds all of its copies.
@@ -18,7 +21,6 @@ impl Tools {
         &self,
         before: &Self,
         contact: &[f64],
-        state: &State,
         of: impl Fn(usize) -> Option<usize>,
     ) -> Vec<f64> {
         let is_theirs = contact.len() == before.counts.numbers();
@@ -52,10 +54,23 @@ impl Tools {
             copy::<OF_HELD>(held, from, own_held, place);
         }
         self.list_carried(&mut carried);
-        if let Some(dt) = state.clock.last_step() {
-            let pairs = self.counts.of_pairs();
-            let pairs = carried[pairs].as_chunks_mut().0;
-            self.keep_pairs(state, |velocity| dt * velocity, pairs);
+        // Both nodes of a pair that is new go the same way.
+        let pairs = carried[self.counts.of_pairs()].as_chunks_mut().0;
+        let kept = contact[before.counts.of_pairs()].as_chunks().0;
+        let mut known = HashMap::new();
+        for (pair, kept) in before.lips.pairs.iter().zip(kept) {
+            known.insert(pair.nodes.map(Corner::place), *kept);
+        }
+        for (pair, own) in self.lips.pairs.iter().zip(pairs) {
+            let [one, other] = pair
+                .nodes
+                .map(|node| node.place().and_then(|place| of(place as usize)));
+            let [one, other] = [one, other].map(|place| place.map(|place| place as u32));
+            *own = match (known.get(&[one, other]), known.get(&[other, one])) {
+                (Some(kept), _) => *kept,
+                (None, Some(kept)) => kept.map(|along| -along),
+                (None, None) => [0.0; 3],
+            };
         }
         carried
     }
@@ -78,17 +93,16 @@ impl Tools {
         own[1..=listed.len()].copy_from_slice(&listed);
     }
 
-    /// Keeps of each pair of lips the way (m) from the one to the other as the step began that led to the state, in which a component of a velocity (m/s) moved the displacement by `way` (m).
+    /// Keeps of each pair of lips the way (m) from the one to the other as the step began that led to the state.
     pub(super) fn keep_pairs(
         &self,
         state: &State,
-        way: impl Fn(f64) -> f64,
+        meeting: &Meeting<'_>,
         pairs: &mut [[f64; OF_PAIR]],
     ) {
         let began = |place: u32| {
             let touched = &self.cells[place as usize];
-            let to = add(touched.rest, displacement_of(&state.u, touched.cell));
-            sub(to, displacement_of(&state.v, touched.cell).map(&way))
+            sub(touched.at(&state.u), way_of(meeting, state, touched.cell))
         };
         for (pair, kept) in self.lips.pairs.iter().zip(pairs) {
             let [one, other] = pair.nodes.map(|node| node.at(began));

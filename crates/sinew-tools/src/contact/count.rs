@@ -6,7 +6,7 @@ use super::record::{
     CONTACTS, DEPTH, FORCE, IMPULSE, LARGEST_LIP_RESIDUAL, LARGEST_RESIDUAL, LIP_CONTACTS,
     LIP_RESIDUAL, OF_HELD, OF_TOOL, RESIDUAL, RIVAL, Record, SEIZED, TORQUE, WORK,
 };
-use super::tool_step::ToolStep;
+use super::tool_step::{ToolStep, Way};
 use super::tools::{MOST_TOOLS, Tools};
 use crate::vector::{Vector, add, cross, dot, scaled, sub};
 
@@ -28,13 +28,14 @@ pub(super) struct Count<'a> {
 }
 
 impl Count<'_> {
-    /// Counts the forces of contacts that act on each other, with the place (m) of each cell after them, and seizes what tools take hold of.
+    /// Counts the forces of contacts that act on each other, with the way (m) of each cell as they moved it, and seizes what tools take hold of.
     pub(super) fn of_links(
         &self,
         links: &Links,
-        at: impl Fn(u32) -> Vector,
+        way: impl Fn(u32) -> Way,
         record: &mut Record<'_>,
     ) {
+        let at = |place: u32| way(place).1;
         for place in &links.places {
             let place = *place as usize;
             if self
@@ -54,6 +55,11 @@ impl Count<'_> {
             let depth = link.depth(step, weighted.fold(link.still(), add));
             let deepest = &mut record.tools[link.tool][DEPTH];
             *deepest = deepest.max(depth);
+            if link.is_held() {
+                for node in link.nodes() {
+                    self.rivals(link.tool, node.place as usize, way(node.place), record);
+                }
+            }
             if link.force == [0.0; 3] {
                 continue;
             }
@@ -103,6 +109,16 @@ impl Count<'_> {
             numbers[SEIZED] += 1.0;
         } else if held[0] != own {
             numbers[RIVAL] = held[0];
+        }
+    }
+
+    /// Notes which other tools would seize a cell that one of them has hold of, on its way (m).
+    pub(super) fn rivals(&self, holder: usize, place: usize, way: Way, record: &mut Record<'_>) {
+        for (other, step) in self.steps.iter().enumerate() {
+            let may_meet = other != holder && self.tools.tools_at[place] >> other & 1 == 1;
+            if may_meet && self.tools.holds(other, self.end) && step.touches(way).next().is_some() {
+                record.tools[other][RIVAL] = (holder + 1) as f64;
+            }
         }
     }
 

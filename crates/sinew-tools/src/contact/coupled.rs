@@ -7,7 +7,6 @@ use super::links::{Link, LinkedNode, Links, Rule};
 use super::meet::way_of;
 use super::node::Compliance;
 use super::record::{OF_HELD, OF_PAIR, OF_VELOCITY, Record, swing};
-use super::report::displacement_of;
 use super::room::Room;
 use super::tool::{Corner, Tool};
 use super::tool_step::{ToolStep, Way, is_near};
@@ -38,7 +37,7 @@ impl Tools {
         record: &mut Record<'_>,
     ) {
         room.links.clear();
-        let passes = room.passes_between_nodes(&self.tools);
+        let passes = room.passes_between_nodes(&self.tools, record.tools);
         for pass in 1..=passes {
             let shares = [pass - 1, pass].map(|done| f64::from(done) / f64::from(passes));
             if passes > 1 {
@@ -73,17 +72,13 @@ impl Tools {
                 pairs: &[],
                 shares,
             };
-            let moved = &room.links.moved;
-            let end = |place: u32| {
-                let stood = after.stood(place as usize, shares[1]);
-                add(stood, moved[place as usize])
-            };
-            count.of_links(&room.links, end, record);
+            let way = |place: u32| after.pass(place as usize, &room.links);
+            count.of_links(&room.links, way, record);
         }
         if passes > 1 {
             room.pass(&self.tools, [0.0, 1.0]);
         }
-        self.keep_pairs(state, |velocity| meeting.way(velocity), record.pairs);
+        self.keep_pairs(state, meeting, record.pairs);
     }
 
     /// Finds the contacts of a pass and solves for their forces.
@@ -127,7 +122,7 @@ impl Search<'_> {
     /// The way (m) of a cell in the step, without contact.
     fn way(&self, place: usize) -> Way {
         let touched = &self.tools.cells[place];
-        let to = add(touched.rest, displacement_of(&self.state.u, touched.cell));
+        let to = touched.at(&self.state.u);
         let back = way_of(self.meeting, self.state, touched.cell);
         (sub(to, back), to)
     }
@@ -326,7 +321,7 @@ impl Search<'_> {
                 Corner::Cell(_) => {}
             }
         }
-        let mut nodes = nodes.into_iter().flatten();
+        let nodes = nodes.into_iter().flatten();
         let Some(first) = nodes.clone().next() else {
             return;
         };
@@ -337,9 +332,10 @@ impl Search<'_> {
             (pose.to_world(touch.point), below),
             (Rule::Outside(pose.turned(touch.normal)), step.friction),
         );
+        let link = of_first.of_triangle(triangle, nodes, still);
         // Triangles that share an edge or a node meet a tool there as one.
-        if !links.knows_alike(&of_first) {
-            links.add(of_first.of_triangle(triangle, nodes.by_ref(), still));
+        if !links.knows_alike(&link) {
+            links.add(link);
         }
     }
 

@@ -56,11 +56,12 @@ pub(super) struct Link {
     response: Compliance,
     /// The force (N) on the tissue.
     pub(super) force: Vector,
-    /// The contact of the same node before this one.
-    before: Option<u32>,
+    /// Of each node, and of the triangle, the contact before this one.
+    before: [Option<u32>; NODES],
+    before_on: Option<u32>,
 }
 
-/// All of them, with what they move.
+/// The contacts of a step that act on each other, with the displacements that they cause.
 #[derive(Debug, Default)]
 pub(super) struct Links {
     pub(super) all: Vec<Link>,
@@ -68,12 +69,13 @@ pub(super) struct Links {
     pub(super) places: Vec<u32>,
     /// Displacement (m) by contact, of each touched cell.
     pub(super) moved: Vec<Vector>,
-    /// Where each touched cell comes from, and where it has been moved to (m), while triangles are looked for.
-    pub(super) ways: Vec<Way>,
     /// The same before the pass.
     pub(super) before: Vec<Vector>,
-    /// Of each touched cell the last contact of its own.
+    /// Where each touched cell comes from, and where it has been moved to (m), while triangles are looked for.
+    pub(super) ways: Vec<Way>,
+    /// Of each touched cell, and of each triangle, the last contact that it is part of.
     last: Vec<Option<u32>>,
+    last_on: Vec<Option<u32>>,
     is_linked: Vec<bool>,
     /// Pairs of lips that meet.
     pub(super) lips: Vec<LipLink>,
@@ -86,8 +88,8 @@ pub(super) struct Links {
 }
 
 impl Links {
-    /// Room for so many cells, and for lips.
-    pub(super) fn of(cells: usize, lips: &Lips) -> Self {
+    /// Room for so many cells and triangles, and for lips.
+    pub(super) fn of([cells, triangles]: [usize; 2], lips: &Lips) -> Self {
         Self {
             all: Vec::with_capacity(cells),
             places: Vec::with_capacity(cells),
@@ -95,6 +97,7 @@ impl Links {
             before: vec![[0.0; 3]; cells],
             ways: vec![([0.0; 3], [0.0; 3]); cells],
             last: vec![None; cells],
+            last_on: vec![None; triangles],
             is_linked: vec![false; cells],
             lips: Vec::with_capacity(lips.pairs.len()),
             normals: Vec::with_capacity(lips.faces()),
@@ -105,6 +108,7 @@ impl Links {
 
     /// Forgets the last step.
     pub(super) fn clear(&mut self) {
+        self.lip_residual = 0.0;
         self.begin_pass();
         for place in self.places.drain(..) {
             let place = place as usize;
@@ -119,7 +123,9 @@ impl Links {
             let place = *place as usize;
             (self.before[place], self.last[place]) = (self.moved[place], None);
         }
-        self.all.clear();
+        for triangle in self.all.drain(..).filter_map(|link| link.triangle) {
+            self.last_on[triangle as usize] = None;
+        }
         for link in self.lips.drain(..) {
             self.meets[link.pair as usize] = false;
         }
@@ -161,45 +167,56 @@ impl Links {
 
     /// Whether there is a contact of the cell at a place alone with a part of a tool.
     pub(super) fn knows(&self, place: usize, (tool, part): (usize, usize)) -> bool {
-        let mut next = self.last[place];
-        while let Some(link) = next.and_then(|number| self.all.get(number as usize)) {
-            if (link.tool, link.part) == (tool, part) {
-                return true;
-            }
-            next = link.before;
-        }
-        false
+        let mut of_cell = self.of_cell(place as u32);
+        of_cell.any(|link| link.triangle.is_none() && (link.tool, link.part) == (tool, part))
+    }
+
+    /// The contacts that the cell at a place is part of, the last one first.
+    fn of_cell(&self, place: u32) -> impl Iterator<Item = &Link> {
+        let at = |number: u32| self.all.get(number as usize);
+        let last = self.last[place as usize].and_then(at);
+        std::iter::successors(last, move |link| {
+            let mut nodes = link.nodes.iter().zip(link.before);
+            let own = nodes.find(|(node, _)| node.weight != 0.0 && node.place == place);
+            own?.1.and_then(at)
+        })
     }
 
     /// Number of contacts of a triangle with a part of a tool.
     pub(super) fn of_triangle(&self, triangle: u32, (tool, part): (usize, usize)) -> usize {
-        let is_it = |link: &&Link| {
-            link.triangle == Some(triangle) && (link.tool, link.part) == (tool, part)
-        };
-        self.all.iter().filter(is_it).count()
+        let at = |number: u32| self.all.get(number as usize);
+        let last = self.last_on[triangle as usize].and_then(at);
+        let on_triangle = std::iter::successors(last, |link| link.before_on.and_then(at));
+        let is_it = |link: &&Link| (link.tool, link.part) == (tool, part);
+        on_triangle.filter(is_it).count()
     }
 
-    /// Whether there is a contact with the same place of a tool, from the same side.
+    /// Whether a node of a contact is part of another one with the same place of a tool, from the same side.
     pub(super) fn knows_alike(&self, link: &Link) -> bool {
         let Rule::Outside(normal) = link.rule else {
             return false;
         };
-        self.all.iter().any(|other| {
+        let is_alike = |other: &Link| {
             (other.tool, other.part) == (link.tool, link.part)
                 && matches!(other.rule, Rule::Outside(of) if length(sub(of, normal)) < ALIKE)
                 && length(sub(other.own, link.own))
                     < ALIKE * length(link.own).max(length(other.own))
-        })
+        };
+        link.nodes()
+            .any(|node| self.of_cell(node.place).any(is_alike))
     }
 
     /// Adds one.
     pub(super) fn add(&mut self, mut link: Link) {
-        for node in link.nodes() {
-            self.link(node.place);
+        let number = self.all.len() as u32;
+        for (node, before) in link.nodes.iter().zip(&mut link.before) {
+            if node.weight != 0.0 {
+                self.link(node.place);
+                *before = self.last[node.place as usize].replace(number);
+            }
         }
-        if link.triangle.is_none() {
-            let last = &mut self.last[link.nodes[0].place as usize];
-            link.before = last.replace(self.all.len() as u32);
+        if let Some(triangle) = link.triangle {
+            link.before_on = self.last_on[triangle as usize].replace(number);
         }
         self.all.push(link);
     }
@@ -319,7 +336,8 @@ impl Link {
             arm: [0.0; 3],
             response: compliance,
             force: [0.0; 3],
-            before: None,
+            before: [None; NODES],
+            before_on: None,
         }
     }
 

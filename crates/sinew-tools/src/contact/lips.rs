@@ -1,7 +1,7 @@
 //! The lips of cuts, which do not pass each other.
 //!
 //! A cut makes two nodes of one. While their lips still face each other, one may not go beyond the other along the mean normal of the faces around them:
-//! a unilateral constraint between two nodes, whose response is the sum of theirs. It rubs not, and pushes both by opposite forces.
+//! a unilateral constraint between two nodes, whose response is the sum of theirs. There is no friction, and both are pushed by opposite forces.
 
 use super::node::{Compliance, HELD};
 use super::tool::Corner;
@@ -168,11 +168,7 @@ impl Lips {
         if distance(end) >= floor {
             return None;
         }
-        let place = |node: Corner| match node {
-            Corner::Cell(place) => Some(place),
-            Corner::Held(_) => None,
-        };
-        let nodes = nodes.map(place);
+        let nodes = nodes.map(Corner::place);
         let compliances = nodes.map(|node| node.map_or_else(Compliance::default, &compliance));
         let response = compliances.map(|of| dot(normal, of.displacement(normal)));
         let largest = compliances.iter().map(Compliance::largest);

@@ -7,10 +7,10 @@ use sinew_core::{Contact, Meeting, ShowCells, State};
 use super::count::{Count, note_residual};
 use super::met::Met;
 use super::node::Compliance;
-use super::record::{DEPTH, OF_HELD, PASSES, RIVAL, Record, swing};
-use super::report::displacement_of;
+use super::record::{DEPTH, OF_HELD, PASSES, Record, swing};
 use super::room::Room;
-use super::tool_step::{ToolStep, Way, is_near};
+use super::tool::along_axes;
+use super::tool_step::{ToolStep, is_near};
 use super::tools::Tools;
 use crate::vector::{Vector, add, sub};
 
@@ -63,7 +63,7 @@ impl Contact for Tools {
             end: state.t() + meeting.dt,
         };
         for (numbers, step) in record.tools.iter_mut().zip(&*steps) {
-            numbers[PASSES] = step.passes();
+            numbers[PASSES] = step.pieces().max(numbers[PASSES]);
         }
         for place in &*near {
             let place = *place as usize;
@@ -71,7 +71,7 @@ impl Contact for Tools {
                 continue;
             }
             let touched = &self.cells[place];
-            let to = add(touched.rest, displacement_of(&state.u, touched.cell));
+            let to = touched.at(&state.u);
             let from = sub(to, way_of(meeting, state, touched.cell));
             let moved = step.meet(place, (from, to), met, &mut record);
             if moved == [0.0; 3] {
@@ -92,7 +92,7 @@ impl Contact for Tools {
             .iter()
             .filter(|place| !links.is_linked(**place as usize));
         record.list(alone.chain(&links.places).copied(), |place| {
-            displacement_of(&state.v, self.cells[place as usize].cell)
+            along_axes(&state.v, self.cells[place as usize].cell)
         });
         let bodies = steps.iter().filter_map(|step| step.body.as_ref());
         for (body, numbers) in bodies.zip(record.bodies.iter_mut()) {
@@ -123,7 +123,7 @@ impl Contact for Tools {
 
 /// How far (m) the velocity of a cell moved it in the step that led to a state.
 pub(super) fn way_of(meeting: &Meeting<'_>, state: &State, cell: u32) -> Vector {
-    displacement_of(&state.v, cell).map(|velocity| meeting.way(velocity))
+    along_axes(&state.v, cell).map(|velocity| meeting.way(velocity))
 }
 
 /// Moves a cell of a trial state by a displacement (m).
@@ -223,18 +223,8 @@ impl Step<'_> {
             takers.for_each(|tool| count.seize(tool, place, end, record));
         }
         if let Some(holder) = holder {
-            self.note_rivals(holder, tools, (from, end), record);
+            count.rivals(holder, place, (from, end), record);
         }
         moved
-    }
-
-    /// Notes which other tools would seize a cell that one of them has hold of, on its way (m).
-    fn note_rivals(&self, holder: usize, tools: u64, way: Way, record: &mut Record<'_>) {
-        for (other, step) in self.steps.iter().enumerate() {
-            let may_meet = other != holder && tools >> other & 1 == 1;
-            if may_meet && self.tools.holds(other, self.end) && step.touches(way).next().is_some() {
-                record.tools[other][RIVAL] = (holder + 1) as f64;
-            }
-        }
     }
 }

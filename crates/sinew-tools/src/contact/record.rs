@@ -9,11 +9,12 @@ use crate::pose::Pose;
 use crate::vector::{Vector, add, scaled};
 
 /// Numbers of a tool.
-pub(super) const OF_TOOL: usize = 17;
+pub(super) const OF_TOOL: usize = 18;
 
-/// Their places: the force (N) and the torque (N m) on it, its work (J) and how deep (m) it had to leave a node in it so far, its contacts, the passes
-/// of its stroke, the impulse (N s) that it has received so far, what the iteration for its contacts left in the last step and at most, how many cells it has
-/// seized so far, and the number, from 1 on, of a tool that held a cell which it would have seized.
+/// Their places: the force (N) and the torque (N m) on it, its work (J) and how deep (m) it had to leave a node in it so far, its contacts, the pieces
+/// in which its way was followed, the impulse (N s) that it has received so far, what the iteration for its contacts left in the last step and at most, how many cells it has
+/// seized so far, the number, from 1 on, of a tool that held a cell which it would have seized, and the most passes that a step would have needed so far, where
+/// that is more than are made.
 pub(super) const FORCE: usize = 0;
 pub(super) const TORQUE: usize = 3;
 pub(super) const WORK: usize = 6;
@@ -25,6 +26,7 @@ pub(super) const RESIDUAL: usize = 13;
 pub(super) const LARGEST_RESIDUAL: usize = 14;
 pub(super) const SEIZED: usize = 15;
 pub(super) const RIVAL: usize = 16;
+pub(super) const NEEDED_PASSES: usize = 17;
 
 /// Numbers of a tool that is a body of its own.
 pub(super) const OF_BODY: usize = 21;
@@ -174,8 +176,8 @@ impl<'a> Record<'a> {
     pub(super) fn forget_last_step(&mut self) {
         for numbers in self.tools.iter_mut() {
             let before = std::mem::replace(numbers, [0.0; OF_TOOL]);
-            let since = [WORK, DEPTH, LARGEST_RESIDUAL, SEIZED, RIVAL].into_iter();
-            for place in since.chain(IMPULSE..IMPULSE + 3) {
+            let since = [WORK, DEPTH, LARGEST_RESIDUAL, SEIZED, RIVAL, NEEDED_PASSES];
+            for place in since.into_iter().chain(IMPULSE..IMPULSE + 3) {
                 numbers[place] = before[place];
             }
         }

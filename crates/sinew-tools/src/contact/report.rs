@@ -3,13 +3,13 @@
 use sinew_core::{Inputs, State};
 
 use super::record::{
-    Body, CONTACTS, DEPTH, FORCE, IMPULSE, LARGEST_RESIDUAL, OF_BODY, OF_CELL, OF_TOOL, PASSES,
-    RESIDUAL, RIVAL, SEIZED, TORQUE, WORK,
+    Body, CONTACTS, DEPTH, FORCE, IMPULSE, LARGEST_RESIDUAL, NEEDED_PASSES, OF_BODY, OF_CELL,
+    OF_TOOL, PASSES, RESIDUAL, RIVAL, SEIZED, TORQUE, WORK,
 };
 use super::tool::{Corner, Tool};
 use super::tools::Tools;
 use crate::pose::Pose;
-use crate::vector::{Vector, add, dot};
+use crate::vector::dot;
 
 /// A tool after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,10 +24,12 @@ pub struct ToolReport {
     pub work: f64,
     /// How deep (m) it had to leave a node in it since the motion began: one that is held in the direction of the contact, or has no room between surfaces.
     pub depth: f64,
-    /// Number of cells that it pushed, or held.
+    /// Contacts in which it pushed: nodes at each of its surfaces, and triangles.
     pub contacts: usize,
-    /// Passes that its stroke takes, so that normals of the first contact stay meaningful.
+    /// Pieces in which its way was followed: where it turns, and where triangles might get round it.
     pub passes: u32,
+    /// The most passes that a step since the motion began would have needed so that no triangle gets round it, where more than are made; 0 elsewhere.
+    pub needed_passes: f64,
     /// What the iteration left of its contacts, where they act on each other: the largest change of a displacement in the last sweep, as a share of the largest displacement by a contact.
     pub residual: f64,
     /// The largest such residual since the motion began.
@@ -97,6 +99,7 @@ impl Tools {
             depth: numbers[DEPTH],
             contacts: numbers[CONTACTS] as usize,
             passes: numbers[PASSES] as u32,
+            needed_passes: numbers[NEEDED_PASSES],
             residual: numbers[RESIDUAL],
             largest_residual: numbers[LARGEST_RESIDUAL],
             seized: numbers[SEIZED] as usize,
@@ -167,37 +170,20 @@ impl Tools {
         let Self { tools, cells, .. } = self;
         let tool = &tools[tool];
         let depths = tool.cells.iter().map(|place| {
-            let cell = &cells[*place as usize];
-            let at = add(cell.rest, displacement_of(u, cell.cell));
-            Depth {
-                gap: tool.shape.distance(pose, at),
-                place: *place as usize,
-            }
+            let place = *place as usize;
+            let gap = tool.shape.distance(pose, cells[place].at(u));
+            Depth { gap, place }
         });
         let nearest = depths.reduce(|a, b| if b.gap < a.gap { b } else { a });
         let between = tool.triangles.iter().filter_map(|number| {
             let triangle = &self.triangles[*number as usize];
-            let corners = triangle.corners.map(|corner| match corner {
-                Corner::Held(at) => at,
-                Corner::Cell(place) => {
-                    let cell = &cells[place as usize];
-                    add(cell.rest, displacement_of(u, cell.cell))
-                }
-            });
-            let place = triangle.corners.iter().find_map(|corner| match corner {
-                Corner::Cell(place) => Some(*place as usize),
-                Corner::Held(_) => None,
-            })?;
+            let at = |place: u32| cells[place as usize].at(u);
+            let corners = triangle.corners.map(|corner| corner.at(at));
+            let place = triangle.corners.into_iter().find_map(Corner::place)? as usize;
             let gap = tool.shape.distance_of_triangle(pose, &corners);
             Some(Depth { gap, place })
         });
         let all = nearest.into_iter().chain(between);
         all.reduce(|a, b| if b.gap < a.gap { b } else { a })
     }
-}
-
-/// The displacement (m) of a cell.
-pub(super) fn displacement_of(u: &[f64], cell: u32) -> Vector {
-    let first = 3 * cell as usize;
-    [u[first], u[first + 1], u[first + 2]]
 }

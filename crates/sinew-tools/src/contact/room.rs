@@ -5,7 +5,7 @@ use sinew_core::{Meeting, ShowCells, Shown, State};
 use super::links::Links;
 use super::lips::Lips;
 use super::met::Met;
-use super::record::OF_BODY;
+use super::record::{NEEDED_PASSES, OF_BODY, OF_TOOL, PASSES};
 use super::tool::{Tool, TouchedCell};
 use super::tool_step::ToolStep;
 use crate::swept_box::around;
@@ -15,9 +15,9 @@ use crate::vector::Vector;
 const LONGEST_WAY: f64 = 0.5;
 
 /// Most passes of a step.
-const MOST_PASSES: f64 = 100.0;
+const MOST_PASSES: u32 = 100;
 
-/// Every tool during a step.
+/// What a step of contact works on: the tools' own steps, the cells that may meet them, and what they meet.
 #[derive(Debug)]
 pub(super) struct Room {
     pub(super) steps: Vec<ToolStep>,
@@ -37,8 +37,13 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Room for tools, and cells, of which so many may be part of contacts that act on each other, lips among them.
-    pub(super) fn of(tools: &[Tool], linked: usize, cells: &[TouchedCell], lips: &Lips) -> Self {
+    /// Room for tools, and cells, and for so many cells and triangles that may be part of contacts that act on each other, lips among them.
+    pub(super) fn of(
+        tools: &[Tool],
+        linked: [usize; 2],
+        cells: &[TouchedCell],
+        lips: &Lips,
+    ) -> Self {
         let (tissue, cells) = (size(cells), cells.len());
         let step = |tool: &Tool| ToolStep::of(tool, tissue);
         Self {
@@ -90,13 +95,32 @@ impl Room {
         self.bound();
     }
 
-    /// The passes in which a step is taken where tools meet triangles: in each of them such a tool moves by a quarter of its smallest width at most.
-    pub(super) fn passes_between_nodes(&self, tools: &[Tool]) -> u32 {
-        let thin = tools.iter().zip(&self.steps);
-        let thin = thin.filter(|(tool, _)| !tool.triangles.is_empty());
-        let passes = thin
-            .map(|(tool, step)| step.way(tool) / (LONGEST_WAY * tool.shape.smallest_half_width()));
-        passes.fold(1.0, f64::max).ceil().min(MOST_PASSES) as u32
+    /// The passes in which a step is taken where tools meet triangles: in each of them such a tool moves by a quarter of its smallest width at most. What needs more than are
+    /// made is noted.
+    pub(super) fn passes_between_nodes(
+        &self,
+        tools: &[Tool],
+        numbers: &mut [[f64; OF_TOOL]],
+    ) -> u32 {
+        let mut most = 1.0_f64;
+        for ((tool, step), numbers) in tools.iter().zip(&self.steps).zip(numbers.iter_mut()) {
+            if tool.triangles.is_empty() {
+                continue;
+            }
+            let longest = LONGEST_WAY * tool.shape.smallest_half_width();
+            let needed = (step.way(tool) / longest).ceil();
+            most = most.max(needed);
+            if needed > f64::from(MOST_PASSES) {
+                numbers[NEEDED_PASSES] = needed.max(numbers[NEEDED_PASSES]);
+            }
+        }
+        let passes = (most as u32).min(MOST_PASSES);
+        for (tool, numbers) in tools.iter().zip(numbers) {
+            if !tool.triangles.is_empty() {
+                numbers[PASSES] = f64::from(passes);
+            }
+        }
+        passes
     }
 
     /// Takes the pass between two shares of the step.

@@ -3,6 +3,7 @@
 use super::tool_body::{ToolBody, ToolBodyError};
 use crate::motion::Motion;
 use crate::shape::Shape;
+use crate::vector::add;
 
 /// A rigid tool.
 #[derive(Clone, Debug)]
@@ -45,6 +46,19 @@ pub struct TouchedCell {
     pub free: [bool; 3],
 }
 
+impl TouchedCell {
+    /// Where it is (m), by the displacements of all cells.
+    pub(super) fn at(&self, u: &[f64]) -> [f64; 3] {
+        add(self.rest, along_axes(u, self.cell))
+    }
+}
+
+/// The three numbers of a cell in a vector.
+pub(super) fn along_axes(values: &[f64], cell: u32) -> [f64; 3] {
+    let first = 3 * cell as usize;
+    [values[first], values[first + 1], values[first + 2]]
+}
+
 /// A triangle of the surface of a body by its corners, counter-clockwise as seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchedTriangle {
@@ -67,6 +81,14 @@ impl Corner {
         match self {
             Self::Cell(place) => cell(place),
             Self::Held(at) => at,
+        }
+    }
+
+    /// The place of a cell among the touched ones; `None` where the corner is held.
+    pub(super) fn place(self) -> Option<u32> {
+        match self {
+            Self::Cell(place) => Some(place),
+            Self::Held(_) => None,
         }
     }
 }

@@ -164,11 +164,11 @@ impl ToolStep {
         self.stroke(tool);
     }
 
-    /// How far (m) any point of the tool goes, at most, without planes.
+    /// How far (m) any point of the tool goes, at most, but for its planes.
     pub(super) fn way(&self, tool: &Tool) -> f64 {
         let way = length(sub(self.after.position(), self.before.position()));
         let turn = length(self.before.turn_to(&self.after));
-        way + turn * tool.shape.reach().unwrap_or(0.0)
+        way + turn * tool.shape.reach()
     }
 
     /// The boxes (m) outside of which no way meets its parts; `None` for a plane.
@@ -242,9 +242,9 @@ impl ToolStep {
     }
 
     /// Passes of its stroke.
-    pub(super) fn passes(&self) -> f64 {
-        let passes = self.strokes.iter().map(|(stroke, _)| stroke.passes());
-        f64::from(passes.max().unwrap_or(1))
+    pub(super) fn pieces(&self) -> f64 {
+        let pieces = self.strokes.iter().map(|(stroke, _)| stroke.pieces());
+        f64::from(pieces.max().unwrap_or(1))
     }
 
     /// Where a triangle meets its parts, by their numbers, on its way from one place to another (m), and how deep (m) in them it is left.

@@ -162,7 +162,11 @@ impl Tools {
             linking,
             room: Mutex::new(Room::of(
                 &tools,
-                if has_links { cells.len() } else { 0 },
+                if has_links {
+                    [cells.len(), triangles.len()]
+                } else {
+                    [0; 2]
+                },
                 &cells,
                 &lips,
             )),

@@ -80,7 +80,7 @@ impl Convex {
     /// A length that is not finite and above 0.
     pub fn edge(length: f64) -> Result<Self, ShapeError> {
         if !is_length(length) {
-            return Err(ShapeError::Length(length));
+            return Err(ShapeError::Blade(length));
         }
         Ok(Self::Capsule {
             radius: 0.0,

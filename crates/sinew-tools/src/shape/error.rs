@@ -10,6 +10,9 @@ pub enum ShapeError {
     /// A capsule's length that is negative or not finite.
     #[error("length = {0} m: expected a finite length of at least 0")]
     Length(f64),
+    /// A blade's length that is not a positive length.
+    #[error("length = {0} m: expected a finite length above 0")]
+    Blade(f64),
     /// An edge of a cuboid that is not a positive length.
     #[error("the edge along {} is {length} m: expected a finite length above 0", ["x", "y", "z"][*axis])]
     Edge {

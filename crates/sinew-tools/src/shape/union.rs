@@ -66,13 +66,13 @@ impl Shape {
         distances.fold(f64::INFINITY, f64::min)
     }
 
-    /// The radius (m) of a ball about the tool's origin that contains all parts; none where one is a plane.
-    pub(crate) fn reach(&self) -> Option<f64> {
-        let reaches = self.parts.iter().map(|part| {
+    /// The radius (m) of a ball about the tool's origin that contains all parts but planes.
+    pub(crate) fn reach(&self) -> f64 {
+        let reaches = self.parts.iter().filter_map(|part| {
             let reach = part.convex.reach()?;
             Some(length(part.pose.position()) + reach)
         });
-        reaches.reduce(|a, b| Some(a?.max(b?)))?
+        reaches.fold(0.0, f64::max)
     }
 
     /// The least half width (m) of its parts, radii or half edges of cuboids; infinite for planes alone.
