@@ -25,6 +25,7 @@ use crate::recorder::{RunRecorder, Schedules, Tables};
 use crate::report;
 use crate::request::{self, Record, Request};
 use crate::run_end::{Ended, RunEnd};
+use crate::stepping::Stepping;
 use crate::stretch;
 use crate::summary::{self, CutRecord, Summary};
 use crate::surface;
@@ -77,6 +78,7 @@ pub(crate) struct Recorded {
 pub(crate) struct End<'a> {
     /// Steps of an earlier process, and of this one.
     pub(crate) steps: (usize, usize),
+    pub(crate) stepping: Stepping,
     pub(crate) work: StepReport,
     pub(crate) ended: Ended,
     pub(crate) state: &'a State,
@@ -262,6 +264,7 @@ impl RunFolder {
         let outrun = simulation.outrun(integrator, &state);
         let end = End {
             steps: (before, steps),
+            stepping: Stepping::of_scene(simulation),
             work: last.work,
             ended: last.ended,
             state: &state,
@@ -381,6 +384,7 @@ impl RunFolder {
         } = recorded;
         let End {
             steps: (before, steps),
+            stepping,
             work,
             ended,
             state,
@@ -408,6 +412,7 @@ impl RunFolder {
             record: &self.record,
             ended: &ended,
             steps: before + steps,
+            stepping: &stepping,
             t: state.t(),
             progress: &progress,
             schedules,
@@ -436,6 +441,7 @@ impl RunFolder {
         Ok(RunEnd {
             ended,
             steps,
+            stepping,
             own: (own, wall),
             frames: progress.frames,
             work: (work.sweeps, work.solves),
