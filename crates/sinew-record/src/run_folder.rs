@@ -95,12 +95,15 @@ pub(crate) struct End<'a> {
 }
 
 impl RunFolder {
-    /// Checks, before long work, that a run of this scene may write into a folder at `path`. Changes nothing.
+    /// Checks, before long work, that a run of this scene, or a replay of its session by a file with the log, may write into a folder at `path`. Changes
+    /// nothing.
     ///
     /// # Errors
-    /// [`OutputError`] for a folder that holds other things or cannot be written.
-    pub fn check(path: &Path, scene: &Scene) -> Result<Tenant, OutputError> {
-        OwnedFolder::check(path, KIND, &scene.input_files())
+    /// [`OutputError`] for a folder that holds other things, what is to be read among them, or cannot be written.
+    pub fn check(path: &Path, scene: &Scene, log: Option<&Path>) -> Result<Tenant, OutputError> {
+        let mut inputs = scene.input_files();
+        inputs.extend(log.map(Path::to_owned));
+        OwnedFolder::check(path, KIND, &inputs)
     }
 
     /// Makes the folder of a new run; an earlier run's files in it are removed.
