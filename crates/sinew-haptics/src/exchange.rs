@@ -4,33 +4,33 @@ use triple_buffer::{Input, Output, triple_buffer};
 
 /// The end that writes: it never waits, and what was not read is replaced.
 #[derive(Debug)]
-pub struct Publisher<T: Send>(Input<T>);
+pub(crate) struct Publisher<T: Send>(Input<T>);
 
 /// The end that reads the latest value: it never waits, and never sees half of one.
 #[derive(Debug)]
-pub struct Reader<T: Send>(Output<T>);
+pub(crate) struct Reader<T: Send>(Output<T>);
 
 /// Both ends, with a first value: three buffers, one for each end and one between.
-pub fn exchange<T: Clone + Send>(first: &T) -> (Publisher<T>, Reader<T>) {
+pub(crate) fn exchange<T: Clone + Send>(first: &T) -> (Publisher<T>, Reader<T>) {
     let (input, output) = triple_buffer(first);
     (Publisher(input), Reader(output))
 }
 
 impl<T: Send> Publisher<T> {
     /// Publishes a value.
-    pub fn publish(&mut self, value: T) {
+    pub(crate) fn publish(&mut self, value: T) {
         self.0.write(value);
     }
 }
 
 impl<T: Send> Reader<T> {
     /// The latest value, where it is one that was not read before.
-    pub fn newer(&mut self) -> Option<&T> {
+    pub(crate) fn newer(&mut self) -> Option<&T> {
         self.0.update().then(|| self.0.output_buffer())
     }
 
     /// The latest value.
-    pub fn latest(&mut self) -> &T {
+    pub(crate) fn latest(&mut self) -> &T {
         self.0.read()
     }
 }

@@ -43,12 +43,10 @@ mod tool_simulation;
 
 pub use coupling::{Coupling, CouplingError, DeviceLimits};
 pub use device::Device;
-pub use exchange::{Publisher, Reader, exchange};
 pub use force_loop::ForceLoop;
 pub use jitter::Jitter;
 pub use lockstep::Lockstep;
 pub use published::{DeviceMotion, Published, Simulated};
-pub use real_time::{LoopReport, RealTimeError};
 pub use rigid_wall::RigidWall;
 pub use software_device::SoftwareDevice;
 pub use stiffness::{Carried, Carry, LocalStiffness};

@@ -1,6 +1,7 @@
 //! Device and simulation in a thread each, by the clock.
 
 use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -46,7 +47,7 @@ pub struct LoopReport {
 /// Runs a device in this thread and a simulation in one of its own, until `each` says so, which is told after each tick.
 ///
 /// Neither waits for the other. A simulation that is slower than its steps are long drops time: the loop goes on with what it knows, and gives no more energy than it was
-/// given. No force is left on the device at the end, whatever ended it.
+/// given. No force is left on the device at the end, whatever ended it: a panic of `each`, of the simulation or of the device goes on after that.
 ///
 /// # Errors
 /// [`RealTimeError`] for a coupling that the device cannot render, and a step that cannot be taken.
@@ -81,21 +82,22 @@ where
             step_until(over, &mut simulation, motions, publisher)
         });
         let over = Over(&is_over);
+        let device = Held(device);
         let mut due = Instant::now();
         while !over.is_set() {
             due += tick;
             wait_until(due);
             let begun = Instant::now();
             report.jitter.count((begun - due).as_secs_f64());
-            let position = device.position();
-            hand.see(position, device.rotation_vector());
+            let position = device.0.position();
+            hand.see(position, device.0.rotation_vector());
             motion.publish(hand.motion());
             if let Some(published) = published.newer() {
                 forces.take(published);
             }
             let force = forces.tick(position);
             report.work.count(begun.elapsed().as_secs_f64());
-            device.render(force);
+            device.0.render(force);
             report.most_late = report.most_late.max(forces.late());
             if each(&forces).is_break() {
                 break;
@@ -104,7 +106,7 @@ where
             due = due.max(begun - tick);
         }
         drop(over);
-        device.render([0.0; 3]);
+        drop(device);
         stepping.join()
     });
     match stepped {
@@ -113,7 +115,21 @@ where
             Ok(report)
         }
         Ok(Err(error)) => Err(RealTimeError::Step(error)),
-        Err(panic) => std::panic::resume_unwind(panic),
+        Err(panic) => resume_unwind(panic),
+    }
+}
+
+/// A device that is let go of without a force, also by a panic.
+struct Held<'a, D: Device>(&'a mut D);
+
+impl<D: Device> Drop for Held<'_, D> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            // A device that panics once more would end the process, before the first reason is told.
+            let _ = catch_unwind(AssertUnwindSafe(|| self.0.render([0.0; 3])));
+        } else {
+            self.0.render([0.0; 3]);
+        }
     }
 }
 

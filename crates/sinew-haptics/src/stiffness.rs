@@ -97,12 +97,6 @@ impl Carried {
         self.cells.iter().for_each(|cell| cell.leave(vector));
     }
 
-    /// No cells.
-    #[must_use]
-    pub fn none() -> Self {
-        Self::default()
-    }
-
     /// Forgets all cells, and keeps the memory.
     pub fn clear(&mut self) {
         self.cells.clear();

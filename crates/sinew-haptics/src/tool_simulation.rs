@@ -72,7 +72,7 @@ impl ToolSimulation {
             state: State::at_rest(dofs),
             inputs: body.inputs.clone(),
             stiffness: LocalStiffness::new(dofs),
-            carried: Carried::none(),
+            carried: Carried::default(),
             at_rest: vec![0.0; dofs],
             last: None,
             body,

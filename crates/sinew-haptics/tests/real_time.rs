@@ -6,12 +6,13 @@
 use std::convert::Infallible;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread::sleep;
 use std::time::Duration;
 
+use sinew_haptics::real_time::{self, RealTimeError};
 use sinew_haptics::{
-    Coupling, Device, DeviceMotion, Published, RealTimeError, RigidWall, Simulated, SoftwareDevice,
-    real_time,
+    Coupling, Device, DeviceLimits, DeviceMotion, Published, RigidWall, Simulated, SoftwareDevice,
 };
 
 fn pressing() -> SoftwareDevice {
@@ -118,4 +119,59 @@ fn a_coupling_that_is_too_stiff_does_not_begin() {
     let refused = real_time::run(wall, coupling, &mut device, |_| ControlFlow::Continue(()));
     let refused: RealTimeError<Infallible> = refused.unwrap_err();
     assert!(refused.to_string().contains("below 10000 N/m"), "{refused}");
+}
+
+/// A device in a wall, which keeps the last force that it was given and panics where it is told to.
+struct Fragile {
+    held: [f64; 3],
+    renders: usize,
+    panics_at: usize,
+}
+
+impl Device for Fragile {
+    fn limits(&self) -> DeviceLimits {
+        pressing().limits()
+    }
+
+    fn position(&mut self) -> [f64; 3] {
+        [0.0, 0.0, -0.002]
+    }
+
+    fn render(&mut self, force: [f64; 3]) {
+        self.held = force;
+        self.renders += 1;
+        assert!(self.renders < self.panics_at, "the device is gone");
+    }
+}
+
+#[test]
+fn no_force_is_left_on_the_device_where_a_panic_ends_the_run() {
+    for (panics_at, expected) in [
+        (usize::MAX, "the caller is gone"),
+        (60, "the device is gone"),
+    ] {
+        let mut device = Fragile {
+            held: [0.0; 3],
+            renders: 0,
+            panics_at,
+        };
+        let coupling = Coupling::of(600.0, &device.limits());
+        let wall = RigidWall::new(coupling, 0.05, 0.01, [0.0, 0.0, 0.003]);
+        let mut ticks = 0;
+        let ended = catch_unwind(AssertUnwindSafe(|| {
+            real_time::run(wall, coupling, &mut device, |forces| {
+                ticks += 1;
+                let presses = ticks > 50 && forces.force() != [0.0; 3];
+                assert!(!presses || panics_at < usize::MAX, "the caller is gone");
+                match ticks < 5000 {
+                    true => ControlFlow::Continue(()),
+                    false => ControlFlow::Break(()),
+                }
+            })
+        }));
+        let panic = ended.unwrap_err();
+        assert_eq!(panic.downcast_ref::<&str>(), Some(&expected));
+        assert!(ticks > 50, "{ticks}");
+        assert_eq!(device.held, [0.0; 3], "{expected}");
+    }
 }

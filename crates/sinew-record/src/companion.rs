@@ -2,7 +2,7 @@
 
 /// Watches a run: shows how far it is, and may end it.
 pub trait Companion {
-    /// Whether the run is to stop, with a checkpoint; asked several times a second.
+    /// Whether the run is to stop, with a checkpoint where it leaves any; asked several times a second.
     fn is_interrupted(&self) -> bool {
         false
     }

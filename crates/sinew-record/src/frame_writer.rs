@@ -117,7 +117,11 @@ impl<'a> FrameWriter<'a> {
             self.wait()?;
         }
         let mut snapshot = self.free.pop().unwrap_or_default();
-        snapshot.take(frame, moment, v, has_acceleration)?;
+        if let Err(refused) = snapshot.take(frame, moment, v, has_acceleration) {
+            // Whoever waits for all of them would wait for ever for one that is gone.
+            self.free.push(snapshot);
+            return Err(refused);
+        }
         // Where nobody listens any more, the reason has come already and is found when it is waited for.
         let _ = self.to_write.send(snapshot);
         Ok(())

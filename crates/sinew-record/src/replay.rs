@@ -15,6 +15,7 @@ use crate::recorder::Schedules;
 use crate::request::{Record, Request};
 use crate::run_end::{Ended, RunEnd};
 use crate::run_folder::{Beginning, End, RunFolder};
+use crate::stepping::Stepping;
 use crate::summary::CutRecord;
 
 /// The log in the folder.
@@ -47,9 +48,8 @@ impl RunFolder {
         let mut change: Option<BodyCut> = None;
         let mut departed = None;
         let (followed, recorded) = loop {
-            // After a reset it is the scene's, as in the beginning.
             let method = replay.session().integrator();
-            let method = course.is_even.then_some(method);
+            let method = course.is_even().then_some(method);
             let mut balance = Balance::new(&simulation, method, schedules.energy);
             if let Some(BodyCut { after, energy, .. }) = &change {
                 balance = balance.after_change(progress.energy, after, *energy)?;
@@ -71,7 +71,6 @@ impl RunFolder {
                         // What came until then is kept, as of a run that a law ends.
                         Err(FollowError::Replay(error)) => {
                             departed = Some(error.to_string());
-                            let from = from.max(course.first);
                             Followed {
                                 steps: replay.session().steps().saturating_sub(from),
                                 ..Followed::default()
@@ -113,6 +112,7 @@ impl RunFolder {
         let cuts = session.cutter().zip(mass);
         let end = End {
             steps: (0, progress.steps + followed.steps),
+            stepping: Stepping::of_session(&replay.course_so_far(), &simulation),
             work: followed.work,
             ended,
             state: session.state(),

@@ -130,7 +130,6 @@ pub(crate) fn page(
 
 fn facts(summary: &Summary<'_>) -> Vec<(&'static str, String)> {
     let (simulation, progress) = (summary.simulation, summary.progress);
-    let settings = simulation.settings();
     let outcome = match summary.ended {
         Ended::Finished => "finished".to_owned(),
         Ended::Diverged { t, place } => format!("diverged at t = {t:.6} s, first at {place}"),
@@ -143,13 +142,16 @@ fn facts(summary: &Summary<'_>) -> Vec<(&'static str, String)> {
         (
             "time",
             format!(
-                "{:.6} s in {} steps of {} s",
+                "{:.6} s in {} steps of {}",
                 summary.t,
                 summary.steps,
-                simulation.dt()
+                summary.stepping.length_in_words()
             ),
         ),
-        ("integrator", settings.integrator.clone()),
+        (
+            "integrator",
+            summary.stepping.methods_in_words().replace('`', ""),
+        ),
         (
             "work",
             format!("{} sweeps, {} solves", work.sweeps, work.solves),

@@ -2,6 +2,8 @@
 
 use sinew_scene::CutTotals;
 
+use crate::stepping::Stepping;
+
 /// The end of a run, in short.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunEnd {
@@ -9,6 +11,8 @@ pub struct RunEnd {
     pub ended: Ended,
     /// Steps taken, those of an earlier process included.
     pub steps: usize,
+    /// By what they were taken.
+    pub stepping: Stepping,
     /// Steps that this process took, and the wall time (s) of all that it did.
     pub own: (usize, f64),
     /// Frames of fields written.
@@ -48,7 +52,7 @@ pub enum Ended {
         /// The element and the reason.
         reason: String,
     },
-    /// Stopped before its end, with a checkpoint.
+    /// Stopped before its end; where a run leaves checkpoints, with one.
     Interrupted {
         /// Time (s).
         t: f64,

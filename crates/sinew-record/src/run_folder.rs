@@ -25,6 +25,7 @@ use crate::recorder::{RunRecorder, Schedules, Tables};
 use crate::report;
 use crate::request::{self, Record, Request};
 use crate::run_end::{Ended, RunEnd};
+use crate::stepping::Stepping;
 use crate::stretch;
 use crate::summary::{self, CutRecord, Summary};
 use crate::surface;
@@ -77,6 +78,7 @@ pub(crate) struct Recorded {
 pub(crate) struct End<'a> {
     /// Steps of an earlier process, and of this one.
     pub(crate) steps: (usize, usize),
+    pub(crate) stepping: Stepping,
     pub(crate) work: StepReport,
     pub(crate) ended: Ended,
     pub(crate) state: &'a State,
@@ -93,12 +95,15 @@ pub(crate) struct End<'a> {
 }
 
 impl RunFolder {
-    /// Checks, before long work, that a run of this scene may write into a folder at `path`. Changes nothing.
+    /// Checks, before long work, that a run of this scene, or a replay of its session by a file with the log, may write into a folder at `path`. Changes
+    /// nothing.
     ///
     /// # Errors
-    /// [`OutputError`] for a folder that holds other things or cannot be written.
-    pub fn check(path: &Path, scene: &Scene) -> Result<Tenant, OutputError> {
-        OwnedFolder::check(path, KIND, &scene.input_files())
+    /// [`OutputError`] for a folder that holds other things, what is to be read among them, or cannot be written.
+    pub fn check(path: &Path, scene: &Scene, log: Option<&Path>) -> Result<Tenant, OutputError> {
+        let mut inputs = scene.input_files();
+        inputs.extend(log.map(Path::to_owned));
+        OwnedFolder::check(path, KIND, &inputs)
     }
 
     /// Makes the folder of a new run; an earlier run's files in it are removed.
@@ -262,6 +267,7 @@ impl RunFolder {
         let outrun = simulation.outrun(integrator, &state);
         let end = End {
             steps: (before, steps),
+            stepping: Stepping::of_scene(simulation),
             work: last.work,
             ended: last.ended,
             state: &state,
@@ -381,6 +387,7 @@ impl RunFolder {
         } = recorded;
         let End {
             steps: (before, steps),
+            stepping,
             work,
             ended,
             state,
@@ -408,6 +415,7 @@ impl RunFolder {
             record: &self.record,
             ended: &ended,
             steps: before + steps,
+            stepping: &stepping,
             t: state.t(),
             progress: &progress,
             schedules,
@@ -436,6 +444,7 @@ impl RunFolder {
         Ok(RunEnd {
             ended,
             steps,
+            stepping,
             own: (own, wall),
             frames: progress.frames,
             work: (work.sweeps, work.solves),

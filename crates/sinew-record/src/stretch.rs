@@ -13,7 +13,7 @@ use crate::recorder::RunRecorder;
 use crate::run_end::Ended;
 
 /// The steps of a run up to where its body becomes another one, or to its end.
-pub(crate) struct Recorded {
+pub(crate) struct RecordedStretch {
     pub(crate) steps: usize,
     pub(crate) work: StepReport,
     /// The end of the run, unless the body changed.
@@ -37,7 +37,7 @@ pub(crate) fn take(
     state: &mut State,
     run: &Run,
     (recorder, is_seen): (&mut RunRecorder<'_>, bool),
-) -> Result<Recorded, RecordRunError> {
+) -> Result<RecordedStretch, RecordRunError> {
     let system = simulation.system();
     let energy_of_cuts = || cutter.map_or(0.0, |cutter| cutter.borrow().totals().energy());
     let (energy, begins) = (energy_of_cuts(), state.t());
@@ -52,7 +52,7 @@ pub(crate) fn take(
             // Steps are known by the time they reached; work since the last record is not.
             let steps = ((state.t() - begins) / simulation.dt() + 0.5).floor() as usize;
             let (t, reason) = refusal(error, system)?;
-            return Ok(Recorded {
+            return Ok(RecordedStretch {
                 steps,
                 work: recorder.work,
                 ended: Ended::Refused { t, reason },
@@ -76,7 +76,7 @@ pub(crate) fn take(
             })
         }
     };
-    Ok(Recorded {
+    Ok(RecordedStretch {
         steps: report.steps,
         work: report.work,
         ended: match report.outcome {

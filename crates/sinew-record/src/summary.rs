@@ -2,13 +2,14 @@
 
 use serde_json::{Value, json};
 use sinew_integrators::Stepper;
-use sinew_scene::{CutTotals, Cutter, Simulation, options_json};
+use sinew_scene::{CutTotals, Cutter, Simulation};
 
 use crate::made_energy::{THERMAL, has_stored_energy, remedy};
 use crate::progress::{Largest, Progress, Seen};
 use crate::recorder::Schedules;
 use crate::request::Record;
 use crate::run_end::Ended;
+use crate::stepping::Stepping;
 use crate::tables::HeldPart;
 
 pub(crate) const NAME: &str = "summary.json";
@@ -28,6 +29,7 @@ pub(crate) struct Summary<'a> {
     pub(crate) record: &'a Record,
     pub(crate) ended: &'a Ended,
     pub(crate) steps: usize,
+    pub(crate) stepping: &'a Stepping,
     /// Time of the last state (s).
     pub(crate) t: f64,
     pub(crate) progress: &'a Progress,
@@ -196,10 +198,10 @@ impl Summary<'_> {
             "at_rest_at_the_end": last <= AT_REST * most,
             "t_s": self.t,
             "duration_s": settings.duration,
-            "dt_s": simulation.dt(),
+            "dt_s": self.stepping.dt(),
             "steps": self.steps,
-            "integrator": settings.integrator,
-            "options": options_json(&simulation.options()),
+            "integrator": self.stepping.method(),
+            "options": self.stepping.options(),
             "error": "not known: `sinew plan --tolerance` measures it",
             "extremes": extremes,
             "mass_kg": self.cuts.map(|cuts| json!({ "start": cuts.mass[0], "end": cuts.mass[1] })),

@@ -1,12 +1,13 @@
 //! The motion of a session that can be recorded.
 
+use sinew_core::Options;
 use sinew_scene::Simulation;
 
 use crate::command::Command;
-use crate::log::Log;
+use crate::log::{Entry, Log};
 
 /// The motion of a session since its last reset, in which time rises.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Course {
     /// Steps before it.
     pub first: usize,
@@ -14,41 +15,89 @@ pub struct Course {
     pub steps: usize,
     /// The mean length (s) of its steps.
     pub dt: f64,
+    /// Whether all its steps have that length.
+    pub has_one_length: bool,
+    /// The integrators that took its steps, in the order of their first ones, with the options that were asked for. There is one at least.
+    pub methods: Vec<(String, Options)>,
     /// Whether loads are turned up or down in it.
     pub drives_loads: bool,
-    /// Whether one method takes all its steps, of one length.
-    pub is_even: bool,
+}
+
+/// Steps that one method took, of one length.
+struct Leg {
+    method: (String, Options),
+    dt: f64,
+    steps: usize,
 }
 
 impl Course {
-    pub(crate) fn of(log: &Log, simulation: &Simulation) -> Self {
-        let entries = log.entries();
-        let reset = entries
-            .iter()
-            .rposition(|entry| entry.command == Command::Reset);
-        let first = reset.map_or(0, |reset| entries[reset].step);
-        let since = &entries[reset.map_or(0, |reset| reset + 1)..];
-        let (mut dt, mut from, mut sum) = (simulation.dt(), first, 0.0);
-        for entry in since {
-            if let Command::Dt(other) = entry.command {
-                sum += (entry.step - from) as f64 * dt;
-                (dt, from) = (other, entry.step);
+    /// The motion up to where a session has taken so many steps.
+    pub(crate) fn of(log: &Log, simulation: &Simulation, steps: usize) -> Self {
+        let before = log.up_to_last_reset();
+        let first = before.last().map_or(0, |reset| reset.step);
+        let steps = steps.saturating_sub(first);
+        let since = &log.entries()[before.len()..];
+        let legs = legs(since, simulation, first, steps);
+        let mut methods: Vec<(String, Options)> = Vec::new();
+        for leg in &legs {
+            if !methods.contains(&leg.method) {
+                methods.push(leg.method.clone());
             }
         }
-        let steps = log.steps() - first;
-        // No sum, whose rounding would move rows, where all steps are equal.
-        if from > first {
-            dt = (sum + (log.steps() - from) as f64 * dt) / steps as f64;
-        }
-        let is_switch =
-            |command: &Command| matches!(command, Command::Dt(_) | Command::Integrator { .. });
-        let is_factor = |command: &Command| matches!(command, Command::LoadFactor { .. });
+        let dt = legs.first().map_or(simulation.dt(), |first| first.dt);
+        let has_one_length = legs.iter().all(|leg| leg.dt == dt);
+        let sum = legs.iter().map(|leg| leg.steps as f64 * leg.dt);
+        let is_factor = |entry: &Entry| matches!(entry.command, Command::LoadFactor { .. });
         Self {
             first,
             steps,
-            dt,
-            drives_loads: since.iter().any(|entry| is_factor(&entry.command)),
-            is_even: !since.iter().any(|entry| is_switch(&entry.command)),
+            // No sum, whose rounding would move rows, where all steps are equal.
+            dt: match has_one_length {
+                true => dt,
+                false => sum.sum::<f64>() / steps as f64,
+            },
+            has_one_length,
+            methods,
+            drives_loads: since.iter().any(is_factor),
         }
     }
+
+    /// Whether one method takes all its steps, of one length.
+    #[must_use]
+    pub fn is_even(&self) -> bool {
+        self.has_one_length && self.methods.len() == 1
+    }
+}
+
+/// What took so many steps after the `first` ones, with these commands since. Where there are no steps, the one leg has none.
+fn legs(since: &[Entry], simulation: &Simulation, first: usize, steps: usize) -> Vec<Leg> {
+    let settings = simulation.settings();
+    let mut method = (settings.integrator.clone(), settings.options.clone());
+    let (mut dt, mut from, end) = (simulation.dt(), first, first + steps);
+    let mut legs = Vec::new();
+    for entry in since {
+        let to = entry.step.min(end);
+        let is_switch = matches!(entry.command, Command::Dt(_) | Command::Integrator { .. });
+        if is_switch && to > from {
+            legs.push(Leg {
+                method: method.clone(),
+                dt,
+                steps: to - from,
+            });
+            from = to;
+        }
+        match &entry.command {
+            Command::Dt(other) => dt = *other,
+            Command::Integrator { id, options } => method = (id.clone(), options.clone()),
+            _ => {}
+        }
+    }
+    if end > from || legs.is_empty() {
+        legs.push(Leg {
+            method,
+            dt,
+            steps: end - from,
+        });
+    }
+    legs
 }

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use sinew_core::{Moment, RecordError, Recorder, StepReport, Verdict};
 use sinew_scene::{DrivenLoadError, Scene, Simulation};
 
-use crate::command::{Command, CommandError};
+use crate::command::CommandError;
 use crate::course::Course;
 use crate::error::{SessionError, SessionStepError};
 use crate::log::{Header, Log};
 use crate::session::{BodyCut, Session};
 
-/// A session that is repeated by its log, step by step and bit for bit.
+/// A session that is repeated by its log, step by step and bit for bit, from its last reset on: what came before left no trace but its number of steps.
 ///
 /// ```
 /// use sinew_scene::{Scene, SceneSource};
@@ -33,7 +33,7 @@ use crate::session::{BodyCut, Session};
 pub struct Replay {
     session: Session,
     log: Log,
-    /// Commands given so far.
+    /// Commands given so far, or left out since a reset came after them.
     given: usize,
 }
 
@@ -113,17 +113,28 @@ pub struct Followed {
 }
 
 impl Replay {
-    /// Begins to repeat the session of a scene.
+    /// Begins to repeat the session of a scene: it stands where the last reset left it, or at its beginning.
     ///
     /// # Errors
     /// [`ReplayError`] for the log of another scene, or a scene that cannot be driven.
     pub fn new(scene: Scene, log: Log) -> Result<Self, ReplayError> {
         let header = Header::of(&scene).map_err(SessionError::from)?;
         log.header().check(&header)?;
+        let mut session = Session::with_header(scene, header)?;
+        let before = log.up_to_last_reset();
+        let given = before.len();
+        if let Some(reset) = before.last() {
+            let failed = |source| ReplayError::Command {
+                number: given,
+                step: reset.step,
+                source: Box::new(source),
+            };
+            session.begin_at_reset(before).map_err(failed)?;
+        }
         let mut replay = Self {
-            session: Session::new(scene)?,
+            session,
             log,
-            given: 0,
+            given,
         };
         replay.give()?;
         Ok(replay)
@@ -155,8 +166,8 @@ impl Replay {
         }
         let work = match self.session.step() {
             Ok(work) => work,
-            // Only a reset, or the end, came after it.
-            Err(_) if self.session.steps() == step + 1 && self.goes_on_after_failure() => {
+            // No reset comes after it any more, so that it was the last.
+            Err(_) if self.session.steps() == step + 1 && step + 1 == self.log.steps() => {
                 StepReport::default()
             }
             Err(source) => {
@@ -168,16 +179,6 @@ impl Replay {
         };
         self.give()?;
         Ok(Some(work))
-    }
-
-    /// Whether the session went on from here as from a step that failed.
-    fn goes_on_after_failure(&self) -> bool {
-        let next = self.log.entries().get(self.given);
-        let next = next.filter(|entry| entry.step == self.session.steps());
-        match next {
-            Some(entry) => entry.command == Command::Reset,
-            None => self.session.steps() == self.log.steps(),
-        }
     }
 
     /// Gives the commands that came after the steps taken so far.
@@ -212,7 +213,13 @@ impl Replay {
     /// The motion that [`Replay::follow`] shows.
     #[must_use]
     pub fn course(&self) -> Course {
-        Course::of(&self.log, self.session.simulation())
+        Course::of(&self.log, self.session.simulation(), self.log.steps())
+    }
+
+    /// As much of [`Replay::course`] as is repeated.
+    #[must_use]
+    pub fn course_so_far(&self) -> Course {
+        Course::of(&self.log, self.session.simulation(), self.session.steps())
     }
 
     /// The scene under whose forces [`Replay::follow`] shows the motion.
@@ -223,8 +230,8 @@ impl Replay {
         self.session.recorded(self.course().drives_loads)
     }
 
-    /// Repeats what is left up to the next change of the body, and shows a recorder the motion since the last reset, whose steps are counted from where this
-    /// is called. Time rises in it. `simulation` is [`Replay::recorded_scene`], which is another one after each change.
+    /// Repeats what is left up to the next change of the body, and shows it to a recorder, with its steps counted from where this is called. Time rises in
+    /// it. `simulation` is [`Replay::recorded_scene`], which is another one after each change.
     ///
     /// # Errors
     /// [`FollowError`] for a session that takes another course than its log, and for a recorder that fails.
@@ -233,10 +240,6 @@ impl Replay {
         simulation: &Simulation,
         recorder: &mut dyn Recorder,
     ) -> Result<Followed, FollowError> {
-        let first = self.course().first;
-        while self.session.steps() < first {
-            self.step()?;
-        }
         let begins = self.session.steps();
         let watches = recorder.watches();
         let mut watched = Vec::with_capacity(watches.len());

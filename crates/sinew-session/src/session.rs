@@ -12,7 +12,7 @@ use sinew_tools::{Pose, Steering};
 
 use crate::command::{Command, CommandError};
 use crate::error::{SessionError, SessionStepError};
-use crate::log::{Header, Log};
+use crate::log::{Entry, Header, Log};
 
 /// Largest number of a pose (m or rad): far beyond any body, and far from what overflows.
 const FARTHEST: f64 = 1e6;
@@ -147,6 +147,11 @@ impl Session {
     /// [`SessionError`] for a scene that `sinew run` refuses as well, and for files of it that cannot be read again.
     pub fn new(scene: Scene) -> Result<Self, SessionError> {
         let header = Header::of(&scene)?;
+        Self::with_header(scene, header)
+    }
+
+    /// As [`Session::new`], with what is known of the scene's files already.
+    pub(crate) fn with_header(scene: Scene, header: Header) -> Result<Self, SessionError> {
         let mut simulation = scene.build()?;
         if let Some(refused) = simulation.refused_load() {
             return Err(refused.into());
@@ -288,6 +293,14 @@ impl Session {
             Command::Cut { from, to } => self.sheets.push([*from, *to]),
         }
         self.log.add(self.steps, reached, command);
+        Ok(())
+    }
+
+    /// Stands, in the beginning, where the last of these commands, a reset, left a session: all that it did before is told by the log alone.
+    pub(crate) fn begin_at_reset(&mut self, commands: &[Entry]) -> Result<(), CommandError> {
+        self.command(Command::Reset)?;
+        self.log.begin_with(commands);
+        self.steps = self.log.steps();
         Ok(())
     }
 

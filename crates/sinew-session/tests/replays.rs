@@ -119,27 +119,92 @@ fn repeated(text: &str, commands: usize) {
     assert!(session.log().entries().len() > commands / 2);
     let read = Log::parse(Path::new("s.log"), &session.log().to_text()).unwrap();
     assert_eq!(read, *session.log());
-    let mut replay = Replay::new(scene(text), read).unwrap();
-    let mut resets = session.log().entries().iter().peekable();
-    loop {
-        let step = replay.session().steps();
-        let is_reset =
-            |entry: &&sinew_session::Entry| entry.step == step && entry.command == Command::Reset;
-        // A state before a reset was replaced by it.
-        let mut replaced = false;
-        while let Some(entry) = resets.next_if(|entry| entry.step <= step) {
-            replaced |= is_reset(&entry);
-        }
-        if !replaced {
+    for part in parts(&session) {
+        let log = Log::parse(Path::new("s.log"), &part.text).unwrap();
+        let mut replay = Replay::new(scene(text), log.clone()).unwrap();
+        // What came before a reset is not repeated.
+        assert_eq!(replay.session().steps(), part.begins);
+        assert!(bytes(replay.session()) == states[0]);
+        while replay.step().unwrap().is_some() {
+            let step = replay.session().steps();
             assert!(bytes(replay.session()) == states[step], "step {step}");
         }
-        if replay.step().unwrap().is_none() {
-            break;
-        }
+        assert_eq!(replay.session().steps(), part.ends);
+        assert_eq!(*replay.session().log(), log);
     }
-    assert_eq!(replay.session().steps(), session.steps());
+    let mut replay = Replay::new(scene(text), read).unwrap();
+    while replay.step().unwrap().is_some() {}
     assert!(bytes(replay.session()) == bytes(&session));
     assert_eq!(replay.session().log(), session.log());
+}
+
+/// A session up to before one of its resets, or to its end.
+struct Part {
+    /// Steps before the reset with which it begins.
+    begins: usize,
+    ends: usize,
+    /// The log.
+    text: String,
+}
+
+fn parts(session: &Session) -> Vec<Part> {
+    let (text, entries) = (session.log().to_text(), session.log().entries());
+    let lines: Vec<&str> = text.lines().collect();
+    let head = lines.len() - entries.len() - 1;
+    let resets = (0..).zip(entries);
+    let resets = resets.filter(|(_, entry)| entry.command == Command::Reset);
+    let ends = resets.map(|(place, entry)| (place, entry.step));
+    let mut begins = 0;
+    let ends = ends.chain([(entries.len(), session.steps())]);
+    ends.map(|(place, ends)| Part {
+        begins: std::mem::replace(&mut begins, ends),
+        ends,
+        text: format!("{}\n{ends} end\n", lines[..head + place].join("\n")),
+    })
+    .collect()
+}
+
+#[test]
+fn a_course_has_the_methods_and_the_mean_step_of_what_was_taken_since_the_reset() {
+    let mut session = session(CUBE);
+    let to = |id: &str| Command::Integrator {
+        id: id.to_owned(),
+        options: Options::new(),
+    };
+    session.step().unwrap();
+    session.command(to("cnn-stabilised")).unwrap();
+    session.step().unwrap();
+    session.command(Command::Reset).unwrap();
+    session.command(to("central-difference")).unwrap();
+    let first = session.steps();
+    let replayed = |session: &mut Session, command, steps| {
+        session.command(command).unwrap();
+        for _ in 0..steps {
+            session.step().unwrap();
+        }
+        let mut replay = Replay::new(scene(CUBE), session.log().clone()).unwrap();
+        while replay.step().unwrap().is_some() {}
+        let course = replay.course_so_far();
+        assert_eq!(course, replay.course());
+        course
+    };
+    let even = replayed(&mut session, to("cnn-symplectic"), 3);
+    assert_eq!(
+        even.methods,
+        [("cnn-symplectic".to_owned(), Options::new())]
+    );
+    let is_even = (even.is_even(), even.has_one_length);
+    assert_eq!(
+        (even.first, even.steps, even.dt, is_even),
+        (first, 3, 0.002, (true, true))
+    );
+    let shorter = replayed(&mut session, Command::Dt(0.001), 1);
+    assert_eq!(shorter.methods.len(), 1);
+    assert!((shorter.dt - 0.00175).abs() < 1e-15 && !shorter.has_one_length);
+    let several = replayed(&mut session, to("cnn-stabilised"), 4);
+    let ids: Vec<&str> = several.methods.iter().map(|(id, _)| id.as_str()).collect();
+    assert_eq!(ids, ["cnn-symplectic", "cnn-stabilised"]);
+    assert!((several.dt - 0.011 / 8.0).abs() < 1e-15 && !several.is_even());
 }
 
 #[test]

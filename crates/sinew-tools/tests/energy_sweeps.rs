@@ -9,9 +9,9 @@ mod pressed;
 
 use std::f64::consts::PI;
 
-use pressed::{Block, E, Pressed, through, tool};
+use pressed::{Block, E, Pressed, energy, through, tool};
 use proptest::prelude::*;
-use sinew_core::{Batch, Contact, Inputs, OptionValue, Options, State, StepError, System, vectors};
+use sinew_core::{Batch, Contact, Inputs, OptionValue, Options, State, StepError, vectors};
 use sinew_fem::Element;
 use sinew_fem::hyperelastic::Hyperelastic;
 use sinew_tools::{Convex, Motion, Pose};
@@ -22,27 +22,6 @@ fn energy_sweeps(sweeps: f64) -> (&'static str, Options) {
         "cnn-energy",
         options.with("sweeps", OptionValue::Number(sweeps)),
     )
-}
-
-/// Kinetic and elastic energy (J).
-fn energy(pressed: &Pressed, state: &State) -> f64 {
-    let kinetic: f64 = state
-        .v
-        .iter()
-        .zip(pressed.model.mass())
-        .map(|(v, m)| 0.5 * m * v * v)
-        .sum();
-    let mut force = vec![0.0; state.u.len()];
-    let system: &dyn System = &pressed.model;
-    let law = system.as_elastic().unwrap();
-    let trial = sinew_core::Trial {
-        load: sinew_core::LoadTime::at(state.t()),
-        dt: 0.0,
-        u: &state.u,
-        v: &state.v,
-        internal: &state.internal,
-    };
-    kinetic + law.elastic_force(&trial, &mut force).unwrap().energy
 }
 
 /// The largest rise of energy in a step beyond the work of tools, and the largest energy (J).

@@ -7,8 +7,8 @@
 #[allow(dead_code, reason = "other tests use more of it")]
 mod pressed;
 
-use pressed::{Block, Pressed, staggered_energy, through, tool};
-use sinew_core::{Options, State, System};
+use pressed::{Block, Pressed, energy, staggered_energy, through, tool};
+use sinew_core::Options;
 use sinew_tools::{Convex, Tool, ToolBody};
 
 fn body(mass: f64, damping: f64) -> ToolBody {
@@ -37,22 +37,6 @@ fn scene(body: ToolBody, friction: f64) -> Pressed {
     }])
 }
 
-fn energy_at_end(pressed: &Pressed, state: &State) -> f64 {
-    let masses = state.v.iter().zip(pressed.model.mass());
-    let kinetic: f64 = masses.map(|(v, m)| 0.5 * m * v * v).sum();
-    let mut force = vec![0.0; state.u.len()];
-    let system: &dyn System = &pressed.model;
-    let law = system.as_elastic().unwrap();
-    let trial = sinew_core::Trial {
-        load: sinew_core::LoadTime::at(state.t()),
-        dt: 0.0,
-        u: &state.u,
-        v: &state.v,
-        internal: &state.internal,
-    };
-    kinetic + law.elastic_force(&trial, &mut force).unwrap().energy
-}
-
 /// The largest rise of the energy of tissue, tool and coupling in a run of a second, less the work of the hand, above where it was lowest before; and the largest energy (J).
 fn rise_and_largest(pressed: &Pressed, id: &str, dt: f64) -> (f64, f64) {
     let is_energy = id == "cnn-energy";
@@ -67,7 +51,7 @@ fn rise_and_largest(pressed: &Pressed, id: &str, dt: f64) -> (f64, f64) {
         pressed.run_with(&mut state, (id, options.clone()), dt, 1);
         let body = pressed.tools.report(&state, 0).body.unwrap();
         let tissue = if is_energy {
-            energy_at_end(pressed, &state)
+            energy(pressed, &state)
         } else {
             staggered_energy(&pressed.model, &before, &state, dt)
         };

@@ -17,9 +17,9 @@ use sinew_tools::{Convex, Motion, Pose, Tool, ToolBody};
 /// The size (m) of a cell of the surface.
 const EDGE: f64 = 0.01;
 
-fn gap(pressed: &Pressed, state: &State) -> f64 {
-    let pose = pressed.tools.pose(state, Inputs::none(), 0);
-    pressed.tools.deepest(&state.u, &pose, 0).unwrap().gap
+fn gap(pressed: &Pressed, state: &State, tool: usize) -> f64 {
+    let pose = pressed.tools.pose(state, Inputs::none(), tool);
+    pressed.tools.deepest(&state.u, &pose, tool).unwrap().gap
 }
 
 /// Places between nodes, by a simple sequence that fills the square.
@@ -156,7 +156,7 @@ fn a_tip_within_a_triangle_presses_its_corners_by_their_weights() {
     // At rest the path is the same force for any step.
     pressed.run(&mut state, "symplectic-euler", 1e-3, 2000);
     let fine = pressed.force(&state)[2];
-    assert!(gap(&pressed, &state) > -1e-10);
+    assert!(gap(&pressed, &state, 0) > -1e-10);
     let mut state = pressed.at_rest();
     pressed.run(&mut state, "cnn-stabilised", 3e-3, 2000);
     let coarse = pressed.force(&state)[2];
@@ -203,18 +203,26 @@ fn energy_rises_by_no_more_than_normals_turn_and_bodies_meet_triangles_too() {
         let dt = share * pressed.stable_step();
         let mut state = pressed.at_rest();
         let (mut last, mut largest, mut rise): (Option<f64>, f64, f64) = (None, 0.0, 0.0);
+        let mut met = vec![false; pressed.tools.tools().len()];
         for _ in 0..(0.3 / dt) as usize {
             let before = state.clone();
             pressed.run(&mut state, "central-difference", dt, 1);
             let energy = staggered_energy(&pressed.model, &before, &state, dt);
             largest = largest.max(energy);
             let left = energy - pressed.tools.work(&state);
-            for tool in 0..pressed.tools.tools().len() {
+            for (tool, met) in met.iter_mut().enumerate() {
                 let report = pressed.tools.report(&state, tool);
                 assert!(report.residual < 0.01, "{report:?}");
+                *met |= report.contacts > 0;
             }
             rise = rise.max(last.map_or(0.0, |last| left - last));
             last = Some(left);
+        }
+        assert!(met.iter().all(|met| *met), "{met:?}");
+        // Both were drawn back out, and the tissue is where it was, below them.
+        for tool in 0..met.len() {
+            let gap = gap(&pressed, &state, tool);
+            assert!(gap > -1e-10, "{tool}: {gap}");
         }
         // The speed is that of the table, 7.1 mm in .05 s.
         let turn = dt * 0.142 / 0.001;

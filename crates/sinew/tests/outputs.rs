@@ -43,6 +43,14 @@ impl Folder {
         command
     }
 
+    /// Keeps the log of a session of the spring.
+    fn keep_session(&self, log: &str) {
+        let scene = sinew_scene::Scene::load(self.path("spring.toml")).unwrap();
+        let mut session = sinew_session::Session::new(scene).unwrap();
+        session.step().unwrap();
+        fs::write(self.path(log), session.log().to_text()).unwrap();
+    }
+
     /// Names and contents of all files in it.
     fn contents(&self) -> Vec<(String, Vec<u8>)> {
         let entries = fs::read_dir(self.0.path()).unwrap();
@@ -83,9 +91,11 @@ fn what_a_run_reads_is_refused_before_the_run_and_stays() {
     let folder = Folder::new();
     symlink("body.msh", folder.path("link.csv")).unwrap();
     fs::hard_link(folder.path("body.msh"), folder.path("hard.csv")).unwrap();
+    folder.keep_session("a.log");
     let before = folder.contents();
     let mesh = ["mesh", "convert", "body.msh"];
     let check = ["mesh", "check", "body.msh", "--fix", "orient", "--out"];
+    let replay = ["run", "spring.toml", "--replay", "a.log", "--probes"];
     for (arguments, path) in [
         (&["run", "spring.toml", "--probes"][..], "spring.toml"),
         (&["run", "spring.toml", "--probes"], "./spring.toml"),
@@ -93,6 +103,8 @@ fn what_a_run_reads_is_refused_before_the_run_and_stays() {
         (&["run", "body.toml", "--probes"], "body.msh"),
         (&["run", "body.toml", "--probes"], "link.csv"),
         (&["run", "body.toml", "--probes"], "hard.csv"),
+        (&replay, "a.log"),
+        (&replay, "./a.log"),
         (&mesh, "body.msh"),
         (&check, "body.msh"),
         (&check, "hard.csv"),
@@ -108,6 +120,27 @@ fn what_a_run_reads_is_refused_before_the_run_and_stays() {
         assert_eq!(out(&output), "");
         assert_eq!(folder.contents(), before, "{arguments:?} {path}");
     }
+}
+
+#[test]
+fn a_folder_that_holds_the_log_of_a_replay_is_not_replaced_by_it() {
+    let folder = Folder::new();
+    folder.keep_session("a.log");
+    let replay = |log: &str| {
+        let arguments = ["run", "spring.toml", "--replay", log, "--out", "out"];
+        folder.sinew(&arguments).output().unwrap()
+    };
+    let output = replay("a.log");
+    assert_eq!(code(&output), Some(0), "{}", err(&output));
+    let log = fs::read(folder.path("out/session.log")).unwrap();
+    assert_eq!(log, fs::read(folder.path("a.log")).unwrap());
+    let output = replay("out/session.log");
+    assert_eq!(code(&output), Some(2), "{}", err(&output));
+    assert!(err(&output).contains("out/session.log"), "{}", err(&output));
+    assert_eq!(fs::read(folder.path("out/session.log")).unwrap(), log);
+    assert!(folder.path("out/summary.json").exists());
+    // A copy elsewhere may replace what is there.
+    assert_eq!(code(&replay("a.log")), Some(0));
 }
 
 #[test]

@@ -28,7 +28,8 @@ pub(super) fn section(
     page.section("body", "The body");
     let seen = summary.progress.seen.displacement;
     let moved = largest.as_chunks::<3>().0;
-    if moved.len() != surface.points.len() {
+    // Of a body that was cut there are displacements also where all of them are 0, and no scale would show them.
+    if moved.len() != surface.points.len() || seen.value == 0.0 {
         page.paragraph("It did not move at any instant of the fields.");
         return;
     }

@@ -91,6 +91,21 @@ fn a_run_whose_body_is_taken_away_whole_ends_with_the_state_before() {
     }
 }
 
+#[test]
+fn the_page_of_a_body_that_was_cut_at_rest_says_that_it_did_not_move() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("cut");
+    let text = scene(&format!("{BLADE}{NEWMARK}")).replace("gravity = [3.0, 0.0, -5.0]\n", "");
+    let end = run(&path, &build(&text), &mut ());
+    assert_eq!(
+        (end.largest.0, end.cuts.unwrap().0.changes > 0),
+        (0.0, true)
+    );
+    let page = fs::read_to_string(path.join("report.html")).unwrap();
+    assert!(page.contains("It did not move at any instant of the fields."));
+    assert!(!page.contains("NaN") && !page.contains("inf times"));
+}
+
 /// The cut opens edges of 43 mm, beside those of 35 mm that the surface had, under a ball of 40 mm.
 #[test]
 fn a_tool_meets_what_a_cut_lays_open_under_it_as_it_met_the_surface_before() {

@@ -1,8 +1,11 @@
 //! What is written of sessions that are repeated by their logs.
 
 use std::fs;
+use std::path::Path;
 
-use sinew_record::{Ended, Request, RunFolder};
+use serde_json::Value;
+use sinew_core::Options;
+use sinew_record::{Companion, Ended, Request, RunFolder};
 use sinew_scene::{Scene, SceneSource};
 use sinew_session::{Command, Replay, Session};
 
@@ -92,4 +95,74 @@ fn a_driven_session_is_recorded_since_its_last_reset_and_its_energy_adds_up() {
     assert!(at_the_end.is_finite());
     let log = fs::read_to_string(out.join("session.log")).unwrap();
     assert_eq!(log, session.log().to_text());
+}
+
+fn summary(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap()
+}
+
+/// Ends what it watches as soon as it is asked after this time (s).
+struct Impatient {
+    from: f64,
+    t: f64,
+}
+
+impl Companion for Impatient {
+    fn is_interrupted(&self) -> bool {
+        self.t >= self.from
+    }
+
+    fn progress(&mut self, _steps: usize, t: f64) {
+        self.t = t;
+    }
+}
+
+#[test]
+fn a_session_names_the_methods_and_the_mean_step_of_what_was_repeated() {
+    let place = tempfile::tempdir().unwrap();
+    let mut session = Session::new(scene()).unwrap();
+    let to = |id: &str| Command::Integrator {
+        id: id.to_owned(),
+        options: Options::new(),
+    };
+    session.command(to("cnn-stabilised")).unwrap();
+    steps(&mut session, 10);
+    let recorded = |session: &Session, name: &str, companion: &mut dyn Companion| {
+        let mut replay = Replay::new(scene(), session.log().clone()).unwrap();
+        let path = place.path().join(name);
+        let end = RunFolder::replay(&path, &mut replay, &Request::default(), companion).unwrap();
+        let report = fs::read_to_string(path.join("report.html")).unwrap();
+        (end, summary(&path), report)
+    };
+    let (end, one, _) = recorded(&session, "one", &mut ());
+    assert_eq!(end.stepping.methods_in_words(), "`cnn-stabilised`");
+    assert_eq!(end.stepping.length_in_words(), "0.002 s");
+    assert_eq!(
+        (&one["integrator"], &one["dt_s"]),
+        (&"cnn-stabilised".into(), &0.002.into())
+    );
+    session.command(to("newmark")).unwrap();
+    session.command(Command::Dt(0.005)).unwrap();
+    steps(&mut session, 10);
+    let (end, two, report) = recorded(&session, "two", &mut ());
+    assert!((end.stepping.dt() - 0.0035).abs() < 1e-15);
+    assert_eq!(end.stepping.length_in_words(), "3.500e-3 s on average");
+    let said = "several methods, `cnn-stabilised` and `newmark`";
+    assert_eq!(end.stepping.methods_in_words(), said);
+    assert!(report.contains(&said.replace('`', "")));
+    assert!(report.contains("20 steps of 3.500e-3 s on average"));
+    assert_eq!(two["integrator"], "several");
+    assert!((two["dt_s"].as_f64().unwrap() - 0.0035).abs() < 1e-15);
+    assert_eq!(two["options"], Value::Null);
+    // What was switched after the interruption is no part of what was recorded.
+    let mut companion = Impatient {
+        from: 0.009,
+        t: 0.0,
+    };
+    let (end, part, _) = recorded(&session, "part", &mut companion);
+    assert!(matches!(end.ended, Ended::Interrupted { .. }) && end.steps < 10);
+    assert_eq!(
+        (&part["integrator"], &part["dt_s"]),
+        (&"cnn-stabilised".into(), &0.002.into())
+    );
 }

@@ -94,6 +94,19 @@ impl Log {
         self.entries.push(Entry { step, t, command });
     }
 
+    /// The commands up to the last reset, that among them; none where there was no reset.
+    pub(crate) fn up_to_last_reset(&self) -> &[Entry] {
+        let reset = |entry: &Entry| entry.command == Command::Reset;
+        let last = self.entries.iter().rposition(reset);
+        &self.entries[..last.map_or(0, |last| last + 1)]
+    }
+
+    /// Has these commands in the place of its own, of a session that has taken as many steps as came before the last of them.
+    pub(crate) fn begin_with(&mut self, entries: &[Entry]) {
+        self.entries = entries.to_vec();
+        self.steps = entries.last().map_or(0, |last| last.step);
+    }
+
     /// The session has taken so many steps.
     pub(crate) fn ends_after(&mut self, steps: usize) {
         self.steps = steps;

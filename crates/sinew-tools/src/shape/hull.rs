@@ -282,6 +282,14 @@ mod tests {
                 assert!(length(sub(there, found.on_triangle)) < 1e-14);
                 assert!((found.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
                 assert!(found.weights.iter().all(|weight| *weight >= 0.0));
+                let mut pairs = found.on_core.iter().zip(hull.half);
+                let is_in_core = pairs.all(|(x, half)| x.abs() <= half + 1e-14);
+                assert!(is_in_core, "{shape:?} {triangle:?} {:?}", found.on_core);
+                let apart = length(sub(found.on_triangle, found.on_core));
+                assert!(
+                    (apart - found.distance).abs() < 1e-14,
+                    "{shape:?} {triangle:?}"
+                );
                 for _ in 0..300 {
                     let (a, b) = (random(&mut seed), random(&mut seed));
                     let (a, b) = if a + b > 1.0 {

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use sinew_core::{LinearSystem, Options, Run, StableStep, State, System, simulate, vectors};
+use sinew_core::{
+    LinearSystem, LoadTime, Options, Run, StableStep, State, System, Trial, simulate, vectors,
+};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Rayleigh, Region, Tissue};
 use sinew_mesh::structured::{Split, block};
@@ -208,6 +210,23 @@ pub(crate) fn through(rows: &[(f64, [f64; 3])], rotation_vector: [f64; 3]) -> Mo
         rotation_vector,
     });
     Motion::Table(Table::new(rows.collect()).unwrap())
+}
+
+/// Kinetic and elastic energy (J) of a state whose velocity holds at its time.
+pub(crate) fn energy(pressed: &Pressed, state: &State) -> f64 {
+    let masses = state.v.iter().zip(pressed.model.mass());
+    let kinetic: f64 = masses.map(|(v, m)| 0.5 * m * v * v).sum();
+    let mut force = vec![0.0; state.u.len()];
+    let system: &dyn System = &pressed.model;
+    let law = system.as_elastic().unwrap();
+    let trial = Trial {
+        load: LoadTime::at(state.t()),
+        dt: 0.0,
+        u: &state.u,
+        v: &state.v,
+        internal: &state.internal,
+    };
+    kinetic + law.elastic_force(&trial, &mut force).unwrap().energy
 }
 
 /// `(v' (M - dt^2/4 K) v + u' K u)/2` of central difference's step, u being the mean of both displacements.

@@ -11,7 +11,7 @@ use sinew_measure::advice::AdviceError;
 use sinew_measure::convergence::ConvergeError;
 use sinew_mesh::vtu::WriteVtuError;
 use sinew_mesh::{CellType, MshFileError, RefineError, TetMeshError, WriteMshError};
-use sinew_record::{CompareError, RecordRunError};
+use sinew_record::{CompareError, Ended, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
 use sinew_scene::{CuttingError, ReactionError, RefusedLoad, SceneError, StretchError, Warning};
 #[cfg(feature = "live")]
@@ -285,6 +285,19 @@ impl From<StretchError> for Failure {
 }
 
 impl Failure {
+    /// An error where a run did not come to its end; `remedy` is said after an interruption.
+    pub(crate) fn of_end(ended: Ended, remedy: impl FnOnce() -> String) -> Result<(), Self> {
+        match ended {
+            Ended::Finished => Ok(()),
+            Ended::Diverged { t, place } => Err(Self::Diverged { t, place }),
+            Ended::Refused { t, reason } => Err(Self::Refused { t, reason }),
+            Ended::Interrupted { t } => Err(Self::Interrupted {
+                t,
+                remedy: remedy(),
+            }),
+        }
+    }
+
     /// An error where there are warnings.
     pub(crate) fn of_warnings(warnings: &[Warning]) -> Result<(), Self> {
         match warnings.len() {

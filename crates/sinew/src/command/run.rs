@@ -8,7 +8,7 @@ use sinew_core::{
 };
 use sinew_integrators::Stepper;
 use sinew_measure::Forecast;
-use sinew_record::{Companion, Ended, EnergyGrowth, Request, RunFolder, words_of_cuts};
+use sinew_record::{Companion, EnergyGrowth, Request, RunFolder, words_of_cuts};
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
 use sinew_scene::{
     Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Seen, Simulation, Warning, WarningKind,
@@ -34,15 +34,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scene = arguments.values.load(&arguments.scene)?;
     let destination = match &arguments.out {
         Some(folder) => {
-            if RunFolder::check(folder, &scene)? == Tenant::Earlier {
-                let path = folder.display();
-                complain(&format!(
-                    "{path}: the results of an earlier run in it will be replaced"
-                ));
-            }
+            check_folder(folder, &scene, arguments.replay.as_deref())?;
             None
         }
-        None => Some(Destination::new(&arguments.probes, &scene.input_files())?),
+        None => {
+            let mut inputs = scene.input_files();
+            inputs.extend(arguments.replay.clone());
+            Some(Destination::new(&arguments.probes, &inputs)?)
+        }
     };
     if let Some(log) = &arguments.replay {
         return replay::run(arguments, scene, log, destination, interruption);
@@ -98,6 +97,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
+/// Checks that a run of a scene, or a replay by a log, may write into a folder, and says where it replaces an earlier one.
+pub(crate) fn check_folder(path: &Path, scene: &Scene, log: Option<&Path>) -> Result<(), Failure> {
+    if RunFolder::check(path, scene, log)? == Tenant::Earlier {
+        let path = path.display();
+        complain(&format!(
+            "{path}: the results of an earlier run in it will be replaced"
+        ));
+    }
+    Ok(())
+}
+
 /// Runs a simulation into its folder and says what came out.
 pub(crate) fn in_folder(
     path: &Path,
@@ -114,15 +124,9 @@ pub(crate) fn in_folder(
     for line in summary_of(simulation, &end, path) {
         complain(&line);
     }
-    match end.ended {
-        Ended::Finished => Ok(()),
-        Ended::Diverged { t, place } => Err(Failure::Diverged { t, place }),
-        Ended::Refused { t, reason } => Err(Failure::Refused { t, reason }),
-        Ended::Interrupted { t } => Err(Failure::Interrupted {
-            t,
-            remedy: format!("; `sinew resume {}` goes on", path.display()),
-        }),
-    }
+    Failure::of_end(end.ended, || {
+        format!("; `sinew resume {}` goes on", path.display())
+    })
 }
 
 /// Runs a scene into an empty folder, which nobody reads but a comparison.
@@ -146,15 +150,7 @@ pub(crate) fn run_for_comparison(
     let mut onlooker = Onlooker::new(interruption, simulation.run().steps, duration);
     let end = folder.run(&simulation, &mut *integrator, &mut onlooker);
     onlooker.finish();
-    match end?.ended {
-        Ended::Finished => Ok(()),
-        Ended::Diverged { t, place } => Err(Failure::Diverged { t, place }),
-        Ended::Refused { t, reason } => Err(Failure::Refused { t, reason }),
-        Ended::Interrupted { t } => Err(Failure::Interrupted {
-            t,
-            remedy: String::new(),
-        }),
-    }
+    Failure::of_end(end?.ended, String::new)
 }
 
 /// Runs a simulation and writes the motion of its probes alone.

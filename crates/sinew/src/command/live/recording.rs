@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use sinew_record::{Ended, Request, RunFolder};
+use sinew_record::{Ended, Request};
 use sinew_scene::Scene;
-use sinew_scene::output::{Tenant, complain};
+use sinew_scene::output::complain;
 use sinew_session::{Journal, Log, Replay};
 
 use crate::command::Failure;
 use crate::command::interruption::Interruption;
+use crate::command::run::check_folder;
 use crate::command::run::replay::{in_folder, warnings_of};
 
 /// The folders of a session. What a folder holds depends on all of the session, the intervals of its rows among it, so that the session is repeated by
@@ -25,12 +26,7 @@ impl Recording {
         second.push("-second");
         let folders = [path.to_owned(), PathBuf::from(second)];
         for folder in &folders {
-            if RunFolder::check(folder, scene)? == Tenant::Earlier {
-                let path = folder.display();
-                complain(&format!(
-                    "{path}: the results of an earlier run in it will be replaced"
-                ));
-            }
+            check_folder(folder, scene, None)?;
         }
         Ok(Self { folders })
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use sinew_core::Recorders;
-use sinew_record::{Companion, Ended, Request, RunFolder};
+use sinew_record::{Companion, Ended, RecordRunError, Request, RunFolder};
 use sinew_scene::output::{Delivery, Destination, Voice, complain};
 use sinew_scene::{ProbeCsv, ProbeRows, Scene, WarningKind};
 use sinew_session::{FollowError, Log, Replay};
@@ -42,39 +42,45 @@ pub(super) fn run(
             warnings,
             values: arguments.values.assignments(),
         };
-        return match in_folder(path, &mut replay, &request, interruption)? {
-            Ended::Finished => Ok(()),
-            Ended::Diverged { t, place } => Err(Failure::Diverged { t, place }),
-            Ended::Refused { t, reason } => Err(Failure::Refused { t, reason }),
-            Ended::Interrupted { t } => Err(interrupted(t)),
-        };
+        let ended = in_folder(path, &mut replay, &request, interruption)?;
+        return Failure::of_end(ended, no_remedy);
     };
-    let mut onlooker = onlooker(&replay, interruption);
     let voice = Voice::apart_from(&destination);
-    let simulation = replay
-        .recorded_scene()
-        .map_err(sinew_record::RecordRunError::from)?;
-    let mut csv = ProbeCsv::new(destination.open()?, ProbeRows::new(&simulation))?;
-    let mut recorders = Recorders::new()
-        .with_lent(&mut csv)
-        .with_lent(&mut onlooker);
-    let followed = replay.follow(&simulation, &mut recorders);
-    drop(recorders);
-    onlooker.finish();
-    let followed = match followed {
-        Ok(followed) => followed,
-        Err(FollowError::Replay(source)) => return Err(failed(source)),
-        Err(FollowError::Record(error)) => {
-            return Err(sinew_core::SimulateError::from(error).into());
+    let recorded_scene = |replay: &Replay| replay.recorded_scene().map_err(RecordRunError::from);
+    let mut simulation = recorded_scene(&replay)?;
+    let mut csv = ProbeCsv::new(destination.open()?, ProbeRows::new(&simulation))?.without_rows();
+    let mut steps = 0;
+    let (followed, is_interrupted) = loop {
+        // After a change of the body steps are counted anew.
+        let mut onlooker = onlooker(&replay, interruption.clone());
+        let mut rows = csv.with_rows(ProbeRows::new(&simulation));
+        let mut recorders = Recorders::new()
+            .with_lent(&mut rows)
+            .with_lent(&mut onlooker);
+        let followed = replay.follow(&simulation, &mut recorders);
+        drop(recorders);
+        onlooker.finish();
+        let followed = match followed {
+            Ok(followed) => followed,
+            Err(FollowError::Replay(source)) => return Err(failed(source)),
+            Err(FollowError::Record(error)) => {
+                return Err(sinew_core::SimulateError::from(error).into());
+            }
+        };
+        csv = rows.without_rows();
+        steps += followed.steps;
+        if followed.change.is_none() {
+            break (followed, onlooker.is_interrupted());
         }
+        simulation = recorded_scene(&replay)?;
     };
     let session = replay.session();
     if csv.finish()? == Delivery::Whole {
         voice.say(&format!(
-            "{}: {} steps repeated, {} of them since the last reset, {} commands; t = {:.6} s",
+            "{}: the {} steps since the last reset repeated, of {} steps and {} commands; t = {:.6} s",
             simulation.scene().title_or_path(),
+            steps,
             session.steps(),
-            followed.steps,
             session.log().entries().len(),
             session.t()
         ))?;
@@ -84,7 +90,10 @@ pub(super) fn run(
     }
     match followed.diverged {
         Some((t, place)) => Err(Failure::Diverged { t, place }),
-        None if followed.is_stopped && onlooker.is_interrupted() => Err(interrupted(session.t())),
+        None if followed.is_stopped && is_interrupted => Err(Failure::Interrupted {
+            t: session.t(),
+            remedy: no_remedy(),
+        }),
         None => Ok(()),
     }
 }
@@ -114,19 +123,19 @@ pub(crate) fn in_folder(
     Ok(end.ended)
 }
 
+/// Of what is left to be repeated.
 fn onlooker(replay: &Replay, interruption: Interruption) -> Onlooker {
     let course = replay.course();
     let duration = course.steps as f64 * course.dt;
-    Onlooker::new(interruption, course.steps, duration)
+    let taken = replay.session().steps() - course.first;
+    Onlooker::new(interruption, course.steps - taken, duration)
 }
 
 fn probes(arguments: &Arguments) -> &PathBuf {
     &arguments.probes
 }
 
-fn interrupted(t: f64) -> Failure {
-    Failure::Interrupted {
-        t,
-        remedy: "; a session is repeated as a whole, and cannot be gone on with".to_owned(),
-    }
+/// What is said after an interruption.
+fn no_remedy() -> String {
+    "; a session is repeated as a whole, and cannot be gone on with".to_owned()
 }

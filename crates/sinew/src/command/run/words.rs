@@ -20,15 +20,15 @@ fn retaken(times: u64) -> Option<String> {
 /// At most sixteen lines about a run.
 pub(super) fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> Vec<String> {
     let (steps, wall) = end.own;
-    let own = steps as f64 * simulation.dt();
+    let own = steps as f64 * end.stepping.dt();
     let (sweeps, solves) = end.work;
     let mut lines = vec![
         format!(
-            "{}: {} steps of {} s by `{}`: {sweeps} sweeps, {solves} solves",
+            "{}: {} steps of {} by {}: {sweeps} sweeps, {solves} solves",
             simulation.scene().title_or_path(),
             end.steps,
-            simulation.dt(),
-            simulation.settings().integrator,
+            end.stepping.length_in_words(),
+            end.stepping.methods_in_words(),
         ),
         format!(
             "{own:.4} s in {wall:.2} s, outputs included: {:.3} times real time",
