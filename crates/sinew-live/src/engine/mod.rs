@@ -16,6 +16,7 @@ mod trusted;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use sinew_core::Clock;
 use sinew_session::{Command, CommandError, Journal, JournalError, Log, Session};
 
 use self::course::Course;
@@ -82,8 +83,8 @@ pub(crate) struct Engine {
     repaint: bool,
     trusted: Option<Trusted>,
     paused: bool,
-    /// Simulated time (s) up to which all panes have stepped.
-    t: f64,
+    /// Simulated time up to which all panes have stepped, rounded as theirs.
+    clock: Clock,
     /// What they are stepping through.
     ahead: Option<Span>,
     pace: Pace,
@@ -177,7 +178,7 @@ impl Engine {
             repaint: true,
             trusted: None,
             paused: false,
-            t,
+            clock: Clock::at(t),
             ahead: None,
             pace: Pace::new(t),
             pictures: 0,
@@ -200,7 +201,7 @@ impl Engine {
     /// Simulates until it is told to end.
     pub(crate) fn run(mut self, shared: &Arc<Shared>, mut survey: Survey) -> Ended {
         let mut waiting = Waiting::default();
-        self.pace = Pace::new(self.t);
+        self.pace = Pace::new(self.t());
         loop {
             shared.inbox.take(&mut waiting, self.patience(shared));
             if waiting.ends {
@@ -224,7 +225,7 @@ impl Engine {
         let finished = self.journals.into_iter().zip(&logs);
         let unkept = finished.filter_map(|(journal, log)| journal.finish(log).err());
         Ended {
-            t: self.t,
+            t: self.clock.time(),
             scene: self.scene.scene,
             values: self.scene.values,
             unkept: unkept.collect(),
@@ -252,7 +253,7 @@ impl Engine {
         let until_step = match (self.ahead, self.paused) {
             (Some(_), _) => Duration::ZERO,
             (None, true) => IDLE,
-            (None, false) => self.pace.until(self.t + self.tick()),
+            (None, false) => self.pace.until(self.t() + self.tick()),
         };
         let until_picture = match (self.changed, self.last_picture) {
             (true, Some(last)) if shared.clients.want_a_frame() => {
@@ -274,9 +275,23 @@ impl Engine {
         steps.fold(0.0, f64::max)
     }
 
+    /// Simulated time (s) up to which all panes have stepped.
+    fn t(&self) -> f64 {
+        self.clock.time()
+    }
+
+    /// The span that all panes step through next.
+    fn next_span(&self) -> Span {
+        let length = self.tick();
+        let mut end = self.clock;
+        end.advance(length);
+        let until = end.time();
+        Span { until, length }
+    }
+
     /// Simulated time (s) from which on commands take effect.
     fn now(&self) -> f64 {
-        self.ahead.map_or(self.t, |span| span.until)
+        self.ahead.map_or(self.t(), |span| span.until)
     }
 
     /// Steps as far as time on the wall asks for, but not for longer than commands may wait.
@@ -284,22 +299,21 @@ impl Engine {
         let begun = Instant::now();
         let may = || begun.elapsed() < LOOK;
         while may() {
-            let is_due = || !self.paused && self.t + self.tick() <= self.pace.target();
+            let is_due = || !self.paused && self.next_span().until <= self.pace.target();
             if self.ahead.is_none() && !is_due() {
                 break;
             }
             self.take_tick(shared, may);
         }
         if !self.paused {
-            self.pace.note(self.t);
+            self.pace.note(self.t(), self.tick());
         }
     }
 
     /// Steps on through the span that panes are in, or through the next one, as long as it `may`.
     fn take_tick(&mut self, shared: &Shared, may: impl Fn() -> bool) {
-        let length = self.tick();
-        let until = self.t + length;
-        let Span { until, length } = *self.ahead.get_or_insert(Span { until, length });
+        let next = self.next_span();
+        let Span { until, length } = *self.ahead.get_or_insert(next);
         let mut oldest = until;
         for (number, pane) in self.panes.iter_mut().enumerate() {
             let was_stopped = pane.stopped.is_some();
@@ -328,7 +342,7 @@ impl Engine {
                 self.distrust(reason, shared);
             }
         }
-        self.t = until;
+        self.clock.advance(length);
         for hand in self.hands.iter_mut().flatten() {
             hand.forget_before(oldest);
         }
@@ -548,13 +562,12 @@ impl Engine {
             } => self.change_method(pane, |pane| pane.use_option(&key, word, number))?,
             Order::Pause { on } => {
                 self.paused = on;
-                self.pace = Pace::new(self.t);
+                self.pace = Pace::new(self.t());
             }
             Order::Step => {
                 self.paused = true;
-                let length = self.tick();
-                let until = self.t + length;
-                self.ahead.get_or_insert(Span { until, length });
+                let next = self.next_span();
+                self.ahead.get_or_insert(next);
             }
             Order::Reset => self.restart()?,
             Order::Panes { count } => {
@@ -666,9 +679,9 @@ impl Engine {
     fn begin_anew(&mut self) {
         self.hands.fill(None);
         self.under_way.clear();
-        self.t = self.panes.first().map_or(0.0, Pane::t);
+        self.clock = Clock::at(self.panes.first().map_or(0.0, Pane::t));
         self.ahead = None;
-        self.pace = Pace::new(self.t);
+        self.pace = Pace::new(self.t());
         self.set_first_factors();
         (self.news.settings, self.news.went_back) = (true, true);
     }
@@ -682,11 +695,11 @@ impl Engine {
             }
             for pane in &mut self.panes {
                 let (load, factor) = (load.clone(), *factor);
-                pane.command_at(self.t, Command::LoadFactor { load, factor });
+                pane.command_at(self.t(), Command::LoadFactor { load, factor });
             }
             if let Some(trusted) = &mut self.trusted {
                 let (load, factor) = (load.clone(), *factor);
-                trusted.command_at(self.t, Command::LoadFactor { load, factor });
+                trusted.command_at(self.t(), Command::LoadFactor { load, factor });
             }
         }
     }

@@ -148,6 +148,26 @@ fn time_stops_goes_on_by_one_step_and_begins_anew() {
 }
 
 #[test]
+fn a_step_that_is_long_for_the_eye_is_taken_when_its_time_has_come() {
+    let page = open();
+    let mut client = page.connect();
+    client.say(r#"{"id":1,"do":"integrator","pane":0,"name":"cnn-stabilised"}"#);
+    for (id, dt) in [(2, 0.07), (3, 0.2), (4, 1.0)] {
+        client.say(&format!(r#"{{"id":{id},"do":"dt","pane":0,"dt":{dt}}}"#));
+        let t = time(&client.picture(|picture| applied(picture) >= id));
+        client.picture(|picture| time(picture) > t + 1.5 * dt);
+    }
+}
+
+#[test]
+fn the_time_of_a_session_is_a_whole_number_of_steps_rounded_once() {
+    let mut page = open();
+    page.connect().picture(|picture| steps(picture) > 300);
+    let t = page.end().t;
+    assert_eq!(t, (t / 0.002).round() * 0.002);
+}
+
+#[test]
 fn settings_outlive_a_reset_and_are_told_to_all() {
     let page = open();
     let (mut first, mut second) = (page.connect(), page.connect());
@@ -294,7 +314,8 @@ fn panes_of_very_different_steps_do_not_keep_commands_waiting() {
     client.say(r#"{"id":2,"do":"dt","pane":0,"dt":0.000001}"#);
     client.say(r#"{"id":3,"do":"dt","pane":1,"dt":1}"#);
     client.picture(|picture| applied(picture) >= 3);
-    // A million steps are one of the other pane's.
+    // A million steps are one of the other pane's, and are on their way.
+    client.picture(|picture| time(picture) > 0.0);
     let begun = Instant::now();
     for id in 4..24 {
         client.say(&format!(r#"{{"id":{id},"do":"field","name":"strain"}}"#));
