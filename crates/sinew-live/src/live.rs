@@ -113,15 +113,17 @@ impl Live {
                 .is_some_and(|hand| hand.loads.contains(&load.name))
         };
         let title = scene.title().to_owned();
+        let pulled = loads.iter().filter(|load| pulls(load));
         let beginning = Beginning {
-            scene: SceneValues { scene, values },
+            scene: SceneValues {
+                scene,
+                values,
+                files: session.log().header().inputs.clone(),
+                first_factors: pulled.map(|load| (load.name.clone(), 0.0)).collect(),
+            },
             panes,
             second,
             fields: fields.clone(),
-            factors: loads
-                .iter()
-                .map(|load| if pulls(load) { 0.0 } else { 1.0 })
-                .collect(),
             loads: loads.iter().map(|load| load.name.clone()).collect(),
         };
         let scenery = Scenery {

@@ -2,6 +2,7 @@
 
 mod common;
 mod course;
+mod due;
 mod lights;
 mod options;
 mod pace;
@@ -55,6 +56,9 @@ const CALM: Duration = Duration::from_millis(500);
 /// Time between two looks at what journals lack.
 const BETWEEN_ENTRIES: Duration = Duration::from_secs(1);
 
+/// Most cuts that wait for a step, which takes all of them: a blade that goes on while time stops asks for as many as it likes.
+const MOST_CUTS: usize = 256;
+
 /// Most panes.
 const MOST_PANES: usize = 2;
 
@@ -66,10 +70,9 @@ pub(crate) struct Engine {
     second: PaneChoice,
     /// Where each tool is led; `None` as long as it goes its own way.
     hands: Vec<Option<Course>>,
-    /// Names and factors of the loads, and those at the beginning.
+    /// Names and factors of the loads.
     loads: Vec<String>,
     factors: Vec<f64>,
-    first_factors: Vec<f64>,
     /// The surface of the body before all cuts.
     uncut: Surface,
     topology: Topology,
@@ -107,13 +110,12 @@ struct Span {
     length: f64,
 }
 
-/// A command that steps have taken from a simulated time (s) on.
+/// The last command of a client that steps have taken from a simulated time (s) on.
 #[derive(Clone, Copy, Debug)]
 struct UnderWay {
     client: u32,
     id: u32,
     arrival: f64,
-    is_pose: bool,
 }
 
 /// What pages have not been told yet.
@@ -131,7 +133,6 @@ pub(crate) struct Beginning {
     pub(crate) second: PaneChoice,
     pub(crate) fields: Vec<Field>,
     pub(crate) loads: Vec<String>,
-    pub(crate) factors: Vec<f64>,
 }
 
 impl Engine {
@@ -147,9 +148,8 @@ impl Engine {
             second,
             fields,
             loads,
-            factors,
         } = beginning;
-        let mut panes = vec![Pane::new(session)?];
+        let mut panes = vec![Pane::new(session, &scene)?];
         while panes.len() < choices.len() {
             panes.push(Pane::of(&scene)?);
         }
@@ -166,9 +166,8 @@ impl Engine {
             panes,
             second,
             hands: vec![None; tools],
+            factors: Vec::new(),
             loads,
-            first_factors: factors.clone(),
-            factors,
             uncut,
             topology: Topology::default(),
             cut_at: None,
@@ -189,7 +188,7 @@ impl Engine {
             journals: Vec::new(),
             last_entries: Instant::now(),
         };
-        engine.set_first_factors();
+        engine.take_first_factors();
         Ok(engine)
     }
 
@@ -346,12 +345,29 @@ impl Engine {
         for hand in self.hands.iter_mut().flatten() {
             hand.forget_before(oldest);
         }
+        self.tell_applied(shared);
+    }
+
+    /// Tells clients of commands that steps have taken.
+    fn tell_applied(&mut self, shared: &Shared) {
+        let t = self.t();
         self.under_way.retain(|command| {
-            let is_there = command.arrival <= until + 1e-12;
+            let is_there = command.arrival <= t + 1e-12;
             if is_there {
                 shared.clients.applied(command.client, command.id);
             }
             !is_there
+        });
+    }
+
+    /// Keeps a command of a client until steps have taken it, in the place of those that they take no sooner: a client is told of its last one alone.
+    fn is_under_way(&mut self, client: u32, id: u32, arrival: f64) {
+        self.under_way
+            .retain(|other| other.client != client || other.arrival < arrival);
+        self.under_way.push(UnderWay {
+            client,
+            id,
+            arrival,
         });
     }
 
@@ -434,6 +450,7 @@ impl Engine {
                 shared.clients.tell(client, &Event::Refused { reason });
             }
         }
+        self.tell_applied(shared);
     }
 
     /// Tells pages what is new, but not too often.
@@ -473,21 +490,18 @@ impl Engine {
         let course =
             self.hands[tool].get_or_insert_with(|| Course::at_rest(t, here.unwrap_or_default()));
         course.go(t, pose, arrival);
-        // Also while time stops it holds no more than one pose of each client at a time.
-        self.under_way
-            .retain(|other| !other.is_pose || other.client != client || other.arrival < arrival);
-        self.under_way.push(UnderWay {
-            client,
-            id,
-            arrival,
-            is_pose: true,
-        });
+        self.is_under_way(client, id, arrival);
         Ok(())
     }
 
     /// Gives all panes a command that takes effect with their next steps.
     fn give(&mut self, client: u32, id: u32, command: Command) -> Result<(), String> {
         self.check(&command)?;
+        if matches!(command, Command::Cut { .. }) && self.waiting_cuts() >= MOST_CUTS {
+            return Err(format!(
+                "{MOST_CUTS} cuts wait for the next step, which is the most: let time go on"
+            ));
+        }
         let t = self.now();
         for pane in &mut self.panes {
             pane.command_at(t, command.clone());
@@ -495,13 +509,15 @@ impl Engine {
         if let Some(trusted) = &mut self.trusted {
             trusted.command_at(t, command);
         }
-        self.under_way.push(UnderWay {
-            client,
-            id,
-            arrival: t + self.tick(),
-            is_pose: false,
-        });
+        self.is_under_way(client, id, t + self.tick());
         Ok(())
+    }
+
+    /// Cuts that wait for a step.
+    fn waiting_cuts(&self) -> usize {
+        let of_panes = self.panes.iter().map(Pane::waiting_cuts);
+        let of_trusted = self.trusted.iter().map(Trusted::waiting_cuts);
+        of_panes.chain(of_trusted).max().unwrap_or(0)
     }
 
     /// Changes the method of a pane. One that had stopped begins anew, and so do all.
@@ -678,30 +694,24 @@ impl Engine {
     /// Lets go of all, with panes at the beginning.
     fn begin_anew(&mut self) {
         self.hands.fill(None);
-        self.under_way.clear();
         self.clock = Clock::at(self.panes.first().map_or(0.0, Pane::t));
+        // What was under way comes to nothing, and nobody has to wait for it.
+        for command in &mut self.under_way {
+            command.arrival = self.clock.time();
+        }
         self.ahead = None;
         self.pace = Pace::new(self.t());
-        self.set_first_factors();
+        self.take_first_factors();
         (self.news.settings, self.news.went_back) = (true, true);
     }
 
-    /// The factors of loads as they are at the beginning.
-    fn set_first_factors(&mut self) {
-        self.factors.clone_from(&self.first_factors);
-        for (load, factor) in self.loads.iter().zip(&self.factors) {
-            if *factor == 1.0 {
-                continue;
-            }
-            for pane in &mut self.panes {
-                let (load, factor) = (load.clone(), *factor);
-                pane.command_at(self.t(), Command::LoadFactor { load, factor });
-            }
-            if let Some(trusted) = &mut self.trusted {
-                let (load, factor) = (load.clone(), *factor);
-                trusted.command_at(self.t(), Command::LoadFactor { load, factor });
-            }
-        }
+    /// The factors of loads as all panes have them at the beginning.
+    fn take_first_factors(&mut self) {
+        let first = &self.scene.first_factors;
+        let factor_of = |load: &String| first.iter().find(|(name, _)| name == load);
+        let factors = self.loads.iter();
+        let factors = factors.map(|load| factor_of(load).map_or(1.0, |(_, factor)| *factor));
+        self.factors = factors.collect();
     }
 
     fn settings(&self) -> Event {

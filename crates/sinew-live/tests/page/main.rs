@@ -6,3 +6,6 @@
 mod common;
 mod cube;
 mod cuts;
+mod files;
+mod loads;
+mod pauses;
