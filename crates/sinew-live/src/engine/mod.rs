@@ -199,14 +199,18 @@ impl Engine {
 
     /// Simulates until it is told to end.
     pub(crate) fn run(mut self, shared: &Arc<Shared>, mut survey: Survey) -> Ended {
-        let mut waiting = Waiting::default();
+        let (mut waiting, mut is_done) = (Waiting::default(), true);
         self.pace = Pace::new(self.t());
         loop {
-            shared.inbox.take(&mut waiting, self.patience(shared));
+            let patience = match is_done {
+                true => self.patience(shared),
+                false => Duration::ZERO,
+            };
+            shared.inbox.take(&mut waiting, patience);
             if waiting.ends {
                 return self.end();
             }
-            self.obey(&mut waiting, shared);
+            is_done = self.obey(&mut waiting, shared);
             self.tell(shared);
             self.advance(shared);
             self.show(shared);
@@ -425,12 +429,16 @@ impl Engine {
         self.news.settings = true;
     }
 
-    fn obey(&mut self, waiting: &mut Waiting, shared: &Shared) {
+    /// Does what pages ask for, but not for longer than pictures may wait; whether nothing is left.
+    fn obey(&mut self, waiting: &mut Waiting, shared: &Shared) -> bool {
+        let begun = Instant::now();
         for client in waiting.entered.drain(..) {
             shared.clients.tell(client, &self.settings());
             self.changed = true;
         }
-        for Request { client, id, what } in waiting.orders.drain(..) {
+        while begun.elapsed() < LOOK
+            && let Some(Request { client, id, what }) = waiting.orders.pop_front()
+        {
             let is_pose = matches!(what, Order::Pose { .. });
             let waits = is_pose || matches!(what, Order::Load { .. } | Order::Cut { .. });
             let outcome = self.carry_out(client, id, what, shared);
@@ -445,12 +453,16 @@ impl Engine {
                 (self.changed, self.repaint) = (true, true);
             }
         }
-        for Request { client, id, what } in waiting.poses.drain(..) {
+        let is_done = waiting.orders.is_empty();
+        // Those that came behind orders that are left go on waiting with them.
+        let poses = if is_done { waiting.poses.len() } else { 0 };
+        for Request { client, id, what } in waiting.poses.drain(..poses) {
             if let Err(reason) = self.lead(client, id, what) {
                 shared.clients.tell(client, &Event::Refused { reason });
             }
         }
         self.tell_applied(shared);
+        is_done
     }
 
     /// Tells pages what is new, but not too often.
