@@ -11,7 +11,7 @@ use std::time::Duration;
 use futures_util::future::{Either, select};
 use sinew_fem::{Law, LoadKind};
 use sinew_scene::{BodyModel, Scene, Simulation};
-use sinew_session::{Journal, Session};
+use sinew_session::{Journal, JournalError, Session};
 use tokio::net::TcpListener;
 use tokio::runtime::{Builder, Runtime};
 
@@ -162,8 +162,11 @@ impl Live {
     }
 
     /// Keeps a file for each pane up to date with its commands, so that a session that is killed can be repeated. Commands reach it within a second.
-    pub fn keep_logs(&mut self, journals: Vec<Journal>) {
-        self.engine.keep_logs(journals);
+    ///
+    /// # Errors
+    /// [`JournalError`] where a file cannot be written.
+    pub fn keep_logs(&mut self, journals: Vec<Journal>) -> Result<(), JournalError> {
+        self.engine.keep_logs(journals)
     }
 
     /// Serves the page and simulates until `ends` says so.

@@ -192,9 +192,10 @@ impl Engine {
         Ok(engine)
     }
 
-    /// Keeps files up to date with the logs of the panes.
-    pub(crate) fn keep_logs(&mut self, journals: Vec<Journal>) {
+    /// Keeps files up to date with the logs of the panes, beginning with what they belong to.
+    pub(crate) fn keep_logs(&mut self, journals: Vec<Journal>) -> Result<(), JournalError> {
         self.journals = journals;
+        self.keep_up()
     }
 
     /// Simulates until it is told to end.
@@ -242,10 +243,9 @@ impl Engine {
         journals.try_for_each(|(journal, pane)| journal.keep_up(pane.log()))
     }
 
-    /// Tells pages once where commands are no longer kept in a file.
-    fn report_journals(&mut self, kept: Result<(), JournalError>, shared: &Shared) {
+    /// Tells pages where commands are no longer kept in a file, which is tried once more in the end.
+    fn report_journals(&self, kept: Result<(), JournalError>, shared: &Shared) {
         if let Err(error) = kept {
-            self.journals.clear();
             let reason = format!("commands are kept in memory alone from now on: {error}");
             shared.clients.tell_all(&Event::Refused { reason });
         }
