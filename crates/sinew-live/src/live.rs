@@ -22,7 +22,7 @@ use crate::pane_choice::PaneChoice;
 use crate::picture::{Colours, Surface};
 use crate::protocol::{HandFacts, Hertz, LoadFacts, Scenery};
 use crate::scene_values::SceneValues;
-use crate::server::{Shared, Token, router};
+use crate::server::{Guests, Shared, Stay, Token, router};
 use crate::tool_facts::tools_of;
 
 /// Time between two looks at whether the page shall end.
@@ -192,8 +192,9 @@ impl Live {
                 .map_err(LiveError::Serve)?
         };
         let router = router(Arc::clone(&shared), token);
+        let service = router.into_make_service_with_connect_info::<Stay>();
         let outcome = runtime.block_on(async {
-            let server = pin!(axum::serve(listener, router).into_future());
+            let server = pin!(axum::serve(Guests::of(listener), service).into_future());
             let end = pin!(async {
                 let mut look = tokio::time::interval(LOOK);
                 while !ends() && !simulated.is_finished() {

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may end so")]
 
 mod common;
+mod connections;
 mod cube;
 mod cuts;
 mod files;
