@@ -400,7 +400,7 @@ impl Engine {
         let points: Vec<usize> = seen.map(|(_, surface)| surface.points.len()).collect();
         let mut frame = FrameWriter::new(&head, &points, self.hands.len());
         for pane in &mut self.panes {
-            pane.write(&mut frame, &self.uncut, self.field, self.repaint);
+            pane.write(&mut frame, (&self.uncut, &self.hands), self.field, self.repaint);
         }
         let Topology { epoch, message } = &self.topology;
         shared.clients.show(frame.finish(), *epoch, message);

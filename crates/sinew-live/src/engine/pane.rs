@@ -501,11 +501,11 @@ impl Pane {
         Some((body(&self.session)?, &self.shown.as_ref()?.surface))
     }
 
-    /// Writes it into a picture, with the depth of tools in the body at rest before all cuts.
+    /// Writes it into a picture, with the depth of tools in the body at rest before all cuts, and where their hands are.
     pub(crate) fn write(
         &mut self,
         frame: &mut FrameWriter,
-        uncut: &Surface,
+        (uncut, hands): (&Surface, &[Option<Course>]),
         field: Field,
         anew: bool,
     ) {
@@ -540,7 +540,6 @@ impl Pane {
             ms_per_step: self.ms_per_step,
             error: self.error,
             lag: self.lag,
-            largest: shown.largest(),
             saturated,
             settling: self.settling.ratio(),
             lights: colours,
@@ -553,24 +552,24 @@ impl Pane {
             cuts,
         };
         frame.pane(&head, shown.surface.points.len(), self.impulses.len());
-        for (tool, impulse) in self.impulses.iter_mut().enumerate() {
+        for ((tool, impulse), hand) in self.impulses.iter_mut().enumerate().zip(hands) {
             let Some(tools) = tools else { continue };
             let (pose, report) = (self.session.tool_pose(tool), tools.report(state, tool));
             let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
+            let own = [x, y, z, a, b, c];
             let force = match self.span > 0.0 {
                 true => impulse.map(|impulse| impulse / self.span),
                 false => report.force,
             };
             let shape = &tools.tools()[tool].shape;
             frame.tool(&ToolHead {
-                pose: [x, y, z, a, b, c],
+                pose: own,
                 force,
                 depth: uncut.depth(shape, &pose),
-                work: report.work,
                 gap: tools
                     .deepest(&state.u, &pose, tool)
                     .map_or(f64::INFINITY, |depth| depth.gap),
-                contacts: report.contacts as f64,
+                hand: hand.as_ref().map_or(own, Course::end),
             });
             *impulse = [0.0; 3];
         }

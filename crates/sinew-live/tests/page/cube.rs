@@ -125,7 +125,7 @@ fn a_pose_is_where_the_tool_goes_and_the_picture_says_which_command_it_contains(
     let feels = |picture: &[u8]| f64_at(picture, TOOL + 64) > 0.0;
     let picture = client.picture(feels);
     assert!(
-        f64_at(&picture, TOOL + 88) > -1e-12,
+        f64_at(&picture, TOOL + 80) > -1e-12,
         "no node is in the ball"
     );
 }
@@ -238,7 +238,7 @@ fn another_shape_of_the_tool_is_another_scene_that_begins_anew() {
     );
     let picture = client.picture(|picture| applied(picture) >= 5);
     assert!((height(&picture) - 0.145).abs() < 1e-12);
-    let gap = f64_at(&picture, TOOL + 88);
+    let gap = f64_at(&picture, TOOL + 80);
     assert!((gap - 0.015).abs() < 1e-4, "{gap} m");
     let later = page.connect().event("scenery");
     assert_eq!(later["tools"][0]["parts"][0]["sizes"][0], 0.03);
@@ -447,7 +447,7 @@ fn energy_is_counted_from_the_beginning_also_for_a_page_that_comes_late() {
     let picture = late.picture(|picture| time(picture) > 0.0);
     let number = |place: usize| f64_at(&picture, PANE + 24 + 8 * place);
     let [kinetic, elastic, tool, loads] = [0, 1, 2, 3].map(number);
-    let balance = f64_at(&picture, PANE + 128);
+    let balance = f64_at(&picture, PANE + 120);
     assert!(tool.abs() > 1e-6, "{tool} J");
     // It began at rest. What is gone is what damping took.
     let expected = kinetic + elastic - tool - loads;
