@@ -58,7 +58,8 @@ impl Waiting {
         let last = self.orders.iter().enumerate().rev();
         let mut settings =
             last.map_while(|(place, order)| Some((place, order.client, setting(&order.what)?)));
-        let same = settings.find(|(_, client, other)| *client == request.client && *other == wanted);
+        let same =
+            settings.find(|(_, client, other)| *client == request.client && *other == wanted);
         same.map(|(place, ..)| place)
     }
 }

@@ -44,7 +44,7 @@ const LOOK: Duration = Duration::from_millis(10);
 /// Shortest time between two pictures: with a credit to spare, the second is fresh when the screen is drawn.
 const BETWEEN_PICTURES: Duration = Duration::from_millis(8);
 
-/// Shortest time between two tellings of the settings, so that one page's commands do not flood the others.
+/// Shortest time between two settings messages, so that one page's commands do not flood the others.
 const BETWEEN_TELLINGS: Duration = Duration::from_millis(15);
 
 /// Longest wait where there is nothing to do.
@@ -400,7 +400,12 @@ impl Engine {
         let points: Vec<usize> = seen.map(|(_, surface)| surface.points.len()).collect();
         let mut frame = FrameWriter::new(&head, &points, self.hands.len());
         for pane in &mut self.panes {
-            pane.write(&mut frame, (&self.uncut, &self.hands), self.field, self.repaint);
+            pane.write(
+                &mut frame,
+                (&self.uncut, &self.hands),
+                self.field,
+                self.repaint,
+            );
         }
         let Topology { epoch, message } = &self.topology;
         shared.clients.show(frame.finish(), *epoch, message);

@@ -1,4 +1,4 @@
-//! A session beside others that follow the same hand.
+//! One pane: a session and what is measured of it.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -28,7 +28,7 @@ const SLACK: f64 = 1e-6;
 /// The option of an integrator that limits velocities.
 const GUARD: &str = "saturation";
 
-/// A session with what is known of its motion.
+/// A session and what is measured of its motion.
 pub(crate) struct Pane {
     session: Session,
     due: Due,

@@ -40,7 +40,7 @@ struct Span {
     looks: Vec<Look>,
 }
 
-/// A pane as it was.
+/// A pane's displacement at a time, to be compared.
 struct Look {
     pane: usize,
     /// Its time (s).
