@@ -14,7 +14,7 @@ pub(crate) const FIRST_CREDITS: u32 = 2;
 /// Most credits of a page, however many it grants.
 const MOST_CREDITS: u32 = 4;
 
-/// Short messages that may wait for a page, several for each order that may wait in the inbox: one that reads nothing is let go when more do.
+/// Messages queued for one page; a page with more unread ones is disconnected. Several for each order that may wait in the inbox.
 const MOST_WAITING: usize = 1024;
 
 /// Most pages at once.

@@ -1,5 +1,7 @@
 //! Errors of the live page.
 
+use std::path::PathBuf;
+
 use sinew_core::OptionError;
 use sinew_scene::SceneError;
 use sinew_session::{CommandError, SessionError};
@@ -20,6 +22,15 @@ pub enum LiveError {
     /// An integrator that does not exist, or an option that it does not take.
     #[error(transparent)]
     Option(#[from] OptionError),
+    /// A file of the scene that became another one while the page was open.
+    #[error(
+        "{path} has changed since this page was opened, so that its body would be another one: end `sinew live` and start it again",
+        path = .path.display()
+    )]
+    Changed {
+        /// The file.
+        path: PathBuf,
+    },
     /// A scene without a body.
     #[error("a single mass has no surface to show; `sinew run` writes its motion")]
     NoBody,

@@ -36,7 +36,8 @@ pub(crate) struct Place {
     pub(crate) pose: [f64; 6],
 }
 
-/// What waits for the simulation: of poses the latest of each tool, of all else everything in order.
+/// What waits for the simulation: of poses the latest of each tool, of a client's settings of one kind that follow each other the last, of all else everything
+/// in order.
 #[derive(Debug, Default)]
 pub(crate) struct Waiting {
     /// The latest pose asked for, of each tool for which there is one.
@@ -48,6 +49,28 @@ pub(crate) struct Waiting {
     /// Whether the simulation shall end.
     pub(crate) ends: bool,
     woken: bool,
+}
+
+impl Waiting {
+    /// The place of an order of the same client for the same step or option, behind which nothing but steps and options wait.
+    fn idle_beside(&self, request: &Request<Order>) -> Option<usize> {
+        let wanted = setting(&request.what)?;
+        let last = self.orders.iter().enumerate().rev();
+        let mut settings =
+            last.map_while(|(place, order)| Some((place, order.client, setting(&order.what)?)));
+        let same =
+            settings.find(|(_, client, other)| *client == request.client && *other == wanted);
+        same.map(|(place, ..)| place)
+    }
+}
+
+/// The pane and the key of an order that sets a step or an option; a step has no key.
+fn setting(order: &Order) -> Option<(usize, Option<&str>)> {
+    match order {
+        Order::Dt { pane, .. } => Some((*pane, None)),
+        Order::Option { pane, key, .. } => Some((*pane, Some(key))),
+        _ => None,
+    }
 }
 
 /// The one way from pages to the simulation.
@@ -72,9 +95,13 @@ impl Inbox {
         self.wake(waiting);
     }
 
-    /// Takes an order behind the others; `false` where too many wait.
+    /// Takes an order behind the others; `false` where too many wait. A setting takes the place of one that it makes idle: a slider that is dragged asks for
+    /// hundreds, each of which sets a method up.
     pub(crate) fn order(&self, request: Request<Order>) -> bool {
         let mut waiting = self.lock();
+        if let Some(place) = waiting.idle_beside(&request) {
+            waiting.orders.remove(place);
+        }
         let has_room = waiting.orders.len() < MOST_ORDERS;
         if has_room {
             waiting.orders.push_back(request);
@@ -102,18 +129,18 @@ impl Inbox {
         self.wake(waiting);
     }
 
-    /// Moves what waits into `taken`, which keeps its room, after at most `patience` of waiting for anything.
+    /// Moves what waits into `taken`, which keeps its room, after at most `patience` of waiting for anything. As long as orders are left there, others and the
+    /// poses behind them go on waiting here.
     pub(crate) fn take(&self, taken: &mut Waiting, patience: Duration) {
         let mut waiting = self.lock();
         if !waiting.woken && !patience.is_zero() {
             let slept = self.wake.wait_timeout(waiting, patience);
             waiting = slept.unwrap_or_else(PoisonError::into_inner).0;
         }
-        taken.poses.clear();
-        taken.poses.append(&mut waiting.poses);
-        taken.orders.clear();
-        taken.orders.append(&mut waiting.orders);
-        taken.entered.clear();
+        if taken.orders.is_empty() {
+            taken.poses.append(&mut waiting.poses);
+            taken.orders.append(&mut waiting.orders);
+        }
         taken.entered.append(&mut waiting.entered);
         taken.ends = waiting.ends;
         waiting.woken = false;
@@ -151,8 +178,54 @@ mod tests {
         assert_eq!(taken.poses.iter().map(ids).collect::<Vec<_>>(), [4, 3]);
         let order: Vec<u32> = taken.orders.iter().map(|order| order.id).collect();
         assert_eq!(order, [0, 1, 2, 3, 4]);
+        // What is left there is done before others.
+        assert!(inbox.order(Request::of(1, 5, Order::Step)));
+        inbox.pose(pose(0, 6));
+        taken.orders.truncate(1);
+        taken.poses.clear();
         inbox.take(&mut taken, Duration::ZERO);
-        assert!(taken.poses.is_empty() && taken.orders.is_empty());
+        assert_eq!((taken.orders.len(), taken.poses.len()), (1, 0));
+        taken.orders.clear();
+        inbox.take(&mut taken, Duration::ZERO);
+        assert_eq!((taken.orders[0].id, taken.poses[0].id), (5, 6));
+    }
+
+    #[test]
+    fn of_the_steps_and_options_of_a_dragged_slider_the_last_is_kept() {
+        let (inbox, mut taken) = (Inbox::default(), Waiting::default());
+        let mut id = 0;
+        let mut order = |client: u32, order: Order| {
+            id += 1;
+            assert!(inbox.order(Request::of(client, id, order)));
+        };
+        let dt = |pane: usize, dt: f64| Order::Dt { pane, dt };
+        let option = |key: &str, number: f64| Order::Option {
+            pane: 0,
+            key: key.to_owned(),
+            word: None,
+            number: Some(number),
+        };
+        for k in 0..1000 {
+            order(1, dt(0, f64::from(k)));
+            order(1, option("sweeps", f64::from(k)));
+            order(1, option("saturation", f64::from(k)));
+            order(2, dt(0, 0.5));
+        }
+        order(1, Order::Step);
+        order(1, dt(0, 0.25));
+        order(1, dt(1, 0.25));
+        inbox.take(&mut taken, Duration::ZERO);
+        let orders: Vec<Order> = taken.orders.drain(..).map(|order| order.what).collect();
+        let expected = [
+            dt(0, 999.0),
+            option("sweeps", 999.0),
+            option("saturation", 999.0),
+            dt(0, 0.5),
+            Order::Step,
+            dt(0, 0.25),
+            dt(1, 0.25),
+        ];
+        assert_eq!(orders, expected);
     }
 
     #[test]

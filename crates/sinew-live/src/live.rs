@@ -11,7 +11,7 @@ use std::time::Duration;
 use futures_util::future::{Either, select};
 use sinew_fem::{Law, LoadKind};
 use sinew_scene::{BodyModel, Scene, Simulation};
-use sinew_session::{Journal, Session};
+use sinew_session::{Journal, JournalError, Session};
 use tokio::net::TcpListener;
 use tokio::runtime::{Builder, Runtime};
 
@@ -22,7 +22,7 @@ use crate::pane_choice::PaneChoice;
 use crate::picture::{Colours, Surface};
 use crate::protocol::{HandFacts, Hertz, LoadFacts, Scenery};
 use crate::scene_values::SceneValues;
-use crate::server::{Shared, Token, router};
+use crate::server::{Guests, Shared, Stay, Token, router};
 use crate::tool_facts::tools_of;
 
 /// Time between two looks at whether the page shall end.
@@ -113,15 +113,17 @@ impl Live {
                 .is_some_and(|hand| hand.loads.contains(&load.name))
         };
         let title = scene.title().to_owned();
+        let pulled = loads.iter().filter(|load| pulls(load));
         let beginning = Beginning {
-            scene: SceneValues { scene, values },
+            scene: SceneValues {
+                scene,
+                values,
+                files: session.log().header().inputs.clone(),
+                first_factors: pulled.map(|load| (load.name.clone(), 0.0)).collect(),
+            },
             panes,
             second,
             fields: fields.clone(),
-            factors: loads
-                .iter()
-                .map(|load| if pulls(load) { 0.0 } else { 1.0 })
-                .collect(),
             loads: loads.iter().map(|load| load.name.clone()).collect(),
         };
         let scenery = Scenery {
@@ -160,8 +162,11 @@ impl Live {
     }
 
     /// Keeps a file for each pane up to date with its commands, so that a session that is killed can be repeated. Commands reach it within a second.
-    pub fn keep_logs(&mut self, journals: Vec<Journal>) {
-        self.engine.keep_logs(journals);
+    ///
+    /// # Errors
+    /// [`JournalError`] where a file cannot be written.
+    pub fn keep_logs(&mut self, journals: Vec<Journal>) -> Result<(), JournalError> {
+        self.engine.keep_logs(journals)
     }
 
     /// Serves the page and simulates until `ends` says so.
@@ -187,8 +192,9 @@ impl Live {
                 .map_err(LiveError::Serve)?
         };
         let router = router(Arc::clone(&shared), token);
+        let service = router.into_make_service_with_connect_info::<Stay>();
         let outcome = runtime.block_on(async {
-            let server = pin!(axum::serve(listener, router).into_future());
+            let server = pin!(axum::serve(Guests::of(listener), service).into_future());
             let end = pin!(async {
                 let mut look = tokio::time::interval(LOOK);
                 while !ends() && !simulated.is_finished() {

@@ -1,12 +1,19 @@
-//! A scene with the values that a command line and a page set in it.
+//! A scene with the values that a command line and a page set in it, and what its sessions begin with.
 
 use sinew_scene::{Scene, SceneError};
+use sinew_session::{InputFile, Log};
 
-/// A scene with the values that a command line and a page set in its file, as `KEY=VALUE`.
+use crate::error::LiveError;
+
+/// A scene with the values that a command line and a page set in its file, as `KEY=VALUE`, and what each session of it begins with.
 #[derive(Clone, Debug)]
 pub(crate) struct SceneValues {
     pub(crate) scene: Scene,
     pub(crate) values: Vec<String>,
+    /// The files of the scene as they were when the page was opened.
+    pub(crate) files: Vec<InputFile>,
+    /// Loads whose factors are other than 1 at the beginning.
+    pub(crate) first_factors: Vec<(String, f64)>,
 }
 
 impl SceneValues {
@@ -17,6 +24,22 @@ impl SceneValues {
         let is_other = |text: &&String| text.split_once('=').is_none_or(|(own, _)| own != key);
         let mut values: Vec<String> = self.values.iter().filter(is_other).cloned().collect();
         values.push(assignment);
-        Ok(Self { scene, values })
+        Ok(Self {
+            scene,
+            values,
+            ..self.clone()
+        })
+    }
+
+    /// Refuses the session of this log where a file of the scene is another one now: its body could not be compared with those that are shown.
+    pub(crate) fn check_files(&self, log: &Log) -> Result<(), LiveError> {
+        let now = &log.header().inputs;
+        let changed = now.iter().find(|file| !self.files.contains(file));
+        match changed {
+            Some(file) => Err(LiveError::Changed {
+                path: file.path.clone(),
+            }),
+            None => Ok(()),
+        }
     }
 }

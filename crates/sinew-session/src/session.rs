@@ -251,7 +251,7 @@ impl Session {
         if self.failure.is_some() && command != Command::Reset {
             return Err(CommandError::Failed);
         }
-        self.check(&command)?;
+        self.check_words(&command)?;
         let reached = self.reached;
         match &command {
             Command::Pose {
@@ -304,12 +304,21 @@ impl Session {
         Ok(())
     }
 
-    /// Checks what can be told of a command before it is given: its names and its numbers. Whether a step can be taken by a method shows when
-    /// the command is given.
+    /// Checks what can be told of a command before it is given: its names, its numbers and, for the first factor of a load, whether the method takes
+    /// loads that are not known beforehand. Whether a step can be taken by another method shows when that is given.
     ///
     /// # Errors
     /// [`CommandError`] for a command that [`Session::command`] refuses as well.
     pub fn check(&self, command: &Command) -> Result<(), CommandError> {
+        self.check_words(command)?;
+        if matches!(command, Command::LoadFactor { .. }) && !self.drives_loads() {
+            self.driven_method()?;
+        }
+        Ok(())
+    }
+
+    /// Checks names and numbers of a command.
+    fn check_words(&self, command: &Command) -> Result<(), CommandError> {
         match command {
             Command::Pose {
                 tool,
@@ -388,27 +397,36 @@ impl Session {
 
     fn turn(&mut self, name: &str, factor: f64) -> Result<(), CommandError> {
         let place = self.load(name)?;
-        if Arc::ptr_eq(&self.simulation, &self.body) {
-            let driven = Arc::new(self.driven()?);
-            let (id, options) = &self.method.asked;
-            let mut method = Method::new(&driven, id, options, self.method.dt)?;
+        if !self.drives_loads() {
+            (self.simulation, self.method) = self.driven_method()?;
             // These loads give the forces that led to the state.
-            let before = self.state.loads.take();
-            let tried = try_step(
-                driven.system(),
-                &self.inputs,
-                &self.state,
-                &mut self.trial,
-                &mut method,
-            );
-            if tried.is_err() {
-                self.state.loads = before;
-            }
-            tried?;
-            (self.simulation, self.method) = (driven, method);
+            self.state.loads = None;
         }
         self.loads[place].next = Some(factor);
         Ok(())
+    }
+
+    /// Whether loads follow inputs.
+    fn drives_loads(&self) -> bool {
+        !Arc::ptr_eq(&self.simulation, &self.body)
+    }
+
+    /// The scene with loads that follow inputs, and the method, which can take a step of it.
+    fn driven_method(&self) -> Result<(Arc<Simulation>, Method), CommandError> {
+        let driven = Arc::new(self.driven()?);
+        let (id, options) = &self.method.asked;
+        let mut method = Method::new(&driven, id, options, self.method.dt)?;
+        let mut state = self.state.clone();
+        state.loads = None;
+        let mut trial = state.clone();
+        try_step(
+            driven.system(),
+            &self.inputs,
+            &state,
+            &mut trial,
+            &mut method,
+        )?;
+        Ok((driven, method))
     }
 
     /// Goes on with another method, if a step can be taken with it.
@@ -473,6 +491,7 @@ impl Session {
     /// Cuts what hands and the scene cut at the beginning of a step that ends at `end` (s).
     fn cut_before(&mut self, end: f64) -> Result<(), SessionStepError> {
         self.change = None;
+        let drives_loads = self.drives_loads();
         let Some(cutter) = &mut self.cutter else {
             return Ok(());
         };
@@ -481,7 +500,6 @@ impl Session {
             return Ok(());
         }
         let (energy, before) = (cutter.totals().energy(), self.state.clone());
-        let drives_loads = !Arc::ptr_eq(&self.simulation, &self.body);
         let (state, inputs) = (&mut self.state, &self.inputs);
         let mut all_acts = || {
             let mut changed: Option<Simulation> = None;

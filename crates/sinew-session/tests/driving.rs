@@ -236,14 +236,14 @@ fn methods_that_must_know_loads_beforehand_refuse_factors_by_name() {
                 integrator = \"modal\"\ndt = 0.01\n";
     let (mut session, mut undisturbed) = (session(text), session(text));
     steps(&mut session, 10);
-    let said = session
-        .command(factor("force", 2.0))
-        .unwrap_err()
-        .to_string();
-    assert!(
-        said.contains("`modal` needs loads known beforehand"),
-        "{said}"
-    );
+    let checked = session.check(&factor("force", 2.0)).unwrap_err();
+    let given = session.command(factor("force", 2.0)).unwrap_err();
+    for said in [checked.to_string(), given.to_string()] {
+        assert!(
+            said.contains("`modal` needs loads known beforehand"),
+            "{said}"
+        );
+    }
     steps(&mut session, 10);
     steps(&mut undisturbed, 20);
     assert!(session.state() == undisturbed.state());

@@ -353,6 +353,11 @@ fn a_session_that_is_killed_leaves_its_commands_beside_its_folder() {
     let (code, said) = folder.says(&arguments);
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("the log has no end"), "{said}");
+    // What it left for a second pane is empty, and holds up nobody.
+    assert_eq!(fs::read(folder.path("it-second.session.log")).unwrap(), b"");
+    fs::remove_file(&path).unwrap();
+    let (code, said) = folder.live(&["--record", "it"]).interrupt();
+    assert_eq!(code, Some(0), "{said}");
 }
 
 #[test]

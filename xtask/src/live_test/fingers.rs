@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use sinew_bench::output::say;
 
-use super::bench::{Bench, complaints};
+use super::bench::{Bench, complaints, require};
 use super::blade::{SLAB, on_page};
 use super::cdp::Tab;
 use super::hand::{PATIENCE, grip, open};
@@ -50,10 +50,19 @@ pub(super) fn press_pull_and_cut(bench: &Bench) -> Result<(), Failure> {
     tab.wait_for(&format!("{PULLS}.some((pull) => pull !== 0)"), PATIENCE)?;
     let other = [at[0] + 80.0, at[1] + 60.0];
     tab.touch("touchStart", &[at, other])?;
+    // While both are down: lifting them would end a pull in any case.
+    tab.wait_for(&format!("{PULLS}.every((pull) => pull === 0)"), PATIENCE)?;
+    let corner = [0.0, 0.0, 0.2];
+    let [x, y] = on_page(&mut tab, corner)?;
     for number in 1..=10 {
         let wider = [other[0] + 4.0 * f64::from(number), other[1]];
         tab.touch("touchMove", &[at, wider])?;
     }
+    let [right, down] = on_page(&mut tab, corner)?;
+    let moved = (right - x).hypot(down - y);
+    require(moved > 5.0, || {
+        format!("two fingers move the view by {moved} pixels")
+    })?;
     tab.touch("touchEnd", &[at])?;
     tab.touch("touchEnd", &[])?;
     tab.wait_for(&format!("{PULLS}.every((pull) => pull === 0)"), PATIENCE)?;

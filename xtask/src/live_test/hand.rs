@@ -186,7 +186,7 @@ pub(super) fn random_input(bench: &Bench, seconds: u64) -> Result<(), Failure> {
     let mut tab = open(bench, &served)?;
     let mut chance = Chance(0x9e37_79b9_7f4a_7c15);
     let begun = Instant::now();
-    let (mut commands, mut settled) = (0_u32, None);
+    let (mut commands, mut settled) = (0_u32, f64::NAN);
     while begun.elapsed() < Duration::from_secs(seconds) {
         for _ in 0..20 {
             tab.value(&chance.command())?;
@@ -195,8 +195,8 @@ pub(super) fn random_input(bench: &Bench, seconds: u64) -> Result<(), Failure> {
         require(served.runs(), || {
             "sinew ended under random input".to_owned()
         })?;
-        if settled.is_none() && begun.elapsed() > Duration::from_secs(20) {
-            settled = Some(served.memory());
+        if settled.is_nan() && begun.elapsed() > Duration::from_secs(20) {
+            settled = served.memory();
         }
     }
     tab.value("window.sinew.command('panes', { count: 1 }); window.sinew.command('pause', { on: false });")?;
@@ -207,7 +207,7 @@ pub(super) fn random_input(bench: &Bench, seconds: u64) -> Result<(), Failure> {
         PATIENCE,
     )?;
     let memory = served.memory();
-    let grown = memory - settled.unwrap_or(memory);
+    let grown = memory - settled;
     say(&format!(
         "{commands} commands at random in {seconds} s: {memory:.0} MB at the end, {grown:+.1} MB since 20 s"
     ))?;

@@ -27,8 +27,8 @@ pub(crate) struct Arguments {
     /// Ten minutes of input, after which memory must be what it was
     #[arg(long)]
     long: bool,
-    /// Seconds of random input
-    #[arg(long, value_name = "S", default_value_t = 60)]
+    /// Seconds of random input, at least 30: memory is compared with what it was after 20
+    #[arg(long, value_name = "S", default_value_t = 60, value_parser = clap::value_parser!(u64).range(30..))]
     seconds: u64,
     /// A sinew that is built already, instead of a release build of this one
     #[arg(long, value_name = "PROGRAM")]

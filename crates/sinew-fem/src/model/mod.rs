@@ -77,6 +77,9 @@ pub struct Model {
     contact: Option<Arc<dyn Contact>>,
 }
 
+/// Nodes, increasing, that are frozen, with the displacements (m) at which they are held.
+pub(crate) type Frozen<'a> = &'a [(u32, [f64; 3])];
+
 impl Model {
     /// Assembles a problem on a mesh, of which the model has a copy. [`Model::build_on`] needs none.
     ///
@@ -91,7 +94,7 @@ impl Model {
     pub(crate) fn build_after_cuts(
         mesh: &TetMesh,
         problem: &Problem,
-        frozen: &[(u32, [f64; 3])],
+        frozen: Frozen<'_>,
     ) -> Result<Self, FemError> {
         Self::build_keeping(mesh, problem, Some(frozen), || Arc::new(mesh.clone()))
     }
@@ -107,7 +110,7 @@ impl Model {
     fn build_keeping(
         mesh: &TetMesh,
         problem: &Problem,
-        frozen: Option<&[(u32, [f64; 3])]>,
+        frozen: Option<Frozen<'_>>,
         kept: impl FnOnce() -> Arc<TetMesh>,
     ) -> Result<Self, FemError> {
         check::numbers(problem)?;
@@ -182,7 +185,7 @@ impl Model {
         mesh: &TetMesh,
         graph: Graph<'_>,
         body: Arc<Body>,
-        (problem, frozen): (&Problem, Option<&[(u32, [f64; 3])]>),
+        (problem, frozen): (&Problem, Option<Frozen<'_>>),
         region_of: Vec<u32>,
         kept: impl FnOnce() -> Arc<TetMesh>,
     ) -> Result<Self, FemError> {

@@ -62,10 +62,13 @@ export class Blade {
 
   /// It is lifted.
   end() {
-    if (this.isDown) {
-      this.send();
-      this.actions.path([]);
-    }
+    if (this.isDown) this.send();
+    this.drop();
+  }
+
+  /// It is lifted without a stroke more: the body that it went through is gone.
+  drop() {
+    if (this.isDown) this.actions.path([]);
     this.isDown = false;
     this.from = null;
     this.onto = null;

@@ -53,9 +53,6 @@ export class CutPanel {
     get("cut").setAttribute("aria-pressed", String(on));
     get("depth-box").hidden = !on;
     get("views").classList.toggle("cutting", on);
-    get("canvas").setAttribute("aria-label", on
-      ? "Tissue. Arrow keys move the blade, Enter lowers and lifts it, Escape puts it away; the right mouse button turns the view."
-      : "Tissue. Arrow keys move the tool, Page Up and Page Down lift and press it; the right mouse button turns the view.");
     this.cursor = null;
     this.showPath([]);
     this.resize();

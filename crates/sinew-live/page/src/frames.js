@@ -1,8 +1,8 @@
 // Binary messages, little-endian, as crates/sinew-live/src/protocol/frame.rs writes them.
 
 const HEAD = 32;
-const PANE = 184;
-const TOOL = 104;
+const PANE = 176;
+const TOOL = 136;
 
 /// Fields in the order of their numbers.
 const FIELDS = ["stress", "strain", "displacement", "energy_density", "saturated", "pressure", "step_limit"];
@@ -41,27 +41,27 @@ export function readPicture(buffer) {
   const picture = { frame: u32(4), applied: u32(8), epoch: u32(12), field: FIELDS[u32(20)], pace: f64(24), panes: [] };
   let at = HEAD;
   for (let pane = 0; pane < u32(16); pane += 1) {
-    const names = ["t", "dt", "kinetic", "elastic", "toolWork", "loadWork", "msPerStep", "error", "lag", "largest", "saturated", "settling"];
+    const names = ["t", "dt", "kinetic", "elastic", "toolWork", "loadWork", "msPerStep", "error", "lag", "saturated", "settling"];
     const numbers = { step: Number(view.getBigUint64(at, true)) };
     names.forEach((name, index) => { numbers[name] = f64(at + 8 + 8 * index); });
     const counts = ["lights", "reasons", "inverted", "contacts", "points", "tools"];
-    counts.forEach((name, index) => { numbers[name] = u32(at + 104 + 4 * index); });
-    ["balance", "cutArea", "cutEnergy", "bladeWork"].forEach((name, index) => { numbers[name] = f64(at + 128 + 8 * index); });
-    ["nodes", "tets", "newNodes", "pieces", "removed", "changes"].forEach((name, index) => { numbers[name] = u32(at + 160 + 4 * index); });
+    counts.forEach((name, index) => { numbers[name] = u32(at + 96 + 4 * index); });
+    ["balance", "cutArea", "cutEnergy", "bladeWork"].forEach((name, index) => { numbers[name] = f64(at + 120 + 8 * index); });
+    ["nodes", "tets", "newNodes", "pieces", "removed", "changes"].forEach((name, index) => { numbers[name] = u32(at + 152 + 4 * index); });
     const points = numbers.points;
     const count = numbers.tools;
     at += PANE;
     numbers.tools = [];
     for (let tool = 0; tool < count; tool += 1, at += TOOL) {
-      const values = new Float64Array(buffer, at, 13);
+      const values = new Float64Array(buffer, at, 17);
       numbers.tools.push({
         position: values.subarray(0, 3),
         rotation: values.subarray(3, 6),
         force: values.subarray(6, 9),
         depth: values[9],
-        work: values[10],
-        gap: values[11],
-        contacts: values[12],
+        gap: values[10],
+        // Where it is led.
+        hand: { position: values.subarray(11, 14), rotation: values.subarray(14, 17) },
       });
     }
     numbers.positions = new Float32Array(buffer, at, 3 * points);

@@ -4,6 +4,9 @@ import { Vector3 } from "three";
 
 const CLOSE = 60;
 
+/// Time (ms) after the last pointer or key from which on others may lead what this hand led: what was sent comes back within it.
+const OWN = 500;
+
 export class Hand {
   constructor(canvas, view, actions) {
     this.view = view;
@@ -13,13 +16,15 @@ export class Hand {
     this.pull = null;
     this.pointers = new Map();
     this.lifted = false;
-    this.pulledAt = -Infinity;
-    canvas.addEventListener("pointerdown", (event) => this.down(event));
+    this.movedAt = -Infinity;
+    // Before the first picture nothing is known of places and sizes.
+    const whenSeen = (act) => (event) => this.view.extent !== undefined && act(event);
+    canvas.addEventListener("pointerdown", whenSeen((event) => this.down(event)));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => this.up(event));
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
-    canvas.addEventListener("keydown", (event) => this.key(event));
+    canvas.addEventListener("wheel", whenSeen((event) => this.wheel(event)), { passive: false });
+    canvas.addEventListener("keydown", whenSeen((event) => this.key(event)));
     // While it drags: Shift with an arrow key is a fine step, and with Tab the way back.
     window.addEventListener("keydown", (event) => event.key === "Shift" && this.drags && this.lift(true));
     window.addEventListener("keyup", (event) => event.key === "Shift" && this.lift(false));
@@ -33,15 +38,21 @@ export class Hand {
     this.selected = 0;
   }
 
-  /// Where tools are now, as long as nobody leads them.
+  /// Where tools are led now, as long as this hand does not lead them: another page may, or may have.
   see(tools) {
-    tools.forEach(({ position, rotation }, index) => {
+    if (this.isAway) for (const tool of this.tools) tool.led = false;
+    tools.forEach(({ hand: { position, rotation } }, index) => {
       const own = this.tools[index];
       if (own && !own.led) {
         own.position.set(...position);
         own.rotation = [...rotation];
       }
     });
+  }
+
+  /// Whether nothing was moved or pulled of late.
+  get isAway() {
+    return this.pointers.size === 0 && performance.now() - this.movedAt > OWN;
   }
 
   release() {
@@ -124,14 +135,13 @@ export class Hand {
   }
 
   sendPull() {
-    this.pulledAt = performance.now();
+    this.movedAt = performance.now();
     this.actions.pull(this.pull.force);
   }
 
   /// The factors of loads as they are, where no pointer changes them: another page may pull, or have pulled.
   follow(factors) {
-    // What was sent just now comes back later.
-    if (this.pull && this.pointers.size === 0 && performance.now() - this.pulledAt > 500) this.pull.force.set(...this.pull.loads.map((load) => this.pull.unit * factors[load]));
+    if (this.pull && this.isAway) this.pull.force.set(...this.pull.loads.map((load) => this.pull.unit * factors[load]));
   }
 
   wheel(event) {
@@ -146,7 +156,7 @@ export class Hand {
       event.preventDefault();
       return;
     }
-    const step = (event.shiftKey ? 0.002 : 0.01) * (this.view.extent ?? 0.1);
+    const step = (event.shiftKey ? 0.002 : 0.01) * this.view.extent;
     const { right, up, away } = this.view.directions();
     const moves = {
       ArrowLeft: right.clone().negate(), ArrowRight: right, ArrowUp: away, ArrowDown: away.clone().negate(),
@@ -173,6 +183,7 @@ export class Hand {
   shift(by) {
     const tool = this.tools[this.selected];
     if (tool) {
+      this.movedAt = performance.now();
       tool.position.add(by);
       tool.led = true;
       this.actions.lead(this.selected, this.target(tool), tool.rotation);
@@ -187,6 +198,7 @@ export class Hand {
     const tool = this.tools[this.selected];
     if (!tool || on === this.lifted || this.view.extent === undefined) return;
     this.lifted = on;
+    this.movedAt = performance.now();
     if (tool.led) this.actions.lead(this.selected, this.target(tool), tool.rotation);
   }
 

@@ -7,7 +7,11 @@ export const COLOURS = ["not measured", "good", "with a reservation", "bad"];
 
 const percent = (share) => `${plain(100 * share, 2)} %`;
 
+/// The trusted run is never quite at the time of a pane; from here on (s) its error is said to be old.
+const OLD = 0.1;
+
 export function reasonOf(light, reason, pane) {
+  const off = `${percent(pane.error)} off the trusted run${pane.lag > OLD ? `, which is ${plain(pane.lag, 2)} s behind` : ""}`;
   const reasons = [
     [
       "not measured",
@@ -25,9 +29,9 @@ export function reasonOf(light, reason, pane) {
     ],
     [
       "not measured",
-      `${percent(pane.error)} off the trusted run`,
-      `${percent(pane.error)} off the trusted run`,
-      `${percent(pane.error)} off the trusted run`,
+      off,
+      off,
+      off,
     ],
   ];
   const words = reasons[light][reason] ?? "not measured";

@@ -20,8 +20,28 @@ const test = new URLSearchParams(window.location.search).has("test");
 const LINES = ["--first", "--second"];
 const PLOT_EVERY = 70;
 
+let notice = 0;
+
+function say(text, time = 6000) {
+  const message = get("message");
+  message.textContent = text;
+  message.hidden = false;
+  notice = performance.now() + time;
+}
+
+/// The view, or a sentence where this browser has no WebGL: without it there is nothing to see, and the page goes no further.
+function viewOn(canvas) {
+  try {
+    return new View(canvas, test);
+  } catch (error) {
+    get("title").textContent = "Nothing can be shown";
+    say("This browser draws nothing in three dimensions (WebGL). Turn on its hardware acceleration, or open the address in another browser.", Infinity);
+    throw error;
+  }
+}
+
 const canvas = get("canvas");
-const view = new View(canvas, test);
+const view = viewOn(canvas);
 const histories = [new History(), new History()];
 const cards = [];
 const plots = Object.fromEntries(["force-time", "force-depth", "energy"].map((id) => [id, new Plot(get(id))]));
@@ -31,8 +51,7 @@ let integrators = [];
 let picture = null;
 let pictures = 0;
 /// The largest 1/step (1/s) of an element at the surface.
-let shortest = 1;
-let notice = 0;
+let largestRate = 1;
 let plotted = 0;
 let since = { at: performance.now(), pictures: 0 };
 let connected = true;
@@ -59,7 +78,7 @@ const connection = new Connection({
   reset: () => {
     histories.forEach((history) => history.clear());
     hand.release();
-    blade.end();
+    blade.drop();
   },
   tools: ({ tools }) => {
     scenery.tools = tools;
@@ -70,11 +89,16 @@ const connection = new Connection({
   trusted_ended: ({ reason }) => say(reason),
   saved: (event) => {
     last.saved = event;
-    say(`Saved in ${event.folder}. Repeat it with: ${event.replay}`, 15000);
+    say(`Saved in ${event.folder}. Repeat it with: ${event.replay}${event.note ? ` ${event.note}` : ""}`, event.note ? 60000 : 15000);
   },
   closed: () => {
     connected = false;
-    if (!scenery) return;
+    if (!scenery) {
+      get("title").textContent = "Not connected";
+      // A refusal has been said.
+      if (last.refused.length === 0) say("No connection to the simulation. Reload the page where `sinew live` still runs; its address changes with each start.", Infinity);
+      return;
+    }
     say("The simulation has ended, or this page was closed from there. Reload it where `sinew live` still runs.", Infinity);
   },
 });
@@ -104,13 +128,6 @@ const hand = new Hand(canvas, view, {
 const shapeRow = new ShapeRow(get("shape"), (tool, shape) => connection.command("shape", { tool, shape }));
 const showShape = () => shapeRow.show(hand.selected, scenery.tools[hand.selected], view.extent);
 
-function say(text, time = 6000) {
-  const message = get("message");
-  message.textContent = text;
-  message.hidden = false;
-  notice = performance.now() + time;
-}
-
 function begin(event) {
   scenery = event;
   document.title = `${event.title} · sinew live`;
@@ -134,6 +151,15 @@ function hint() {
   else if (scenery.hand) words = `Drag: pull at the red point · right button: turn the view · wheel: zoom · arrows pull, Escape lets go. ${scenery.hand.note}`;
   if (scenery.cuts && !blade.isOn) words += " · C: a blade";
   get("hint").textContent = words;
+  get("canvas").setAttribute("aria-label", `Tissue. ${keysInWords()} the right mouse button turns the view, and so do the keys [ and ].`);
+}
+
+/// What keys do on the canvas, for those who do not see it.
+function keysInWords() {
+  if (blade.isOn) return "Arrow keys move the blade, Enter lowers and lifts it, Escape puts it away;";
+  if (scenery.tools.length > 0) return "Arrow keys move the tool, Page Up and Page Down lift and press it;";
+  if (scenery.hand) return "Arrow keys, Page Up and Page Down pull at the red point, Escape lets go;";
+  return "Plus and minus zoom;";
 }
 
 function sliderOf({ name, what }) {
@@ -195,6 +221,8 @@ function configure(event) {
     slider.parentElement.querySelector("output").textContent = `× ${plain(event.factors[index], 3)}`;
   });
   hand.follow(event.factors);
+  // Also where another shape was refused.
+  showShape();
   view.setCount(panes.length);
   legend();
 }
@@ -208,7 +236,7 @@ function largestOf(field) {
   const extent = view.extent ?? 0.1;
   return {
     stress: roundUp(0.2 * modulus), strain: 0.2, displacement: roundUp(0.1 * extent), energy_density: roundUp(0.02 * modulus),
-    saturated: 1, pressure: roundUp(0.3 * modulus), step_limit: shortest, difference: roundUp(0.02 * extent),
+    saturated: 1, pressure: roundUp(0.3 * modulus), step_limit: largestRate, difference: roundUp(0.02 * extent),
   }[field];
 }
 
@@ -254,8 +282,8 @@ function show() {
   }
   if (picture.field === "step_limit") {
     const now = Math.max(...picture.panes.map((pane) => pane.colours.reduce((most, value) => (value > most ? value : most), 0))) || 1;
-    if (now !== shortest) {
-      shortest = now;
+    if (now !== largestRate) {
+      largestRate = now;
       legend();
     }
   }
@@ -311,7 +339,7 @@ function panels() {
   const balance = get("balance");
   balance.classList.toggle("bad", red.length > 0);
   balance.textContent = red.length > 0
-    ? `E − W is above 0${live.length > 1 ? ` in ${red.map((number) => settings.panes[number].integrator).join(" and ")}` : ""}: energy from nowhere.`
+    ? `E − W is above 0${live.length > 1 ? ` in ${red.map((number) => settings.panes[number]?.integrator).join(" and ")}` : ""}: energy from nowhere.`
     : "E − W, energy less the work of loads and tools: what damping takes makes it fall. It must not rise above 0.";
   get("energy-now").textContent = `E ${withUnit(first.kinetic + first.elastic, "J")} · W ${withUnit(first.loadWork + first.toolWork, "J")}`;
   if (shapeRow.number !== hand.selected) showShape();
@@ -367,21 +395,26 @@ function frame(now) {
   if (connected && now > notice) get("message").hidden = true;
 }
 
-get("pause").addEventListener("click", () => connection.command("pause", { on: !settings.paused }));
+get("pause").addEventListener("click", () => settings && connection.command("pause", { on: !settings.paused }));
 get("step").addEventListener("click", () => connection.command("step"));
 get("reset").addEventListener("click", () => connection.command("reset"));
 get("save").addEventListener("click", () => connection.command("save"));
-get("panes").addEventListener("click", () => connection.command("panes", { count: settings.panes.length === 1 ? 2 : 1 }));
-get("view").addEventListener("click", () => view.resetCamera());
+get("panes").addEventListener("click", () => settings && connection.command("panes", { count: settings.panes.length === 1 ? 2 : 1 }));
+get("view").addEventListener("click", () => view.topology && view.resetCamera());
 get("field").addEventListener("change", () => connection.command("field", { name: get("field").value }));
 get("edges").addEventListener("change", () => view.setEdges(get("edges").checked));
-get("difference").addEventListener("change", legend);
+get("difference").addEventListener("change", () => {
+  legend();
+  // While time stops no other picture comes.
+  if (picture) show();
+});
 window.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || ["INPUT", "SELECT"].includes(event.target.tagName)) return;
   const press = { " ": "pause", ".": "step", r: "reset", v: "view", c: "cut" }[event.key];
   if (!press || get(press).hidden || get(press).closest("[hidden]") || (event.key === " " && event.target.closest("button, summary"))) return;
   event.preventDefault();
-  get(press).click();
+  // A key that is held down presses once, but goes on step by step.
+  if (!event.repeat || press === "step") get(press).click();
 });
 paintBar(get("legend-bar"));
 window.requestAnimationFrame(frame);

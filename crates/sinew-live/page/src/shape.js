@@ -36,8 +36,9 @@ export class ShapeRow {
     root.replaceChildren(this.select, this.slider, this.readout);
   }
 
-  /// The tool in the hand, in a body of this size (m).
+  /// The tool in the hand, in a body of this size (m); not while its slider is dragged.
   show(number, tool, extent) {
+    if (this.isDragged && number === this.number) return;
     Object.assign(this, { number, extent, part: tool?.parts[0] });
     // The edge of a blade has no radius.
     const isOffered = tool?.parts.length === 1 && !(this.part.kind === "capsule" && this.part.sizes[0] === 0) && extent > 0;
@@ -59,11 +60,13 @@ export class ShapeRow {
   }
 
   tell() {
+    this.isDragged = true;
     this.radius = LEAST * this.extent * (MOST / LEAST) ** (this.slider.value / STEPS);
     this.words(this.radius);
   }
 
   change() {
+    this.isDragged = false;
     this.send(this.number, shapeOf(this.select.value, this.radius, this.part));
   }
 }

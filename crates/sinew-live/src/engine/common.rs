@@ -5,7 +5,8 @@ use std::sync::Arc;
 use sinew_mesh::TetMesh;
 use sinew_scene::BodyModel;
 
-use crate::picture::{GONE, twins};
+use crate::picture::twins;
+use crate::protocol::NONE;
 
 /// Cells of two bodies that are the same corner of the same tetrahedron.
 pub(super) struct Common {
@@ -28,7 +29,7 @@ impl Common {
             let apart = std::array::from_fn(|axis| a[axis] - b[axis]);
             Some(Pair { cells, apart })
         };
-        let known = |twins: Vec<u32>| (0..).zip(twins).filter(|(_, twin)| *twin != GONE);
+        let known = |twins: Vec<u32>| (0..).zip(twins).filter(|(_, twin)| *twin != NONE);
         // Of a node that is whole in one body alone all copies in the other.
         let forth = known(twins(own, other)).map(|(node, twin)| [node, twin]);
         let back = known(twins(other, own)).map(|(node, twin)| [twin, node]);

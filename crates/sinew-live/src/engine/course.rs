@@ -30,6 +30,11 @@ impl Course {
         }
     }
 
+    /// Where it comes to rest.
+    pub(crate) fn end(&self) -> [f64; 6] {
+        self.corners.back().map_or([0.0; 6], |(_, pose)| *pose)
+    }
+
     /// From `t` (s) on it goes straight to a pose, which it reaches at `arrival`; where it went before is of no interest any more.
     pub(crate) fn go(&mut self, t: f64, pose: [f64; 6], arrival: f64) {
         let here = self.at(t);

@@ -188,14 +188,88 @@ mod tests {
         assert_eq!(bounds(f64::INFINITY).light().colour, Colour::Red);
     }
 
+    /// The page's words for the reasons of a light, in the order of their numbers.
+    fn words_of(light: usize) -> Vec<&'static str> {
+        let script = include_str!("../../page/src/lights.js");
+        let (_, lists) = script.split_once("const reasons = [\n").unwrap();
+        let (lists, _) = lists.split_once("\n  ];").unwrap();
+        let list = lists.split("    [\n").nth(light + 1).unwrap();
+        let words = list.lines().map(str::trim);
+        words.take_while(|line| *line != "],").collect()
+    }
+
+    fn has_words(light: usize, found: Light, expected: &str) {
+        let words = words_of(light)[found.reason as usize];
+        assert!(words.contains(expected), "{found:?}: {words}");
+    }
+
+    #[test]
+    fn the_page_has_the_words_of_each_reason() {
+        let bounds = Bounds {
+            scale: 1.0,
+            ..Bounds::default()
+        };
+        for (bounds, expected) in [
+            (bounds, "no more energy"),
+            (
+                Bounds {
+                    is_saturated: true,
+                    ..bounds
+                },
+                "at their limit",
+            ),
+            (
+                Bounds {
+                    balance: 1.0,
+                    ..bounds
+                },
+                "more energy than anybody",
+            ),
+            (
+                Bounds {
+                    stopped: true,
+                    ..bounds
+                },
+                "stopped",
+            ),
+            (
+                Bounds {
+                    inverted: 1,
+                    ..bounds
+                },
+                "inside out",
+            ),
+        ] {
+            has_words(0, bounds.light(), expected);
+        }
+        for (decay, expected) in [
+            (-2.0, "came to rest"),
+            (-0.7, "still swings"),
+            (0.0, "does not come to rest"),
+        ] {
+            has_words(1, watched(decay), expected);
+        }
+        for light in 0..3 {
+            has_words(light, Light::GREY, "not measured");
+        }
+        // The error is told by its number, whatever the colour.
+        let largest = error_light(1.0).reason as usize;
+        assert_eq!(words_of(2).len(), largest + 1);
+    }
+
     fn after(decay: f64) -> Colour {
+        watched(decay).colour
+    }
+
+    /// The light of a motion whose energy goes with this exponent.
+    fn watched(decay: f64) -> Light {
         let mut settling = Settling::default();
         let mut t = 0.0;
         for _ in 0..6000 {
             t += 0.001;
             settling.step(t, 0.001, (decay * t).exp());
         }
-        settling.light(t).colour
+        settling.light(t)
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod common;
 mod course;
+mod due;
 mod lights;
 mod options;
 mod pace;
@@ -16,6 +17,7 @@ mod trusted;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use sinew_core::Clock;
 use sinew_session::{Command, CommandError, Journal, JournalError, Log, Session};
 
 use self::course::Course;
@@ -42,7 +44,7 @@ const LOOK: Duration = Duration::from_millis(10);
 /// Shortest time between two pictures: with a credit to spare, the second is fresh when the screen is drawn.
 const BETWEEN_PICTURES: Duration = Duration::from_millis(8);
 
-/// Shortest time between two tellings of the settings, so that one page's commands do not flood the others.
+/// Shortest time between two settings messages, so that one page's commands do not flood the others.
 const BETWEEN_TELLINGS: Duration = Duration::from_millis(15);
 
 /// Longest wait where there is nothing to do.
@@ -53,6 +55,9 @@ const CALM: Duration = Duration::from_millis(500);
 
 /// Time between two looks at what journals lack.
 const BETWEEN_ENTRIES: Duration = Duration::from_secs(1);
+
+/// Most cuts that wait for a step, which takes all of them: a blade that goes on while time stops asks for as many as it likes.
+const MOST_CUTS: usize = 256;
 
 /// Most panes.
 const MOST_PANES: usize = 2;
@@ -65,10 +70,9 @@ pub(crate) struct Engine {
     second: PaneChoice,
     /// Where each tool is led; `None` as long as it goes its own way.
     hands: Vec<Option<Course>>,
-    /// Names and factors of the loads, and those at the beginning.
+    /// Names and factors of the loads.
     loads: Vec<String>,
     factors: Vec<f64>,
-    first_factors: Vec<f64>,
     /// The surface of the body before all cuts.
     uncut: Surface,
     topology: Topology,
@@ -82,8 +86,8 @@ pub(crate) struct Engine {
     repaint: bool,
     trusted: Option<Trusted>,
     paused: bool,
-    /// Simulated time (s) up to which all panes have stepped.
-    t: f64,
+    /// Simulated time up to which all panes have stepped, rounded as theirs.
+    clock: Clock,
     /// What they are stepping through.
     ahead: Option<Span>,
     pace: Pace,
@@ -106,13 +110,12 @@ struct Span {
     length: f64,
 }
 
-/// A command that steps have taken from a simulated time (s) on.
+/// The last command of a client that steps have taken from a simulated time (s) on.
 #[derive(Clone, Copy, Debug)]
 struct UnderWay {
     client: u32,
     id: u32,
     arrival: f64,
-    is_pose: bool,
 }
 
 /// What pages have not been told yet.
@@ -130,7 +133,6 @@ pub(crate) struct Beginning {
     pub(crate) second: PaneChoice,
     pub(crate) fields: Vec<Field>,
     pub(crate) loads: Vec<String>,
-    pub(crate) factors: Vec<f64>,
 }
 
 impl Engine {
@@ -146,9 +148,8 @@ impl Engine {
             second,
             fields,
             loads,
-            factors,
         } = beginning;
-        let mut panes = vec![Pane::new(session)?];
+        let mut panes = vec![Pane::new(session, &scene)?];
         while panes.len() < choices.len() {
             panes.push(Pane::of(&scene)?);
         }
@@ -165,9 +166,8 @@ impl Engine {
             panes,
             second,
             hands: vec![None; tools],
+            factors: Vec::new(),
             loads,
-            first_factors: factors.clone(),
-            factors,
             uncut,
             topology: Topology::default(),
             cut_at: None,
@@ -177,7 +177,7 @@ impl Engine {
             repaint: true,
             trusted: None,
             paused: false,
-            t,
+            clock: Clock::at(t),
             ahead: None,
             pace: Pace::new(t),
             pictures: 0,
@@ -188,25 +188,30 @@ impl Engine {
             journals: Vec::new(),
             last_entries: Instant::now(),
         };
-        engine.set_first_factors();
+        engine.take_first_factors();
         Ok(engine)
     }
 
-    /// Keeps files up to date with the logs of the panes.
-    pub(crate) fn keep_logs(&mut self, journals: Vec<Journal>) {
+    /// Keeps files up to date with the logs of the panes, beginning with what they belong to.
+    pub(crate) fn keep_logs(&mut self, journals: Vec<Journal>) -> Result<(), JournalError> {
         self.journals = journals;
+        self.keep_up()
     }
 
     /// Simulates until it is told to end.
     pub(crate) fn run(mut self, shared: &Arc<Shared>, mut survey: Survey) -> Ended {
-        let mut waiting = Waiting::default();
-        self.pace = Pace::new(self.t);
+        let (mut waiting, mut is_done) = (Waiting::default(), true);
+        self.pace = Pace::new(self.t());
         loop {
-            shared.inbox.take(&mut waiting, self.patience(shared));
+            let patience = match is_done {
+                true => self.patience(shared),
+                false => Duration::ZERO,
+            };
+            shared.inbox.take(&mut waiting, patience);
             if waiting.ends {
                 return self.end();
             }
-            self.obey(&mut waiting, shared);
+            is_done = self.obey(&mut waiting, shared);
             self.tell(shared);
             self.advance(shared);
             self.show(shared);
@@ -224,7 +229,7 @@ impl Engine {
         let finished = self.journals.into_iter().zip(&logs);
         let unkept = finished.filter_map(|(journal, log)| journal.finish(log).err());
         Ended {
-            t: self.t,
+            t: self.clock.time(),
             scene: self.scene.scene,
             values: self.scene.values,
             unkept: unkept.collect(),
@@ -238,10 +243,9 @@ impl Engine {
         journals.try_for_each(|(journal, pane)| journal.keep_up(pane.log()))
     }
 
-    /// Tells pages once where commands are no longer kept in a file.
-    fn report_journals(&mut self, kept: Result<(), JournalError>, shared: &Shared) {
+    /// Tells pages where commands are no longer kept in a file, which is tried once more in the end.
+    fn report_journals(&self, kept: Result<(), JournalError>, shared: &Shared) {
         if let Err(error) = kept {
-            self.journals.clear();
             let reason = format!("commands are kept in memory alone from now on: {error}");
             shared.clients.tell_all(&Event::Refused { reason });
         }
@@ -252,7 +256,7 @@ impl Engine {
         let until_step = match (self.ahead, self.paused) {
             (Some(_), _) => Duration::ZERO,
             (None, true) => IDLE,
-            (None, false) => self.pace.until(self.t + self.tick()),
+            (None, false) => self.pace.until(self.t() + self.tick()),
         };
         let until_picture = match (self.changed, self.last_picture) {
             (true, Some(last)) if shared.clients.want_a_frame() => {
@@ -274,9 +278,23 @@ impl Engine {
         steps.fold(0.0, f64::max)
     }
 
+    /// Simulated time (s) up to which all panes have stepped.
+    fn t(&self) -> f64 {
+        self.clock.time()
+    }
+
+    /// The span that all panes step through next.
+    fn next_span(&self) -> Span {
+        let length = self.tick();
+        let mut end = self.clock;
+        end.advance(length);
+        let until = end.time();
+        Span { until, length }
+    }
+
     /// Simulated time (s) from which on commands take effect.
     fn now(&self) -> f64 {
-        self.ahead.map_or(self.t, |span| span.until)
+        self.ahead.map_or(self.t(), |span| span.until)
     }
 
     /// Steps as far as time on the wall asks for, but not for longer than commands may wait.
@@ -284,22 +302,21 @@ impl Engine {
         let begun = Instant::now();
         let may = || begun.elapsed() < LOOK;
         while may() {
-            let is_due = || !self.paused && self.t + self.tick() <= self.pace.target();
+            let is_due = || !self.paused && self.next_span().until <= self.pace.target();
             if self.ahead.is_none() && !is_due() {
                 break;
             }
             self.take_tick(shared, may);
         }
         if !self.paused {
-            self.pace.note(self.t);
+            self.pace.note(self.t(), self.tick());
         }
     }
 
     /// Steps on through the span that panes are in, or through the next one, as long as it `may`.
     fn take_tick(&mut self, shared: &Shared, may: impl Fn() -> bool) {
-        let length = self.tick();
-        let until = self.t + length;
-        let Span { until, length } = *self.ahead.get_or_insert(Span { until, length });
+        let next = self.next_span();
+        let Span { until, length } = *self.ahead.get_or_insert(next);
         let mut oldest = until;
         for (number, pane) in self.panes.iter_mut().enumerate() {
             let was_stopped = pane.stopped.is_some();
@@ -328,16 +345,33 @@ impl Engine {
                 self.distrust(reason, shared);
             }
         }
-        self.t = until;
+        self.clock.advance(length);
         for hand in self.hands.iter_mut().flatten() {
             hand.forget_before(oldest);
         }
+        self.tell_applied(shared);
+    }
+
+    /// Tells clients of commands that steps have taken.
+    fn tell_applied(&mut self, shared: &Shared) {
+        let t = self.t();
         self.under_way.retain(|command| {
-            let is_there = command.arrival <= until + 1e-12;
+            let is_there = command.arrival <= t + 1e-12;
             if is_there {
                 shared.clients.applied(command.client, command.id);
             }
             !is_there
+        });
+    }
+
+    /// Keeps a command of a client until steps have taken it, in the place of those that they take no sooner: a client is told of its last one alone.
+    fn is_under_way(&mut self, client: u32, id: u32, arrival: f64) {
+        self.under_way
+            .retain(|other| other.client != client || other.arrival < arrival);
+        self.under_way.push(UnderWay {
+            client,
+            id,
+            arrival,
         });
     }
 
@@ -366,7 +400,12 @@ impl Engine {
         let points: Vec<usize> = seen.map(|(_, surface)| surface.points.len()).collect();
         let mut frame = FrameWriter::new(&head, &points, self.hands.len());
         for pane in &mut self.panes {
-            pane.write(&mut frame, &self.uncut, self.field, self.repaint);
+            pane.write(
+                &mut frame,
+                (&self.uncut, &self.hands),
+                self.field,
+                self.repaint,
+            );
         }
         let Topology { epoch, message } = &self.topology;
         shared.clients.show(frame.finish(), *epoch, message);
@@ -395,12 +434,16 @@ impl Engine {
         self.news.settings = true;
     }
 
-    fn obey(&mut self, waiting: &mut Waiting, shared: &Shared) {
+    /// Does what pages ask for, but not for longer than pictures may wait; whether nothing is left.
+    fn obey(&mut self, waiting: &mut Waiting, shared: &Shared) -> bool {
+        let begun = Instant::now();
         for client in waiting.entered.drain(..) {
             shared.clients.tell(client, &self.settings());
             self.changed = true;
         }
-        for Request { client, id, what } in waiting.orders.drain(..) {
+        while begun.elapsed() < LOOK
+            && let Some(Request { client, id, what }) = waiting.orders.pop_front()
+        {
             let is_pose = matches!(what, Order::Pose { .. });
             let waits = is_pose || matches!(what, Order::Load { .. } | Order::Cut { .. });
             let outcome = self.carry_out(client, id, what, shared);
@@ -415,11 +458,16 @@ impl Engine {
                 (self.changed, self.repaint) = (true, true);
             }
         }
-        for Request { client, id, what } in waiting.poses.drain(..) {
+        let is_done = waiting.orders.is_empty();
+        // Those that came behind orders that are left go on waiting with them.
+        let poses = if is_done { waiting.poses.len() } else { 0 };
+        for Request { client, id, what } in waiting.poses.drain(..poses) {
             if let Err(reason) = self.lead(client, id, what) {
                 shared.clients.tell(client, &Event::Refused { reason });
             }
         }
+        self.tell_applied(shared);
+        is_done
     }
 
     /// Tells pages what is new, but not too often.
@@ -459,21 +507,18 @@ impl Engine {
         let course =
             self.hands[tool].get_or_insert_with(|| Course::at_rest(t, here.unwrap_or_default()));
         course.go(t, pose, arrival);
-        // Also while time stops it holds no more than one pose of each client at a time.
-        self.under_way
-            .retain(|other| !other.is_pose || other.client != client || other.arrival < arrival);
-        self.under_way.push(UnderWay {
-            client,
-            id,
-            arrival,
-            is_pose: true,
-        });
+        self.is_under_way(client, id, arrival);
         Ok(())
     }
 
     /// Gives all panes a command that takes effect with their next steps.
     fn give(&mut self, client: u32, id: u32, command: Command) -> Result<(), String> {
         self.check(&command)?;
+        if matches!(command, Command::Cut { .. }) && self.waiting_cuts() >= MOST_CUTS {
+            return Err(format!(
+                "{MOST_CUTS} cuts wait for the next step, which is the most: let time go on"
+            ));
+        }
         let t = self.now();
         for pane in &mut self.panes {
             pane.command_at(t, command.clone());
@@ -481,13 +526,15 @@ impl Engine {
         if let Some(trusted) = &mut self.trusted {
             trusted.command_at(t, command);
         }
-        self.under_way.push(UnderWay {
-            client,
-            id,
-            arrival: t + self.tick(),
-            is_pose: false,
-        });
+        self.is_under_way(client, id, t + self.tick());
         Ok(())
+    }
+
+    /// Cuts that wait for a step.
+    fn waiting_cuts(&self) -> usize {
+        let of_panes = self.panes.iter().map(Pane::waiting_cuts);
+        let of_trusted = self.trusted.iter().map(Trusted::waiting_cuts);
+        of_panes.chain(of_trusted).max().unwrap_or(0)
     }
 
     /// Changes the method of a pane. One that had stopped begins anew, and so do all.
@@ -548,13 +595,12 @@ impl Engine {
             } => self.change_method(pane, |pane| pane.use_option(&key, word, number))?,
             Order::Pause { on } => {
                 self.paused = on;
-                self.pace = Pace::new(self.t);
+                self.pace = Pace::new(self.t());
             }
             Order::Step => {
                 self.paused = true;
-                let length = self.tick();
-                let until = self.t + length;
-                self.ahead.get_or_insert(Span { until, length });
+                let next = self.next_span();
+                self.ahead.get_or_insert(next);
             }
             Order::Reset => self.restart()?,
             Order::Panes { count } => {
@@ -665,30 +711,24 @@ impl Engine {
     /// Lets go of all, with panes at the beginning.
     fn begin_anew(&mut self) {
         self.hands.fill(None);
-        self.under_way.clear();
-        self.t = self.panes.first().map_or(0.0, Pane::t);
+        self.clock = Clock::at(self.panes.first().map_or(0.0, Pane::t));
+        // What was under way comes to nothing, and nobody has to wait for it.
+        for command in &mut self.under_way {
+            command.arrival = self.clock.time();
+        }
         self.ahead = None;
-        self.pace = Pace::new(self.t);
-        self.set_first_factors();
+        self.pace = Pace::new(self.t());
+        self.take_first_factors();
         (self.news.settings, self.news.went_back) = (true, true);
     }
 
-    /// The factors of loads as they are at the beginning.
-    fn set_first_factors(&mut self) {
-        self.factors.clone_from(&self.first_factors);
-        for (load, factor) in self.loads.iter().zip(&self.factors) {
-            if *factor == 1.0 {
-                continue;
-            }
-            for pane in &mut self.panes {
-                let (load, factor) = (load.clone(), *factor);
-                pane.command_at(self.t, Command::LoadFactor { load, factor });
-            }
-            if let Some(trusted) = &mut self.trusted {
-                let (load, factor) = (load.clone(), *factor);
-                trusted.command_at(self.t, Command::LoadFactor { load, factor });
-            }
-        }
+    /// The factors of loads as all panes have them at the beginning.
+    fn take_first_factors(&mut self) {
+        let first = &self.scene.first_factors;
+        let factor_of = |load: &String| first.iter().find(|(name, _)| name == load);
+        let factors = self.loads.iter();
+        let factors = factors.map(|load| factor_of(load).map_or(1.0, |(_, factor)| *factor));
+        self.factors = factors.collect();
     }
 
     fn settings(&self) -> Event {

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// Time (s) by which the simulation may be behind before that time is given up.
+/// Time (s) by which the simulation may be behind its next step before that time is given up.
 const GIVEN_UP: f64 = 0.05;
 
 /// Time (s) over which the pace is a mean.
@@ -41,9 +41,9 @@ impl Pace {
         Duration::try_from_secs_f64(t - self.target()).unwrap_or_default()
     }
 
-    /// Takes note of the simulated time (s), and gives up what cannot be caught up.
-    pub(crate) fn note(&mut self, t: f64) {
-        if self.target() - t > GIVEN_UP {
+    /// Takes note of the simulated time (s), and gives up what cannot be caught up. A next step of `tick` (s) is not due before that time has gone by.
+    pub(crate) fn note(&mut self, t: f64, tick: f64) {
+        if self.target() - t > tick + GIVEN_UP {
             (self.since, self.t) = (Instant::now(), t);
         }
         let (from, begun) = self.mean_from;

@@ -1,6 +1,5 @@
-//! A session beside others that follow the same hand.
+//! One pane: a session and what is measured of it.
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -11,6 +10,7 @@ use sinew_session::{Command, CommandError, Log, Session};
 use sinew_tools::Tools;
 
 use super::course::Course;
+use super::due::Due;
 use super::lights::{Bounds, Light, Settling, error_light, packed};
 use super::shown::{Budget, Shown};
 use super::{options, stability};
@@ -28,11 +28,12 @@ const SLACK: f64 = 1e-6;
 /// The option of an integrator that limits velocities.
 const GUARD: &str = "saturation";
 
-/// A session with what is known of its motion.
+/// A session and what is measured of its motion.
 pub(crate) struct Pane {
     session: Session,
-    /// Commands for simulated times (s), in their order.
-    due: VecDeque<(f64, Command)>,
+    due: Due,
+    /// Loads whose factors are other than 1 at the beginning.
+    first_factors: Vec<(String, f64)>,
     /// The integrator and the step that it was given, which a reset keeps.
     method: (String, Options, f64),
     /// Why it cannot go on.
@@ -91,18 +92,22 @@ impl Energies {
 
 impl Pane {
     /// A scene of its own.
-    pub(crate) fn of(SceneValues { scene, values }: &SceneValues) -> Result<Self, LiveError> {
-        Self::new(Session::new(scene.clone())?.with_values(values))
+    pub(crate) fn of(scene: &SceneValues) -> Result<Self, LiveError> {
+        let session = Session::new(scene.scene.clone())?.with_values(&scene.values);
+        scene.check_files(session.log())?;
+        Self::new(session, scene)
     }
 
-    pub(crate) fn new(session: Session) -> Result<Self, LiveError> {
+    /// That of a session of this scene which took no command yet.
+    pub(crate) fn new(session: Session, scene: &SceneValues) -> Result<Self, LiveError> {
         let body = body(&session).ok_or(LiveError::NoBody)?;
         let tools = body.tools.as_ref().map_or(0, |tools| tools.tools().len());
         let dofs = body.model.dofs();
         let mut pane = Self {
             shown: None,
             session,
-            due: VecDeque::new(),
+            due: Due::default(),
+            first_factors: scene.first_factors.clone(),
             method: (String::new(), Options::new(), 0.0),
             stopped: None,
             error: f64::NAN,
@@ -126,6 +131,7 @@ impl Pane {
             energies: Energies::default(),
             settling: Settling::default(),
         };
+        pane.give_first_factors()?;
         pane.given = pane.of_scene();
         let (id, options) = pane.given.clone();
         pane.method = (id, options, pane.session.dt());
@@ -224,6 +230,8 @@ impl Pane {
             self.method = method;
             return self.reset();
         }
+        // The method has to take them as well.
+        while self.take_due()? {}
         self.apply(&method)?;
         self.method = method;
         self.learn();
@@ -271,6 +279,7 @@ impl Pane {
     pub(crate) fn reset(&mut self) -> Result<(), CommandError> {
         self.due.clear();
         self.session.command(Command::Reset)?;
+        self.give_first_factors()?;
         self.given = self.of_scene();
         self.stopped = None;
         (self.error, self.lag) = (f64::NAN, 0.0);
@@ -290,6 +299,14 @@ impl Pane {
         }
         self.learn();
         applied
+    }
+
+    /// Gives loads the factors that they have at the beginning: before a method is chosen, which has to take them.
+    fn give_first_factors(&mut self) -> Result<(), CommandError> {
+        let mut factors = self.first_factors.iter().cloned();
+        factors.try_for_each(|(load, factor)| {
+            self.session.command(Command::LoadFactor { load, factor })
+        })
     }
 
     fn take_first_energy(&mut self) {
@@ -317,8 +334,23 @@ impl Pane {
     /// A command that takes effect with the first step from a simulated time (s) on. One that stopped takes no more steps.
     pub(crate) fn command_at(&mut self, t: f64, command: Command) {
         if self.stopped.is_none() {
-            self.due.push_back((t, command));
+            self.due.add(t, command);
         }
+    }
+
+    /// Cuts that wait for a step.
+    pub(crate) fn waiting_cuts(&self) -> usize {
+        self.due.cuts()
+    }
+
+    /// Gives the session a command whose time has come; whether there was one.
+    fn take_due(&mut self) -> Result<bool, CommandError> {
+        let t = self.session.t();
+        let Some(command) = self.due.next_until(t + SLACK * self.session.dt()) else {
+            return Ok(false);
+        };
+        self.settling.disturbed(t);
+        self.session.command(command).map(|()| true)
     }
 
     /// Whether it has stepped up to a simulated time (s), or takes no more steps.
@@ -336,14 +368,11 @@ impl Pane {
     ) -> Option<String> {
         let mut refused = None;
         while !self.is_at(until) && may() {
-            let t = self.session.t();
-            let slack = SLACK * self.session.dt();
-            while self.due.front().is_some_and(|(due, _)| *due <= t + slack) {
-                if let Some((_, command)) = self.due.pop_front() {
-                    self.settling.disturbed(t);
-                    if let Err(error) = self.session.command(command) {
-                        refused = Some(error.to_string());
-                    }
+            loop {
+                match self.take_due() {
+                    Ok(true) => {}
+                    Ok(false) => break,
+                    Err(error) => refused = Some(error.to_string()),
                 }
             }
             if let Err(reason) = self.step(hands) {
@@ -472,11 +501,11 @@ impl Pane {
         Some((body(&self.session)?, &self.shown.as_ref()?.surface))
     }
 
-    /// Writes it into a picture, with the depth of tools in the body at rest before all cuts.
+    /// Writes it into a picture, with the depth of tools in the body at rest before all cuts, and where their hands are.
     pub(crate) fn write(
         &mut self,
         frame: &mut FrameWriter,
-        uncut: &Surface,
+        (uncut, hands): (&Surface, &[Option<Course>]),
         field: Field,
         anew: bool,
     ) {
@@ -511,7 +540,6 @@ impl Pane {
             ms_per_step: self.ms_per_step,
             error: self.error,
             lag: self.lag,
-            largest: shown.largest(),
             saturated,
             settling: self.settling.ratio(),
             lights: colours,
@@ -524,24 +552,24 @@ impl Pane {
             cuts,
         };
         frame.pane(&head, shown.surface.points.len(), self.impulses.len());
-        for (tool, impulse) in self.impulses.iter_mut().enumerate() {
+        for ((tool, impulse), hand) in self.impulses.iter_mut().enumerate().zip(hands) {
             let Some(tools) = tools else { continue };
             let (pose, report) = (self.session.tool_pose(tool), tools.report(state, tool));
             let ([x, y, z], [a, b, c]) = (pose.position(), pose.rotation_vector());
+            let own = [x, y, z, a, b, c];
             let force = match self.span > 0.0 {
                 true => impulse.map(|impulse| impulse / self.span),
                 false => report.force,
             };
             let shape = &tools.tools()[tool].shape;
             frame.tool(&ToolHead {
-                pose: [x, y, z, a, b, c],
+                pose: own,
                 force,
                 depth: uncut.depth(shape, &pose),
-                work: report.work,
                 gap: tools
                     .deepest(&state.u, &pose, tool)
                     .map_or(f64::INFINITY, |depth| depth.gap),
-                contacts: report.contacts as f64,
+                hand: hand.as_ref().map_or(own, Course::end),
             });
             *impulse = [0.0; 3];
         }

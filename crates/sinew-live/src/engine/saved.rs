@@ -44,31 +44,51 @@ pub(crate) fn save(scene: &SceneValues, panes: &[Pane]) -> Result<Event, SaveErr
         )?);
     }
     let log = logs.first().map(|log| word(&log.display().to_string()));
+    let own = own_file(scene);
+    let note = match &own {
+        None => beside_others(scene, &copy),
+        Some(_) => None,
+    };
     Ok(Event::Saved {
         folder: path.display().to_string(),
         replay: format!(
             "sinew run {} --replay {}",
-            scene_to_run(scene, &copy),
+            own.unwrap_or_else(|| word(&copy.display().to_string())),
             log.unwrap_or_default()
         ),
+        note,
     })
 }
 
-/// The scene as words of a command: its own file, beside which its meshes and tables lie, with the values that are set in it, unless the file has
-/// changed since.
-fn scene_to_run(scene: &SceneValues, copy: &Path) -> String {
+/// The scene as words of a command: its own file, beside which its meshes and tables lie, with the values that are set in it; `None` where the file has changed
+/// since.
+fn own_file(scene: &SceneValues) -> Option<String> {
     let source = scene.scene.source();
     let own = std::fs::read_to_string(source.path());
     let own = own.map(|text| SceneSource::new(source.path(), text).with_values(&scene.values));
     if !matches!(own, Ok(Ok(own)) if own.text() == source.text()) {
-        return word(&copy.display().to_string());
+        return None;
     }
     let mut words = word(&source.path().display().to_string());
     for value in &scene.values {
         words.push_str(" --set ");
         words.push_str(&word(value));
     }
-    words
+    Some(words)
+}
+
+/// Where the copy of a scene that reads other files finds them: its text, by whose hash the log knows it, names them as seen from the folder of its own file.
+fn beside_others(scene: &SceneValues, copy: &Path) -> Option<String> {
+    let files = scene.scene.input_files();
+    let [own, _, ..] = files.as_slice() else {
+        return None;
+    };
+    let folder = own.parent().filter(|folder| *folder != Path::new(""));
+    Some(format!(
+        "The scene's file has changed since, and its copy names other files as seen from {}: copy {} there first, and give that.",
+        folder.unwrap_or(Path::new(".")).display(),
+        copy.display()
+    ))
 }
 
 /// A word as a shell takes it.

@@ -8,8 +8,8 @@ use sinew_mesh::TetMesh;
 use sinew_scene::{BodyModel, Cutter};
 use sinew_session::Session;
 
-use crate::picture::{Colours, GONE, Seen, Surface, twins};
-use crate::protocol::{Field, NO_TWIN};
+use crate::picture::{Colours, Seen, Surface, twins};
+use crate::protocol::{Field, NONE};
 
 /// Colours and energies take one part in so many of the time.
 const SHARE: u32 = 5;
@@ -96,13 +96,6 @@ impl Shown {
         }
     }
 
-    /// The largest displacement (m).
-    pub(super) fn largest(&self) -> f64 {
-        let squares = self.displacement.iter();
-        let squares = squares.map(|u| u.iter().map(|u| u * u).sum::<f64>());
-        squares.fold(0.0, f64::max).sqrt()
-    }
-
     /// Tetrahedra inside out.
     pub(super) fn inverted(&self) -> u32 {
         self.colours.inverted
@@ -123,22 +116,15 @@ impl Shown {
     }
 }
 
-/// For each point of a surface the point of another one that is the same corner of the same tetrahedron, or [`NO_TWIN`].
+/// For each point of a surface the point of another one that is the same corner of the same tetrahedron, or [`NONE`].
 pub(super) fn twin_points(
     (own, surface): (&BodyModel, &Surface),
     (other, other_surface): (&BodyModel, &Surface),
 ) -> Vec<u32> {
     let twin_of = twins(own, other);
-    let mut point_of = vec![NO_TWIN; other.mesh.points.len()];
-    for (point, node) in (0..).zip(&other_surface.nodes) {
-        point_of[*node as usize] = point;
-    }
-    let points = surface
-        .nodes
-        .iter()
-        .map(|node| match twin_of[*node as usize] {
-            GONE => NO_TWIN,
-            twin => point_of[twin as usize],
-        });
-    points.collect()
+    let twins = surface.nodes.iter().map(|node| twin_of[*node as usize]);
+    let points = twins.map(|twin| other_surface.point_of(twin));
+    points
+        .map(|point| point.map_or(NONE, |point| point as u32))
+        .collect()
 }

@@ -5,7 +5,7 @@ use axum::body::Bytes;
 use super::pane::Pane;
 use super::shown::twin_points;
 use crate::picture::Surface;
-use crate::protocol::{NO_TWIN, SurfaceShape, topology};
+use crate::protocol::{NONE, SurfaceShape, topology};
 
 /// The surfaces of all panes as pages have them. A picture names the epoch of those that it belongs to.
 #[derive(Debug, Default)]
@@ -29,7 +29,7 @@ impl Topology {
         let seen: Vec<_> = panes.iter().filter_map(Pane::seen_body).collect();
         let twins = (0..seen.len()).map(|own| match (seen.get(own), seen.get(1 - own.min(1))) {
             (Some(own), Some(other)) => twin_points(*own, *other),
-            (Some((_, surface)), None) => vec![NO_TWIN; surface.points.len()],
+            (Some((_, surface)), None) => vec![NONE; surface.points.len()],
             (None, _) => Vec::new(),
         });
         let twins: Vec<Vec<u32>> = twins.collect();

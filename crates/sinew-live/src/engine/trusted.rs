@@ -10,6 +10,7 @@ use sinew_session::Command;
 
 use super::common::Common;
 use super::course::Course;
+use super::due::Due;
 use super::pane::Pane;
 use crate::scene_values::SceneValues;
 
@@ -39,7 +40,7 @@ struct Span {
     looks: Vec<Look>,
 }
 
-/// A pane as it was.
+/// A pane's displacement at a time, to be compared.
 struct Look {
     pane: usize,
     /// Its time (s).
@@ -62,7 +63,7 @@ pub(crate) struct Trusted {
     known: Arc<Mutex<Known>>,
     /// Simulated time (s), as bits.
     t: Arc<AtomicU64>,
-    commands: Vec<(f64, Command)>,
+    commands: Due,
     /// Room for displacements, which comes back when they have been compared.
     spare: Receiver<Vec<f64>>,
     /// Whether nobody asks for it any more.
@@ -117,7 +118,7 @@ impl Trusted {
             spans,
             known,
             t,
-            commands: Vec::new(),
+            commands: Due::default(),
             spare,
             is_over,
         })
@@ -125,7 +126,12 @@ impl Trusted {
 
     /// A command that the panes were given for a simulated time (s).
     pub(crate) fn command_at(&mut self, t: f64, command: Command) {
-        self.commands.push((t, command));
+        self.commands.add(t, command);
+    }
+
+    /// Cuts that wait for the end of a span.
+    pub(crate) fn waiting_cuts(&self) -> usize {
+        self.commands.cuts()
     }
 
     /// The panes have stepped to the end (s) of a span; a sentence where the trusted run cannot follow.
@@ -158,7 +164,7 @@ impl Trusted {
             until,
             length: tick,
             hands: hands.to_vec(),
-            commands: std::mem::take(&mut self.commands),
+            commands: self.commands.take(),
             looks,
         };
         match self.spans.try_send(span) {

@@ -18,8 +18,6 @@ pub(crate) struct Colours {
     pub(crate) values: Vec<f32>,
     /// Number of tetrahedra that are inside out.
     pub(crate) inverted: u32,
-    /// Place of each node among the points, or `NOWHERE`.
-    point_of: Vec<u32>,
     sums: Vec<f64>,
     weights: Vec<f64>,
     volumes: Vec<f64>,
@@ -31,8 +29,6 @@ pub(crate) struct Colours {
 
 /// Share of a limit at which a velocity counts as clamped, which leaves it there but for rounding.
 const AT_LIMIT: f64 = 1.0 - 1e-9;
-
-const NOWHERE: u32 = u32::MAX;
 
 /// What a field is taken from.
 #[derive(Clone, Copy, Debug)]
@@ -54,16 +50,11 @@ pub(crate) struct Seen<'a> {
 impl Colours {
     pub(crate) fn new(model: &Model, surface: &Surface) -> Self {
         let mesh = model.mesh();
-        let mut point_of = vec![NOWHERE; mesh.points.len()];
-        for (point, node) in (0..).zip(&surface.nodes) {
-            point_of[*node as usize] = point;
-        }
         let volumes = (0..mesh.tets.len()).map(|tet| mesh.volume(tet));
         let points = surface.points.len();
         Self {
             values: vec![0.0; points],
             inverted: 0,
-            point_of,
             sums: vec![0.0; points],
             weights: vec![0.0; points],
             volumes: volumes.collect(),
@@ -107,7 +98,7 @@ impl Colours {
             }
             Field::Saturated => self.saturated(seen),
             Field::Pressure => self.pressure(seen),
-            Field::StepLimit => self.step_limit(seen.model),
+            Field::StepLimit => self.step_limit(seen),
         }
         self.mark_inverted(seen)
     }
@@ -129,9 +120,8 @@ impl Colours {
             };
             let value = if tet.is_inverted { f64::NAN } else { value };
             for node in nodes {
-                let point = self.point_of[*node as usize] as usize;
-                if let Some(sum) = self.sums.get_mut(point) {
-                    *sum += volume * value;
+                if let Some(point) = seen.surface.point_of(*node) {
+                    self.sums[point] += volume * value;
                     self.weights[point] += volume;
                 }
             }
@@ -150,9 +140,8 @@ impl Colours {
             if tet.is_inverted {
                 self.inverted += 1;
                 for node in nodes {
-                    let point = self.point_of[*node as usize] as usize;
-                    if let Some(value) = self.values.get_mut(point) {
-                        *value = INSIDE_OUT;
+                    if let Some(point) = seen.surface.point_of(*node) {
+                        self.values[point] = INSIDE_OUT;
                     }
                 }
             }
@@ -172,25 +161,24 @@ impl Colours {
             .zip(seen.model.nodes())
         {
             let is_at_limit = length(*v) >= AT_LIMIT * limit;
-            let point = self.point_of[*node as usize] as usize;
-            if let Some(value) = self.values.get_mut(point) {
-                *value = f32::from(u8::from(is_at_limit));
+            if let Some(point) = seen.surface.point_of(*node) {
+                self.values[point] = f32::from(u8::from(is_at_limit));
             }
         }
     }
 
     /// The largest of the tetrahedra at each point.
-    fn step_limit(&mut self, model: &Model) {
+    fn step_limit(&mut self, seen: &Seen<'_>) {
         self.values.fill(0.0);
+        let (model, surface) = (seen.model, seen.surface);
         let mesh = model.mesh();
         for (tet, nodes) in mesh.tets.iter().enumerate() {
             let vertices = nodes.map(|node| mesh.points[node as usize]);
             // Central difference bears steps up to 2 / omega.
             let inverse = (model.tet_frequency(tet, &vertices) / 2.0) as f32;
             for node in nodes {
-                let point = self.point_of[*node as usize] as usize;
-                if let Some(value) = self.values.get_mut(point) {
-                    *value = value.max(inverse);
+                if let Some(point) = surface.point_of(*node) {
+                    self.values[point] = self.values[point].max(inverse);
                 }
             }
         }
@@ -206,9 +194,8 @@ impl Colours {
         self.at_points.fill([0.0; 3]);
         let nodes = seen.model.nodes();
         for (node, force) in nodes.iter().zip(self.forces.as_chunks::<3>().0) {
-            let point = self.point_of[*node as usize] as usize;
-            if let Some(own) = self.at_points.get_mut(point) {
-                *own = *force;
+            if let Some(point) = seen.surface.point_of(*node) {
+                self.at_points[point] = *force;
             }
         }
         let surface = seen.surface;

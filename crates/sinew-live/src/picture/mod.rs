@@ -6,4 +6,4 @@ mod twins;
 
 pub(crate) use colours::{Colours, Seen};
 pub(crate) use surface::Surface;
-pub(crate) use twins::{GONE, twins};
+pub(crate) use twins::twins;

@@ -8,12 +8,16 @@ use sinew_scene::BodyModel;
 use sinew_tools::vector::{add, cross, dot, scaled, sub};
 use sinew_tools::{Convex, Pose, Shape, nearest_of_triangle};
 
+use crate::protocol::NONE;
+
 /// The surface of a body at rest.
 #[derive(Debug)]
 pub(crate) struct Surface {
     boundary: BoundarySurface,
     /// How many triangles, the first, are of the body before all cuts.
     pub(crate) outer: usize,
+    /// The point of each node of the mesh, or [`NONE`].
+    point_of: Vec<u32>,
 }
 
 impl Deref for Surface {
@@ -29,7 +33,23 @@ impl Surface {
     pub(crate) fn of(mesh: &TetMesh) -> Self {
         let boundary = mesh.boundary_surface();
         let outer = boundary.triangles.len();
-        Self { boundary, outer }
+        let mut point_of = vec![NONE; mesh.points.len()];
+        for (point, node) in (0..).zip(&boundary.nodes) {
+            point_of[*node as usize] = point;
+        }
+        Self {
+            boundary,
+            outer,
+            point_of,
+        }
+    }
+
+    /// The point of a node of the mesh, where it lies on the surface.
+    pub(crate) fn point_of(&self, node: u32) -> Option<usize> {
+        let point = self.point_of.get(node as usize);
+        point
+            .filter(|point| **point != NONE)
+            .map(|point| *point as usize)
     }
 
     /// That of a body, of which this was the surface before all cuts.

@@ -2,10 +2,9 @@
 
 use sinew_scene::BodyModel;
 
-/// Stands for a node that the other body does not have.
-pub(crate) const GONE: u32 = u32::MAX;
+use crate::protocol::NONE;
 
-/// For each node of a body a node of another one of the same scene that is the same corner of the same tetrahedron, or [`GONE`] where the other has none of its
+/// For each node of a body a node of another one of the same scene that is the same corner of the same tetrahedron, or [`NONE`] where the other has none of its
 /// tetrahedra. Where the other is split and this one is not, it is one of the copies.
 pub(crate) fn twins(own: &BodyModel, other: &BodyModel) -> Vec<u32> {
     let nodes = own.mesh.points.len();
@@ -13,13 +12,13 @@ pub(crate) fn twins(own: &BodyModel, other: &BodyModel) -> Vec<u32> {
         return (0..nodes as u32).collect();
     }
     let places = other.cut.as_ref().map(|from| {
-        let mut places = vec![GONE; from.uncut.tets.len()];
+        let mut places = vec![NONE; from.uncut.tets.len()];
         for (place, tet) in (0..).zip(&from.cut.tets) {
             places[*tet as usize] = place;
         }
         places
     });
-    let mut found = vec![GONE; nodes];
+    let mut found = vec![NONE; nodes];
     for (tet, corners) in own.mesh.tets.iter().enumerate() {
         let uncut = own
             .cut
@@ -31,7 +30,7 @@ pub(crate) fn twins(own: &BodyModel, other: &BodyModel) -> Vec<u32> {
         };
         for (node, twin) in corners.iter().zip(theirs) {
             let first = &mut found[*node as usize];
-            if *first == GONE {
+            if *first == NONE {
                 *first = *twin;
             }
         }
@@ -69,7 +68,7 @@ mod tests {
     fn pairs(own: &Session, other: &Session) -> Vec<(usize, usize)> {
         let [own, other] = [own, other].map(|session| session.simulation().model().body().unwrap());
         let twins = twins(own, other);
-        let pairs = twins.iter().enumerate().filter(|(_, twin)| **twin != GONE);
+        let pairs = twins.iter().enumerate().filter(|(_, twin)| **twin != NONE);
         let pairs: Vec<(usize, usize)> = pairs.map(|(node, twin)| (node, *twin as usize)).collect();
         for (node, twin) in &pairs {
             assert_eq!(own.mesh.points[*node], other.mesh.points[*twin]);

@@ -213,6 +213,17 @@ mod tests {
     }
 
     #[test]
+    fn the_page_names_fields_in_the_order_of_their_numbers() {
+        let script = include_str!("../../page/src/frames.js");
+        let (_, list) = script.split_once("const FIELDS = ").unwrap();
+        let (list, _) = list.split_once(';').unwrap();
+        let named: Vec<Field> = serde_json::from_str(list).unwrap();
+        let numbers: Vec<u32> = named.into_iter().map(|field| field as u32).collect();
+        let all: Vec<u32> = (0..=Field::StepLimit as u32).collect();
+        assert_eq!(numbers, all);
+    }
+
+    #[test]
     fn shapes_are_written_as_scenes_have_them() {
         let shapes = [
             (

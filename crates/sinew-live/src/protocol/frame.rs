@@ -21,10 +21,10 @@ pub(crate) const APPLIED_AT: usize = 8;
 const HEAD: usize = 32;
 
 /// Bytes of the numbers of a pane.
-const PANE: usize = 184;
+const PANE: usize = 176;
 
 /// Bytes of a tool.
-const TOOL: usize = 104;
+const TOOL: usize = 136;
 
 /// The surface of a pane's body at rest.
 #[derive(Clone, Copy, Debug)]
@@ -35,12 +35,12 @@ pub(crate) struct SurfaceShape<'a> {
     pub(crate) triangles: &'a [[u32; 3]],
     /// How many of them, the first, are of the body before all cuts.
     pub(crate) outer: usize,
-    /// The point of the other pane's surface that is each point, or [`NO_TWIN`].
+    /// The point of the other pane's surface that is each point, or [`NONE`].
     pub(crate) twins: &'a [u32],
 }
 
-/// Stands for a point that the other pane's surface does not have.
-pub(crate) const NO_TWIN: u32 = u32::MAX;
+/// Stands for a node or a point that another body or surface does not have.
+pub(crate) const NONE: u32 = u32::MAX;
 
 /// The surfaces of all panes, which hold for the pictures of this epoch.
 pub(crate) fn topology(epoch: u32, surfaces: &[SurfaceShape<'_>]) -> Vec<u8> {
@@ -111,8 +111,6 @@ pub(crate) struct PaneHead {
     pub(crate) error: f64,
     /// Time (s) by which the trusted run is behind.
     pub(crate) lag: f64,
-    /// Largest displacement (m).
-    pub(crate) largest: f64,
     /// Share of velocities at their limit since the last picture.
     pub(crate) saturated: f64,
     /// Kinetic energy of the last quarter of a second over that of the quarter before; not a number while the hand moves.
@@ -162,12 +160,10 @@ pub(crate) struct ToolHead {
     pub(crate) force: [f64; 3],
     /// Depth (m) in the body at rest.
     pub(crate) depth: f64,
-    /// Work (J) that it did.
-    pub(crate) work: f64,
     /// Distance (m) of the surface's nearest point, negative inside.
     pub(crate) gap: f64,
-    /// Nodes that it presses on.
-    pub(crate) contacts: f64,
+    /// Where it is led: position (m), then rotation vector (rad).
+    pub(crate) hand: [f64; 6],
 }
 
 /// Writes a picture.
@@ -200,7 +196,6 @@ impl FrameWriter {
             head.ms_per_step,
             head.error,
             head.lag,
-            head.largest,
             head.saturated,
             head.settling,
         ];
@@ -236,7 +231,8 @@ impl FrameWriter {
     pub(crate) fn tool(&mut self, tool: &ToolHead) {
         self.numbers(&tool.pose);
         self.numbers(&tool.force);
-        self.numbers(&[tool.depth, tool.work, tool.gap, tool.contacts]);
+        self.numbers(&[tool.depth, tool.gap]);
+        self.numbers(&tool.hand);
     }
 
     /// Where the points are (m), and their colours.
@@ -310,10 +306,10 @@ mod tests {
         assert_eq!(f64_at(24), 0.5);
         for (pane, at) in [HEAD, HEAD + PANE + TOOL + 48].into_iter().enumerate() {
             assert_eq!(f64_at(at + 8), 1.5);
-            assert_eq!(u32_at(at + 104), 7);
-            assert_eq!([at + 120, at + 124].map(u32_at), [3, 1]);
-            assert_eq!([at + 128, at + 136].map(f64_at), [-0.5, 0.75]);
-            assert_eq!(u32_at(at + 180), 4);
+            assert_eq!(u32_at(at + 96), 7);
+            assert_eq!([at + 112, at + 116].map(u32_at), [3, 1]);
+            assert_eq!([at + 120, at + 128].map(f64_at), [-0.5, 0.75]);
+            assert_eq!(u32_at(at + 172), 4);
             assert_eq!(f64_at(at + PANE + 72), 0.25);
             assert_eq!(f32_at(at + PANE + TOOL), pane as f32);
             assert_eq!(f32_at(at + PANE + TOOL + 36), 4.0);
@@ -326,7 +322,7 @@ mod tests {
             points: &[[0.5; 3]; 3],
             triangles: &[[0, 1, 2]],
             outer: 1,
-            twins: &[1, 0, NO_TWIN],
+            twins: &[1, 0, NONE],
         };
         let of_one = SurfaceShape {
             points: &[[0.25; 3]],
@@ -339,7 +335,7 @@ mod tests {
         let u32_at = |at: usize| u32::from_le_bytes(out[at..at + 4].try_into().unwrap());
         assert_eq!([0, 4, 8].map(u32_at), [TOPOLOGY, 7, 2]);
         let first = [16, 20, 24, 72, 76, 80, 84, 88].map(u32_at);
-        assert_eq!(first, [3, 1, 1, 1, 2, 1, 0, NO_TWIN]);
+        assert_eq!(first, [3, 1, 1, 1, 2, 1, 0, NONE]);
         let second = [96, 100, 104, 112].map(u32_at);
         assert_eq!(second, [1, 0, 0, 0.25_f32.to_bits()]);
     }

@@ -13,6 +13,6 @@ pub(crate) use event::{
     PartFacts, Scenery, Stability, StepFacts, ToolFacts,
 };
 pub(crate) use frame::{
-    APPLIED_AT, CutHead, FrameHead, FrameWriter, NO_TWIN, PaneHead, SurfaceShape, ToolHead,
-    is_frame, topology,
+    APPLIED_AT, CutHead, FrameHead, FrameWriter, NONE, PaneHead, SurfaceShape, ToolHead, is_frame,
+    topology,
 };

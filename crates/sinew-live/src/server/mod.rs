@@ -2,11 +2,13 @@
 
 mod assets;
 mod guard;
+mod guests;
 mod routes;
 mod shared;
 mod socket;
 mod token;
 
+pub(crate) use guests::{Guests, Stay};
 pub(crate) use routes::router;
 pub(crate) use shared::Shared;
 pub(crate) use token::Token;

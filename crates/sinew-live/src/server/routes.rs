@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use axum::Router;
-use axum::extract::{Path, State, WebSocketUpgrade};
+use axum::extract::{ConnectInfo, Path, State, WebSocketUpgrade};
 use axum::http::header::{
     CACHE_CONTROL, CONTENT_SECURITY_POLICY, CONTENT_TYPE, REFERRER_POLICY, X_CONTENT_TYPE_OPTIONS,
 };
@@ -11,6 +11,7 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 
+use super::guests::Stay;
 use super::shared::Shared;
 use super::token::Token;
 use super::{assets, guard, socket};
@@ -73,6 +74,7 @@ fn asset(door: &Door, token: &str, name: &str, headers: &HeaderMap) -> Response 
 async fn connect(
     State(door): State<Door>,
     Path(token): Path<String>,
+    ConnectInfo(stay): ConnectInfo<Stay>,
     headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Response {
@@ -85,7 +87,7 @@ async fn connect(
     upgrade
         .max_message_size(LONGEST_MESSAGE)
         .max_frame_size(LONGEST_MESSAGE)
-        .on_upgrade(async move |stream| socket::talk(stream, door.shared).await)
+        .on_upgrade(async move |stream| socket::talk(stream, door.shared, stay).await)
 }
 
 fn refusal(status: StatusCode) -> Response {

@@ -10,6 +10,7 @@ use futures_util::{SinkExt, StreamExt};
 use tokio::sync::mpsc::Receiver;
 use tokio::time::timeout;
 
+use super::guests::Stay;
 use super::shared::Shared;
 use crate::clients::MOST_CLIENTS;
 use crate::inbox::{Place, Request};
@@ -19,7 +20,7 @@ use crate::protocol::{Event, Order, Said, is_frame};
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Talks to a page until it goes, breaks the protocol, or reads nothing while messages pile up.
-pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>) {
+pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>, stay: Stay) {
     let Some((id, messages)) = shared.clients.enter() else {
         let reason = format!(
             "{MOST_CLIENTS} pages are open, which is the most: close one, and load this one again"
@@ -30,6 +31,7 @@ pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>) {
             .await;
         return;
     };
+    stay.allow();
     let greeting = Event::Scenery(Box::new(shared.scenery())).to_text();
     if stream.send(Message::Text(greeting.into())).await.is_ok() {
         // Those who came before it was known have been told.

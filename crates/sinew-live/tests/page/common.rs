@@ -52,8 +52,8 @@ pub(crate) fn settings(text: &str) -> Settings {
 
 /// Place of the first pane in a picture, and the size of its numbers and of a tool.
 pub(crate) const PANE: usize = 32;
-pub(crate) const NUMBERS: usize = 184;
-pub(crate) const TOOL: usize = 104;
+pub(crate) const NUMBERS: usize = 176;
+pub(crate) const TOOL: usize = 136;
 
 /// A served page, which ends with this value.
 pub(crate) struct Page {

@@ -125,7 +125,7 @@ fn a_pose_is_where_the_tool_goes_and_the_picture_says_which_command_it_contains(
     let feels = |picture: &[u8]| f64_at(picture, TOOL + 64) > 0.0;
     let picture = client.picture(feels);
     assert!(
-        f64_at(&picture, TOOL + 88) > -1e-12,
+        f64_at(&picture, TOOL + 80) > -1e-12,
         "no node is in the ball"
     );
 }
@@ -145,6 +145,26 @@ fn time_stops_goes_on_by_one_step_and_begins_anew() {
     assert_eq!(time(&begun), 0.0);
     client.say(r#"{"id":4,"do":"pause","on":false}"#);
     client.picture(|picture| time(picture) > 0.05);
+}
+
+#[test]
+fn a_step_that_is_long_for_the_eye_is_taken_when_its_time_has_come() {
+    let page = open();
+    let mut client = page.connect();
+    client.say(r#"{"id":1,"do":"integrator","pane":0,"name":"cnn-stabilised"}"#);
+    for (id, dt) in [(2, 0.07), (3, 0.2), (4, 1.0)] {
+        client.say(&format!(r#"{{"id":{id},"do":"dt","pane":0,"dt":{dt}}}"#));
+        let t = time(&client.picture(|picture| applied(picture) >= id));
+        client.picture(|picture| time(picture) > t + 1.5 * dt);
+    }
+}
+
+#[test]
+fn the_time_of_a_session_is_a_whole_number_of_steps_rounded_once() {
+    let mut page = open();
+    page.connect().picture(|picture| steps(picture) > 300);
+    let t = page.end().t;
+    assert_eq!(t, (t / 0.002).round() * 0.002);
 }
 
 #[test]
@@ -218,7 +238,7 @@ fn another_shape_of_the_tool_is_another_scene_that_begins_anew() {
     );
     let picture = client.picture(|picture| applied(picture) >= 5);
     assert!((height(&picture) - 0.145).abs() < 1e-12);
-    let gap = f64_at(&picture, TOOL + 88);
+    let gap = f64_at(&picture, TOOL + 80);
     assert!((gap - 0.015).abs() < 1e-4, "{gap} m");
     let later = page.connect().event("scenery");
     assert_eq!(later["tools"][0]["parts"][0]["sizes"][0], 0.03);
@@ -294,7 +314,8 @@ fn panes_of_very_different_steps_do_not_keep_commands_waiting() {
     client.say(r#"{"id":2,"do":"dt","pane":0,"dt":0.000001}"#);
     client.say(r#"{"id":3,"do":"dt","pane":1,"dt":1}"#);
     client.picture(|picture| applied(picture) >= 3);
-    // A million steps are one of the other pane's.
+    // A million steps are one of the other pane's, and are on their way.
+    client.picture(|picture| time(picture) > 0.0);
     let begun = Instant::now();
     for id in 4..24 {
         client.say(&format!(r#"{{"id":{id},"do":"field","name":"strain"}}"#));
@@ -426,7 +447,7 @@ fn energy_is_counted_from_the_beginning_also_for_a_page_that_comes_late() {
     let picture = late.picture(|picture| time(picture) > 0.0);
     let number = |place: usize| f64_at(&picture, PANE + 24 + 8 * place);
     let [kinetic, elastic, tool, loads] = [0, 1, 2, 3].map(number);
-    let balance = f64_at(&picture, PANE + 128);
+    let balance = f64_at(&picture, PANE + 120);
     assert!(tool.abs() > 1e-6, "{tool} J");
     // It began at rest. What is gone is what damping took.
     let expected = kinetic + elastic - tool - loads;

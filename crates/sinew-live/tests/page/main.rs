@@ -4,5 +4,9 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may end so")]
 
 mod common;
+mod connections;
 mod cube;
 mod cuts;
+mod files;
+mod loads;
+mod pauses;

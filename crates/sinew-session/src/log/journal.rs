@@ -15,6 +15,8 @@ pub struct Journal {
     file: File,
     /// Commands in the file; `None` as long as nothing stands in it.
     entries: Option<usize>,
+    /// Whether something could not be written, so that the file may end within a line.
+    has_failed: bool,
     text: String,
 }
 
@@ -41,22 +43,31 @@ pub enum JournalError {
     },
 }
 
+impl JournalError {
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Exists { path } | Self::Write { path, .. } => path,
+        }
+    }
+}
+
 impl Journal {
-    /// Creates the file, which must not exist.
+    /// Creates the file. One that exists must be empty: it is what a session leaves that was killed before its first command.
     ///
     /// # Errors
-    /// [`JournalError`] where there is one, or it cannot be created.
+    /// [`JournalError`] where there is one with something in it, or it cannot be created.
     pub fn create(path: PathBuf) -> Result<Self, JournalError> {
-        match OpenOptions::new().write(true).create_new(true).open(&path) {
-            Ok(file) => Ok(Self {
+        match open(&path) {
+            Ok(Some(file)) => Ok(Self {
                 path,
                 file,
                 entries: None,
+                has_failed: false,
                 text: String::new(),
             }),
-            Err(source) if source.kind() == io::ErrorKind::AlreadyExists => {
-                Err(JournalError::Exists { path })
-            }
+            Ok(None) => Err(JournalError::Exists { path }),
             Err(source) => Err(JournalError::Write { path, source }),
         }
     }
@@ -72,27 +83,35 @@ impl Journal {
     /// # Errors
     /// [`JournalError`].
     pub fn begin_anew(&mut self) -> Result<(), JournalError> {
-        self.entries = None;
+        (self.entries, self.has_failed) = (None, false);
         let emptied = self.file.set_len(0).and_then(|()| self.file.rewind());
         emptied.map_err(|source| self.error(source))
     }
 
-    /// Adds the commands that are new in a log, up to the last step: poses after it may give way to later ones.
+    /// Adds the commands that are new in a log, up to the last step: poses after it may give way to later ones. After an error nothing more is added before
+    /// [`Journal::finish`].
     ///
     /// # Errors
     /// [`JournalError`].
     pub fn keep_up(&mut self, log: &Log) -> Result<(), JournalError> {
+        if self.has_failed {
+            return Ok(());
+        }
         let settled = log
             .entries()
             .partition_point(|entry| entry.step < log.steps());
         self.add(log, settled)
     }
 
-    /// Adds all that is new in the log of a session that has ended, and its end.
+    /// Adds all that is new in the log of a session that has ended, and its end. After an error the whole log is written once more.
     ///
     /// # Errors
-    /// [`JournalError`].
+    /// [`JournalError`] where the file does not hold the whole log.
     pub fn finish(mut self, log: &Log) -> Result<(), JournalError> {
+        if self.has_failed {
+            let written = rewrite(&mut self.file, &log.to_text());
+            return written.map_err(|source| self.error(source));
+        }
         self.add(log, log.entries().len())?;
         let written = self.file.write_all(end(log).as_bytes());
         written.map_err(|source| self.error(source))
@@ -110,6 +129,7 @@ impl Journal {
         }
         self.entries = Some(first.max(until));
         let written = self.file.write_all(self.text.as_bytes());
+        self.has_failed = written.is_err();
         written.map_err(|source| self.error(source))
     }
 
@@ -118,5 +138,76 @@ impl Journal {
             path: self.path.clone(),
             source,
         }
+    }
+}
+
+/// A file that is created, or one that is empty; `None` where something stands in it.
+fn open(path: &Path) -> io::Result<Option<File>> {
+    let mut options = OpenOptions::new();
+    options.write(true);
+    match options.clone().create_new(true).open(path) {
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+        other => return other.map(Some),
+    }
+    let facts = path.symlink_metadata()?;
+    if !facts.is_file() || facts.len() > 0 {
+        return Ok(None);
+    }
+    options.open(path).map(Some)
+}
+
+/// Writes a text over what stands in a file. What stands there already is its beginning, so that one that cannot be written to its end loses nothing.
+fn rewrite(file: &mut File, text: &str) -> io::Result<()> {
+    file.rewind()?;
+    file.write_all(text.as_bytes())?;
+    file.set_len(text.len() as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use sinew_scene::{Scene, SceneSource};
+
+    use super::*;
+    use crate::command::Command;
+    use crate::session::Session;
+
+    const SPRING: &str = "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 1.0\nvelocity = -5.0\n\
+        [run]\nduration = 1.0\nintegrator = \"central-difference\"\ndt = 0.01\n";
+
+    #[test]
+    fn a_journal_that_could_not_be_kept_up_holds_all_in_the_end() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.log");
+        let scene = Scene::parse(SceneSource::new("spring.toml", SPRING)).unwrap();
+        let mut session = Session::new(scene).unwrap();
+        let mut journal = Journal::create(path.clone()).unwrap();
+        let mut drive = |journal: &mut Journal, dt: f64| {
+            session.command(Command::Dt(dt)).unwrap();
+            session.step().unwrap();
+            let kept = journal.keep_up(session.log());
+            (kept.is_ok(), session.log().clone())
+        };
+        assert!(drive(&mut journal, 0.005).0);
+        // For a time nothing can be written.
+        let writable = std::mem::replace(&mut journal.file, File::open(&path).unwrap());
+        assert!(!drive(&mut journal, 0.004).0, "it is told");
+        assert!(drive(&mut journal, 0.003).0, "it is told once");
+        journal.file = writable;
+        let (_, log) = drive(&mut journal, 0.002);
+        assert_eq!(Log::read(&path).unwrap().entries().len(), 1);
+        journal.finish(&log).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), log.to_text());
+    }
+
+    #[test]
+    fn a_file_in_which_nothing_stands_is_taken_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.log");
+        drop(Journal::create(path.clone()).unwrap());
+        assert!(Journal::create(path.clone()).is_ok());
+        std::fs::write(&path, "x").unwrap();
+        let refused = Journal::create(path.clone()).unwrap_err();
+        assert_eq!(refused.path(), path);
+        assert!(matches!(refused, JournalError::Exists { .. }));
     }
 }

@@ -72,9 +72,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         port: arguments.port,
     })?;
     if let Some(recording) = &recording {
-        live.keep_logs(recording.journals()?);
+        let journals = recording.journals()?;
+        let kept = live.keep_logs(journals);
+        kept.inspect_err(|_| recording.remove_journals())?;
     }
-    Voice::StandardOutput.say(&live.url())?;
+    let said = Voice::StandardOutput.say(&live.url());
+    // Nobody gave a command yet.
+    said.inspect_err(|_| recording.iter().for_each(Recording::remove_journals))?;
     complain("open this address in a browser on this computer; Ctrl-C ends");
     let session = live.run(|| interruption.is_asked_for())?;
     interruption.is_followed();

@@ -50,6 +50,13 @@ impl Recording {
         Ok(journals)
     }
 
+    /// Removes the files of the commands of a session that was not begun.
+    pub(super) fn remove_journals(&self) {
+        self.folders
+            .iter()
+            .for_each(|folder| remove(&log_beside(folder)));
+    }
+
     /// Repeats the session of each pane into its folder, which holds its log from then on. What fails leaves the log beside its folder.
     pub(super) fn write(
         self,
@@ -75,14 +82,23 @@ impl Recording {
             if let Some(Ok(()) | Err(Failure::Interrupted { .. })) = recorded {
                 remove(&beside);
             } else {
-                complain(&format!(
-                    "the commands are in {}: `sinew run SCENE --replay` repeats them",
-                    beside.display()
-                ));
+                let is_whole = session.unkept.iter().all(|error| error.path() != beside);
+                complain(&where_commands_are(&beside, is_whole));
             }
             outcome = outcome.and(recorded.unwrap_or(Ok(())));
         }
         outcome
+    }
+}
+
+/// Where the commands of a session stand that was not recorded, and whether all of them do.
+fn where_commands_are(beside: &Path, is_whole: bool) -> String {
+    let path = beside.display();
+    match is_whole {
+        true => format!("the commands are in {path}: `sinew run SCENE --replay` repeats them"),
+        false => format!(
+            "{path} holds the first commands, as far as they could be written: `sinew run SCENE --replay` repeats those"
+        ),
     }
 }
 

@@ -1,0 +1,91 @@
+//! Loads and methods that have to know them beforehand.
+
+use sinew_live::{Hand, Live, PaneChoice, Settings};
+
+use crate::common::{CUBE, Page, applied, settings, time};
+
+const LOADS: &str = r#"
+[[load]]
+name = "x"
+group = "top"
+traction = [1.0, 0.0, 0.0]
+[[load]]
+name = "y"
+group = "top"
+traction = [0.0, 1.0, 0.0]
+[[load]]
+name = "z"
+group = "top"
+traction = [0.0, 0.0, 1.0]
+"#;
+
+fn modal() -> PaneChoice {
+    PaneChoice {
+        integrator: Some("modal".to_owned()),
+        dt: None,
+    }
+}
+
+/// Two panes that a hand pulls at, the second of which is this.
+fn pulled(second: PaneChoice) -> Settings {
+    Settings {
+        panes: vec![PaneChoice::default(), second],
+        hand: Some(Hand {
+            loads: ["x", "y", "z"].map(str::to_owned),
+            unit: 1.0,
+            at: [0.1; 3],
+            note: String::new(),
+        }),
+        ..settings(&format!("{CUBE}{LOADS}"))
+    }
+}
+
+#[test]
+fn a_hand_beside_a_method_that_has_to_know_loads_beforehand_is_refused_at_once() {
+    let error = Live::open(pulled(modal())).err().unwrap().to_string();
+    assert!(error.contains("loads known beforehand"), "{error}");
+    let page = Page::of(Settings {
+        panes: vec![PaneChoice::default()],
+        second: modal(),
+        ..pulled(PaneChoice::default())
+    });
+    let mut client = page.connect();
+    for order in [
+        r#""do":"panes","count":2"#,
+        r#""do":"integrator","pane":0,"name":"modal""#,
+    ] {
+        // Also before the first step after a reset.
+        client.say(r#"{"id":1,"do":"pause","on":true}"#);
+        client.say(r#"{"id":2,"do":"reset"}"#);
+        client.say(&format!(r#"{{"id":3,{order}}}"#));
+        let reason = client.event("refused")["reason"].to_string();
+        assert!(reason.contains("loads known beforehand"), "{reason}");
+    }
+}
+
+#[test]
+fn a_factor_that_the_method_does_not_take_is_refused_and_stays_as_it_was() {
+    let text = format!("{CUBE}{LOADS}");
+    let page = Page::of(settings(&text));
+    let mut client = page.connect();
+    client.say(r#"{"id":1,"do":"integrator","pane":0,"name":"modal"}"#);
+    client.say(r#"{"id":2,"do":"pause","on":true}"#);
+    client.say(r#"{"id":3,"do":"load","load":"x","factor":2.5}"#);
+    let reason = client.event("refused")["reason"].to_string();
+    assert!(reason.contains("loads known beforehand"), "{reason}");
+    assert_eq!(client.event("settings")["factors"][0], 1.0);
+    client.say(r#"{"id":4,"do":"pause","on":false}"#);
+    let t = time(&client.picture(|picture| applied(picture) >= 4));
+    client.picture(|picture| time(picture) > t + 0.1);
+}
+
+#[test]
+fn a_method_takes_the_factors_that_wait_for_the_next_step_as_well() {
+    let page = Page::of(settings(&format!("{CUBE}{LOADS}")));
+    let mut client = page.connect();
+    client.say(r#"{"id":1,"do":"pause","on":true}"#);
+    client.say(r#"{"id":2,"do":"load","load":"x","factor":2.5}"#);
+    client.say(r#"{"id":3,"do":"integrator","pane":0,"name":"modal"}"#);
+    let reason = client.event("refused")["reason"].to_string();
+    assert!(reason.contains("loads known beforehand"), "{reason}");
+}
