@@ -24,8 +24,8 @@ pub trait Contact: Debug + Send + Sync {
     /// Numbers that it keeps in [`State::contact`].
     fn kept(&self) -> usize;
 
-    /// Changes u and v of a trial state, whose `cells` it asks for, and what it keeps in [`State::contact`], which is zeros before the first step, and adds the cells that it pushed
-    /// to `pushed`.
+    /// Pushes the cells of a trial state: changes u and v, and what it keeps in [`State::contact`], which is zeros before the first step. It asks `cells` for u and v before it reads them, and
+    /// adds those that it pushed to `pushed`.
     fn meet(
         &self,
         meeting: &Meeting<'_>,
@@ -46,8 +46,8 @@ pub trait Contact: Debug + Send + Sync {
 
 /// Shows contact the cells of a trial state: a machine that keeps its own vectors writes no more of them than a step asks for.
 pub trait ShowCells {
-    /// Writes u and v of the cells that contact reads into the state: of all; or of those at least whose ways meet a box (m), with their places among these cells, increasing, where it is
-    /// given and there is less to write then. A way leads straight to where the step ended, from `u` less [`Meeting::way`] of `v`.
+    /// Writes u and v of the cells that contact reads into the state. Without a box, of all of them. With one (m), it may write those alone whose ways meet it, and lists their places among
+    /// these cells in `near`, increasing. A way leads straight to where the step ended, from `u` less [`Meeting::way`] of `v`.
     fn show(
         &mut self,
         within: Option<[[f64; 3]; 2]>,

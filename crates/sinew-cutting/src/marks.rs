@@ -168,8 +168,8 @@ impl Marks {
         self.places.extend_from_slice(places);
     }
 
-    /// A node that was moved to another place of the tissue is where it is from now on.
-    pub(crate) fn forget_place(&mut self, node: u32, place: [f64; 3]) {
+    /// Notes the place (m) to which a node was moved, so that this counts as no motion.
+    pub(crate) fn set_place(&mut self, node: u32, place: [f64; 3]) {
         if let Some(before) = self.places.get_mut(node as usize) {
             *before = place;
         }

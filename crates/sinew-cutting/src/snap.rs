@@ -100,7 +100,7 @@ impl CuttableBody {
             self.points[node as usize] = place;
             self.stroke.mass_gained += mass(self) - before;
             positions[node as usize] = now;
-            self.marks.forget_place(node, now);
+            self.marks.set_place(node, now);
             self.marks.settle_node(node, 0.0);
             if !sheet.is_beyond_end(now) {
                 // The blade is past it: no later sheet would find it.

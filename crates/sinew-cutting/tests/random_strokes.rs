@@ -1,4 +1,4 @@
-//! Random strokes, removals and faces on random shapes of a body.
+//! Random strokes and removals on random shapes of a body.
 #![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test")]
 

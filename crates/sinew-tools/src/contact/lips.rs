@@ -56,7 +56,7 @@ pub(super) struct LipLink {
 }
 
 impl Lips {
-    /// Those of cut faces, on touched cells that rest at these places (m).
+    /// The lips that cut faces make, on touched cells that rest at these places (m).
     pub(super) fn of(faces: Vec<CutFace>, rest: impl Fn(u32) -> Vector) -> Self {
         let at = |corner: Corner| corner.at(&rest);
         let mut ends = Vec::new();

@@ -127,7 +127,7 @@ pub enum ToolsError {
         /// The name.
         name: String,
     },
-    /// A coefficient of friction that is none.
+    /// A coefficient of friction that is negative or not finite.
     #[error("\"{name}\": friction = {friction}: expected a finite number, 0 or above")]
     Friction {
         /// The tool.

@@ -17,14 +17,14 @@ pub struct ToolBody {
     pub damping: f64,
 }
 
-/// Bodies of tools that there cannot be.
+/// What is wrong with the body of a tool.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ToolBodyError {
-    /// A mass that is none.
+    /// A mass that is not positive and finite.
     #[error("mass = {0} kg: expected a finite mass above 0")]
     Mass(f64),
-    /// A moment of inertia that is none.
+    /// A moment of inertia that is not positive and finite.
     #[error("inertia = {0:?} kg m^2: expected three finite moments above 0")]
     Inertia([f64; 3]),
     /// Moments of inertia that no distribution of mass has.
