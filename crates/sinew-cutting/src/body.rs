@@ -251,6 +251,24 @@ impl CuttableBody {
         !self.room.touched.is_empty()
     }
 
+    /// Whether a blade, a segment between two ends (m), is in the body where its nodes have these positions (m).
+    #[must_use]
+    pub fn holds(&self, [from, to]: [[f64; 3]; 2], positions: &[[f64; 3]]) -> bool {
+        let reach = self.longest_edge;
+        let is_near = |place: &Vector| {
+            (0..3).all(|axis| {
+                let [low, high] = [from[axis].min(to[axis]), from[axis].max(to[axis])];
+                low - reach <= place[axis] && place[axis] <= high + reach
+            })
+        };
+        let near = (0..).zip(positions).filter(|(_, place)| is_near(place));
+        let mut tets = near.flat_map(|(node, _)| self.incidence.of(node));
+        tets.any(|tet| {
+            let vertices = self.tets[*tet as usize].map(|node| positions[node as usize]);
+            crate::tet::is_met(&vertices, [from, to])
+        })
+    }
+
     /// The bound of a frequency (1/s) that each tetrahedron keeps: the mesh's largest.
     #[must_use]
     pub fn largest_frequency(&self) -> f64 {

@@ -33,6 +33,25 @@ pub(crate) fn gradients(vertices: &[Vector; 4]) -> [Vector; 4] {
     })
 }
 
+/// Whether a segment between two points is in it anywhere, or on its surface.
+pub(crate) fn is_met(vertices: &[Vector; 4], [from, to]: [Vector; 2]) -> bool {
+    // The shares of the segment between which it is on the inner side of all faces so far.
+    let [mut first, mut last] = [0.0_f64, 1.0_f64];
+    for (vertex, face) in FACES.into_iter().enumerate() {
+        let [a, b, c] = face.map(|corner| vertices[corner]);
+        let normal = cross(sub(b, a), sub(c, a));
+        let inwards = dot(normal, sub(vertices[vertex], a)).signum();
+        let [start, end] = [from, to].map(|point| inwards * dot(normal, sub(point, a)));
+        match (start < 0.0, end < 0.0) {
+            (true, true) => return false,
+            (true, false) => first = first.max(start / (start - end)),
+            (false, true) => last = last.min(start / (start - end)),
+            (false, false) => {}
+        }
+    }
+    first <= last
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,6 +71,30 @@ mod tests {
                 let expected = if vertex == other { 0.0 } else { -1.0 };
                 assert!((dot(gradient, sub(place, SKEW[vertex])) - expected).abs() < 1e-14);
             }
+        }
+    }
+
+    #[test]
+    fn a_segment_is_met_within_across_and_at_no_other_place() {
+        let middle = crate::vector::mean(SKEW);
+        let [a, b, c, d] = SKEW;
+        for vertices in [[a, b, c, d], [b, a, c, d]] {
+            let near = add(middle, [1e-3, 0.0, 0.0]);
+            assert!(is_met(&vertices, [middle, near]), "within");
+            assert!(
+                is_met(&vertices, [[-5.0, 0.3, 0.3], [5.0, 0.5, 0.5]]),
+                "across"
+            );
+            assert!(is_met(&vertices, [middle, [9.0; 3]]), "out of it");
+            assert!(!is_met(&vertices, [[3.0; 3], [9.0; 3]]));
+            assert!(
+                !is_met(&vertices, [[-1.0, 0.0, -1.0], [2.0, 0.0, -1.0]]),
+                "beside"
+            );
+            assert!(
+                !is_met(&vertices, [[1.5, 1.5, 0.0], [0.0, 1.5, 1.5]]),
+                "past an edge"
+            );
         }
     }
 

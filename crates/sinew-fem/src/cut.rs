@@ -2,6 +2,7 @@
 
 use sinew_mesh::{CutMesh, TetMesh};
 
+use crate::cells::supported;
 use crate::error::Cause;
 use crate::{LoadKind, LoadSpec, On, Problem};
 
@@ -9,7 +10,7 @@ impl Problem {
     /// The problem of a body that was cut, of which `uncut` is the mesh that this problem is on.
     ///
     /// Copies of nodes that are held or moved are held or moved. Tractions and pressures follow their triangles. A force on nodes stays with
-    /// the nodes that it was on, so that a cut does no work; where all that a load acts on is gone, so is the load.
+    /// the nodes that it was on, so that a cut does no work, and the share of those that are gone goes with them; where all that a load acts on is gone, so is the load.
     ///
     /// # Errors
     /// [`Cause`] where a part of the mesh does not exist.
@@ -22,10 +23,36 @@ impl Problem {
         problem.fixed.retain(|fixed| !is_nothing(&fixed.on));
         problem.moves.retain(|moving| !is_nothing(&moving.on));
         for load in &mut problem.loads {
-            load.on = load.on_after_cuts(uncut, cut)?;
+            let on = load.on_after_cuts(uncut, cut)?;
+            if let (LoadKind::Force(force), On::Nodes(left)) = (&mut load.kind, &on) {
+                let bears = self.bears_forces(uncut)?;
+                let count = |nodes: &mut dyn Iterator<Item = u32>| {
+                    nodes.filter(|node| bears[*node as usize]).count()
+                };
+                let all = count(&mut load.on.nodes(uncut)?.into_iter());
+                let left = left.iter().map(|node| cut.origins[*node as usize]);
+                let left = count(&mut left.into_iter());
+                if left < all {
+                    let share = left as f64 / all as f64;
+                    *force = force.map(|along| share * along);
+                }
+            }
+            load.on = on;
         }
         problem.loads.retain(|load| !is_nothing(&load.on));
         Ok(problem)
+    }
+
+    /// Whether each node of the uncut mesh bears a share of a force: it is not held altogether.
+    fn bears_forces(&self, uncut: &TetMesh) -> Result<Vec<bool>, Cause> {
+        let held = supported(uncut, &self.fixed).map_err(|error| error.cause().clone())?;
+        let mut bears: Vec<bool> = held.iter().map(|held| *held != [true; 3]).collect();
+        for moving in &self.moves {
+            for node in moving.on.nodes(uncut)? {
+                bears[node as usize] = true;
+            }
+        }
+        Ok(bears)
     }
 
     /// The places of the loads that [`Problem::after_cuts`] leaves.

@@ -430,6 +430,20 @@ impl CutModel {
         Ok(())
     }
 
+    /// Whether a blade (both ends, m) is in the body as it lies in a state.
+    ///
+    /// # Errors
+    /// [`CutModelError`] for a state that does not fit.
+    pub fn holds(
+        &mut self,
+        blade: [[f64; 3]; 2],
+        state: &State,
+        inputs: &Inputs,
+    ) -> Result<bool, CutModelError> {
+        self.find_positions(state, inputs)?;
+        Ok(self.body.holds(blade, &self.positions))
+    }
+
     /// Leaves these nodes of the body where they are at rest, until this is called again: those that a tool has hold of.
     pub fn hold(&mut self, nodes: impl IntoIterator<Item = u32>) {
         self.body.hold(nodes);

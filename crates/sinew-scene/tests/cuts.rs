@@ -364,24 +364,33 @@ fn a_frozen_piece_keeps_the_loads_that_were_on_it() {
         assert_eq!((frozen.pieces, removed.pieces), (2, 1), "{load_on_top}");
         assert_eq!(frozen.state.u, removed.state.u, "{load_on_top}");
     }
-    // What of a force fell on nodes that were frozen does not fall on the others.
-    let cutting = "[[load]]\nwhere = { above = { x = 0.02 } }\nforce = [0.1, 0.0, 0.0]\n[cutting]\ntable = \"strokes.csv\"\npieces = \"freeze\"\n";
-    let ended = run(load(
-        folder.path(),
-        &bar(cutting, EXPLICIT),
-        &across(0.0, 2e-4),
-    ));
-    let linear = ended.simulation.system().as_linear().unwrap();
-    let [on_side, ..] = linear.operators().loads() else {
-        panic!("the load and gravity");
-    };
-    let along_x = on_side.entries.iter().map(|(_, force)| *force);
-    assert!((6..=9).contains(&along_x.len()));
-    assert!(
-        along_x
-            .into_iter()
-            .all(|force| (force - 0.1 / 18.0).abs() < 1e-15)
-    );
+}
+
+/// What of a force fell on nodes that were frozen, or that are gone, does not fall on the others.
+#[test]
+fn the_share_of_a_force_on_each_node_stays_as_pieces_come_off() {
+    for pieces in ["freeze", "remove"] {
+        let folder = tempfile::tempdir().unwrap();
+        let cutting = &format!(
+            "[[load]]\nwhere = {{ above = {{ x = 0.02 }} }}\nforce = [0.1, 0.0, 0.0]\n[cutting]\ntable = \"strokes.csv\"\npieces = \"{pieces}\"\n"
+        );
+        let ended = run(load(
+            folder.path(),
+            &bar(cutting, EXPLICIT),
+            &across(0.0, 2e-4),
+        ));
+        let linear = ended.simulation.system().as_linear().unwrap();
+        let [on_side, ..] = linear.operators().loads() else {
+            panic!("the load and gravity");
+        };
+        let along_x = on_side.entries.iter().map(|(_, force)| *force);
+        assert!((6..=9).contains(&along_x.len()));
+        assert!(
+            along_x
+                .into_iter()
+                .all(|force| (force - 0.1 / 18.0).abs() < 1e-15)
+        );
+    }
 }
 
 #[test]
@@ -467,6 +476,43 @@ fn a_grasp_outlives_a_cut() {
         let probe = ended.simulation.probes()[0].displacement(state.t(), &state.u);
         assert!((probe.last().unwrap() - 0.003).abs() < 1.1e-3);
     }
+}
+
+/// Steps so short that most of them touch nothing of a tetrahedron: the blade is in all the same, also for who takes the cutter over from its bytes.
+#[test]
+fn a_tool_cuts_in_any_steps_what_a_table_cuts() {
+    let folder = tempfile::tempdir().unwrap();
+    let tool = "[[tool]]\nname = \"scalpel\"\nshape = { blade = { length = 0.04 } }\nrotation = [1.5707963267948966, 0.0, 0.0]\n\
+                start = [-0.001, 0.01, 0.0323]\nvelocity = [0.5, 0.0, 0.0]\n[cutting]\ntool = \"scalpel\"\nsnap = 0.0\n";
+    let table = "[cutting]\ntable = \"strokes.csv\"\nsnap = 0.0\n";
+    let at_rest = |text: String| text.replace("gravity = [0.0, 0.0, 9.81]\n", "");
+    let strokes = format!(
+        "{STROKES}1,0,-0.001,-0.01,0.0323,-0.001,0.03,0.0323\n1,0.046,0.022,-0.01,0.0323,0.022,0.03,0.0323\n"
+    );
+    for dt in ["1e-3", "2e-4", "5e-5"] {
+        let run_in = |text: &str| {
+            let text = at_rest(bar(text, &EXPLICIT.replace("2e-4", dt)));
+            run(load(folder.path(), &text, &strokes)).totals.report
+        };
+        let (by_tool, by_table) = (run_in(tool), run_in(table));
+        assert_eq!(by_table.faces, 8);
+        assert_eq!(by_tool.faces, by_table.faces, "{dt}");
+    }
+    let simulation = load(folder.path(), &at_rest(bar(tool, EXPLICIT)), "");
+    let mut cutter = simulation.cutter().unwrap().unwrap();
+    let mut state = simulation.initial_state().clone();
+    let (mut now, mut end) = (None, 0.0);
+    while now.is_none() {
+        end += 2e-4;
+        now = cutter
+            .follow(&simulation, &mut state, Inputs::none(), end)
+            .unwrap();
+        let mut taken_over = simulation.cutter().unwrap().unwrap();
+        taken_over.restore(&cutter.to_bytes(), &simulation).unwrap();
+        assert_eq!(taken_over.to_bytes(), cutter.to_bytes());
+        cutter = taken_over;
+    }
+    assert!(cutter.totals().report.faces > 0);
 }
 
 /// A blade of the scene that is out of the tissue is not lifted over and over: what a hand has entered in part stays entered.

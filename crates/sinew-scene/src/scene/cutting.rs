@@ -77,7 +77,7 @@ pub(super) const CUTTING: TableDescription = TableDescription {
     examples: &[
         "[cutting]\nsnap = 0.25\ntable = \"strokes.csv\"\n",
         "[cutting]\ntool = \"scalpel\"\ntoughness = 150.0\npieces = \"remove\"\nlips = \"free\"\n\n[[tool]]\nname = \"scalpel\"\n\
-         shape = { blade = { length = 0.02 } }\nstart = [0.05, 0.0, 0.12]\nvelocity = [0.0, 0.0, -0.05]\n",
+         shape = { blade = { length = 0.02 } }\nrotation = [1.5707963267948966, 0.0, 0.0]  # along y\nstart = [0.05, 0.0, 0.12]\nvelocity = [0.0, 0.0, -0.05]\n",
         "[cutting]\nremove = { tool = \"burner\" }\n\n[[tool]]\nname = \"burner\"\nshape = { sphere = { radius = 0.01 } }\n\
          start = [0.05, 0.05, 0.1]\nhold = true\n",
     ],

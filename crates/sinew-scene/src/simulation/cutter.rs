@@ -204,7 +204,9 @@ impl Cutter {
                     && let Some(sheet) = Sheet::swept(from, to)
                 {
                     self.sweep(&sheet, state, inputs)?;
-                    let is_in = self.cut.body().is_touched();
+                    // In tissue a short way may touch nothing of what tells how far a blade has come.
+                    let is_in = self.cut.body().is_touched()
+                        || self.is_in && self.cut.holds(to, state, inputs)?;
                     // Once, as it comes out: another blade may be in.
                     if std::mem::replace(&mut self.is_in, is_in) && !is_in {
                         self.cut.lift();
@@ -272,6 +274,7 @@ impl Cutter {
             report.moved_nodes,
             report.removed_tets,
             report.frozen_tets,
+            usize::from(self.is_in),
         ];
         let mut bytes = changes.to_le_bytes().to_vec();
         let counts = counts.map(|count| (count as u64).to_le_bytes());
@@ -296,13 +299,14 @@ impl Cutter {
         simulation: &Simulation,
     ) -> Result<Option<Simulation>, CuttingError> {
         let other = || CuttingError::from(CutModelError::from(SavedBodyError));
-        let (head, body) = bytes.split_at_checked(13 * 8).ok_or_else(other)?;
+        let (head, body) = bytes.split_at_checked(14 * 8).ok_or_else(other)?;
         let words: Vec<[u8; 8]> = head.as_chunks().0.to_vec();
         let number = |place: usize| f64::from_le_bytes(words[place]);
         let count = |place: usize| u64::from_le_bytes(words[place]) as usize;
         self.cut.restore(body)?;
         let (kinetic, elastic) = (number(6), number(7));
         self.followed = Some(number(1)).filter(|t| !t.is_nan());
+        self.is_in = count(13) > 0;
         self.totals = CutTotals {
             changes: u64::from_le_bytes(words[0]),
             blade_work: number(5),

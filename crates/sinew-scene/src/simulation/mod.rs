@@ -208,17 +208,13 @@ impl Simulation {
         }
     }
 
-    /// The displacement (m) at which a body counts as diverged: 100 of its sizes. Of a body that may fly off, since nothing holds it along an axis or
+    /// The displacement (m) at which a body counts as diverged: 100 of its sizes. Of a body that may fly off, since no support holds it along an axis or
     /// cuts may take pieces off, 1e6: a fall is no divergence, and what grows at every step gets there soon all the same.
     #[must_use]
     pub fn divergence_limit(&self) -> Option<f64> {
         let extent = self.system().extent()?;
-        let problem = &self.model().body()?.problem;
-        let axes = problem.fixed.iter().map(|fixed| fixed.axes);
-        let axes: Vec<_> = axes
-            .chain(problem.moves.iter().map(|moving| moving.axes))
-            .collect();
-        let is_held = (0..3).all(|axis| axes.iter().any(|axes| axes[axis]));
+        let fixed = &self.model().body()?.problem.fixed;
+        let is_held = (0..3).all(|axis| fixed.iter().any(|fixed| fixed.axes[axis]));
         let sizes = match is_held && self.cutting.is_none() {
             true => 100.0,
             false => 1e6,
