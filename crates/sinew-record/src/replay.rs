@@ -67,17 +67,22 @@ impl RunFolder {
             let (followed, mut recorded) =
                 folder.record(&simulation, beginning, companion, |recorder| {
                     let from = replay.session().steps();
-                    let followed = match replay.follow(&simulation, recorder) {
-                        // What came until then is kept, as of a run that a law ends.
-                        Err(FollowError::Replay(error)) => {
-                            departed = Some(error.to_string());
-                            Followed {
-                                steps: replay.session().steps().saturating_sub(from),
-                                ..Followed::default()
-                            }
-                        }
-                        other => other.map_err(failure)?,
+                    let ended = match replay.follow(&simulation, recorder) {
+                        Ok(followed) => Ok(followed),
+                        Err(FollowError::Replay(error)) => Err(error.to_string()),
+                        Err(error) => match failure(error) {
+                            RecordRunError::State(refused) => Err(refused.to_string()),
+                            other => return Err(other),
+                        },
                     };
+                    // What came until then is kept, as of a run that a law ends.
+                    let followed = ended.unwrap_or_else(|reason| {
+                        departed = Some(reason);
+                        Followed {
+                            steps: replay.session().steps().saturating_sub(from),
+                            ..Followed::default()
+                        }
+                    });
                     if let Some(change) = &followed.change {
                         recorder.close_balance(&Moment {
                             system: simulation.system(),

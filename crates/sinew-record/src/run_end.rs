@@ -38,7 +38,7 @@ pub struct RunEnd {
 pub enum Ended {
     /// All steps taken.
     Finished,
-    /// A displacement was not finite or passed 100 times the body's size.
+    /// A displacement was not finite or passed [`sinew_scene::Simulation::divergence_limit`].
     Diverged {
         /// Time (s).
         t: f64,

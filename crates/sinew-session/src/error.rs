@@ -40,7 +40,7 @@ pub enum SessionError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SessionStepError {
-    /// A displacement that is not finite, or beyond 100 times the size of the body. The step was taken, and counts.
+    /// A displacement that is not finite, or beyond [`sinew_scene::Simulation::divergence_limit`]. The step was taken, and counts.
     #[error("the motion diverged at t = {t} s: {place} is too far away")]
     Diverged {
         /// Time (s).
