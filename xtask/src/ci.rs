@@ -51,10 +51,11 @@ fn steps(root: &Path) -> std::io::Result<Vec<Step>> {
         ),
         Step::new("tests", "test --workspace"),
     ];
-    // One by one: together each would turn on features of the others. Of the methods, what a missing feature may change: products on one thread, and
-    // which of them are left.
+    // One by one: together each would turn on features of the others. Of the larger crates, what a missing feature may change: products on one thread, and
+    // the methods that are left.
     let without_features = [
         ("sinew-sparse", ""),
+        ("sinew-fem", "--test patch_test"),
         (
             "sinew-integrators",
             "--lib --test conformance --test machines --test what_methods_say",
@@ -316,6 +317,7 @@ mod tests {
         let steps = steps(&root()).unwrap();
         for of_crate in [
             "sinew-sparse",
+            "sinew-fem --test patch_test",
             "sinew-integrators --lib --test conformance --test machines --test what_methods_say",
         ] {
             let expected = format!("test --no-default-features -p {of_crate}");
