@@ -1,6 +1,7 @@
 //! Points at which a system is evaluated.
 
 use crate::load_time::LoadTime;
+use crate::state::State;
 
 /// A point at which a system is evaluated without being changed.
 #[derive(Clone, Copy, Debug)]
@@ -15,4 +16,18 @@ pub struct Trial<'a> {
     pub v: &'a [f64],
     /// Internal variables of the last accepted state, [`crate::System::internal_variables`] of them.
     pub internal: &'a [f64],
+}
+
+impl<'a> Trial<'a> {
+    /// An accepted state itself, under the loads of a time.
+    #[must_use]
+    pub fn of(state: &'a State, load: LoadTime<'a>) -> Self {
+        Self {
+            load,
+            dt: 0.0,
+            u: &state.u,
+            v: &state.v,
+            internal: &state.internal,
+        }
+    }
 }

@@ -254,13 +254,9 @@ impl CuttableBody {
     /// Whether a blade, a segment between two ends (m), is in the body where its nodes have these positions (m).
     #[must_use]
     pub fn holds(&self, [from, to]: [[f64; 3]; 2], positions: &[[f64; 3]]) -> bool {
-        let reach = self.longest_edge;
-        let is_near = |place: &Vector| {
-            (0..3).all(|axis| {
-                let [low, high] = [from[axis].min(to[axis]), from[axis].max(to[axis])];
-                low - reach <= place[axis] && place[axis] <= high + reach
-            })
-        };
+        let extreme =
+            |of: fn(f64, f64) -> f64| std::array::from_fn(|axis| of(from[axis], to[axis]));
+        let is_near = self.is_near([extreme(f64::min), extreme(f64::max)]);
         let near = (0..).zip(positions).filter(|(_, place)| is_near(place));
         let mut tets = near.flat_map(|(node, _)| self.incidence.of(node));
         tets.any(|tet| {

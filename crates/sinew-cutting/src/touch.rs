@@ -118,6 +118,16 @@ impl CuttableBody {
         }
     }
 
+    /// Tells of a place (m) whether a tetrahedron with a vertex there may reach into a box, unless it is stretched.
+    pub(crate) fn is_near(&self, [low, high]: [Vector; 2]) -> impl Fn(&Vector) -> bool + use<> {
+        let reach = self.longest_edge;
+        let [low, high] = [
+            low.map(|least| least - reach),
+            high.map(|most| most + reach),
+        ];
+        move |place| (0..3).all(|axis| low[axis] <= place[axis] && place[axis] <= high[axis])
+    }
+
     /// Finds the tetrahedra that a sheet touches, increasing, into `room.touched`: from nodes near it, and on from neighbour to
     /// neighbour, so that tetrahedra stretched beyond all measure are found where another one leads to them.
     pub(crate) fn find_touched(&mut self, sheet: &Sheet, positions: &[Vector]) {
@@ -125,15 +135,7 @@ impl CuttableBody {
         room.look = room.look.wrapping_add(1);
         room.touched.clear();
         room.queue.clear();
-        let reach = self.longest_edge;
-        let [low, high] = sheet.bounds();
-        let (low, high) = (
-            low.map(|least| least - reach),
-            high.map(|most| most + reach),
-        );
-        let is_near = |place: &Vector| {
-            (0..3).all(|axis| low[axis] <= place[axis] && place[axis] <= high[axis])
-        };
+        let is_near = self.is_near(sheet.bounds());
         let mut see = |tet: u32, queue: &mut Vec<u32>| {
             let seen = &mut room.seen[tet as usize];
             if *seen != room.look {

@@ -25,16 +25,19 @@ impl Problem {
         for load in &mut problem.loads {
             let on = load.on_after_cuts(uncut, cut)?;
             if let (LoadKind::Force(force), On::Nodes(left)) = (&mut load.kind, &on) {
-                let bears = self.bears_forces(uncut)?;
-                let count = |nodes: &mut dyn Iterator<Item = u32>| {
-                    nodes.filter(|node| bears[*node as usize]).count()
-                };
-                let all = count(&mut load.on.nodes(uncut)?.into_iter());
-                let left = left.iter().map(|node| cut.origins[*node as usize]);
-                let left = count(&mut left.into_iter());
-                if left < all {
-                    let share = left as f64 / all as f64;
-                    *force = force.map(|along| share * along);
+                let all = load.on.nodes(uncut)?;
+                if left.len() < all.len() {
+                    let bears = self.bears_forces(uncut)?;
+                    let count = |nodes: &[u32]| {
+                        let of_node = nodes.iter().map(|node| bears[*node as usize]);
+                        of_node.filter(|bears| *bears).count()
+                    };
+                    let origins = left.iter().map(|node| cut.origins[*node as usize]);
+                    let (left, all) = (count(&origins.collect::<Vec<_>>()), count(&all));
+                    if left < all {
+                        let share = left as f64 / all as f64;
+                        *force = force.map(|along| share * along);
+                    }
                 }
             }
             load.on = on;

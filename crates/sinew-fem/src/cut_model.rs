@@ -430,18 +430,10 @@ impl CutModel {
         Ok(())
     }
 
-    /// Whether a blade (both ends, m) is in the body as it lies in a state.
-    ///
-    /// # Errors
-    /// [`CutModelError`] for a state that does not fit.
-    pub fn holds(
-        &mut self,
-        blade: [[f64; 3]; 2],
-        state: &State,
-        inputs: &Inputs,
-    ) -> Result<bool, CutModelError> {
-        self.find_positions(state, inputs)?;
-        Ok(self.body.holds(blade, &self.positions))
+    /// Whether a blade (both ends, m) is in the body as it lay at the last stroke.
+    #[must_use]
+    pub fn holds(&self, blade: [[f64; 3]; 2]) -> bool {
+        self.body.holds(blade, &self.positions)
     }
 
     /// Leaves these nodes of the body where they are at rest, until this is called again: those that a tool has hold of.

@@ -51,13 +51,7 @@ impl<'a> DeformationWatch<'a> {
     /// Looks at the state after a step. States that the law refuses are passed over: the run ends there by itself.
     pub(crate) fn look(&mut self, moment: &Moment<'_>) {
         let state = moment.state;
-        let trial = Trial {
-            load: LoadTime::at(state.t()),
-            dt: 0.0,
-            u: &state.u,
-            v: &state.v,
-            internal: &state.internal,
-        };
+        let trial = Trial::of(state, LoadTime::at(state.t()));
         let Ok(deformed) = self.law.elastic_force(&trial, &mut self.force) else {
             return;
         };

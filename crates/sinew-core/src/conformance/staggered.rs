@@ -9,13 +9,7 @@ fn leapfrog(problem: &Problem, dt: f64, kept: Acceleration) -> State {
     let (system, mut state): (&dyn System, _) = (&problem.system, problem.start.clone());
     let mut a = vec![0.0; state.u.len()];
     for step in 0..4 {
-        let trial = Trial {
-            load: LoadTime::at(state.t()),
-            dt: 0.0,
-            u: &state.u,
-            v: &state.v,
-            internal: &state.internal,
-        };
+        let trial = Trial::of(&state, LoadTime::at(state.t()));
         if let Err(error) = system.net_force(&trial, &mut a) {
             unreachable!("a linear system refuses nothing: {error}");
         }

@@ -420,13 +420,7 @@ impl Substepped {
         });
         let layers = system.layers().count();
         self.blocks.resize(layers * system.dofs(), 0.0);
-        let trial = Trial {
-            load: LoadTime::at(state.t()).under(batch.inputs()),
-            dt: 0.0,
-            u: &state.u,
-            v: &state.v,
-            internal: &state.internal,
-        };
+        let trial = Trial::of(state, LoadTime::at(state.t()).under(batch.inputs()));
         let refused = |source| StepError::Refused {
             t: state.t(),
             source,

@@ -17,13 +17,7 @@ pub(crate) fn energy_method(kind: &str, sweeps: u32) -> Box<dyn Integrator> {
 
 /// Kinetic and elastic energy of a state (J), and the size of what is rounded in it.
 fn energy(system: &dyn System, state: &State) -> [f64; 2] {
-    let trial = Trial {
-        load: LoadTime::at(state.t()),
-        dt: 0.0,
-        u: &state.u,
-        v: &state.v,
-        internal: &state.internal,
-    };
+    let trial = Trial::of(state, LoadTime::at(state.t()));
     let mut force = vec![0.0; state.u.len()];
     let law = system.as_elastic().unwrap();
     let elastic = law.elastic_force(&trial, &mut force).unwrap().energy;

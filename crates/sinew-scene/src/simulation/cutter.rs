@@ -205,8 +205,7 @@ impl Cutter {
                 {
                     self.sweep(&sheet, state, inputs)?;
                     // In tissue a short way may touch nothing of what tells how far a blade has come.
-                    let is_in = self.cut.body().is_touched()
-                        || self.is_in && self.cut.holds(to, state, inputs)?;
+                    let is_in = self.cut.body().is_touched() || self.is_in && self.cut.holds(to);
                     // Once, as it comes out: another blade may be in.
                     if std::mem::replace(&mut self.is_in, is_in) && !is_in {
                         self.cut.lift();
@@ -343,9 +342,11 @@ impl Cutter {
 
     /// Notes what tools keep before anything is cut, and leaves what they have hold of where it is at rest; the epoch of the body.
     fn begin(&mut self, simulation: &Simulation, state: &State) -> u64 {
-        self.before.take(self.cut.body().nodes(), state);
-        let held = held_by_tools(simulation, state.t(), &self.before.contact);
-        self.cut.hold(held);
+        let before = &mut self.before;
+        before.nodes = self.cut.body().nodes();
+        before.contact.clone_from(&state.contact);
+        before.held = held_by_tools(simulation, state);
+        self.cut.hold(before.held.iter().copied());
         self.cut.epoch()
     }
 
@@ -363,11 +364,11 @@ impl Cutter {
         let loose = match self.plan.cutting.pieces {
             LoosePieces::Fall => CutReport::default(),
             LoosePieces::Freeze => {
-                let held = self.held_with_copies(simulation, state);
+                let held = self.held_with_copies();
                 self.cut.freeze_loose(&held, state, inputs)?
             }
             LoosePieces::Remove => {
-                let held = self.held_with_copies(simulation, state);
+                let held = self.held_with_copies();
                 self.cut.remove_loose(&held, state, inputs)?
             }
         };
@@ -382,9 +383,8 @@ impl Cutter {
     }
 
     /// Nodes of the body that tools have hold of, and their new copies.
-    fn held_with_copies(&self, simulation: &Simulation, state: &State) -> Vec<u32> {
-        let held = held_by_tools(simulation, state.t(), &self.before.contact);
-        let held: HashSet<u32> = held.into_iter().collect();
+    fn held_with_copies(&self) -> Vec<u32> {
+        let held: HashSet<u32> = self.before.held.iter().copied().collect();
         if held.is_empty() {
             return Vec::new();
         }
@@ -493,19 +493,15 @@ struct Before {
     /// Number of nodes of the body, gone ones included.
     nodes: usize,
     contact: Vec<f64>,
+    /// Nodes of the body that tools had hold of.
+    held: Vec<u32>,
 }
 
-impl Before {
-    fn take(&mut self, nodes: usize, state: &State) {
-        self.nodes = nodes;
-        self.contact.clone_from(&state.contact);
-    }
-}
-
-/// The nodes in the body of the cells that tools have hold of at a time (s).
-fn held_by_tools(simulation: &Simulation, t: f64, contact: &[f64]) -> Vec<u32> {
+/// The nodes in the body of the cells that tools have hold of in a state.
+fn held_by_tools(simulation: &Simulation, state: &State) -> Vec<u32> {
     let tools = simulation.model().tools().into_iter();
-    let held: Vec<usize> = tools.flat_map(|tools| tools.held(contact, t)).collect();
+    let held = tools.flat_map(|tools| tools.held(&state.contact, state.t()));
+    let held: Vec<usize> = held.collect();
     if held.is_empty() {
         return Vec::new();
     }

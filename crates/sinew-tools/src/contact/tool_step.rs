@@ -241,7 +241,7 @@ impl ToolStep {
         }
     }
 
-    /// Passes of its stroke.
+    /// The most pieces in which ways are followed beside one of its parts.
     pub(super) fn pieces(&self) -> f64 {
         let pieces = self.strokes.iter().map(|(stroke, _)| stroke.pieces());
         f64::from(pieces.max().unwrap_or(1))

@@ -219,13 +219,7 @@ pub(crate) fn energy(pressed: &Pressed, state: &State) -> f64 {
     let mut force = vec![0.0; state.u.len()];
     let system: &dyn System = &pressed.model;
     let law = system.as_elastic().unwrap();
-    let trial = Trial {
-        load: LoadTime::at(state.t()),
-        dt: 0.0,
-        u: &state.u,
-        v: &state.v,
-        internal: &state.internal,
-    };
+    let trial = Trial::of(state, LoadTime::at(state.t()));
     kinetic + law.elastic_force(&trial, &mut force).unwrap().energy
 }
 

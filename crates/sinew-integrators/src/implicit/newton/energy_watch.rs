@@ -70,13 +70,7 @@ impl EnergyWatch {
         }
         let t = state.t();
         let ends = LoadTime::at_both_ends(t, step.dt, 0.5).map(|when| when.under(step.inputs));
-        let trial = Trial {
-            load: ends[0],
-            dt: 0.0,
-            u: &state.u,
-            v: &state.v,
-            internal: &state.internal,
-        };
+        let trial = Trial::of(state, ends[0]);
         report.sweeps += 1;
         let Ok(deformed) = law.elastic_force(&trial, force) else {
             self.expected = None;
