@@ -834,9 +834,6 @@ impl<T: ElementPrecision> ShowCells for TouchedCells<'_, T> {
         state: &mut State,
         near: &mut Vec<u32>,
     ) -> Shown {
-        if self.are_shown {
-            return Shown::All;
-        }
         let vectors = [0, 1].map(|register| self.loaded.field(register));
         let Loaded {
             touched,
@@ -844,17 +841,18 @@ impl<T: ElementPrecision> ShowCells for TouchedCells<'_, T> {
             largest,
             ..
         } = &mut *self.loaded;
-        match within {
-            None => {
+        let Some(within) = within else {
+            if !self.are_shown {
                 touched.show_all(fields, vectors, state);
-                Shown::All
             }
-            Some(within) => {
-                let search = (within, meeting, *largest);
-                touched.show_near(self.set, (fields, vectors), search, state, near);
-                Shown::Listed
-            }
+            return Shown::All;
+        };
+        let search = (within, meeting, *largest);
+        touched.list_near(self.set, (fields, vectors), search, near);
+        if !self.are_shown {
+            touched.show_listed(fields, vectors, near, state);
         }
+        Shown::Listed
     }
 }
 

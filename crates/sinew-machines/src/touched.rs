@@ -106,27 +106,45 @@ impl<T: Precision> Touched<T> {
     }
 
     /// Writes u and v of all of them into a state, from these vectors.
-    pub(crate) fn show_all(&self, fields: &mut Fields<T>, [u, v]: [usize; 2], state: &mut State) {
-        let layers = layers_of(fields, [u, v]);
-        for place in 0..self.cells.len() {
-            self.show(place, &layers, state);
-        }
+    pub(crate) fn show_all(&self, fields: &mut Fields<T>, vectors: [usize; 2], state: &mut State) {
+        self.show_these(fields, vectors, 0..self.cells.len(), state);
     }
 
-    /// Lists the places of those whose ways in the step may meet a box (m), increasing, and writes their u and v into a state. No component of a displacement is larger than `largest` (m) at
+    /// Writes u and v of those at these places into a state.
+    pub(crate) fn show_listed(
+        &self,
+        fields: &mut Fields<T>,
+        vectors: [usize; 2],
+        places: &[u32],
+        state: &mut State,
+    ) {
+        let places = places.iter().map(|place| *place as usize);
+        self.show_these(fields, vectors, places, state);
+    }
+
+    fn show_these(
+        &self,
+        fields: &mut Fields<T>,
+        vectors: [usize; 2],
+        places: impl Iterator<Item = usize>,
+        state: &mut State,
+    ) {
+        let layers = layers_of(fields, vectors);
+        places.for_each(|place| self.show(place, &layers, state));
+    }
+
+    /// Lists the places of those whose ways in the step may meet a box (m), increasing. No component of a displacement is larger than `largest` (m) at
     /// either end of a way: where all of a block stays away from the box then, its ways are not looked at.
-    pub(crate) fn show_near(
+    pub(crate) fn list_near(
         &self,
         set: InstructionSet,
-        (fields, [u, v]): (&mut Fields<T>, [usize; 2]),
+        (fields, vectors): (&mut Fields<T>, [usize; 2]),
         (within, meeting, largest): ([[f64; 3]; 2], &Meeting<'_>, f64),
-        state: &mut State,
         near: &mut Vec<u32>,
     ) {
-        let layers = layers_of(fields, [u, v]);
         let search = Search {
             touched: self,
-            layers: &layers,
+            layers: &layers_of(fields, vectors),
             bounds: self.with_roundings(within),
             dt: meeting.dt,
             saturation: meeting.saturation.min(T::LARGEST),
@@ -135,9 +153,6 @@ impl<T: Precision> Touched<T> {
         };
         T::with_vectors(set, search);
         near.sort_unstable();
-        for place in near.iter() {
-            self.show(*place as usize, &layers, state);
-        }
     }
 
     #[inline]
@@ -189,75 +204,75 @@ impl<T: Precision> WithReal<T> for Search<'_, T> {
 
     #[inline(always)]
     fn run<N: Number<Real = T>>(mut self) {
-        let blocks = &self.touched.blocks;
+        let blocks = self.touched.blocks.len();
         let [low, high] = self.bounds;
-        let (low, high) = (
+        let reach = [
             low.map(|x| x - self.largest),
             high.map(|x| x + self.largest),
-        );
+        ];
+        let [lowest, highest] = self.touched.extent;
+        if !(0..3).all(|axis| lowest[axis] <= reach[1][axis] && highest[axis] >= reach[0][axis]) {
+            return;
+        }
         let [lowest, highest] = &self.touched.ends;
-        for first in (0..blocks.len()).step_by(N::LANES) {
+        for first in (0..blocks).step_by(N::LANES) {
             let ends = |axis: usize| {
                 let [lowest, highest] = [lowest, highest].map(|of| N::load(&of[axis][first..]));
                 (lowest, highest)
             };
-            if !is_any_met([low, high], ends) {
-                continue;
-            }
-            for block in first..blocks.len().min(first + N::LANES) {
-                let is_met = (0..3).all(|axis| {
-                    let [from, to] = [lowest, highest].map(|of| of[axis][block].to_f64());
-                    from <= high[axis] && to >= low[axis]
-                });
-                if is_met {
-                    self.look_at::<N>(block);
-                }
+            let met = lanes_of(lanes_met(reach, ends)).map(|lane| first + lane);
+            // Where nothing is known of how far displacements reach, what is behind the last block is met as well.
+            for block in met.take_while(|block| *block < blocks) {
+                self.look_at::<N>(block);
             }
         }
     }
 }
 
 impl<T: Precision> Search<'_, T> {
-    /// Lists the cells of a block of which a way meets the box.
+    /// Lists the cells of a block whose ways meet the box.
     #[inline(always)]
     fn look_at<N: Number<Real = T>>(&mut self, block: usize) {
         let (touched, [us, vs]) = (self.touched, self.layers);
         let (first, back) = (touched.blocks[block] as usize, N::of(-self.dt));
         let [least, most] = [-self.saturation, self.saturation].map(N::of);
-        let is_met = (0..T::LANES).step_by(N::LANES).any(|part| {
-            let (lane, position) = (block * T::LANES + part, first + part);
+        for part in (0..T::LANES).step_by(N::LANES) {
+            let (of_block, position) = (block * T::LANES + part, first + part);
             let ends = |axis: usize| {
                 let [u, v] = [us, vs].map(|layers| N::load(&layers[axis][position..]));
-                let to = N::load(&touched.at_rest[axis][lane..]) + u;
+                let to = N::load(&touched.at_rest[axis][of_block..]) + u;
                 let from = v.min(most).max(least).mul_add(back, to);
                 (from.min(to), from.max(to))
             };
-            is_any_met(self.bounds, ends)
-        });
-        if is_met {
-            let places = &touched.places[block * T::LANES..(block + 1) * T::LANES];
-            self.near
-                .extend(places.iter().filter(|place| **place != NONE));
+            let met = lanes_of(lanes_met(self.bounds, ends));
+            let places = met.map(|lane| touched.places[of_block + lane]);
+            self.near.extend(places.filter(|place| *place != NONE));
         }
     }
 }
 
-/// Whether any of several boxes, by their lowest and highest coordinates along an axis, meets another one.
+/// Which of several boxes, by their lowest and highest coordinates along an axis, meet another one: one bit each.
 #[inline(always)]
-fn is_any_met<N: Number>([low, high]: [[f64; 3]; 2], ends: impl Fn(usize) -> (N, N)) -> bool {
-    let zero = N::of(0.0);
-    // How far boxes stay from it, along the axis where that is most; at most 0 where they meet.
-    let mut apart: Option<N> = None;
+fn lanes_met<N: Number>([low, high]: [[f64; 3]; 2], ends: impl Fn(usize) -> (N, N)) -> u32 {
+    let mut met = u32::MAX;
     for axis in 0..3 {
         let (lowest, highest) = ends(axis);
-        let along = (lowest - N::of(high[axis])).max(N::of(low[axis]) - highest);
-        let now = apart.map_or(along, |apart| apart.max(along));
-        if !N::any_le(now, zero) {
-            return false;
+        met &= N::lanes_le(lowest, N::of(high[axis])) & N::lanes_le(N::of(low[axis]), highest);
+        if met == 0 {
+            break;
         }
-        apart = Some(now);
     }
-    true
+    met
+}
+
+/// The lanes of which a bit is set, increasing.
+#[inline(always)]
+fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bits.trailing_zeros();
+        bits &= bits.wrapping_sub(1);
+        (lane < u32::BITS).then_some(lane as usize)
+    })
 }
 
 #[cfg(test)]
@@ -324,10 +339,14 @@ mod tests {
                 let (mut near, mut shown) = (Vec::new(), State::at_rest(dofs));
                 let vectors = (&mut fields, [0, 1]);
                 let search = ([low, high], &meeting, 0.2);
-                touched.show_near(set, vectors, search, &mut shown, &mut near);
+                touched.list_near(set, vectors, search, &mut near);
+                touched.show_listed(&mut fields, [0, 1], &near, &mut shown);
                 assert!(near.is_sorted());
                 assert!(expected.iter().all(|place| near.contains(place)), "{set:?}");
-                assert!(near.len() <= T::LANES * expected.len());
+                assert!(
+                    near.len() <= expected.len() + 1,
+                    "those that rounds bring in"
+                );
                 for place in near {
                     let first = 3 * all[place as usize] as usize;
                     assert_eq!(shown.u[first..first + 3], state.u[first..first + 3]);

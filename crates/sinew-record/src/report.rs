@@ -197,7 +197,7 @@ fn facts(summary: &Summary<'_>) -> Vec<(&'static str, String)> {
         facts.push((
             "current stiffness",
             format!(
-                "{} times a step was taken again in shorter parts",
+                "steps, or parts of them, taken again in shorter ones: {}",
                 work.retaken
             ),
         ));

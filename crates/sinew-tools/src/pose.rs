@@ -105,9 +105,12 @@ impl Pose {
 
     /// The shortest rotation vector (rad, in the world) that turns this pose into `after`.
     ///
-    /// Exactly 0 between equal rotations, for `R R'` is symmetric to the last bit.
+    /// Exactly 0 between equal rotations.
     #[must_use]
     pub fn turn_to(&self, after: &Self) -> [f64; 3] {
+        if self.rotation == after.rotation {
+            return [0.0; 3];
+        }
         let back = rotation::transposed(&self.rotation);
         rotation::vector(&rotation::product(&after.rotation, &back))
     }

@@ -10,6 +10,9 @@ pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0
 ///
 /// 1 - cos a is formed as 2 sin^2(a/2), so that no angle is too small for it.
 pub(crate) fn matrix(vector: Vector) -> Matrix {
+    if vector == [0.0; 3] {
+        return IDENTITY;
+    }
     let angle = length(vector);
     let first = sine_over_angle(angle);
     let second = sine_over_angle(angle / 2.0).powi(2) / 2.0;

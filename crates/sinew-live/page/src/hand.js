@@ -20,7 +20,9 @@ export class Hand {
     // Before the first picture nothing is known of places and sizes.
     const whenSeen = (act) => (event) => this.view.extent !== undefined && act(event);
     canvas.addEventListener("pointerdown", whenSeen((event) => this.down(event)));
-    canvas.addEventListener("pointermove", (event) => this.move(event));
+    // Where the browser tells of a move before its next frame, a hand is that much less late.
+    const moved = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
+    canvas.addEventListener(moved, (event) => this.move(event));
     for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => this.up(event));
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("wheel", whenSeen((event) => this.wheel(event)), { passive: false });

@@ -100,6 +100,9 @@ impl Journal {
         let settled = log
             .entries()
             .partition_point(|entry| entry.step < log.steps());
+        if settled == 0 {
+            return Ok(());
+        }
         self.add(log, settled)
     }
 
@@ -200,10 +203,15 @@ mod tests {
     }
 
     #[test]
-    fn a_file_in_which_nothing_stands_is_taken_over() {
+    fn what_is_left_without_a_command_is_taken_over() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("s.log");
-        drop(Journal::create(path.clone()).unwrap());
+        let scene = Scene::parse(SceneSource::new("spring.toml", SPRING)).unwrap();
+        let mut session = Session::new(scene).unwrap();
+        session.step().unwrap();
+        let mut journal = Journal::create(path.clone()).unwrap();
+        journal.keep_up(session.log()).unwrap();
+        drop(journal);
         assert!(Journal::create(path.clone()).is_ok());
         std::fs::write(&path, "x").unwrap();
         let refused = Journal::create(path.clone()).unwrap_err();

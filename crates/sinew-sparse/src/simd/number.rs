@@ -68,11 +68,20 @@ pub trait Number:
     #[must_use]
     fn select_le(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
 
+    /// The lanes in which `a <= b`, one bit each, the lowest first; not those in which one of them is not a number.
+    fn lanes_le(a: Self, b: Self) -> u32;
+
     /// Whether `a <= b` in every lane; not so where one of them is not a number.
-    fn all_le(a: Self, b: Self) -> bool;
+    #[inline(always)]
+    fn all_le(a: Self, b: Self) -> bool {
+        Self::lanes_le(a, b) == (1 << Self::LANES) - 1
+    }
 
     /// Whether `a <= b` in any lane.
-    fn any_le(a: Self, b: Self) -> bool;
+    #[inline(always)]
+    fn any_le(a: Self, b: Self) -> bool {
+        Self::lanes_le(a, b) != 0
+    }
 
     /// The size.
     #[inline(always)]
@@ -206,13 +215,8 @@ macro_rules! scalar {
             }
 
             #[inline(always)]
-            fn all_le(a: Self, b: Self) -> bool {
-                a <= b
-            }
-
-            #[inline(always)]
-            fn any_le(a: Self, b: Self) -> bool {
-                a <= b
+            fn lanes_le(a: Self, b: Self) -> u32 {
+                u32::from(a <= b)
             }
         }
     };

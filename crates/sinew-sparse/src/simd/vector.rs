@@ -277,17 +277,9 @@ impl<T: Real, V: Lanes<T>> Number for Vector<T, V> {
     }
 
     #[inline(always)]
-    fn all_le(a: Self, b: Self) -> bool {
+    fn lanes_le(a: Self, b: Self) -> u32 {
         // SAFETY: see `Vector`.
-        let bits = unsafe { a.0.at_most(b.0) };
-        bits == (1 << T::LANES) - 1
-    }
-
-    #[inline(always)]
-    fn any_le(a: Self, b: Self) -> bool {
-        // SAFETY: see `Vector`.
-        let bits = unsafe { a.0.at_most(b.0) };
-        bits != 0
+        unsafe { a.0.at_most(b.0) }
     }
 
     #[inline(always)]

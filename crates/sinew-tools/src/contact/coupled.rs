@@ -44,14 +44,18 @@ impl Tools {
                 room.pass(&self.tools, shares);
             }
             room.links.begin_pass();
-            let search = Search {
+            let ways = Ways {
                 tools: self,
                 meeting,
                 state,
+                shares,
+            };
+            let search = Search {
+                tools: self,
+                ways,
                 held: record.held,
                 velocities: record.velocities,
                 pairs: record.pairs,
-                shares,
             };
             if pass == 1 {
                 search.find_lips(&mut room.links);
@@ -61,18 +65,9 @@ impl Tools {
                 tools: self,
                 steps: &room.steps,
                 dt: meeting.dt,
-                end: search.end(),
+                end: ways.end(),
             };
-            let after = Search {
-                tools: self,
-                meeting,
-                state,
-                held: &[],
-                velocities: &[],
-                pairs: &[],
-                shares,
-            };
-            let way = |place: u32| after.pass(place as usize, &room.links);
+            let way = |place: u32| ways.pass(place as usize, &room.links);
             count.of_links(&room.links, way, record);
         }
         if passes > 1 {
@@ -88,39 +83,36 @@ impl Tools {
         } else {
             1
         };
-        let (state, dt) = (search.state, search.meeting.dt);
+        let ways = search.ways;
+        let Ways { meeting, state, .. } = ways;
         for round in 0..MOST_ROUNDS {
-            room.look(&self.cells, state, search.meeting, self.counts.holds);
+            room.look(&self.cells, state, meeting, self.counts.holds);
             let is_new = search.all(room, round == 0);
             if !is_new && (room.links.is_empty() || round >= least) {
                 break;
             }
-            let stood = |place: u32| search.stood(place as usize, search.shares[1]);
+            let stood = |place: u32| ways.stood(place as usize, ways.shares[1]);
             let swing = |place: u32| search.swing(place as usize);
-            room.links.look(&room.steps, dt, stood, swing);
+            room.links.look(&room.steps, meeting.dt, stood, swing);
             room.links.solve(&mut room.steps);
             room.follow(&self.tools);
         }
     }
 }
 
-/// A search for contacts in a step.
-struct Search<'a> {
+/// The ways of cells in a pass of a step.
+#[derive(Clone, Copy)]
+struct Ways<'a> {
     tools: &'a Tools,
     meeting: &'a Meeting<'a>,
     state: &'a State,
-    held: &'a [[f64; OF_HELD]],
-    /// Velocities (m/s) before the step, where they are known.
-    velocities: &'a [[f64; OF_VELOCITY]],
-    /// What is kept of each pair of lips.
-    pairs: &'a [[f64; OF_PAIR]],
     /// The shares of the step between which the pass is.
     shares: [f64; 2],
 }
 
-impl Search<'_> {
+impl Ways<'_> {
     /// The way (m) of a cell in the step, without contact.
-    fn way(&self, place: usize) -> Way {
+    fn whole(&self, place: usize) -> Way {
         let touched = &self.tools.cells[place];
         let to = touched.at(&self.state.u);
         let back = way_of(self.meeting, self.state, touched.cell);
@@ -129,7 +121,7 @@ impl Search<'_> {
 
     /// Where a cell is at a share of the step (m), without contact.
     fn stood(&self, place: usize, share: f64) -> Vector {
-        let (from, to) = self.way(place);
+        let (from, to) = self.whole(place);
         if share == 1.0 {
             to
         } else {
@@ -143,16 +135,35 @@ impl Search<'_> {
         (add(from, links.before[place]), add(to, links.moved[place]))
     }
 
-    /// What friction works along of a cell (m), without contact.
-    fn swing(&self, place: usize) -> Vector {
-        let (from, to) = self.way(place);
-        swing(self.meeting, self.velocities.get(place), sub(to, from))
-    }
-
     fn compliance(&self, place: usize) -> Compliance {
         let touched = &self.tools.cells[place];
         let inverse = self.meeting.inverse_block(touched.cell as usize);
         Compliance::new(inverse, touched.free, self.meeting.dt)
+    }
+
+    /// The end (s) of the step.
+    fn end(&self) -> f64 {
+        self.state.t() + self.meeting.dt
+    }
+}
+
+/// A search for contacts in a pass of a step.
+struct Search<'a> {
+    tools: &'a Tools,
+    ways: Ways<'a>,
+    held: &'a [[f64; OF_HELD]],
+    /// Velocities (m/s) before the step, where they are known.
+    velocities: &'a [[f64; OF_VELOCITY]],
+    /// What is kept of each pair of lips.
+    pairs: &'a [[f64; OF_PAIR]],
+}
+
+impl Search<'_> {
+    /// What friction works along of a cell (m), without contact.
+    fn swing(&self, place: usize) -> Vector {
+        let (from, to) = self.ways.whole(place);
+        let kept = self.velocities.get(place);
+        swing(self.ways.meeting, kept, sub(to, from))
     }
 
     /// Adds what is new; whether there is anything. At first, triangles that touch at the beginning: the others may not come to touch at all once these do not give way.
@@ -180,25 +191,25 @@ impl Search<'_> {
 
     /// Finds how cut faces lie as the step begins.
     fn find_lips(&self, links: &mut Links) {
-        let at = |corner: Corner| corner.at(|place| self.way(place as usize).0);
+        let at = |corner: Corner| corner.at(|place| self.ways.whole(place as usize).0);
         self.tools.lips.find_normals(at, &mut links.normals);
     }
 
     /// Adds the pairs of lips that come together.
     fn of_lips(&self, links: &mut Links) {
-        let [_, share] = self.shares;
+        let [_, share] = self.ways.shares;
         for (number, pair) in (0..).zip(&self.tools.lips.pairs) {
             if links.knows_lips(number) {
                 continue;
             }
             let from = pair
                 .nodes
-                .map(|node| node.at(|place| self.way(place as usize).0));
-            let stood = |place: u32| self.stood(place as usize, share);
+                .map(|node| node.at(|place| self.ways.whole(place as usize).0));
+            let stood = |place: u32| self.ways.stood(place as usize, share);
             let end = |place: u32| add(stood(place), links.moved[place as usize]);
             let stood = pair.nodes.map(|node| node.at(stood));
             let end = pair.nodes.map(|node| node.at(end));
-            let compliance = |place: u32| self.compliance(place as usize);
+            let compliance = |place: u32| self.ways.compliance(place as usize);
             let ways = [from, stood, end];
             let earlier = self.pairs.get(number as usize).copied().unwrap_or_default();
             let met = self
@@ -213,12 +224,12 @@ impl Search<'_> {
 
     /// Adds the contacts of a node with some tools, one bit each.
     fn at_node(&self, room: &mut Room, place: usize, tools: u64) {
-        let (from, end) = self.pass(place, &room.links);
+        let (from, end) = self.ways.pass(place, &room.links);
         let held = self.held.get(place);
-        if let (Some(tool), Some([_, x, y, z])) = (self.tools.holder(held, self.end()), held) {
+        if let (Some(tool), Some([_, x, y, z])) = (self.tools.holder(held, self.ways.end()), held) {
             if tools >> tool & 1 == 1 && !room.links.knows(place, (tool, 0)) {
                 let link = Link::of_node(
-                    (place as u32, self.compliance(place)),
+                    (place as u32, self.ways.compliance(place)),
                     (tool, 0),
                     ([*x, *y, *z], 0.0),
                     (Rule::Held, 0.0),
@@ -242,7 +253,7 @@ impl Search<'_> {
                 }
                 let pose = &self.tools.tools[number].shape.parts()[part].pose;
                 let link = Link::of_node(
-                    (place as u32, self.compliance(place)),
+                    (place as u32, self.ways.compliance(place)),
                     (number, part),
                     (pose.to_world(touch.point), touch.below),
                     (Rule::Outside(pose.turned(touch.normal)), step.friction),
@@ -261,7 +272,7 @@ impl Search<'_> {
         }
         let mut is_left = false;
         for place in 0..self.tools.cells.len() {
-            links.ways[place] = self.pass(place, links);
+            links.ways[place] = self.ways.pass(place, links);
         }
         for (number, tool) in self.tools.tools.iter().enumerate() {
             let step = &steps[number];
@@ -315,7 +326,7 @@ impl Search<'_> {
                     *node = Some(LinkedNode {
                         place: *place,
                         weight,
-                        compliance: self.compliance(*place as usize),
+                        compliance: self.ways.compliance(*place as usize),
                     });
                 }
                 Corner::Cell(_) => {}
@@ -337,9 +348,5 @@ impl Search<'_> {
         if !links.knows_alike(&link) {
             links.add(link);
         }
-    }
-
-    fn end(&self) -> f64 {
-        self.state.t() + self.meeting.dt
     }
 }

@@ -134,6 +134,10 @@ impl Convex {
         if nearest.distance > 0.0 && !is_approach {
             return None;
         }
+        // Nor does it fall by more than the way.
+        if nearest.distance > length(motion) {
+            return None;
+        }
         let is_on = |size: f64| nearest.distance <= ON_SURFACE * size;
         let touch = match *self {
             Self::Sphere { radius } | Self::Capsule { radius, .. } if is_on(radius) => {

@@ -12,9 +12,14 @@ const ERROR_NOT_KNOWN: &str =
 
 /// A line about steps that were taken again, where there were any.
 fn retaken(times: u64) -> Option<String> {
-    (times > 0).then(|| {
-        format!("{times} times a step was taken again in shorter parts, because the body stiffened within it")
-    })
+    let times = match times {
+        0 => return None,
+        1 => "once".to_owned(),
+        times => format!("{times} times"),
+    };
+    Some(format!(
+        "{times} a step was taken again in shorter parts, because the body stiffened within it"
+    ))
 }
 
 /// At most sixteen lines about a run.
