@@ -6,7 +6,6 @@ use sinew_mesh::{CellType, TetMeshError};
 use super::fault::Fault;
 use super::words::quoted;
 use crate::nearest::nearest;
-use crate::scene::RUN;
 use crate::scene::keys::AT_THE_TOP;
 use crate::simulation::ToolFault;
 
@@ -21,9 +20,7 @@ pub(super) fn following_from(fault: &Fault) -> Option<String> {
             suggestion(nearest(id, known.iter().copied()))
         }
         Fault::Integrator(OptionError::Unknown { key, known, .. }) => {
-            let own = RUN.keys.iter().map(|key| key.name());
-            let known = known.iter().copied().chain(own);
-            takers(key).or_else(|| suggestion(nearest(key, known)))
+            takers(key).or_else(|| suggestion(nearest(key, known.iter().copied())))
         }
         Fault::MeshFile(error) => error.advice(),
         Fault::Tetrahedra(TetMeshError::UnsupportedCells { kind, .. })
