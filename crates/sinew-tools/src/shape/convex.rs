@@ -134,8 +134,9 @@ impl Convex {
         if nearest.distance > 0.0 && !is_approach {
             return None;
         }
-        // Nor does it fall by more than the way.
-        if nearest.distance > length(motion) {
+        // Nor does it fall by more than the way. What is on the surface is in contact however little it moves.
+        let on_surface = ON_SURFACE * 2.0 * self.reach().unwrap_or(0.0);
+        if nearest.distance > length(motion) + on_surface {
             return None;
         }
         let is_on = |size: f64| nearest.distance <= ON_SURFACE * size;
