@@ -10,7 +10,9 @@ use crate::marks::Marks;
 use crate::passed::Passed;
 use crate::properties::TetProperties;
 use crate::report::{Removal, Stroke};
+use crate::seen::SeenNodes;
 use crate::tet::{EDGES, FACES};
+
 use crate::vector::{Vector, length, sub};
 
 /// Stands for no tetrahedron.
@@ -59,6 +61,7 @@ pub(crate) struct Room {
     /// Tetrahedra that are to be looked at.
     pub(crate) queue: Vec<u32>,
     pub(crate) touched: Vec<(u32, Passed)>,
+    pub(crate) nodes: SeenNodes,
     /// Nodes that may be moved, with their distance from the sheet by their shortest edge.
     pub(crate) near: Vec<(f64, u32)>,
     /// Nodes of faces that were cut, each once.
@@ -70,6 +73,23 @@ pub(crate) struct Room {
 }
 
 impl Room {
+    /// Starts a look at a body of so many nodes.
+    pub(crate) fn start_look(&mut self, nodes: usize) {
+        self.look = self.look.wrapping_add(1);
+        self.touched.clear();
+        self.queue.clear();
+        self.nodes.resize(nodes);
+    }
+
+    /// Queues a tetrahedron that this look has not seen yet.
+    pub(crate) fn see(&mut self, tet: u32) {
+        let seen = &mut self.seen[tet as usize];
+        if *seen != self.look {
+            *seen = self.look;
+            self.queue.push(tet);
+        }
+    }
+
     /// Lists a corner of a face that was cut, where it is not listed yet.
     pub(crate) fn list_corner(&mut self, node: u32) {
         if !std::mem::replace(&mut self.is_listed[node as usize], true) {
@@ -145,6 +165,7 @@ impl CuttableBody {
                 group_of: vec![0; tets],
                 queue: Vec::with_capacity(tets),
                 touched: Vec::with_capacity(tets),
+                nodes: SeenNodes::with_room(nodes + spare),
                 near: Vec::with_capacity(nodes + spare),
                 corners: Vec::with_capacity(nodes + spare),
                 is_listed: none(),

@@ -39,23 +39,23 @@ impl CuttableBody {
         if snap > 0.0 {
             self.snap(&sheet, positions, snap);
             if !self.stroke.moved.is_empty() {
-                self.look_again(&sheet, positions);
+                self.look_again(&sheet);
             }
         }
         let touched = std::mem::take(&mut self.room.touched);
         for of_tet in &touched {
-            self.settle_nodes(*of_tet, &sheet, positions);
+            self.settle_nodes(*of_tet);
         }
         for of_tet in &touched {
-            self.mark(*of_tet, &sheet, positions);
+            self.mark(*of_tet);
         }
         for _ in 0..SMOOTHING {
             for (tet, _) in &touched {
-                self.smooth(*tet, &sheet, positions);
+                self.smooth(*tet, positions);
             }
         }
         for (tet, _) in &touched {
-            self.cut_faces_of(*tet, &sheet, positions);
+            self.cut_faces_of(*tet);
         }
         self.room.touched = touched;
         self.split(positions);
@@ -101,21 +101,21 @@ impl CuttableBody {
         self.stroke = stroke;
     }
 
-    fn mark(&mut self, (tet, passed): (u32, Passed), sheet: &Sheet, positions: &[Vector]) {
+    fn mark(&mut self, (tet, passed): (u32, Passed)) {
         let mut mark = self.marks.of(tet);
         passed.edges().for_each(|edge| mark.cross(edge));
         passed.vertices().for_each(|vertex| mark.lay(vertex));
         passed.faces().for_each(|face| mark.sweep(face));
         if mark.side == 0 {
-            mark.side = self.beside(tet, sheet, positions).side();
+            mark.side = self.beside(tet).side();
         }
         self.marks.set(tet, mark);
     }
 
     /// Lets a tetrahedron that the sheet divides change sides where the faces that are cut then lie nearer to the sheet. So single
     /// ones do not come off as chips, and the cut is smoother than by the side of most of each tetrahedron alone.
-    fn smooth(&mut self, tet: u32, sheet: &Sheet, positions: &[Vector]) {
-        let beside = self.beside(tet, sheet, positions);
+    fn smooth(&mut self, tet: u32, positions: &[Vector]) {
+        let beside = self.beside(tet);
         let mut mark = self.marks.of(tet);
         if mark.is_settled() || !beside.is_divided() {
             return;
@@ -127,10 +127,11 @@ impl CuttableBody {
             if other == NONE {
                 continue;
             }
-            let [a, b, c] = corners.map(|corner| beside.vertices[corner]);
-            let squares = corners.map(|corner| beside.distances[corner].powi(2));
+            let nodes = corners.map(|corner| self.tets[tet as usize][corner]);
+            let [a, b, c] = nodes.map(|node| positions[node as usize]);
+            let squares = corners.map(|corner| beside.0[corner].powi(2));
             let rough = length(cross(sub(b, a), sub(c, a))) * squares.iter().sum::<f64>();
-            let side = self.side_of(other, sheet, positions);
+            let side = self.side_of(other);
             towards[usize::from(side > 0)] += rough;
         }
         let [own, opposite] = if mark.side > 0 {
@@ -145,15 +146,15 @@ impl CuttableBody {
     }
 
     /// The side of a tetrahedron: that of its mark, or where it lies now.
-    fn side_of(&self, tet: u32, sheet: &Sheet, positions: &[Vector]) -> i8 {
+    fn side_of(&self, tet: u32) -> i8 {
         match self.marks.of(tet).side {
-            0 => self.beside(tet, sheet, positions).side(),
+            0 => self.beside(tet).side(),
             side => side,
         }
     }
 
-    fn cut_faces_of(&mut self, tet: u32, sheet: &Sheet, positions: &[Vector]) {
-        if !self.lets_through(tet, sheet, positions) {
+    fn cut_faces_of(&mut self, tet: u32) {
+        if !self.lets_through(tet) {
             return;
         }
         let mark = self.marks.of(tet);
@@ -170,20 +171,20 @@ impl CuttableBody {
             if !(mark.has_swept(vertex) || swept_beyond()) {
                 continue;
             }
-            let side = self.side_of(other, sheet, positions);
-            if side != mark.side && self.lets_through(other, sheet, positions) {
+            let side = self.side_of(other);
+            if side != mark.side && self.lets_through(other) {
                 self.cut_face(tet, vertex);
             }
         }
     }
 
     /// Whether faces of a tetrahedron may be cut: the blade has come through it, or passes beside it.
-    fn lets_through(&self, tet: u32, sheet: &Sheet, positions: &[Vector]) -> bool {
+    fn lets_through(&self, tet: u32) -> bool {
         let mark = self.marks.of(tet);
         if mark.is_crossed() {
             return true;
         }
-        !mark.is_entered() && !self.beside(tet, sheet, positions).is_divided()
+        !mark.is_entered() && !self.beside(tet).is_divided()
     }
 
     fn cut_face(&mut self, tet: u32, vertex: usize) {

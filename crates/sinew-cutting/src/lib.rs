@@ -43,6 +43,7 @@ mod properties;
 mod remove;
 mod report;
 mod saved;
+mod seen;
 mod sheet;
 mod snap;
 mod split;

@@ -1,9 +1,13 @@
 //! The surface that a blade sweeps.
 
+use crate::seen::Flat;
 use crate::vector::{Vector, add, cross, dot, length, mean, scaled, sub};
 
 /// Share of its size by which the rim of a sheet reaches out, so that nothing is lost between two that follow each other.
 const RIM: f64 = 1e-9;
+
+/// Share of its size by which the box around a sheet reaches out: beyond its rim, unless the sheet is narrower than this.
+const BOX_RIM: f64 = 1e-5;
 
 /// The quadrilateral that a blade, a segment, sweeps from one pose to the next, in its mean plane; two triangles where it turns about a point of its own.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +18,9 @@ pub struct Sheet {
     /// Axes in the plane.
     axes: [Vector; 2],
     /// The corners by these axes, from the centre.
-    flat: [[f64; 2]; 4],
+    corners_flat: [[f64; 2]; 4],
+    /// The box around them, rim included.
+    flat_bounds: [[f64; 2]; 2],
     size: f64,
 }
 
@@ -37,13 +43,22 @@ impl Sheet {
         let along = scaled(along, 1.0 / length(along));
         let axes = [along, cross(normal, along)];
         let flat = corners.map(|corner| axes.map(|axis| dot(axis, sub(corner, centre))));
+        let bound = |choose: fn(f64, f64) -> f64, room: f64| {
+            [0, 1].map(|axis| {
+                let along = flat.iter().map(|corner| corner[axis]);
+                along.fold(flat[0][axis], choose) + room
+            })
+        };
+        let room = BOX_RIM * size;
+        let flat_bounds = [bound(f64::min, -room), bound(f64::max, room)];
         let flat_enough = flat.iter().flatten().all(|value| value.is_finite());
         flat_enough.then_some(Self {
             corners,
             centre,
             normal,
             axes,
-            flat,
+            corners_flat: flat,
+            flat_bounds,
             size,
         })
     }
@@ -68,14 +83,38 @@ impl Sheet {
         }
     }
 
-    /// Whether the blade passes a point, brought to the plane along the normal, of tissue that has moved so far since the blade was where
-    /// the sheet begins: seen from there, the blade began so much farther on. Without that, tissue which comes towards a blade would slip
-    /// through between two sheets.
-    pub(crate) fn passes(&self, point: Vector, moved: Vector) -> bool {
+    /// A point of tissue in the sheet's plane, which has moved so far since the blade was where the sheet begins.
+    pub(crate) fn flat(&self, point: Vector, moved: Vector) -> Flat {
         let flat = |vector: Vector| self.axes.map(|axis| dot(axis, vector));
-        let place = flat(sub(point, self.centre));
-        let [dx, dy] = flat(moved);
-        let [a, b, c, d] = self.flat;
+        Flat {
+            place: flat(sub(point, self.centre)),
+            shift: flat(moved),
+        }
+    }
+
+    /// Whether no point between these ones is passed, as their places in the plane tell without a closer look.
+    pub(crate) fn is_outside(&self, points: &[Flat]) -> bool {
+        let [low, high] = self.flat_bounds;
+        [0, 1].into_iter().any(|axis| {
+            let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+            let (mut back, mut ahead) = (0.0_f64, 0.0_f64);
+            for Flat { place, shift } in points {
+                (least, most) = (least.min(place[axis]), most.max(place[axis]));
+                (back, ahead) = (back.min(shift[axis]), ahead.max(shift[axis]));
+            }
+            most < low[axis] + back || least > high[axis] + ahead
+        })
+    }
+
+    /// Whether the blade passes a point: seen from tissue that has moved, the blade began so much farther on. Without that, tissue which
+    /// comes towards a blade would slip through between two sheets.
+    pub(crate) fn passes(&self, point: Flat) -> bool {
+        if self.is_outside(&[point]) {
+            return false;
+        }
+        let Flat { place, shift } = point;
+        let [dx, dy] = shift;
+        let [a, b, c, d] = self.corners_flat;
         let [a, b] = [a, b].map(|[x, y]| [x + dx, y + dy]);
         let triangles = match crossing([a, b], [d, c]) {
             Some(pivot) => [[a, pivot, d], [pivot, b, c]],
@@ -88,9 +127,8 @@ impl Sheet {
 
     /// Whether a point of the plane is ahead of where the blade is in the end.
     pub(crate) fn is_beyond_end(&self, point: Vector) -> bool {
-        let from_centre = sub(point, self.centre);
-        let place = self.axes.map(|axis| dot(axis, from_centre));
-        let [a, b, c, d] = self.flat;
+        let Flat { place, .. } = self.flat(point, [0.0; 3]);
+        let [a, b, c, d] = self.corners_flat;
         let side = |from: [f64; 2], to: [f64; 2]| {
             let way = [c[0] - d[0], c[1] - d[1]];
             way[0] * (to[1] - from[1]) - way[1] * (to[0] - from[0])
@@ -112,19 +150,6 @@ impl Sheet {
         let whole = turns.iter().sum::<f64>().signum();
         let room = RIM * self.size * self.size;
         turns.iter().all(|turn| turn * whole >= -room)
-    }
-
-    /// Whether the plane meets the segment between two points, at these distances of opposite sign from it, in the sheet; `moved` is how far
-    /// its ends have moved since the sheet's beginning.
-    pub(crate) fn meets(
-        &self,
-        places: [Vector; 2],
-        moved: [Vector; 2],
-        [from_p, from_q]: [f64; 2],
-    ) -> bool {
-        let share = from_p / (from_p - from_q);
-        let between = |[p, q]: [Vector; 2]| add(p, scaled(sub(q, p), share));
-        self.passes(between(places), between(moved))
     }
 
     /// The least and greatest coordinates of the sheet.
@@ -178,7 +203,11 @@ mod tests {
             ([1.0, -0.1, 1.0], false),
             ([f64::NAN; 3], false),
         ] {
-            assert_eq!(sheet.passes(place, [0.0; 3]), is_passed, "{place:?}");
+            assert_eq!(
+                sheet.passes(sheet.flat(place, [0.0; 3])),
+                is_passed,
+                "{place:?}"
+            );
         }
         assert!((sheet.distance([9.0, 9.0, 4.0]) + 3.0).abs() < 1e-15);
     }
@@ -193,7 +222,7 @@ mod tests {
         ] {
             let sheet = Sheet::swept(before, after).unwrap();
             assert_eq!(sheet.normal().map(f64::abs), [0.0, 0.0, 1.0]);
-            let passes = |x: f64, y: f64| sheet.passes([x, y, 0.3], [0.0; 3]);
+            let passes = |x: f64, y: f64| sheet.passes(sheet.flat([x, y, 0.3], [0.0; 3]));
             for scale in [1e-3, 0.1, 0.4] {
                 assert!(passes(1.9 * scale, 0.5 * share * scale), "{scale}");
                 assert!(passes(-0.9 * scale, -0.5 * share * scale), "{scale}");
@@ -212,9 +241,10 @@ mod tests {
             [[-1.0, -0.1, 0.0], [1.0, 0.1, 0.0]],
         );
         let about_middle = about_middle.unwrap();
+        let passes = |x: f64, y: f64| about_middle.passes(about_middle.flat([x, y, 0.0], [0.0; 3]));
         for x in [-0.7, -0.01, 0.01, 0.7] {
-            assert!(about_middle.passes([x, 0.05 * x, 0.0], [0.0; 3]), "{x}");
-            assert!(!about_middle.passes([x, -0.05 * x, 0.0], [0.0; 3]), "{x}");
+            assert!(passes(x, 0.05 * x), "{x}");
+            assert!(!passes(x, -0.05 * x), "{x}");
         }
     }
 

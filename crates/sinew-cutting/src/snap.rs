@@ -49,11 +49,11 @@ impl CuttableBody {
         let mut near = std::mem::take(&mut self.room.near);
         near.clear();
         for (tet, passed) in &self.room.touched {
-            let beside = self.beside(*tet, sheet, positions);
+            let beside = self.beside(*tet);
             for edge in passed.edges() {
                 for end in EDGES[edge] {
                     let node = self.tets[*tet as usize][end];
-                    let share = beside.distances[end].abs() / self.edge_at(node);
+                    let share = beside.0[end].abs() / self.edge_at(node);
                     let is_free = self.marks.side_of_node(node) == NodeSide::Open
                         && !self.is_kept[node as usize]
                         && self.held.binary_search(&node).is_err();
@@ -102,6 +102,7 @@ impl CuttableBody {
             positions[node as usize] = now;
             self.marks.set_place(node, now);
             self.marks.settle_node(node, 0.0);
+            self.see_node(node, sheet, now);
             if !sheet.is_beyond_end(now) {
                 // The blade is past it: no later sheet would find it.
                 for tet in self.incidence.of(node) {

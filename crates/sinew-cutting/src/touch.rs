@@ -3,26 +3,22 @@
 use crate::body::{CuttableBody, NONE};
 use crate::marks::NodeSide;
 use crate::passed::Passed;
+use crate::seen::Flat;
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES};
-use crate::vector::{Vector, mean};
+use crate::vector::Vector;
 
 /// Share of its shortest edge within which a node lies on a sheet.
 const ON_SHEET: f64 = 1e-6;
 
-/// A tetrahedron beside a sheet, as it lies now.
-pub(crate) struct Beside {
-    pub(crate) vertices: [Vector; 4],
-    /// How far they have moved since the last sheet of the stroke.
-    moved: [Vector; 4],
-    /// Distances from the sheet's plane; 0 for vertices that lie on it.
-    pub(crate) distances: [f64; 4],
-}
+/// Distances of a tetrahedron's vertices from a sheet's plane; 0 for those that lie on it.
+#[derive(Clone, Copy)]
+pub(crate) struct Beside(pub(crate) [f64; 4]);
 
 impl Beside {
     /// The side on which most of it lies; 1 where both have as much.
-    pub(crate) fn side(&self) -> i8 {
-        if self.distances.iter().sum::<f64>() < 0.0 {
+    pub(crate) fn side(self) -> i8 {
+        if self.0.iter().sum::<f64>() < 0.0 {
             -1
         } else {
             1
@@ -30,19 +26,55 @@ impl Beside {
     }
 
     /// Whether the plane passes between its vertices.
-    pub(crate) fn is_divided(&self) -> bool {
-        let any = |is: fn(f64) -> bool| self.distances.into_iter().any(is);
+    pub(crate) fn is_divided(self) -> bool {
+        let any = |is: fn(f64) -> bool| self.0.into_iter().any(is);
         any(|distance| distance > 0.0) && any(|distance| distance < 0.0)
     }
 
     /// Whether the plane touches it at all.
-    fn is_at_plane(&self) -> bool {
-        self.is_divided() || self.distances.contains(&0.0)
+    fn is_at_plane(self) -> bool {
+        self.is_divided() || self.0.contains(&0.0)
+    }
+}
+
+impl CuttableBody {
+    /// A tetrahedron, whose nodes this look has seen, beside the sheet.
+    pub(crate) fn beside(&self, tet: u32) -> Beside {
+        Beside(self.room.nodes.distances(self.tets[tet as usize]))
     }
 
-    /// What a sheet passes of it.
-    fn passed_by(&self, sheet: &Sheet) -> Passed {
-        if !self.is_at_plane() {
+    /// Sees the nodes of a tetrahedron that this look has not seen yet.
+    fn see_nodes(&mut self, tet: u32, sheet: &Sheet, positions: &[Vector]) {
+        for node in self.tets[tet as usize] {
+            if self.room.nodes.is_new(node, self.room.look) {
+                self.see_node(node, sheet, positions[node as usize]);
+            }
+        }
+    }
+
+    /// Sees a node, which is here now.
+    pub(crate) fn see_node(&mut self, node: u32, sheet: &Sheet, place: Vector) {
+        let distance = sheet.distance(place);
+        let least = ON_SHEET * self.edge_at(node);
+        let distance = match self.marks.side_of_node(node) {
+            NodeSide::OnSheet => 0.0,
+            NodeSide::Open if distance.abs() <= least => 0.0,
+            NodeSide::Open => distance,
+            NodeSide::Below => distance.min(-least),
+            NodeSide::Above => distance.max(least),
+        };
+        let flat = sheet.flat(place, self.marks.moved(node, place));
+        self.room.nodes.set(node, distance, flat);
+    }
+
+    /// What a sheet passes of a tetrahedron whose nodes this look has seen.
+    fn passed(&self, tet: u32, sheet: &Sheet) -> Passed {
+        let beside = self.beside(tet);
+        if !beside.is_at_plane() {
+            return Passed::default();
+        }
+        let flats = self.room.nodes.flats(self.tets[tet as usize]);
+        if sheet.is_outside(&flats) {
             return Passed::default();
         }
         let set = |count: usize, is: &dyn Fn(usize) -> bool| {
@@ -50,67 +82,29 @@ impl Beside {
             bits.fold(0, |all, bit| all | 1 << bit)
         };
         let is_crossed = |edge: usize| {
-            let [i, j] = EDGES[edge];
-            let distances = [self.distances[i], self.distances[j]];
-            distances[0] * distances[1] < 0.0
-                && sheet.meets(
-                    [self.vertices[i], self.vertices[j]],
-                    [self.moved[i], self.moved[j]],
-                    distances,
-                )
+            let [from, to] = EDGES[edge].map(|end| beside.0[end]);
+            let ends = EDGES[edge].map(|end| flats[end]);
+            from * to < 0.0 && sheet.passes(Flat::between(ends, from / (from - to)))
         };
-        let is_on = |vertex: usize| {
-            self.distances[vertex] == 0.0 && sheet.passes(self.vertices[vertex], self.moved[vertex])
-        };
-        let is_under = |face: usize| {
-            let middle = |of: &[Vector; 4]| mean(FACES[face].map(|corner| of[corner]));
-            sheet.passes(middle(&self.vertices), middle(&self.moved))
-        };
+        let is_on = |vertex: usize| beside.0[vertex] == 0.0 && sheet.passes(flats[vertex]);
+        let is_under =
+            |face: usize| sheet.passes(Flat::mean(FACES[face].map(|corner| flats[corner])));
         Passed {
             crossed: set(EDGES.len(), &is_crossed),
             on: set(4, &is_on),
             under: set(4, &is_under),
         }
     }
-}
-
-impl CuttableBody {
-    /// A tetrahedron as it lies beside a sheet.
-    pub(crate) fn beside(&self, tet: u32, sheet: &Sheet, positions: &[Vector]) -> Beside {
-        let nodes = self.tets[tet as usize];
-        let vertices = nodes.map(|node| positions[node as usize]);
-        let distances = std::array::from_fn(|vertex| {
-            let distance = sheet.distance(vertices[vertex]);
-            let least = ON_SHEET * self.edge_at(nodes[vertex]);
-            match self.marks.side_of_node(nodes[vertex]) {
-                NodeSide::OnSheet => 0.0,
-                NodeSide::Open if distance.abs() <= least => 0.0,
-                NodeSide::Open => distance,
-                NodeSide::Below => distance.min(-least),
-                NodeSide::Above => distance.max(least),
-            }
-        });
-        Beside {
-            vertices,
-            moved: nodes.map(|node| self.marks.moved(node, positions[node as usize])),
-            distances,
-        }
-    }
 
     /// Settles, until the blade is lifted, the sides of nodes at edges of a tetrahedron that the sheet crosses, and of those on it. Tissue
     /// moves while it is cut: a node that came to lie just beyond the sheet would else have one side for some of its edges and the
     /// other for the rest.
-    pub(crate) fn settle_nodes(
-        &mut self,
-        (tet, passed): (u32, Passed),
-        sheet: &Sheet,
-        positions: &[Vector],
-    ) {
-        let beside = self.beside(tet, sheet, positions);
+    pub(crate) fn settle_nodes(&mut self, (tet, passed): (u32, Passed)) {
+        let beside = self.beside(tet);
         let nodes = self.tets[tet as usize];
         for edge in passed.edges() {
             for end in EDGES[edge] {
-                self.marks.settle_node(nodes[end], beside.distances[end]);
+                self.marks.settle_node(nodes[end], beside.0[end]);
             }
         }
         for vertex in passed.vertices() {
@@ -131,44 +125,34 @@ impl CuttableBody {
     /// Finds the tetrahedra that a sheet touches, increasing, into `room.touched`: from nodes near it, and on from neighbour to
     /// neighbour, so that tetrahedra stretched beyond all measure are found where another one leads to them.
     pub(crate) fn find_touched(&mut self, sheet: &Sheet, positions: &[Vector]) {
-        let mut room = std::mem::take(&mut self.room);
-        room.look = room.look.wrapping_add(1);
-        room.touched.clear();
-        room.queue.clear();
+        self.room.start_look(positions.len());
         let is_near = self.is_near(sheet.bounds());
-        let mut see = |tet: u32, queue: &mut Vec<u32>| {
-            let seen = &mut room.seen[tet as usize];
-            if *seen != room.look {
-                *seen = room.look;
-                queue.push(tet);
-            }
-        };
         for (node, _) in (0..).zip(positions).filter(|(_, place)| is_near(place)) {
             for tet in self.incidence.of(node) {
-                see(*tet, &mut room.queue);
+                self.room.see(*tet);
             }
         }
-        while let Some(tet) = room.queue.pop() {
-            let passed = self.beside(tet, sheet, positions).passed_by(sheet);
+        while let Some(tet) = self.room.queue.pop() {
+            self.see_nodes(tet, sheet, positions);
+            let passed = self.passed(tet, sheet);
             if !passed.is_any() {
                 continue;
             }
-            room.touched.push((tet, passed));
+            self.room.touched.push((tet, passed));
             for neighbour in self.neighbours[tet as usize] {
                 if neighbour != NONE {
-                    see(neighbour, &mut room.queue);
+                    self.room.see(neighbour);
                 }
             }
         }
-        room.touched.sort_unstable_by_key(|(tet, _)| *tet);
-        self.room = room;
+        self.room.touched.sort_unstable_by_key(|(tet, _)| *tet);
     }
 
     /// Sees again what the sheet passes of the tetrahedra that it touched, some of whose nodes were moved.
-    pub(crate) fn look_again(&mut self, sheet: &Sheet, positions: &[Vector]) {
+    pub(crate) fn look_again(&mut self, sheet: &Sheet) {
         let mut touched = std::mem::take(&mut self.room.touched);
         for (tet, passed) in &mut touched {
-            *passed = self.beside(*tet, sheet, positions).passed_by(sheet);
+            *passed = self.passed(*tet, sheet);
         }
         self.room.touched = touched;
     }

@@ -2,8 +2,8 @@
 //!
 //! `cargo bench -p sinew-fem --bench cuts` cuts structured cubes by a blade that comes down, on a plane of nodes and beside one, in many
 //! short strokes and in one. It prints the median time of the strokes that cut, their faces and new nodes, the rows of the matrix that
-//! they touch, the time for each of these, and beside it what parts take where the model is made anew: the mesh, the problem on it, the
-//! model, and one sum of energy. Times are by the clock (us), of one thread.
+//! they touch, the time for each of these, and beside it what it takes to set up the model that can be cut, and parts of making a model anew: the mesh, the problem
+//! on it, the model, and one sum of energy. Times are by the clock (us), of one thread.
 
 #![allow(
     clippy::expect_used,
@@ -91,7 +91,12 @@ fn anew(mesh: &Arc<TetMesh>) {
         times.fold(f64::INFINITY, f64::min)
     };
     println!(
-        "  anew: mesh {:.0}, problem {:.0}, model {:.0}, energy {:.0} us",
+        "  set up: {:.0} us; anew: mesh {:.0}, problem {:.0}, model {:.0}, energy {:.0} us",
+        least(&|| drop(black_box(CutModel::new(
+            Arc::clone(mesh),
+            problem.clone(),
+            0.0
+        )))),
         least(&|| drop(black_box(cut.body().mesh(mesh)))),
         least(&|| drop(black_box(problem.after_cuts(mesh, cut.mesh())))),
         least(&|| drop(black_box(Model::build(&cut.mesh().mesh, &problem)))),

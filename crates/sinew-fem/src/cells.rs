@@ -116,15 +116,9 @@ impl Cells {
 
     /// The three components of a vector over the degrees of freedom at a cell; zero where they are held.
     pub(crate) fn at_cell(&self, values: &[f64], cell: usize) -> [f64; 3] {
-        let first = 3 * cell;
-        let free = |axis: usize| !self.pinned[first + axis];
-        std::array::from_fn(|axis| {
-            if free(axis) {
-                values[first + axis]
-            } else {
-                0.0
-            }
-        })
+        let (values, pinned) = (values.as_chunks::<3>().0, self.pinned.as_chunks::<3>().0);
+        let (values, pinned) = (values[cell], pinned[cell]);
+        std::array::from_fn(|axis| if pinned[axis] { 0.0 } else { values[axis] })
     }
 
     /// Whether some node is held in some directions only.

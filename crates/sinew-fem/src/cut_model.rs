@@ -148,8 +148,7 @@ pub struct CutModel {
     frozen: BTreeMap<u32, [f64; 3]>,
     /// What the model follows splits with; `None` where it is made anew.
     in_place: Option<Box<InPlace>>,
-    /// Room for displacements of the nodes of the mesh, and positions of those of the body.
-    displacements: Vec<[f64; 3]>,
+    /// Room for positions of the nodes of the body.
     positions: Vec<[f64; 3]>,
 }
 
@@ -211,7 +210,6 @@ impl CutModel {
             densities,
             frozen: BTreeMap::new(),
             in_place: None,
-            displacements: Vec::with_capacity(nodes),
             positions: Vec::with_capacity(nodes),
         };
         // What no tetrahedron has leaves groups with the first cut, and splits are followed by the places of the others.
@@ -354,20 +352,33 @@ impl CutModel {
             return Ok(CutReport::default());
         };
         self.find_positions(state, inputs)?;
-        let mut report = CutReport::default();
-        for (tet, nodes) in self.mesh.tets.iter().zip(&self.mesh.mesh.tets) {
-            if is_loose[*tet as usize] {
-                report.frozen_tets += 1;
-                for node in nodes.map(|node| node as usize) {
-                    let displacement = self.displacements[node];
-                    self.frozen.insert(self.mesh.nodes[node], displacement);
-                }
-            }
-        }
+        let when = LoadTime::at(state.t()).under(inputs);
+        let report = self.freeze(&is_loose, when, state)?;
         let frozen: Vec<u32> = self.frozen.keys().copied().collect();
         // A frozen node is not moved onto a sheet: its displacement is fixed.
         self.body.keep(&frozen);
         self.go_on_anew(self.body.nodes(), &[], &[], report, state, inputs)
+    }
+
+    /// Freezes the nodes of some tetrahedra of the body where they are.
+    fn freeze(
+        &mut self,
+        tets: &[bool],
+        when: LoadTime<'_>,
+        state: &State,
+    ) -> Result<CutReport, CutModelError> {
+        let displacement = self.model.at_nodes(when, 0, Some(&state.u))?;
+        let mut report = CutReport::default();
+        for (tet, nodes) in self.mesh.tets.iter().zip(&self.mesh.mesh.tets) {
+            if tets[*tet as usize] {
+                report.frozen_tets += 1;
+                for node in nodes {
+                    let of_body = self.mesh.nodes[*node as usize];
+                    self.frozen.insert(of_body, displacement(*node));
+                }
+            }
+        }
+        Ok(report)
     }
 
     /// Whether each tetrahedron belongs to a piece that nothing holds or moves from outside; `None` where there is none.
@@ -484,15 +495,10 @@ impl CutModel {
     fn find_positions(&mut self, state: &State, inputs: &Inputs) -> Result<(), CutModelError> {
         self.model.require_state(state)?;
         let when = LoadTime::at(state.t()).under(inputs);
-        self.displacements.resize(self.mesh.nodes.len(), [0.0; 3]);
-        self.model
-            .displacements_at(when, &state.u, &mut self.displacements)?;
         self.positions.clear();
         self.positions.extend_from_slice(self.body.points());
-        for (node, displacement) in self.mesh.nodes.iter().zip(&self.displacements) {
-            let position = &mut self.positions[*node as usize];
-            *position = std::array::from_fn(|axis| position[axis] + displacement[axis]);
-        }
+        self.model
+            .displace(when, &state.u, &self.mesh.nodes, &mut self.positions)?;
         Ok(())
     }
 

@@ -146,7 +146,7 @@ impl Model {
 
     /// A function that gives the field number `order` of displacement, velocity and acceleration at each node, from the
     /// `values` of the degrees of freedom.
-    pub(super) fn at_nodes<'a>(
+    pub(crate) fn at_nodes<'a>(
         &'a self,
         when: LoadTime<'_>,
         order: usize,
@@ -167,17 +167,46 @@ impl Model {
         values: &[f64],
         out: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
-        self.require_dofs("the vector", values)?;
         self.require_nodes("the output", out)?;
-        require_inputs(self.motions.ramps(), when.inputs())?;
         out.fill([0.0; 3]);
+        self.each_value(when, order, values, |node, value| {
+            let out = &mut out[node as usize];
+            *out = sum(*out, value);
+        })
+    }
+
+    /// Adds the displacements (m) of all nodes of the mesh to places (m), of which each node has the one of this number; as
+    /// [`Model::displacements_at`].
+    pub(crate) fn displace(
+        &self,
+        when: LoadTime<'_>,
+        u: &[f64],
+        numbers: &[u32],
+        places: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
+        self.each_value(when, 0, u, |node, displacement| {
+            let place = &mut places[numbers[node as usize] as usize];
+            *place = sum(*place, displacement);
+        })
+    }
+
+    /// Calls `take` with the parts that the field number `order` has at nodes of the mesh: those that move by themselves, and then those
+    /// that are moved.
+    fn each_value(
+        &self,
+        when: LoadTime<'_>,
+        order: usize,
+        values: &[f64],
+        mut take: impl FnMut(u32, [f64; 3]),
+    ) -> Result<(), FieldError> {
+        self.require_dofs("the vector", values)?;
+        require_inputs(self.motions.ramps(), when.inputs())?;
         for (cell, node) in self.body.cells.nodes.iter().enumerate() {
-            out[*node as usize] = self.body.cells.at_cell(values, cell);
+            take(*node, self.body.cells.at_cell(values, cell));
         }
         let at = self.motions.at(when);
         for node in self.motions.moved() {
-            let out = &mut out[node as usize];
-            *out = sum(*out, self.motions.field(&at, order, node));
+            take(node, self.motions.field(&at, order, node));
         }
         Ok(())
     }
