@@ -123,7 +123,8 @@ impl Cells {
 
     /// Whether some node is held in some directions only.
     pub(crate) fn partly_held(&self) -> bool {
-        self.pinned.contains(&true)
+        let wholly_held = self.cell_of_node.len() - self.nodes.len();
+        self.held_components > 3 * wholly_held
     }
 }
 
