@@ -3,6 +3,7 @@
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
+use data_encoding::BASE64;
 use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket, client};
 
@@ -144,6 +145,13 @@ impl Tab {
             json!({ "type": what, "touchPoints": points }),
         )?;
         Ok(())
+    }
+
+    /// A picture of the page, as a PNG file.
+    pub(super) fn picture(&mut self) -> Result<Vec<u8>, Failure> {
+        let answer = self.call("Page.captureScreenshot", json!({ "format": "png" }))?;
+        let text = answer["data"].as_str().unwrap_or_default();
+        BASE64.decode(text.as_bytes()).map_err(Failure::chore)
     }
 
     /// A key, pressed and released.

@@ -6,6 +6,7 @@ mod cdp;
 mod chromium;
 mod fingers;
 mod hand;
+mod picture;
 mod served;
 mod speed;
 mod strangers;
@@ -36,6 +37,9 @@ pub(crate) struct Arguments {
     /// Fail where a mark of speed is missed, instead of saying so
     #[arg(long)]
     strict: bool,
+    /// Nothing but a picture of the page, with the tool pressed in: that of the README is docs/live.png
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["long", "seconds", "strict"])]
+    picture: Option<PathBuf>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -53,6 +57,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         chromium: Chromium::start(program)?,
         folder,
     };
+    if let Some(path) = &arguments.picture {
+        return picture::write(&bench, path);
+    }
     if let Ok(load) = std::fs::read_to_string("/proc/loadavg") {
         let minute = load.split_whitespace().next().unwrap_or_default();
         say(&format!(
