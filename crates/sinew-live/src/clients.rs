@@ -1,11 +1,13 @@
 //! The pages that look on.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
 use axum::extract::ws::Message;
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 
+use crate::next_draw::NextDraw;
 use crate::protocol::{APPLIED_AT, Event};
 
 /// Credits with which a page begins.
@@ -26,6 +28,7 @@ struct Client {
     credits: u32,
     /// The last command of this client that the simulation has carried out.
     applied: u32,
+    next_draw: NextDraw,
     /// Pictures that wait to be sent.
     waiting: u32,
     /// The topology that it has.
@@ -57,6 +60,7 @@ impl Clients {
             id,
             credits: FIRST_CREDITS,
             applied: 0,
+            next_draw: NextDraw::after(Duration::ZERO),
             waiting: 0,
             epoch: None,
             sender,
@@ -74,10 +78,11 @@ impl Clients {
         self.lock().clients.clear();
     }
 
-    /// Takes a credit of a client.
-    pub(crate) fn grant(&self, id: u32) {
+    /// Takes a credit of a client, which draws again after a time.
+    pub(crate) fn grant(&self, id: u32, until_drawn: Duration) {
         if let Some(client) = self.lock().find(id) {
             client.credits = (client.credits + 1).min(MOST_CREDITS);
+            client.next_draw = NextDraw::after(until_drawn);
         }
     }
 
@@ -95,9 +100,13 @@ impl Clients {
         }
     }
 
-    /// Whether any client holds a credit.
-    pub(crate) fn want_a_frame(&self) -> bool {
-        self.lock().clients.iter().any(Client::wants_a_frame)
+    /// When the next picture is to be made, which may be in the past; `None` where no client holds a credit.
+    pub(crate) fn next_picture(&self) -> Option<Instant> {
+        let list = self.lock();
+        let want = list.clients.iter().filter(|client| client.wants_a_frame());
+        let now = Instant::now();
+        let due = want.map(|client| client.next_draw.due(client.credits).unwrap_or(now));
+        due.min()
     }
 
     /// Sends a picture, and before it the topology where that is new, to all who hold a credit.
@@ -128,6 +137,7 @@ impl Clients {
                 place.copy_from_slice(&client.applied.to_le_bytes());
             }
             client.credits -= 1;
+            client.next_draw.take();
             client.waiting += 1;
             client.take(Message::Binary(frame.into()))
         });
@@ -187,13 +197,13 @@ mod tests {
         let clients = Clients::default();
         let (id, mut messages) = clients.enter().unwrap();
         let mut sent = 0;
-        while clients.want_a_frame() {
+        while clients.next_picture().is_some() {
             clients.show(frame(), 1, &Bytes::from_static(b"topology"));
             sent += 1;
         }
         assert_eq!(sent, FIRST_CREDITS);
-        clients.grant(id);
-        assert!(clients.want_a_frame());
+        clients.grant(id, Duration::ZERO);
+        assert!(clients.next_picture().is_some());
         // The topology comes once, before the first picture.
         assert!(
             matches!(messages.try_recv(), Ok(Message::Binary(first)) if &first[..] == b"topology")
@@ -209,10 +219,10 @@ mod tests {
         let clients = Clients::default();
         let (id, _messages) = clients.enter().unwrap();
         for _ in 0..1000 {
-            clients.grant(id);
+            clients.grant(id, Duration::ZERO);
         }
         let mut sent = 0;
-        while clients.want_a_frame() && sent < 1000 {
+        while clients.next_picture().is_some() && sent < 1000 {
             clients.show(frame(), 1, &Bytes::new());
             sent += 1;
         }
@@ -225,15 +235,15 @@ mod tests {
         let (id, _messages) = clients.enter().unwrap();
         let mut sent = 0;
         for _ in 0..1000 {
-            clients.grant(id);
-            if clients.want_a_frame() {
+            clients.grant(id, Duration::ZERO);
+            if clients.next_picture().is_some() {
                 clients.show(frame(), 1, &Bytes::new());
                 sent += 1;
             }
         }
         assert_eq!(sent, MOST_CREDITS);
         clients.sent(id);
-        assert!(clients.want_a_frame());
+        assert!(clients.next_picture().is_some());
     }
 
     #[test]

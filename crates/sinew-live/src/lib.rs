@@ -10,6 +10,7 @@ mod engine;
 mod error;
 mod inbox;
 mod live;
+mod next_draw;
 mod pane_choice;
 mod picture;
 mod protocol;

@@ -2,7 +2,6 @@
 
 import { kindOf, readPicture, readTopology } from "./frames.js";
 
-const GRANT = new Uint8Array([1, 0, 0, 0]);
 const LATENCIES = 400;
 
 export class Connection {
@@ -45,8 +44,8 @@ export class Connection {
     return picture;
   }
 
-  /// To be called when a picture has been drawn.
-  drawn(picture) {
+  /// To be called when a picture has been drawn, with the time (ms) of the next draw.
+  drawn(picture, next) {
     const now = performance.now();
     for (const [number, sent] of this.sentAt) {
       if (number <= picture.applied) {
@@ -58,11 +57,13 @@ export class Connection {
         }
       }
     }
-    this.grant();
+    this.grant(next);
   }
 
-  grant() {
-    for (; this.owed > 0; this.owed -= 1) this.send(GRANT);
+  /// Grants pictures in the place of those that came, with the time (ms) at which the page draws again: from now on, in microseconds.
+  grant(next) {
+    const wait = Uint32Array.of(1000 * Math.max(0, next - performance.now()));
+    for (; this.owed > 0; this.owed -= 1) this.send(wait);
   }
 
   /// Sends a command; of poses, the time until a picture contains it is taken.

@@ -12,6 +12,7 @@ import { colourOfLight, numberOfReason, reasonOf } from "./lights.js";
 import { plain, short, withUnit } from "./numbers.js";
 import { PaneCard, stepInWords } from "./panes.js";
 import { Plot, around } from "./plots.js";
+import { Screen } from "./screen.js";
 import { ShapeRow } from "./shape.js";
 import { View } from "./view.js";
 
@@ -103,6 +104,7 @@ const connection = new Connection({
   },
 });
 
+const screen = new Screen();
 const paneAt = (x) => Math.min(view.count - 1, Math.floor((x - canvas.getBoundingClientRect().left) / (canvas.clientWidth / view.count)));
 const cutPanel = new CutPanel(view);
 const blade = new Blade(view, {
@@ -381,8 +383,9 @@ function frame(now) {
     blade.flush(picture.applied);
   }
   view.draw();
-  if (next) connection.drawn(next);
-  else if (connection.owed > 0 && !connection.picture) connection.grant();
+  screen.drew(now);
+  if (next) connection.drawn(next, screen.next);
+  else if (connection.owed > 0 && !connection.picture) connection.grant(screen.next);
   if (picture && now - plotted > PLOT_EVERY) {
     plotted = now;
     panels();

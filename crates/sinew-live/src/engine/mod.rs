@@ -41,8 +41,8 @@ const GLIDE: f64 = 0.004;
 /// Time for which it steps before it looks at commands and pictures again.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// Shortest time between two pictures: with a credit to spare, the second is fresh when the screen is drawn.
-const BETWEEN_PICTURES: Duration = Duration::from_millis(8);
+/// Shortest time between two pictures, whatever pages ask for.
+const BETWEEN_PICTURES: Duration = Duration::from_millis(2);
 
 /// Shortest time between two settings messages, so that one page's commands do not flood the others.
 const BETWEEN_TELLINGS: Duration = Duration::from_millis(15);
@@ -258,13 +258,9 @@ impl Engine {
             (None, true) => IDLE,
             (None, false) => self.pace.until(self.t() + self.tick()),
         };
-        let until_picture = match (self.changed, self.last_picture) {
-            (true, Some(last)) if shared.clients.want_a_frame() => {
-                BETWEEN_PICTURES.saturating_sub(last.elapsed())
-            }
-            (true, None) if shared.clients.want_a_frame() => Duration::ZERO,
-            _ => IDLE,
-        };
+        let until_picture = self
+            .next_picture(shared)
+            .map_or(IDLE, |due| due.saturating_duration_since(Instant::now()));
         let until_told = match (self.news.settings, self.news.last_told) {
             (true, Some(last)) => BETWEEN_TELLINGS.saturating_sub(last.elapsed()),
             _ => IDLE,
@@ -375,11 +371,23 @@ impl Engine {
         });
     }
 
+    /// When the next picture is to be made, where there is something new and somebody to see it.
+    fn next_picture(&self, shared: &Shared) -> Option<Instant> {
+        let due = shared.clients.next_picture().filter(|_| self.changed)?;
+        let now = Instant::now();
+        let next_step = now + self.pace.until(self.next_span().until);
+        // There is no reason to wait where nothing newer comes in time.
+        let due = match self.paused || next_step > due {
+            true => now,
+            false => due,
+        };
+        let soonest = self.last_picture.map(|last| last + BETWEEN_PICTURES);
+        Some(soonest.map_or(due, |soonest| due.max(soonest)))
+    }
+
     fn show(&mut self, shared: &Shared) {
-        let is_early = self
-            .last_picture
-            .is_some_and(|last| last.elapsed() < BETWEEN_PICTURES);
-        if !self.changed || is_early || !shared.clients.want_a_frame() {
+        let due = self.next_picture(shared);
+        if due.is_none_or(|due| Instant::now() < due) {
             return;
         }
         self.pictures = self.pictures.wrapping_add(1);

@@ -19,6 +19,9 @@ use crate::protocol::{Event, Order, Said, is_frame};
 /// Time for which a page may read nothing while a message is under way to it.
 const PATIENCE: Duration = Duration::from_secs(10);
 
+/// Longest time until its next draw that a page is believed.
+const LONGEST_FRAME: Duration = Duration::from_millis(50);
+
 /// Talks to a page until it goes, breaks the protocol, or reads nothing while messages pile up.
 pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>, stay: Stay) {
     let Some((id, messages)) = shared.clients.enter() else {
@@ -75,14 +78,17 @@ fn hear(shared: &Shared, id: u32, message: &Message) -> bool {
     match message {
         Message::Close(_) => return false,
         Message::Ping(_) | Message::Pong(_) => {}
-        Message::Binary(grant) if grant.len() == 4 => {
-            shared.clients.grant(id);
-            shared.inbox.nudge();
-        }
-        Message::Binary(other) => {
-            let bytes = other.len();
-            refuse(format!("{bytes} bytes that are no credit: expected 4"));
-        }
+        Message::Binary(bytes) => match <[u8; 4]>::try_from(&bytes[..]) {
+            Ok(microseconds) => {
+                let until_drawn = Duration::from_micros(u32::from_le_bytes(microseconds).into());
+                shared.clients.grant(id, until_drawn.min(LONGEST_FRAME));
+                shared.inbox.nudge();
+            }
+            Err(_) => {
+                let bytes = bytes.len();
+                refuse(format!("{bytes} bytes that are no credit: expected 4"));
+            }
+        },
         Message::Text(text) => match serde_json::from_str::<Said>(text) {
             Ok(Said { id: number, order }) => {
                 let has_room = match order {

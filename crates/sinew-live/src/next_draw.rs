@@ -1,0 +1,75 @@
+//! When a page draws, and when the pictures for that are made.
+
+use std::time::{Duration, Instant};
+
+/// Time from the making of a picture to a page that can draw it, where both have much to do.
+const UNDER_WAY: Duration = Duration::from_millis(6);
+
+/// Time between two draws where a page tells of none.
+const BETWEEN_DRAWS: Duration = Duration::from_millis(16);
+
+/// The next draw of a page. A page that can take two pictures gets one at once, so that it never draws without, and another as late
+/// as may be, so that the screen shows what a hand did just before; to one that can take a single picture only the late one goes.
+#[derive(Debug)]
+pub(crate) struct NextDraw {
+    /// When the late picture is to be made.
+    late: Instant,
+    has_early: bool,
+    has_late: bool,
+}
+
+impl NextDraw {
+    /// That of a page which draws so long after now.
+    pub(crate) fn after(wait: Duration) -> Self {
+        Self {
+            late: Instant::now() + wait.saturating_sub(UNDER_WAY),
+            has_early: false,
+            has_late: false,
+        }
+    }
+
+    /// When the next picture is to be made for a page that can take so many; `None`: at once.
+    pub(crate) fn due(&self, takes: u32) -> Option<Instant> {
+        match (self.has_early, self.has_late) {
+            (false, false) if takes > 1 => None,
+            (_, false) => Some(self.late),
+            // It has not told of its draw.
+            (_, true) => Some(self.late + BETWEEN_DRAWS),
+        }
+    }
+
+    /// Notes that a picture is made.
+    pub(crate) fn take(&mut self) {
+        self.has_early = true;
+        self.has_late = Instant::now() >= self.late;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MINUTE: Duration = Duration::from_secs(60);
+
+    #[test]
+    fn one_picture_is_made_at_once_and_one_just_before_the_draw() {
+        let mut next = NextDraw::after(MINUTE);
+        assert_eq!(next.due(2), None);
+        next.take();
+        let left = next.due(1).unwrap() - Instant::now();
+        assert!(left < MINUTE && left > MINUTE - 2 * UNDER_WAY, "{left:?}");
+    }
+
+    #[test]
+    fn the_only_picture_is_made_just_before_the_draw() {
+        let next = NextDraw::after(MINUTE);
+        assert_eq!(next.due(1), Some(next.late));
+    }
+
+    #[test]
+    fn a_page_that_tells_of_no_draw_gets_the_next_picture_later() {
+        let mut next = NextDraw::after(Duration::ZERO);
+        next.take();
+        assert_eq!(next.due(2), Some(next.late + BETWEEN_DRAWS));
+    }
+}
