@@ -22,12 +22,24 @@ const MOST_WAITING: usize = 1024;
 /// Most pages at once.
 pub(crate) const MOST_CLIENTS: usize = 16;
 
+/// A picture for pages.
+pub(crate) struct Picture<'a> {
+    pub(crate) message: Vec<u8>,
+    /// How often what pages see had changed.
+    pub(crate) changes: u64,
+    /// The surfaces that it belongs to, and their number.
+    pub(crate) topology: &'a Bytes,
+    pub(crate) epoch: u32,
+}
+
 #[derive(Debug)]
 struct Client {
     id: u32,
     credits: u32,
     /// The last command of this client that the simulation has carried out.
     applied: u32,
+    /// The changes that it has been shown.
+    shown: u64,
     next_draw: NextDraw,
     /// Pictures that wait to be sent.
     waiting: u32,
@@ -60,6 +72,7 @@ impl Clients {
             id,
             credits: FIRST_CREDITS,
             applied: 0,
+            shown: 0,
             next_draw: NextDraw::after(Duration::ZERO),
             waiting: 0,
             epoch: None,
@@ -100,23 +113,27 @@ impl Clients {
         }
     }
 
-    /// When the next picture is to be made, which may be in the past; `None` where no client holds a credit.
-    pub(crate) fn next_picture(&self) -> Option<Instant> {
+    /// When the next picture is to be made, which may be in the past, after so many changes; `None` where no client that holds a credit lacks one.
+    pub(crate) fn next_picture(&self, changes: u64) -> Option<Instant> {
         let list = self.lock();
-        let want = list.clients.iter().filter(|client| client.wants_a_frame());
-        let now = Instant::now();
-        let due = want.map(|client| client.next_draw.due(client.credits).unwrap_or(now));
-        due.min()
+        let lack = list.clients.iter().filter(|client| client.lacks(changes));
+        lack.map(Client::next_picture).min()
     }
 
-    /// Sends a picture, and before it the topology where that is new, to all who hold a credit.
-    pub(crate) fn show(&self, frame: Vec<u8>, epoch: u32, topology: &Bytes) {
+    /// Sends a picture, and before it the topology where that is new, to all who hold a credit, lack it, and are to have one by this time.
+    pub(crate) fn show(&self, picture: Picture<'_>, by: Instant) {
+        let Picture {
+            message,
+            changes,
+            topology,
+            epoch,
+        } = picture;
         let mut list = self.lock();
-        let want = list.clients.iter().filter(|client| client.wants_a_frame());
-        let mut left = want.count();
-        let mut whole = Some(frame);
+        let wants = |client: &Client| client.lacks(changes) && client.next_picture() <= by;
+        let mut left = list.clients.iter().filter(|client| wants(client)).count();
+        let mut whole = Some(message);
         list.keep(|client| {
-            if !client.wants_a_frame() {
+            if !wants(client) {
                 return true;
             }
             left -= 1;
@@ -136,6 +153,7 @@ impl Clients {
             if let Some(place) = frame.get_mut(APPLIED_AT..APPLIED_AT + 4) {
                 place.copy_from_slice(&client.applied.to_le_bytes());
             }
+            client.shown = changes;
             client.credits -= 1;
             client.next_draw.take();
             client.waiting += 1;
@@ -178,6 +196,16 @@ impl Client {
         self.credits > 0 && self.waiting < MOST_CREDITS
     }
 
+    /// Whether it wants a picture after so many changes.
+    fn lacks(&self, changes: u64) -> bool {
+        self.shown != changes && self.wants_a_frame()
+    }
+
+    /// When that is to be made.
+    fn next_picture(&self) -> Instant {
+        self.next_draw.due(self.credits)
+    }
+
     /// Hands a message over without waiting; `false` where too many wait already.
     fn take(&self, message: Message) -> bool {
         self.sender.try_send(message).is_ok()
@@ -188,8 +216,21 @@ impl Client {
 mod tests {
     use super::*;
 
-    fn frame() -> Vec<u8> {
-        vec![0; 64]
+    static TOPOLOGY: Bytes = Bytes::from_static(b"topology");
+
+    /// A later time than any at which pictures are due.
+    fn later() -> Instant {
+        Instant::now() + Duration::from_secs(60)
+    }
+
+    /// A picture after so many changes.
+    fn picture(changes: u64) -> Picture<'static> {
+        Picture {
+            message: vec![0; 64],
+            changes,
+            topology: &TOPOLOGY,
+            epoch: 1,
+        }
     }
 
     #[test]
@@ -197,13 +238,13 @@ mod tests {
         let clients = Clients::default();
         let (id, mut messages) = clients.enter().unwrap();
         let mut sent = 0;
-        while clients.next_picture().is_some() {
-            clients.show(frame(), 1, &Bytes::from_static(b"topology"));
+        while clients.next_picture(sent + 1).is_some() {
             sent += 1;
+            clients.show(picture(sent), later());
         }
-        assert_eq!(sent, FIRST_CREDITS);
+        assert_eq!(sent, u64::from(FIRST_CREDITS));
         clients.grant(id, Duration::ZERO);
-        assert!(clients.next_picture().is_some());
+        assert!(clients.next_picture(sent + 1).is_some());
         // The topology comes once, before the first picture.
         assert!(
             matches!(messages.try_recv(), Ok(Message::Binary(first)) if &first[..] == b"topology")
@@ -222,11 +263,11 @@ mod tests {
             clients.grant(id, Duration::ZERO);
         }
         let mut sent = 0;
-        while clients.next_picture().is_some() && sent < 1000 {
-            clients.show(frame(), 1, &Bytes::new());
+        while clients.next_picture(sent + 1).is_some() && sent < 1000 {
             sent += 1;
+            clients.show(picture(sent), later());
         }
-        assert_eq!(sent, MOST_CREDITS);
+        assert_eq!(sent, u64::from(MOST_CREDITS));
     }
 
     #[test]
@@ -236,14 +277,48 @@ mod tests {
         let mut sent = 0;
         for _ in 0..1000 {
             clients.grant(id, Duration::ZERO);
-            if clients.next_picture().is_some() {
-                clients.show(frame(), 1, &Bytes::new());
+            if clients.next_picture(sent + 1).is_some() {
                 sent += 1;
+                clients.show(picture(sent), later());
             }
         }
-        assert_eq!(sent, MOST_CREDITS);
+        assert_eq!(sent, u64::from(MOST_CREDITS));
         clients.sent(id);
-        assert!(clients.next_picture().is_some());
+        assert!(clients.next_picture(sent + 1).is_some());
+    }
+
+    #[test]
+    fn one_that_had_no_credit_gets_the_last_picture_later() {
+        let clients = Clients::default();
+        let (late, _of_late) = clients.enter().unwrap();
+        let (other, _of_other) = clients.enter().unwrap();
+        for changes in 1..=3 {
+            clients.grant(other, Duration::ZERO);
+            clients.show(picture(changes), later());
+        }
+        assert_eq!(clients.next_picture(3), None);
+        clients.grant(other, Duration::ZERO);
+        assert_eq!(clients.next_picture(3), None, "it has the last one");
+        clients.grant(late, Duration::ZERO);
+        assert!(clients.next_picture(3).is_some());
+    }
+
+    #[test]
+    fn one_that_draws_later_is_left_its_credit_until_then() {
+        let clients = Clients::default();
+        let (first, mut of_first) = clients.enter().unwrap();
+        let (second, mut of_second) = clients.enter().unwrap();
+        clients.show(picture(1), later());
+        clients.grant(first, Duration::ZERO);
+        clients.grant(second, Duration::from_secs(60));
+        for id in [first, second] {
+            clients.lock().find(id).unwrap().credits = 1;
+        }
+        clients.show(picture(2), Instant::now());
+        let pictures = |messages: &mut Receiver<Message>| {
+            std::iter::from_fn(|| messages.try_recv().ok()).count() - 1
+        };
+        assert_eq!([pictures(&mut of_first), pictures(&mut of_second)], [2, 1]);
     }
 
     #[test]
@@ -253,7 +328,7 @@ mod tests {
         let (second, mut of_second) = clients.enter().unwrap();
         clients.applied(first, 7);
         clients.applied(second, 70_000);
-        clients.show(frame(), 1, &Bytes::new());
+        clients.show(picture(1), later());
         for (messages, expected) in [(&mut of_first, 7), (&mut of_second, 70_000_u32)] {
             messages.try_recv().unwrap();
             let Ok(Message::Binary(frame)) = messages.try_recv() else {

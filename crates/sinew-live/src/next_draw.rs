@@ -12,6 +12,8 @@ const BETWEEN_DRAWS: Duration = Duration::from_millis(16);
 /// as may be, so that the screen shows what a hand did just before; to one that can take a single picture only the late one goes.
 #[derive(Debug)]
 pub(crate) struct NextDraw {
+    /// When it was told of.
+    told: Instant,
     /// When the late picture is to be made.
     late: Instant,
     has_early: bool,
@@ -21,20 +23,22 @@ pub(crate) struct NextDraw {
 impl NextDraw {
     /// That of a page which draws so long after now.
     pub(crate) fn after(wait: Duration) -> Self {
+        let told = Instant::now();
         Self {
-            late: Instant::now() + wait.saturating_sub(UNDER_WAY),
+            told,
+            late: told + wait.saturating_sub(UNDER_WAY),
             has_early: false,
             has_late: false,
         }
     }
 
-    /// When the next picture is to be made for a page that can take so many; `None`: at once.
-    pub(crate) fn due(&self, takes: u32) -> Option<Instant> {
+    /// When the next picture is to be made for a page that can take so many: in the past where at once.
+    pub(crate) fn due(&self, takes: u32) -> Instant {
         match (self.has_early, self.has_late) {
-            (false, false) if takes > 1 => None,
-            (_, false) => Some(self.late),
+            (false, false) if takes > 1 => self.told,
+            (_, false) => self.late,
             // It has not told of its draw.
-            (_, true) => Some(self.late + BETWEEN_DRAWS),
+            (_, true) => self.late + BETWEEN_DRAWS,
         }
     }
 
@@ -54,22 +58,22 @@ mod tests {
     #[test]
     fn one_picture_is_made_at_once_and_one_just_before_the_draw() {
         let mut next = NextDraw::after(MINUTE);
-        assert_eq!(next.due(2), None);
+        assert!(next.due(2) <= Instant::now());
         next.take();
-        let left = next.due(1).unwrap() - Instant::now();
+        let left = next.due(1) - Instant::now();
         assert!(left < MINUTE && left > MINUTE - 2 * UNDER_WAY, "{left:?}");
     }
 
     #[test]
     fn the_only_picture_is_made_just_before_the_draw() {
         let next = NextDraw::after(MINUTE);
-        assert_eq!(next.due(1), Some(next.late));
+        assert_eq!(next.due(1), next.late);
     }
 
     #[test]
     fn a_page_that_tells_of_no_draw_gets_the_next_picture_later() {
         let mut next = NextDraw::after(Duration::ZERO);
         next.take();
-        assert_eq!(next.due(2), Some(next.late + BETWEEN_DRAWS));
+        assert_eq!(next.due(2), next.late + BETWEEN_DRAWS);
     }
 }

@@ -26,6 +26,7 @@ use self::pane::Pane;
 pub(crate) use self::survey::Survey;
 use self::topology::Topology;
 use self::trusted::Trusted;
+use crate::clients::Picture;
 use crate::ended::Ended;
 use crate::error::LiveError;
 use crate::inbox::{Place, Request, Waiting};
@@ -93,7 +94,8 @@ pub(crate) struct Engine {
     pace: Pace,
     pictures: u32,
     last_picture: Option<Instant>,
-    changed: bool,
+    /// How often what pages see has changed.
+    changes: u64,
     /// Whether settings are other than pages know, and whether all went back to the beginning.
     news: News,
     /// Commands that no step has taken yet.
@@ -182,7 +184,7 @@ impl Engine {
             pace: Pace::new(t),
             pictures: 0,
             last_picture: None,
-            changed: true,
+            changes: 1,
             news: News::default(),
             under_way: Vec::new(),
             journals: Vec::new(),
@@ -328,7 +330,7 @@ impl Engine {
                 oldest = oldest.min(pane.t());
             }
         }
-        self.changed = true;
+        self.changes += 1;
         if !self.panes.iter().all(|pane| pane.is_at(until)) {
             return;
         }
@@ -373,16 +375,22 @@ impl Engine {
 
     /// When the next picture is to be made, where there is something new and somebody to see it.
     fn next_picture(&self, shared: &Shared) -> Option<Instant> {
-        let due = shared.clients.next_picture().filter(|_| self.changed)?;
-        let now = Instant::now();
-        let next_step = now + self.pace.until(self.next_span().until);
-        // There is no reason to wait where nothing newer comes in time.
-        let due = match self.paused || next_step > due {
-            true => now,
+        let due = shared.clients.next_picture(self.changes)?;
+        let due = match due <= self.newest_until() {
+            true => Instant::now(),
             false => due,
         };
         let soonest = self.last_picture.map(|last| last + BETWEEN_PICTURES);
         Some(soonest.map_or(due, |soonest| due.max(soonest)))
+    }
+
+    /// Until when there is nothing newer than what pages can be shown now, so that waiting brings them nothing.
+    fn newest_until(&self) -> Instant {
+        let left = match self.paused {
+            true => IDLE,
+            false => self.pace.until(self.next_span().until),
+        };
+        Instant::now() + left
     }
 
     fn show(&mut self, shared: &Shared) {
@@ -415,9 +423,14 @@ impl Engine {
                 self.repaint,
             );
         }
-        let Topology { epoch, message } = &self.topology;
-        shared.clients.show(frame.finish(), *epoch, message);
-        (self.changed, self.repaint) = (false, false);
+        let picture = Picture {
+            message: frame.finish(),
+            changes: self.changes,
+            topology: &self.topology.message,
+            epoch: self.topology.epoch,
+        };
+        shared.clients.show(picture, self.newest_until());
+        self.repaint = false;
         self.last_picture = Some(Instant::now());
     }
 
@@ -447,7 +460,6 @@ impl Engine {
         let begun = Instant::now();
         for client in waiting.entered.drain(..) {
             shared.clients.tell(client, &self.settings());
-            self.changed = true;
         }
         while begun.elapsed() < LOOK
             && let Some(Request { client, id, what }) = waiting.orders.pop_front()
@@ -463,7 +475,8 @@ impl Engine {
             }
             if !is_pose {
                 self.news.settings = true;
-                (self.changed, self.repaint) = (true, true);
+                self.changes += 1;
+                self.repaint = true;
             }
         }
         let is_done = waiting.orders.is_empty();
