@@ -49,6 +49,8 @@ impl Listener for Guests {
             let (stream, address) = Listener::accept(&mut self.listener).await;
             let seat = Seat::take(&self.open);
             if self.open.load(Ordering::Relaxed) <= self.most {
+                // Else a picture waits for word of the one before, which may come a draw later. A connection that is gone shows that soon enough.
+                let _ = stream.set_nodelay(true);
                 return (Guest::new(stream, seat, self.patience), address);
             }
         }
@@ -221,6 +223,7 @@ mod tests {
             let (mut idle, _) = guests.accept().await;
             let mut page = TcpStream::connect(address).await.unwrap();
             let (mut own, _) = guests.accept().await;
+            assert!(own.stream.nodelay().unwrap());
             own.stay.allow();
             let mut byte = [0];
             let ended = idle.read(&mut byte).await.unwrap_err();
