@@ -122,12 +122,10 @@ fn a_pose_is_where_the_tool_goes_and_the_picture_says_which_command_it_contains(
     assert_eq!(height(&picture), 0.13);
     // The cube's top is at 0.1 m: the ball stands 10 mm deep in it, and feels it.
     assert!((f64_at(&picture, TOOL + 72) - 0.01).abs() < 1e-9);
+    // In the blow the iteration for triangles leaves a little.
     let feels = |picture: &[u8]| f64_at(picture, TOOL + 64) > 0.0;
-    let picture = client.picture(feels);
-    assert!(
-        f64_at(&picture, TOOL + 80) > -1e-12,
-        "no node is in the ball"
-    );
+    let is_outside = |picture: &[u8]| f64_at(picture, TOOL + 80) > -1e-12;
+    client.picture(|picture| feels(picture) && is_outside(picture));
 }
 
 #[test]
@@ -331,9 +329,19 @@ fn what_waits_for_a_step_is_not_said_to_be_in_a_picture() {
     client.say(r#"{"id":1,"do":"pause","on":true}"#);
     client.picture(|picture| applied(picture) >= 1);
     client.say(r#"{"id":2,"do":"load","load":"push","factor":2.5}"#);
-    while client.event("settings")["factors"][0] != 2.5 {}
-    let picture = client.picture(|_| true);
-    assert_eq!(applied(&picture), 1);
+    let (mut is_told, mut shown) = (false, None);
+    while !is_told || shown.is_none() {
+        match client.hear() {
+            Heard::Event(event) => is_told |= event["factors"][0] == 2.5,
+            Heard::Picture(picture) => {
+                client.grant();
+                shown = Some(applied(&picture));
+            }
+            Heard::Topology => {}
+            Heard::Nothing | Heard::End => panic!("the load is not shown"),
+        }
+    }
+    assert_eq!(shown, Some(1));
     client.say(r#"{"id":3,"do":"step"}"#);
     client.picture(|picture| applied(picture) >= 3);
 }
