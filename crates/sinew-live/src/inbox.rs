@@ -36,11 +36,11 @@ pub(crate) struct Place {
     pub(crate) pose: [f64; 6],
 }
 
-/// What waits for the simulation: of poses the latest of each tool, of a client's settings of one kind that follow each other the last, of all else everything
+/// What waits for the simulation: of a client's poses the latest of each tool, of its settings of one kind that follow each other the last, of all else everything
 /// in order.
 #[derive(Debug, Default)]
 pub(crate) struct Waiting {
-    /// The latest pose asked for, of each tool for which there is one.
+    /// The latest pose that each client asks for, of each tool, in the order in which they came.
     pub(crate) poses: Vec<Request<Place>>,
     /// Everything else, in the order in which it came.
     pub(crate) orders: VecDeque<Request<Order>>,
@@ -81,17 +81,14 @@ pub(crate) struct Inbox {
 }
 
 impl Inbox {
-    /// Takes a pose in the place of an earlier one of the same tool.
+    /// Takes a pose behind the others, and forgets an earlier one of the same client for the same tool.
     pub(crate) fn pose(&self, request: Request<Place>) {
         let mut waiting = self.lock();
-        let earlier = waiting
-            .poses
-            .iter_mut()
-            .find(|earlier| earlier.what.tool == request.what.tool);
-        match earlier {
-            Some(earlier) => *earlier = request,
-            None => waiting.poses.push(request),
-        }
+        let is_same = |earlier: &Request<Place>| {
+            earlier.client == request.client && earlier.what.tool == request.what.tool
+        };
+        waiting.poses.retain(|earlier| !is_same(earlier));
+        waiting.poses.push(request);
         self.wake(waiting);
     }
 
@@ -167,6 +164,21 @@ mod tests {
     }
 
     #[test]
+    fn poses_of_two_clients_for_one_tool_wait_in_their_order() {
+        let (inbox, mut taken) = (Inbox::default(), Waiting::default());
+        for (client, id) in [(1, 1), (2, 1), (1, 2)] {
+            inbox.pose(Request {
+                client,
+                ..pose(0, id)
+            });
+        }
+        inbox.take(&mut taken, Duration::ZERO);
+        let of = |request: &Request<Place>| (request.client, request.id);
+        let poses: Vec<_> = taken.poses.iter().map(of).collect();
+        assert_eq!(poses, [(2, 1), (1, 2)]);
+    }
+
+    #[test]
     fn of_poses_the_latest_is_kept_and_of_orders_all() {
         let (inbox, mut taken) = (Inbox::default(), Waiting::default());
         for id in 0..5 {
@@ -175,7 +187,7 @@ mod tests {
         }
         inbox.take(&mut taken, Duration::ZERO);
         let ids = |id: &Request<Place>| id.id;
-        assert_eq!(taken.poses.iter().map(ids).collect::<Vec<_>>(), [4, 3]);
+        assert_eq!(taken.poses.iter().map(ids).collect::<Vec<_>>(), [3, 4]);
         let order: Vec<u32> = taken.orders.iter().map(|order| order.id).collect();
         assert_eq!(order, [0, 1, 2, 3, 4]);
         // What is left there is done before others.

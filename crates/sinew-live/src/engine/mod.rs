@@ -48,6 +48,9 @@ const BETWEEN_PICTURES: Duration = Duration::from_millis(2);
 /// Shortest time between two settings messages, so that one page's commands do not flood the others.
 const BETWEEN_TELLINGS: Duration = Duration::from_millis(15);
 
+/// Longer than until any picture is due.
+const FAR: Duration = Duration::from_secs(1);
+
 /// Longest wait where there is nothing to do.
 const IDLE: Duration = Duration::from_millis(100);
 
@@ -387,7 +390,7 @@ impl Engine {
     /// Until when there is nothing newer than what pages can be shown now, so that waiting brings them nothing.
     fn newest_until(&self) -> Instant {
         let left = match self.paused {
-            true => IDLE,
+            true => FAR,
             false => self.pace.until(self.next_span().until),
         };
         Instant::now() + left
@@ -466,17 +469,22 @@ impl Engine {
         {
             let is_pose = matches!(what, Order::Pose { .. });
             let waits = is_pose || matches!(what, Order::Load { .. } | Order::Cut { .. });
+            let repaints = match &what {
+                Order::Field { name } => *name != self.field,
+                Order::Save => false,
+                _ => !waits,
+            };
             let outcome = self.carry_out(client, id, what, shared);
             if outcome.is_err() || !waits {
                 shared.clients.applied(client, id);
             }
+            self.repaint |= self.news.went_back || (repaints && outcome.is_ok());
             if let Err(reason) = outcome {
                 shared.clients.tell(client, &Event::Refused { reason });
             }
             if !is_pose {
                 self.news.settings = true;
                 self.changes += 1;
-                self.repaint = true;
             }
         }
         let is_done = waiting.orders.is_empty();
@@ -484,7 +492,9 @@ impl Engine {
         let poses = if is_done { waiting.poses.len() } else { 0 };
         for Request { client, id, what } in waiting.poses.drain(..poses) {
             if let Err(reason) = self.lead(client, id, what) {
+                shared.clients.applied(client, id);
                 shared.clients.tell(client, &Event::Refused { reason });
+                self.changes += 1;
             }
         }
         self.tell_applied(shared);

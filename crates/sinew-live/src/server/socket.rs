@@ -20,7 +20,7 @@ use crate::protocol::{Event, Order, Said, is_frame};
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Longest time until its next draw that a page is believed.
-const LONGEST_FRAME: Duration = Duration::from_millis(50);
+const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
 /// Talks to a page until it goes, breaks the protocol, or reads nothing while messages pile up.
 pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>, stay: Stay) {
@@ -103,6 +103,7 @@ fn hear(shared: &Shared, id: u32, message: &Message) -> bool {
                                 .inbox
                                 .pose(Request::of(id, number, Place { tool, pose }));
                         } else {
+                            shared.clients.applied(id, number);
                             refuse(format!("there is no tool {tool}"));
                         }
                         true

@@ -129,6 +129,30 @@ fn a_pose_is_where_the_tool_goes_and_the_picture_says_which_command_it_contains(
 }
 
 #[test]
+fn poses_of_two_pages_for_one_tool_and_refused_ones_are_answered() {
+    let page = open();
+    let mut clients = [page.connect(), page.connect()];
+    let pose = |id: u32, tool: u32, z: f64| {
+        format!(
+            r#"{{"id":{id},"do":"pose","tool":{tool},"position":[0.05,0.05,{z}],"rotation":[0,0,0]}}"#
+        )
+    };
+    for id in 1..=20 {
+        for client in &mut clients {
+            client.say(&pose(id, 0, 0.15));
+        }
+        for client in &mut clients {
+            client.picture(|picture| applied(picture) >= id);
+        }
+    }
+    let [client, _] = &mut clients;
+    for (id, tool, z) in [(21, 0, 1e300), (22, 7, 0.15)] {
+        client.say(&pose(id, tool, z));
+        client.picture(|picture| applied(picture) >= id);
+    }
+}
+
+#[test]
 fn time_stops_goes_on_by_one_step_and_begins_anew() {
     let page = open();
     let mut client = page.connect();
