@@ -261,7 +261,7 @@ impl Engine {
         let until_step = match (self.ahead, self.paused) {
             (Some(_), _) => Duration::ZERO,
             (None, true) => IDLE,
-            (None, false) => self.pace.until(self.t() + self.tick()),
+            (None, false) => self.until_next_step(),
         };
         let until_picture = self
             .next_picture(shared)
@@ -391,9 +391,14 @@ impl Engine {
     fn newest_until(&self) -> Instant {
         let left = match self.paused {
             true => FAR,
-            false => self.pace.until(self.next_span().until),
+            false => self.until_next_step(),
         };
         Instant::now() + left
+    }
+
+    /// How long until the next span is due.
+    fn until_next_step(&self) -> Duration {
+        self.pace.until(self.next_span().until)
     }
 
     fn show(&mut self, shared: &Shared) {
@@ -469,6 +474,7 @@ impl Engine {
         {
             let is_pose = matches!(what, Order::Pose { .. });
             let waits = is_pose || matches!(what, Order::Load { .. } | Order::Cut { .. });
+            // What colours show stays as it is under the others, and to paint may take longer than a step.
             let repaints = match &what {
                 Order::Field { name } => *name != self.field,
                 Order::Save => false,
