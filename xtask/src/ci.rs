@@ -1,11 +1,13 @@
 //! `cargo xtask ci`.
 
-use std::path::{Path, PathBuf};
+mod cost;
+mod packages;
+
 use std::process::Command;
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use sinew_bench::output::say;
 
+use self::cost::{Cost, Stopwatch};
 use crate::failure::Failure;
 use crate::repository::root;
 use crate::{compare, memory, rules};
@@ -21,112 +23,100 @@ pub(crate) struct Arguments {
     keep_going: bool,
 }
 
-/// A run of cargo and what it checks.
+/// A check with its name.
 struct Step {
-    name: String,
-    arguments: Vec<String>,
-    /// Whether it packs each crate and builds it from its package.
-    is_packaging: bool,
+    name: &'static str,
+    check: Check,
+}
+
+/// Ways to check something.
+enum Check {
+    /// A run of cargo with these arguments.
+    Cargo(&'static str),
+    /// A function of this program.
+    Own(fn() -> Result<(), Failure>),
+}
+
+/// All steps in order. Those that build the same objects follow each other; no step has flags of its own, so that each builds
+/// only what those before it have not built.
+const STEPS: &[Step] = &[
+    own("rules", check_rules),
+    cargo("formatting", "fmt --all --check"),
+    cargo("lints", "clippy --workspace --all-targets -- -D warnings"),
+    cargo(
+        "lints without default features",
+        "clippy --no-default-features -psinew-sparse -psinew-core -psinew-fem -psinew-cnn -psinew-integrators -psinew \
+         -- -D warnings",
+    ),
+    cargo("tests", "test --workspace"),
+    // One by one: together each would turn on features of the other. Products on one thread, and the methods that are left
+    // without a factorisation.
+    cargo(
+        "tests of sinew-sparse without default features",
+        "test --no-default-features -p sinew-sparse",
+    ),
+    own("kernels under valgrind", watch_memory_if_possible),
+    cargo(
+        "conformance of the integrators without default features",
+        "test --no-default-features -p sinew-integrators --test conformance",
+    ),
+    cargo("documentation", "doc --workspace --no-deps"),
+    own("packages, and a crate that uses them", packages::check),
+    cargo("verification", "xtask verify --long --out target/ci-verify"),
+    cargo("quick bench", "xtask bench --quick --out target/ci-bench"),
+    cargo(
+        "quick hard cases",
+        "xtask bench --hard --quick --out target/ci-hard",
+    ),
+    cargo(
+        "quick large deformations",
+        "xtask bench --nonlinear --quick --out target/ci-nonlinear",
+    ),
+    cargo("live page in Chromium", "xtask live-test"),
+    cargo("commands of the README", "xtask readme"),
+    cargo(
+        "installation",
+        "install --path crates/sinew --root target/ci-install --locked --force --no-track --quiet",
+    ),
+    cargo("archive, tried elsewhere", "xtask dist"),
+    own("comparison with meshio and pyvista", compare_if_possible),
+];
+
+const fn cargo(name: &'static str, arguments: &'static str) -> Step {
+    Step {
+        name,
+        check: Check::Cargo(arguments),
+    }
+}
+
+const fn own(name: &'static str, check: fn() -> Result<(), Failure>) -> Step {
+    Step {
+        name,
+        check: Check::Own(check),
+    }
 }
 
 impl Step {
-    fn new(name: impl Into<String>, arguments: &str) -> Self {
-        Self {
-            name: name.into(),
-            arguments: arguments.split_whitespace().map(Into::into).collect(),
-            is_packaging: false,
+    /// Runs it, and tells what it cost.
+    fn run(&self) -> Result<Cost, Failure> {
+        say(&format!("\n== {}{}", self.name, self.command()))?;
+        let watch = Stopwatch::start();
+        match self.check {
+            Check::Cargo(arguments) => run_cargo(arguments)
+                .map_err(|status| Failure::Chore(format!("{}: {status}", self.name)))?,
+            Check::Own(check) => check()?,
+        }
+        let cost = watch.stop();
+        say(&format!("== {}: over after {cost}", self.name))?;
+        Ok(cost)
+    }
+
+    fn command(&self) -> String {
+        match self.check {
+            Check::Cargo(arguments) => format!(": cargo {arguments}"),
+            Check::Own(_) => String::new(),
         }
     }
-}
-
-/// All steps after the rules, in order.
-fn steps(root: &Path) -> std::io::Result<Vec<Step>> {
-    let mut steps = vec![
-        Step::new("formatting", "fmt --all --check"),
-        Step::new("lints", "clippy --workspace --all-targets -- -D warnings"),
-        Step::new(
-            "lints without default features",
-            "clippy --no-default-features -psinew-sparse -psinew-core -psinew-fem -psinew-cnn -psinew-integrators \
-             -- -D warnings",
-        ),
-        Step::new("tests", "test --workspace"),
-    ];
-    // One by one: together each would turn on features of the others. Of the larger crates, what a missing feature may change: products on one thread, and
-    // the methods that are left.
-    let without_features = [
-        ("sinew-sparse", ""),
-        ("sinew-fem", "--test patch_test"),
-        (
-            "sinew-integrators",
-            "--lib --test conformance --test machines --test what_methods_say",
-        ),
-    ];
-    steps.extend(without_features.map(|(name, tests)| {
-        let arguments = format!("test --no-default-features -p {name} {tests}");
-        Step::new(
-            format!("tests of {name} without default features"),
-            &arguments,
-        )
-    }));
-    steps.push(Step::new(
-        "the library without default features",
-        "test --no-default-features -p sinew --test library",
-    ));
-    steps.push(Step::new("documentation", "doc --workspace --no-deps"));
-    for example in examples(root)? {
-        let place =
-            format!("--manifest-path examples/{example}/Cargo.toml --target-dir target/examples");
-        let name = format!("example {example}, a crate of its own");
-        steps.push(Step::new(
-            format!("{name}: tests"),
-            &format!("test --quiet {place}"),
-        ));
-        steps.push(Step::new(name, &format!("run --quiet {place}")));
-    }
-    steps.push(Step {
-        is_packaging: true,
-        ..Step::new(
-            "packages",
-            "package --workspace --exclude xtask --exclude sinew-testkit --allow-dirty --quiet",
-        )
-    });
-    steps.push(Step::new(
-        "verification",
-        "xtask verify --long --out target/ci-verify",
-    ));
-    steps.push(Step::new(
-        "quick bench",
-        "xtask bench --quick --out target/ci-bench",
-    ));
-    steps.push(Step::new(
-        "quick hard cases",
-        "xtask bench --hard --quick --out target/ci-hard",
-    ));
-    steps.push(Step::new(
-        "quick large deformations",
-        "xtask bench --nonlinear --quick --out target/ci-nonlinear",
-    ));
-    steps.push(Step::new("live page in Chromium", "xtask live-test"));
-    steps.push(Step::new("commands of the README", "xtask readme"));
-    steps.push(Step::new("archive, tried elsewhere", "xtask dist"));
-    steps.push(Step::new(
-        "installation",
-        "install --path crates/sinew --root target/ci-install --locked --force --no-track --quiet",
-    ));
-    Ok(steps)
-}
-
-/// The names of the folders under `examples` that hold a crate, in order.
-fn examples(root: &Path) -> std::io::Result<Vec<String>> {
-    let mut names = Vec::new();
-    for entry in std::fs::read_dir(root.join("examples"))? {
-        let entry = entry?;
-        if entry.path().join("Cargo.toml").exists() {
-            names.push(entry.file_name().to_string_lossy().into_owned());
-        }
-    }
-    names.sort_unstable();
-    Ok(names)
 }
 
 /// Checks the rules of ARCHITECTURE.md alone.
@@ -136,25 +126,20 @@ pub(crate) fn check_rules() -> Result<(), Failure> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let start = Instant::now();
+    let watch = Stopwatch::start();
     let mut failed = Failed {
         is_last: !arguments.keep_going,
         checks: Vec::new(),
     };
-    failed.add("rules", check_rules())?;
-    for step in steps(&root()).map_err(Failure::chore)? {
-        let arguments = step.arguments.join(" ");
-        say(&format!("\n== {}: cargo {arguments}", step.name))?;
-        let begin = Instant::now();
-        failed.add(&step.name, run_step(&step))?;
-        let seconds = begin.elapsed().as_secs();
-        say(&format!("== {}: over after {seconds} s", step.name))?;
+    let mut table = Vec::new();
+    for step in STEPS {
+        if let Some(cost) = failed.without(step.name, step.run())? {
+            table.push(format!("{:>27}  {}", cost.to_string(), step.name));
+        }
     }
-    failed.add("kernels under valgrind", watch_memory_if_possible())?;
-    failed.add("comparison", compare_if_possible())?;
+    say(&format!("\n{}", table.join("\n")))?;
     failed.report()?;
-    let seconds = start.elapsed().as_secs();
-    Ok(say(&format!("\nall fine after {seconds} s"))?)
+    Ok(say(&format!("all fine after {}", watch.stop()))?)
 }
 
 /// The checks that failed so far.
@@ -166,13 +151,18 @@ struct Failed {
 }
 
 impl Failed {
-    fn add(&mut self, name: &str, outcome: Result<(), Failure>) -> Result<(), Failure> {
+    /// What a check comes to if it did not fail.
+    fn without<T>(
+        &mut self,
+        name: &str,
+        outcome: Result<T, Failure>,
+    ) -> Result<Option<T>, Failure> {
         match outcome {
             Err(Failure::Input(message) | Failure::Chore(message)) if !self.is_last => {
                 self.checks.push(format!("{name}: {message}"));
-                Ok(())
+                Ok(None)
             }
-            outcome => outcome,
+            outcome => outcome.map(Some),
         }
     }
 
@@ -191,7 +181,6 @@ impl Failed {
 
 /// Runs the kernels' tests under valgrind, where it is installed.
 fn watch_memory_if_possible() -> Result<(), Failure> {
-    say("\n== kernels under valgrind: part of cargo xtask memory")?;
     match memory::has_valgrind() {
         true => memory::under_valgrind(),
         false => Ok(say("== SKIPPED: there is no valgrind")?),
@@ -200,7 +189,6 @@ fn watch_memory_if_possible() -> Result<(), Failure> {
 
 /// Compares with programs that Python and pip bring, where there are Python and pip.
 fn compare_if_possible() -> Result<(), Failure> {
-    say("\n== comparison with meshio and pyvista: cargo xtask compare")?;
     match unless_missing(compare::python())? {
         Ok(python) => compare::run_with(&python),
         Err(reason) => Ok(say(&format!("== SKIPPED: {reason}"))?),
@@ -216,42 +204,19 @@ fn unless_missing<P>(python: Result<P, Failure>) -> Result<Result<P, String>, Fa
     }
 }
 
-fn run_step(step: &Step) -> Result<(), Failure> {
-    let mut command = Command::new(env!("CARGO"));
-    command
-        .args(&step.arguments)
+/// Runs cargo in the repository. The error is why it did not succeed.
+fn run_cargo(arguments: &str) -> Result<(), String> {
+    let status = Command::new(env!("CARGO"))
+        .args(arguments.split_whitespace())
         .current_dir(root())
         .env("RUSTDOCFLAGS", "-D warnings")
         .env("PROPTEST_RNG_SEED", SEED_OF_CASES)
-        // Nobody debugs these hundreds of programs or builds them a second time: four fifths of their size is for that.
-        .env("CARGO_INCREMENTAL", "0")
-        .env("CARGO_PROFILE_DEV_DEBUG", "none");
-    let own_target = step.is_packaging.then(new_target);
-    if let Some(target) = &own_target {
-        command.arg("--target-dir").arg(target);
-        // Packages are built once more, only to see that they build.
-        command.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0");
+        .status()
+        .map_err(|error| error.to_string())?;
+    match status.success() {
+        true => Ok(()),
+        false => Err(status.to_string()),
     }
-    let status = command.status().map_err(Failure::chore)?;
-    if let Some(target) = &own_target {
-        // If it cannot be removed, it costs space and nothing else.
-        let _ = std::fs::remove_dir_all(target);
-    }
-    if status.success() {
-        Ok(())
-    } else {
-        Err(Failure::Chore(format!("{}: {status}", step.name)))
-    }
-}
-
-/// A target folder that no run before has used.
-///
-/// cargo unpacks each package once for a path and version, and would compile an older one that was packed at the
-/// same path before.
-fn new_target() -> PathBuf {
-    let now = SystemTime::now().duration_since(UNIX_EPOCH);
-    let stamp = now.map_or(0, |now| now.as_millis());
-    root().join("target").join(format!("packages-{stamp}"))
 }
 
 #[cfg(test)]
@@ -259,39 +224,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_crate_under_examples_is_tested_and_run() {
-        let root = tempfile::tempdir().unwrap();
-        for folder in ["two", "one", "no-crate"] {
-            std::fs::create_dir_all(root.path().join("examples").join(folder)).unwrap();
-        }
-        for example in ["one", "two"] {
-            let manifest = root
-                .path()
-                .join("examples")
-                .join(example)
-                .join("Cargo.toml");
-            std::fs::write(manifest, "[package]").unwrap();
-        }
-        assert_eq!(examples(root.path()).unwrap(), ["one", "two"]);
-        let steps = steps(root.path()).unwrap();
-        for kind in ["test", "run"] {
-            let runs = steps.iter().map(|step| step.arguments.join(" "));
-            let start = format!("{kind} --quiet --manifest-path examples/");
-            let runs: Vec<String> = runs.filter(|run| run.starts_with(&start)).collect();
-            assert_eq!(runs.len(), 2);
-            assert!(runs[0].contains("examples/one/Cargo.toml") && runs[1].contains("/two/"));
-        }
-    }
-
-    #[test]
     fn a_run_that_keeps_going_fails_in_the_end() {
         let mut failed = Failed {
             is_last: false,
             checks: Vec::new(),
         };
-        failed.add("one", Err(Failure::chore("broken"))).unwrap();
-        failed.add("two", Ok(())).unwrap();
-        failed.add("three", Err(Failure::input("odd"))).unwrap();
+        let broken = || Err::<(), _>(Failure::chore("broken"));
+        assert!(failed.without("one", broken()).unwrap().is_none());
+        assert_eq!(failed.without("two", Ok(2)).unwrap(), Some(2));
+        let odd = Err::<(), _>(Failure::input("odd"));
+        assert!(failed.without("three", odd).unwrap().is_none());
         let Err(Failure::Chore(message)) = failed.report() else {
             panic!("two failed")
         };
@@ -300,7 +242,7 @@ mod tests {
             is_last: true,
             checks: Vec::new(),
         };
-        assert!(failed.add("one", Err(Failure::chore("broken"))).is_err());
+        assert!(failed.without("one", broken()).is_err());
         assert!(failed.report().is_ok());
     }
 
@@ -313,19 +255,11 @@ mod tests {
     }
 
     #[test]
-    fn features_are_tested_off_as_well() {
-        let steps = steps(&root()).unwrap();
-        for of_crate in [
-            "sinew-sparse",
-            "sinew-fem --test patch_test",
-            "sinew-integrators --lib --test conformance --test machines --test what_methods_say",
-        ] {
-            let expected = format!("test --no-default-features -p {of_crate}");
-            assert!(
-                steps
-                    .iter()
-                    .any(|step| step.arguments.join(" ") == expected)
-            );
-        }
+    fn a_step_that_fails_is_named() {
+        let step = cargo("a step", "no-such-command");
+        let Err(Failure::Chore(message)) = step.run() else {
+            panic!("there is no such command")
+        };
+        assert!(message.starts_with("a step: "), "{message}");
     }
 }

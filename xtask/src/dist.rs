@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let host = host()?;
     let target = arguments.target.as_deref().unwrap_or(&host);
-    let program = build(target)?;
+    let program = build(target, &host)?;
     let name = format!("sinew-{}-{target}", env!("CARGO_PKG_VERSION"));
     let dist = root().join("target/dist");
     let folder = dist.join(&name);
@@ -75,32 +75,33 @@ fn host() -> Result<String, Failure> {
     Ok(host.to_owned())
 }
 
-/// Builds the command for any processor of the target; `RUSTFLAGS` of the caller do not count.
-fn build(target: &str) -> Result<PathBuf, Failure> {
-    let output = root().join("target/dist-build");
+/// Builds the command for any processor of the target; `RUSTFLAGS` of the caller do not count. For this computer's own target
+/// it shares the libraries of every other release build: only the command itself is compiled and linked as flags ask.
+fn build(target: &str, host: &str) -> Result<PathBuf, Failure> {
+    let mut output = root().join("target");
     let mut cargo = Command::new(env!("CARGO"));
     cargo
-        .args(["build", "--release", "--locked", "-psinew", "--bin=sinew"])
-        .args(["--config", "profile.release.strip=\"symbols\""])
-        .arg("--target")
-        .arg(target)
+        .args(["rustc", "--release", "--locked", "-psinew", "--bin=sinew"])
         .arg("--target-dir")
-        .arg(&output)
-        .env("CARGO_ENCODED_RUSTFLAGS", flags(target))
+        .arg(&output);
+    if target != host {
+        cargo.arg("--target").arg(target);
+        output.push(target);
+    }
+    cargo
+        .args(["--", "-Cstrip=symbols"])
+        .args(flags(target))
+        .env("CARGO_ENCODED_RUSTFLAGS", "")
         .current_dir(root());
     finish(&mut cargo)?;
     let program = format!("sinew{EXE_SUFFIX}");
-    Ok(output.join(target).join("release").join(program))
+    Ok(output.join("release").join(program))
 }
 
 /// Flags of rustc that make the program as independent as it may be.
-fn flags(target: &str) -> &'static str {
+fn flags(target: &str) -> Option<&'static str> {
     let is_gnu = target.contains("-linux-gnu");
-    if !is_gnu || has_static_libc() {
-        "-Ctarget-feature=+crt-static"
-    } else {
-        ""
-    }
+    (!is_gnu || has_static_libc()).then_some("-Ctarget-feature=+crt-static")
 }
 
 /// Whether the C compiler has a C library to link statically.

@@ -7,7 +7,7 @@ use sinew_bench::output::{OutputFolder, say};
 use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
 use sinew_fem::hyperelastic::{
     Deformation, Hyperelastic, HyperelasticLaw, LawVisitor, NeoHookean, Parameters, Tensor,
-    conformance,
+    sample_deformations,
 };
 
 use crate::failure::Failure;
@@ -81,7 +81,7 @@ impl LawVisitor for Samples {
     type Output = Vec<Value>;
 
     fn visit<L: HyperelasticLaw>(self, law: L) -> Vec<Value> {
-        let samples = conformance::samples::<L>().take(SAMPLES);
+        let samples = sample_deformations::<L>().take(SAMPLES);
         let samples = samples.map(|[h, change]| {
             let at = law.at(h);
             let bulk = law.own_bulk(&at);
@@ -115,7 +115,7 @@ fn of_fibres() -> Result<Vec<Value>, Failure> {
         ),
     ];
     let cases = families.map(|(fibres, mut case)| {
-        let samples = conformance::samples::<NeoHookean>().take(SAMPLES);
+        let samples = sample_deformations::<NeoHookean>().take(SAMPLES);
         let samples = samples.map(|[h, change]| {
             let at = fibres.at(&Deformation::of(h), direction);
             json!({

@@ -26,7 +26,7 @@ mod verify;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use sinew_bench::kernels::CountingAllocator;
+use sinew_core::CountingAllocator;
 
 /// Counts what the kernels' bench asks about.
 #[global_allocator]

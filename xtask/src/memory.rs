@@ -8,15 +8,10 @@ use sinew_bench::output::say;
 use crate::failure::Failure;
 use crate::repository::root;
 
-/// The tests: sweeps of every kind against their definition.
-const TESTS: [&str; 6] = [
-    "test",
-    "-psinew-sparse",
-    "--no-default-features",
-    "--lib",
-    "--test",
-    "sweeps",
-];
+const TESTS: [&str; 3] = ["test", "-psinew-sparse", "--no-default-features"];
+
+/// Test programs with a part of the names of their tests: sweeps of every kind against their definition.
+const PROGRAMS: [(&[&str], &str); 2] = [(&["--lib"], ""), (&["--test", "all"], "sweeps::")];
 
 /// Runs the tests under valgrind (the portable and the AVX2 kernels; it knows no AVX-512), and under Miri (the portable ones),
 /// whichever is there.
@@ -56,29 +51,32 @@ fn succeeds(command: &mut Command) -> bool {
 
 /// Runs the tests of sweeps under valgrind.
 pub(crate) fn under_valgrind() -> Result<(), Failure> {
-    let build = Command::new(env!("CARGO"))
-        .args(TESTS)
-        .args(["--no-run", "--message-format=json"])
-        .current_dir(root())
-        .output()
-        .map_err(Failure::chore)?;
-    if !build.status.success() {
-        let said = String::from_utf8_lossy(&build.stderr).into_owned();
-        return Err(Failure::Chore(said));
-    }
-    for binary in binaries(&String::from_utf8_lossy(&build.stdout)) {
-        say(&format!("== valgrind {}", binary.display()))?;
-        let mut valgrind = Command::new("valgrind");
-        // Small bodies, as under Miri; no AVX-512, which it reports as missing by itself.
-        valgrind
-            .env("SINEW_SMALL_TESTS", "1")
-            .args(["--quiet", "--error-exitcode=1", "--leak-check=no"])
-            .arg(&binary)
-            .arg("--test-threads=1")
-            .current_dir(root());
-        let status = valgrind.status().map_err(Failure::chore)?;
-        if !status.success() {
-            return Err(Failure::Chore(format!("valgrind: {status}")));
+    for (program, filter) in PROGRAMS {
+        let build = Command::new(env!("CARGO"))
+            .args(TESTS)
+            .args(program)
+            .args(["--no-run", "--message-format=json"])
+            .current_dir(root())
+            .output()
+            .map_err(Failure::chore)?;
+        if !build.status.success() {
+            let said = String::from_utf8_lossy(&build.stderr).into_owned();
+            return Err(Failure::Chore(said));
+        }
+        for binary in binaries(&String::from_utf8_lossy(&build.stdout)) {
+            say(&format!("== valgrind {} {filter}", binary.display()))?;
+            let mut valgrind = Command::new("valgrind");
+            // Small bodies, as under Miri; no AVX-512, which it reports as missing by itself.
+            valgrind
+                .env("SINEW_SMALL_TESTS", "1")
+                .args(["--quiet", "--error-exitcode=1", "--leak-check=no"])
+                .arg(&binary)
+                .args(["--test-threads=1", filter])
+                .current_dir(root());
+            let status = valgrind.status().map_err(Failure::chore)?;
+            if !status.success() {
+                return Err(Failure::Chore(format!("valgrind: {status}")));
+            }
         }
     }
     Ok(())
@@ -95,20 +93,23 @@ fn binaries(messages: &str) -> Vec<PathBuf> {
 
 fn under_miri() -> Result<(), Failure> {
     say("== cargo +nightly miri, half an hour")?;
-    let status = Command::new("cargo")
-        .args(["+nightly", "miri"])
-        .args(TESTS)
-        .args(["--target-dir", "target/miri"])
-        .current_dir(root())
-        .env_remove("RUSTUP_TOOLCHAIN")
-        .env_remove("RUSTC")
-        .env_remove("RUSTDOC")
-        .status()
-        .map_err(Failure::chore)?;
-    match status.success() {
-        true => Ok(()),
-        false => Err(Failure::Chore(format!("Miri: {status}"))),
+    for (program, filter) in PROGRAMS {
+        let status = Command::new("cargo")
+            .args(["+nightly", "miri"])
+            .args(TESTS)
+            .args(program)
+            .args(["--target-dir", "target/miri", "--", filter])
+            .current_dir(root())
+            .env_remove("RUSTUP_TOOLCHAIN")
+            .env_remove("RUSTC")
+            .env_remove("RUSTDOC")
+            .status()
+            .map_err(Failure::chore)?;
+        if !status.success() {
+            return Err(Failure::Chore(format!("Miri: {status}")));
+        }
     }
+    Ok(())
 }
 
 #[cfg(test)]

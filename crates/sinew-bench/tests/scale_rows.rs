@@ -3,9 +3,9 @@
 #![cfg(test)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use sinew_bench::kernels::CountingAllocator;
 use sinew_bench::machine;
 use sinew_bench::scale::ScaleBench;
+use sinew_core::CountingAllocator;
 
 #[global_allocator]
 static ALLOCATOR: CountingAllocator = CountingAllocator;

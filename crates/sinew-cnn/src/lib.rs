@@ -22,6 +22,7 @@
 //! ```
 
 mod blocks;
+#[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 mod damping_matrix;
 mod gauss_seidel;
@@ -45,3 +46,7 @@ pub use program::{
 pub use saturation::{Saturation, SaturationError};
 pub use stabiliser::{Inner, Solution, Stabiliser};
 pub use templates::{TemplateError, Templates};
+
+#[cfg(test)]
+#[global_allocator]
+static ALLOCATOR: sinew_core::CountingAllocator = sinew_core::CountingAllocator;

@@ -11,6 +11,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 thread_local! {
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+    /// Bytes allocated less bytes freed by this thread, and the largest value of that.
+    static HELD: Cell<isize> = const { Cell::new(0) };
+    static PEAK: Cell<isize> = const { Cell::new(0) };
 }
 
 /// Bytes that all threads hold. It wraps round rather than fail where another allocator's block comes back.
@@ -39,6 +42,15 @@ impl CountingAllocator {
         ALLOCATIONS.get() - before
     }
 
+    /// Result of `body`, and the most bytes that this thread held at a time while it ran, beyond what it held before; 0 where
+    /// it is not the global allocator.
+    pub fn peak<T>(body: impl FnOnce() -> T) -> (T, usize) {
+        let before = HELD.get();
+        PEAK.set(before);
+        let result = body();
+        (result, PEAK.get().saturating_sub(before).unsigned_abs())
+    }
+
     /// Bytes that all threads hold; 0 where it is not the global allocator.
     #[must_use]
     pub fn live_bytes() -> usize {
@@ -46,36 +58,45 @@ impl CountingAllocator {
     }
 }
 
-fn count() {
-    // A thread that ends has no counter any more.
+/// Notes an allocation of this thread.
+fn count(bytes: usize) {
+    // A thread that ends has no counters any more.
     let _ = ALLOCATIONS.try_with(|allocations| allocations.set(allocations.get() + 1));
+    hold(bytes.cast_signed());
+}
+
+fn hold(bytes: isize) {
+    let _ = HELD.try_with(|held| {
+        held.set(held.get().wrapping_add(bytes));
+        let _ = PEAK.try_with(|peak| peak.set(peak.get().max(held.get())));
+    });
+    LIVE.fetch_add(bytes.cast_unsigned(), Ordering::Relaxed);
 }
 
 // SAFETY: everything is left to the system's allocator; counting touches no memory of its own.
 unsafe impl GlobalAlloc for CountingAllocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        LIVE.fetch_add(layout.size(), Ordering::Relaxed);
+        count(layout.size());
         // SAFETY: the caller's promise, passed on.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        count();
-        LIVE.fetch_add(layout.size(), Ordering::Relaxed);
+        count(layout.size());
         // SAFETY: as above.
         unsafe { System.alloc_zeroed(layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        LIVE.fetch_add(size.wrapping_sub(layout.size()), Ordering::Relaxed);
+        // The old block may be there until the new one is filled.
+        count(size);
+        hold(-layout.size().cast_signed());
         // SAFETY: as above.
         unsafe { System.realloc(pointer, layout, size) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        LIVE.fetch_sub(layout.size(), Ordering::Relaxed);
+        hold(-layout.size().cast_signed());
         // SAFETY: as above.
         unsafe { System.dealloc(pointer, layout) }
     }

@@ -7,61 +7,20 @@
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,
-    unsafe_code,
-    reason = "a benchmark ends in a panic and prints; the allocator that counts must be unsafe"
+    reason = "a benchmark ends in a panic and prints"
 )]
 
-use std::alloc::{GlobalAlloc, Layout, System};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
+use sinew_core::CountingAllocator;
 use sinew_mesh::structured::{Split, cube};
 use sinew_mesh::{Mesh, MshEncoding, MshVersion, read_msh_file, write_msh};
 
-/// The system's allocator, with a count of the bytes in use.
-struct Counting;
-
-static IN_USE: AtomicUsize = AtomicUsize::new(0);
-static PEAK: AtomicUsize = AtomicUsize::new(0);
-
-fn add(bytes: usize) {
-    let in_use = IN_USE.fetch_add(bytes, Ordering::Relaxed) + bytes;
-    PEAK.fetch_max(in_use, Ordering::Relaxed);
-}
-
-// SAFETY: everything is passed on to the system's allocator as it comes.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        add(layout.size());
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        add(layout.size());
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.alloc_zeroed(layout) }
-    }
-
-    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        IN_USE.fetch_sub(layout.size(), Ordering::Relaxed);
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.dealloc(block, layout) }
-    }
-
-    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        add(size);
-        IN_USE.fetch_sub(layout.size(), Ordering::Relaxed);
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.realloc(block, layout, size) }
-    }
-}
-
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 const REPEATS: usize = 7;
 
@@ -105,12 +64,9 @@ fn measure(name: &str, path: &Path, has_meshio: bool) {
     let mut seconds = Vec::new();
     let mut memory = 0.0;
     for _ in 0..REPEATS {
-        let before = IN_USE.load(Ordering::Relaxed);
-        PEAK.store(before, Ordering::Relaxed);
         let start = Instant::now();
-        let mesh = read_msh_file(path).expect("it was written");
+        let (mesh, peak) = CountingAllocator::peak(|| read_msh_file(path).expect("it was written"));
         seconds.push(start.elapsed().as_secs_f64());
-        let peak = PEAK.load(Ordering::Relaxed) - before;
         memory = peak as f64 / array_bytes(&mesh) as f64;
     }
     seconds.sort_unstable_by(f64::total_cmp);

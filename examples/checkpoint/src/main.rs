@@ -22,7 +22,7 @@ use std::process::{Command, ExitCode, Output};
 
 use sinew_core::{Inputs, Options, Ramp, Run, State, System, simulate_under};
 use sinew_fem::{
-    Element, Fixed, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, FromMesh, Tissue,
+    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Model, Problem, Rayleigh, Region, Tissue,
 };
 use sinew_mesh::structured::{Split, cube};
 

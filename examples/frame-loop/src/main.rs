@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 
 use sinew_core::{Inputs, LoadTime, Options, State, System, worst_beyond};
 use sinew_fem::{
-    Element, Fixed, Law, Model, NodalForces, On, Problem, Rayleigh, Region, FromMesh, Tissue,
+    Element, Fixed, FromMesh, Law, Model, NodalForces, On, Problem, Rayleigh, Region, Tissue,
     stress::von_mises,
 };
 use sinew_integrators::{Stepper, build};

@@ -21,9 +21,7 @@ use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Rayleigh, Region,
 use sinew_haptics::{Body, Coupling, Device, SoftwareDevice, ToolSimulation, real_time};
 use sinew_integrators::build;
 use sinew_mesh::structured::{Split, block};
-use sinew_tools::{
-    Convex, Motion, Pose, Shape, Steering, Tool, ToolBody, Tools, TouchedCell,
-};
+use sinew_tools::{Convex, Motion, Pose, Shape, Steering, Tool, ToolBody, Tools, TouchedCell};
 
 /// Edge of the cube and radius of the ball (m).
 const EDGE: f64 = 0.06;
@@ -70,7 +68,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         micros(report.work.quantile(0.99)),
     );
     println!("{} steps, {} of them late", report.steps, report.late_steps);
-    println!("most energy that the hand got out: {:.1e} J", device.most_energy_taken_out());
+    println!(
+        "most energy that the hand got out: {:.1e} J",
+        device.most_energy_taken_out()
+    );
     if device.most_energy_taken_out() > 1e-6 || peak < 0.05 {
         return Err("the hand should have felt tissue, and no more".into());
     }

@@ -42,6 +42,17 @@ pub(crate) fn check(root: &Path) -> Result<(), RuleError> {
     }
 }
 
+/// Names of the crates that are published, in the order of the workspace.
+///
+/// # Errors
+///
+/// [`RuleError`] where cargo cannot tell.
+pub(crate) fn published(root: &Path) -> Result<Vec<String>, RuleError> {
+    let packages = workspace::packages(root)?.into_iter();
+    let published = packages.filter(|package| package.is_published);
+    Ok(published.map(|package| package.name).collect())
+}
+
 /// A folder with these files, by path and text.
 #[cfg(test)]
 fn tree<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> tempfile::TempDir {

@@ -120,6 +120,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
         "xtask",
         &[
             "sinew-bench",
+            "sinew-core",
             "sinew-fem",
             "sinew-measure",
             "sinew-mesh",
@@ -129,7 +130,7 @@ pub(super) const ROOMS: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Libraries that only one crate may name.
+/// Libraries that only one published crate may name.
 pub(super) const PRIVATE: &[(&str, &str)] = &[
     ("faer", "sinew-integrators"),
     ("nalgebra", "sinew-fem"),
@@ -156,7 +157,7 @@ pub(super) fn check(packages: &[Package]) -> Vec<Breach> {
                 });
             }
             for (library, owner) in PRIVATE {
-                if other == library && name != owner {
+                if other == library && name != owner && package.is_published {
                     breaches.push(Breach::PrivateLibrary {
                         library,
                         owner,
@@ -178,6 +179,7 @@ mod tests {
         let package = Package {
             name: name.to_owned(),
             needs,
+            is_published: true,
             ..Package::default()
         };
         check(&[package]).iter().map(ToString::to_string).collect()

@@ -15,9 +15,11 @@ pub(super) struct Package {
     pub(super) needs: Vec<String>,
     /// Names of the crates that only its tests, examples and benches need.
     pub(super) tests_need: Vec<String>,
+    /// Whether it is for others: not `publish = false`.
+    pub(super) is_published: bool,
 }
 
-/// The crates of the workspace in a folder.
+/// The crates of the workspace in a folder, without the examples, which are written as if they stood elsewhere.
 pub(super) fn packages(root: &Path) -> Result<Vec<Package>, RuleError> {
     let text = cargo(root, &["metadata", "--no-deps", "--format-version", "1"])?;
     let metadata: Value = serde_json::from_str(&text).map_err(|error| RuleError::Cargo {
@@ -25,7 +27,12 @@ pub(super) fn packages(root: &Path) -> Result<Vec<Package>, RuleError> {
         reason: error.to_string(),
     })?;
     let packages = metadata["packages"].as_array().into_iter().flatten();
-    Ok(packages.map(package).collect())
+    let examples = root.join("examples");
+    let ours = packages.filter(|value| {
+        let manifest = value["manifest_path"].as_str().unwrap_or_default();
+        !Path::new(manifest).starts_with(&examples)
+    });
+    Ok(ours.map(package).collect())
 }
 
 fn package(value: &Value) -> Package {
@@ -40,6 +47,7 @@ fn package(value: &Value) -> Package {
         name: name(value),
         needs: of_kind(false),
         tests_need: of_kind(true),
+        is_published: value["publish"].is_null(),
     }
 }
 

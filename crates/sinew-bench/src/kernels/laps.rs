@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use sinew_cnn::conformance::CountingAllocator;
 use sinew_cnn::{Machine, Program, Quotient, ReferenceMachine, Sweep, When};
+use sinew_core::CountingAllocator;
 use sinew_core::ElementPrecision;
 use sinew_core::{Batch, Inputs, Layers, LinearSystem, Options, State, System};
 use sinew_fem::Rayleigh;

@@ -21,7 +21,6 @@ pub use elements::{ElementMark, ElementRow};
 pub use guards::{Guard, Limit};
 pub use roofs::{OperationRate, ReadRate, Roofs};
 pub use row::KernelRow;
-pub use sinew_cnn::conformance::CountingAllocator;
 
 use crate::bench::Progress;
 use crate::results::Machine;

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use sinew_cnn::conformance::CountingAllocator;
+use sinew_core::CountingAllocator;
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{LinearSystem, System};
 use sinew_measure::{Case, Span};

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use sinew_cnn::conformance::CountingAllocator;
+use sinew_core::CountingAllocator;
 use sinew_core::{Equations, Layers, LinearOperators, LinearSystem, Revision, System, simulate};
 use sinew_measure::{Effort, MeasureError, measure, on_one_thread, process_cpu_time};
 

@@ -2,9 +2,9 @@
 
 use std::convert::Infallible;
 
+use crate::verify::closed_forms::ClosedFormError;
 use sinew_core::{EvaluationError, OperatorError, OptionError, StepError};
 use sinew_fem::hyperelastic::LawError;
-use sinew_fem::hyperelastic::closed_forms::ClosedFormError;
 use sinew_fem::{CutModelError, FemError, FieldError};
 use sinew_haptics::{CouplingError, ToolStepError};
 use sinew_integrators::{FactorError, StaticError};

@@ -5,6 +5,7 @@
 
 pub(crate) mod bodies;
 mod check;
+pub mod closed_forms;
 mod error;
 mod inputs;
 mod kinds;

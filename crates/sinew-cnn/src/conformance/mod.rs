@@ -7,9 +7,9 @@
 //! what else it runs are the programs of the methods that it is given.
 //!
 //! ```
-//! use sinew_cnn::conformance::{CountingAllocator, Method};
+//! use sinew_cnn::conformance::Method;
 //! use sinew_cnn::{LoadAt, Physics, Program, ReferenceMachine, Register};
-//! use sinew_core::{EnergyBehaviour, Needs, Properties, VelocityTime};
+//! use sinew_core::{CountingAllocator, EnergyBehaviour, Needs, Properties, VelocityTime};
 //!
 //! #[global_allocator]
 //! static ALLOCATOR: CountingAllocator = CountingAllocator;
@@ -37,6 +37,8 @@ mod laws;
 mod refusing;
 mod run;
 mod systems;
+#[cfg(test)]
+mod tests;
 mod work;
 
 use sinew_core::{Properties, System};
@@ -51,7 +53,6 @@ pub use laws::{
     steps_of_many_cells_are_those_of_the_definition,
 };
 pub use refusing::a_refused_trial_leaves_the_machine_usable;
-pub use sinew_core::CountingAllocator;
 pub use work::work_is_counted;
 
 use crate::{Machine, Program};
@@ -119,7 +120,7 @@ impl Method {
 
 /// Makes one test for each law that a machine has to keep, in a module of this name: with the programs of
 /// a list of [`Method`]s, for a closure that makes fresh machines. The test's global allocator has to
-/// be [`CountingAllocator`].
+/// be [`sinew_core::CountingAllocator`].
 #[macro_export]
 macro_rules! machine_conformance {
     ($name:ident, $methods:expr, $make:expr) => {
@@ -174,7 +175,7 @@ macro_rules! machine_conformance {
 
 /// Makes one test for each law that a machine has to keep on bodies whose forces follow from a law, in a module of this name: with the
 /// programs of a list of [`Method`]s on a list of [`Body`]s, for a closure that makes fresh machines, to a rounding (relative). The test's
-/// global allocator has to be [`CountingAllocator`].
+/// global allocator has to be [`sinew_core::CountingAllocator`].
 #[macro_export]
 macro_rules! machine_conformance_on_bodies {
     ($name:ident, $methods:expr, $bodies:expr, $make:expr, $rounding:expr) => {

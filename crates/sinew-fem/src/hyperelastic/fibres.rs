@@ -290,7 +290,7 @@ impl fmt::Display for Fibres {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hyperelastic::{NeoHookean, conformance};
+    use crate::hyperelastic::{NeoHookean, sample_deformations};
 
     const DIRECTION: [f64; 3] = [0.6, 0.0, -0.8];
 
@@ -315,7 +315,7 @@ mod tests {
     fn stress_and_tangent_of_fibres_are_slopes() {
         let step = 1e-5;
         for fibres in families() {
-            for [h, change] in conformance::samples::<NeoHookean>().take(100) {
+            for [h, change] in sample_deformations::<NeoHookean>().take(100) {
                 let h = h.scaled(0.5);
                 let at = fibres.at(&Deformation::of(h), DIRECTION);
                 let [before, after] = [-step, step].map(|x| h.plus(x, change));
@@ -354,7 +354,7 @@ mod tests {
     #[test]
     fn semidefinite_tangents_and_node_blocks_of_fibres_have_no_negative_part() {
         for fibres in families() {
-            for [h, change] in conformance::samples::<NeoHookean>().take(100) {
+            for [h, change] in sample_deformations::<NeoHookean>().take(100) {
                 let at = fibres.at(&Deformation::of(h), DIRECTION);
                 let quadratic = change.contracted(fibres.semidefinite_tangent(&at, change));
                 assert!(quadratic >= 0.0, "{fibres:?}");

@@ -14,8 +14,6 @@
 //! ```
 
 #[cfg(any(test, feature = "conformance"))]
-pub mod closed_forms;
-#[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 mod corotational;
 mod decomposition;
@@ -30,6 +28,7 @@ mod neo_hookean_log;
 mod parameters;
 mod projection;
 pub mod prony;
+mod samples;
 mod stable_neo_hookean;
 mod stable_neo_hookean_log;
 mod stvk;
@@ -47,6 +46,7 @@ pub use neo_hookean_log::NeoHookeanLog;
 pub use parameters::{ParameterError, Parameters};
 pub(crate) use projection::semidefinite;
 pub use projection::{Linearised, Projection, TangentKind};
+pub use samples::sample_deformations;
 pub use stable_neo_hookean::StableNeoHookean;
 pub use stable_neo_hookean_log::StableNeoHookeanLog;
 pub use stvk::Stvk;

@@ -170,12 +170,12 @@ fn plus<N: Number>(a: Symmetric<N>, factor: N, b: Symmetric<N>) -> Symmetric<N> 
 mod tests {
     use super::*;
     use crate::hyperelastic::law::HyperelasticLaw;
-    use crate::hyperelastic::{MooneyRivlin, NeoHookeanIso, Parameters, conformance};
+    use crate::hyperelastic::{MooneyRivlin, NeoHookeanIso, Parameters, sample_deformations};
 
     #[test]
     fn second_stresses_go_back_to_first_ones() {
         let law = NeoHookeanIso::new(&Parameters::new(3500.0, 0.45)).unwrap();
-        for [h, _] in conformance::samples::<NeoHookeanIso>().take(50) {
+        for [h, _] in sample_deformations::<NeoHookeanIso>().take(50) {
             let at = law.at(h);
             let stress = law.stress_with(&at, law.own_bulk(&at));
             let again = first_piola(&at, second_piola(&at, stress));
@@ -191,7 +191,7 @@ mod tests {
         };
         let law = MooneyRivlin::new(&parameters).unwrap();
         let (lambda, mu) = law.lame();
-        for [h, _] in conformance::samples::<MooneyRivlin>().take(50) {
+        for [h, _] in sample_deformations::<MooneyRivlin>().take(50) {
             let at = law.at(h);
             let stress = law.stress_with(&at, law.own_bulk(&at));
             let pressure = (lambda + 2.0 / 3.0 * mu) * at.volume_change;

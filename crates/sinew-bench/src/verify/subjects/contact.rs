@@ -33,22 +33,37 @@ const EDGE: f64 = 0.1;
 /// Gravity (m/s^2).
 const GRAVITY: f64 = 9.81;
 
+/// The method whose steps have an inertia of their own, which its energy counts.
+const NETWORK: &str = "cnn-stabilised";
+
 /// The rotation of a plate that faces down.
 const DOWN: [f64; 3] = [PI, 0.0, 0.0];
 
 fn checks() -> Vec<Check> {
     let mut checks = vec![
-        Check::one(
+        Check::several(
             "plate on a bar, nu 0",
-            "force over E A d/L, less 1",
-            Asked::at_most(1e-10),
+            [
+                ("force over E A d/L, less 1", Asked::at_most(1e-10)),
+                ("force across over E A d/L", Asked::at_most(1e-10)),
+                (
+                    "torque about the tool's origin over that of E A d/L, less 1",
+                    Asked::at_most(1e-9),
+                ),
+                ("nodes in contact", Asked::value(9.0, 0.0)),
+            ],
             Source::ClosedForm("E A d/L"),
             |_| plate_on_a_bar(),
         ),
-        Check::one(
-            "ball at rest, cnn-stabilised at 1 and 5 ms",
-            "largest difference of forces from central difference's, of it",
-            Asked::at_most(1e-6),
+        Check::several(
+            "ball at rest, by other methods and steps",
+            [
+                (
+                    "largest difference of forces from central difference's, of it",
+                    Asked::at_most(1e-6),
+                ),
+                ("force of central difference (N)", Asked::at_least(0.01)),
+            ],
             Source::ClosedForm("equilibrium does not depend on the step"),
             |_| settled_forces(),
         ),
@@ -57,7 +72,11 @@ fn checks() -> Vec<Check> {
             [
                 (
                     "change of momentum over the impulse, less 1",
-                    Asked::at_most(1e-10),
+                    Asked::at_most(1e-12),
+                ),
+                (
+                    "impulse over the momentum before: it bounces",
+                    Asked::at_least(1.2),
                 ),
                 (
                     "kinetic energy after the bounce over that before",
@@ -69,6 +88,15 @@ fn checks() -> Vec<Check> {
         ),
     ];
     checks.extend(free_tools::checks());
+    for share in [0.05, 0.5, 0.95] {
+        checks.push(Check::one(
+            format!("plate pressed 10 mm, central difference at {share} stable steps"),
+            "largest rise of E - W in a step over the largest E",
+            Asked::at_most(1e-12),
+            Source::ClosedForm("E+ - E- <= W: multiply the step by the mean of both velocities"),
+            move |_| rise_under("central-difference", Convex::Plane, (DOWN, 0.0), share),
+        ));
+    }
     for share in [0.55, 11.0, 55.0, 275.0] {
         let law =
             "E+ - E- <= W for P above dt^2/4 K: multiply the step by the mean of both velocities";
@@ -77,7 +105,7 @@ fn checks() -> Vec<Check> {
             "largest rise of E - W in a step over the largest E",
             Asked::at_most(1e-12),
             Source::ClosedForm(law),
-            move |_| rise_under(Convex::Plane, (DOWN, 0.0), share),
+            move |_| rise_under(NETWORK, Convex::Plane, (DOWN, 0.0), share),
         ));
     }
     checks.push(Check::one(
@@ -85,9 +113,9 @@ fn checks() -> Vec<Check> {
         "largest rise of E - W in a step over the largest E",
         Asked::at_most((0.02 * 0.1 / 0.012_f64).powi(2)),
         Source::ClosedForm("the turn of the normal within a step, (dt v/R)^2"),
-        |_| rise_under(Convex::sphere(0.012)?, ([0.0; 3], 0.012), 11.0),
+        |_| rise_under(NETWORK, Convex::sphere(0.012)?, ([0.0; 3], 0.012), 11.0),
     ));
-    for (angle, slides) in [(16.0, false), (18.0, true), (25.0, true)] {
+    for (angle, slides) in [(15.0, false), (16.0, false), (18.0, true), (25.0, true)] {
         let check = if slides {
             Check::one(
                 format!("block on an incline of {angle} degrees, mu .3"),
@@ -100,7 +128,7 @@ fn checks() -> Vec<Check> {
             Check::one(
                 format!("block on an incline of {angle} degrees, mu .3"),
                 "speed (m/s), below the angle of friction of 16.70 degrees",
-                Asked::at_most(1e-4),
+                Asked::at_most(if angle < 16.0 { 1e-5 } else { 1e-4 }),
                 Source::ClosedForm("Coulomb"),
                 move |_| Ok(on_an_incline(angle)?.abs()),
             )
@@ -155,7 +183,7 @@ fn under(
     Pressed::new(&mesh, problem, tool, |_| true)
 }
 
-fn plate_on_a_bar() -> Result<f64, VerifyError> {
+fn plate_on_a_bar() -> Result<Vec<f64>, VerifyError> {
     let (length, width, depth) = (0.1, 0.02, 0.002);
     let down = [(0.0, [0.0, 0.0, length]), (0.1, [0.0, 0.0, length - depth])];
     let plate = tool(Convex::Plane, through(&down, DOWN)?, 0.0);
@@ -165,10 +193,20 @@ fn plate_on_a_bar() -> Result<f64, VerifyError> {
     let mut integrator = method("symplectic-euler", &Options::new())?;
     pressed.run(&mut *integrator, dt, (1.3 / dt) as usize)?;
     let expected = YOUNGS_MODULUS * width * width * depth / length;
-    Ok((pressed.force()[2] / expected - 1.0).abs())
+    let report = pressed.tools.report(&pressed.state, 0);
+    let [x, y, z] = report.force;
+    // The tool's origin is above a corner of the bar.
+    let lever = width / 2.0 * expected;
+    let [about_x, about_y] = [report.torque[0] / lever, -report.torque[1] / lever];
+    Ok(vec![
+        (z / expected - 1.0).abs(),
+        x.abs().max(y.abs()) / expected,
+        (about_x - 1.0).abs().max((about_y - 1.0).abs()),
+        report.contacts as f64,
+    ])
 }
 
-fn settled_forces() -> Result<f64, VerifyError> {
+fn settled_forces() -> Result<Vec<f64>, VerifyError> {
     let down = [
         (0.0, [0.05, 0.05, EDGE + 0.0125]),
         (0.2, [0.05, 0.05, EDGE + 0.002]),
@@ -182,14 +220,21 @@ fn settled_forces() -> Result<f64, VerifyError> {
     };
     let expected = settled("central-difference", 1e-3)?;
     let mut worst: f64 = 0.0;
-    for dt in [1e-3, 5e-3] {
-        let force = settled("cnn-stabilised", dt)?;
+    for (id, dt) in [
+        ("central-difference", 5e-4),
+        ("symplectic-euler", 1e-3),
+        ("cnn-symplectic", 7e-4),
+        (NETWORK, 5e-4),
+        (NETWORK, 1e-3),
+        (NETWORK, 5e-3),
+    ] {
+        let force = settled(id, dt)?;
         worst = worst.max((force / expected - 1.0).abs());
     }
-    Ok(worst)
+    Ok(vec![worst, expected])
 }
 
-/// How far the change of momentum is from the impulse, and the kinetic energy after over that before.
+/// How far the change of momentum is from the impulse, that over the momentum before, and the kinetic energy after over that before.
 fn bounce() -> Result<Vec<f64>, VerifyError> {
     let below = Pose::new([0.0, 0.0, -0.003], [0.0; 3]);
     let plate = tool(Convex::Plane, Motion::Held(below), 0.0);
@@ -214,6 +259,7 @@ fn bounce() -> Result<Vec<f64>, VerifyError> {
     let (after, left) = sums(&pressed);
     Ok(vec![
         ((after - momentum) / impulse - 1.0).abs(),
+        -impulse / momentum,
         left / kinetic,
     ])
 }
@@ -221,6 +267,7 @@ fn bounce() -> Result<Vec<f64>, VerifyError> {
 /// The largest rise in a step of the step's own energy less the work of a tool, over the largest energy: the tool is pressed 10 mm into the cube,
 /// held and withdrawn, in tenths of a second or in a few steps.
 fn rise_under(
+    id: &str,
     convex: Convex,
     (rotation, above): ([f64; 3], f64),
     share: f64,
@@ -242,11 +289,18 @@ fn rise_under(
     ];
     let tool = tool(convex, through(&rows, rotation)?, 0.0);
     let mut pressed = under(body(), &cube(0.45, 0.0), tool)?;
-    let mut integrator = Frame::new(CnnStabilised::default());
+    let mut network = Frame::new(CnnStabilised::default());
+    let mut other = match id {
+        NETWORK => None,
+        id => Some(method(id, &Options::new())?),
+    };
     let (mut last, mut largest, mut rise): (Option<f64>, f64, f64) = (None, 0.0, 0.0);
     for _ in 0..(6.0 * stretch / dt) as usize {
-        pressed.run(&mut integrator, dt, 1)?;
-        let blocks = integrator.scheme().stabiliser();
+        match &mut other {
+            Some(other) => pressed.run(&mut **other, dt, 1)?,
+            None => pressed.run(&mut network, dt, 1)?,
+        }
+        let blocks = network.scheme().stabiliser();
         let blocks = blocks.map(|stabiliser| stabiliser.majorant().inverse().entries());
         let energy = staggered_energy(&pressed.model, &pressed.state, blocks, dt);
         let left = energy - pressed.tools.work(&pressed.state);

@@ -88,7 +88,7 @@ fn checks() -> Vec<Check> {
         [
             (
                 "difference of its held half from a bar of that length (m)",
-                Asked::at_most(1e-12),
+                Asked::at_most(1e-13),
             ),
             (
                 "stretch of its free half once it has settled (m)",

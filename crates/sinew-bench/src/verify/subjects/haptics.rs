@@ -51,6 +51,10 @@ fn checks() -> Vec<Check> {
                         "largest change of force in a tick over the largest force",
                         Asked::at_most(0.05),
                     ),
+                    (
+                        "largest force (N)",
+                        Asked::at_least(if is_rigid { 1.0 } else { 0.1 }),
+                    ),
                 ];
                 let check = Check::several(
                     format!("{what} at {hertz} Hz, coupling of {stiffness} N/m"),
@@ -58,7 +62,7 @@ fn checks() -> Vec<Check> {
                     Source::ClosedForm(PASSIVE),
                     move |_| {
                         let felt = felt(is_rigid, hertz, stiffness, 60)?;
-                        Ok(vec![felt.taken_out, felt.jump / felt.peak])
+                        Ok(vec![felt.taken_out, felt.jump / felt.peak, felt.peak])
                     },
                 );
                 checks.push(check.long(!is_rigid && hertz > 500.0));

@@ -1,9 +1,8 @@
 //! Laws of large deformation, element by element.
 
-use sinew_fem::hyperelastic::closed_forms;
-use sinew_fem::hyperelastic::conformance::samples;
 use sinew_fem::hyperelastic::{
     Hyperelastic, HyperelasticLaw, LawVisitor, NodeBlock, SingularValues, Tensor,
+    sample_deformations,
 };
 use sinew_fem::{Element, Law, Model};
 use sinew_mesh::structured::{Split, cube};
@@ -11,6 +10,7 @@ use sinew_mesh::structured::{Split, cube};
 use crate::tissue;
 use crate::verify::bodies::{YOUNGS_MODULUS, body};
 use crate::verify::check::{Asked, Check, Source};
+use crate::verify::closed_forms;
 use crate::verify::error::VerifyError;
 use crate::verify::subject::Subject;
 
@@ -107,7 +107,7 @@ impl LawVisitor for Measure {
                 scale,
             );
         }
-        for [h, change] in samples::<L>() {
+        for [h, change] in sample_deformations::<L>() {
             let found = stress(h);
             let size = found.largest() + scale;
             for unit in units() {

@@ -1,0 +1,128 @@
+//! A law with fibres or without, whose type is not known.
+
+use sinew_fem::hyperelastic::Deformation;
+use sinew_fem::hyperelastic::HyperelasticLaw;
+use sinew_fem::hyperelastic::Tensor;
+use sinew_fem::hyperelastic::fibres::Fibres;
+use sinew_fem::hyperelastic::{Hyperelastic, LawVisitor};
+
+use nalgebra::{Matrix2, SMatrix, Vector2};
+
+pub(super) struct Material {
+    law: Hyperelastic,
+    fibres: Option<(Fibres, [f64; 3])>,
+}
+
+impl Material {
+    pub(super) fn new(law: Hyperelastic) -> Self {
+        Self { law, fibres: None }
+    }
+
+    pub(super) fn with_fibres(self, fibres: Fibres, direction: [f64; 3]) -> Self {
+        Self {
+            fibres: Some((fibres, direction)),
+            ..self
+        }
+    }
+
+    pub(super) fn mu(&self) -> f64 {
+        self.law.lame().1
+    }
+
+    pub(super) fn energy(&self, h: Tensor<f64>) -> f64 {
+        self.law.with_law(Energy(h))
+    }
+
+    /// The first Piola-Kirchhoff stress by the displacement gradient.
+    pub(super) fn stress(&self, h: Tensor<f64>) -> Tensor<f64> {
+        let of_fibres = self
+            .fibres
+            .map(|(fibres, direction)| fibres.stress(&fibres.at(&Deformation::of(h), direction)));
+        self.law.with_law(Stress(h)) + of_fibres.unwrap_or_else(Tensor::zero)
+    }
+
+    pub(super) fn tangent(&self, h: Tensor<f64>, change: Tensor<f64>) -> Tensor<f64> {
+        let of_fibres = self.fibres.map(|(fibres, direction)| {
+            fibres.tangent(&fibres.at(&Deformation::of(h), direction), change)
+        });
+        self.law.with_law(Tangent(h, change)) + of_fibres.unwrap_or_else(Tensor::zero)
+    }
+
+    /// The two lateral stretches and the nominal stress of a bar that is pulled along x, by Newton's iteration.
+    pub(super) fn pulled(&self, stretch: f64) -> [f64; 3] {
+        let guess = stretch.powf(-0.45);
+        let mut sides = Vector2::new(guess, guess);
+        for _ in 0..50 {
+            let h = stretched([stretch, sides[0], sides[1]]);
+            let side = |p: Tensor<f64>| Vector2::new(p.0[1][1], p.0[2][2]);
+            let y = Tensor([[0.0; 3], [0.0, 1.0, 0.0], [0.0; 3]]);
+            let z = Tensor([[0.0; 3], [0.0; 3], [0.0, 0.0, 1.0]]);
+            let slope = [y, z].map(|change| side(self.tangent(h, change)));
+            let Some(inverse) = Matrix2::from_columns(&slope).try_inverse() else {
+                break;
+            };
+            let step = inverse * side(self.stress(h));
+            sides -= step;
+            if step.norm() < 1e-15 {
+                break;
+            }
+        }
+        let h = stretched([stretch, sides[0], sides[1]]);
+        [sides[0], sides[1], self.stress(h).0[0][0]]
+    }
+
+    /// The smallest eigenvalue of the tangent over mu.
+    pub(super) fn least_eigenvalue(&self, h: Tensor<f64>) -> f64 {
+        let mut matrix = SMatrix::<f64, 9, 9>::zeros();
+        for column in 0..9 {
+            let mut change = Tensor::zero();
+            change.0[column / 3][column % 3] = 1.0;
+            let changed = self.tangent(h, change);
+            for row in 0..9 {
+                matrix[(row, column)] = changed.0[row / 3][row % 3];
+            }
+        }
+        matrix.symmetric_eigenvalues().min() / self.mu()
+    }
+}
+
+struct Energy(Tensor<f64>);
+
+impl LawVisitor for Energy {
+    type Output = f64;
+
+    fn visit<L: HyperelasticLaw>(self, law: L) -> f64 {
+        law.whole_energy(&law.at(self.0))
+    }
+}
+
+struct Stress(Tensor<f64>);
+
+impl LawVisitor for Stress {
+    type Output = Tensor<f64>;
+
+    fn visit<L: HyperelasticLaw>(self, law: L) -> Tensor<f64> {
+        let at = law.at(self.0);
+        law.stress_with(&at, law.own_bulk(&at))
+    }
+}
+
+struct Tangent(Tensor<f64>, Tensor<f64>);
+
+impl LawVisitor for Tangent {
+    type Output = Tensor<f64>;
+
+    fn visit<L: HyperelasticLaw>(self, law: L) -> Tensor<f64> {
+        let at = law.at(self.0);
+        law.tangent_with(&at, law.own_bulk(&at), self.1)
+    }
+}
+
+/// The displacement gradient of stretches along the axes.
+pub(super) fn stretched([a, b, c]: [f64; 3]) -> Tensor<f64> {
+    Tensor([
+        [a - 1.0, 0.0, 0.0],
+        [0.0, b - 1.0, 0.0],
+        [0.0, 0.0, c - 1.0],
+    ])
+}

@@ -1,0 +1,6 @@
+//! Runs of the core.
+
+#![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod running;

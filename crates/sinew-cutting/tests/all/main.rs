@@ -1,0 +1,13 @@
+//! Cuts through meshes: strokes, slits, planes, and their allocations.
+
+#![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod allocation;
+mod common;
+mod planes;
+mod random_strokes;
+mod slits;
+
+#[global_allocator]
+static ALLOCATOR: sinew_core::CountingAllocator = sinew_core::CountingAllocator;

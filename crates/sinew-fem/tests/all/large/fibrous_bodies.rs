@@ -1,0 +1,373 @@
+//! Bodies with fibres: forces are the gradient of one energy, tangents its second derivative, stresses those of the closed forms.
+
+use crate::common::{
+    ELEMENTS, at, at_most, body, build, dot, elastic, held, max_abs, moved, product,
+    relative_difference, uneven_cube, waves,
+};
+use sinew_core::{
+    BlockMatrix, ElasticLaw, ElementStiffness, Elements, ForceLaw, Layers, System, TangentKind,
+};
+use sinew_fem::hyperelastic::Parameters;
+use sinew_fem::hyperelastic::fibres::{Fibres, Stiffening};
+use sinew_fem::{Cause, FibreFamily, Law, Model, Problem, Tissue};
+use sinew_mesh::TetMesh;
+use sinew_mesh::structured::{self, Split};
+
+const QUADRATIC: Stiffening = Stiffening::Quadratic { eta: 2000.0 };
+
+const DISPERSED: Stiffening = Stiffening::Exponential {
+    k1: 1000.0,
+    k2: 2.0,
+    dispersion: 0.1,
+};
+
+const PARALLEL: Stiffening = Stiffening::Exponential {
+    k1: 1000.0,
+    k2: 2.0,
+    dispersion: 0.0,
+};
+
+/// E = 3500 Pa, nu = .45.
+fn with_fibres(id: &'static str, fibres: Fibres, direction: [f64; 3]) -> Problem {
+    let mut problem = body(Law::Hyperelastic {
+        id,
+        parameters: Parameters::new(3500.0, 0.45),
+    });
+    problem.regions[0].tissue = Tissue {
+        fibres: Some(FibreFamily { fibres, direction }),
+        ..Tissue::default()
+    };
+    problem
+}
+
+/// Laws with and without a meaning when inverted, with one that has a rotation, and all families of fibres, on every element.
+fn all() -> impl Iterator<Item = (String, Problem)> {
+    let kinds = [QUADRATIC, DISPERSED].map(|kind| Fibres::new(kind).unwrap());
+    let families = [kinds[0], kinds[1], kinds[0].split()];
+    let laws = ["neo-hookean", "corotational"];
+    let cases = laws
+        .into_iter()
+        .flat_map(move |law| families.map(|f| (law, f)));
+    cases.flat_map(|(law, fibres)| {
+        ELEMENTS.map(|element| {
+            let mut problem = with_fibres(law, fibres, [3.0, -1.0, 2.0]);
+            problem.regions[0].element = element;
+            (format!("{law}, {fibres}, {element}"), problem)
+        })
+    })
+}
+
+fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
+    crate::common::on_cells(model, |node| {
+        let [x, y, z] = mesh.points[node];
+        [
+            size * (0.03 * (25.0 * z).sin() + 0.2 * x + 2.0 * y * z),
+            size * (0.02 * (31.0 * x + 8.0 * y).cos() - 0.3 * z),
+            size * (0.25 * z + 0.15 * y + 3.0 * x * x),
+        ]
+    })
+}
+
+#[test]
+fn forces_are_the_slope_of_the_energy_and_tangents_that_of_the_forces() {
+    let mesh = uneven_cube();
+    for (name, problem) in all() {
+        let model = build(&mesh, &problem);
+        let u = bent(&mesh, &model, 0.6);
+        let w = waves(u.len(), 1.7);
+        let (energy, force) = elastic(&model, &u);
+        let without = with_plain(&problem);
+        assert!(
+            energy > 1.01 * elastic(&build(&mesh, &without), &u).0,
+            "{name}"
+        );
+        let h = 1e-6;
+        let (before, after) = (
+            elastic(&model, &moved(&u, -h, &w)),
+            elastic(&model, &moved(&u, h, &w)),
+        );
+        let slope = (after.0 - before.0) / (2.0 * h);
+        at_most(&name, (slope / dot(&force, &w) - 1.0).abs(), 1e-5);
+        let slope: Vec<f64> = after
+            .1
+            .iter()
+            .zip(&before.1)
+            .map(|(a, b)| (a - b) / (2.0 * h))
+            .collect();
+        let exact = product(&model, TangentKind::Exact, &u, &w);
+        at_most(&name, relative_difference(&exact, &slope), 1e-5);
+    }
+}
+
+fn with_plain(problem: &Problem) -> Problem {
+    let mut problem = problem.clone();
+    problem.regions[0].tissue = Tissue::default();
+    problem
+}
+
+#[test]
+fn tangents_are_symmetric_the_same_as_matrices_and_definite_where_they_are_not_exact() {
+    let mesh = uneven_cube();
+    for (name, mut problem) in all() {
+        problem.fixed = vec![held("bottom")];
+        let model = build(&mesh, &problem);
+        let u = bent(&mesh, &model, 0.6);
+        let (w, other) = (waves(u.len(), 1.3), waves(u.len(), 0.9));
+        for kind in [
+            TangentKind::Exact,
+            TangentKind::Projected,
+            TangentKind::Frozen,
+        ] {
+            let mut matrix = BlockMatrix::zeros(model.pattern().clone(), Layers::Three);
+            let v = vec![0.0; u.len()];
+            model.tangent(&at(&u, &v), kind, &mut matrix).unwrap();
+            let mut by_matrix = vec![0.0; u.len()];
+            matrix.multiply(&w, &mut by_matrix);
+            let by_product = product(&model, kind, &u, &w);
+            at_most(&name, relative_difference(&by_matrix, &by_product), 1e-11);
+            let back = product(&model, kind, &u, &other);
+            let scale = dot(&by_product, &by_product).sqrt() * dot(&other, &other).sqrt();
+            let difference = dot(&by_product, &other) - dot(&back, &w);
+            at_most(&name, difference.abs() / scale, 1e-12);
+            if kind != TangentKind::Exact {
+                assert!(dot(&by_product, &w) >= 0.0 && dot(&back, &other) >= 0.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn own_blocks_stay_definite_and_are_no_less_than_those_of_the_tangent() {
+    let mesh = uneven_cube();
+    for (name, problem) in all() {
+        let model = build(&mesh, &problem);
+        for size in [0.0, 0.6, -0.6] {
+            let u = bent(&mesh, &model, size);
+            let v = vec![0.0; u.len()];
+            let mut blocks = vec![0.0; 3 * u.len()];
+            model.node_blocks(&at(&u, &v), &mut blocks).unwrap();
+            let mut tangent = BlockMatrix::zeros(model.pattern().clone(), Layers::Three);
+            let kind = TangentKind::Frozen;
+            model.tangent(&at(&u, &v), kind, &mut tangent).unwrap();
+            for (cell, block) in blocks.chunks_exact(9).enumerate() {
+                let matrix = nalgebra::Matrix3::from_row_slice(block);
+                assert!(matrix.symmetric_eigenvalues().min() > 0.0, "{name}");
+                if name.contains("corotational") {
+                    let own = nalgebra::Matrix3::from_row_slice(tangent.block(cell, cell).unwrap());
+                    let more = (matrix - own).symmetric_eigenvalues().min();
+                    assert!(more > -1e-11 * matrix.norm(), "{name}: {more}");
+                }
+            }
+        }
+    }
+}
+
+/// A step that is stable with idle fibres is so too when they are pulled: the bound of the fastest motions takes them as pulled.
+#[test]
+fn the_elements_and_the_spectrum_at_rest_have_the_fibres_as_if_they_were_pulled() {
+    let mesh = uneven_cube();
+    for kind in [QUADRATIC, DISPERSED] {
+        for element in ELEMENTS {
+            let mut problem =
+                with_fibres("neo-hookean", Fibres::new(kind).unwrap(), [0.0, 2.0, 1.0]);
+            problem.regions[0].element = element;
+            problem.fixed = vec![held("bottom")];
+            let model = build(&mesh, &problem);
+            let u = waves(model.dofs(), 0.7);
+            let mut by_elements = vec![0.0; u.len()];
+            let mut part = ElementStiffness::default();
+            for number in 0..Elements::count(&model) {
+                model.stiffness(number, &mut part);
+                let dofs: Vec<usize> = part
+                    .cells
+                    .iter()
+                    .flat_map(|cell| [0, 1, 2].map(|axis| 3 * *cell as usize + axis))
+                    .collect();
+                for (i, row) in dofs.iter().enumerate() {
+                    for (j, column) in dofs.iter().enumerate() {
+                        by_elements[*row] += part.matrix[i * dofs.len() + j] * u[*column];
+                    }
+                }
+            }
+            // All fibres are stretched a little.
+            let pulled = crate::common::on_cells(&model, |node| {
+                let [x, y, z] = mesh.points[node];
+                [1e-9 * x, 1e-9 * y, 1e-9 * z]
+            });
+            let expected = product(&model, TangentKind::Exact, &pulled, &u);
+            // The held nodes do not follow, which only leaves the lowest elements idle.
+            let idle = product(&model, TangentKind::Exact, &vec![0.0; u.len()], &u);
+            let far = relative_difference(&idle, &by_elements);
+            let near = relative_difference(&expected, &by_elements);
+            assert!(near < 1e-6 && far > 1e-3, "{element}: {near}, {far}");
+            let at_rest = model.spectrum(None).unwrap().omega_max;
+            let plain = build(&mesh, &with_plain(&problem));
+            assert!(at_rest > 1.001 * plain.spectrum(None).unwrap().omega_max);
+        }
+    }
+}
+
+/// (fibres, stretches along x, y and z, first Piola-Kirchhoff stress along x (Pa)), with nothing across: E = 3500 Pa, nu = .45.
+const ALONG_X: [(Stiffening, [f64; 3], f64); 4] = [
+    (
+        QUADRATIC,
+        [1.1, 0.957_790_598_59, 0.957_790_598_59],
+        1_245.075_264_07,
+    ),
+    (
+        QUADRATIC,
+        [1.3, 0.887_142_868_453, 0.887_142_868_453],
+        4_426.308_052_61,
+    ),
+    (
+        PARALLEL,
+        [1.3, 0.887_142_868_453, 0.887_142_868_453],
+        5_487.287_694_35,
+    ),
+    (
+        DISPERSED,
+        [1.3, 0.882_415_112_675, 0.882_415_112_675],
+        2_512.747_409_86,
+    ),
+];
+
+/// The same for fibres along y in a compression along x.
+const ACROSS: [(Stiffening, [f64; 3], f64); 2] = [
+    (
+        QUADRATIC,
+        [0.9, 1.017_084_646_686, 1.073_597_376_048],
+        -459.440_475_287,
+    ),
+    (
+        PARALLEL,
+        [0.9, 1.024_918_663_916, 1.067_118_727_539],
+        -440.842_270_238,
+    ),
+];
+
+/// Bars of fibrous tissue in uniaxial stress, along the fibres and across: the stress of every tetrahedron and the force at the end are those
+/// of the closed form, which an independent program found in 50 digits.
+#[test]
+fn bars_of_fibrous_tissue_have_the_stress_of_the_closed_form_on_every_element() {
+    let mesh = uneven_cube();
+    let along = ALONG_X.into_iter().map(|case| (case, [5.0, 0.0, 0.0]));
+    let across = ACROSS.into_iter().map(|case| (case, [0.0, 0.1, 0.0]));
+    for ((kind, stretches, expected), direction) in along.chain(across) {
+        for element in ELEMENTS {
+            let mut problem = with_fibres("neo-hookean", Fibres::new(kind).unwrap(), direction);
+            problem.regions[0].element = element;
+            let model = build(&mesh, &problem);
+            let u = crate::common::on_cells(&model, |node| {
+                let point = mesh.points[node];
+                std::array::from_fn(|axis| (stretches[axis] - 1.0) * point[axis])
+            });
+            let mut stress = vec![[0.0; 6]; mesh.tets.len()];
+            model.stress(0.0, &u, &mut stress).unwrap();
+            let [x, y, z] = stretches;
+            for stress in stress {
+                let nominal = stress[0] * y * z;
+                assert!(
+                    (nominal / expected - 1.0).abs() < 1e-9,
+                    "{element}: {nominal}"
+                );
+                assert!(
+                    max_abs(&stress[1..]) < 1e-7 * expected.abs() / x,
+                    "{stress:?}"
+                );
+            }
+            let (_, force) = elastic(&model, &u);
+            let end: f64 = (0..mesh.points.len())
+                .filter(|node| mesh.points[*node][0] > 0.0999)
+                .map(|node| force[3 * node])
+                .sum();
+            at_most(
+                &element.to_string(),
+                (end / (expected * 0.01) - 1.0).abs(),
+                1e-9,
+            );
+        }
+    }
+}
+
+#[test]
+fn a_shear_along_oblique_fibres_has_the_stress_of_the_closed_form() {
+    let mesh = uneven_cube();
+    // P12, P21 (Pa) in a simple shear of .5.
+    let cases = [
+        (QUADRATIC, [2_478.448_275_862, 1_853.448_275_862]),
+        (PARALLEL, [2_651.136_536_002, 1_968.573_782_622]),
+        (DISPERSED, [1_419.290_512_915, 1_100.047_898_416]),
+    ];
+    for (kind, [p12, p21]) in cases {
+        for element in ELEMENTS {
+            let fibres = Fibres::new(kind).unwrap();
+            let mut problem = with_fibres("neo-hookean", fibres, [7.0, 7.0, 0.0]);
+            problem.regions[0].element = element;
+            let model = build(&mesh, &problem);
+            let u = crate::common::on_cells(&model, |node| [0.5 * mesh.points[node][1], 0.0, 0.0]);
+            let mut stress = vec![[0.0; 6]; mesh.tets.len()];
+            model.stress(0.0, &u, &mut stress).unwrap();
+            for [_, yy, _, xy, ..] in stress {
+                // P = s F^-T, as J = 1.
+                assert!((xy / p12 - 1.0).abs() < 1e-9, "{element}: {xy}");
+                let found = xy - 0.5 * yy;
+                assert!((found / p21 - 1.0).abs() < 1e-9, "{element}: {found}");
+            }
+            let (_, force) = elastic(&model, &u);
+            let top: f64 = (0..mesh.points.len())
+                .filter(|node| mesh.points[*node][1] > 0.0999)
+                .map(|node| force[3 * node])
+                .sum();
+            at_most(&element.to_string(), (top / (p12 * 0.01) - 1.0).abs(), 1e-9);
+        }
+    }
+}
+
+#[test]
+fn fibres_freed_of_volume_change_refuse_what_is_inverted_by_name_also_with_laws_that_do_not() {
+    let mesh = structured::cube(2, 0.1, Split::Kuhn).unwrap();
+    let fibres = Fibres::new(QUADRATIC).unwrap();
+    for element in ELEMENTS {
+        for (fibres, is_refused) in [(fibres, false), (fibres.split(), true)] {
+            let mut problem = with_fibres("stable-neo-hookean", fibres, [1.0, 0.0, 0.0]);
+            problem.regions[0].element = element;
+            let model = build(&mesh, &problem);
+            let mut u = vec![0.0; model.dofs()];
+            u[..3].fill(0.12);
+            let (v, mut out) = (vec![0.0; u.len()], vec![0.0; u.len()]);
+            let trial = at(&u, &v);
+            let kind = TangentKind::Exact;
+            let answers = [
+                model.net_force(&trial, &mut out),
+                model.tangent_product(&trial, kind, &v, &mut out),
+            ];
+            for answer in answers {
+                assert_eq!(answer.is_err(), is_refused, "{element}");
+                if let Err(error) = answer {
+                    assert!(error.element > 0);
+                    assert!(error.reason.contains("fibres freed of volume change"));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn fibres_without_a_direction_or_beside_another_law_are_refused() {
+    let mesh = structured::cube(1, 0.1, Split::Kuhn).unwrap();
+    let fibres = Fibres::new(QUADRATIC).unwrap();
+    let refused = |problem: &Problem| Model::build(&mesh, problem).unwrap_err().cause().clone();
+    let none = with_fibres("neo-hookean", fibres, [0.0; 3]);
+    assert_eq!(refused(&none), Cause::NoDirection);
+    let mut linear = with_fibres("neo-hookean", fibres, [1.0; 3]);
+    linear.regions[0].law = crate::common::linear(3500.0, 0.45);
+    assert_eq!(refused(&linear), Cause::TissueOfSmallStrain);
+    let endless = with_fibres("neo-hookean", fibres, [f64::INFINITY, 0.0, 0.0]);
+    assert!(matches!(
+        refused(&endless),
+        Cause::Value {
+            quantity: "direction",
+            ..
+        }
+    ));
+}

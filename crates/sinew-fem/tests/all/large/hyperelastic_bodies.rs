@@ -1,0 +1,464 @@
+//! Bodies of hyperelastic regions: forces are the gradient of the energy, tangents their derivative, for every law and element.
+
+use crate::common::{
+    at, at_most, body, build, dot, edges, elastic, held, jitter, linear, max_abs, product,
+    relative_difference, stiffness_times, uneven_cube, waves,
+};
+use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, System, TangentKind};
+use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
+use sinew_fem::{Element, FromMesh, Law, Model, Problem, Region, Tissue};
+use sinew_mesh::structured::{self, Split};
+use sinew_mesh::{Group, GroupMembers, TetMesh};
+
+const YOUNGS_MODULUS: f64 = 3500.0;
+const NU: f64 = 0.45;
+
+const ELEMENTS: [Element; 5] = [
+    Element::P1,
+    Element::Fbar { patch: None },
+    Element::Fbar { patch: Some(12) },
+    edges(0.9),
+    edges(1.0),
+];
+
+fn law(id: &'static str) -> Law {
+    Law::Hyperelastic {
+        id,
+        parameters: Parameters {
+            c1_over_c2: (id == "mooney-rivlin").then_some(4.0),
+            ..Parameters::new(YOUNGS_MODULUS, NU)
+        },
+    }
+}
+
+fn of(id: &'static str, element: Element) -> Problem {
+    let mut problem = body(law(id));
+    problem.regions[0].element = element;
+    problem
+}
+
+/// Every law on every element.
+fn all() -> impl Iterator<Item = (&'static str, Element)> {
+    let ids = Hyperelastic::IDS.iter();
+    ids.flat_map(|id| ELEMENTS.into_iter().map(move |element| (*id, element)))
+}
+
+/// A displacement that squeezes, turns and bends, with strains of some 30 %.
+fn bent(mesh: &TetMesh, model: &Model, size: f64) -> Vec<f64> {
+    crate::common::on_cells(model, |node| {
+        let [x, y, z] = mesh.points[node];
+        [
+            size * (0.03 * (25.0 * z).sin() - 0.2 * x + 2.0 * y * z),
+            size * (0.02 * (31.0 * x + 8.0 * y).cos() - 0.3 * z),
+            size * (-0.25 * z + 0.15 * y + 3.0 * x * x),
+        ]
+    })
+}
+
+#[test]
+fn forces_are_the_slope_of_the_energy() {
+    let mesh = uneven_cube();
+    for (id, element) in all() {
+        let model = build(&mesh, &of(id, element));
+        let u = bent(&mesh, &model, 1.0);
+        let w = waves(u.len(), 1.7);
+        let (_, force) = elastic(&model, &u);
+        let along = |h: f64| {
+            let moved: Vec<f64> = u.iter().zip(&w).map(|(u, w)| u + h * w).collect();
+            elastic(&model, &moved).0
+        };
+        let h = 2e-5;
+        let pair = |h: f64| (along(h) - along(-h)) / (2.0 * h);
+        let by_energy = (4.0 * pair(h / 2.0) - pair(h)) / 3.0;
+        let error = (by_energy / dot(&force, &w) - 1.0).abs();
+        at_most(&format!("{id}, {element}"), error, 2e-8);
+    }
+}
+
+#[test]
+fn tangents_are_the_slope_of_the_forces_as_products_and_as_matrices() {
+    let mesh = uneven_cube();
+    for (id, element) in all() {
+        let mut problem = of(id, element);
+        problem.fixed = vec![
+            held("bottom"),
+            crate::common::held_along("sides", [true, false, false]),
+        ];
+        let model = build(&mesh, &problem);
+        let u = {
+            let free = bent(&mesh, &model, 0.5);
+            let pinned = model.pinned();
+            free.iter()
+                .zip(pinned)
+                .map(|(u, held)| if *held { 0.0 } else { *u })
+                .collect::<Vec<f64>>()
+        };
+        let mut w = waves(u.len(), 1.3);
+        w.iter_mut()
+            .zip(model.pinned())
+            .filter(|(_, held)| **held)
+            .for_each(|(w, _)| *w = 0.0);
+        let exact = product(&model, TangentKind::Exact, &u, &w);
+        let moved = |h: f64| {
+            let moved: Vec<f64> = u.iter().zip(&w).map(|(u, w)| u + h * w).collect();
+            elastic(&model, &moved).1
+        };
+        let pair = |h: f64| -> Vec<f64> {
+            let (up, down) = (moved(h), moved(-h));
+            up.iter()
+                .zip(&down)
+                .map(|(a, b)| (a - b) / (2.0 * h))
+                .collect()
+        };
+        let h = 2e-5;
+        let slope: Vec<f64> = pair(h / 2.0)
+            .iter()
+            .zip(pair(h))
+            .map(|(fine, coarse)| (4.0 * fine - coarse) / 3.0)
+            .collect();
+        at_most(
+            &format!("{id}, {element}"),
+            relative_difference(&exact, &slope),
+            1e-7,
+        );
+
+        for kind in [
+            TangentKind::Exact,
+            TangentKind::Projected,
+            TangentKind::Frozen,
+        ] {
+            let mut matrix = BlockMatrix::zeros(model.pattern().clone(), Layers::Three);
+            let v = vec![0.0; u.len()];
+            model.tangent(&at(&u, &v), kind, &mut matrix).unwrap();
+            let mut by_matrix = vec![0.0; u.len()];
+            matrix.multiply(&w, &mut by_matrix);
+            let by_product = product(&model, kind, &u, &w);
+            let difference = relative_difference(&by_matrix, &by_product);
+            at_most(
+                &format!("{id}, {element}, {kind:?} as a matrix"),
+                difference,
+                1e-11,
+            );
+            // Symmetric, and without negative eigenvalues unless it is exact.
+            let other = waves(u.len(), 0.9);
+            let other: Vec<f64> = other
+                .iter()
+                .zip(model.pinned())
+                .map(|(x, held)| if *held { 0.0 } else { *x })
+                .collect();
+            let back = product(&model, kind, &u, &other);
+            let scale = dot(&by_product, &by_product).sqrt() * dot(&other, &other).sqrt();
+            at_most(
+                "symmetry",
+                (dot(&by_product, &other) - dot(&back, &w)).abs() / scale,
+                1e-12,
+            );
+            if kind != TangentKind::Exact {
+                assert!(dot(&by_product, &w) >= 0.0 && dot(&back, &other) >= 0.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn at_small_strain_every_law_is_the_linear_one_on_the_same_element() {
+    let mesh = uneven_cube();
+    for (id, element) in all() {
+        let model = build(&mesh, &of(id, element));
+        let mut small = body(linear(YOUNGS_MODULUS, NU));
+        small.regions[0].element = element;
+        let small = build(&mesh, &small);
+        let u = bent(&mesh, &model, 1.0);
+        let at_rest = vec![0.0; u.len()];
+        let tangent = product(&model, TangentKind::Exact, &at_rest, &u);
+        let expected = stiffness_times(&small, &u);
+        at_most(
+            &format!("{id}, {element}"),
+            relative_difference(&tangent, &expected),
+            1e-12,
+        );
+        let (energy, force) = elastic(&model, &at_rest);
+        at_most("energy at rest", energy.abs(), 1e-15);
+        at_most("force at rest", max_abs(&force) / max_abs(&expected), 1e-13);
+    }
+}
+
+/// The indefinite part of the tangent drops out of a node's own block, so that the block is exact and positive for the laws in I1 and J.
+#[test]
+fn own_blocks_are_those_of_the_tangent_and_never_indefinite() {
+    let mesh = uneven_cube();
+    for (id, element) in all() {
+        let model = build(&mesh, &of(id, element));
+        let u = bent(&mesh, &model, 1.0);
+        let v = vec![0.0; u.len()];
+        let trial = at(&u, &v);
+        let mut blocks = vec![0.0; 3 * u.len()];
+        model.node_blocks(&trial, &mut blocks).unwrap();
+        let mut exact = BlockMatrix::zeros(model.pattern().clone(), Layers::Three);
+        model
+            .tangent(&trial, TangentKind::Exact, &mut exact)
+            .unwrap();
+        let is_closed_form = [
+            "neo-hookean",
+            "stable-neo-hookean",
+            "stable-neo-hookean-log",
+        ]
+        .contains(&id);
+        for (cell, block) in blocks.chunks_exact(9).enumerate() {
+            let own = exact.block(cell, cell).unwrap();
+            let size = max_abs(own);
+            if is_closed_form {
+                let difference = block.iter().zip(own).map(|(a, b)| (a - b).abs());
+                let difference = difference.fold(0.0, f64::max);
+                assert!(
+                    difference <= 1e-12 * size,
+                    "{id}, {element}: {difference:e} of {size:e}"
+                );
+            }
+            let matrix = nalgebra::Matrix3::from_row_slice(block);
+            let least = matrix.symmetric_eigenvalues().min();
+            assert!(least > 0.0, "{id}, {element}: {least}");
+        }
+    }
+}
+
+/// The confined compression of a nearly incompressible block: uniform, so every element has the closed form.
+#[test]
+fn confined_compression_is_in_balance_and_has_its_reaction() {
+    let mut mesh = structured::cube(3, 1.0, Split::Kuhn).unwrap();
+    jitter(&mut mesh, 0.06, 3);
+    for element in ELEMENTS {
+        let parameters = Parameters::new(1.0, 0.499);
+        let mut problem = body(Law::Hyperelastic {
+            id: "neo-hookean",
+            parameters,
+        });
+        problem.regions[0].element = element;
+        let model = build(&mesh, &problem);
+        let u = crate::common::on_cells(&model, |node| [0.0, 0.0, -0.1 * mesh.points[node][2]]);
+        let (_, force) = elastic(&model, &u);
+        let top: f64 = (0..mesh.points.len())
+            .filter(|node| mesh.points[*node][2] > 0.999)
+            .map(|node| force[3 * node + 2])
+            .sum();
+        let (lambda, mu) = sinew_fem::tetra::lame(1.0, 0.499);
+        let expected = mu * (0.9 - 1.0 / 0.9) + lambda * -0.1;
+        at_most(&element.to_string(), (top / expected - 1.0).abs(), 1e-12);
+        at_most("published digits", (top - -16.714_846_935_0).abs(), 1e-9);
+        let inside = (0..mesh.points.len()).filter(|node| crate::common::is_inside(&mesh, *node));
+        let inside = inside.flat_map(|node| force[3 * node..3 * node + 3].to_vec());
+        at_most("inside", max_abs(&inside.collect::<Vec<f64>>()), 1e-12);
+    }
+}
+
+#[test]
+fn a_rotation_by_any_angle_takes_no_force_but_in_linear_elasticity() {
+    let mesh = uneven_cube();
+    let turned = |model: &Model, angle: f64| {
+        let (sin, cos) = angle.sin_cos();
+        crate::common::on_cells(model, |node| {
+            let [x, y, z] = mesh.points[node];
+            [cos * x - sin * y - x, sin * x + cos * y - y, 0.3 * (z - z)]
+        })
+    };
+    for (id, element) in all() {
+        let model = build(&mesh, &of(id, element));
+        for angle in [0.5, 2.0, 3.1] {
+            let (energy, force) = elastic(&model, &turned(&model, angle));
+            at_most(&format!("{id}, {element}"), max_abs(&force), 1e-11);
+            at_most("energy", energy.abs(), 1e-12);
+        }
+    }
+    let model = build(&mesh, &body(linear(YOUNGS_MODULUS, NU)));
+    assert!(max_abs(&stiffness_times(&model, &turned(&model, 0.5))) > 1.0);
+}
+
+#[test]
+fn inverted_elements_are_refused_by_name_where_a_law_has_no_meaning_and_counted_elsewhere() {
+    let mesh = structured::cube(2, 0.1, Split::Kuhn).unwrap();
+    for id in Hyperelastic::IDS {
+        for element in ELEMENTS {
+            let model = build(&mesh, &of(id, element));
+            // One corner pushed through the body.
+            let mut u = vec![0.0; model.dofs()];
+            u[..3].fill(0.12);
+            let (mut force, v) = (vec![0.0; u.len()], vec![0.0; u.len()]);
+            let answer = model.elastic_force(&at(&u, &v), &mut force);
+            let net = model.net_force(&at(&u, &v), &mut force);
+            if [
+                "stable-neo-hookean",
+                "stable-neo-hookean-log",
+                "corotational",
+                "stvk",
+            ]
+            .contains(id)
+            {
+                let found = answer.unwrap();
+                assert!(
+                    found.inverted > 0 && found.smallest_volume_ratio < 0.0,
+                    "{id}: {found:?}"
+                );
+                assert!(found.worst_element.is_some());
+                net.unwrap();
+            } else {
+                let error = answer.unwrap_err();
+                assert!(error.element >= 1 && error.reason.contains(id), "{error}");
+                assert!(net.is_err());
+            }
+        }
+    }
+}
+
+#[test]
+fn regions_of_different_laws_and_elements_add_up() {
+    let mut mesh = uneven_cube();
+    let third = mesh.tets.len() as u32 / 3;
+    for (name, range) in [
+        ("low", 0..third),
+        ("middle", third..2 * third),
+        ("high", 2 * third..3 * third),
+    ] {
+        mesh.groups.push(Group {
+            name: name.into(),
+            dim: 3,
+            tag: 7,
+            members: GroupMembers::Tets(range.collect()),
+        });
+    }
+    let laws = [
+        ("low", linear(YOUNGS_MODULUS, NU), Element::P1),
+        ("middle", law("neo-hookean"), edges(0.9)),
+        ("high", law("corotational"), Element::Fbar { patch: None }),
+    ];
+    // Each region among others that are as good as not there.
+    let model = |stiff: Option<usize>| {
+        let regions = laws
+            .iter()
+            .enumerate()
+            .map(|(index, (group, law, element))| {
+                let mut law = *law;
+                if stiff.is_some_and(|stiff| stiff != index) {
+                    *law.youngs_modulus_mut() *= 1e-20;
+                }
+                Region {
+                    group: Some((*group).into()),
+                    density: 1060.0,
+                    law,
+                    element: *element,
+                    tissue: Tissue::default(),
+                    from_mesh: FromMesh::default(),
+                }
+            });
+        build(
+            &mesh,
+            &Problem {
+                regions: regions.collect(),
+                ..Problem::default()
+            },
+        )
+    };
+    let all = model(None);
+    let u = bent(&mesh, &all, 0.5);
+    let (energy, force) = elastic(&all, &u);
+    let mut sum = vec![0.0; u.len()];
+    let mut energies = 0.0;
+    for region in 0..3 {
+        let (energy, force) = elastic(&model(Some(region)), &u);
+        energies += energy;
+        sum.iter_mut()
+            .zip(force)
+            .for_each(|(sum, force)| *sum += force);
+    }
+    at_most("energy", (energy / energies - 1.0).abs(), 1e-13);
+    at_most("force", relative_difference(&force, &sum), 1e-13);
+}
+
+/// A block that is stretched, sheared and turned as one has the stress `P F'/J` of its law, Green's strain and the reactions that hold it so.
+#[test]
+fn a_uniform_deformation_has_its_stress_strain_and_reactions() {
+    use nalgebra::{Matrix3, Vector3};
+    use sinew_fem::hyperelastic::{HyperelasticLaw, LawVisitor, Tensor};
+
+    struct Stress(Tensor<f64>);
+    impl LawVisitor for Stress {
+        type Output = [[f64; 3]; 3];
+        fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
+            let at = law.at(self.0);
+            law.stress_with(&at, law.own_bulk(&at)).0
+        }
+    }
+
+    let mesh = uneven_cube();
+    let gradient = Matrix3::new(0.2, -0.4, 0.1, 0.5, -0.15, 0.0, -0.1, 0.2, 0.1);
+    let f = Matrix3::identity() + gradient;
+    let rows: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| gradient[(i, j)]));
+    for (id, element) in all() {
+        let mut problem = of(id, element);
+        problem.fixed = vec![held("bottom")];
+        let model = build(&mesh, &problem);
+        let field: Vec<[f64; 3]> = mesh
+            .points
+            .iter()
+            .map(|point| (gradient * Vector3::from(*point)).into())
+            .collect();
+        let Law::Hyperelastic { id, parameters } = law(id) else {
+            panic!("a hyperelastic law");
+        };
+        let p = Hyperelastic::new(id, &parameters)
+            .unwrap()
+            .with_law(Stress(Tensor::of(rows)));
+        let p = Matrix3::from_fn(|i, j| p[i][j]);
+        let cauchy = p * f.transpose() / f.determinant();
+        let green = (f.transpose() * f - Matrix3::identity()) / 2.0;
+        let places = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
+        for tet in model.deformed_tets(&field).unwrap() {
+            let stress = tet.stress.unwrap();
+            for (k, place) in places.into_iter().enumerate() {
+                assert!(
+                    (stress[k] - cauchy[place]).abs() < 1e-10 * cauchy.norm(),
+                    "{id}, {element}"
+                );
+                assert!((tet.strain[k] - green[place]).abs() < 1e-14);
+            }
+            assert!(tet.is_hyperelastic && !tet.is_inverted);
+        }
+    }
+}
+
+/// The supports hold what the loads bring, with stiffness damping of a motion too.
+#[test]
+fn reactions_are_the_forces_that_are_missing() {
+    let mesh = uneven_cube();
+    for element in ELEMENTS {
+        for beta in [0.0, 0.01] {
+            let mut free = of("neo-hookean", element);
+            free.damping.stiffness = beta;
+            let mut held_below = free.clone();
+            held_below.fixed = vec![held("bottom")];
+            let (free, model) = (build(&mesh, &free), build(&mesh, &held_below));
+            let u = bent(&mesh, &model, 0.5);
+            let v = waves(u.len(), 1.1);
+            let reaction = model.reaction(0.0, &u, &v, &"bottom".into()).unwrap();
+            let (mut all_u, mut all_v) = (
+                vec![[0.0; 3]; mesh.points.len()],
+                vec![[0.0; 3]; mesh.points.len()],
+            );
+            model.to_nodes(&u, &mut all_u).unwrap();
+            model.to_nodes(&v, &mut all_v).unwrap();
+            let mut net = vec![0.0; free.dofs()];
+            free.net_force(&at(all_u.as_flattened(), all_v.as_flattened()), &mut net)
+                .unwrap();
+            for (axis, reaction) in reaction.into_iter().enumerate() {
+                let missing: f64 = model
+                    .held_nodes()
+                    .iter()
+                    .map(|node| -net[3 * *node as usize + axis])
+                    .sum();
+                assert!(
+                    (reaction / missing - 1.0).abs() < 1e-11,
+                    "{element}: {reaction} {missing}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! Large deformation.
+
+mod fibrous_bodies;
+mod hyperelastic_bodies;
+mod laws_on_vectors;
+mod relaxing_bodies;

@@ -1,0 +1,108 @@
+//! The stiffness that a simulation tells of, against forces at rest.
+
+use crate::common::tissue;
+
+use std::f64::consts::PI;
+
+use sinew_fem::Law;
+use sinew_haptics::{Body, DeviceMotion, Published, Simulated, ToolSimulation};
+use sinew_tools::Convex;
+
+/// Step (s).
+const DT: f64 = 2e-3;
+
+/// Iterations that find the stiffness.
+const ENOUGH: usize = 200;
+
+/// A tool above the block that goes straight down to a depth (m) in half a second.
+struct Press {
+    simulation: ToolSimulation,
+    /// The tool's position (m) at no depth, and its rotation vector (rad).
+    top: [f64; 3],
+    rotation_vector: [f64; 3],
+    depth: f64,
+}
+
+impl Press {
+    fn plate(law: Law) -> Self {
+        let rotation_vector = [PI, 0.0, 0.0];
+        let body = tissue::under(Convex::Plane, rotation_vector, law);
+        Self::new(body, [0.03, 0.03, tissue::EDGE], rotation_vector)
+    }
+
+    /// A ball of 40 mm, which touches several nodes.
+    fn ball(law: Law) -> Self {
+        let radius = 0.04;
+        let body = tissue::under(Convex::sphere(radius).unwrap(), [0.0; 3], law);
+        Self::new(body, [0.03, 0.03, tissue::EDGE + radius], [0.0; 3])
+    }
+
+    fn new(body: Body, top: [f64; 3], rotation_vector: [f64; 3]) -> Self {
+        Self {
+            simulation: tissue::simulation(body, "symplectic-euler", DT),
+            top,
+            rotation_vector,
+            depth: -1e-3,
+        }
+    }
+
+    /// What is published at a depth (m) when all is at rest, after this many iterations for the stiffness.
+    fn to(&mut self, depth: f64, iterations: usize) -> Published {
+        let from = self.depth;
+        self.depth = depth;
+        self.simulation.set_iterations(0);
+        let steps = 1000;
+        for step in 1..steps {
+            let share = (f64::from(step) * DT / 0.5).min(1.0);
+            self.step(from + share * (depth - from));
+        }
+        self.simulation.set_iterations(iterations);
+        self.step(depth)
+    }
+
+    fn step(&mut self, depth: f64) -> Published {
+        let [x, y, z] = self.top;
+        let device = DeviceMotion {
+            rotation_vector: self.rotation_vector,
+            ..DeviceMotion::at([x, y, z - depth])
+        };
+        self.simulation.step(&device).unwrap()
+    }
+
+    /// The stiffness (N/m) at a depth (m) by the difference of forces at rest next to it, and what is published.
+    fn at(&mut self, depth: f64, by: f64) -> (f64, Published) {
+        let places = [depth - by, depth, depth + by];
+        let [below, here, above] = places.map(|depth| self.to(depth, ENOUGH));
+        ((above.force[2] - below.force[2]) / (2.0 * by), here)
+    }
+}
+
+#[test]
+fn under_a_plate_it_is_that_of_the_block() {
+    for (law, by, tolerance) in [
+        (tissue::linear(), 1e-3, 1e-6),
+        (tissue::neo_hookean(), 1e-4, 1e-4),
+    ] {
+        let (expected, published) = Press::plate(law).at(0.006, by);
+        let found = published.stiffness[2][2];
+        assert!(
+            (found / expected - 1.0).abs() < tolerance,
+            "{found} {expected}"
+        );
+        assert!(expected > 100.0, "{expected}");
+    }
+}
+
+#[test]
+fn few_iterations_come_from_above() {
+    let mut last = f64::INFINITY;
+    let settled = Press::ball(tissue::linear()).to(0.006, ENOUGH).stiffness[2][2];
+    for iterations in [0, 1, 3, 10, 30] {
+        let published = Press::ball(tissue::linear()).to(0.006, iterations);
+        let found = published.stiffness[2][2];
+        assert!(found <= last * (1.0 + 1e-9), "{iterations}: {found} {last}");
+        assert!(found >= settled * (1.0 - 1e-6), "{found} {settled}");
+        last = found;
+    }
+    assert!(last < 1.001 * settled, "{last} {settled}");
+}

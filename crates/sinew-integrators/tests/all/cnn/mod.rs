@@ -1,0 +1,5 @@
+//! Cellular networks.
+
+mod bit_identity;
+mod energy;
+mod stabilised;

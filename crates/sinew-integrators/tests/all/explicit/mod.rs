@@ -1,0 +1,6 @@
+//! Explicit methods.
+
+mod modified_leapfrog;
+#[cfg(feature = "implicit")]
+mod patches;
+mod substeps;

@@ -1,0 +1,4 @@
+//! The guard.
+
+mod saturation;
+mod sound_runs;

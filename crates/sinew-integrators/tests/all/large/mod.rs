@@ -1,0 +1,7 @@
+//! Large deformation.
+
+#[cfg(feature = "implicit")]
+mod following_pressure;
+mod large_motion;
+#[cfg(feature = "implicit")]
+mod relaxing_tissue;

@@ -1,0 +1,5 @@
+//! Modal superposition.
+
+mod allocation;
+mod ritz;
+mod superposition;

@@ -1,0 +1,6 @@
+//! The propagator.
+
+mod growth;
+mod load_fit;
+mod reference;
+mod two_step;

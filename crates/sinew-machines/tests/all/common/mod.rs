@@ -1,0 +1,3 @@
+//! Bodies and helpers that the tests share.
+
+pub(crate) mod bodies;

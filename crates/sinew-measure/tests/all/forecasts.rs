@@ -1,0 +1,61 @@
+//! Work foretold by a few steps against that of whole runs, by counts.
+
+use sinew_core::simulate;
+use sinew_measure::Forecast;
+use sinew_scene::{Scene, SceneSource, Simulation};
+
+fn cube(integrator: &str) -> Simulation {
+    let text = format!(
+        "[mesh]\ncube = {{ cells = 4, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
+         youngs_modulus = 3000.0\npoissons_ratio = 0.3\n[damping]\nmass = 5.0\n[[fixed]]\ngroup = \"bottom\"\n[[load]]\n\
+         group = \"top\"\npressure = 20.0\nramp = {{ kind = \"sin2\", rise = 0.1 }}\n[run]\nduration = 0.3\ndt = 0.002\n\
+         integrator = \"{integrator}\"\n"
+    );
+    Scene::parse(SceneSource::new("cube.toml", text))
+        .unwrap()
+        .build()
+        .unwrap()
+}
+
+#[test]
+fn sweeps_and_solutions_of_a_run_are_foretold_within_a_factor_of_two() {
+    for id in [
+        "central-difference",
+        "rk4",
+        "cnn-stabilised",
+        "newmark",
+        "generalized-alpha",
+        "propagator",
+    ] {
+        let simulation = cube(id);
+        let mut integrator = simulation.integrator().unwrap();
+        let said = Forecast::of(&simulation, &mut *integrator).unwrap();
+        let mut state = simulation.initial_state().clone();
+        let (system, run) = (simulation.system(), simulation.run());
+        let done = simulate(system, &mut *integrator, &mut state, &run, &mut ()).unwrap();
+        let near = |said: f64, done: u64, what: &str| {
+            let done = done as f64;
+            assert!(
+                said >= 0.5 * done && said <= 2.0 * done,
+                "{id}: {said} {what}, {done}"
+            );
+        };
+        near(said.sweeps(), done.work.sweeps, "sweeps");
+        near(
+            said.solves_per_step * said.steps as f64,
+            done.work.solves,
+            "solutions",
+        );
+        assert_eq!(said.steps, done.steps);
+    }
+}
+
+#[test]
+fn a_short_run_is_not_looked_at_closer() {
+    let simulation = cube("central-difference");
+    let mut integrator = simulation.integrator().unwrap();
+    let said = Forecast::of_long_run(&simulation, &mut *integrator, 1e6).unwrap();
+    assert_eq!(said, None);
+    let said = Forecast::of_long_run(&simulation, &mut *integrator, 0.0).unwrap();
+    assert_eq!(said.unwrap().steps, 150);
+}

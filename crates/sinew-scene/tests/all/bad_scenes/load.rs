@@ -1,0 +1,206 @@
+//! Mistakes in `[[load]]`.
+
+use super::refusal;
+use super::scenes::BODY;
+
+#[test]
+fn nothing_acts() {
+    insta::assert_snapshot!(
+        refusal(BODY, "traction = [0.0, 0.0, -500.0]\n", ""),
+        @"scene.toml:13: [[load]] 1: expected exactly one of `traction`, `pressure`, `force`, found none"
+    );
+}
+
+#[test]
+fn two_kinds() {
+    insta::assert_snapshot!(
+        refusal(BODY, "traction = [0.0, 0.0, -500.0]", "traction = [0.0, 0.0, -500.0]\npressure = 500.0"),
+        @"scene.toml:17: [[load]] 1: expected exactly one of `traction`, `pressure`, `force`, found `traction`, `pressure`"
+    );
+}
+
+#[test]
+fn two_components() {
+    insta::assert_snapshot!(
+        refusal(BODY, "[0.0, 0.0, -500.0]", "[0.0, -500.0]"),
+        @"scene.toml:16: [[load]] 1: traction = [0.0, -500.0]: expected [x, y, z] in Pa, all finite"
+    );
+}
+
+#[test]
+fn a_component_that_is_not_a_number() {
+    insta::assert_snapshot!(
+        refusal(BODY, "[0.0, 0.0, -500.0]", "[0.0, 0.0, nan]"),
+        @"scene.toml:16: [[load]] 1: traction = [0.0, 0.0, nan]: expected [x, y, z] in Pa, all finite"
+    );
+}
+
+#[test]
+fn a_number_for_a_vector() {
+    insta::assert_snapshot!(
+        refusal(BODY, "[0.0, 0.0, -500.0]", "-500.0"),
+        @"scene.toml:16: [[load]] 1: traction = -500.0: expected [x, y, z] in Pa, all finite, found a number"
+    );
+}
+
+#[test]
+fn infinite_pressure() {
+    insta::assert_snapshot!(
+        refusal(BODY, "traction = [0.0, 0.0, -500.0]", "pressure = -inf"),
+        @"scene.toml:16: [[load]] 1: pressure = -inf: expected a finite number of Pa"
+    );
+}
+
+#[test]
+fn unknown_group() {
+    insta::assert_snapshot!(
+        refusal(BODY, "group = \"top\"", "group = \"roof\""),
+        @r#"scene.toml:15: [[load]] 1: no group is named "roof"; the groups are "tissue" (dimension 3), "sides" (dimension 2), "top" (dimension 2), "bottom" (dimension 2)"#
+    );
+}
+
+#[test]
+fn traction_in_a_volume() {
+    insta::assert_snapshot!(
+        refusal(BODY, "group = \"top\"", "group = \"tissue\""),
+        @"scene.toml:15: [[load]] 1: group `tissue` has cells of dimension 3, expected a group of triangles (dimension 2)"
+    );
+}
+
+#[test]
+fn a_load_on_held_nodes_only() {
+    insta::assert_snapshot!(
+        refusal(BODY, "group = \"top\"", "group = \"sides\""),
+        @"scene.toml:15: [[load]] 1: every node of group `sides` is held there, so the load acts on nothing"
+    );
+}
+
+#[test]
+fn the_same_name_twice() {
+    insta::assert_snapshot!(
+        refusal(BODY, "[run]", "[[load]]\nname = \"push\"\ngroup = \"top\"\nforce = [0, 0, 1]\n[run]"),
+        @r#"scene.toml:21: [[load]] 2: name = "push" is taken by [[load]] 1 on line 14"#
+    );
+}
+
+#[test]
+fn the_name_of_gravity() {
+    insta::assert_snapshot!(
+        refusal(BODY, "name = \"push\"", "name = \"gravity\""),
+        @r#"scene.toml:14: [[load]] 1: name = "gravity": expected a name other than "gravity""#
+    );
+}
+
+#[test]
+fn unknown_ramp() {
+    insta::assert_snapshot!(
+        refusal(BODY, "{ kind = \"step\" }", "{ kind = \"sine\" }"),
+        @r#"scene.toml:17: [[load]] 1 ramp: kind = "sine": expected "step", "sin2", "pulse" or "table""#
+    );
+}
+
+#[test]
+fn no_kind_of_ramp() {
+    insta::assert_snapshot!(
+        refusal(BODY, "{ kind = \"step\" }", "{ rise = 1.0 }"),
+        @r#"scene.toml:17: [[load]] 1 ramp: `kind` is missing: expected "step", "sin2", "pulse" or "table""#
+    );
+}
+
+#[test]
+fn parameters_of_another_ramp() {
+    for (ramp, foreign) in [
+        (r#"kind = "step", rise = 1.0"#, "rise"),
+        (r#"kind = "sin2", rise = 1.0, to = 1.0"#, "to"),
+        (r#"kind = "pulse", from = 0, to = 1, values = []"#, "values"),
+        (
+            r#"kind = "table", times = [0], values = [0], from = 0"#,
+            "from",
+        ),
+    ] {
+        assert_eq!(
+            refusal(BODY, r#"kind = "step""#, ramp),
+            format!(
+                "scene.toml:17: [[load]] 1 ramp: `{foreign}` does not go with this kind of ramp"
+            )
+        );
+    }
+}
+
+#[test]
+fn a_ramp_over_several_lines() {
+    let pulse = "[load.ramp]\nkind = \"pulse\"\nfrom = 0.2\nto = 0.1";
+    insta::assert_snapshot!(
+        refusal(BODY, "ramp = { kind = \"step\" }", pulse),
+        @"scene.toml:20: [[load]] 1 ramp: pulse from 0.2 s to 0.1 s: expected finite times with from < to"
+    );
+    let table = "[load.ramp]\nkind = \"table\"\nvalues = [1.0]\ntimes = [nan]";
+    insta::assert_snapshot!(
+        refusal(BODY, "ramp = { kind = \"step\" }", table),
+        @"scene.toml:20: [[load]] 1 ramp: times = [nan]: expected a list of finite times in s"
+    );
+}
+
+#[test]
+fn no_rise() {
+    insta::assert_snapshot!(
+        refusal(BODY, "{ kind = \"step\" }", "{ kind = \"sin2\" }"),
+        @"scene.toml:17: [[load]] 1 ramp: `rise` is missing: expected a finite time above 0 s"
+    );
+}
+
+#[test]
+fn a_rise_in_no_time() {
+    insta::assert_snapshot!(
+        refusal(BODY, "{ kind = \"step\" }", "{ kind = \"sin2\", rise = 0.0 }"),
+        @"scene.toml:17: [[load]] 1 ramp: rise = 0.0: expected a finite time above 0 s"
+    );
+}
+
+#[test]
+fn a_pulse_backwards() {
+    insta::assert_snapshot!(
+        refusal(BODY, "{ kind = \"step\" }", "{ kind = \"pulse\", from = 0.2, to = 0.1 }"),
+        @"scene.toml:17: [[load]] 1 ramp: pulse from 0.2 s to 0.1 s: expected finite times with from < to"
+    );
+}
+
+#[test]
+fn a_table_with_a_value_missing() {
+    insta::assert_snapshot!(
+        refusal(BODY, "{ kind = \"step\" }", "{ kind = \"table\", times = [0.0, 1.0], values = [1.0] }"),
+        @"scene.toml:17: [[load]] 1 ramp: 2 times and 1 values: expected as many of each, at least one"
+    );
+}
+
+#[test]
+fn a_table_back_in_time() {
+    insta::assert_snapshot!(
+        refusal(BODY, "{ kind = \"step\" }", "{ kind = \"table\", times = [0.0, 1.0, 0.5], values = [1, 2, 3] }"),
+        @"scene.toml:17: [[load]] 1 ramp: entry 2 of the table: expected finite numbers and increasing times"
+    );
+}
+
+#[test]
+fn a_group_whose_name_breaks_the_line() {
+    let message = refusal(BODY, "group = \"top\"", "group = \"to\\np\"");
+    assert_eq!(message.lines().count(), 1, "{message}");
+    let start = "scene.toml:15: [[load]] 1: no group is named \"to p\"";
+    assert!(message.starts_with(start), "{message}");
+}
+
+#[test]
+fn following_traction() {
+    insta::assert_snapshot!(
+        refusal(BODY, "traction = [0.0, 0.0, -500.0]", "traction = [0.0, 0.0, -500.0]\nfollow = false"),
+        @"scene.toml:17: [[load]] 1: `follow` goes with `pressure` only"
+    );
+}
+
+#[test]
+fn pressure_that_follows_a_linear_region() {
+    insta::assert_snapshot!(
+        refusal(BODY, "traction = [0.0, 0.0, -500.0]", "pressure = 500.0\nfollow = true"),
+        @r#"scene.toml:17: [[load]] 1: `follow` needs a region of large deformation, such as `model = "neo-hookean"`"#
+    );
+}

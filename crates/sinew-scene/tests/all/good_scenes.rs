@@ -1,0 +1,301 @@
+//! The scenes that come with the project, and other ways to write the same.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use sinew_core::{OptionValue, Options, Ramp};
+use sinew_fem::{
+    Element, Fixed, FromMesh, Law, LoadKind, LoadSpec, Problem, Rayleigh, Region, SpringRule,
+    Tissue,
+};
+use sinew_scene::{
+    Body, Formula, Initial, MeshChanges, MeshSource, Oscillator, ProbeAt, ProbePoint, Quantity,
+    RunSettings, Scene, SceneSource, Subject, TimeStep,
+};
+
+fn scenes() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let mut scenes = Vec::new();
+    collect(&folder, &mut scenes);
+    scenes.sort();
+    scenes
+}
+
+fn collect(folder: &Path, scenes: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            collect(&path, scenes);
+        } else if path.extension().is_some_and(|end| end == "toml") {
+            scenes.push(path);
+        }
+    }
+}
+
+fn scene(name: &str) -> Scene {
+    let path = scenes()
+        .into_iter()
+        .find(|path| path.ends_with(name))
+        .unwrap();
+    Scene::load(path).unwrap()
+}
+
+fn parse(text: &str) -> Scene {
+    Scene::parse(SceneSource::new("scene.toml", text)).unwrap()
+}
+
+#[test]
+fn a_scene_means_the_same_in_any_layout() {
+    for path in scenes() {
+        let scene = Scene::load(&path).unwrap();
+        let table: toml::Table = scene.source().text().parse().unwrap();
+        for text in [toml::to_string(&table), toml::to_string_pretty(&table)] {
+            let again = parse(&text.unwrap());
+            assert_eq!(again.title(), scene.title());
+            assert_eq!(again.subject(), scene.subject(), "{}", path.display());
+            assert_eq!(again.settings(), scene.settings());
+        }
+    }
+}
+
+#[test]
+fn every_scene_can_be_built() {
+    let scenes = scenes();
+    let hard = |path: &&PathBuf| path.parent().is_some_and(|folder| folder.ends_with("hard"));
+    assert!(scenes.iter().filter(hard).count() >= 14);
+    for path in scenes {
+        let scene = Scene::load(&path).unwrap();
+        assert_ne!(scene.title(), "", "{}", path.display());
+        let simulation = scene.build().unwrap_or_else(|error| panic!("{error}"));
+        assert!(simulation.system().dofs() > 0);
+    }
+}
+
+#[test]
+fn a_scene_can_be_built_on_a_mesh_at_hand() {
+    let text = "[mesh]\ncube = { cells = 2, edge = 0.1 }\n[[region]]\ndensity = 1000.0\n\
+                model = \"springs\"\nyoungs_modulus = 1e4\nsprings = { rule = \"lloyd\" }\n\
+                [[fixed]]\ngroup = \"sides\"\n\
+                [run]\nduration = 1.0\nintegrator = \"newmark\"\ndt = 0.1\n";
+    let mesh = sinew_mesh::structured::cube(4, 0.2, sinew_mesh::structured::Split::Kuhn).unwrap();
+    let simulation = parse(text).build_on(mesh).unwrap();
+    assert_eq!(simulation.system().dofs(), 3 * 3 * 3 * 5);
+    assert_eq!(simulation.system().extent(), Some(0.2));
+    // A mesh without the scene's groups is refused at the line that names one of them.
+    let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let bare = sinew_mesh::TetMesh::new(corners, vec![[0, 1, 2, 3]]).unwrap();
+    let refusal = parse(text).build_on(bare).unwrap_err().to_string();
+    let place = "scene.toml:9: [[fixed]] 1: no group is named \"sides\"";
+    assert!(refusal.starts_with(place), "{refusal}");
+}
+
+#[test]
+fn the_papers_oscillator() {
+    let scene = scene("paper-oscillator.toml");
+    let expected = Oscillator {
+        mass: 0.1,
+        stiffness: 100.0,
+        damping: 1.0,
+        displacement: 0.0,
+        velocity: -5.0,
+        force: 0.0,
+    };
+    assert_eq!(scene.subject(), &Subject::Oscillator(expected));
+    assert_eq!(
+        scene.settings(),
+        &RunSettings {
+            duration: 1.0,
+            samples: 50,
+            integrator: "cnn".into(),
+            dt: TimeStep::Given(0.02),
+            free_flight: false,
+            options: Options::new().with_number("saturation", 4.0),
+        }
+    );
+}
+
+#[test]
+fn the_papers_cube() {
+    let expected = Body {
+        mesh: MeshSource::File("../meshes/paper-cube.msh".into()),
+        mesh_changes: MeshChanges::default(),
+        motions: Vec::new(),
+        cutting: None,
+        tools: Vec::new(),
+        problem: Problem {
+            regions: vec![Region {
+                group: Some("tissue".into()),
+                density: 1060.0,
+                law: Law::Springs {
+                    youngs_modulus: 3500.0,
+                    rule: SpringRule::Lloyd,
+                    calibrate: false,
+                    damping_ratio: 0.0,
+                },
+                element: Element::P1,
+                tissue: Tissue::default(),
+                from_mesh: FromMesh::default(),
+            }],
+            damping: Rayleigh {
+                mass: 80.0,
+                stiffness: 0.0,
+            },
+            fixed: vec![Fixed {
+                on: "sides".into(),
+                axes: [true; 3],
+            }],
+            moves: Vec::new(),
+            loads: vec![LoadSpec {
+                on: "top".into(),
+                kind: LoadKind::Traction([0.0, 0.0, -500.0]),
+                ramp: Ramp::Step,
+            }],
+            gravity: None,
+        },
+        load_names: vec![None],
+        initial: Vec::new(),
+        probes: vec![ProbePoint {
+            name: "top-centre".into(),
+            at: ProbeAt::Point([0.1, 0.1, 0.2]),
+            quantity: Quantity::Displacement,
+        }],
+        selected: Vec::new(),
+    };
+    let scene = scene("paper-cube.toml");
+    assert_eq!(scene.title(), "The paper's cube, reproduction scene");
+    assert_eq!(scene.subject(), &Subject::Body(Box::new(expected)));
+    assert_eq!(scene.settings().dt, TimeStep::Given(0.02));
+}
+
+/// Every key that the paper's scenes do not use.
+#[test]
+fn every_other_key() {
+    let scene = parse(
+        r#"
+gravity = [0, 0, -9.81]
+mesh.cube = { cells = 4, edge = 0.1, split = "mirrored" }
+
+[[region]]
+group = "a"
+density = 1000
+model = "linear"
+youngs_modulus = 1e4
+poissons_ratio = 0.45
+
+[[region]]
+group = "b"
+density = 1100
+model = "springs"
+youngs_modulus = 2e4
+[region.springs]
+rule = "van-gelder"
+calibrate = true
+damping_ratio = 0.5
+
+[damping]
+stiffness = 1e-3
+
+[[fixed]]
+group = "bottom"
+axes = "zx"
+
+[[load]]
+name = "press"
+group = "top"
+pressure = -20
+ramp = { kind = "sin2", rise = 0.2 }
+[[load]]
+group = "top"
+force = [1, 2, 3]
+ramp = { kind = "pulse", from = 0.1, to = 0.2 }
+[[load]]
+name = "table"
+group = "top"
+force = [1, 2, 3]
+ramp = { kind = "table", times = [0, 1], values = [0.0, 2.0] }
+[[load]]
+group = "top"
+force = [0, 0, 0]
+
+[[initial]]
+static = ["table", "gravity"]
+[[initial]]
+group = "top"
+displacement = [1, 0, 0]
+[[initial]]
+velocity = [0, 1, 0]
+[[initial]]
+stretch = [0.1, 0, 0]
+origin = [1, 0, 0]
+
+[run]
+duration = 2
+samples = 7
+integrator = "rk4"
+dt = 1e-3
+substeps = "auto"
+"#,
+    );
+    let Subject::Body(body) = scene.subject() else {
+        panic!("a body");
+    };
+    assert!(matches!(body.mesh, MeshSource::Cube { cells: 4, .. }));
+    let laws: Vec<Law> = body
+        .problem
+        .regions
+        .iter()
+        .map(|region| region.law)
+        .collect();
+    let springs = Law::Springs {
+        youngs_modulus: 2e4,
+        rule: SpringRule::VanGelder,
+        calibrate: true,
+        damping_ratio: 0.5,
+    };
+    let linear = Law::Linear {
+        youngs_modulus: 1e4,
+        poissons_ratio: 0.45,
+    };
+    assert_eq!(laws, [linear, springs]);
+    assert_eq!(body.problem.damping.stiffness, 1e-3);
+    assert_eq!(body.problem.fixed[0].axes, [true, false, true]);
+    assert_eq!(body.problem.gravity, Some([0.0, 0.0, -9.81]));
+    let ramps: Vec<&Ramp> = body.problem.loads.iter().map(|load| &load.ramp).collect();
+    let table = Ramp::Table {
+        times: vec![0.0, 1.0],
+        values: vec![0.0, 2.0],
+    };
+    let pulse = Ramp::Pulse { from: 0.1, to: 0.2 };
+    assert_eq!(
+        ramps,
+        [&Ramp::Sin2 { rise: 0.2 }, &pulse, &table, &Ramp::Step]
+    );
+    assert_eq!(body.problem.loads[0].kind, LoadKind::Pressure(-20.0));
+    assert_eq!(body.problem.loads[1].kind, LoadKind::Force([1.0, 2.0, 3.0]));
+    let names: Vec<Option<&str>> = body.load_names.iter().map(|name| name.as_deref()).collect();
+    assert_eq!(names, [Some("press"), None, Some("table"), None]);
+    assert_eq!(
+        body.initial,
+        [
+            Initial::Static {
+                loads: vec!["table".into(), "gravity".into()],
+            },
+            Initial::Displacement {
+                group: Some("top".into()),
+                value: [1.0, 0.0, 0.0].map(Formula::from),
+            },
+            Initial::Velocity {
+                group: None,
+                value: [0.0, 1.0, 0.0].map(Formula::from),
+            },
+            Initial::Stretch {
+                group: None,
+                strain: [0.1, 0.0, 0.0],
+                origin: [1.0, 0.0, 0.0],
+            },
+        ]
+    );
+    let options = Options::new().with("substeps", OptionValue::Text("auto".into()));
+    assert_eq!(scene.settings().options, options);
+    assert_eq!(scene.settings().samples, 7);
+}

@@ -1,0 +1,29 @@
+//! Scenes: read, checked, planned and built.
+
+#![cfg(test)]
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "a test fails by panicking"
+)]
+
+mod all_scenes;
+mod bad_scenes;
+mod common;
+mod cuts;
+mod data_of_meshes;
+mod good_scenes;
+mod lips;
+mod load_warnings;
+mod motions;
+mod places;
+mod plans;
+mod probes;
+#[cfg(feature = "implicit")]
+mod proposals;
+#[cfg(feature = "implicit")]
+mod ready_scenes;
+mod simulations;
+mod tools;
+mod warnings;

@@ -1,0 +1,18 @@
+//! The `sinew` command.
+
+mod basics;
+mod converge;
+#[cfg(all(unix, feature = "live"))]
+mod live;
+mod mesh;
+mod new;
+#[cfg(unix)]
+mod outputs;
+mod plan_advice;
+mod replay;
+mod results;
+#[cfg(unix)]
+mod run_folders;
+#[cfg(feature = "implicit")]
+mod scene_reference;
+mod warnings;
