@@ -1,4 +1,4 @@
-//! A time integrator written outside the workspace.
+//! A time integrator written outside sinew's crates.
 //!
 //! A method is a struct that implements [`Integrator`](sinew_core::Integrator): what it declares about
 //! itself, its set-up, its largest stable step, and the steps of a [`Batch`](sinew_core::Batch). The batch

@@ -14,10 +14,9 @@ pub(super) fn dense(matrix: &BlockMatrix) -> Dense {
     let layers = matrix.layers().count();
     let mut rows = zeros(matrix.dofs());
     for (i, row) in rows.iter_mut().enumerate() {
-        for (j, entry) in row.iter_mut().enumerate() {
-            if let Some(block) = matrix.block(i / layers, j / layers) {
-                *entry = block[(i % layers) * layers + j % layers];
-            }
+        for (cell, block) in matrix.row_blocks(i / layers) {
+            let of_layer = &block[i % layers * layers..][..layers];
+            row[cell * layers..][..layers].copy_from_slice(of_layer);
         }
     }
     rows

@@ -1,8 +1,8 @@
 //! Loads that come after a million steps.
 
 use sinew_core::{
-    Integrator, LinearModel, LinearOperators, Load, Options, Ramp, SetupError, StableStep, State,
-    StepError,
+    Integrator, LinearModel, LinearOperators, Load, Options, Ramp, Run, SetupError, SimulateError,
+    StableStep, State, StepError, simulate,
 };
 
 const DT: f64 = 1e-3;
@@ -28,14 +28,16 @@ fn displacement(
     steps: usize,
 ) -> Option<f64> {
     let mut state = State::at_rest(1);
-    for _ in 0..steps {
-        match integrator.step(system, &mut state, DT) {
-            Ok(_) => {}
-            Err(StepError::Inaccurate { .. }) => return None,
-            Err(error) => panic!("{error}"),
-        }
+    let run = Run {
+        dt: DT,
+        steps,
+        divergence_limit: f64::INFINITY,
+    };
+    match simulate(system, integrator, &mut state, &run, &mut ()) {
+        Ok(_) => Some(state.u[0]),
+        Err(SimulateError::Step(StepError::Inaccurate { .. })) => None,
+        Err(error) => panic!("{error}"),
     }
-    Some(state.u[0])
 }
 
 fn methods() -> Vec<(String, Box<dyn sinew_integrators::Stepper>)> {
