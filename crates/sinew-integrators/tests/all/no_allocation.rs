@@ -20,7 +20,7 @@ fn allocations_of_steps(system: &dyn System, id: &str, options: &Options, dt: f6
     let mut state = State::at_rest(system.dofs());
     crate::common::advance(&mut *integrator, system, &mut state, 2, dt);
     CountingAllocator::count(|| {
-        crate::common::advance(&mut *integrator, system, &mut state, 20, dt)
+        crate::common::advance(&mut *integrator, system, &mut state, 20, dt);
     })
 }
 
