@@ -55,7 +55,8 @@ pub(super) fn check() -> Result<(), Failure> {
     finish(&mut run)
 }
 
-/// The manifest of a program that needs the facade and takes every crate as it was packed, under the flags of the workspace.
+/// The manifest of a program that needs the facade and takes every crate as it was packed. What others wrote has the flags of the
+/// workspace and is shared with it; packed crates are built once, for this program alone, and as fast as can be.
 fn manifest(names: &[String], version: &str, workspace: &str) -> String {
     let mut text = format!(
         "[package]\nname = \"consumer\"\nversion = \"0.0.0\"\nedition = \"2024\"\npublish = false\n\n[workspace]\n\n\
@@ -66,7 +67,12 @@ fn manifest(names: &[String], version: &str, workspace: &str) -> String {
         let _ = writeln!(text, "{name} = {{ path = \"{name}-{version}\" }}");
     }
     let profile = workspace.find("[profile.dev]").map(|at| &workspace[at..]);
-    text + "\n" + profile.unwrap_or_default()
+    let lines = profile.unwrap_or_default().lines();
+    for line in lines.filter(|line| !line.starts_with("sinew")) {
+        text.push('\n');
+        text.push_str(line);
+    }
+    text + "\n"
 }
 
 fn write(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
@@ -86,9 +92,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_program_takes_packed_crates_under_the_flags_of_the_workspace() {
+    fn the_program_takes_packed_crates_and_shares_all_others_with_the_workspace() {
         let names = ["sinew".to_owned(), "sinew-core".to_owned()];
-        let workspace = "[workspace]\n\n[profile.release]\nx = 1\n\n[profile.dev]\nopt-level = 1\n";
+        let workspace = "[workspace]\n\n[profile.release]\nx = 1\n\n[profile.dev]\nopt-level = 1\n\n\
+                         [profile.dev.package]\nsinew-fem = { opt-level = 2 }\nsha2 = { opt-level = 1 }\n";
         let text = manifest(&names, "1.2.3", workspace);
         let manifest: toml::Table = text.parse().unwrap();
         assert_eq!(manifest["dependencies"]["sinew"].as_str(), Some("=1.2.3"));
@@ -102,5 +109,8 @@ mod tests {
             Some(1)
         );
         assert!(manifest["profile"].get("release").is_none());
+        let packages = manifest["profile"]["dev"]["package"].as_table();
+        let names: Vec<&str> = packages.unwrap().keys().map(String::as_str).collect();
+        assert_eq!(names, ["sha2"]);
     }
 }

@@ -18,7 +18,7 @@ use crate::Program;
 ///
 /// Its internals (other precision, another numbering, another memory) are free; the
 /// [`State`] stays f64, node-major. Every machine gives the results of [`ReferenceMachine`], to its own
-/// rounding, and the same bits for every way of cutting a run into batches. [`crate::conformance`]
+/// rounding, and the same bits for every way of cutting a run into batches. The module `conformance` (feature `conformance`)
 /// checks that.
 pub trait Machine: Send + std::fmt::Debug {
     /// Its name, as plans and results show it.
