@@ -14,7 +14,8 @@ mod needs;
 mod programs;
 mod trial;
 
-use programs::{finish, text_of};
+pub(crate) use programs::finish;
+use programs::text_of;
 
 /// What goes into the archive beside the command, as `git ls-files` takes it.
 const CONTENT: [&str; 8] = [

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use crate::dist::finish;
 use crate::failure::Failure;
 use crate::repository::root;
 use crate::rules;
@@ -77,14 +78,6 @@ fn manifest(names: &[String], version: &str, workspace: &str) -> String {
 
 fn write(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
     fs::write(folder.join(name), text).map_err(Failure::chore)
-}
-
-fn finish(command: &mut Command) -> Result<(), Failure> {
-    let status = command.status().map_err(Failure::chore)?;
-    match status.success() {
-        true => Ok(()),
-        false => Err(Failure::Chore(format!("{command:?}: {status}"))),
-    }
 }
 
 #[cfg(test)]

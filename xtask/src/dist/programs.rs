@@ -1,11 +1,11 @@
-//! Programs that an archive is made with.
+//! Programs that archives and packages are made with.
 
 use std::process::Command;
 
 use crate::failure::Failure;
 
 /// Runs a program that says itself what is wrong.
-pub(super) fn finish(command: &mut Command) -> Result<(), Failure> {
+pub(crate) fn finish(command: &mut Command) -> Result<(), Failure> {
     let status = command.status().map_err(|error| missing(command, &error))?;
     match status.success() {
         true => Ok(()),
@@ -29,7 +29,7 @@ pub(super) fn text_of(command: &mut Command) -> Result<String, Failure> {
 fn missing(command: &Command, error: &std::io::Error) -> Failure {
     let program = command.get_program().to_string_lossy();
     Failure::Input(format!(
-        "cannot run {program}: {error}; `cargo xtask dist` needs cargo, git and tar"
+        "cannot run {program}: {error}; archives and packages need cargo, git and tar"
     ))
 }
 

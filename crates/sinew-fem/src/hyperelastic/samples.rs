@@ -5,10 +5,10 @@ use super::law::HyperelasticLaw;
 use super::tensor::Tensor;
 
 /// Number of deformations.
-pub(super) const CASES: u64 = 200;
+const CASES: usize = 200;
 
 /// Random numbers by Steele, Lea and Flood's SplitMix64.
-pub(super) struct Random(pub(super) u64);
+pub(super) struct Random(u64);
 
 impl Random {
     /// A number between -1 and 1.
@@ -48,7 +48,7 @@ pub(super) fn deformations<L: HyperelasticLaw>() -> impl Iterator<Item = (Random
             (0.2..3.0).contains(&sided) && middle + last > 0.2
         })
         .map(|(random, h, _)| (random, h))
-        .take(CASES as usize)
+        .take(CASES)
 }
 
 /// 200 pairs of a displacement gradient and a change of it, at which a law can be compared with another program: J from .2 to 3, and
