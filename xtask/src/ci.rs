@@ -72,6 +72,10 @@ const STEPS: &[Step] = &[
         "quick large deformations",
         "xtask bench --nonlinear --quick --out target/ci-nonlinear",
     ),
+    cargo(
+        "quick tools",
+        "xtask bench --hands --quick --out target/ci-hands",
+    ),
     cargo("live page in Chromium", "xtask live-test"),
     cargo("commands of the README", "xtask readme"),
     cargo(

@@ -12,7 +12,7 @@ use super::checks::{
 use super::error::HardError;
 use super::large;
 use super::mark::Asked;
-use crate::results::Mark;
+use crate::results::{Mark, StabilityMap};
 
 /// The cases and rows that marks are taken from.
 pub(crate) struct Measured<'a> {
@@ -46,13 +46,67 @@ fn asked(case: &'static str, asked: &'static str, limit: f64) -> Asked {
     Asked { case, asked, limit }
 }
 
-/// Every mark that can be given, `done` told of each as it begins.
+/// Every mark that can be given on scenes and on bodies, `begins` told of each as it begins.
 pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<Mark> {
+    let mut marks = of_scenes(measured, &mut begins);
+    for tissue in large::all() {
+        if !(measured.quick && tissue.slow) {
+            begins(tissue.asked.case);
+            marks.push(given(tissue.asked, &mut |asked| (tissue.check)(asked)));
+        }
+    }
+    marks
+}
+
+/// The mark that a check gives; failed where the check cannot be made.
+fn given(asked: Asked, check: &mut dyn FnMut(Asked) -> Result<Mark, HardError>) -> Mark {
+    check(asked).unwrap_or_else(|error| asked.not_measured(error.to_string()))
+}
+
+/// The stable step of central difference against every run of the maps: bounded within it, and not beyond 1.1 of it.
+pub(crate) fn of_maps(maps: &[StabilityMap]) -> Mark {
+    let asked = asked(
+        "stability maps, central difference",
+        "bounded within the stable step, unbounded beyond 1.1 of it: no run against it",
+        0.0,
+    );
+    let (mut within, mut beyond, mut against) = (0_u32, 0_u32, 0_u32);
+    for map in maps {
+        let own = map
+            .panels
+            .iter()
+            .filter(|panel| panel.method == "central-difference");
+        for (limit, runs) in own.flat_map(|panel| panel.stable_steps.iter().zip(&panel.runs)) {
+            let Some(limit) = *limit else {
+                return asked.not_measured("a stable step is not known");
+            };
+            for (&dt, run) in map.steps.iter().zip(runs) {
+                if dt <= limit {
+                    within += 1;
+                    against += u32::from(!run.bounded);
+                } else if dt > 1.1 * limit {
+                    beyond += 1;
+                    against += u32::from(run.bounded);
+                }
+            }
+        }
+    }
+    asked
+        .measured(
+            f64::from(against),
+            |count| format!("{count}"),
+            format!("{within} runs within it, {beyond} beyond"),
+        )
+        .and(within > 0 && beyond > 0)
+}
+
+/// The marks on scenes, in the order of the report.
+fn of_scenes(measured: &Measured<'_>, begins: &mut dyn FnMut(&str)) -> Vec<Mark> {
     let mut marks = Vec::new();
     let steps = |full, quick| if measured.quick { quick } else { full };
     let mut give = |asked: Asked, mark: &mut dyn FnMut(Asked) -> Result<Mark, HardError>| {
         begins(asked.case);
-        marks.push(mark(asked).unwrap_or_else(|error| asked.not_measured(error.to_string())));
+        marks.push(given(asked, mark));
     };
 
     let reproduction = asked(
@@ -212,10 +266,41 @@ pub(crate) fn all(measured: &Measured<'_>, mut begins: impl FnMut(&str)) -> Vec<
             mirror::check(asked, measured.case("symmetric-load")?)
         });
     }
-    for tissue in large::all() {
-        if !(measured.quick && tissue.slow) {
-            give(tissue.asked, &mut |asked| (tissue.check)(asked));
-        }
-    }
     marks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::MarkVerdict;
+
+    #[test]
+    fn a_scene_that_was_not_read_fails_its_own_marks_by_name() {
+        let planned = ["nearly-free".to_owned()];
+        let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+        let measured = Measured {
+            cases: &BTreeMap::new(),
+            planned: &planned,
+            rows: &[],
+            folders: [scenes.clone(), scenes.join("hard")],
+            quick: true,
+        };
+        let marks = of_scenes(&measured, &mut |_| ());
+        let free = marks
+            .iter()
+            .find(|mark| mark.case == "nearly free body, pulse")
+            .unwrap();
+        assert_eq!(free.measured, "nearly-free was not read");
+        assert_eq!(free.verdict, MarkVerdict::Fail);
+        let units = marks
+            .iter()
+            .find(|mark| mark.case == "every scene in m, mm, um")
+            .unwrap();
+        assert_eq!(units.verdict, MarkVerdict::Pass, "{}", units.measured);
+    }
+
+    #[test]
+    fn maps_without_runs_pass_nothing() {
+        assert_eq!(of_maps(&[]).verdict, MarkVerdict::Fail);
+    }
 }

@@ -152,6 +152,7 @@ impl HardBench {
             let what = format!("map: {title}");
             progress(Progress::Run { done, of, what });
         });
+        results.marks.push(marks::of_maps(&maps));
         results.maps = maps;
         results.missing.extend(missing);
         Ok(results)

@@ -12,7 +12,11 @@ const ROUNDING: f64 = 1e-11;
 
 /// All marks; `begins` is told of each that takes time.
 pub(super) fn all(rows: &[Row], quick: bool, begins: impl FnMut(&str)) -> Vec<Mark> {
-    let mut marks = vec![energy_never_rises(rows), steps_follow_the_stiffness(rows)];
+    let mut marks = vec![
+        energy_never_rises(rows),
+        steps_follow_the_stiffness(rows),
+        errors_are_those_of_others(rows),
+    ];
     marks.extend(equal_error::marks(quick, begins));
     marks
 }
@@ -78,6 +82,39 @@ fn steps_follow_the_stiffness(rows: &[Row]) -> Mark {
         },
         figure: figure.is_finite().then_some(figure),
         by: format!("the worst of {} runs: {}", own.len(), at(worst)),
+        verdict: MarkVerdict::of(figure <= asked.limit.unwrap_or_default()),
+        ..asked
+    }
+}
+
+/// Errors of an independent implementation of the same methods, at 10 ms.
+const OF_OTHERS: [(&str, f64); 2] = [("newmark", 0.0044), ("cnn-energy", 0.0178)];
+
+/// The pushed cube at 10 ms, beside an independent implementation.
+fn errors_are_those_of_others(rows: &[Row]) -> Mark {
+    let asked = mark(
+        "errors are those of an independent implementation",
+        "two methods on the pushed cube at 10 ms, each error to 3 %".to_owned(),
+        0.03,
+    );
+    let apart = |&(id, known): &(&str, f64)| {
+        let row = rows.iter().find(|row| {
+            row.case == "push" && row.integrator == id && (row.dt - 0.01).abs() < 1e-9
+        })?;
+        Some(((error(row) / known - 1.0).abs(), at(row)))
+    };
+    let apart: Option<Vec<_>> = OF_OTHERS.iter().map(apart).collect();
+    let worst = apart
+        .into_iter()
+        .flatten()
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((figure, by)) = worst else {
+        return asked;
+    };
+    Mark {
+        measured: format!("{} %", percent(figure)),
+        figure: figure.is_finite().then_some(figure),
+        by,
         verdict: MarkVerdict::of(figure <= asked.limit.unwrap_or_default()),
         ..asked
     }

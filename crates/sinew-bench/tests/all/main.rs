@@ -7,7 +7,6 @@
     reason = "a test fails by panicking"
 )]
 
-mod hands;
 mod hard_cases;
 mod kernel_rows;
 mod large_deformations;

@@ -33,6 +33,7 @@ mod convergence;
 mod dense;
 mod everything;
 mod interpreter;
+mod known;
 mod laws;
 mod refusing;
 mod run;
@@ -40,6 +41,8 @@ mod systems;
 #[cfg(test)]
 mod tests;
 mod work;
+
+use std::sync::Arc;
 
 use sinew_core::{Properties, System};
 
@@ -76,6 +79,7 @@ pub struct Method {
     pub omega_dt: f64,
     /// Whether it bounds velocities, so that it need not converge.
     pub bounds: bool,
+    known: Arc<known::Known>,
 }
 
 impl std::fmt::Debug for Method {
@@ -100,6 +104,7 @@ impl Method {
             properties,
             omega_dt: 0.4,
             bounds: false,
+            known: Arc::default(),
         }
     }
 

@@ -1,11 +1,12 @@
 //! A program on a system, and its comparison with the definition.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use sinew_core::{Acceleration, Batch, Inputs, LoadOverStep, State, StepReport, System};
 
 use super::everything::everything;
 use super::interpreter::Interpreter;
+use super::known::Known;
 use super::systems::{Case, Kind, Numbers, case, takes};
 use super::{Make, Method};
 use crate::program::Program;
@@ -29,6 +30,8 @@ pub(super) struct Run {
     pub(super) bounds: bool,
     pub(super) case: Case,
     pub(super) program: Arc<Program>,
+    /// What the definition says of this run and of others of its method.
+    known: Arc<Known>,
 }
 
 impl Method {
@@ -48,6 +51,7 @@ impl Method {
             bounds: self.bounds,
             program: Arc::new(program),
             case,
+            known: Arc::clone(&self.known),
         })
     }
 }
@@ -87,19 +91,26 @@ impl Run {
     }
 
     /// Takes steps by the definition.
-    fn by_definition(&self, steps: usize) -> (State, StepReport) {
-        self.by_definition_from(&self.case.start, steps)
+    fn by_definition(&self, steps: usize) -> Arc<(State, StepReport)> {
+        let run = || self.by_definition_from(&self.case.start, steps);
+        self.known.end(&self.name, steps, run)
     }
 
     /// Growth of the distance between two motions over some steps, relative to their sizes.
     fn amplification(&self, steps: usize) -> f64 {
+        let measure = || self.measured_amplification(steps);
+        self.known.growth(&self.name, steps, measure)
+    }
+
+    fn measured_amplification(&self, steps: usize) -> f64 {
         let start = &self.case.start;
         let mut other = start.clone();
         let mut numbers = Numbers::new();
         for value in other.u.iter_mut().chain(&mut other.v) {
             *value *= 1.0 + APART * (2.0 * numbers.next() - 1.0);
         }
-        let [one, other] = [start, &other].map(|start| self.by_definition_from(start, steps).0);
+        let (one, _) = &*self.by_definition(steps);
+        let (other, _) = self.by_definition_from(&other, steps);
         let apart = |a: &[f64], b: &[f64], start: &[f64]| {
             let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
             differences.fold(0.0, f64::max) / largest(a).max(largest(start)) / APART
@@ -128,7 +139,7 @@ impl Run {
 
     /// This program with every cell's velocity clamped so that most are.
     pub(super) fn clamped(self, steps: usize) -> Self {
-        let (free, _) = self.by_definition(steps);
+        let (free, _) = &*self.by_definition(steps);
         let largest = largest(&free.v).max(largest(&self.case.start.v));
         let layers = self.case.system.layers().count();
         let cells = self.case.start.u.len() / layers;
@@ -136,10 +147,11 @@ impl Run {
         let limits: Arc<[f64]> = (0..cells).map(limit).collect();
         let part = self.case.dt / f64::from(self.program.repeats);
         Self {
-            name: format!("{}, clamped", self.name),
+            name: format!("{}, clamped as of {steps} steps", self.name),
             bounds: true,
             program: Arc::new(self.program.guarded(limits, part)),
             case: self.case,
+            known: self.known,
         }
     }
 
@@ -150,7 +162,7 @@ impl Run {
     /// Compares a machine with the definition, in a motion that makes errors this many times larger.
     pub(super) fn agrees(&self, make: &Make, steps: usize, growth: f64) {
         let (state, work) = self.by(make, &[steps]);
-        let (expected, expected_work) = self.by_definition(steps);
+        let (expected, expected_work) = &*self.by_definition(steps);
         let name = &self.name;
         let allowed = ROUNDING * growth;
         let speed = largest(&expected.v).max(largest(&self.case.start.v));
@@ -169,7 +181,7 @@ impl Run {
             state.acceleration, expected.acceleration,
             "{name}: kind of a"
         );
-        assert_eq!(work, expected_work, "{name}: work");
+        assert_eq!(work, *expected_work, "{name}: work");
     }
 }
 
@@ -198,6 +210,7 @@ pub(super) fn all_runs(methods: &[Method]) -> impl Iterator<Item = Run> {
 
 /// The program with every instruction.
 pub(super) fn everything_runs() -> impl Iterator<Item = Run> {
+    static KNOWN: LazyLock<Arc<Known>> = LazyLock::new(Arc::default);
     Kind::all().into_iter().map(|kind| {
         let case = case(kind, 0.4, LoadOverStep::Smooth);
         Run {
@@ -205,6 +218,7 @@ pub(super) fn everything_runs() -> impl Iterator<Item = Run> {
             bounds: true,
             program: Arc::new(everything(&case.system, case.dt).complete()),
             case,
+            known: Arc::clone(&KNOWN),
         }
     })
 }

@@ -3,7 +3,7 @@
 
 use std::hint::black_box;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use crate::conformance::{self, Make, Method};
 use crate::{LoadAt, Machine, Physics, Program, ReferenceMachine, Register, Sweep};
@@ -44,9 +44,9 @@ fn methods() -> Vec<Method> {
     ]
 }
 
-crate::machine_conformance!(reference, methods(), || Box::new(
-    ReferenceMachine::default()
-));
+static METHODS: LazyLock<Vec<Method>> = LazyLock::new(methods);
+
+crate::machine_conformance!(reference, METHODS, || Box::new(ReferenceMachine::default()));
 
 /// The reference machine with a mistake.
 #[derive(Debug)]
@@ -178,7 +178,7 @@ fn notices(law: Law, mistake: Mistake) -> bool {
             refused: false,
         })
     };
-    catch_unwind(AssertUnwindSafe(|| law(&methods(), &make))).is_err()
+    catch_unwind(AssertUnwindSafe(|| law(&METHODS, &make))).is_err()
 }
 
 fn work_is_counted(_: &[Method], make: &Make) {

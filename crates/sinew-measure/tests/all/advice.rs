@@ -146,11 +146,6 @@ fn on_the_papers_oscillator_it_holds_when_repeated() {
     holds_when_repeated("paper-oscillator.toml", 1e-3);
 }
 
-#[test]
-fn on_the_peers_cube_it_holds_when_repeated() {
-    holds_when_repeated("peers-cube.toml", 1e-2);
-}
-
 /// Methods without set-up whose steps cost sweeps and little else, so that counts compare.
 const SWEEPING: [&str; 4] = [
     "symplectic-euler",

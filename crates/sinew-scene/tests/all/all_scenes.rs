@@ -4,26 +4,19 @@ use std::path::PathBuf;
 
 use sinew_scene::Scene;
 
-fn scenes() -> Vec<PathBuf> {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    let folders = [root.clone(), root.join("ready"), root.join("hard")];
-    let files = folders
-        .iter()
-        .flat_map(|folder| std::fs::read_dir(folder).unwrap());
-    let files = files.map(|entry| entry.unwrap().path());
-    let scenes: Vec<PathBuf> = files
-        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
-        .collect();
-    assert!(scenes.len() > 25, "{}", scenes.len());
-    scenes
-}
+use crate::common::scenes;
 
 #[test]
-fn plans_fit_a_terminal_and_memory_is_foretold_from_the_mesh() {
-    for path in scenes() {
+fn all_are_built_plans_fit_a_terminal_and_memory_is_foretold_from_the_mesh() {
+    let scenes = scenes();
+    let hard = |path: &&PathBuf| path.parent().is_some_and(|folder| folder.ends_with("hard"));
+    assert!(scenes.len() > 25 && scenes.iter().filter(hard).count() >= 14);
+    for path in scenes {
         let scene = Scene::load(&path).unwrap();
+        assert_ne!(scene.title(), "", "{}", path.display());
         let footprint = scene.footprint().unwrap();
-        let simulation = scene.build().unwrap();
+        let simulation = scene.build().unwrap_or_else(|error| panic!("{error}"));
+        assert!(simulation.system().dofs() > 0);
         let plan = simulation.plan();
         for line in plan.to_string().lines() {
             assert!(line.chars().count() <= 100, "{}: {line}", path.display());

@@ -1,13 +1,17 @@
 //! The machines, with the programs of all methods.
 
+use std::sync::LazyLock;
+
 use crate::common::methods::methods;
+use sinew_cnn::conformance::Method;
 use sinew_cnn::{Machine, ReferenceMachine};
 use sinew_machines::{Chosen, Kind, Settings};
 use sinew_sparse::simd::InstructionSet;
 
-sinew_cnn::machine_conformance!(reference, methods(), || Box::new(
-    ReferenceMachine::default()
-));
+/// One list for all machines: the definition is interpreted once.
+static METHODS: LazyLock<Vec<Method>> = LazyLock::new(methods);
+
+sinew_cnn::machine_conformance!(reference, METHODS, || Box::new(ReferenceMachine::default()));
 
 /// The kernels for any matrix, with these instructions where the machine has them.
 fn general(set: InstructionSet) -> Box<dyn Machine> {
@@ -18,16 +22,16 @@ fn general(set: InstructionSet) -> Box<dyn Machine> {
     }))
 }
 
-sinew_cnn::machine_conformance!(portable, methods(), || general(InstructionSet::Portable));
-sinew_cnn::machine_conformance!(avx2, methods(), || general(InstructionSet::Avx2));
-sinew_cnn::machine_conformance!(avx512, methods(), || general(InstructionSet::Avx512));
+sinew_cnn::machine_conformance!(portable, METHODS, || general(InstructionSet::Portable));
+sinew_cnn::machine_conformance!(avx2, METHODS, || general(InstructionSet::Avx2));
+sinew_cnn::machine_conformance!(avx512, METHODS, || general(InstructionSet::Avx512));
 
 /// The suite runs what the methods make: no entry of the list is refused everywhere.
 #[test]
 fn every_method_has_a_program_for_some_system() {
     use sinew_core::{LinearModel, LinearOperators};
     let system = LinearModel::new(LinearOperators::oscillator(0.1, 100.0, 1.0).unwrap());
-    for method in methods() {
+    for method in METHODS.iter() {
         let dt = method.omega_dt / 1000.0_f64.sqrt();
         assert!((method.program)(&system, dt).is_some(), "{}", method.name);
     }

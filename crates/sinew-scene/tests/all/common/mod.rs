@@ -4,7 +4,7 @@
 
 use std::cell::RefCell;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sinew_core::{Outcome, Run, State, simulate};
 use sinew_integrators::Stepper;
@@ -93,4 +93,24 @@ impl CutRun {
 /// The numbers in a row of a CSV file.
 pub(crate) fn numbers(row: &str) -> Vec<f64> {
     row.split(',').map(|cell| cell.parse().unwrap()).collect()
+}
+
+/// The files of all scenes of the repository.
+pub(crate) fn scenes() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let mut scenes = Vec::new();
+    collect(&folder, &mut scenes);
+    scenes.sort();
+    scenes
+}
+
+fn collect(folder: &Path, scenes: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            collect(&path, scenes);
+        } else if path.extension().is_some_and(|end| end == "toml") {
+            scenes.push(path);
+        }
+    }
 }
