@@ -73,25 +73,6 @@ fn is_near(found: f64, expected: f64, tolerance: f64) {
     );
 }
 
-/// Groups that a mesh has beyond what a scene needs are no mistake of the scene.
-#[test]
-fn no_ready_scene_has_a_warning_but_of_spare_groups() {
-    let scenes = scenes_in("scenes/ready");
-    assert!(scenes.len() >= 9, "{scenes:?}");
-    for path in scenes {
-        let warnings = Scene::load(&path).unwrap().build().unwrap().warnings();
-        for warning in warnings {
-            let kind = warning.kind;
-            assert_eq!(
-                kind,
-                WarningKind::UnusedGroups,
-                "{}: {warning}",
-                path.display()
-            );
-        }
-    }
-}
-
 #[test]
 fn every_mesh_is_used_by_a_scene_or_the_verification() {
     let mut unused: BTreeSet<PathBuf> = fs::read_dir(repository("meshes"))
