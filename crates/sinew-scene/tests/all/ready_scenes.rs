@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use sinew_core::{Inputs, State};
 use sinew_fem::Law;
 use sinew_mesh::GroupMembers;
-use sinew_scene::{BodyModel, Scene, Simulation, WarningKind};
+use sinew_scene::{BodyModel, Scene, Simulation};
 
 fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
