@@ -48,8 +48,8 @@ impl Simulation {
         })
     }
 
-    /// The first load of the scene that comes and goes within one step; `None` where there is none, or the
-    /// integrator is exact.
+    /// The first load of the scene that comes and goes within one step, or swings within four; `None` where there is
+    /// none, or the integrator is exact.
     #[must_use]
     pub fn unresolved_load(&self) -> Option<UnresolvedLoad> {
         let integrator = self.integrator().ok()?;
@@ -58,19 +58,23 @@ impl Simulation {
         }
         let (dt, until) = (self.dt(), self.run().steps as f64 * self.dt());
         let shortest = |ramp: &Ramp| {
+            if let Ramp::Sine { frequency, .. } = ramp {
+                return Some((0.25 / frequency, 0.0, Some(1.0 / frequency)));
+            }
             let points = ramp.breakpoints();
             let within = points
                 .windows(2)
                 .filter(|pair| pair[0] < until && pair[1] > 0.0);
-            let lengths = within.map(|pair| (pair[1] - pair[0], pair[0]));
+            let lengths = within.map(|pair| (pair[1] - pair[0], pair[0], None));
             lengths.min_by(|a, b| a.0.total_cmp(&b.0))
         };
         self.loads().iter().enumerate().find_map(|(index, load)| {
-            let (length, from) = shortest(&load.ramp)?;
+            let (length, from, period) = shortest(&load.ramp)?;
             (length < (1.0 - 1e-9) * dt).then(|| UnresolvedLoad {
                 load: self.load_in_words(index),
                 from,
                 length,
+                period,
                 dt,
             })
         })
