@@ -204,6 +204,9 @@ pub enum Fault {
         /// The duration (s).
         duration: f64,
     },
+    /// A state at t = 0 in which a law with memory has no meaning.
+    #[error("the body cannot begin so: {0}")]
+    InitialState(sinew_core::EvaluationError),
     /// A static state that cannot be solved for.
     #[cfg(feature = "implicit")]
     #[error("no static state: {0}")]

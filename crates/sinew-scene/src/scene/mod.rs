@@ -299,9 +299,6 @@ impl Scene {
                 Way::Table(written) => Some(source.resolve(written)),
                 Way::Displacement(..) | Way::Velocity(_) => None,
             }));
-            let factors = motions.iter().map(|motion| &motion.ramp_file);
-            let factors = load_files.iter().chain(factors).flatten();
-            files.extend(factors.map(|written| source.resolve(written)));
             files.extend(tools.iter().filter_map(|tool| match &tool.path {
                 ToolPath::Table(written) => Some(source.resolve(written)),
                 ToolPath::Hold(_) | ToolPath::Velocity(..) => None,
@@ -309,6 +306,9 @@ impl Scene {
             if let Some(Blade::Table(written)) = cutting.as_ref().map(|cutting| &cutting.blade) {
                 files.push(source.resolve(written));
             }
+            let factors = motions.iter().map(|motion| &motion.ramp_file);
+            let factors = load_files.iter().chain(factors).flatten();
+            files.extend(factors.map(|written| source.resolve(written)));
         }
         files
     }
