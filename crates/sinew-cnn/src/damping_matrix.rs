@@ -9,8 +9,8 @@ pub(crate) fn damping_matrix(operators: &LinearOperators) -> BlockMatrix {
     let layers = whole.layers().count();
     for (cell, mass) in operators.mass().chunks_exact(layers).enumerate() {
         // Every row of a pattern has its own cell.
-        let own = whole.row_blocks_mut(cell).find(|(column, _)| *column == cell);
-        for block in own.map(|(_, block)| block) {
+        let blocks = whole.row_blocks_mut(cell);
+        for (_, block) in blocks.filter(|(column, _)| *column == cell) {
             let diagonal = block.iter_mut().step_by(layers + 1);
             for (entry, mass) in diagonal.zip(mass) {
                 *entry += damping.mass * mass;

@@ -550,13 +550,19 @@ mod tests {
                 let t = f64::from(n) * dt;
                 let whole = |to: f64| way_of_sine(rate, phase, to) - way_of_sine(rate, phase, t);
                 let mean = ramp.factor(LoadTime::start_of(t, dt));
-                assert!((mean - whole(t + dt) / dt).abs() < 1e-10, "{frequency} Hz from {t}");
+                assert!(
+                    (mean - whole(t + dt) / dt).abs() < 1e-10,
+                    "{frequency} Hz from {t}"
+                );
                 let ends = LoadTime::at_both_ends(t, dt, 0.5).map(|when| ramp.factor(when));
                 let sum = 0.5 * (ends[0] + ends[1]);
                 assert!((sum - mean).abs() < 1e-10, "{frequency} Hz from {t}");
                 let rate_of = ramp.rate().factor(LoadTime::start_of(t, dt));
                 let change = (ramp.value(t + dt) - ramp.value(t)) / dt;
-                assert!((rate_of - change).abs() < 1e-9 * rate, "{frequency} Hz from {t}");
+                assert!(
+                    (rate_of - change).abs() < 1e-9 * rate,
+                    "{frequency} Hz from {t}"
+                );
                 if n == 0 {
                     let before = way_of_sine(rate, phase, 0.0042);
                     let after = way_of_sine(rate, phase, dt) - before;

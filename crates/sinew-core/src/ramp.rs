@@ -295,7 +295,11 @@ impl Ramp {
     #[must_use]
     pub fn first_jump(&self) -> Option<f64> {
         let variation = self.variation();
-        let size = if variation.is_finite() { variation } else { 1.0 };
+        let size = if variation.is_finite() {
+            variation
+        } else {
+            1.0
+        };
         let rounding = ROUNDING * size;
         let jumps = |at: f64| {
             // The piece that ends here, at its end.
@@ -611,9 +615,17 @@ mod tests {
         assert_eq!(sine(0.7).breakpoints(), [0.0]);
         assert!(sine(0.7).is_constant_between(-1.0, 0.0));
         assert!(!sine(0.7).is_linear_between(0.0, 1e-6));
-        for (frequency, phase) in [(0.0, 0.0), (-1.0, 0.0), (f64::INFINITY, 0.0), (1.0, f64::NAN)] {
+        for (frequency, phase) in [
+            (0.0, 0.0),
+            (-1.0, 0.0),
+            (f64::INFINITY, 0.0),
+            (1.0, f64::NAN),
+        ] {
             let refused = Ramp::Sine { frequency, phase }.check();
-            assert!(matches!(refused, Err(RampError::Sine { .. })), "{refused:?}");
+            assert!(
+                matches!(refused, Err(RampError::Sine { .. })),
+                "{refused:?}"
+            );
         }
     }
 

@@ -118,7 +118,12 @@ impl Integrator for Heun {
 impl Heun {
     fn step(&mut self, step: &Step<'_>, state: &mut State) -> Result<(), StepError> {
         let (t, dt) = (state.t(), step.dt);
-        let Self { a: [a, after], u, v, .. } = self;
+        let Self {
+            a: [a, after],
+            u,
+            v,
+            ..
+        } = self;
         let mass = step.system.mass();
         let load = LoadTime::within(t, dt, 0.0);
         step.net_force(load, 0.0, [&state.u, &state.v, &state.internal], a)?;

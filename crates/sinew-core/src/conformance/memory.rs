@@ -87,12 +87,7 @@ impl System for Maxwell {
     fn internal_variables(&self) -> usize {
         1
     }
-    fn accept(
-        &self,
-        state: &mut State,
-        _inputs: &Inputs,
-        dt: f64,
-    ) -> Result<(), EvaluationError> {
+    fn accept(&self, state: &mut State, _inputs: &Inputs, dt: f64) -> Result<(), EvaluationError> {
         state.internal[0] = Self::elongation(state.internal[0], state.u[0], state.v[0], dt);
         Ok(())
     }
@@ -209,12 +204,7 @@ impl System for Counting {
     fn internal_variables(&self) -> usize {
         2
     }
-    fn accept(
-        &self,
-        state: &mut State,
-        _inputs: &Inputs,
-        dt: f64,
-    ) -> Result<(), EvaluationError> {
+    fn accept(&self, state: &mut State, _inputs: &Inputs, dt: f64) -> Result<(), EvaluationError> {
         state.internal[0] += 1.0;
         state.internal[1] += dt;
         let mut accepted = self.accepted.lock().unwrap_or_else(PoisonError::into_inner);

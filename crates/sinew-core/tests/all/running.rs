@@ -3,10 +3,10 @@
 use std::cell::RefCell;
 
 use sinew_core::{
-    Batch, EnergyBehaviour, Equations, EvaluationError, ForceLaw, ForceModel, Inputs, Integrator, Layers,
-    LoadTime, Moment, Needs, Outcome, Prepared, Properties, RecordError, Recorder, Recorders, Revision,
-    Run, RunReport, SetupError, SimulateError, StableStep, State, StepError, StepReport, Stepped,
-    System, Trial, Verdict, Watch, simulate,
+    Batch, EnergyBehaviour, Equations, EvaluationError, ForceLaw, ForceModel, Inputs, Integrator,
+    Layers, LoadTime, Moment, Needs, Outcome, Prepared, Properties, RecordError, Recorder,
+    Recorders, Revision, Run, RunReport, SetupError, SimulateError, StableStep, State, StepError,
+    StepReport, Stepped, System, Trial, Verdict, Watch, simulate,
 };
 
 /// Two masses of 1 kg, each on a spring of its own (N/m), that refuse to be moved beyond a limit (m).
@@ -403,12 +403,7 @@ impl System for Remembering {
     fn equations(&self) -> Equations<'_> {
         self.springs.equations()
     }
-    fn accept(
-        &self,
-        state: &mut State,
-        _inputs: &Inputs,
-        _dt: f64,
-    ) -> Result<(), EvaluationError> {
+    fn accept(&self, state: &mut State, _inputs: &Inputs, _dt: f64) -> Result<(), EvaluationError> {
         match state.u.iter().find(|u| u.abs() > self.limit) {
             Some(u) => Err(EvaluationError::of_body(format_args!("moved by {u} m"))),
             None => Ok(()),

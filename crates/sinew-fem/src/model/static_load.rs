@@ -57,8 +57,7 @@ impl StaticLoad for ModelLoads<'_> {
         let displacement = self.model.displacement_of(LoadTime::at(0.0), u);
         let cells = &self.model.body.cells;
         let mut following = self.following.iter();
-        following
-            .try_for_each(|pressure| pressure.add_stiffness(factor, cells, &displacement, out))
+        following.try_for_each(|pressure| pressure.add_stiffness(factor, cells, &displacement, out))
     }
 
     fn skew_product(&self, u: &[f64], factor: f64, w: &[f64], out: &mut [f64]) -> bool {

@@ -42,12 +42,7 @@ impl System for Model {
     }
 
     /// Brings memory up to date.
-    fn accept(
-        &self,
-        state: &mut State,
-        inputs: &Inputs,
-        dt: f64,
-    ) -> Result<(), EvaluationError> {
+    fn accept(&self, state: &mut State, inputs: &Inputs, dt: f64) -> Result<(), EvaluationError> {
         let Some(large) = self.large.as_ref().filter(|large| large.variables() > 0) else {
             return Ok(());
         };

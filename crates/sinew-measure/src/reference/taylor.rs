@@ -273,7 +273,11 @@ mod tests {
             while reached < times.len() {
                 reached += series.step(&mut state, &times[reached..], |seen, _| {
                     let exact = under_a_sine(2.0, rate, phase, seen.t());
-                    assert!((seen.u[0] - exact).abs() < 1e-10, "{frequency} Hz at {}", seen.t());
+                    assert!(
+                        (seen.u[0] - exact).abs() < 1e-10,
+                        "{frequency} Hz at {}",
+                        seen.t()
+                    );
                 });
             }
         }

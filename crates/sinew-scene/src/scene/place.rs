@@ -180,9 +180,7 @@ const CYLINDERS: TableDescription = TableDescription {
     meaning: "A straight cylinder, which ends at both ends of its axis.",
     keys: &[&AXIS_FROM, &AXIS_TO, &RADIUS],
     needs: Needs::Any,
-    examples: &[
-        "{ axis_from = [0.1, 0.1, 0.0], axis_to = [0.1, 0.1, 0.2], radius = 0.02 }",
-    ],
+    examples: &["{ axis_from = [0.1, 0.1, 0.0], axis_to = [0.1, 0.1, 0.2], radius = 0.02 }"],
 };
 
 const AXIS_FROM: Key<Vector> = Key::required(

@@ -23,9 +23,7 @@ pub(super) const RAMP: TableDescription = TableDescription {
               1, as the square of a sine, and stays there, `\"pulse\"` is 1 from one time to another and 0 otherwise, and \
               `\"table\"` goes in straight lines between given values, with the first one before and the last one after. Two values \
               at one time are a jump: the second holds from then on.",
-    keys: &[
-        &KIND, &RISE, &FROM, &TO, &TIMES, &VALUES, &SINE, &FILE,
-    ],
+    keys: &[&KIND, &RISE, &FROM, &TO, &TIMES, &VALUES, &SINE, &FILE],
     needs: Needs::OneOf(&[KIND.name, SINE.name, FILE.name]),
     examples: &[
         "{ kind = \"sin2\", rise = 0.2 }",

@@ -394,7 +394,10 @@ mod tests {
             fault("0.1,1\n0.1,0\n0,0\n"),
             "4: t_s = 0 does not come after 0.1, the time of the row before"
         );
-        assert_eq!(fault("0,none"), "2: factor is \"none\": expected a finite number");
+        assert_eq!(
+            fault("0,none"),
+            "2: factor is \"none\": expected a finite number"
+        );
         let (line, fault) = factor("t_s,force_N\n0,0").unwrap_err();
         assert_eq!(
             format!("{line}: {fault}"),

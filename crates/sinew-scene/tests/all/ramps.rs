@@ -40,7 +40,8 @@ fn a_load_that_ends_abruptly_leaves_its_impulse() {
         methods.extend(["newmark", "implicit-euler", "generalized-alpha"]);
     }
     for end in [0.01, 0.01032] {
-        let ramp = format!("{{ kind = \"table\", times = [0.0, {end}, {end}], values = [1, 1, 0] }}");
+        let ramp =
+            format!("{{ kind = \"table\", times = [0.0, {end}, {end}], values = [1, 1, 0] }}");
         for law in ["linear", "neo-hookean"] {
             for method in &methods {
                 let simulation = build(&free(law, &ramp, method, 0.0005));
@@ -95,8 +96,16 @@ fn factors_in_a_file_do_what_the_same_table_does() {
 #[test]
 fn a_part_swings_as_its_sine_says() {
     let folder = tempfile::tempdir().unwrap();
-    for (keys, phase) in [("frequency = 40.0", 0.0), ("frequency = 40.0, phase = -0.3", -0.3)] {
-        let text = free("neo-hookean", "{ kind = \"step\" }", "central-difference", 0.0005);
+    for (keys, phase) in [
+        ("frequency = 40.0", 0.0),
+        ("frequency = 40.0, phase = -0.3", -0.3),
+    ] {
+        let text = free(
+            "neo-hookean",
+            "{ kind = \"step\" }",
+            "central-difference",
+            0.0005,
+        );
         let moved = format!(
             "[[move]]\ngroup = \"top\"\ndisplacement = [0.0, 0.002, 0.0]\nramp = {{ sine = {{ {keys} }} }}\n[run]"
         );
@@ -106,9 +115,10 @@ fn a_part_swings_as_its_sine_says() {
             let expected = 0.002 * (TAU * 40.0 * row[0] + phase).sin();
             assert!((row[2] - expected).abs() < 1e-14, "{row:?}");
         }
-        let jumps = simulation.warnings().iter().any(|warning| {
-            warning.kind == sinew_scene::WarningKind::MotionJumps
-        });
+        let jumps = simulation
+            .warnings()
+            .iter()
+            .any(|warning| warning.kind == sinew_scene::WarningKind::MotionJumps);
         assert_eq!(jumps, phase != 0.0);
     }
 }
@@ -116,7 +126,12 @@ fn a_part_swings_as_its_sine_says() {
 #[test]
 fn a_sine_that_four_steps_do_not_follow_is_named_with_a_step_that_does() {
     let sine = |dt: f64| {
-        let text = free("linear", "{ sine = { frequency = 400.0 } }", "central-difference", dt);
+        let text = free(
+            "linear",
+            "{ sine = { frequency = 400.0 } }",
+            "central-difference",
+            dt,
+        );
         let simulation = build(&text);
         simulation.unresolved_load().map(|load| load.to_string())
     };

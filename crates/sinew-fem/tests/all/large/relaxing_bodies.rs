@@ -212,7 +212,9 @@ fn a_stress_that_is_held_relaxes_as_its_series_whatever_the_step() {
             model.accept(&mut state, Inputs::none(), 0.0).unwrap();
             let first = stresses(&model, &state);
             for _ in 0..steps {
-                model.accept(&mut state, Inputs::none(), 1.0 / f64::from(steps)).unwrap();
+                model
+                    .accept(&mut state, Inputs::none(), 1.0 / f64::from(steps))
+                    .unwrap();
             }
             let left = 1.0 - 0.3 * (1.0 - f64::exp(-20.0)) - 0.2 * (1.0 - f64::exp(-2.0));
             let expected: Vec<[f64; 6]> = first.iter().map(|s| s.map(|s| left * s)).collect();
@@ -271,7 +273,9 @@ fn a_stress_that_grows_evenly_is_exact_for_any_step() {
                 state.u = crate::common::on_cells(&model, |node| {
                     [stretch * mesh.points[node][0], 0.0, 0.0]
                 });
-                model.accept(&mut state, Inputs::none(), 1.0 / f64::from(steps)).unwrap();
+                model
+                    .accept(&mut state, Inputs::none(), 1.0 / f64::from(steps))
+                    .unwrap();
             }
             let left = 210.513_265_076 / 350.0;
             let full = stresses(&elastic, &state);
@@ -293,7 +297,9 @@ fn in_the_long_term_a_body_has_the_long_term_moduli() {
         *problem.regions[0].law.youngs_modulus_mut() *= 0.5;
         let soft = build(&mesh, &problem);
         let mut state = used(&mesh, &model);
-        model.accept(&mut state, Inputs::none(), f64::INFINITY).unwrap();
+        model
+            .accept(&mut state, Inputs::none(), f64::INFINITY)
+            .unwrap();
         let mut expected = vec![[0.0; 6]; mesh.tets.len()];
         soft.stress(0.0, &state.u, &mut expected).unwrap();
         at_most("held", apart(&stresses(&model, &state), &expected), 1e-12);

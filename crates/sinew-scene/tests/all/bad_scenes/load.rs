@@ -251,7 +251,11 @@ fn a_file_of_factors_that_is_not_there_or_none() {
         with("load.csv"),
         @"scene.toml:17: [[load]] 1: <folder>/load.csv: cannot be read: No such file or directory (os error 2)"
     );
-    std::fs::write(folder.path().join("late.csv"), "t_s,factor\n0,0\n0.2,1\n0.1,0\n").unwrap();
+    std::fs::write(
+        folder.path().join("late.csv"),
+        "t_s,factor\n0,0\n0.2,1\n0.1,0\n",
+    )
+    .unwrap();
     insta::assert_snapshot!(
         with("late.csv"),
         @"scene.toml:17: [[load]] 1: <folder>/late.csv:4: t_s = 0.1 does not come after 0.2, the time of the row before"
