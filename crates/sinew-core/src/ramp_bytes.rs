@@ -20,11 +20,9 @@ pub(crate) fn write(ramp: &Ramp, out: &mut Writer) {
         Ramp::Hold { times, values } => (4, &[], [times, values]),
         Ramp::Sine { frequency, phase } => (7, &[*frequency, *phase], [&[], &[]]),
         // `Ramp::check` lets none of the others be scaled.
-        Ramp::Linear
-        | Ramp::Rate(_)
-        | Ramp::Input(_)
-        | Ramp::InputRate(_)
-        | Ramp::Scaled(..) => (5, &[], [&[], &[]]),
+        Ramp::Linear | Ramp::Rate(_) | Ramp::Input(_) | Ramp::InputRate(_) | Ramp::Scaled(..) => {
+            (5, &[], [&[], &[]])
+        }
     };
     out.flags([kind, 0, 0, 0]);
     numbers.iter().for_each(|number| out.number(*number));

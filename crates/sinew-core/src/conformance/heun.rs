@@ -133,9 +133,9 @@ impl Heun {
             v[dof] = state.v[dof] + dt * a[dof];
         }
         if self.is_symplectic {
-            for dof in 0..v.len() {
-                state.v[dof] = v[dof];
-                state.u[dof] += dt * v[dof];
+            state.v.copy_from_slice(v);
+            for (u, v) in state.u.iter_mut().zip(v) {
+                *u += dt * *v;
             }
             return Ok(());
         }

@@ -68,10 +68,22 @@ impl Simulation {
             let lengths = within.map(|pair| (pair[1] - pair[0], pair[0], None));
             lengths.min_by(|a, b| a.0.total_cmp(&b.0))
         };
-        self.loads().iter().enumerate().find_map(|(index, load)| {
-            let (length, from, period) = shortest(&load.ramp)?;
+        // Loads on a body of large deformation are not among those of its matrices.
+        let of_scene = match (self.scene().subject(), self.system().as_linear()) {
+            (Subject::Body(body), None) => Some(body),
+            _ => None,
+        };
+        let ramps: Vec<&Ramp> = match of_scene {
+            Some(body) => body.problem.loads.iter().map(|load| &load.ramp).collect(),
+            None => self.loads().iter().map(|load| &load.ramp).collect(),
+        };
+        ramps.into_iter().enumerate().find_map(|(index, ramp)| {
+            let (length, from, period) = shortest(ramp)?;
             (length < (1.0 - 1e-9) * dt).then(|| UnresolvedLoad {
-                load: self.load_in_words(index),
+                load: match of_scene {
+                    Some(body) => body.load_in_words(index),
+                    None => self.load_in_words(index),
+                },
                 from,
                 length,
                 period,
