@@ -28,10 +28,10 @@ pub trait ElasticLaw: Send + Sync {
     /// The couplings between cells that a tangent may have.
     fn pattern(&self) -> &Arc<Pattern>;
 
-    /// `out = d2W/du2` (N/m) of a kind, on [`ElasticLaw::pattern`].
+    /// `out = d2W/du2` (N/m) of a kind, on [`ElasticLaw::pattern`] or one that has its couplings.
     ///
     /// # Errors
-    /// As [`ElasticLaw::elastic_force`].
+    /// As [`ElasticLaw::elastic_force`], and where `out` has no block for a coupling; its entries are then unspecified.
     fn tangent(
         &self,
         trial: &Trial<'_>,
@@ -65,7 +65,17 @@ pub trait ElasticLaw: Send + Sync {
 
     /// `out -= factor dF/du` (N/m), the symmetric part, with the loads F as far as they depend on the displacement: what Newton's method
     /// adds to the exact tangent.
-    fn add_load_stiffness(&self, _trial: &Trial<'_>, _factor: f64, _out: &mut BlockMatrix) {}
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where `out` has no block for a coupling; its entries are then unspecified.
+    fn add_load_stiffness(
+        &self,
+        _trial: &Trial<'_>,
+        _factor: f64,
+        _out: &mut BlockMatrix,
+    ) -> Result<(), EvaluationError> {
+        Ok(())
+    }
 
     /// `out = -factor dF/du w` (N), the part of the derivative without symmetry: what [`ElasticLaw::add_load_stiffness`] leaves out.
     fn load_skew_product(&self, _trial: &Trial<'_>, _factor: f64, _w: &[f64], out: &mut [f64]) {
@@ -100,9 +110,7 @@ impl ElasticLaw for LinearOperators {
         _kind: TangentKind,
         out: &mut BlockMatrix,
     ) -> Result<(), EvaluationError> {
-        let set = out.set_to(self.stiffness());
-        debug_assert!(set.is_ok(), "a matrix on the law's own pattern");
-        Ok(())
+        Ok(out.set_to(self.stiffness())?)
     }
 
     fn tangent_product(

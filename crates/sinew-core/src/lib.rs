@@ -108,7 +108,7 @@ pub use recorder::{Moment, RecordError, Recorder, Recorders, Verdict};
 pub use revision::Revision;
 pub use scaling::Scaling;
 pub use simulate::{Outcome, Run, RunReport, SimulateError, simulate, simulate_under};
-pub use sinew_sparse::{BlockMatrix, Layers, Pattern, clamp_vector, vectors};
+pub use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern, clamp_vector, vectors};
 pub use state::{Acceleration, Start, State, StepCut, VelocityTime};
 pub use state_bytes::StateBytesError;
 pub use static_load::StaticLoad;

@@ -54,7 +54,17 @@ pub trait System: Send + Sync {
     /// Tells that a step was accepted and the state is its result, `dt` (s) after the one before. Called once per step, or per
     /// part of a step that is cut; laws with memory update the state's internal variables here. By hand it is called for a change that
     /// takes no time, with 0, and for one after which all relaxes, with infinity.
-    fn accept(&self, _state: &mut State, _inputs: &Inputs, _dt: f64) {}
+    ///
+    /// # Errors
+    /// [`EvaluationError`] for a state outside the domain of a law with memory; the internal variables are then unspecified.
+    fn accept(
+        &self,
+        _state: &mut State,
+        _inputs: &Inputs,
+        _dt: f64,
+    ) -> Result<(), EvaluationError> {
+        Ok(())
+    }
 
     /// Whether [`System::accept`] looks at the state. Where it does not, machines that hold u and v in a form
     /// of their own need not write them out after each step.

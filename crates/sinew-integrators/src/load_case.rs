@@ -37,7 +37,10 @@ impl LoadCase {
             Ramp::Table { values, .. } | Ramp::Hold { values, .. } => {
                 values.iter().fold(0.0, |peak, x| x.abs().max(peak))
             }
-            Ramp::Step | Ramp::Sin2 { .. } | Ramp::Pulse { .. } => 1.0,
+            Ramp::Step | Ramp::Sin2 { .. } | Ramp::Sine { .. } | Ramp::Pulse { .. } => 1.0,
+            Ramp::Rate(of) if matches!(**of, Ramp::Sine { .. }) => {
+                of.angular_frequency().unwrap_or(1.0)
+            }
             // Half of what it rises and falls by.
             Ramp::Rate(_) => 0.5 * self.ramp.variation(),
             Ramp::Linear | Ramp::Input(_) | Ramp::InputRate(_) | Ramp::Scaled(..) => 1.0,

@@ -291,6 +291,17 @@ impl BlockMatrix {
             .zip(self.values[range.start * len..range.end * len].chunks_exact(len))
     }
 
+    /// The blocks of one row with their columns, in increasing column order, to be changed.
+    pub fn row_blocks_mut(&mut self, row: usize) -> impl Iterator<Item = (usize, &mut [f64])> {
+        let len = self.layers.block_len();
+        let range = self.pattern.row(row);
+        self.pattern
+            .neighbours(row)
+            .iter()
+            .map(|&column| column as usize)
+            .zip(self.values[range.start * len..range.end * len].chunks_exact_mut(len))
+    }
+
     /// Multiplies every scalar row by its entry of `scale` (length [`BlockMatrix::dofs`]);
     /// rows beyond the end of `scale` stay as they are.
     pub fn scale_rows(&mut self, scale: &[f64]) {

@@ -1,6 +1,6 @@
 //! The tangent as a matrix.
 
-use sinew_core::{BlockMatrix, ElementStiffness, EvaluationError, TangentKind};
+use sinew_core::{AssemblyError, BlockMatrix, ElementStiffness, EvaluationError, TangentKind};
 
 use super::beside::TangentBeside;
 use super::means::{at_edges, means, require, take_dilation};
@@ -13,7 +13,10 @@ use crate::elements::moving_part;
 use crate::hyperelastic::{Deformation, HyperelasticLaw, LawVisitor, Tensor};
 use crate::smoothing::Average;
 
-/// Adds the tangent of a region, on a pattern that has its couplings.
+/// Adds the tangent of a region.
+///
+/// # Errors
+/// [`EvaluationError`] when the law is outside its domain, or the matrix has no block for a coupling.
 pub(super) fn add(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
@@ -78,7 +81,7 @@ impl LawVisitor for Tangents<'_, '_> {
                 let own = OwnTangent::of(&law, &at, left, kind);
                 let beside = beside_of(tet, &at.deformation);
                 sum.average.of(std::iter::once(region.tet(tet)));
-                sum.add(1.0, |change| beside.with(own.on(change), change));
+                sum.add(1.0, |change| beside.with(own.on(change), change))?;
             }
             return Ok(());
         }
@@ -90,20 +93,20 @@ impl LawVisitor for Tangents<'_, '_> {
             let own = OwnTangent::of(&law, &at, left, kind);
             let beside = beside_of(tet, &at.deformation);
             sum.average.of(std::iter::once(region.tet(tet)));
-            sum.add(1.0, |change| beside.with(own.on(change), change));
+            sum.add(1.0, |change| beside.with(own.on(change), change))?;
         }
         for (edge, average) in region.edge_averages().iter().enumerate() {
             let at = at_edges::<f64, L>(region, &law, edge, &scratch.gradients, &relaxing)?;
             let tangent = EdgeTangent::of(&law, &at, (region, &relaxing, edge), kind);
             sum.average.clone_from(average);
-            sum.add(region.edge_share / 6.0, |change| tangent.on(change));
+            sum.add(region.edge_share / 6.0, |change| tangent.on(change))?;
         }
         for patch in 0..region.patches.count() {
             take_dilation(region, &law, patch, scratch, &mut sum.average);
             let lambda = region.stiffness_of_patch(patch) * lambda;
             let lambda = relaxing.factor_of_dilation() * lambda;
             sum.average.stiffness(1.0, [lambda, 0.0], &mut sum.whole);
-            sum.add_whole();
+            sum.add_whole()?;
         }
         Ok(())
     }
@@ -111,7 +114,11 @@ impl LawVisitor for Tangents<'_, '_> {
 
 impl Sum<'_> {
     /// Adds `V g_aJ H_iJkL g_bL` between the nodes of the average, for a share of its volume V.
-    fn add(&mut self, share: f64, tangent: impl Fn(Tensor<f64>) -> Tensor<f64>) {
+    fn add(
+        &mut self,
+        share: f64,
+        tangent: impl Fn(Tensor<f64>) -> Tensor<f64>,
+    ) -> Result<(), AssemblyError> {
         let average = &self.average;
         let volume = share * average.volume;
         let columns = 3 * average.nodes.len();
@@ -129,19 +136,17 @@ impl Sum<'_> {
                 }
             }
         }
-        self.add_whole();
+        self.add_whole()
     }
 
-    fn add_whole(&mut self) {
+    fn add_whole(&mut self) -> Result<(), AssemblyError> {
         moving_part(
             &self.whole,
             &self.average.nodes,
             self.cells,
             &mut self.moving,
         );
-        let added = self
-            .out
-            .add_element(&self.moving.cells, &self.moving.matrix);
-        debug_assert!(added.is_ok(), "the pattern was made of the same sets");
+        self.out
+            .add_element(&self.moving.cells, &self.moving.matrix)
     }
 }

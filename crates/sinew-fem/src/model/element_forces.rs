@@ -219,10 +219,7 @@ impl<T: Vectors + ElementPrecision> ElementSweep<T> for Sweep<T> {
         if self.moved.is_empty() {
             return Ok(());
         }
-        require_inputs(self.motions.ramps(), when.inputs()).map_err(|error| EvaluationError {
-            element: 0,
-            reason: error.to_string(),
-        })?;
+        require_inputs(self.motions.ramps(), when.inputs()).map_err(EvaluationError::of_body)?;
         let at = self.motions.at(when);
         for (node, position) in &self.moved {
             let [x, y, z] = self.motions.field(&at, 0, *node).map(<T as Real>::of);
@@ -323,10 +320,7 @@ impl<T: Vectors + ElementPrecision> ElementSweep<T> for Sweep<T> {
             .map(|forces| forces.make_alone(displacement));
         match refused {
             Some(Err(error)) => error,
-            Some(Ok(())) | None => EvaluationError {
-                element: 0,
-                reason: "its law has no meaning there".to_owned(),
-            },
+            Some(Ok(())) | None => EvaluationError::of_body("its law has no meaning there"),
         }
     }
 }

@@ -72,11 +72,7 @@ impl Model {
         out: &mut [[f64; 4]],
     ) -> Result<(), EvaluationError> {
         let field = self.at_nodes(when, order, Some(values));
-        let field = field.map_err(|error| EvaluationError {
-            element: 0,
-            reason: error.to_string(),
-        })?;
-        fill(out, field);
+        fill(out, field.map_err(EvaluationError::of_body)?);
         Ok(())
     }
 
@@ -294,8 +290,7 @@ impl ElasticLaw for Model {
         kind: TangentKind,
         out: &mut BlockMatrix,
     ) -> Result<(), EvaluationError> {
-        let set = out.set_to(self.operators.stiffness());
-        debug_assert!(set.is_ok(), "linear regions couple no others");
+        out.set_to(self.operators.stiffness())?;
         self.at_trial((trial.load, trial.u), |large, scratch| {
             large.add_tangent(scratch, past(trial), kind, &self.body.cells, out)
         })
@@ -336,15 +331,20 @@ impl ElasticLaw for Model {
         !self.following.is_empty()
     }
 
-    fn add_load_stiffness(&self, trial: &Trial<'_>, factor: f64, out: &mut BlockMatrix) {
+    fn add_load_stiffness(
+        &self,
+        trial: &Trial<'_>,
+        factor: f64,
+        out: &mut BlockMatrix,
+    ) -> Result<(), EvaluationError> {
         if self.following.is_empty() {
-            return;
+            return Ok(());
         }
         let displacement = self.displacement_of(trial.load, trial.u);
-        for pressure in &*self.following {
+        self.following.iter().try_for_each(|pressure| {
             let factor = factor * pressure.factor(trial.load);
-            pressure.add_stiffness(factor, &self.body.cells, &displacement, out);
-        }
+            pressure.add_stiffness(factor, &self.body.cells, &displacement, out)
+        })
     }
 
     fn load_skew_product(&self, trial: &Trial<'_>, factor: f64, w: &[f64], out: &mut [f64]) {

@@ -1,8 +1,9 @@
 //! The traits by which integrators see a model.
 
 use sinew_core::{
-    Contact, ElementStiffness, Elements, Energy, Equations, Inputs, Layers, LinearOperators,
-    LinearSystem, LoadTime, Revision, Scales, State, System, element_omegas_squared,
+    Contact, ElementStiffness, Elements, Energy, Equations, EvaluationError, Inputs, Layers,
+    LinearOperators, LinearSystem, LoadTime, Revision, Scales, State, System,
+    element_omegas_squared,
 };
 
 use super::Model;
@@ -40,20 +41,19 @@ impl System for Model {
         self.large.as_ref().map_or(0, |large| large.variables())
     }
 
-    /// Brings memory up to date; where the law has no meaning, which the next evaluation refuses, it stays.
-    fn accept(&self, state: &mut State, inputs: &Inputs, dt: f64) {
+    /// Brings memory up to date.
+    fn accept(&self, state: &mut State, inputs: &Inputs, dt: f64) -> Result<(), EvaluationError> {
         let Some(large) = self.large.as_ref().filter(|large| large.variables() > 0) else {
-            return;
+            return Ok(());
         };
         let when = LoadTime::at(state.t()).under(inputs);
         let State { u, internal, .. } = state;
-        let Ok(displacement) = self.at_nodes(when, 0, Some(u)) else {
-            return;
-        };
+        let displacement = self.at_nodes(when, 0, Some(u));
+        let displacement = displacement.map_err(EvaluationError::of_body)?;
         large.with_scratch(|scratch| {
             fill(&mut scratch.displacement, displacement);
-            let _ = large.remember(scratch, dt, internal);
-        });
+            large.remember(scratch, dt, internal)
+        })
     }
 
     fn contact(&self) -> Option<&dyn Contact> {

@@ -1,13 +1,15 @@
 //! The motion of a linear system by Faber series of its exponential.
 
+use std::f64::consts::PI;
+
 use sinew_core::spectrum::Spectrum;
 use sinew_core::vectors::add_scaled;
 use sinew_core::{Clock, LinearOperators, State};
 
 use super::faber::Ellipse;
+use super::fastest_turn;
 
-/// Derivatives of a load's factor that count: between breakpoints a factor turns by at most pi, and
-/// pi^32/32! is 3e-20.
+/// Derivatives of a load's factor that count: in a step a factor turns by at most pi, and pi^32/32! is 3e-20.
 const DERIVATIVES: usize = 32;
 
 /// Share by which the ellipse is larger than the spectrum, whose ends are found from inside.
@@ -77,7 +79,7 @@ impl<'a> Expansion<'a> {
         Self {
             operators,
             ellipse,
-            longest_step: reach / ellipse.capacity,
+            longest_step: (reach / ellipse.capacity).min(PI / fastest_turn(operators)),
             breakpoints,
             factors: [factors.clone(), factors],
             now: at_rest.clone(),

@@ -22,6 +22,7 @@ mod plans;
 mod probes;
 #[cfg(feature = "implicit")]
 mod proposals;
+mod ramps;
 #[cfg(feature = "implicit")]
 mod ready_scenes;
 mod simulations;

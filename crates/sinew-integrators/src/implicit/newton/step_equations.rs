@@ -154,7 +154,7 @@ impl Equations for StepEquations<'_> {
             // The combination multiplies the tangent by k + d beta, loads by k.
             let [d, k] = self.unknown.coefficients;
             let share = k / (k + d * self.law.damping().stiffness);
-            self.law.add_load_stiffness(&self.trial(), share, out);
+            self.law.add_load_stiffness(&self.trial(), share, out)?;
         }
         Ok(())
     }
