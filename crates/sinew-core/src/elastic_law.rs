@@ -51,6 +51,20 @@ pub trait ElasticLaw: Send + Sync {
         out: &mut [f64],
     ) -> Result<(), EvaluationError>;
 
+    /// `out = S w` (N), S being the matrix by which stable steps go, symmetric: the exact tangent, with what loads that follow the surface add to it, and with
+    /// parts that are idle but may act before the next step as if they did. About two sweeps.
+    ///
+    /// # Errors
+    /// As [`ElasticLaw::elastic_force`].
+    fn stiffest_product(
+        &self,
+        trial: &Trial<'_>,
+        w: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        self.tangent_product(trial, TangentKind::Exact, w, out)
+    }
+
     /// Writes a symmetric positive semidefinite block (N/m, row-major, layers each way) for every cell: its own block of the tangent, or more
     /// where that has a negative eigenvalue.
     ///

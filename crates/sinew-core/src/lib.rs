@@ -38,6 +38,7 @@ mod elements;
 mod energy;
 mod evaluation_error;
 mod fingerprint;
+mod following;
 mod force_model;
 mod force_record;
 mod gauss;

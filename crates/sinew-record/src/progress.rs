@@ -20,6 +20,40 @@ pub(crate) struct Progress {
     pub(crate) kinetic: [f64; 2],
     /// The largest sum of kinetic and elastic energy (J), and the largest remainder of the balance.
     pub(crate) balance: [f64; 2],
+    #[serde(default)]
+    pub(crate) crept: Crept,
+}
+
+/// Energy (J) that comes in little by little, by the remainder of the balance while no support moves: work of supports, a mean of the forces at two rows, is off by some
+/// per cent where they are far apart.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Crept {
+    /// Mean remainder over the last rows: energies of a leapfrog swing from step to step.
+    mean: f64,
+    /// Remainder and work of supports when one moved last.
+    before: f64,
+    supports: f64,
+    /// The most by which the mean rose since.
+    pub(crate) most: f64,
+}
+
+impl Crept {
+    /// Rows that the mean is taken over.
+    const ROWS: f64 = 8.0;
+
+    /// Share of the energy that supports which rest do not bring in from row to row.
+    const AT_REST: f64 = 1e-4;
+
+    /// Takes up a row, with the largest energy so far.
+    pub(crate) fn see(&mut self, remainder: f64, supports: f64, energy: f64) {
+        if (supports - self.supports).abs() > Self::AT_REST * energy {
+            (self.mean, self.before) = (remainder, remainder);
+        } else {
+            self.mean += (remainder - self.mean) / Self::ROWS;
+            self.most = self.most.max(self.mean - self.before);
+        }
+        self.supports = supports;
+    }
 }
 
 /// Bytes of the files that grow.

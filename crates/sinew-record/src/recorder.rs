@@ -168,7 +168,9 @@ impl RunRecorder<'_> {
             *kinetic = [kinetic[0].max(row.kinetic), row.kinetic];
             let [most, made] = self.progress.balance;
             let energy = row.kinetic + row.elastic;
-            self.progress.balance = [most.max(energy), made.max(row.remainder)];
+            let most = most.max(energy);
+            self.progress.balance = [most, made.max(row.remainder)];
+            self.progress.crept.see(row.remainder, row.supports, most);
             tables::energy_row(&mut self.line, &row);
             self.tables.energy.push(&self.line)?;
             if let (Some(reactions), Some(file)) = (&mut self.reactions, &mut self.tables.reactions)

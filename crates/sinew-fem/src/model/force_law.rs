@@ -233,8 +233,7 @@ impl ForceLaw for Model {
         };
         let mut failed = false;
         let mut product = |x: &[f64], out: &mut [f64]| {
-            let product = self.product(&trial, Wanted::Stiffest, x, out);
-            self.add_load_product(&trial, (Part::Symmetric, 1.0), x, out);
+            let product = self.stiffest_product(&trial, x, out);
             failed |= product.is_err() || !out.iter().all(|value| value.is_finite());
         };
         let largest = |product: &mut dyn FnMut(&[f64], &mut [f64])| match about {
@@ -304,6 +303,17 @@ impl ElasticLaw for Model {
         out: &mut [f64],
     ) -> Result<(), EvaluationError> {
         self.product(trial, Wanted::Kind(kind), w, out)
+    }
+
+    fn stiffest_product(
+        &self,
+        trial: &Trial<'_>,
+        w: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        self.product(trial, Wanted::Stiffest, w, out)?;
+        self.add_load_product(trial, (Part::Symmetric, 1.0), w, out);
+        Ok(())
     }
 
     fn node_blocks(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {

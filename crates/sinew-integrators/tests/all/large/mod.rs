@@ -1,6 +1,7 @@
 //! Large deformation.
 
 #[cfg(feature = "implicit")]
+mod compressed;
 mod following_pressure;
 mod large_motion;
 #[cfg(feature = "implicit")]
