@@ -8,6 +8,7 @@ use sinew_core::{
 use super::Model;
 use crate::large::fill;
 use crate::material::Material;
+use crate::motion::Field;
 use crate::parts::WholePart;
 use crate::tetra;
 
@@ -47,7 +48,7 @@ impl System for Model {
         };
         let when = LoadTime::at(state.t()).under(inputs);
         let State { u, internal, .. } = state;
-        let Ok(displacement) = self.at_nodes(when, 0, Some(u)) else {
+        let Ok(displacement) = self.at_nodes(when, Field::Displacement, Some(u)) else {
             return;
         };
         large.with_scratch(|scratch| {
@@ -139,7 +140,7 @@ impl Model {
         if u.len() != self.dofs() {
             return None;
         }
-        let displacement = self.at_nodes(when, 0, Some(u)).ok()?;
+        let displacement = self.at_nodes(when, Field::Displacement, Some(u)).ok()?;
         let moved = move |node: u32| {
             let [x, y, z] = self.mesh.points[node as usize];
             let [ux, uy, uz] = displacement(node);
