@@ -21,7 +21,7 @@ const FEW_RADIANS: f64 = 2.0;
 /// A load that is smooth over the window is taken at the instant. One that jumps or has a kink
 /// inside is replaced by a mean over the window, weighted so that its impulse arrives however it varies
 /// between two instants, and so that a method keeps the order that it has for smooth loads, up
-/// to order 2.
+/// to order 2. Places of supports ([`Ramp::Position`]) are taken at the instant whatever the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadTime<'a> {
     t: f64,
@@ -152,6 +152,20 @@ impl<'a> LoadTime<'a> {
         self.t
     }
 
+    /// Times (s) on both sides of the instant, inside the window by a rounding; the same where there is one side only.
+    fn beside(self) -> [f64; 2] {
+        let (from, to) = match self.window {
+            Window::Instant => return [self.t; 2],
+            Window::Smooth { from, to } => return [0.5 * (from + to); 2],
+            _ => self.span(),
+        };
+        let slack = Clock::ROUNDING * from.abs().max(to.abs());
+        match to - from > 2.0 * slack {
+            true => [-slack, slack].map(|side| (self.t + side).clamp(from + slack, to - slack)),
+            false => [0.5 * (from + to); 2],
+        }
+    }
+
     /// Start and end (s) of the time in which loads matter: the window, or the instant.
     #[must_use]
     pub fn span(self) -> (f64, f64) {
@@ -176,8 +190,10 @@ impl Ramp {
     #[must_use]
     pub fn factor(&self, when: LoadTime<'_>) -> f64 {
         let LoadTime { t, window, inputs } = when;
-        if let Self::Input(_) | Self::InputRate(_) = self {
-            return self.known(inputs).factor(when);
+        match self {
+            Self::Input(_) | Self::InputRate(_) => return self.known(inputs).factor(when),
+            Self::Position(of) => return of.known(inputs).place(when),
+            _ => {}
         }
         let (from, to) = match window {
             Window::Instant => return self.value(t),
@@ -197,7 +213,9 @@ impl Ramp {
             Window::Hat { .. } => 2.0 * (t - from).max(to - t),
             _ => to - from,
         };
-        if self.is_smooth_in_steps(from, to, length) {
+        // Methods that take means over a step move by them: the velocity of a support is then the way that it goes over the time.
+        let is_way = matches!((self, window), (Self::Rate(_), Window::Mean { .. }));
+        if !is_way && self.is_smooth_in_steps(from, to, length) {
             // The mean of a line is its value at the centre of the weights. Taken at the instant, it would
             // not fit the means on both sides of a kink, and the impulse of a table would depend on
             // where its kinks fall.
@@ -229,6 +247,44 @@ impl Ramp {
             }
             _ => self.integral(from, to, |_| 1.0) / length,
         }
+    }
+
+    /// The value at the instant, through all jumps and kinks: at either end of a window that inside, and at a jump in the midst of
+    /// one the mean of both sides. For places of supports, which follow no input ([`Ramp::known`]).
+    #[must_use]
+    pub fn place(&self, when: LoadTime<'_>) -> f64 {
+        let value = |at: f64| self.derivative_of_piece(0, at, when.t);
+        let [before, after] = when.beside();
+        match before == after {
+            true => value(after),
+            false => 0.5 * (value(before) + value(after)),
+        }
+    }
+
+    /// The second derivative (1/s^2) at the instant, as [`Ramp::place`]. A kink inside a window adds its change of slope over the
+    /// time, with weights that fall linearly from the instant to 0 at both ends: at the centre of a window of two steps this is the second
+    /// difference of the values, and added up over steps nothing of a change of speed is lost.
+    #[must_use]
+    pub fn bend(&self, when: LoadTime<'_>) -> f64 {
+        let LoadTime { t, .. } = when;
+        let [_, after] = when.beside();
+        let smooth = self.derivative_of_piece(2, after, t);
+        let (from, to) = when.span();
+        let slack = Clock::ROUNDING * from.abs().max(to.abs());
+        let next = |after: f64| self.breakpoint_between(after + slack, to - slack);
+        let slope = |from: f64, to: f64, t: f64| self.derivative_of_piece(1, 0.5 * (from + to), t);
+        let (mut sum, mut start, mut kink) = (0.0, from, next(from));
+        while let Some(at) = kink {
+            let following = next(at);
+            let change = slope(at, following.unwrap_or(to), at) - slope(start, at, at);
+            let weight = match at < t {
+                true => (at - from) / (t - from),
+                false => (to - at) / (to - t),
+            };
+            sum += 2.0 / (to - from) * weight * change;
+            (start, kink) = (at, following);
+        }
+        smooth + sum
     }
 
     /// Whether a step over `from`..`to` (s) may take the value as it finds it: no breakpoint lies
@@ -453,16 +509,98 @@ mod tests {
             let way = if window == 4 { 0.975 } else { 1.0 };
             assert!((found - way).abs() < 1e-12, "window {window}: {found}");
         }
-        // A long rise is sampled, with means at its two kinks: the error falls as dt^2.
+        // A long rise is sampled, with means at its two kinks, where a method does not move by means: the error falls as dt^2.
         let of = Ramp::Sin2 { rise: 0.713 };
         let errors =
             |dt: f64| sums(dt, |when| of.rate().factor(when)).map(|found| (found - 1.0).abs());
         for (window, (coarse, fine)) in errors(0.02).into_iter().zip(errors(0.005)).enumerate() {
+            let is_way = window < 2;
             assert!(
-                coarse < 2e-3 && fine < coarse / 10.0,
+                if is_way {
+                    coarse.max(fine) < 1e-12
+                } else {
+                    coarse < 2e-3 && fine < coarse / 10.0
+                },
                 "window {window}: {coarse} {fine}"
             );
         }
+    }
+
+    #[test]
+    fn a_place_is_that_of_the_instant_whatever_the_window() {
+        let dt = 0.05;
+        let table = Ramp::Table {
+            times: vec![0.013, 0.021, 0.1, 0.213, 0.7],
+            values: vec![0.0, 3.0, -1.0, 2.0, 2.5],
+        };
+        let rises = [0.03, 0.4].map(|rise| Ramp::Sin2 { rise });
+        for of in [table, Ramp::Linear].into_iter().chain(rises) {
+            let place = Ramp::Position(Box::new(of.clone()));
+            for t in (0..15).map(|n| f64::from(n) * dt) {
+                let [start, end] = LoadTime::at_both_ends(t, dt, 0.7);
+                for (when, at) in [
+                    (LoadTime::start_of(t, dt), t),
+                    (LoadTime::end_of(t, dt), t + dt),
+                    (LoadTime::within(t, dt, 0.3), t + 0.3 * dt),
+                    (LoadTime::around(t, dt, dt), t),
+                    (LoadTime::around(t, 0.0, dt), t),
+                    (LoadTime::smooth_in(t, t, dt), t),
+                    (LoadTime::at(t), t),
+                    (start, t),
+                    (end, t + dt),
+                ] {
+                    // Over a kink no window is smooth.
+                    if when != LoadTime::smooth_in(t, t, dt) || of.is_smooth_between(t, t + dt) {
+                        let off = (place.factor(when) - of.value(at)).abs();
+                        assert!(off < 1e-13, "{of:?} {when:?}: {off:e}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_place_that_jumps_is_that_inside_the_step() {
+        let place = Ramp::Position(Box::new(pulse(0.1, 0.3)));
+        let factor = |when: LoadTime<'_>| place.factor(when);
+        assert_eq!(factor(LoadTime::end_of(0.05, 0.05)), 0.0);
+        assert_eq!(factor(LoadTime::start_of(0.1, 0.05)), 1.0);
+        // What a leapfrog takes: the mean of both sides.
+        assert_eq!(factor(LoadTime::around(0.1, 0.05, 0.05)), 0.5);
+        assert_eq!(factor(LoadTime::around(0.1, 0.0, 0.05)), 1.0);
+        assert_eq!(factor(LoadTime::at(0.1)), 1.0);
+    }
+
+    #[test]
+    fn bends_over_steps_add_up_to_the_speed_gained() {
+        let dt = 0.05;
+        let around = |n: i32| LoadTime::around(f64::from(n) * dt, dt, dt);
+        for spacing in [0.05, 0.0125, 0.0173, 0.31] {
+            // From rest to rest along a parabola between.
+            let rows = (0..).map(|row| 0.1 + f64::from(row) * spacing);
+            let times: Vec<f64> = rows.take_while(|t| *t < 0.8).collect();
+            let values: Vec<f64> = times.iter().map(|t| (t - 0.1).powi(2)).collect();
+            let table = Ramp::Table {
+                times: [&times[..], &[0.9, 1.0]].concat(),
+                values: [&values[..], &[1.0, 1.0]].concat(),
+            };
+            let gained: f64 = (0..=20).map(|n| dt * table.bend(around(n))).sum();
+            assert!(gained.abs() < 1e-12, "{spacing}: {gained:e}");
+            let kink = Ramp::Table {
+                times: vec![0.0, 0.3 + spacing, 2.0],
+                values: vec![0.0, 0.0, 3.4 - 2.0 * spacing],
+            };
+            let gained: f64 = (0..=20).map(|n| dt * kink.bend(around(n))).sum();
+            assert!((gained - 2.0).abs() < 1e-12, "{spacing}: {gained:e}");
+            if spacing == dt {
+                let second = table.bend(around(8));
+                assert!((second - 2.0).abs() < 1e-12, "{second}");
+            }
+        }
+        let rise = Ramp::Sin2 { rise: 0.4 };
+        let mut smooth = [0.0; 3];
+        rise.derivatives_after(3.0 * dt, &mut smooth);
+        assert_eq!(rise.bend(around(3)), smooth[2]);
     }
 
     #[test]

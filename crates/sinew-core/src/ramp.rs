@@ -58,6 +58,9 @@ pub enum Ramp {
     InputRate(Channel),
     /// Another ramp that follows no input, times a factor.
     Scaled(Box<Ramp>, Scaling),
+    /// Another ramp as the place of a support. A step takes it where the support is at the step's own instant, through jumps
+    /// and kinks too: a mean over the step keeps the impulse of a force, and puts a support where it is not.
+    Position(Box<Ramp>),
 }
 
 /// Reasons for which a ramp is refused.
@@ -152,13 +155,15 @@ impl Ramp {
             }),
             Self::Linear | Self::Input(_) | Self::InputRate(_) => Ok(()),
             Self::Rate(of) => match **of {
-                Self::Rate(_) | Self::Input(_) | Self::InputRate(_) | Self::Scaled(..) => {
-                    Err(RampError::RateOf { of: of.describe() })
-                }
+                Self::Rate(_)
+                | Self::Input(_)
+                | Self::InputRate(_)
+                | Self::Scaled(..)
+                | Self::Position(_) => Err(RampError::RateOf { of: of.describe() }),
                 _ => of.check(),
             },
             Self::Scaled(of, Scaling { times, factors }) => match **of {
-                Self::Input(_) | Self::InputRate(_) | Self::Scaled(..) => {
+                Self::Input(_) | Self::InputRate(_) | Self::Scaled(..) | Self::Position(_) => {
                     Err(RampError::FactorOf { of: of.describe() })
                 }
                 _ if times.is_empty() && factors.is_empty() => of.check(),
@@ -166,6 +171,16 @@ impl Ramp {
             },
             Self::Table { times, values } => check_points(times, values, 2),
             Self::Hold { times, values } => check_points(times, values, 1),
+            Self::Position(of) => of.check(),
+        }
+    }
+
+    /// The factor over time alone, however steps take it.
+    #[must_use]
+    pub fn course(&self) -> &Self {
+        match self {
+            Self::Position(of) => of.course(),
+            own => own,
         }
     }
 
@@ -174,6 +189,7 @@ impl Ramp {
     pub fn rate(&self) -> Self {
         match self {
             Self::Input(channel) => Self::InputRate(*channel),
+            Self::Position(of) => of.rate(),
             of => Self::Rate(Box::new(of.clone())),
         }
     }
@@ -196,13 +212,14 @@ impl Ramp {
             Self::Input(channel) => format!("by input {}", channel.0),
             Self::InputRate(channel) => format!("by the rate of input {}", channel.0),
             Self::Scaled(of, _) => format!("{}, times a factor", of.describe()),
+            Self::Position(of) => of.describe(),
         }
     }
 
     /// Whether it follows an input, and so is known only as it happens.
     #[must_use]
     pub fn is_input(&self) -> bool {
-        matches!(self, Self::Input(_) | Self::InputRate(_))
+        matches!(self.course(), Self::Input(_) | Self::InputRate(_))
     }
 
     /// The factor at time `t` (s); at a jump, the value after it.
@@ -220,7 +237,7 @@ impl Ramp {
     }
 
     /// A derivative (1/s^order) of the smooth piece that holds at `at` (s), at time `t` (s).
-    fn derivative_of_piece(&self, order: u32, at: f64, t: f64) -> f64 {
+    pub(crate) fn derivative_of_piece(&self, order: u32, at: f64, t: f64) -> f64 {
         match (self, order) {
             (Self::Step, 0) => f64::from(at >= 0.0),
             (Self::Sin2 { rise }, _) if (0.0..*rise).contains(&at) => {
@@ -266,6 +283,7 @@ impl Ramp {
             (Self::Linear, 1) => f64::from(at >= 0.0),
             (Self::Rate(of), _) => of.derivative_of_piece(order + 1, at, t),
             (Self::Scaled(of, scaling), _) => scaling.at(at) * of.derivative_of_piece(order, at, t),
+            (Self::Position(of), _) => of.derivative_of_piece(order, at, t),
             _ => 0.0,
         }
     }
@@ -324,6 +342,7 @@ impl Ramp {
             Self::Sine { .. } | Self::Linear => f64::INFINITY,
             Self::Input(_) | Self::InputRate(_) | Self::Scaled(..) => f64::INFINITY,
             Self::Rate(of) => of.variation_of_rate(),
+            Self::Position(of) => of.variation(),
             Self::Table { values, .. } | Self::Hold { values, .. } => {
                 let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
                 values.first().map_or(0.0, |first| first.abs()) + steps.sum::<f64>()
@@ -350,6 +369,7 @@ impl Ramp {
             }
             Self::Sine { .. } | Self::Rate(_) => f64::INFINITY,
             Self::Input(_) | Self::InputRate(_) | Self::Scaled(..) => f64::INFINITY,
+            Self::Position(of) => of.variation_of_rate(),
         }
     }
 
@@ -362,6 +382,7 @@ impl Ramp {
             Self::Input(_) | Self::InputRate(_) | Self::Scaled(..) => f64::INFINITY,
             // The way that a value goes is the integral of its rate's size.
             Self::Rate(of) => of.variation(),
+            Self::Position(of) => of.impulse(),
             Self::Pulse { from, to } => to - from,
             Self::Hold { times, values } => {
                 if values.last().is_none_or(|last| *last != 0.0) {
@@ -405,7 +426,7 @@ impl Ramp {
     /// The first breakpoint (s) after `from` and before `to` (s). Allocates nothing.
     #[must_use]
     pub fn breakpoint_between(&self, from: f64, to: f64) -> Option<f64> {
-        if let Self::Scaled(of, scaling) = self {
+        if let Self::Scaled(of, scaling) = self.course() {
             let (of, own) = (
                 of.breakpoint_between(from, to),
                 scaling.instant_between(from, to),
@@ -426,7 +447,7 @@ impl Ramp {
             Self::Sin2 { rise } => look(&[0.0, *rise]),
             Self::Pulse { from, to } => look(&[*from, *to]),
             Self::Table { times, .. } | Self::Hold { times, .. } => look(times),
-            Self::Rate(of) => of.at_breakpoints(look),
+            Self::Rate(of) | Self::Position(of) => of.at_breakpoints(look),
             Self::Input(_) | Self::InputRate(_) => look(&[]),
             Self::Scaled(of, scaling) => {
                 let mut all = of.breakpoints();
@@ -452,7 +473,7 @@ impl Ramp {
             }
             Self::Rate(of) => of.is_linear_between(t0, t1),
             Self::Input(_) | Self::InputRate(_) => true,
-            Self::Scaled(of, _) => of.is_constant_between(t0, t1),
+            Self::Scaled(of, _) | Self::Position(of) => of.is_constant_between(t0, t1),
         }
     }
 
@@ -462,7 +483,7 @@ impl Ramp {
     pub fn is_linear_between(&self, t0: f64, t1: f64) -> bool {
         match self {
             Self::Table { .. } | Self::Linear => true,
-            Self::Scaled(of, _) => of.is_linear_between(t0, t1),
+            Self::Scaled(of, _) | Self::Position(of) => of.is_linear_between(t0, t1),
             _ => self.is_constant_between(t0, t1),
         }
     }

@@ -5,11 +5,18 @@ use crate::ramp::Ramp;
 
 /// The kind of a rate, before the ramp whose rate it is.
 const RATE: u8 = 6;
+/// The kind of a place, before the ramp that it follows.
+const POSITION: u8 = 8;
 
 /// Writes a ramp, which follows no input.
 pub(crate) fn write(ramp: &Ramp, out: &mut Writer) {
-    if let Ramp::Rate(of) = ramp {
-        out.flags([RATE, 0, 0, 0]);
+    let outer = match ramp {
+        Ramp::Rate(of) => Some((RATE, of)),
+        Ramp::Position(of) => Some((POSITION, of)),
+        _ => None,
+    };
+    if let Some((kind, of)) = outer {
+        out.flags([kind, 0, 0, 0]);
         return write(of, out);
     }
     let (kind, numbers, course): (u8, &[f64], [&[f64]; 2]) = match ramp {
@@ -20,9 +27,12 @@ pub(crate) fn write(ramp: &Ramp, out: &mut Writer) {
         Ramp::Hold { times, values } => (4, &[], [times, values]),
         Ramp::Sine { frequency, phase } => (7, &[*frequency, *phase], [&[], &[]]),
         // `Ramp::check` lets none of the others be scaled.
-        Ramp::Linear | Ramp::Rate(_) | Ramp::Input(_) | Ramp::InputRate(_) | Ramp::Scaled(..) => {
-            (5, &[], [&[], &[]])
-        }
+        Ramp::Linear
+        | Ramp::Rate(_)
+        | Ramp::Position(_)
+        | Ramp::Input(_)
+        | Ramp::InputRate(_)
+        | Ramp::Scaled(..) => (5, &[], [&[], &[]]),
     };
     out.flags([kind, 0, 0, 0]);
     numbers.iter().for_each(|number| out.number(*number));
@@ -38,10 +48,14 @@ pub(crate) fn write(ramp: &Ramp, out: &mut Writer) {
 /// Reads what [`write`] wrote.
 pub(crate) fn read(rest: &mut Reader<'_>) -> Result<Ramp, BytesError> {
     Ok(match kind(rest)? {
-        // Of a rate there is none.
-        RATE => {
+        // Of these there are no rates and places.
+        outer @ (RATE | POSITION) => {
             let of = kind(rest)?;
-            Ramp::Rate(Box::new(plain(of, rest)?))
+            let of = Box::new(plain(of, rest)?);
+            match outer {
+                RATE => Ramp::Rate(of),
+                _ => Ramp::Position(of),
+            }
         }
         of => plain(of, rest)?,
     })

@@ -13,6 +13,7 @@ use sinew_mesh::{CutMesh, MovedNode, TetMesh};
 use crate::error::{Cause, FemError};
 use crate::in_place::InPlace;
 use crate::model::{CutStateError, FieldError, NodesCarried, TetFrequencies};
+use crate::motion::Field;
 use crate::{Fixed, Model, On, Problem};
 
 /// No 4-node tetrahedron has a larger factor between its matrix and its blocks.
@@ -367,7 +368,9 @@ impl CutModel {
         when: LoadTime<'_>,
         state: &State,
     ) -> Result<CutReport, CutModelError> {
-        let displacement = self.model.at_nodes(when, 0, Some(&state.u))?;
+        let displacement = self
+            .model
+            .at_nodes(when, Field::Displacement, Some(&state.u))?;
         let mut report = CutReport::default();
         for (tet, nodes) in self.mesh.tets.iter().zip(&self.mesh.mesh.tets) {
             if tets[*tet as usize] {

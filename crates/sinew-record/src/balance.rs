@@ -66,7 +66,8 @@ pub(crate) struct LastRow {
 ///
 /// Between two rows forces are taken as the mean of both ends and velocities as `du/dt`, so that for the mean
 /// acceleration method (Newmark with gamma 1/2 and beta 1/4), with a row for every step, nothing remains but rounding,
-/// jumps and kinks of loads included. Those of prescribed motions, and of loads beside them, remain in part.
+/// jumps and kinks of loads included. What a support gives the inertia and the damping of its own nodes is counted by what these hold and
+/// take, whatever jumps its speed makes. Loads that jump or bend beside moved supports remain in part.
 pub(crate) struct Balance<'a> {
     simulation: &'a Simulation,
     pub(crate) sums: Sums,
@@ -81,8 +82,10 @@ pub(crate) struct Balance<'a> {
 struct Nodes {
     u: Vec<f64>,
     loads: Vec<f64>,
-    /// Of supports and moved parts.
+    /// Of supports and moved parts, against what the body holds elastically.
     supports: Vec<f64>,
+    /// Kinetic energy (J) of all nodes, and of the components that are moved.
+    kinetic: [f64; 2],
 }
 
 impl<'a> Balance<'a> {
@@ -198,12 +201,14 @@ impl<'a> Balance<'a> {
         };
         let inputs = moment.inputs;
         let nodes = self.nodes(&here, inputs)?;
-        let (kinetic, elastic) = self.stored(&here, nodes.as_ref(), inputs)?;
+        let (kinetic, elastic) = self.stored(&here, nodes.as_ref())?;
         if let Some(last) = &self.last {
             if let (Some(before), Some(after)) = (&self.nodes, &nodes) {
                 let ends = [&before.u[..], &after.u];
                 self.sums.loads += work([&before.loads, &after.loads], ends);
-                self.sums.supports += work([&before.supports, &after.supports], ends);
+                self.sums.supports += work([&before.supports, &after.supports], ends)
+                    + (after.kinetic[1] - before.kinetic[1])
+                    + self.damping_of_supports([last, &here], ends, inputs)?;
                 self.sums.damped += self.damped([last, &here], Some(ends), inputs)?;
             } else {
                 let (before, after) = self.loads_at_ends(last, &here, inputs);
@@ -313,26 +318,34 @@ impl<'a> Balance<'a> {
             return Ok(None);
         };
         let mut u = vec![[0.0; 3]; model.mesh().points.len()];
-        let (mut loads, mut supports) = (u.clone(), u.clone());
+        let still = u.clone();
+        let (mut v, mut loads, mut supports) = (u.clone(), u.clone(), u.clone());
         let when = LoadTime::at(row.t).under(inputs);
         model.displacements_at(when, &row.u, &mut u)?;
+        model.velocities_at(when, &row.v, &mut v)?;
         model.load_forces(when, &u, &mut loads)?;
         let body = model.with_memory(&row.internal);
-        body.reactions(when, &row.u, &row.v, &mut supports)?;
+        body.moving_reactions(when, [&u, &still, &still], &mut supports)?;
+        let mut kinetic = [0.0; 2];
+        for (node, (v, mass)) in (0..).zip(v.iter().zip(model.node_masses())) {
+            for (axis, v) in v.iter().enumerate() {
+                let energy = 0.5 * mass * v * v;
+                kinetic[0] += energy;
+                if !moves_by_itself(model, node, axis) {
+                    kinetic[1] += energy;
+                }
+            }
+        }
         Ok(Some(Nodes {
             u: u.into_flattened(),
             loads: loads.into_flattened(),
             supports: supports.into_flattened(),
+            kinetic,
         }))
     }
 
     /// Kinetic and elastic energy.
-    fn stored(
-        &self,
-        row: &LastRow,
-        nodes: Option<&Nodes>,
-        inputs: &Inputs,
-    ) -> Result<(f64, f64), RecordRunError> {
+    fn stored(&self, row: &LastRow, nodes: Option<&Nodes>) -> Result<(f64, f64), RecordRunError> {
         let (Some(model), Some(nodes)) = (self.moved_body(), nodes) else {
             let energy = match self.simulation.model() {
                 SceneModel::Body(_) => self.simulation.system().energy(&row.u, &row.v),
@@ -344,12 +357,48 @@ impl<'a> Balance<'a> {
                 (energy.kinetic, energy.elastic)
             }));
         };
-        let mut v = vec![[0.0; 3]; model.mesh().points.len()];
-        model.velocities_at(LoadTime::at(row.t).under(inputs), &row.v, &mut v)?;
-        let moving = v.iter().zip(model.node_masses());
-        let kinetic = moving.map(|(v, mass)| 0.5 * mass * v.iter().map(|v| v * v).sum::<f64>());
         let elastic = model.elastic_energy(nodes.u.as_chunks::<3>().0)?;
-        Ok((kinetic.sum(), elastic))
+        Ok((nodes.kinetic[0], elastic))
+    }
+
+    /// Work (J) of supports against damping at the components that they move, between two rows with these displacements (m) of all
+    /// nodes: `w_p' (D w)_p dt` with `w = du/dt`.
+    fn damping_of_supports(
+        &self,
+        [last, here]: [&LastRow; 2],
+        [before, after]: [&[f64]; 2],
+        inputs: &Inputs,
+    ) -> Result<f64, RecordRunError> {
+        let span = here.t - last.t;
+        let Some(model) = self.moved_body() else {
+            return Ok(0.0);
+        };
+        let damping = self.simulation.system().as_elastic();
+        let is_damped = damping.map(ElasticLaw::damping).is_some_and(|damping| {
+            damping.mass != 0.0 || damping.stiffness != 0.0 || damping.extra.is_some()
+        });
+        if !is_damped || span <= 0.0 {
+            return Ok(0.0);
+        }
+        let ends = || before.iter().zip(after);
+        let middle: Vec<f64> = ends().map(|(a, b)| 0.5 * (a + b)).collect();
+        let w: Vec<f64> = ends().map(|(a, b)| (b - a) / span).collect();
+        let [middle, w] = [&middle, &w].map(|field| field.as_chunks::<3>().0);
+        let still = vec![[0.0; 3]; w.len()];
+        let when = LoadTime::at(here.t).under(inputs);
+        let forces = |v: &[[f64; 3]]| -> Result<Vec<[f64; 3]>, RecordRunError> {
+            let mut out = still.clone();
+            model.moving_reactions(when, [middle, v, &still], &mut out)?;
+            Ok(out)
+        };
+        // At rest they are the loads, and what the body holds.
+        let (moving, resting) = (forces(w)?, forces(&still)?);
+        let (moving, resting) = (moving.as_flattened(), resting.as_flattened());
+        let terms = w.as_flattened().iter().zip(moving.iter().zip(resting));
+        Ok(span
+            * terms
+                .map(|(w, (moving, resting))| w * (moving - resting))
+                .sum::<f64>())
     }
 
     /// Energy (J) that damping takes between two rows: `w' D w dt` with `w = du/dt`; of a body with moved parts, whose

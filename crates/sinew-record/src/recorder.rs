@@ -175,7 +175,11 @@ impl RunRecorder<'_> {
             self.tables.energy.push(&self.line)?;
             if let (Some(reactions), Some(file)) = (&mut self.reactions, &mut self.tables.reactions)
             {
-                reactions.row(&mut self.line, moment, &self.v)?;
+                let t = moment.state.t();
+                let before = self.balance.last.as_ref().map_or(0.0, |row| t - row.before);
+                let next = self.schedules.energy.next(step + 1);
+                let after = next.map_or(before, |next| (next - step) as f64 * self.simulation.dt());
+                reactions.row(&mut self.line, moment, &self.v, [before, after])?;
                 file.push(&self.line)?;
             }
         }

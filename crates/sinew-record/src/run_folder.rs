@@ -327,7 +327,7 @@ impl RunFolder {
                     folder: &self.folder,
                     mesh: &body.mesh,
                     surface,
-                    fields: Fields::new(&body.model, *simulation.scene().output()),
+                    fields: Fields::new(&body.model, simulation.dt(), *simulation.scene().output()),
                     is_cut: body.cut.is_some(),
                     seen: &seen,
                 };

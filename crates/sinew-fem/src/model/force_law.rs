@@ -11,6 +11,7 @@ use sinew_core::{
 use super::Model;
 use crate::following::{FollowingPressure, Part};
 use crate::large::{LargeDeformation, Past, Scratch, Wanted, fill};
+use crate::motion::Field;
 
 /// A hyperelastic body at a trial point. Evaluations of models without such regions leave everything to the matrices.
 impl Model {
@@ -25,7 +26,7 @@ impl Model {
             return Ok(T::default());
         };
         large.with_scratch(|scratch| {
-            self.fill(when, 0, u, &mut scratch.displacement)?;
+            self.fill(when, Field::Displacement, u, &mut scratch.displacement)?;
             with(large, scratch)
         })
     }
@@ -67,11 +68,11 @@ impl Model {
     fn fill(
         &self,
         when: LoadTime<'_>,
-        order: usize,
+        field: Field,
         values: &[f64],
         out: &mut [[f64; 4]],
     ) -> Result<(), EvaluationError> {
-        let field = self.at_nodes(when, order, Some(values));
+        let field = self.at_nodes(when, field, Some(values));
         fill(out, field.map_err(EvaluationError::of_body)?);
         Ok(())
     }
@@ -139,7 +140,7 @@ impl Model {
         when: LoadTime<'_>,
         u: &'a [f64],
     ) -> impl Fn(u32) -> [f64; 3] + 'a {
-        let known = self.at_nodes(when, 0, Some(u)).ok();
+        let known = self.at_nodes(when, Field::Displacement, Some(u)).ok();
         move |node| match &known {
             Some(known) => known(node),
             None => self.body.cells.at_node(u, node),
@@ -163,7 +164,7 @@ impl ForceLaw for Model {
             self.add_at_nodes(large, scratch, -1.0, out);
             self.add_following(trial.load, |node| at(&scratch.displacement, node), out);
             if beta != 0.0 {
-                self.fill(trial.load, 1, trial.v, &mut scratch.change)?;
+                self.fill(trial.load, Field::Velocity, trial.v, &mut scratch.change)?;
                 large.product(scratch, past(trial), Wanted::Damped)?;
                 self.add_at_nodes(large, scratch, -beta, out);
             }

@@ -9,6 +9,7 @@ use sinew_core::{
 use super::Model;
 use crate::large::fill;
 use crate::material::Material;
+use crate::motion::Field;
 use crate::parts::WholePart;
 use crate::tetra;
 
@@ -48,7 +49,7 @@ impl System for Model {
         };
         let when = LoadTime::at(state.t()).under(inputs);
         let State { u, internal, .. } = state;
-        let displacement = self.at_nodes(when, 0, Some(u));
+        let displacement = self.at_nodes(when, Field::Displacement, Some(u));
         let displacement = displacement.map_err(EvaluationError::of_body)?;
         large.with_scratch(|scratch| {
             fill(&mut scratch.displacement, displacement);
@@ -139,7 +140,7 @@ impl Model {
         if u.len() != self.dofs() {
             return None;
         }
-        let displacement = self.at_nodes(when, 0, Some(u)).ok()?;
+        let displacement = self.at_nodes(when, Field::Displacement, Some(u)).ok()?;
         let moved = move |node: u32| {
             let [x, y, z] = self.mesh.points[node as usize];
             let [ux, uy, uz] = displacement(node);

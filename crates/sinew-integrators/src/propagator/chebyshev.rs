@@ -188,7 +188,10 @@ impl Chebyshev {
 
 /// Whether a ramp may change within a step when its jumps and kinks fall on ends of steps.
 fn may_change(ramp: &Ramp) -> bool {
-    !matches!(ramp, Ramp::Step | Ramp::Pulse { .. } | Ramp::Hold { .. })
+    !matches!(
+        ramp.course(),
+        Ramp::Step | Ramp::Pulse { .. } | Ramp::Hold { .. }
+    )
 }
 
 /// The update `target += moment x`.

@@ -1,0 +1,285 @@
+//! Bodies whose supports move, by every method and law, against closed forms.
+
+use std::f64::consts::PI;
+
+use sinew_core::spectrum::Spectrum;
+use sinew_core::{
+    Inputs, Integrator, LinearSystem, LoadTime, Options, Ramp, SetupError, StableStep, State,
+    System,
+};
+use sinew_fem::hyperelastic::Parameters;
+use sinew_fem::{Course, Fixed, Law, Model, Moving, On, Problem, Rayleigh};
+use sinew_integrators::{entries, static_solution};
+use sinew_mesh::TetMesh;
+use sinew_mesh::structured::{self, Split};
+
+use crate::common::tissue::{DENSITY, body, held, linear};
+use crate::common::{build, largest};
+
+const YOUNGS_MODULUS: f64 = 5000.0;
+
+fn hyperelastic(id: &'static str, poissons_ratio: f64) -> Law {
+    let parameters = Parameters::new(YOUNGS_MODULUS, poissons_ratio);
+    Law::Hyperelastic { id, parameters }
+}
+
+/// A method with a step (s) for a body.
+struct Method {
+    name: String,
+    id: &'static str,
+    integrator: Box<dyn Integrator>,
+    dt: f64,
+}
+
+/// All methods and their variants that take a body, with a step of `long` (s), or where they must follow the fastest motion, a quarter of
+/// what that allows. `small` is the body at small strain.
+fn methods(model: &Model, small: &Model, long: f64) -> Vec<Method> {
+    let critical = 2.0 / Spectrum::of(small.operators()).omega_max;
+    let mut methods = Vec::new();
+    for entry in entries() {
+        let variants = (entry.variants)().into_iter();
+        for options in std::iter::once(Options::new()).chain(variants) {
+            let options = match entry.id {
+                // Iterations until they have come to rest.
+                "cnn-energy" => options.with_number("sweeps", 60.0),
+                _ => options,
+            };
+            let name = format!("`{}` with {options:?}", entry.id);
+            let mut integrator = build(entry.id, &options);
+            let dt = match integrator.stable_step(model) {
+                Ok(StableStep::UpTo(0.0)) => critical / 64.0,
+                Ok(StableStep::UpTo(limit)) => long.min(limit / 4.0),
+                // Its added mass slows what it does not resolve.
+                Ok(_) if entry.id == "cnn-stabilised" => long.min(critical / 4.0),
+                Ok(_) => long,
+                Err(_) => continue,
+            };
+            match integrator.prepare(model, dt) {
+                Ok(_) => methods.push(Method {
+                    name,
+                    id: entry.id,
+                    integrator,
+                    dt,
+                }),
+                Err(SetupError::Lacks { .. }) => {}
+                Err(error) => panic!("{name}: {error}"),
+            }
+        }
+    }
+    methods
+}
+
+/// Steps of a body, each shown with its number, its time (s) and the forces (N) of supports at all nodes; none where a method refuses the motion.
+fn follow(
+    method: &mut Method,
+    model: &Model,
+    (mut state, steps): (State, usize),
+    mut see: impl FnMut(usize, f64, &[[f64; 3]]),
+) {
+    let dt = method.dt;
+    let mut forces = vec![[0.0; 3]; model.mesh().points.len()];
+    let mut v = vec![0.0; model.dofs()];
+    for step in 0..=steps {
+        if step > 0 {
+            match method.integrator.step(model, &mut state, dt) {
+                Ok(_) => {}
+                Err(sinew_core::StepError::Inaccurate { .. }) => return,
+                Err(error) => panic!("{}: {error}", method.name),
+            }
+        }
+        let t = state.t();
+        state.velocity_at_t(model, Inputs::none(), &mut v).unwrap();
+        let when = LoadTime::around(t, dt.min(t), dt);
+        model.reactions(when, &state.u, &v, &mut forces).unwrap();
+        see(step, t, &forces);
+    }
+}
+
+/// The nodes of a mesh at one end of an axis.
+fn face(mesh: &TetMesh, axis: usize, at: f64) -> On {
+    let is_there = |(_, point): &(u32, &[f64; 3])| (point[axis] - at).abs() < 1e-9;
+    let nodes = (0..).zip(&mesh.points).filter(is_there);
+    On::Nodes(nodes.map(|(node, _)| node).collect())
+}
+
+fn is_linear(model: &Model) -> bool {
+    (model as &dyn System).as_linear().is_some()
+}
+
+/// Newton's first law, at steps beyond the fastest motion where a method takes them.
+#[test]
+fn a_body_and_its_clamp_at_one_speed_feel_no_force() {
+    let size = [0.2, 0.05, 0.05];
+    let velocity = [1.5, -0.4, 0.9];
+    let mesh = structured::block([4, 1, 1], size, Split::Kuhn).unwrap();
+    let soft = linear(YOUNGS_MODULUS, 0.3);
+    let large = hyperelastic("neo-hookean", 0.3);
+    for (law, stiffness) in [(soft, 0.0), (soft, 2e-3), (large, 0.0), (large, 2e-3)] {
+        let problem = |law| Problem {
+            moves: vec![Moving {
+                on: face(&mesh, 0, 0.0),
+                axes: [true; 3],
+                courses: vec![Course::at_velocity(velocity)],
+            }],
+            damping: Rayleigh {
+                mass: 0.0,
+                stiffness,
+            },
+            ..body(law)
+        };
+        let [model, small] = [law, soft].map(|law| Model::build(&mesh, &problem(law)).unwrap());
+        let v: Vec<f64> = velocity
+            .iter()
+            .copied()
+            .cycle()
+            .take(model.dofs())
+            .collect();
+        for mut method in methods(&model, &small, 0.01) {
+            if !is_linear(&model) && stiffness > 0.0 && method.id == "cnn-energy" {
+                continue;
+            }
+            // What a support that is a step off pulls with.
+            let scale = YOUNGS_MODULUS * size[1] * size[2] * 1.5 * method.dt / 0.05;
+            let start = State::new(vec![0.0; model.dofs()], v.clone());
+            let mut worst = 0.0_f64;
+            follow(&mut method, &model, (start, 6), |_, _, forces| {
+                worst = worst.max(largest(forces.as_flattened()));
+            });
+            let off = worst / scale;
+            eprintln!("A {}, {law}, {stiffness}: {off:e}", method.name);
+        }
+    }
+}
+
+/// A bar that is stretched at one speed all over, held along its whole length sideways: there is no inertia, whatever the cells.
+#[test]
+fn a_bar_in_tension_pulls_by_its_law_whatever_the_cells() {
+    let size = [0.2, 0.02, 0.02];
+    let (strain, duration) = (0.02, 0.2);
+    let area = size[1] * size[2];
+    // S = E e, P = F S.
+    let large = (1.0 + strain) * (strain + strain * strain / 2.0);
+    let soft = linear(YOUNGS_MODULUS, 0.0);
+    for (cells, law, expected) in [
+        (10, soft, strain),
+        (20, soft, strain),
+        (10, hyperelastic("stvk", 0.0), large),
+    ] {
+        let mesh = structured::block([cells, 1, 1], size, Split::Mirrored).unwrap();
+        let along = [true, false, false];
+        let speed = strain * size[0] / duration;
+        let problem = |law| Problem {
+            fixed: vec![
+                held("tissue", [false, true, true]),
+                Fixed {
+                    on: face(&mesh, 0, 0.0),
+                    axes: along,
+                },
+            ],
+            moves: vec![Moving {
+                on: face(&mesh, 0, size[0]),
+                axes: along,
+                courses: vec![Course::at_velocity([speed, 0.0, 0.0])],
+            }],
+            ..body(law)
+        };
+        let [model, small] = [law, soft].map(|law| Model::build(&mesh, &problem(law)).unwrap());
+        let of_node = |node: &u32| [mesh.points[*node as usize][0] / size[0] * speed, 0.0, 0.0];
+        let v: Vec<f64> = model.nodes().iter().flat_map(of_node).collect();
+        for mut method in methods(&model, &small, 0.02) {
+            let start = State::new(vec![0.0; model.dofs()], v.clone());
+            let steps = 10;
+            let ratio = steps as f64 * method.dt / duration;
+            let mut pulls = [0.0; 2];
+            follow(&mut method, &model, (start, steps), |_, _, forces| {
+                pulls = [0.0; 2];
+                for (force, point) in forces.iter().zip(&mesh.points) {
+                    pulls[usize::from(point[0] > 0.1)] += force[0];
+                }
+            });
+            let expected = match is_linear(&model) {
+                true => expected * ratio,
+                false => {
+                    let e = strain * ratio;
+                    (1.0 + e) * (e + e * e / 2.0)
+                }
+            };
+            for (end, pull) in [-1.0, 1.0].into_iter().zip(pulls) {
+                let off = end * pull / (YOUNGS_MODULUS * expected * area) - 1.0;
+                eprintln!("B {cells} {law} {}: {off:e}", method.name);
+            }
+        }
+    }
+}
+
+/// A block on a table that moves at a speed and gains more: the table pushes with the whole mass times the acceleration, its own nodes' share
+/// included, however its way is given.
+#[test]
+fn a_shaken_block_is_pushed_by_its_mass_times_the_acceleration() {
+    let edge = 0.1;
+    let mesh = structured::cube(2, edge, Split::Mirrored).unwrap();
+    let soft = linear(YOUNGS_MODULUS, 0.3);
+    let (speed, amplitude, rise) = (1.0, 0.05, 1.0);
+    let mass = DENSITY * edge.powi(3);
+    let place = |t: f64| speed * t + amplitude * (PI * t / (2.0 * rise)).sin().powi(2);
+    let acceleration = |t: f64| amplitude * PI * PI / (2.0 * rise * rise) * (PI * t / rise).cos();
+    let still = Moving {
+        on: face(&mesh, 2, 0.0),
+        axes: [true; 3],
+        courses: Vec::new(),
+    };
+    let problem = |law, courses: Vec<Course>| Problem {
+        moves: vec![Moving {
+            courses,
+            ..still.clone()
+        }],
+        ..body(law)
+    };
+    let small = Model::build(&mesh, &problem(soft, Vec::new())).unwrap();
+    let critical = 2.0 / Spectrum::of(small.operators()).omega_max;
+    // Hangs behind from the start on, so that nothing swings.
+    let along_x = |size: f64| -> Vec<f64> {
+        let axes = [size, 0.0, 0.0];
+        axes.into_iter().cycle().take(small.dofs()).collect()
+    };
+    let behind = along_x(-acceleration(0.0)).into_iter().zip(small.mass());
+    let behind: Vec<f64> = behind.map(|(a, mass)| a * mass).collect();
+    let u = static_solution(&small, &behind).unwrap();
+    let steps = 40;
+    for law in [soft, hyperelastic("neo-hookean", 0.3)] {
+        // Rows of a table for each step; none: a formula.
+        for rows in [0.0, 1.0, 4.0, 3.7] {
+            let courses = |dt: f64| match rows {
+                0.0 => vec![
+                    Course::at_velocity([speed, 0.0, 0.0]),
+                    Course {
+                        displacement: [amplitude, 0.0, 0.0],
+                        ramp: Ramp::Sin2 { rise },
+                    },
+                ],
+                _ => {
+                    let count = ((steps + 2) as f64 * rows) as usize;
+                    let times: Vec<f64> = (0..count).map(|row| row as f64 * dt / rows).collect();
+                    let places: Vec<[f64; 3]> =
+                        times.iter().map(|t| [place(*t), 0.0, 0.0]).collect();
+                    Course::along(&times, &places)
+                }
+            };
+            let resting = Model::build(&mesh, &problem(law, Vec::new())).unwrap();
+            for mut method in methods(&resting, &small, critical / 20.0) {
+                let model = Model::build(&mesh, &problem(law, courses(method.dt))).unwrap();
+                let start = State::new(u.clone(), along_x(speed));
+                let mut worst = 0.0_f64;
+                follow(&mut method, &model, (start, steps), |step, t, forces| {
+                    // A table gains no speed before its second row.
+                    if step > 0 {
+                        let push: f64 = forces.iter().map(|force| force[0]).sum();
+                        let off = push / (mass * acceleration(t)) - 1.0;
+                        worst = worst.max(off.abs());
+                    }
+                });
+                eprintln!("C {}, {law}, {rows} rows a step: {worst:e}", method.name);
+            }
+        }
+    }
+}
