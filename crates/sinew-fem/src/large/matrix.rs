@@ -1,6 +1,6 @@
-//! The tangent as a matrix.
+//! The tangent, or the viscosity, as a matrix.
 
-use sinew_core::{BlockMatrix, ElementStiffness, EvaluationError, TangentKind};
+use sinew_core::{BlockMatrix, ElementStiffness, EvaluationError};
 
 use super::beside::TangentBeside;
 use super::means::{at_edges, means, require, take_dilation};
@@ -8,46 +8,51 @@ use super::memory::{Past, Relaxing};
 use super::product::{EdgeTangent, OwnTangent, left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
+use super::wanted::Wanted;
 use crate::cells::Cells;
 use crate::elements::moving_part;
 use crate::hyperelastic::{Deformation, HyperelasticLaw, LawVisitor, Tensor};
 use crate::smoothing::Average;
 
-/// Adds the tangent of a region, on a pattern that has its couplings.
+/// Adds so many times the tangent, or the viscosity, of a region, on a pattern that has its couplings.
 pub(super) fn add(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
     past: Past<'_>,
-    kind: TangentKind,
-    (cells, out): (&Cells, &mut BlockMatrix),
+    wanted: Wanted,
+    (cells, factor, out): (&Cells, f64, &mut BlockMatrix),
 ) -> Result<(), EvaluationError> {
     let mut sum = Sum {
         cells,
+        factor,
         out,
         average: Average::default(),
         whole: Vec::new(),
         moving: ElementStiffness::default(),
     };
-    region.law.with_law(Tangents {
+    let tangents = Tangents {
         region,
         scratch,
-        relaxing: Relaxing::of(region.memory.as_ref(), past),
-        kind,
+        relaxing: wanted.relaxing(region, past),
+        wanted,
         sum: &mut sum,
-    })
+    };
+    wanted.with_law(region, tangents)
 }
 
 struct Tangents<'a, 'o> {
     region: &'a HyperelasticRegion,
     scratch: &'a mut Scratch,
     relaxing: Relaxing<'a>,
-    kind: TangentKind,
+    wanted: Wanted,
     sum: &'a mut Sum<'o>,
 }
 
 /// The matrix, and room for one part of it.
 struct Sum<'o> {
     cells: &'o Cells,
+    /// By which it is multiplied.
+    factor: f64,
     out: &'o mut BlockMatrix,
     average: Average,
     /// Entries (N/m) of a part between all its nodes, row-major and node-major.
@@ -63,12 +68,13 @@ impl LawVisitor for Tangents<'_, '_> {
             region,
             scratch,
             relaxing,
-            kind,
+            wanted,
             sum,
         } = self;
+        let kind = wanted.kind();
         let (rest, lambda) = (&region.rest, law.lame().0);
         let beside_of = |tet: usize, deformation: &Deformation<f64>| {
-            TangentBeside::of(region, &relaxing, tet, deformation, (kind, false))
+            TangentBeside::of(region, &relaxing, tet, deformation, wanted)
         };
         if !region.is_smoothed() {
             for tet in rest.tets() {
@@ -102,7 +108,8 @@ impl LawVisitor for Tangents<'_, '_> {
             take_dilation(region, &law, patch, scratch, &mut sum.average);
             let lambda = region.stiffness_of_patch(patch) * lambda;
             let lambda = relaxing.factor_of_dilation() * lambda;
-            sum.average.stiffness(1.0, [lambda, 0.0], &mut sum.whole);
+            let share = sum.factor;
+            sum.average.stiffness(share, [lambda, 0.0], &mut sum.whole);
             sum.add_whole();
         }
         Ok(())
@@ -113,7 +120,7 @@ impl Sum<'_> {
     /// Adds `V g_aJ H_iJkL g_bL` between the nodes of the average, for a share of its volume V.
     fn add(&mut self, share: f64, tangent: impl Fn(Tensor<f64>) -> Tensor<f64>) {
         let average = &self.average;
-        let volume = share * average.volume;
+        let volume = self.factor * share * average.volume;
         let columns = 3 * average.nodes.len();
         self.whole.clear();
         self.whole.resize(columns * columns, 0.0);
