@@ -325,15 +325,18 @@ impl Substepped {
             || self.is_accelerated(dt, batch.system(), state)
         {
             // Not a number where the law has no such blocks.
-            self.stiffest_cell(batch, state)? / cut.stiffest_cell
+            self.stiffest_cell(batch, state, cut.stable_step)? / cut.stiffest_cell
         } else {
             1.0
         };
         if growth.is_nan() || growth <= 1.0 {
             return Ok(parts);
         }
+        // A step that damping limits goes with the stiffness itself.
+        let is_viscous = viscous_sweeps(batch.system()) > 0;
+        let shorter = |growth: f64| if is_viscous { growth } else { growth.sqrt() };
         let (stable_step, room) = if growth <= MUCH_STIFFER {
-            (cut.stable_step / growth.sqrt(), growth.sqrt())
+            (cut.stable_step / shorter(growth), shorter(growth))
         } else {
             let before = cut.parts;
             *cut = self.look(batch, state)?;
@@ -342,7 +345,7 @@ impl Substepped {
             let grew = growth.is_finite();
             (
                 cut.stable_step,
-                if grew { MUCH_STIFFER.sqrt() } else { 1.0 },
+                if grew { shorter(MUCH_STIFFER) } else { 1.0 },
             )
         };
         let parts_by = |room: f64| Substeps::parts_of(dt, stable_step / room);
@@ -390,9 +393,8 @@ impl Substepped {
 
     /// A cut by the stable step about a state.
     fn look(&mut self, batch: &mut Batch<'_>, state: &State) -> Result<StepCut, StepError> {
-        let stiffest_cell = self.stiffest_cell(batch, state)?;
         batch.count(StepReport {
-            sweeps: PRODUCTS_OF_ESTIMATE,
+            sweeps: PRODUCTS_OF_ESTIMATE * (1 + viscous_sweeps(batch.system())),
             ..StepReport::default()
         });
         let stable_step = match self.inner.stable_step_about(batch.system(), Some(state))? {
@@ -404,18 +406,25 @@ impl Substepped {
             parts: 1,
             taken: 0,
             stable_step,
-            stiffest_cell,
+            stiffest_cell: self.stiffest_cell(batch, state, stable_step)?,
         })
     }
 
-    /// The largest trace of a cell's own block over its mass (1/s^2); 0 where the law has no such blocks.
-    fn stiffest_cell(&mut self, batch: &mut Batch<'_>, state: &State) -> Result<f64, StepError> {
+    /// The largest trace of a cell's own block over its mass (1/s^2), that of stiffness damping included as it counts in steps of `h` (s), for which
+    /// `h^2 K + 2 h V` is bounded; 0 where the law has no such blocks.
+    fn stiffest_cell(
+        &mut self,
+        batch: &mut Batch<'_>,
+        state: &State,
+        h: f64,
+    ) -> Result<f64, StepError> {
         let system = batch.system();
         let Some(elastic) = system.as_elastic() else {
             return Ok(0.0);
         };
+        let viscous_sweeps = viscous_sweeps(system);
         batch.count(StepReport {
-            sweeps: 1,
+            sweeps: 1 + viscous_sweeps,
             ..StepReport::default()
         });
         let layers = system.layers().count();
@@ -428,6 +437,11 @@ impl Substepped {
         elastic
             .node_blocks(&trial, &mut self.blocks)
             .map_err(refused)?;
+        if viscous_sweeps > 0 && h > 0.0 {
+            elastic
+                .add_viscous_blocks(&trial, 2.0 / h, &mut self.blocks)
+                .map_err(refused)?;
+        }
         let blocks = self.blocks.chunks_exact(layers * layers);
         let cells = blocks.zip(system.mass().chunks_exact(layers));
         let stiffness = cells.map(|(block, mass)| {
@@ -436,6 +450,12 @@ impl Substepped {
         });
         Ok(stiffness.fold(0.0, f64::max))
     }
+}
+
+/// Sweeps that stiffness damping takes where the tangent takes one.
+fn viscous_sweeps(system: &dyn System) -> u64 {
+    let elastic = system.as_elastic();
+    elastic.map_or(0, |law| u64::from(law.damping().stiffness != 0.0))
 }
 
 /// The largest difference of two vectors in a cell over its size.
