@@ -407,6 +407,7 @@ impl RunFolder {
         }
         let mut warnings = summary::warnings(&progress.seen);
         warnings.extend(summary::made_energy(simulation, &progress));
+        warnings.extend(summary::driven_by_damping(&progress));
         warnings.extend(outrun);
         warnings.extend(simulation.left_by_tools(state));
         let wall = begun.elapsed().as_secs_f64();

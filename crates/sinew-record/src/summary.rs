@@ -151,6 +151,17 @@ pub(crate) fn made_energy(simulation: &Simulation, progress: &Progress) -> Optio
     })
 }
 
+/// A warning where damping gave energy to the motion, which no law of damping here does: the results are wrong.
+pub(crate) fn driven_by_damping(progress: &Progress) -> Option<String> {
+    let driven = progress.energy.driven;
+    (driven > THERMAL).then(|| {
+        format!(
+            "damping gave the motion {driven:.3e} J, though it can only take energy: this is an error of sinew, and the motion is wrong; \
+             please report it with the scene"
+        )
+    })
+}
+
 impl Summary<'_> {
     pub(crate) fn to_json(&self) -> String {
         let Self {

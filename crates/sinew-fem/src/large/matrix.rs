@@ -1,6 +1,6 @@
-//! The tangent as a matrix.
+//! The tangent, or the viscosity, as a matrix.
 
-use sinew_core::{AssemblyError, BlockMatrix, ElementStiffness, EvaluationError, TangentKind};
+use sinew_core::{AssemblyError, BlockMatrix, ElementStiffness, EvaluationError};
 
 use super::beside::TangentBeside;
 use super::means::{at_edges, means, require, take_dilation};
@@ -8,12 +8,13 @@ use super::memory::{Past, Relaxing};
 use super::product::{EdgeTangent, OwnTangent, left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
+use super::wanted::Wanted;
 use crate::cells::Cells;
 use crate::elements::moving_part;
 use crate::hyperelastic::{Deformation, HyperelasticLaw, LawVisitor, Tensor};
 use crate::smoothing::Average;
 
-/// Adds the tangent of a region.
+/// Adds so many times the tangent, or the viscosity, of a region.
 ///
 /// # Errors
 /// [`EvaluationError`] when the law is outside its domain, or the matrix has no block for a coupling.
@@ -21,36 +22,40 @@ pub(super) fn add(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
     past: Past<'_>,
-    kind: TangentKind,
-    (cells, out): (&Cells, &mut BlockMatrix),
+    wanted: Wanted,
+    (cells, factor, out): (&Cells, f64, &mut BlockMatrix),
 ) -> Result<(), EvaluationError> {
     let mut sum = Sum {
         cells,
+        factor,
         out,
         average: Average::default(),
         whole: Vec::new(),
         moving: ElementStiffness::default(),
     };
-    region.law.with_law(Tangents {
+    let tangents = Tangents {
         region,
         scratch,
-        relaxing: Relaxing::of(region.memory.as_ref(), past),
-        kind,
+        relaxing: wanted.relaxing(region, past),
+        wanted,
         sum: &mut sum,
-    })
+    };
+    wanted.with_law(region, tangents)
 }
 
 struct Tangents<'a, 'o> {
     region: &'a HyperelasticRegion,
     scratch: &'a mut Scratch,
     relaxing: Relaxing<'a>,
-    kind: TangentKind,
+    wanted: Wanted,
     sum: &'a mut Sum<'o>,
 }
 
 /// The matrix, and room for one part of it.
 struct Sum<'o> {
     cells: &'o Cells,
+    /// By which it is multiplied.
+    factor: f64,
     out: &'o mut BlockMatrix,
     average: Average,
     /// Entries (N/m) of a part between all its nodes, row-major and node-major.
@@ -66,12 +71,13 @@ impl LawVisitor for Tangents<'_, '_> {
             region,
             scratch,
             relaxing,
-            kind,
+            wanted,
             sum,
         } = self;
+        let kind = wanted.kind();
         let (rest, lambda) = (&region.rest, law.lame().0);
         let beside_of = |tet: usize, deformation: &Deformation<f64>| {
-            TangentBeside::of(region, &relaxing, tet, deformation, (kind, false))
+            TangentBeside::of(region, &relaxing, tet, deformation, wanted)
         };
         if !region.is_smoothed() {
             for tet in rest.tets() {
@@ -105,7 +111,8 @@ impl LawVisitor for Tangents<'_, '_> {
             take_dilation(region, &law, patch, scratch, &mut sum.average);
             let lambda = region.stiffness_of_patch(patch) * lambda;
             let lambda = relaxing.factor_of_dilation() * lambda;
-            sum.average.stiffness(1.0, [lambda, 0.0], &mut sum.whole);
+            let share = sum.factor;
+            sum.average.stiffness(share, [lambda, 0.0], &mut sum.whole);
             sum.add_whole()?;
         }
         Ok(())
@@ -120,7 +127,7 @@ impl Sum<'_> {
         tangent: impl Fn(Tensor<f64>) -> Tensor<f64>,
     ) -> Result<(), AssemblyError> {
         let average = &self.average;
-        let volume = share * average.volume;
+        let volume = self.factor * share * average.volume;
         let columns = 3 * average.nodes.len();
         self.whole.clear();
         self.whole.resize(columns * columns, 0.0);

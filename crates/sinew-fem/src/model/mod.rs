@@ -1,6 +1,7 @@
 //! The model of a body.
 
 mod after_cut;
+mod damping;
 mod deformed;
 mod element_bounds;
 mod element_forces;

@@ -230,7 +230,7 @@ impl Model {
             });
             if beta != 0.0 {
                 fill(&mut scratch.change, &v);
-                large.product(scratch, past, Wanted::Damped)?;
+                large.product(scratch, past, Wanted::Viscosity)?;
                 large.at_nodes(scratch, |node, force| {
                     subtract(&mut forces[node as usize], -beta, &force);
                 });
@@ -269,7 +269,7 @@ impl Model {
     }
 
     /// The components that are held; zero in those that move by themselves.
-    fn held_part(&self, node: u32, force: [f64; 3]) -> [f64; 3] {
+    pub(super) fn held_part(&self, node: u32, force: [f64; 3]) -> [f64; 3] {
         let cells = &self.body.cells;
         std::array::from_fn(|axis| match cells.free_dof(node, axis) {
             Some(_) => 0.0,

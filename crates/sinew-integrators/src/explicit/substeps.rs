@@ -401,7 +401,7 @@ impl Substepped {
         let needs_all = elastic.is_none_or(|law| is_damped(law.damping()));
         let found = if needs_all && cut.taken >= PARTS_BETWEEN_LOOKS {
             cut.taken = 0;
-            batch.count(sweeps(PRODUCTS_OF_ESTIMATE));
+            batch.count(sweeps(PRODUCTS_OF_ESTIMATE * (1 + viscous_sweeps(system))));
             system.spectrum(Some(state))
         } else if elastic.is_some() {
             None
@@ -426,7 +426,7 @@ impl Substepped {
                     damping_max: cut.damping * eigenvalue,
                     mass_damping: damping.mass,
                     stiffness_damping: damping.stiffness,
-                    proportional: damping.extra.is_none(),
+                    proportional: damping.extra.is_none() && damping.stiffness == 0.0,
                 })
             }
             None => found,
@@ -473,6 +473,12 @@ fn sweeps(sweeps: u64) -> StepReport {
         sweeps,
         ..StepReport::default()
     }
+}
+
+/// Sweeps that stiffness damping takes where the tangent takes one.
+fn viscous_sweeps(system: &dyn System) -> u64 {
+    let elastic = system.as_elastic();
+    elastic.map_or(0, |law| u64::from(law.damping().stiffness != 0.0))
 }
 
 /// The largest difference of two vectors in a cell over its size.

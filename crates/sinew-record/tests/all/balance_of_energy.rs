@@ -196,3 +196,41 @@ fn dashpots_at_moved_supports_are_in_it() {
     let (coarse, fine) = (remainder("0.002"), remainder("0.001"));
     assert!(fine < 2e-3 && coarse > 3.0 * fine, "{coarse} {fine}");
 }
+
+/// Stiffness damping of tissue in large deformation, between a part that is moved and the rest: what damping took never falls, and with it the balance closes.
+#[test]
+fn stiffness_damping_at_moved_supports_of_soft_tissue_is_in_it() {
+    let text = |law: &str, dt: &str| {
+        format!(
+            "[mesh]\nblock = {{ cells = [4, 1, 1], size = [0.1, 0.03, 0.03], split = \"mirrored\" }}\n[[region]]\n\
+             density = 1000.0\nmodel = \"{law}\"\nyoungs_modulus = 20000.0\npoissons_ratio = 0.3\n[[fixed]]\n\
+             where = {{ below = {{ x = 0.001 }} }}\n[[move]]\nwhere = {{ above = {{ x = 0.099 }} }}\n\
+             displacement = [-0.02, 0.0, 0.0]\nramp = {{ kind = \"sin2\", rise = 0.1 }}\n[damping]\nstiffness = 0.005\n\
+             [run]\nduration = 0.15\nintegrator = \"newmark\"\ndt = {dt}\n"
+        )
+    };
+    for law in ["stvk", "neo-hookean", "corotational"] {
+        let remainder = |dt: &str| -> f64 {
+            let place = tempfile::tempdir().unwrap();
+            let path = place.path().join("out");
+            let end = run(&path, &crate::common::build(&text(law, dt)), &mut ());
+            assert!(
+                !end.warnings
+                    .iter()
+                    .any(|said| said.contains("damping gave"))
+            );
+            let energy = table(&path.join("energy.csv"));
+            let most = |name: &str| {
+                energy[name]
+                    .iter()
+                    .fold(0.0_f64, |most, x| x.abs().max(most))
+            };
+            let damped = &energy["damped_J"];
+            assert!(damped.windows(2).all(|rows| rows[1] >= rows[0]), "{law}");
+            assert!(most("damped_J") > 0.1 * most("work_of_supports_J"), "{law}");
+            most("remainder_J") / most("work_of_supports_J")
+        };
+        let (coarse, fine) = (remainder("0.004"), remainder("0.002"));
+        assert!(fine < 5e-3 && coarse > 3.0 * fine, "{law}: {coarse} {fine}");
+    }
+}

@@ -191,7 +191,12 @@ fn a_hit_gives_tool_and_tissue_the_same_impulse_where_steps_become_shorter() {
                 "{id}: {off} N s of {impulse}"
             );
             parts.push(state.cut.unwrap().parts);
-            println!("{id} {:.5} parts {:?} off {off:e} impulse {impulse} force {:?}", state.t(), parts.last(), pressed.force(&state));
+            println!(
+                "{id} {:.5} parts {:?} off {off:e} impulse {impulse} force {:?}",
+                state.t(),
+                parts.last(),
+                pressed.force(&state)
+            );
         }
         assert!(parts.iter().min() < parts.iter().max(), "{parts:?}");
         let mut work = vec![0.0; state.u.len()];

@@ -61,6 +61,8 @@ pub(super) struct Descent {
     trial: Point,
     layers: usize,
     pub(super) blocks: CellFactors,
+    /// Own blocks of stiffness damping in the step (N s/m); empty where there is none.
+    viscous_blocks: Vec<f64>,
     gradient: Vec<f64>,
     gradient_before: Vec<f64>,
     preconditioned: Vec<f64>,
@@ -100,7 +102,8 @@ enum Turn {
 }
 
 impl Descent {
-    pub(super) fn new(layers: usize, dofs: usize) -> Self {
+    /// Of cells with so many layers, and stiffness damping or not.
+    pub(super) fn new(layers: usize, dofs: usize, is_viscous: bool) -> Self {
         let zeros = || vec![0.0; dofs];
         Self {
             moved: zeros(),
@@ -108,6 +111,7 @@ impl Descent {
             trial: Point::new(dofs),
             layers,
             blocks: CellFactors::new(layers, dofs),
+            viscous_blocks: vec![0.0; if is_viscous { layers * dofs } else { 0 }],
             gradient: zeros(),
             gradient_before: zeros(),
             preconditioned: zeros(),
@@ -160,6 +164,16 @@ impl Descent {
         Ok(found)
     }
 
+    /// Takes the own blocks of stiffness damping where it is held in the step.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] when the law is outside its domain there.
+    pub(super) fn take_viscosity(&mut self, law: &Law<'_>) -> Result<(), EvaluationError> {
+        self.viscous_blocks.fill(0.0);
+        law.law
+            .add_viscous_blocks(&law.damped(), 1.0, &mut self.viscous_blocks)
+    }
+
     /// Factorises the diagonal blocks of the potential's second derivative at the start of the step.
     pub(super) fn factorise(
         &mut self,
@@ -177,9 +191,7 @@ impl Descent {
         self.stiff = norm(&self.preconditioned);
         let damping = law.law.damping();
         let weight = quadratic.damping_weight;
-        for entry in &mut *entries {
-            *entry *= 1.0 + weight * damping.stiffness;
-        }
+        add_scaled(weight, &self.viscous_blocks, entries);
         if let Some(extra) = &damping.extra {
             let of_cell = extra.layers().count().pow(2);
             for (cell, entries) in entries.chunks_exact_mut(of_cell).enumerate() {
@@ -249,7 +261,7 @@ impl Descent {
         let mut curvature =
             quadratic.mass_weight * weighted_dot(quadratic.masses, direction, direction);
         if law.is_damped() {
-            law.damping_product(&start.u, direction, &mut self.damped_direction)?;
+            law.damping_product(direction, &mut self.damped_direction)?;
             work.sweeps += 1;
             curvature += quadratic.damping_weight * dot(direction, &self.damped_direction);
         }

@@ -48,14 +48,14 @@ pub use self::kind::Kind;
 /// cell by cell, friction included, and `E+ <= E + P'y + W` holds with the work W of the tools (the proof is with the sweeps, `touched.rs`). The trapezoidal rule
 /// would let nodes bounce off a tool that they follow, and is refused.
 ///
-/// Damping enters the potential whole: the mass-proportional part, dashpots, and the stiffness-proportional part by the tangent at
-/// the start of the step without negative eigenvalues.
+/// Damping enters the potential whole: the mass-proportional part, dashpots, and stiffness damping as it is half way through the step by the velocity at its
+/// start, which takes the place of a function of the displacement. It has no negative eigenvalues anywhere. What supports in motion do by it is a load, and its work one of P.
 ///
 /// # Order
 ///
 /// Sweeps begin with y = 0, an error of `dt v`, and each leaves a share of it that falls as `dt^2`, or as `dt` with stiffness damping or
 /// dashpots, which weigh `dt` times more. So the order is that of the formula from two sweeps on (from one for implicit Euler), with
-/// such damping from three (two). On a law whose tangent moves, stiffness damping by that at the start of the step is of order 1.
+/// such damping from three (two).
 #[derive(Clone, Copy, Debug)]
 pub struct CnnEnergy {
     kind: Kind,

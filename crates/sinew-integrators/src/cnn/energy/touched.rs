@@ -235,7 +235,7 @@ impl Touched {
             self.base.clone_from(&descent.reached);
         }
         if law.is_damped() {
-            law.damping_product(&start.u, &self.origin, &mut self.damped)?;
+            law.damping_product(&self.origin, &mut self.damped)?;
             work.sweeps += 1;
         }
         let damped = law.is_damped().then_some(&*self.damped);
@@ -300,12 +300,7 @@ impl Touched {
         bound: f64,
         work: &mut StepReport,
     ) -> Result<bool, EvaluationError> {
-        let Taken {
-            law,
-            quadratic,
-            start,
-            ..
-        } = taken;
+        let Taken { law, quadratic, .. } = taken;
         self.refused = self.trial.evaluate(law).err();
         if self.refused.is_some() || !self.trial.is_finite() {
             return Ok(false);
@@ -313,7 +308,7 @@ impl Touched {
         let change = &self.change;
         let mut curved = quadratic.mass_weight * weighted_dot(quadratic.masses, change, change);
         if law.is_damped() {
-            law.damping_product(&start.u, change, &mut self.damped)?;
+            law.damping_product(change, &mut self.damped)?;
             work.sweeps += 1;
             curved += quadratic.damping_weight * dot(change, &self.damped);
         }

@@ -6,3 +6,5 @@ mod following_pressure;
 mod large_motion;
 #[cfg(feature = "implicit")]
 mod relaxing_tissue;
+#[cfg(feature = "implicit")]
+mod stiffness_damping;
