@@ -8,6 +8,7 @@ use crate::element_forces::ElementForces;
 use crate::elements::Elements;
 use crate::energy::Energy;
 use crate::evaluation_error::EvaluationError;
+use crate::free_part::FreePart;
 use crate::input::Inputs;
 use crate::load_time::LoadTime;
 use crate::operators::LinearOperators;
@@ -75,6 +76,11 @@ pub trait System: Send + Sync {
     /// Positions of the cells at rest (m), where the system has them: machines look for rows that repeat.
     fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
         None
+    }
+
+    /// Its connected parts that supports leave rigid motions, where the system knows them: these strain nothing and must cost nothing but their inertia.
+    fn free_parts(&self) -> Vec<FreePart> {
+        Vec::new()
     }
 
     /// The largest stiffness of any material against compression, `lambda + 2 mu`, over the smallest of any against shear,

@@ -10,6 +10,7 @@ mod field_error;
 mod follow_split;
 mod force_law;
 mod forces;
+mod free_parts;
 mod motion;
 mod nodes;
 mod other_ramps;

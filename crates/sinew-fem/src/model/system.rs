@@ -1,12 +1,12 @@
 //! The traits by which integrators see a model.
 
 use sinew_core::{
-    Contact, ElementStiffness, Elements, Energy, Equations, EvaluationError, Inputs, Layers,
-    LinearOperators, LinearSystem, LoadTime, Revision, Scales, State, System,
+    Contact, ElementStiffness, Elements, Energy, Equations, EvaluationError, FreePart, Inputs,
+    Layers, LinearOperators, LinearSystem, LoadTime, Revision, Scales, State, System,
     element_omegas_squared,
 };
 
-use super::Model;
+use super::{Model, free_parts};
 use crate::large::fill;
 use crate::material::Material;
 use crate::motion::Field;
@@ -68,6 +68,10 @@ impl System for Model {
     fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
         let place = |node: &u32| self.mesh.points[*node as usize];
         Some(self.body.cells.nodes.iter().map(place).collect())
+    }
+
+    fn free_parts(&self) -> Vec<FreePart> {
+        free_parts::of(&self.mesh, &self.body.cells)
     }
 
     fn stiffness_contrast(&self) -> Option<f64> {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use pressed::{Block, Pressed, staggered_energy, through, tool};
-use sinew_core::{State, System};
+use sinew_core::{OptionValue, Options, State, System};
 use sinew_fem::Model;
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, block};
@@ -152,6 +152,32 @@ fn the_upper_half_of_a_block_rests_on_its_lips_by_its_weight() {
     assert!(cut.pressed.tools.lips_report(&state).contacts > 0);
     // Heights of nodes that were one: by the slope they differ by less than a hundredth of an edge.
     assert!(cut.overlap(&state) < 1e-4, "{}", cut.overlap(&state));
+}
+
+/// Nothing rubs, and nothing brakes: the upper half slides as far as a point would.
+#[test]
+fn the_upper_half_slides_on_its_lips_by_its_own_weight_alone() {
+    let mut shape = Block::of([0.04, 0.04, HEIGHT], [2, 2, 4]);
+    shape.gravity = Some([0.8, 0.0, -1.0]);
+    let cut = Cut::of(&shape, Vec::new());
+    let above = cut.is_above();
+    for dt in [0.1e-3, 1e-3] {
+        let mut state = cut.pressed.at_rest();
+        let kind = Options::new().with("kind", OptionValue::Text("ie".into()));
+        let steps = (0.1_f64 / dt).round() as usize;
+        cut.pressed
+            .run_with(&mut state, ("cnn-energy", kind), dt, steps);
+        assert!(cut.pressed.tools.lips_report(&state).contacts > 0);
+        let masses = cut.pressed.model.mass().as_chunks::<3>().0;
+        let speeds = state.v.as_chunks::<3>().0;
+        let moving = masses.iter().zip(speeds).zip(&above);
+        let moving = moving.filter(|(_, is_above)| **is_above);
+        let [momentum, mass] = moving.fold([0.0; 2], |[p, m], ((mass, v), _)| {
+            [p + mass[0] * v[0], m + mass[0]]
+        });
+        let found = momentum / mass / (0.8 * 0.1);
+        assert!((found - 1.0).abs() < 0.03, "{dt} s: {found}");
+    }
 }
 
 #[test]

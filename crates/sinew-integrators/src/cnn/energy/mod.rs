@@ -5,6 +5,7 @@ mod certificate;
 mod descent;
 mod kind;
 mod point;
+mod rigid;
 mod steps;
 mod touched;
 
@@ -53,7 +54,9 @@ pub use self::kind::Kind;
 ///
 /// # Order
 ///
-/// Sweeps begin with y = 0, an error of `dt v`, and each leaves a share of it that falls as `dt^2`, or as `dt` with stiffness damping or
+/// Parts that may move as rigid bodies are led to the least of the potential over such motions first, by finite turns, so that no sweep is needed for what moves as a whole ([`sinew_cnn::RigidMotions`]).
+///
+/// Sweeps begin with no displacement beside that, an error of `dt v`, and each leaves a share of it that falls as `dt^2`, or as `dt` with stiffness damping or
 /// dashpots, which weigh `dt` times more. So the order is that of the formula from two sweeps on (from one for implicit Euler), with
 /// such damping from three (two).
 #[derive(Clone, Copy, Debug)]

@@ -10,7 +10,7 @@ use super::certificate::Certificate;
 use super::descent::{Descent, Found, Quadratic};
 use super::kind::Kind;
 use super::point::{Law, Point};
-use super::touched::{Taken, Touched};
+use super::touched::{SetOut, Taken, Touched};
 use crate::StepByHand;
 
 /// Relative excess of the kinetic energy that counts as rounding where the limiter takes it.
@@ -65,14 +65,15 @@ impl EnergySteps {
         before: Option<Self>,
     ) -> Self {
         let zeros = || vec![0.0; system.dofs()];
-        let is_viscous = |law: &dyn ElasticLaw| law.damping().stiffness != 0.0;
-        let is_viscous = system.as_elastic().is_some_and(is_viscous);
+        let descent = Descent::new(system);
         Self {
             id,
             kind,
             sweeps,
-            descent: Descent::new(system.layers().count(), system.dofs(), is_viscous),
-            touched: system.contact().map(|_| Touched::new(system.dofs())),
+            touched: system
+                .contact()
+                .map(|contact| Touched::new(contact, &descent, system.dofs())),
+            descent,
             start: Point::new(system.dofs()),
             load_before: zeros(),
             load: zeros(),
@@ -256,15 +257,17 @@ impl EnergySteps {
             step,
             state,
         };
-        let found = touched.lower(taken, &mut self.descent, self.sweeps, work)?;
+        let carried = (SetOut::Carried, self.sweeps);
+        let found = touched.lower(taken, &mut self.descent, carried, work)?;
         let room = kinetic - self.potential_change(law) + self.work_of_contact(contact, state);
-        if room >= 0.0 || found != Found::Lower {
+        if found == Found::NotFinite || found == Found::Lower && room >= 0.0 {
             return Ok(Attempt { room, found });
         }
         work.fallbacks += 1;
-        if let Some(touched) = &mut self.touched {
-            touched.back_to_first(&mut self.descent);
-        }
+        let Some(touched) = &mut self.touched else {
+            return Ok(Attempt { room, found });
+        };
+        let found = touched.lower(taken, &mut self.descent, (SetOut::Still, 1), work)?;
         let room = kinetic - self.potential_change(law) + self.work_of_contact(contact, state);
         Ok(Attempt { room, found })
     }
