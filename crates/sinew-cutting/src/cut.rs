@@ -5,8 +5,8 @@ use crate::error::CutError;
 use crate::passed::Passed;
 use crate::report::Stroke;
 use crate::sheet::Sheet;
-use crate::tet::FACES;
-use crate::vector::{Vector, cross, dot, length, sub};
+use crate::tet::{EDGES, FACES};
+use crate::vector::{Vector, cross, length, sub};
 
 /// Passes over the tetrahedra that a sheet touches in which these may change sides.
 const SMOOTHING: usize = 2;
@@ -27,19 +27,39 @@ impl CuttableBody {
         positions: &mut Vec<[f64; 3]>,
         snap: f64,
     ) -> Result<&Stroke, CutError> {
+        self.follow(sheet.poses(), positions, snap)
+    }
+
+    /// Cuts what a blade, a segment, passes from one pose to the next, each given by its two ends (m), as [`CuttableBody::stroke`] does by a sheet.
+    /// A blade that rests cuts the tissue that comes through it.
+    ///
+    /// # Errors
+    /// Same as [`CuttableBody::stroke`].
+    pub fn follow(
+        &mut self,
+        poses: [[[f64; 3]; 2]; 2],
+        positions: &mut Vec<[f64; 3]>,
+        snap: f64,
+    ) -> Result<&Stroke, CutError> {
         self.require_positions(positions)?;
         self.stroke.clear();
-        let turned = self
-            .marks
-            .normal
-            .is_some_and(|last| dot(last, sheet.normal()) < 0.0);
-        let sheet = if turned { sheet.reversed() } else { *sheet };
-        self.marks.normal = Some(sheet.normal());
-        self.find_touched(&sheet, positions);
+        match self.swept(poses, positions) {
+            Some(sheet) => {
+                let sheet = self.turned_as_before(&sheet);
+                self.cut_by(&sheet, positions, snap);
+            }
+            None => self.room.start_look(positions.len()),
+        }
+        self.marks.keep_places(positions);
+        Ok(&self.stroke)
+    }
+
+    fn cut_by(&mut self, sheet: &Sheet, positions: &mut Vec<Vector>, snap: f64) {
+        self.find_touched(sheet, positions);
         if snap > 0.0 {
-            self.snap(&sheet, positions, snap);
+            self.snap(sheet, positions, snap);
             if !self.stroke.moved.is_empty() {
-                self.look_again(&sheet);
+                self.look_again(sheet);
             }
         }
         let touched = std::mem::take(&mut self.room.touched);
@@ -49,18 +69,22 @@ impl CuttableBody {
         for of_tet in &touched {
             self.mark(*of_tet);
         }
+        self.find_left(&touched, sheet, positions);
+        let left = std::mem::take(&mut self.room.left);
+        let both = || touched.iter().map(|(tet, _)| tet).chain(&left);
+        for tet in both() {
+            self.complete(*tet);
+        }
         for _ in 0..SMOOTHING {
-            for (tet, _) in &touched {
+            for tet in both() {
                 self.smooth(*tet, positions);
             }
         }
-        for (tet, _) in &touched {
+        for tet in both() {
             self.cut_faces_of(*tet);
         }
-        self.room.touched = touched;
+        (self.room.touched, self.room.left) = (touched, left);
         self.split(positions);
-        self.marks.keep_places(positions);
-        Ok(&self.stroke)
     }
 
     /// Lifts the blade: the next stroke goes on with no tetrahedron that this one left entered in part.
@@ -112,6 +136,29 @@ impl CuttableBody {
         self.marks.set(tet, mark);
     }
 
+    /// Takes the edges of a tetrahedron as crossed that join nodes which the blade has passed on different sides: where they lay as it passed counts, and
+    /// not where tissue has moved since.
+    fn complete(&mut self, tet: u32) {
+        let (beside, nodes) = (self.beside(tet), self.tets[tet as usize]);
+        let is_passed = nodes.map(|node| self.marks.has_passed(node));
+        let mut mark = self.marks.of(tet);
+        for (edge, [i, j]) in EDGES.into_iter().enumerate() {
+            if is_passed[i] && is_passed[j] && beside.0[i] * beside.0[j] < 0.0 {
+                mark.cross(edge);
+                for end in [i, j] {
+                    self.marks.settle_node(nodes[end], beside.0[end]);
+                }
+            }
+        }
+        for vertex in (0..4).filter(|vertex| is_passed[*vertex] && beside.0[*vertex] == 0.0) {
+            mark.lay(vertex);
+        }
+        if !mark.is_settled() && (mark.side == 0 || !beside.is_divided()) {
+            mark.side = beside.side();
+        }
+        self.marks.set(tet, mark);
+    }
+
     /// Lets a tetrahedron that the sheet divides change sides where the faces that are cut then lie nearer to the sheet. So single
     /// ones do not come off as chips, and the cut is smoother than by the side of most of each tetrahedron alone.
     fn smooth(&mut self, tet: u32, positions: &[Vector]) {
@@ -157,7 +204,7 @@ impl CuttableBody {
         if !self.lets_through(tet) {
             return;
         }
-        let mark = self.marks.of(tet);
+        let (mark, own) = (self.marks.of(tet), self.side_of(tet));
         for vertex in 0..4 {
             let other = self.neighbours[tet as usize][vertex];
             if other == NONE {
@@ -168,12 +215,21 @@ impl CuttableBody {
                 let towards = self.vertex_towards(other, tet);
                 towards.is_some_and(|vertex| beyond.has_swept(vertex))
             };
-            if !(mark.has_swept(vertex) || swept_beyond()) {
+            let is_left = || {
+                let nodes = FACES[vertex].map(|corner| self.tets[tet as usize][corner]);
+                nodes.into_iter().all(|node| self.marks.has_passed(node))
+            };
+            if !(mark.has_swept(vertex) || swept_beyond() || is_left()) {
                 continue;
             }
             let side = self.side_of(other);
-            if side != mark.side && self.lets_through(other) {
+            if side != own && self.lets_through(other) {
                 self.cut_face(tet, vertex);
+                for (beside, side) in [(tet, own), (other, side)] {
+                    let mut mark = self.marks.of(beside);
+                    mark.side = side;
+                    self.marks.set(beside, mark);
+                }
             }
         }
     }

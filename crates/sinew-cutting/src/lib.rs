@@ -34,6 +34,7 @@
 
 mod body;
 mod cut;
+mod drift;
 mod error;
 mod incidence;
 mod marks;

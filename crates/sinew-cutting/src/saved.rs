@@ -32,7 +32,8 @@ impl CuttableBody {
         bytes.extend(names.flat_map(|name| name.to_le_bytes()));
         let flags = self.is_kept.iter().chain(&self.is_removed);
         bytes.extend(flags.map(|flag| u8::from(*flag)));
-        bytes.extend(self.marks.sides.iter().map(|side| side.to_byte()));
+        let sides = self.marks.sides.iter().chain(&self.marks.passed);
+        bytes.extend(sides.map(|side| side.to_byte()));
         for tet in 0..self.tets.len() as u32 {
             bytes.extend(self.marks.of(tet).to_bytes());
         }
@@ -65,7 +66,7 @@ impl CuttableBody {
         let is_removed = rest.flags(tets)?;
         let spare = self.points.capacity().saturating_sub(nodes);
         let mut marks = Marks::new(nodes, tets, spare);
-        for side in &mut marks.sides {
+        for side in marks.sides.iter_mut().chain(&mut marks.passed) {
             let [byte] = rest.take()?;
             *side = NodeSide::from_byte(byte);
         }

@@ -1,5 +1,6 @@
 //! The surface that a blade sweeps.
 
+use crate::drift::Drift;
 use crate::seen::Flat;
 use crate::vector::{Vector, add, cross, dot, length, mean, scaled, sub};
 
@@ -22,6 +23,8 @@ pub struct Sheet {
     /// The box around them, rim included.
     flat_bounds: [[f64; 2]; 2],
     size: f64,
+    /// How the tissue moved with which the beginning went.
+    drift: Drift,
 }
 
 impl Sheet {
@@ -60,7 +63,25 @@ impl Sheet {
             corners_flat: flat,
             flat_bounds,
             size,
+            drift: Drift::default(),
         })
+    }
+
+    /// The same sheet, whose beginning went with tissue.
+    pub(crate) fn with_drift(self, drift: Drift) -> Self {
+        Self { drift, ..self }
+    }
+
+    /// The two poses of the blade.
+    pub(crate) fn poses(&self) -> [[Vector; 2]; 2] {
+        let [a, b, c, d] = self.corners;
+        [[a, b], [d, c]]
+    }
+
+    /// How far an end of the blade goes, at most.
+    pub(crate) fn way(&self) -> f64 {
+        let [a, b, c, d] = self.corners;
+        length(sub(d, a)).max(length(sub(c, b)))
     }
 
     /// The unit normal of the mean plane: blade times motion.
@@ -86,9 +107,10 @@ impl Sheet {
     /// A point of tissue in the sheet's plane, which has moved so far since the blade was where the sheet begins.
     pub(crate) fn flat(&self, point: Vector, moved: Vector) -> Flat {
         let flat = |vector: Vector| self.axes.map(|axis| dot(axis, vector));
+        let drift = self.drift.at(sub(point, moved));
         Flat {
             place: flat(sub(point, self.centre)),
-            shift: flat(moved),
+            shift: flat(sub(moved, drift)),
         }
     }
 

@@ -48,6 +48,7 @@ impl CuttableBody {
         for node in self.tets[tet as usize] {
             if self.room.nodes.is_new(node, self.room.look) {
                 self.see_node(node, sheet, positions[node as usize]);
+                self.pass(node, sheet);
             }
         }
     }
@@ -56,7 +57,7 @@ impl CuttableBody {
     pub(crate) fn see_node(&mut self, node: u32, sheet: &Sheet, place: Vector) {
         let distance = sheet.distance(place);
         let least = ON_SHEET * self.edge_at(node);
-        let distance = match self.marks.side_of_node(node) {
+        let distance = match self.marks.known_side(node) {
             NodeSide::OnSheet => 0.0,
             NodeSide::Open if distance.abs() <= least => 0.0,
             NodeSide::Open => distance,
@@ -65,6 +66,15 @@ impl CuttableBody {
         };
         let flat = sheet.flat(place, self.marks.moved(node, place));
         self.room.nodes.set(node, distance, flat);
+    }
+
+    /// Notes a node that this look has seen, where the blade passes it for the first time.
+    fn pass(&mut self, node: u32, sheet: &Sheet) {
+        let (distance, flat) = self.room.nodes.of(node);
+        if !self.marks.has_passed(node) && sheet.passes(flat) {
+            self.marks.pass_node(node, distance);
+            self.room.passed.push(node);
+        }
     }
 
     /// What a sheet passes of a tetrahedron whose nodes this look has seen.
@@ -132,6 +142,10 @@ impl CuttableBody {
                 self.room.see(*tet);
             }
         }
+        if self.room.queue.is_empty() {
+            // The blade is out of the body: where it comes in again, sides are others.
+            self.marks.forget_passed();
+        }
         while let Some(tet) = self.room.queue.pop() {
             self.see_nodes(tet, sheet, positions);
             let passed = self.passed(tet, sheet);
@@ -146,6 +160,42 @@ impl CuttableBody {
             }
         }
         self.room.touched.sort_unstable_by_key(|(tet, _)| *tet);
+    }
+
+    /// Finds the tetrahedra, increasing, that this look has not touched, one of whose nodes the blade has passed in it, and at which something may be left
+    /// to be cut, into `room.left`.
+    pub(crate) fn find_left(&mut self, touched: &[(u32, Passed)], sheet: &Sheet, positions: &[Vector]) {
+        let mut left = std::mem::take(&mut self.room.left);
+        left.clear();
+        // To see further nodes may add to those that were passed.
+        let mut place = 0;
+        while let Some(node) = self.room.passed.get(place).copied() {
+            place += 1;
+            for at_node in 0..self.incidence.of(node).len() {
+                let tet = self.incidence.of(node)[at_node];
+                let listed_in = &mut self.room.listed_in[tet as usize];
+                if std::mem::replace(listed_in, self.room.look) == self.room.look {
+                    continue;
+                }
+                self.see_nodes(tet, sheet, positions);
+                let neighbours = self.neighbours[tet as usize];
+                let neighbours = neighbours.into_iter().filter(|other| *other != NONE);
+                let is_entered = |other: u32| self.marks.of(other).is_entered();
+                if self.beside(tet).is_divided() || neighbours.clone().any(is_entered) {
+                    for other in neighbours {
+                        self.see_nodes(other, sheet, positions);
+                    }
+                    left.push(tet);
+                }
+            }
+        }
+        let is_touched = |tet: &u32| {
+            let at = touched.binary_search_by_key(tet, |(touched, _)| *touched);
+            at.is_ok()
+        };
+        left.retain(|tet| !is_touched(tet));
+        left.sort_unstable();
+        self.room.left = left;
     }
 
     /// Sees again what the sheet passes of the tetrahedra that it touched, some of whose nodes were moved.
