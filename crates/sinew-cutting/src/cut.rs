@@ -4,6 +4,7 @@ use crate::body::{CuttableBody, NONE};
 use crate::error::CutError;
 use crate::passed::Passed;
 use crate::report::Stroke;
+use crate::seen::Flat;
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES};
 use crate::vector::{Vector, cross, length, sub};
@@ -47,6 +48,7 @@ impl CuttableBody {
             Some(sheet) => {
                 let sheet = self.turned_as_before(&sheet);
                 self.cut_by(&sheet, positions, snap);
+                self.marks.heading = Some(sheet.heading());
             }
             None => self.room.start_look(positions.len()),
         }
@@ -73,7 +75,7 @@ impl CuttableBody {
         let left = std::mem::take(&mut self.room.left);
         let both = || touched.iter().map(|(tet, _)| tet).chain(&left);
         for tet in both() {
-            self.complete(*tet);
+            self.complete(*tet, sheet);
         }
         for _ in 0..SMOOTHING {
             for tet in both() {
@@ -138,12 +140,18 @@ impl CuttableBody {
 
     /// Takes the edges of a tetrahedron as crossed that join nodes which the blade has passed on different sides: where they lay as it passed counts, and
     /// not where tissue has moved since.
-    fn complete(&mut self, tet: u32) {
+    fn complete(&mut self, tet: u32, sheet: &Sheet) {
         let (beside, nodes) = (self.beside(tet), self.tets[tet as usize]);
+        let flats = self.room.nodes.flats(nodes);
         let is_passed = nodes.map(|node| self.marks.has_passed(node));
         let mut mark = self.marks.of(tet);
         for (edge, [i, j]) in EDGES.into_iter().enumerate() {
-            if is_passed[i] && is_passed[j] && beside.0[i] * beside.0[j] < 0.0 {
+            let [from, to] = [i, j].map(|end| beside.0[end]);
+            let is_behind = || {
+                let between = Flat::between([flats[i], flats[j]], from / (from - to));
+                !sheet.is_beyond_end(between)
+            };
+            if is_passed[i] && is_passed[j] && from * to < 0.0 && is_behind() {
                 mark.cross(edge);
                 for end in [i, j] {
                     self.marks.settle_node(nodes[end], beside.0[end]);
@@ -260,5 +268,24 @@ impl CuttableBody {
             self.marks.set(beside, mark);
         }
         self.open(tet, vertex);
+    }
+}
+
+impl CuttableBody {
+    #[doc(hidden)]
+    pub fn debug_left(&self) {
+        for tet in 0..self.tets.len() as u32 {
+            for vertex in 0..4 {
+                let other = self.neighbours[tet as usize][vertex];
+                if other == NONE || other < tet { continue; }
+                let (a, b) = (self.side_of(tet), self.side_of(other));
+                if self.marks.of(tet) == crate::marks::Mark::default() && self.marks.of(other) == crate::marks::Mark::default() { continue; }
+                let inc = |t: u32| { let m = self.marks.of(t); m.is_entered() && !m.is_crossed() };
+                if a != b || inc(tet) || inc(other) {
+                    let v = |t: u32| self.tets[t as usize].map(|n| (n, self.points[n as usize].map(|x| (x*1e4).round()/1e4), self.marks.sides[n as usize], self.marks.passed[n as usize], self.room.nodes.of(n).0));
+                    println!("face {tet}/{vertex} {other} sides {a} {b}\n   {:?} {} {:?}\n   {:?} {} {:?}", self.marks.of(tet), self.lets_through(tet), v(tet), self.marks.of(other), self.lets_through(other), v(other));
+                }
+            }
+        }
     }
 }

@@ -128,6 +128,8 @@ pub(crate) struct Marks {
     marked: Vec<u32>,
     /// Mean normal of the last sheets, at most 1 long.
     pub(crate) normal: Option<[f64; 3]>,
+    /// Direction across the blade in which it went last.
+    pub(crate) heading: Option<[f64; 3]>,
     /// The side of each node.
     pub(crate) sides: Vec<NodeSide>,
     /// The side of each node that the blade has passed, as it was then.
@@ -147,6 +149,7 @@ impl Marks {
             of: vec![Mark::default(); tets],
             marked: Vec::with_capacity(tets),
             normal: None,
+            heading: None,
             sides: open(),
             passed: open(),
             places: Vec::with_capacity(nodes + spare),
@@ -238,7 +241,7 @@ impl Marks {
         for tet in self.marked.drain(..) {
             self.of[tet as usize] = Mark::default();
         }
-        self.normal = None;
+        (self.normal, self.heading) = (None, None);
         self.places.clear();
         self.sides.fill(NodeSide::default());
         self.forget_passed();

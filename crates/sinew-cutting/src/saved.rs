@@ -18,12 +18,15 @@ impl CuttableBody {
         for count in counts {
             bytes.extend((count as u64).to_le_bytes());
         }
-        let normal = self.marks.normal;
-        bytes.push(u8::from(normal.is_some()));
+        let Marks {
+            normal, heading, ..
+        } = self.marks;
+        bytes.extend([normal, heading].map(|direction| u8::from(direction.is_some())));
         let places = self.points.as_flattened().iter();
         bytes.push(u8::from(!self.marks.places.is_empty()));
         let numbers = places
             .chain(normal.as_slice().as_flattened())
+            .chain(heading.as_slice().as_flattened())
             .chain(self.marks.places.as_flattened());
         bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
         let corners = self.tets.as_flattened().iter();
@@ -52,12 +55,10 @@ impl CuttableBody {
         if !is_mine || nodes < first || nodes > first + 4 * tets {
             return Err(SavedBodyError);
         }
-        let (has_normal, has_places) = (rest.flag()?, rest.flag()?);
+        let [has_normal, has_heading, has_places] = [rest.flag()?, rest.flag()?, rest.flag()?];
         let points = rest.vectors(nodes)?;
-        let normal = match has_normal {
-            true => rest.vectors(1)?.first().copied(),
-            false => None,
-        };
+        let normal = rest.vectors(usize::from(has_normal))?.first().copied();
+        let heading = rest.vectors(usize::from(has_heading))?.first().copied();
         let places = rest.vectors(if has_places { nodes } else { 0 })?;
         let origins = rest.names(nodes)?;
         let corners = rest.names(4 * tets)?;
@@ -77,7 +78,7 @@ impl CuttableBody {
                 marks.set(tet, mark);
             }
         }
-        marks.normal = normal;
+        (marks.normal, marks.heading) = (normal, heading);
         let within =
             |names: &[u32], limit: usize| names.iter().all(|name| (*name as usize) < limit);
         let is_neighbour = |name: &u32| *name == crate::body::NONE || (*name as usize) < tets;
@@ -216,7 +217,7 @@ mod tests {
         longer.push(0);
         let mut wrong = bytes.clone();
         // A corner beyond all nodes.
-        let corner = 26 + 24 * cut.nodes() + 24 + 24 * cut.nodes() + 4 * cut.nodes();
+        let corner = 27 + 24 * cut.nodes() + 48 + 24 * cut.nodes() + 4 * cut.nodes();
         wrong[corner..corner + 4].copy_from_slice(&u32::MAX.to_le_bytes());
         let mut huge = bytes.clone();
         huge[..8].copy_from_slice(&u64::MAX.to_le_bytes());

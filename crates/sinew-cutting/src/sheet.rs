@@ -72,10 +72,23 @@ impl Sheet {
         Self { drift, ..self }
     }
 
+    /// The way that tissue has gone, beside the blade at a place before it.
+    pub(crate) fn drift_at(&self, before: Vector) -> Vector {
+        self.drift.at(before)
+    }
+
     /// The two poses of the blade.
     pub(crate) fn poses(&self) -> [[Vector; 2]; 2] {
         let [a, b, c, d] = self.corners;
         [[a, b], [d, c]]
+    }
+
+    /// The unit direction across the blade in which it goes.
+    pub(crate) fn heading(&self) -> Vector {
+        let [a, b, c, d] = self.corners;
+        let (blade, way) = (sub(b, a), sub(add(c, d), add(a, b)));
+        let across = sub(way, scaled(blade, dot(way, blade) / dot(blade, blade)));
+        scaled(across, 1.0 / length(across))
     }
 
     /// How far an end of the blade goes, at most.
@@ -148,8 +161,7 @@ impl Sheet {
     }
 
     /// Whether a point of the plane is ahead of where the blade is in the end.
-    pub(crate) fn is_beyond_end(&self, point: Vector) -> bool {
-        let Flat { place, .. } = self.flat(point, [0.0; 3]);
+    pub(crate) fn is_beyond_end(&self, Flat { place, .. }: Flat) -> bool {
         let [a, b, c, d] = self.corners_flat;
         let side = |from: [f64; 2], to: [f64; 2]| {
             let way = [c[0] - d[0], c[1] - d[1]];
@@ -252,7 +264,7 @@ mod tests {
                 assert!(!passes(-scale, 0.1 * scale), "{scale}");
                 assert!(!passes(-0.1 * scale, scale), "{scale}");
             }
-            let ahead = |x: f64, y: f64| sheet.is_beyond_end([x, y, 0.0]);
+            let ahead = |x: f64, y: f64| sheet.is_beyond_end(sheet.flat([x, y, 0.0], [0.0; 3]));
             let [_, [x, y, _]] = after;
             assert!(ahead(0.5 * x - 0.01, 0.5 * y) && !ahead(0.5 * x + 0.01, 0.5 * y));
             assert!(ahead(0.01 - 0.4 * x, -0.4 * y) && !ahead(-0.4 * x - 0.01, -0.4 * y));

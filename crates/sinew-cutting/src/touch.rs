@@ -6,7 +6,7 @@ use crate::passed::Passed;
 use crate::seen::Flat;
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES};
-use crate::vector::Vector;
+use crate::vector::{Vector, dot, sub};
 
 /// Share of its shortest edge within which a node lies on a sheet.
 const ON_SHEET: f64 = 1e-6;
@@ -48,7 +48,7 @@ impl CuttableBody {
         for node in self.tets[tet as usize] {
             if self.room.nodes.is_new(node, self.room.look) {
                 self.see_node(node, sheet, positions[node as usize]);
-                self.pass(node, sheet);
+                self.pass(node, sheet, positions[node as usize]);
             }
         }
     }
@@ -68,13 +68,31 @@ impl CuttableBody {
         self.room.nodes.set(node, distance, flat);
     }
 
-    /// Notes a node that this look has seen, where the blade passes it for the first time.
-    fn pass(&mut self, node: u32, sheet: &Sheet) {
+    /// Notes a node that this look has seen and is here now, where the blade passes it for the first time.
+    fn pass(&mut self, node: u32, sheet: &Sheet, place: Vector) {
         let (distance, flat) = self.room.nodes.of(node);
-        if !self.marks.has_passed(node) && sheet.passes(flat) {
+        if self.marks.has_passed(node) {
+            return;
+        }
+        if sheet.passes(flat) || self.is_passed_by_turn(node, sheet, place) {
             self.marks.pass_node(node, distance);
             self.room.passed.push(node);
         }
+    }
+
+    /// Whether a node that lay ahead of the blade lies behind it since its way has turned, as those on the outer side do.
+    fn is_passed_by_turn(&self, node: u32, sheet: &Sheet, place: Vector) -> bool {
+        let Some(last) = self.marks.heading else {
+            return false;
+        };
+        let (now, [[first, end], _]) = (sheet.heading(), sheet.poses());
+        // Seen from the node, which has moved, the blade began here.
+        let before = sub(place, self.marks.moved(node, place));
+        let from = sub(before, sub(first, sheet.drift_at(before)));
+        let blade = sub(end, first);
+        let share = dot(from, blade) / dot(blade, blade);
+        let is_beside = (0.0..=1.0).contains(&share);
+        is_beside && dot(last, now) > 0.0 && dot(last, from) > 0.0 && dot(now, from) < 0.0
     }
 
     /// What a sheet passes of a tetrahedron whose nodes this look has seen.
@@ -144,7 +162,7 @@ impl CuttableBody {
         }
         if self.room.queue.is_empty() {
             // The blade is out of the body: where it comes in again, sides are others.
-            self.marks.forget_passed();
+            if std::env::var("NOF").is_err() { self.marks.forget_passed(); }
         }
         while let Some(tet) = self.room.queue.pop() {
             self.see_nodes(tet, sheet, positions);
@@ -181,7 +199,7 @@ impl CuttableBody {
                 let neighbours = self.neighbours[tet as usize];
                 let neighbours = neighbours.into_iter().filter(|other| *other != NONE);
                 let is_entered = |other: u32| self.marks.of(other).is_entered();
-                if self.beside(tet).is_divided() || neighbours.clone().any(is_entered) {
+                if self.beside(tet).is_at_plane() || neighbours.clone().any(is_entered) {
                     for other in neighbours {
                         self.see_nodes(other, sheet, positions);
                     }

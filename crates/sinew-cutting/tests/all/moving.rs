@@ -108,6 +108,7 @@ fn full_strokes_through_moving_bodies_leave_two_pieces() {
     let runs: u32 = std::env::var("RUNS").map_or(100, |runs| runs.parse().unwrap());
     let size: f64 = std::env::var("SIZE").map_or(1.0, |runs| runs.parse().unwrap());
     for run in 0..runs {
+        let only: Option<u32> = std::env::var("ONLY").ok().map(|x| x.parse().unwrap());
         let split = if run % 2 == 0 { Split::Kuhn } else { Split::Mirrored };
         let mesh = structured::cube(4 + 2 * (run as usize % 2), 0.1, split).unwrap();
         let normal = match run % 4 {
@@ -127,10 +128,12 @@ fn full_strokes_through_moving_bodies_leave_two_pieces() {
             turns: 20.0 * random.next(),
             opening: 0.005 * size * (1.0 + random.next()),
         };
+        if only.is_some_and(|o| o != run) { continue; }
         let steps = [3, 12, 60, 200][run as usize / 4 % 4];
         let snap = if run % 3 == 0 { 0.0 } else { 0.25 };
         let (pieces, body) = cut_through(&mesh, &way, &motion, steps, snap);
         topology::check(&body, &mesh);
+        if std::env::var("ONLY").is_ok() { body.debug_left(); }
         all += 1;
         if pieces != 2 {
             wrong.push((run, pieces, steps, snap));
