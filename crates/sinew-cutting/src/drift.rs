@@ -7,6 +7,9 @@ use crate::vector::{Vector, add, dot, length, scaled, sub};
 /// Share of the longest edge within which tissue counts in full for how it moves at a blade.
 const NEAR: f64 = 0.5;
 
+/// Cosine of the angle between the ways of both ends beyond which a sheet is warped too much.
+const FLAT: f64 = 0.5;
+
 /// How tissue along a blade has moved since the blade was where it begins: linear along the blade.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Drift {
@@ -122,11 +125,29 @@ impl CuttableBody {
             share if share >= 1.0 => to,
             share => add(from, scaled(sub(to, from), share)),
         };
-        let begin = [first, last].map(|share| {
-            let place = at(before, share);
-            add(place, drift.at(place))
-        });
         let end = [first, last].map(|share| at(after, share));
+        let swept = |drift: Drift| {
+            let begin = [first, last].map(|share| {
+                let place = at(before, share);
+                add(place, drift.at(place))
+            });
+            let ways = [0, 1].map(|of| sub(end[of], begin[of]));
+            (begin, ways)
+        };
+        let (mut drift, (mut begin, ways)) = (drift, swept(drift));
+        if dot(ways[0], ways[1]) < FLAT * length(ways[0]) * length(ways[1]) {
+            // No plane is near to a sheet as warped as this; that of the mean way is, unless the blade turns about a point of its own.
+            let mean = Drift {
+                at_first: scaled(sums.moved, 1.0 / sums.weight),
+                slope: [0.0; 3],
+                ..drift
+            };
+            let (level, level_ways) = swept(mean);
+            let longest = |ways: [Vector; 2]| ways.map(length).into_iter().fold(0.0, f64::max);
+            if longest(level_ways) > 0.5 * longest(ways) {
+                (drift, begin) = (mean, level);
+            }
+        }
         Some(Sheet::swept(begin, end)?.with_drift(drift))
     }
 

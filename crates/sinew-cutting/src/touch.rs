@@ -11,6 +11,9 @@ use crate::vector::{Vector, dot, sub};
 /// Share of its shortest edge within which a node lies on a sheet.
 const ON_SHEET: f64 = 1e-6;
 
+/// Share of the longest edge within which a node is at the blade's edge.
+const AT_EDGE: f64 = 0.02;
+
 /// Distances of a tetrahedron's vertices from a sheet's plane; 0 for those that lie on it.
 #[derive(Clone, Copy)]
 pub(crate) struct Beside(pub(crate) [f64; 4]);
@@ -74,6 +77,13 @@ impl CuttableBody {
         if self.marks.has_passed(node) {
             return;
         }
+        if std::env::var("TR").ok() == Some(node.to_string()) {
+            let (now, [[first, end], _]) = (sheet.heading(), sheet.poses());
+            let before = sub(place, self.marks.moved(node, place));
+            let from = sub(before, sub(first, sheet.drift_at(before)));
+            let blade = sub(end, first);
+            println!("node {node} look {} d {distance:.6} passes {} last.now {:?} last.from {:?} now.from {:.6} way {:.6} share {:.3} shift {:?} beyond {} now {now:.3?} n {:.3?} sh {:.6}", self.room.look, sheet.passes(flat), self.marks.heading.map(|l| dot(l, now)), self.marks.heading.map(|l| dot(l, from)), dot(now, from), sheet.way(), dot(from, blade)/dot(blade,blade), flat.shift, sheet.is_beyond_end(flat), sheet.normal(), dot(now, sheet.drift_at(before)));
+        }
         if sheet.passes(flat) || self.is_passed_by_turn(node, sheet, place) {
             self.marks.pass_node(node, distance);
             self.room.passed.push(node);
@@ -92,7 +102,9 @@ impl CuttableBody {
         let blade = sub(end, first);
         let share = dot(from, blade) / dot(blade, blade);
         let is_beside = (0.0..=1.0).contains(&share);
-        is_beside && dot(last, now) > 0.0 && dot(last, from) > 0.0 && dot(now, from) < 0.0
+        // Sheets of different planes do not meet to the last digit.
+        let room = AT_EDGE * self.longest_edge;
+        is_beside && dot(last, now) > 0.0 && dot(last, from) > -room && dot(now, from) < room
     }
 
     /// What a sheet passes of a tetrahedron whose nodes this look has seen.
@@ -154,6 +166,7 @@ impl CuttableBody {
     /// neighbour, so that tetrahedra stretched beyond all measure are found where another one leads to them.
     pub(crate) fn find_touched(&mut self, sheet: &Sheet, positions: &[Vector]) {
         self.room.start_look(positions.len());
+        if let Some(node) = std::env::var("TR").ok() { let node: usize = node.parse().unwrap(); println!("look {} sheet {:.4?} at {:.4?} was {:.4?} drift {:.4?}", self.room.look, sheet.poses(), positions[node], self.marks.places.get(node), sheet.drift_at(positions[node])); }
         let is_near = self.is_near(sheet.bounds());
         for (node, _) in (0..).zip(positions).filter(|(_, place)| is_near(place)) {
             for tet in self.incidence.of(node) {
