@@ -7,6 +7,7 @@ use crate::report::Stroke;
 use crate::seen::Flat;
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES};
+use crate::uncut::Uncut;
 use crate::vector::{Vector, cross, length, sub};
 
 /// Passes over the tetrahedra that a sheet touches in which these may change sides.
@@ -52,6 +53,7 @@ impl CuttableBody {
             }
             None => self.room.start_look(positions.len()),
         }
+        self.go_on_course(poses, positions);
         self.marks.keep_places(positions);
         Ok(&self.stroke)
     }
@@ -89,9 +91,11 @@ impl CuttableBody {
         self.split(positions);
     }
 
-    /// Lifts the blade: the next stroke goes on with no tetrahedron that this one left entered in part.
-    pub fn lift(&mut self) {
+    /// Lifts the blade: the next stroke goes on with no tetrahedron that this one left entered in part. What it left uncut, as [`CuttableBody::uncut`].
+    pub fn lift(&mut self) -> Option<Uncut> {
+        let uncut = self.uncut();
         self.marks.clear();
+        uncut
     }
 
     /// Cuts faces, each given by a tetrahedron and the vertex (0 to 3) opposite. Faces of the surface stay what they are.
@@ -212,22 +216,13 @@ impl CuttableBody {
         if !self.lets_through(tet) {
             return;
         }
-        let (mark, own) = (self.marks.of(tet), self.side_of(tet));
+        let own = self.side_of(tet);
         for vertex in 0..4 {
             let other = self.neighbours[tet as usize][vertex];
             if other == NONE {
                 continue;
             }
-            let beyond = self.marks.of(other);
-            let swept_beyond = || {
-                let towards = self.vertex_towards(other, tet);
-                towards.is_some_and(|vertex| beyond.has_swept(vertex))
-            };
-            let is_left = || {
-                let nodes = FACES[vertex].map(|corner| self.tets[tet as usize][corner]);
-                nodes.into_iter().all(|node| self.marks.has_passed(node))
-            };
-            if !(mark.has_swept(vertex) || swept_beyond() || is_left()) {
+            if !self.is_swept(tet, vertex, other) {
                 continue;
             }
             let side = self.side_of(other);
@@ -240,6 +235,19 @@ impl CuttableBody {
                 }
             }
         }
+    }
+
+    /// Whether the blade has come over a face between two tetrahedra, given by one of them and the vertex opposite: over its centroid, or past its nodes.
+    pub(crate) fn is_swept(&self, tet: u32, vertex: usize, other: u32) -> bool {
+        let towards = self.vertex_towards(other, tet);
+        let is_swept_beyond =
+            towards.is_some_and(|vertex| self.marks.of(other).has_swept(vertex));
+        let mut nodes = FACES[vertex]
+            .into_iter()
+            .map(|corner| self.tets[tet as usize][corner]);
+        self.marks.of(tet).has_swept(vertex)
+            || is_swept_beyond
+            || nodes.all(|node| self.marks.has_passed(node))
     }
 
     /// Whether faces of a tetrahedron may be cut: the blade has come through it, or passes beside it.
@@ -268,24 +276,5 @@ impl CuttableBody {
             self.marks.set(beside, mark);
         }
         self.open(tet, vertex);
-    }
-}
-
-impl CuttableBody {
-    #[doc(hidden)]
-    pub fn debug_left(&self) {
-        for tet in 0..self.tets.len() as u32 {
-            for vertex in 0..4 {
-                let other = self.neighbours[tet as usize][vertex];
-                if other == NONE || other < tet { continue; }
-                let (a, b) = (self.side_of(tet), self.side_of(other));
-                if self.marks.of(tet) == crate::marks::Mark::default() && self.marks.of(other) == crate::marks::Mark::default() { continue; }
-                let inc = |t: u32| { let m = self.marks.of(t); m.is_entered() && !m.is_crossed() };
-                if a != b || inc(tet) || inc(other) {
-                    let v = |t: u32| self.tets[t as usize].map(|n| (n, self.points[n as usize].map(|x| (x*1e4).round()/1e4), self.marks.sides[n as usize], self.marks.passed[n as usize], self.room.nodes.of(n).0));
-                    println!("face {tet}/{vertex} {other} sides {a} {b}\n   {:?} {} {:?}\n   {:?} {} {:?}", self.marks.of(tet), self.lets_through(tet), v(tet), self.marks.of(other), self.lets_through(other), v(other));
-                }
-            }
-        }
     }
 }

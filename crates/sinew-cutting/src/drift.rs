@@ -159,6 +159,9 @@ impl CuttableBody {
         };
         let is_turned = dot(last, sheet.normal()) < 0.0;
         let sheet = if is_turned { sheet.reversed() } else { *sheet };
+        let ahead = if is_turned { -sheet.way() } else { sheet.way() };
+        let back = &mut self.marks.course.back;
+        *back = (*back - ahead).max(0.0);
         // A way of an edge tells a new direction, and nothing shorter does: tissue that shivers must not turn the sides over.
         let share = (sheet.way() / self.longest_edge).min(1.0);
         let mean = add(scaled(last, 1.0 - share), scaled(sheet.normal(), share));

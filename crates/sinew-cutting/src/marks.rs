@@ -1,6 +1,7 @@
 //! How far a blade has come through each tetrahedron.
 
 use crate::tet::EDGES;
+use crate::uncut::Course;
 
 /// How far the blade has come through one tetrahedron since it was set on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -130,6 +131,7 @@ pub(crate) struct Marks {
     pub(crate) normal: Option<[f64; 3]>,
     /// Direction across the blade in which it went last.
     pub(crate) heading: Option<[f64; 3]>,
+    pub(crate) course: Course,
     /// The side of each node.
     pub(crate) sides: Vec<NodeSide>,
     /// The side of each node that the blade has passed, as it was then.
@@ -150,6 +152,7 @@ impl Marks {
             marked: Vec::with_capacity(tets),
             normal: None,
             heading: None,
+            course: Course::default(),
             sides: open(),
             passed: open(),
             places: Vec::with_capacity(nodes + spare),
@@ -242,6 +245,7 @@ impl Marks {
             self.of[tet as usize] = Mark::default();
         }
         (self.normal, self.heading) = (None, None);
+        self.course = Course::default();
         self.places.clear();
         self.sides.fill(NodeSide::default());
         self.forget_passed();

@@ -3,6 +3,7 @@
 use crate::body::CuttableBody;
 use crate::incidence::Incidence;
 use crate::marks::{Mark, Marks, NodeSide};
+use crate::uncut::Course;
 
 /// Bytes that are none of this body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -19,14 +20,20 @@ impl CuttableBody {
             bytes.extend((count as u64).to_le_bytes());
         }
         let Marks {
-            normal, heading, ..
+            normal,
+            heading,
+            course,
+            ..
         } = self.marks;
         bytes.extend([normal, heading].map(|direction| u8::from(direction.is_some())));
+        bytes.extend([course.blade.is_some(), course.is_rimmed, course.is_out].map(u8::from));
         let places = self.points.as_flattened().iter();
         bytes.push(u8::from(!self.marks.places.is_empty()));
         let numbers = places
             .chain(normal.as_slice().as_flattened())
             .chain(heading.as_slice().as_flattened())
+            .chain(course.blade.as_slice().as_flattened().as_flattened())
+            .chain([&course.back])
             .chain(self.marks.places.as_flattened());
         bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
         let corners = self.tets.as_flattened().iter();
@@ -55,10 +62,19 @@ impl CuttableBody {
         if !is_mine || nodes < first || nodes > first + 4 * tets {
             return Err(SavedBodyError);
         }
-        let [has_normal, has_heading, has_places] = [rest.flag()?, rest.flag()?, rest.flag()?];
+        let [has_normal, has_heading] = [rest.flag()?, rest.flag()?];
+        let [has_blade, is_rimmed, is_out] = [rest.flag()?, rest.flag()?, rest.flag()?];
+        let has_places = rest.flag()?;
         let points = rest.vectors(nodes)?;
         let normal = rest.vectors(usize::from(has_normal))?.first().copied();
         let heading = rest.vectors(usize::from(has_heading))?.first().copied();
+        let blade = rest.vectors(2 * usize::from(has_blade))?;
+        let course = Course {
+            blade: blade.first_chunk().copied(),
+            is_rimmed,
+            is_out,
+            back: f64::from_le_bytes(rest.take()?),
+        };
         let places = rest.vectors(if has_places { nodes } else { 0 })?;
         let origins = rest.names(nodes)?;
         let corners = rest.names(4 * tets)?;
@@ -78,7 +94,7 @@ impl CuttableBody {
                 marks.set(tet, mark);
             }
         }
-        (marks.normal, marks.heading) = (normal, heading);
+        (marks.normal, marks.heading, marks.course) = (normal, heading, course);
         let within =
             |names: &[u32], limit: usize| names.iter().all(|name| (*name as usize) < limit);
         let is_neighbour = |name: &u32| *name == crate::body::NONE || (*name as usize) < tets;
@@ -217,7 +233,7 @@ mod tests {
         longer.push(0);
         let mut wrong = bytes.clone();
         // A corner beyond all nodes.
-        let corner = 27 + 24 * cut.nodes() + 48 + 24 * cut.nodes() + 4 * cut.nodes();
+        let corner = 30 + 24 * cut.nodes() + (2 + 2) * 24 + 8 + 24 * cut.nodes() + 4 * cut.nodes();
         wrong[corner..corner + 4].copy_from_slice(&u32::MAX.to_le_bytes());
         let mut huge = bytes.clone();
         huge[..8].copy_from_slice(&u64::MAX.to_le_bytes());

@@ -77,8 +77,9 @@ impl Sheet {
         self.drift.at(before)
     }
 
-    /// The two poses of the blade.
-    pub(crate) fn poses(&self) -> [[Vector; 2]; 2] {
+    /// The two poses of the blade, each given by its two ends (m).
+    #[must_use]
+    pub fn poses(&self) -> [[[f64; 3]; 2]; 2] {
         let [a, b, c, d] = self.corners;
         [[a, b], [d, c]]
     }

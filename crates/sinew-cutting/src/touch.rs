@@ -77,13 +77,6 @@ impl CuttableBody {
         if self.marks.has_passed(node) {
             return;
         }
-        if std::env::var("TR").ok() == Some(node.to_string()) {
-            let (now, [[first, end], _]) = (sheet.heading(), sheet.poses());
-            let before = sub(place, self.marks.moved(node, place));
-            let from = sub(before, sub(first, sheet.drift_at(before)));
-            let blade = sub(end, first);
-            println!("node {node} look {} d {distance:.6} passes {} last.now {:?} last.from {:?} now.from {:.6} way {:.6} share {:.3} shift {:?} beyond {} now {now:.3?} n {:.3?} sh {:.6}", self.room.look, sheet.passes(flat), self.marks.heading.map(|l| dot(l, now)), self.marks.heading.map(|l| dot(l, from)), dot(now, from), sheet.way(), dot(from, blade)/dot(blade,blade), flat.shift, sheet.is_beyond_end(flat), sheet.normal(), dot(now, sheet.drift_at(before)));
-        }
         if sheet.passes(flat) || self.is_passed_by_turn(node, sheet, place) {
             self.marks.pass_node(node, distance);
             self.room.passed.push(node);
@@ -166,16 +159,16 @@ impl CuttableBody {
     /// neighbour, so that tetrahedra stretched beyond all measure are found where another one leads to them.
     pub(crate) fn find_touched(&mut self, sheet: &Sheet, positions: &[Vector]) {
         self.room.start_look(positions.len());
-        if let Some(node) = std::env::var("TR").ok() { let node: usize = node.parse().unwrap(); println!("look {} sheet {:.4?} at {:.4?} was {:.4?} drift {:.4?}", self.room.look, sheet.poses(), positions[node], self.marks.places.get(node), sheet.drift_at(positions[node])); }
         let is_near = self.is_near(sheet.bounds());
         for (node, _) in (0..).zip(positions).filter(|(_, place)| is_near(place)) {
             for tet in self.incidence.of(node) {
                 self.room.see(*tet);
             }
         }
-        if self.room.queue.is_empty() {
-            // The blade is out of the body: where it comes in again, sides are others.
-            if std::env::var("NOF").is_err() { self.marks.forget_passed(); }
+        let is_out = self.room.queue.is_empty();
+        if std::mem::replace(&mut self.marks.course.is_out, is_out) && !is_out {
+            // The blade comes in again, and to the sides of it is other tissue.
+            self.marks.forget_passed();
         }
         while let Some(tet) = self.room.queue.pop() {
             self.see_nodes(tet, sheet, positions);
