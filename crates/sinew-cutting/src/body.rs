@@ -61,6 +61,12 @@ pub(crate) struct Room {
     /// Tetrahedra that are to be looked at.
     pub(crate) queue: Vec<u32>,
     pub(crate) touched: Vec<(u32, Passed)>,
+    /// Nodes that the blade has passed in this look.
+    pub(crate) passed: Vec<u32>,
+    /// Other tetrahedra at these nodes.
+    pub(crate) left: Vec<u32>,
+    /// The last look in which each tetrahedron at such a node was listed.
+    pub(crate) listed_in: Vec<u32>,
     pub(crate) nodes: SeenNodes,
     /// Nodes that may be moved, with their distance from the sheet by their shortest edge.
     pub(crate) near: Vec<(f64, u32)>,
@@ -77,6 +83,7 @@ impl Room {
     pub(crate) fn start_look(&mut self, nodes: usize) {
         self.look = self.look.wrapping_add(1);
         self.touched.clear();
+        self.passed.clear();
         self.queue.clear();
         self.nodes.resize(nodes);
     }
@@ -165,6 +172,9 @@ impl CuttableBody {
                 group_of: vec![0; tets],
                 queue: Vec::with_capacity(tets),
                 touched: Vec::with_capacity(tets),
+                passed: Vec::with_capacity(nodes + spare),
+                left: Vec::with_capacity(tets),
+                listed_in: vec![0; tets],
                 nodes: SeenNodes::with_room(nodes + spare),
                 near: Vec::with_capacity(nodes + spare),
                 corners: Vec::with_capacity(nodes + spare),
