@@ -329,7 +329,7 @@ impl RunFolder {
                     surface,
                     fields: Fields::new(&body.model, *simulation.scene().output()),
                     is_cut: body.cut.is_some(),
-                    overlaps: OverlapWatch::new(body),
+                    overlaps: OverlapWatch::new(body).with_surface(surface),
                     seen: &seen,
                 };
                 FrameWriter::start(scope, job)

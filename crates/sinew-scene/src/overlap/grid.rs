@@ -38,11 +38,16 @@ pub(super) fn longest([low, high]: &Bounds) -> f64 {
     (0..3).fold(0.0, |most: f64, axis| most.max(high[axis] - low[axis]))
 }
 
+/// A cell by its place along each axis.
+type Cell = [i64; 3];
+
 /// Boxes by the cells of a grid that they reach into (Teschner and others, Optimized spatial hashing, VMV 2003).
 #[derive(Debug, Default)]
 pub(super) struct Grid {
-    /// Edge (m) of a cell.
-    cell: f64,
+    /// Cells in a metre.
+    cells: f64,
+    /// The lowest and the highest cell of each box.
+    spans: Vec<[Cell; 2]>,
     /// The first entry of each bucket, and the end.
     starts: Vec<u32>,
     /// Boxes by their places, bucket by bucket.
@@ -51,27 +56,34 @@ pub(super) struct Grid {
 
 impl Grid {
     /// Puts boxes into cells of about this edge (m).
-    pub(super) fn fill(&mut self, boxes: &[Bounds], cell: f64) {
-        self.cell = cell.max(f64::MIN_POSITIVE);
-        let cells = |grid: &Self| -> f64 { boxes.iter().map(|of| grid.count(of)).sum() };
-        while cells(self) > (ENTRIES * boxes.len()) as f64 {
-            self.cell *= 1.5;
+    pub(super) fn fill(&mut self, boxes: &[Bounds], edge: f64) {
+        self.cells = 1.0 / edge.max(1e-300);
+        loop {
+            let mut spans = std::mem::take(&mut self.spans);
+            spans.clear();
+            spans.extend(boxes.iter().map(|of| self.span(of)));
+            self.spans = spans;
+            let entries: f64 = self.spans.iter().map(count).sum();
+            if entries <= (ENTRIES * boxes.len()) as f64 {
+                break;
+            }
+            self.cells /= 1.5;
         }
         let buckets = (2 * boxes.len()).next_power_of_two();
         self.starts.clear();
         self.starts.resize(buckets + 1, 0);
-        for of in boxes {
-            self.each_cell(of, |grid, cell| grid.starts[hash(cell, buckets) + 1] += 1);
+        for span in &self.spans {
+            each_cell(span, |cell| self.starts[hash(cell, buckets) + 1] += 1);
         }
         for bucket in 0..buckets {
             self.starts[bucket + 1] += self.starts[bucket];
         }
         self.entries.clear();
         self.entries.resize(self.starts[buckets] as usize, 0);
-        for (number, of) in (0..).zip(boxes) {
-            self.each_cell(of, |grid, cell| {
-                let start = &mut grid.starts[hash(cell, buckets)];
-                grid.entries[*start as usize] = number;
+        for (number, span) in (0..).zip(&self.spans) {
+            each_cell(span, |cell| {
+                let start = &mut self.starts[hash(cell, buckets)];
+                self.entries[*start as usize] = number;
                 *start += 1;
             });
         }
@@ -80,63 +92,62 @@ impl Grid {
         self.starts[0] = 0;
     }
 
-    /// Calls `take` with each box that may meet this one, by its place among `boxes`, with which the grid was filled; seldom twice.
+    /// Calls `take` with each box that meets this one, by its place among `boxes`, with which the grid was filled; seldom twice.
     pub(super) fn visit(&self, of: &Bounds, boxes: &[Bounds], mut take: impl FnMut(u32)) {
-        if self.count(of) > boxes.len() as f64 {
+        let span = self.span(of);
+        if count(&span) > boxes.len() as f64 {
             let all = (0..).zip(boxes);
             all.filter(|(_, other)| meet(of, other))
                 .for_each(|(number, _)| take(number));
             return;
         }
         let buckets = self.starts.len() - 1;
-        let (low, high) = (self.cell_of(&of[0]), self.cell_of(&of[1]));
-        for x in low[0]..=high[0] {
-            for y in low[1]..=high[1] {
-                for z in low[2]..=high[2] {
-                    let bucket = hash([x, y, z], buckets);
-                    let entries = self.starts[bucket] as usize..self.starts[bucket + 1] as usize;
-                    for number in &self.entries[entries] {
-                        let other = &boxes[*number as usize];
-                        // Of all cells that both are in, the one with the lowest corner that they have in common counts.
-                        let home = [0, 1, 2].map(|axis| of[0][axis].max(other[0][axis]));
-                        if meet(of, other) && self.cell_of(&home) == [x, y, z] {
-                            take(*number);
-                        }
-                    }
+        each_cell(&span, |cell| {
+            let bucket = hash(cell, buckets);
+            let entries = self.starts[bucket] as usize..self.starts[bucket + 1] as usize;
+            for number in &self.entries[entries] {
+                // Of all cells that both are in the lowest counts.
+                let [low, _] = &self.spans[*number as usize];
+                let is_home = (0..3).all(|axis| cell[axis] == span[0][axis].max(low[axis]));
+                if is_home && meet(of, &boxes[*number as usize]) {
+                    take(*number);
                 }
             }
-        }
+        });
     }
 
-    fn cell_of(&self, point: &Vector) -> [i64; 3] {
-        point.map(|along| (along / self.cell).floor() as i64)
+    /// The cells that a box reaches into.
+    fn span(&self, of: &Bounds) -> [Cell; 2] {
+        of.map(|corner| {
+            corner.map(|along| {
+                let along = along * self.cells;
+                let towards_0 = along as i64;
+                towards_0.saturating_sub(i64::from(towards_0 as f64 > along))
+            })
+        })
     }
+}
 
-    /// Number of cells that a box reaches into.
-    fn count(&self, [low, high]: &Bounds) -> f64 {
-        let (low, high) = (self.cell_of(low), self.cell_of(high));
-        let along = |axis: usize| high[axis].saturating_sub(low[axis]) as f64 + 1.0;
-        (0..3).map(along).product()
-    }
+/// Number of cells from one to another.
+fn count([low, high]: &[Cell; 2]) -> f64 {
+    let along = |axis: usize| high[axis].saturating_sub(low[axis]) as f64 + 1.0;
+    along(0) * along(1) * along(2)
+}
 
-    fn each_cell(&mut self, [low, high]: &Bounds, mut take: impl FnMut(&mut Self, [i64; 3])) {
-        let (low, high) = (self.cell_of(low), self.cell_of(high));
-        for x in low[0]..=high[0] {
-            for y in low[1]..=high[1] {
-                for z in low[2]..=high[2] {
-                    take(self, [x, y, z]);
-                }
+fn each_cell([low, high]: &[Cell; 2], mut take: impl FnMut(Cell)) {
+    for x in low[0]..=high[0] {
+        for y in low[1]..=high[1] {
+            for z in low[2]..=high[2] {
+                take([x, y, z]);
             }
         }
     }
 }
 
 /// The bucket of a cell, of a power of two of them.
-fn hash(cell: [i64; 3], buckets: usize) -> usize {
-    const PRIMES: [i64; 3] = [73_856_093, 19_349_663, 83_492_791];
-    let mixed = (0..3).fold(0, |mixed, axis| {
-        mixed ^ cell[axis].wrapping_mul(PRIMES[axis])
-    });
+fn hash([x, y, z]: Cell, buckets: usize) -> usize {
+    let mixed =
+        x.wrapping_mul(73_856_093) ^ y.wrapping_mul(19_349_663) ^ z.wrapping_mul(83_492_791);
     (mixed as usize) & (buckets - 1)
 }
 

@@ -1,5 +1,7 @@
 //! The search for the point of a body that is deepest in it.
 
+use std::borrow::Cow;
+
 use sinew_mesh::TetMesh;
 use sinew_tools::vector::{Vector, between, length, sub};
 
@@ -26,7 +28,7 @@ pub(super) struct Inside {
 /// What is looked at in each state of a body.
 pub(super) struct OverlapSearch<'a> {
     mesh: &'a TetMesh,
-    triangles: &'a [[u32; 3]],
+    triangles: Cow<'a, [[u32; 3]]>,
     edges: Vec<[u32; 2]>,
     nodes: Vec<u32>,
     /// The part of each node, and their number.
@@ -52,7 +54,11 @@ pub(super) struct Lips {
 
 impl<'a> OverlapSearch<'a> {
     /// A search in a mesh with this surface.
-    pub(super) fn new(mesh: &'a TetMesh, triangles: &'a [[u32; 3]], lips: Option<Lips>) -> Self {
+    pub(super) fn new(
+        mesh: &'a TetMesh,
+        triangles: Cow<'a, [[u32; 3]]>,
+        lips: Option<Lips>,
+    ) -> Self {
         let sides = |[a, b, c]: &[u32; 3]| [[*a, *b], [*b, *c], [*c, *a]];
         let mut edges: Vec<[u32; 2]> = triangles.iter().flat_map(sides).collect();
         for edge in &mut edges {

@@ -1,9 +1,11 @@
 //! A watch for bodies that pass through each other.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use sinew_core::State;
 use sinew_fem::FieldError;
+use sinew_mesh::BoundarySurface;
 use sinew_tools::vector::{Vector, add};
 
 use super::names::names;
@@ -64,6 +66,7 @@ impl fmt::Display for Overlap {
 /// A look costs some tenths of a microsecond for each triangle of the surface, unless surfaces touch.
 pub struct OverlapWatch<'a> {
     body: &'a BodyModel,
+    surface: Option<&'a BoundarySurface>,
     /// Made at the first look.
     search: Option<OverlapSearch<'a>>,
     /// Room for the state at hand.
@@ -86,10 +89,20 @@ impl<'a> OverlapWatch<'a> {
     pub fn new(body: &'a BodyModel) -> Self {
         Self {
             body,
+            surface: None,
             search: None,
             displacements: Vec::new(),
             places: Vec::new(),
             deepest: None,
+        }
+    }
+
+    /// The same, with the surface of the body, which it need not find then.
+    #[must_use]
+    pub fn with_surface(self, surface: &'a BoundarySurface) -> Self {
+        Self {
+            surface: Some(surface),
+            ..self
         }
     }
 
@@ -125,9 +138,19 @@ impl<'a> OverlapWatch<'a> {
     pub fn look(&mut self, t: f64, displacements: &[[f64; 3]]) {
         let body = self.body;
         let mesh = &*body.mesh;
-        let search = self
-            .search
-            .get_or_insert_with(|| OverlapSearch::new(mesh, body.surface(), lips(body)));
+        let search = self.search.get_or_insert_with(|| {
+            let triangles = match self.surface {
+                Some(surface) => {
+                    let node = |point: &u32| surface.nodes[*point as usize];
+                    let triangles = surface.triangles.iter();
+                    triangles
+                        .map(|points| points.each_ref().map(node))
+                        .collect()
+                }
+                None => Cow::Borrowed(body.surface()),
+            };
+            OverlapSearch::new(mesh, triangles, lips(body))
+        });
         self.places.clear();
         let moved = mesh.points.iter().zip(displacements);
         self.places.extend(moved.map(|(rest, by)| add(*rest, *by)));
