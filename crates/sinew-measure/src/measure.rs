@@ -6,6 +6,8 @@ use sinew_core::{
     SimulateError, StepError, System, Verdict, simulate,
 };
 
+use sinew_scene::OverlapWatch;
+
 use crate::case::Case;
 use crate::cpu_time::thread_cpu_time;
 use crate::deformation::DeformationWatch;
@@ -80,6 +82,7 @@ pub fn measure_with(
         let mut comparison = Comparison::new(&track, stride, run);
         comparison.history = (!case.is_whole()).then(|| ErrorHistory::new(is_damped(system)));
         comparison.deformation = DeformationWatch::of(case.simulation());
+        comparison.overlaps = case.simulation().model().body().map(OverlapWatch::new);
         let mut state = start.clone();
         let report = simulate(system, integrator, &mut state, run, &mut comparison);
         (comparison, state, report)
@@ -155,6 +158,11 @@ pub fn measure_with(
         inverted: system
             .inverted_elements(state.t().into(), &state.u)
             .unwrap_or(0) as u64,
+        overlap: comparison
+            .overlaps
+            .as_ref()
+            .and_then(OverlapWatch::deepest)
+            .map(|overlap| overlap.depth),
         work: work(&report, setup.factorizations),
         cpu_s_per_s: time_per_run / simulated,
         us_per_step: time_per_run / steps * 1e6,
@@ -225,6 +233,8 @@ struct Comparison<'a> {
     history: Option<ErrorHistory>,
     /// Present for bodies that follow a force law.
     deformation: Option<DeformationWatch<'a>>,
+    /// Present for bodies.
+    overlaps: Option<OverlapWatch<'a>>,
     max_u: f64,
     late: LateRange,
 }
@@ -243,6 +253,7 @@ impl<'a> Comparison<'a> {
             impulses: [Vec::new(), Vec::new()],
             history: None,
             deformation: None,
+            overlaps: None,
             max_u: 0.0,
             late: LateRange::new(dofs),
         }
@@ -288,6 +299,13 @@ impl Recorder for Comparison<'_> {
             self.compare_impulses(moment);
             if let Some(history) = &mut self.history {
                 history.include(state.t(), &state.u, reference);
+            }
+            if let Some(overlaps) = &mut self.overlaps {
+                let looked = overlaps.look_at_state(state);
+                looked.map_err(|error| RecordError {
+                    t: state.t(),
+                    source: Box::new(error),
+                })?;
             }
         }
         if let Some(deformation) = &mut self.deformation {

@@ -50,6 +50,7 @@ mod growth;
 mod made_energy;
 #[cfg(feature = "implicit")]
 mod modes;
+mod overlap_looks;
 mod pace;
 mod progress;
 mod recorder;
@@ -74,6 +75,7 @@ pub use folder_size::FolderSize;
 pub use growth::EnergyGrowth;
 #[cfg(feature = "implicit")]
 pub use modes::{ModesError, NaturalMode, check_modes_folder, natural_modes, write_modes};
+pub use overlap_looks::OverlapLooks;
 pub use pace::Pace;
 pub use request::Request;
 pub use run_end::{Ended, RunEnd};

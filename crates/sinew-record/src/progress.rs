@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use sinew_core::StepReport;
+use sinew_scene::Overlap;
 
 use crate::balance::Sums;
 
@@ -78,6 +79,60 @@ pub(crate) struct Seen {
     pub(crate) linear_rotation: Largest,
     /// Tetrahedra with a volume of 0 or below, the most at an instant.
     pub(crate) inverted: usize,
+    /// Where the body was deepest in itself.
+    #[serde(default)]
+    pub(crate) overlap: Option<SeenOverlap>,
+}
+
+/// An [`Overlap`], as a checkpoint keeps it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SeenOverlap {
+    depth: f64,
+    t: f64,
+    at: [f64; 3],
+    node: u64,
+    parts: [String; 2],
+}
+
+impl Seen {
+    /// Takes an overlap if it is deeper than that so far.
+    pub(crate) fn see_overlap(&mut self, overlap: Option<&Overlap>) {
+        let known = self.overlap.as_ref().map_or(0.0, |known| known.depth);
+        if let Some(overlap) = overlap.filter(|overlap| overlap.depth > known) {
+            let Overlap {
+                depth,
+                t,
+                at,
+                node,
+                parts,
+            } = overlap.clone();
+            self.overlap = Some(SeenOverlap {
+                depth,
+                t,
+                at,
+                node,
+                parts,
+            });
+        }
+    }
+
+    /// The deepest overlap.
+    pub(crate) fn overlap(&self) -> Option<Overlap> {
+        let SeenOverlap {
+            depth,
+            t,
+            at,
+            node,
+            parts,
+        } = self.overlap.clone()?;
+        Some(Overlap {
+            depth,
+            t,
+            at,
+            node,
+            parts,
+        })
+    }
 }
 
 /// A largest value with its time (s) and the tag of the node or the tetrahedron that it is at.

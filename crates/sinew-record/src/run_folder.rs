@@ -10,7 +10,7 @@ use sinew_core::{State, StepReport};
 use sinew_integrators::Stepper;
 use sinew_mesh::BoundarySurface;
 use sinew_scene::output::{OutputError, OwnedFolder, Tenant};
-use sinew_scene::{Cutter, ProbeRows, Scene, Simulation};
+use sinew_scene::{Cutter, OverlapWatch, ProbeRows, Scene, Simulation};
 
 use crate::balance::{Balance, LastRow};
 use crate::checkpoint::{self, Checkpoint};
@@ -329,6 +329,7 @@ impl RunFolder {
                     surface,
                     fields: Fields::new(&body.model, simulation.dt(), *simulation.scene().output()),
                     is_cut: body.cut.is_some(),
+                    overlaps: OverlapWatch::new(body).with_surface(surface),
                     seen: &seen,
                 };
                 FrameWriter::start(scope, job)
@@ -404,6 +405,14 @@ impl RunFolder {
         if let (Some(surface), Some(body)) = (&surface, simulation.model().body()) {
             surface::write(surface, &self.folder, &body.mesh)?;
             frames::write_series(&self.folder, times)?;
+        }
+        if let Some(body) = simulation.model().body()
+            && matches!(ended, Ended::Refused { .. } | Ended::Interrupted { .. })
+        {
+            // A run that came to its end, or beyond all bounds, has been looked at as far as it goes.
+            let mut overlaps = OverlapWatch::new(body);
+            overlaps.look_at_state(state)?;
+            progress.seen.see_overlap(overlaps.deepest());
         }
         let mut warnings = summary::warnings(&progress.seen);
         warnings.extend(summary::made_energy(simulation, &progress));

@@ -92,7 +92,7 @@ impl CutRecord {
     }
 }
 
-/// What a motion warns of: deformations beyond small-strain theory.
+/// What a motion warns of: deformations beyond small-strain theory, and bodies that pass through each other.
 ///
 /// A rotation by an angle theta is a strain of `1 - cos theta` to the linear theory, .034 at 15 degrees; at a strain of
 /// 10 % the quadratic terms that it leaves out are about as large as 10 % of those that it keeps.
@@ -125,6 +125,7 @@ pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
             seen.inverted
         ));
     }
+    warnings.extend(seen.overlap().map(|overlap| overlap.to_string()));
     warnings
 }
 
@@ -223,6 +224,13 @@ impl Summary<'_> {
             "options": self.stepping.options(),
             "error": "not known: `sinew plan --tolerance` measures it",
             "extremes": extremes,
+            "overlap": seen.overlap().map(|overlap| json!({
+                "depth_m": overlap.depth,
+                "t_s": overlap.t,
+                "at_m": overlap.at,
+                "node": overlap.node,
+                "parts": overlap.parts,
+            })),
             "mass_kg": self.cuts.map(|cuts| json!({ "start": cuts.mass[0], "end": cuts.mass[1] })),
             "cuts": self.cuts.map(|cuts| cuts.to_json()),
             "work": work,

@@ -66,7 +66,8 @@ const MOST_CELLS_IN_ALL: usize = MOST_CELLS * MOST_CELLS * MOST_CELLS;
 pub(super) const MESH: TableDescription = TableDescription {
     name: "mesh",
     meaning: "The shape of the body: a mesh of tetrahedra from a file of gmsh, or a cube or a block made here. What a scene \
-              says besides is in the metres and axes of the body, after `scale` and `rotate`.",
+              says besides is in the metres and axes of the body, after `scale` and `rotate`. \
+              Parts that share no node, and surfaces of one part, are kept apart by nothing: a run warns where one is in another.",
     keys: &[&FILE, &CUBE, &BLOCK, &SCALE, &ROTATE, &ORDER],
     needs: Needs::OneOf(&[FILE.name, CUBE.name, BLOCK.name]),
     examples: &[

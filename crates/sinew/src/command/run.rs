@@ -8,10 +8,11 @@ use sinew_core::{
 };
 use sinew_integrators::Stepper;
 use sinew_measure::Forecast;
-use sinew_record::{Companion, EnergyGrowth, Request, RunFolder, words_of_cuts};
+use sinew_record::{Companion, EnergyGrowth, OverlapLooks, Request, RunFolder, words_of_cuts};
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
 use sinew_scene::{
-    Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Seen, Simulation, Warning, WarningKind,
+    Overlap, Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Seen, Simulation, Warning,
+    WarningKind,
 };
 
 mod arguments;
@@ -169,6 +170,7 @@ fn probes_alone(
     let whole = simulation.run();
     let mut onlooker = Onlooker::new(interruption, whole.steps, simulation.settings().duration);
     let mut growth = EnergyGrowth::new(simulation);
+    let mut overlap = None;
     // The scene on the body as cuts left it.
     let mut cut: Option<Simulation> = None;
     let mut taken = RunReport {
@@ -179,8 +181,10 @@ fn probes_alone(
     let (csv, report, simulation) = loop {
         let now = cut.as_ref().unwrap_or(simulation);
         let mut csv = output.with_rows(ProbeRows::new(now));
+        let mut overlaps = OverlapLooks::new(now);
         let mut recorders = Recorders::new()
             .with_lent(&mut csv)
+            .with_lent(&mut overlaps)
             .with_lent(&mut onlooker);
         if cutter.is_none() {
             recorders = recorders.with_lent(&mut growth);
@@ -197,6 +201,7 @@ fn probes_alone(
         let moving = (cutter.as_ref(), integrator, &mut state);
         let stretch = now.stretch(moving, &run, (&mut recorders, seen));
         drop(recorders);
+        overlap = Overlap::deeper(overlap, overlaps.into_deepest());
         let stretch = match stretch {
             Ok(stretch) => stretch,
             Err(error) => break (csv, Err(error), now),
@@ -215,9 +220,11 @@ fn probes_alone(
     let outrun = simulation.outrun(integrator, &state);
     let left = simulation.left_by_tools(&state);
     let left = left.iter().map(String::as_str);
+    let overlap = overlap.map(|overlap| overlap.to_string());
     for warning in growth
         .in_words()
         .into_iter()
+        .chain(overlap.as_deref())
         .chain(outrun.as_deref())
         .chain(left)
     {
