@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use sinew_core::StepReport;
 
 use crate::balance::Sums;
+use crate::taken_energy::Taken;
 
 /// How far a run is, and what it has seen: all that later steps do not tell.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -20,6 +21,7 @@ pub(crate) struct Progress {
     pub(crate) kinetic: [f64; 2],
     /// The largest sum of kinetic and elastic energy (J), and the largest remainder of the balance.
     pub(crate) balance: [f64; 2],
+    pub(crate) taken: Taken,
 }
 
 /// Bytes of the files that grow.

@@ -323,15 +323,7 @@ mod tests {
         let steps = |halvings| {
             let [mut method, _] = Falling::pair(&model, 0.12, 0.1);
             let mut sweeps = 0;
-            follow(
-                &mut method,
-                &model,
-                &start,
-                &times,
-                halvings,
-                &mut sweeps,
-            )
-            .unwrap();
+            follow(&mut method, &model, &start, &times, halvings, &mut sweeps).unwrap();
             sweeps
         };
         assert_eq!([steps(1), steps(2)], [2 * steps(0), 4 * steps(0)]);

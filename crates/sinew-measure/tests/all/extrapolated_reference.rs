@@ -79,7 +79,12 @@ fn true_and_stated(text: &str, dt: f64) -> [f64; 2] {
     let mut rk4 = sinew_integrators::build("rk4", &Options::new()).unwrap();
     let mut state = simulation.initial_state().clone();
     let (mut apart, mut size) = (0.0, 0.0);
-    for (time, found) in case.samples().times.iter().zip(&case.samples().displacements) {
+    for (time, found) in case
+        .samples()
+        .times
+        .iter()
+        .zip(&case.samples().displacements)
+    {
         while state.t() < time - 0.5 * dt {
             rk4.step(simulation.system(), &mut state, dt).unwrap();
         }

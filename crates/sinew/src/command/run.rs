@@ -8,7 +8,7 @@ use sinew_core::{
 };
 use sinew_integrators::Stepper;
 use sinew_measure::Forecast;
-use sinew_record::{Companion, EnergyGrowth, Request, RunFolder, words_of_cuts};
+use sinew_record::{Companion, EnergyGrowth, EnergyLoss, Request, RunFolder, words_of_cuts};
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
 use sinew_scene::{
     Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Seen, Simulation, Warning, WarningKind,
@@ -169,6 +169,7 @@ fn probes_alone(
     let whole = simulation.run();
     let mut onlooker = Onlooker::new(interruption, whole.steps, simulation.settings().duration);
     let mut growth = EnergyGrowth::new(simulation);
+    let mut loss = EnergyLoss::new(simulation, integrator);
     // The scene on the body as cuts left it.
     let mut cut: Option<Simulation> = None;
     let mut taken = RunReport {
@@ -183,7 +184,7 @@ fn probes_alone(
             .with_lent(&mut csv)
             .with_lent(&mut onlooker);
         if cutter.is_none() {
-            recorders = recorders.with_lent(&mut growth);
+            recorders = recorders.with_lent(&mut growth).with_lent(&mut loss);
         }
         let seen = Seen {
             steps: taken.steps,
@@ -215,9 +216,11 @@ fn probes_alone(
     let outrun = simulation.outrun(integrator, &state);
     let left = simulation.left_by_tools(&state);
     let left = left.iter().map(String::as_str);
+    let lost = loss.in_words();
     for warning in growth
         .in_words()
         .into_iter()
+        .chain(lost.as_deref())
         .chain(outrun.as_deref())
         .chain(left)
     {
