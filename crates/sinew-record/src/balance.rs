@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 use sinew_core::vectors::dot;
 use sinew_core::{
-    Acceleration, Contact, ElasticLaw, Inputs, LinearOperators, LoadTime, Moment, State,
+    Acceleration, Contact, ElasticLaw, EnergyBehaviour, Inputs, LinearOperators, LoadTime, Moment,
+    State,
 };
 use sinew_fem::Model;
 use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
@@ -34,6 +35,10 @@ pub(crate) struct Energies {
     /// What the energy gained beyond all that: what memory stores and dissipates, which is less than 0 then; what the method, where that is not known, and the distance of the rows bring
     /// in or take away.
     pub(crate) remainder: f64,
+    /// All that was put in until then: the energy of the start and the work since.
+    pub(crate) given: f64,
+    /// Energy that the method took since the beginning, where it is one that does and each step is looked at.
+    pub(crate) taken: Option<f64>,
 }
 
 /// Sums of a balance, all that a checkpoint keeps of it beside the last motion.
@@ -44,6 +49,8 @@ pub(crate) struct Sums {
     supports: f64,
     damped: f64,
     method: f64,
+    /// Work of tools' forces on the nodes, which is less than that of tools by what friction takes.
+    at_contacts: f64,
     pub(crate) cuts: f64,
     /// Energy (J) that damping brought in, which it never should.
     #[serde(default)]
@@ -91,6 +98,8 @@ pub(crate) struct Balance<'a> {
     nodes: Option<Nodes>,
     /// What the method takes, where that is known.
     form: Option<NumericalDissipation>,
+    /// Whether the method takes energy by itself, and each step is looked at to tell how much.
+    is_watched: bool,
 }
 
 /// Displacements (m) of all nodes, held and moved ones included, and the forces (N) that do work on them.
@@ -116,7 +125,13 @@ impl<'a> Balance<'a> {
             last: None,
             nodes: None,
             form: None,
+            is_watched: false,
         };
+        // Beside steps that are sweeps a look at each of them costs too much where rows are rare for that reason.
+        balance.is_watched = !balance.has_memory()
+            && method.is_some_and(|method| {
+                takes_energy(method) && (rows.is_every_step() || !is_program(method))
+            });
         // The form is that of one step of free degrees of freedom.
         if !simulation.is_cut()
             && rows.is_every_step()
@@ -150,6 +165,11 @@ impl<'a> Balance<'a> {
     /// Whether it is known what the method takes.
     pub(crate) fn knows_method(&self) -> bool {
         self.form.is_some()
+    }
+
+    /// Whether each step is looked at, of which a row needs not be due.
+    pub(crate) fn looks_at_every_step(&self) -> bool {
+        self.is_watched
     }
 
     /// Goes on after a row that was written by an earlier run.
@@ -232,6 +252,7 @@ impl<'a> Balance<'a> {
                 taken = self.damped([last, &here], None)?;
                 self.sums.method += self.taken_by_method(last, &here, inputs);
             }
+            self.sums.at_contacts += self.work_at_contacts(moment.state, last, &here);
         } else {
             self.sums.first = kinetic + elastic;
         }
@@ -244,11 +265,14 @@ impl<'a> Balance<'a> {
             supports,
             damped,
             method,
+            at_contacts,
             cuts,
             ..
         } = self.sums;
         let tools = self.tools().map(|tools| tools.work(moment.state));
         let given = first + loads + supports + tools.unwrap_or(0.0) + cuts;
+        let remainder = kinetic + elastic - given + damped + method;
+        let by_friction = tools.map_or(0.0, |tools| tools - at_contacts);
         Ok(Energies {
             t,
             kinetic,
@@ -259,7 +283,9 @@ impl<'a> Balance<'a> {
             cuts: self.has_cuts().then_some(cuts),
             damped,
             method: self.form.map(|_| method),
-            remainder: kinetic + elastic - given + damped + method,
+            remainder,
+            given,
+            taken: self.is_watched.then(|| method - remainder - by_friction),
         })
     }
 
@@ -309,6 +335,16 @@ impl<'a> Balance<'a> {
             load: &after,
         };
         form.taken(operators, dt, [first, last])
+    }
+
+    /// The work (J) of tools' forces on the nodes in the step between two rows, where it is asked for.
+    fn work_at_contacts(&self, state: &State, last: &LastRow, here: &LastRow) -> f64 {
+        let Some(tools) = self.tools().filter(|_| self.is_watched) else {
+            return 0.0;
+        };
+        let mut forces = vec![0.0; here.u.len()];
+        tools.add_forces(state, false, &mut forces);
+        work([&forces, &forces], [&last.u, &here.u])
     }
 
     /// Loads (N) of the degrees of freedom at two rows, whose mean has the impulse of the loads between them, jumps included.
@@ -470,6 +506,20 @@ impl<'a> Balance<'a> {
         let motion = [&middle, &w].map(|field| field.as_chunks::<3>().0);
         Ok(span * body.model.damping_power(motion)?)
     }
+}
+
+/// Whether a method takes energy by itself from a motion that nothing damps.
+fn takes_energy(method: &dyn Stepper) -> bool {
+    let behaviour = method.properties().energy;
+    matches!(
+        behaviour,
+        EnergyBehaviour::Falls | EnergyBehaviour::NeverRises
+    )
+}
+
+/// Whether a machine runs its steps.
+fn is_program(method: &dyn Stepper) -> bool {
+    sinew_integrators::entry(method.id()).is_some_and(|entry| entry.programs)
 }
 
 /// Whether a component of a node is a degree of freedom.

@@ -65,6 +65,7 @@ mod stretch;
 mod summary;
 mod surface;
 mod tables;
+mod taken_energy;
 mod tool_rows;
 
 pub use companion::Companion;
@@ -81,3 +82,4 @@ pub use request::Request;
 pub use run_end::{Ended, RunEnd};
 pub use run_folder::RunFolder;
 pub use stepping::Stepping;
+pub use taken_energy::EnergyLoss;

@@ -5,6 +5,7 @@ use sinew_core::StepReport;
 use sinew_scene::Overlap;
 
 use crate::balance::Sums;
+use crate::taken_energy::Taken;
 
 /// How far a run is, and what it has seen: all that later steps do not tell.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -23,6 +24,8 @@ pub(crate) struct Progress {
     pub(crate) balance: [f64; 2],
     #[serde(default)]
     pub(crate) crept: Crept,
+    #[serde(default)]
+    pub(crate) taken: Taken,
 }
 
 /// Energy (J) that comes in little by little, by the remainder of the balance while no support moves: work of supports, a mean of the forces at two rows, is off by some

@@ -157,13 +157,20 @@ impl RunRecorder<'_> {
             .schedules
             .fields
             .is_some_and(|fields| fields.is_due(step));
-        if energy || frame {
+        let look = energy || self.balance.looks_at_every_step();
+        if look || frame {
             // Of a staggered method it takes a force evaluation.
             self.v.resize(moment.state.u.len(), 0.0);
             moment.velocity(&mut self.v)?;
         }
-        if energy {
-            let row = self.balance.row(moment, &self.v)?;
+        let row = match look {
+            true => Some(self.balance.row(moment, &self.v)?),
+            false => None,
+        };
+        if let Some(row) = &row {
+            self.progress.taken.see(row);
+        }
+        if let Some(row) = row.filter(|_| energy) {
             let kinetic = &mut self.progress.kinetic;
             *kinetic = [kinetic[0].max(row.kinetic), row.kinetic];
             let [most, made] = self.progress.balance;
@@ -271,7 +278,10 @@ impl Recorder for RunRecorder<'_> {
     fn next(&mut self, step: usize) -> Option<usize> {
         let step = self.before + step;
         let fields = self.schedules.fields.and_then(|fields| fields.next(step));
-        let energy = self.schedules.energy.next(step);
+        let energy = match self.balance.looks_at_every_step() {
+            true => Some(step),
+            false => self.schedules.energy.next(step),
+        };
         let end = self.schedules.steps;
         let probes = match self.probes.need_moments() || self.tools.is_some() {
             true => self.schedules.probes.next(step),

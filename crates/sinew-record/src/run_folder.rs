@@ -417,6 +417,8 @@ impl RunFolder {
         let mut warnings = summary::warnings(&progress.seen);
         warnings.extend(summary::made_energy(simulation, &progress));
         warnings.extend(summary::driven_by_damping(&progress));
+        let methods = stepping.methods_in_words();
+        warnings.extend(progress.taken.in_words(simulation, &methods));
         warnings.extend(outrun);
         warnings.extend(simulation.left_by_tools(state));
         let wall = begun.elapsed().as_secs_f64();

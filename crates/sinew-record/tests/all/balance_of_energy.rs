@@ -1,5 +1,8 @@
 //! The balance of energy is closed as each method promises.
 
+use sinew_core::simulate;
+use sinew_record::EnergyLoss;
+
 use crate::common::{cube, run, table};
 
 /// The largest remainder over the largest energy that went in, and the last remainder over it.
@@ -232,5 +235,161 @@ fn stiffness_damping_at_moved_supports_of_soft_tissue_is_in_it() {
         };
         let (coarse, fine) = (remainder("0.004"), remainder("0.002"));
         assert!(fine < 5e-3 && coarse > 3.0 * fine, "{law}: {coarse} {fine}");
+    }
+}
+
+/// What a run warns of that has to do with energy that a method took.
+fn told(simulation: &sinew_scene::Simulation) -> Option<String> {
+    let place = tempfile::tempdir().unwrap();
+    let end = run(&place.path().join("out"), simulation, &mut ());
+    let told = end
+        .warnings
+        .into_iter()
+        .find(|warning| warning.contains("that were put in"));
+    // The same is said where no table is written.
+    let mut integrator = simulation.integrator().unwrap();
+    simulation.set_up(&mut *integrator).unwrap();
+    let mut loss = EnergyLoss::new(simulation, &*integrator);
+    let mut state = simulation.initial_state().clone();
+    let run = simulation.run();
+    simulate(
+        simulation.system(),
+        &mut *integrator,
+        &mut state,
+        &run,
+        &mut loss,
+    )
+    .unwrap();
+    assert_eq!(loss.in_words(), told);
+    told
+}
+
+/// The share (%) in such a warning.
+fn share(told: Option<String>) -> f64 {
+    let told = told.expect("a warning");
+    let words: Vec<&str> = told.split_whitespace().collect();
+    let place = words.iter().position(|word| *word == "%:").unwrap();
+    words[place - 1].parse().unwrap()
+}
+
+/// `(1 + w^2 dt^2)^-n` of the energy is left by implicit Euler after n steps of an oscillator.
+#[test]
+fn what_implicit_euler_takes_from_an_oscillator_is_told_with_its_share() {
+    for (steps, dt) in [(20, 0.001), (100, 0.002), (400, 0.0005)] {
+        let text = format!(
+            "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 0.0\nvelocity = 2.0\n[run]\nduration = {}\n\
+             integrator = \"implicit-euler\"\ndt = {dt}\n",
+            f64::from(steps) * dt
+        );
+        let left = (1.0 + 1000.0 * dt * dt).powi(-steps);
+        let told = told(&crate::common::build(&text));
+        match 1.0 - left > 0.1 {
+            true => assert!((share(told) - 100.0 * (1.0 - left)).abs() < 0.51),
+            false => assert_eq!(told, None),
+        }
+    }
+}
+
+/// With rows for every step or only some, on linear bodies and others, whatever puts the energy in; and the method that it names keeps it.
+#[test]
+fn methods_that_take_much_energy_are_told_with_one_that_keeps_it() {
+    let body = |model: &str, more: &str, run: &str| {
+        crate::common::build(&format!(
+            "[mesh]\ncube = {{ cells = 2, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"{model}\"\nyoungs_modulus = 5000.0\n\
+             poissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n{more}[run]\nduration = 0.5\n{run}\n"
+        ))
+    };
+    let pushed = "[[load]]\ngroup = \"top\"\nforce = [0.3, 0.0, 0.0]\n";
+    let moved = "[[move]]\ngroup = \"top\"\ndisplacement = [0.01, 0.0, 0.0]\nramp = { kind = \"sin2\", rise = 0.02 }\n";
+    let rare = format!("{pushed}[output]\nenergy = {{ every = 0.1 }}\n");
+    let released = "[[initial]]\ndisplacement = [\"0.2 * z\", 0.0, 0.0]\n";
+    let euler = "integrator = \"implicit-euler\"\ndt = 0.01";
+    for (model, more, run) in [
+        ("linear", pushed, euler),
+        ("linear", &rare, euler),
+        ("linear", moved, euler),
+        ("neo-hookean", released, euler),
+        (
+            "neo-hookean",
+            pushed,
+            "integrator = \"newmark\"\ndt = 0.01\ngamma = 0.9\nbeta = 0.49",
+        ),
+        (
+            "neo-hookean",
+            &rare,
+            "integrator = \"cnn-energy\"\nkind = \"ie\"\ndt = 0.005",
+        ),
+        (
+            "linear",
+            pushed,
+            "integrator = \"generalized-alpha\"\ndt = 0.03\nrho_inf = 0.0",
+        ),
+    ] {
+        let simulation = body(model, more, run);
+        let told = told(&simulation);
+        let words = told.clone().unwrap_or_default();
+        assert!(told.is_some(), "{model} {more}{run}");
+        assert!(share(told) > 10.0);
+        let keeper = match model {
+            "linear" => "integrator = \"newmark\"",
+            _ => "integrator = \"central-difference\"",
+        };
+        assert!(words.contains(keeper), "{words}");
+        let dt = if model == "linear" {
+            "dt = 0.01"
+        } else {
+            "dt = \"auto\""
+        };
+        let kept = body(model, more, &format!("{keeper}\n{dt}"));
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("out");
+        crate::common::run(&path, &kept, &mut ());
+        if !more.contains("every") && !more.contains("move") {
+            let energy = table(&path.join("energy.csv"));
+            let [kinetic, elastic, loads] =
+                ["kinetic_J", "elastic_J", "work_of_loads_J"].map(|name| &energy[name]);
+            let given =
+                kinetic[0] + elastic[0] + loads.iter().fold(0.0_f64, |most, work| most.max(*work));
+            let left = energy["remainder_J"].last().unwrap() / given;
+            assert!(left.abs() < 0.1, "{model} {run}: {left}");
+        }
+    }
+}
+
+/// What damping takes, what memory dissipates, and a motion that is slow beside the steps are no loss by the method.
+#[test]
+fn energy_that_tissue_takes_is_not_told_as_the_methods() {
+    let body = |region: &str, more: &str, run: &str| {
+        crate::common::build(&format!(
+            "[mesh]\ncube = {{ cells = 2, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nyoungs_modulus = 5000.0\n\
+             poissons_ratio = 0.3\n{region}[[fixed]]\ngroup = \"bottom\"\n{more}[run]\nduration = 0.5\n{run}\n"
+        ))
+    };
+    let pushed = "[[load]]\ngroup = \"top\"\nforce = [0.3, 0.0, 0.0]\n";
+    let slowly = format!("{pushed}ramp = {{ kind = \"sin2\", rise = 0.4 }}\n");
+    let damped = format!("{pushed}[damping]\nmass = 40.0\nstiffness = 0.02\n");
+    let euler = "integrator = \"implicit-euler\"\ndt = 0.0005";
+    let elastic = "model = \"linear\"\n";
+    let relaxing = "model = \"neo-hookean\"\nprony = [[0.5, 0.05]]\n";
+    for (region, more, run) in [
+        (elastic, &*damped, euler),
+        (
+            elastic,
+            &slowly,
+            "integrator = \"implicit-euler\"\ndt = 0.005",
+        ),
+        (
+            relaxing,
+            &slowly,
+            "integrator = \"implicit-euler\"\ndt = 0.01",
+        ),
+        (elastic, pushed, "integrator = \"newmark\"\ndt = 0.01"),
+        (
+            elastic,
+            pushed,
+            "integrator = \"central-difference\"\ndt = \"auto\"",
+        ),
+    ] {
+        assert_eq!(told(&body(region, more, run)), None, "{region}{more}{run}");
     }
 }

@@ -25,7 +25,7 @@ fn across([low, high]: [f64; 2]) -> String {
 fn bar_of_strokes(folder: &Path, strokes: &str, more: &str, lips: &str, run: &str) -> Simulation {
     let strokes = format!("stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n{strokes}");
     let text = format!(
-        "{more}[mesh]\nblock = {{ cells = [2, 2, 6], size = [0.02, 0.02, 0.06] }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
+        "{more}[mesh]\nblock = {{ cells = [2, 2, 6], size = [0.02, 0.02, 0.06], split = \"kuhn\" }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
          youngs_modulus = {E}\npoissons_ratio = 0.0\n[[fixed]]\nwhere = {{ below = {{ z = 0.0 }} }}\n{TIP}[cutting]\ntable = \"strokes.csv\"\n{lips}\n\
          [run]\nduration = 1.5\n{run}"
     );

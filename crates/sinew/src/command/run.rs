@@ -8,7 +8,9 @@ use sinew_core::{
 };
 use sinew_integrators::Stepper;
 use sinew_measure::Forecast;
-use sinew_record::{Companion, EnergyGrowth, OverlapLooks, Request, RunFolder, words_of_cuts};
+use sinew_record::{
+    Companion, EnergyGrowth, EnergyLoss, OverlapLooks, Request, RunFolder, words_of_cuts,
+};
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
 use sinew_scene::{
     Overlap, Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Seen, Simulation, Warning,
@@ -171,6 +173,7 @@ fn probes_alone(
     let mut onlooker = Onlooker::new(interruption, whole.steps, simulation.settings().duration);
     let mut growth = EnergyGrowth::new(simulation);
     let mut overlap = None;
+    let mut loss = EnergyLoss::new(simulation, integrator);
     // The scene on the body as cuts left it.
     let mut cut: Option<Simulation> = None;
     let mut taken = RunReport {
@@ -187,7 +190,7 @@ fn probes_alone(
             .with_lent(&mut overlaps)
             .with_lent(&mut onlooker);
         if cutter.is_none() {
-            recorders = recorders.with_lent(&mut growth);
+            recorders = recorders.with_lent(&mut growth).with_lent(&mut loss);
         }
         let seen = Seen {
             steps: taken.steps,
@@ -221,10 +224,12 @@ fn probes_alone(
     let left = simulation.left_by_tools(&state);
     let left = left.iter().map(String::as_str);
     let overlap = overlap.map(|overlap| overlap.to_string());
+    let lost = loss.in_words();
     for warning in growth
         .in_words()
         .into_iter()
         .chain(overlap.as_deref())
+        .chain(lost.as_deref())
         .chain(outrun.as_deref())
         .chain(left)
     {
