@@ -423,8 +423,8 @@ impl ElasticLaw for Model {
             let change = &mut scratch.change;
             match of {
                 Velocities::Cells(w) => fill(change, |node| self.body.cells.at_node(w, node)),
-                Velocities::All(w) => self.fill(trial.load, 1, Some(w), change)?,
-                Velocities::Supports => self.fill(trial.load, 1, None, change)?,
+                Velocities::All(w) => self.fill(trial.load, Field::Velocity, Some(w), change)?,
+                Velocities::Supports => self.fill(trial.load, Field::Velocity, None, change)?,
             }
             large.product(scratch, past(trial), Wanted::Viscosity)?;
             self.add_at_nodes(large, scratch, beta, out);

@@ -1,7 +1,7 @@
 //! Sweeps that lower a step's potential.
 
 use sinew_core::vectors::{add_scaled, dot, dot_of_difference, norm, weighted_dot};
-use sinew_core::{EvaluationError, StepReport, System, TangentKind};
+use sinew_core::{ElasticLaw, EvaluationError, StepReport, System, TangentKind};
 
 use super::cell_factors::CellFactors;
 use super::point::{Law, Point};
