@@ -13,7 +13,7 @@ use crate::report::{Removal, Stroke};
 use crate::seen::SeenNodes;
 use crate::tet::{EDGES, FACES};
 
-use crate::vector::{Vector, length, sub};
+use crate::vector::{Vector, bounds_of, length, sub};
 
 /// Stands for no tetrahedron.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -285,9 +285,7 @@ impl CuttableBody {
     /// Whether a blade, a segment between two ends (m), is in the body where its nodes have these positions (m).
     #[must_use]
     pub fn holds(&self, [from, to]: [[f64; 3]; 2], positions: &[[f64; 3]]) -> bool {
-        let extreme =
-            |of: fn(f64, f64) -> f64| std::array::from_fn(|axis| of(from[axis], to[axis]));
-        let is_near = self.is_near([extreme(f64::min), extreme(f64::max)]);
+        let is_near = self.is_near(bounds_of([from, to]));
         let near = (0..).zip(positions).filter(|(_, place)| is_near(place));
         let mut tets = near.flat_map(|(node, _)| self.incidence.of(node));
         tets.any(|tet| {

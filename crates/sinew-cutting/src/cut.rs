@@ -45,6 +45,14 @@ impl CuttableBody {
     ) -> Result<&Stroke, CutError> {
         self.require_positions(positions)?;
         self.stroke.clear();
+        if !self.goes_on(poses[0]) {
+            if self.marks.course.blade.is_some() && self.is_in_the_air(poses, positions) {
+                // Another blade than that of the stroke at hand, which goes on after it.
+                self.room.start_look(positions.len());
+                return Ok(&self.stroke);
+            }
+            self.marks.start_anew();
+        }
         match self.swept(poses, positions) {
             Some(sheet) => {
                 let sheet = self.turned_as_before(&sheet);
@@ -53,7 +61,7 @@ impl CuttableBody {
             }
             None => self.room.start_look(positions.len()),
         }
-        self.go_on_course(poses, positions);
+        self.keep_course(poses, positions);
         self.marks.keep_places(positions);
         Ok(&self.stroke)
     }

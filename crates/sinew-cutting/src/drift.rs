@@ -2,7 +2,7 @@
 
 use crate::body::CuttableBody;
 use crate::sheet::Sheet;
-use crate::vector::{Vector, add, dot, length, scaled, sub};
+use crate::vector::{Vector, add, bounds_of, dot, length, scaled, sub};
 
 /// Share of the longest edge within which tissue counts in full for how it moves at a blade.
 const NEAR: f64 = 0.5;
@@ -82,19 +82,14 @@ impl CuttableBody {
         }
         let along = scaled(blade, 1.0 / squared);
         let reach = self.longest_edge;
-        let ends = [before[0], before[1], after[0], after[1]];
-        let bound = |axis: usize, choose: fn(f64, f64) -> f64| {
-            let places = ends.iter().map(|end| end[axis]);
-            places.fold(ends[0][axis], choose)
-        };
-        let low: Vector = std::array::from_fn(|axis| bound(axis, f64::min) - reach);
-        let high: Vector = std::array::from_fn(|axis| bound(axis, f64::max) + reach);
+        let [low, high] = bounds_of([before[0], before[1], after[0], after[1]]);
         let mut sums = Sums::default();
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut is_moved = false;
         for (was, is) in self.marks.places.iter().zip(positions) {
             let comes_near = (0..3).all(|axis| {
-                was[axis].min(is[axis]) <= high[axis] && low[axis] <= was[axis].max(is[axis])
+                was[axis].min(is[axis]) <= high[axis] + reach
+                    && low[axis] - reach <= was[axis].max(is[axis])
             });
             if !comes_near {
                 continue;

@@ -213,6 +213,12 @@ impl Marks {
         self.places.extend_from_slice(places);
     }
 
+    /// Forgets where tissue was and where the blade headed, as one begins that has not come from where the last sheet ended.
+    pub(crate) fn start_anew(&mut self) {
+        self.heading = None;
+        self.places.clear();
+    }
+
     /// Notes the place (m) to which a node was moved, so that this counts as no motion.
     pub(crate) fn set_place(&mut self, node: u32, place: [f64; 3]) {
         if let Some(before) = self.places.get_mut(node as usize) {

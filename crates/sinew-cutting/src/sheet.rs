@@ -2,7 +2,7 @@
 
 use crate::drift::Drift;
 use crate::seen::Flat;
-use crate::vector::{Vector, add, cross, dot, length, mean, scaled, sub};
+use crate::vector::{Vector, add, bounds_of, cross, dot, length, mean, scaled, sub};
 
 /// Share of its size by which the rim of a sheet reaches out, so that nothing is lost between two that follow each other.
 const RIM: f64 = 1e-9;
@@ -189,14 +189,7 @@ impl Sheet {
 
     /// The least and greatest coordinates of the sheet.
     pub(crate) fn bounds(&self) -> [Vector; 2] {
-        let extreme = |choose: fn(f64, f64) -> f64| {
-            std::array::from_fn(|axis| {
-                let of_corner = |corner: &Vector| corner[axis];
-                let first = self.corners[0][axis];
-                self.corners.iter().map(of_corner).fold(first, choose)
-            })
-        };
-        [extreme(f64::min), extreme(f64::max)]
+        bounds_of(self.corners)
     }
 }
 

@@ -2,7 +2,10 @@
 
 use crate::body::{CuttableBody, NONE};
 use crate::tet::FACES;
-use crate::vector::{Vector, add, cross, length, mean, scaled, sub};
+use crate::vector::{Vector, add, bounds_of, cross, length, mean, scaled, sub};
+
+/// Share of the longest edge within which the end of a sheet and the beginning of the next one are at one place.
+const SAME_PLACE: f64 = 1e-6;
 
 /// What a stroke through a body left uncut between the parts to its sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,8 +70,28 @@ impl CuttableBody {
         all
     }
 
+    /// Whether a blade that is here goes on from where the last sheet ended.
+    pub(crate) fn goes_on(&self, before: [Vector; 2]) -> bool {
+        let least = SAME_PLACE * self.longest_edge;
+        self.marks.course.blade.is_some_and(|last| {
+            let apart = [0, 1].map(|end| length(sub(before[end], last[end])));
+            apart.into_iter().all(|apart| apart <= least)
+        })
+    }
+
+    /// Whether no node is near a blade on its way from one pose to another.
+    pub(crate) fn is_in_the_air(
+        &self,
+        [before, after]: [[Vector; 2]; 2],
+        positions: &[Vector],
+    ) -> bool {
+        let ends = [before[0], before[1], after[0], after[1]];
+        let is_near = self.is_near(bounds_of(ends));
+        !positions.iter().any(is_near)
+    }
+
     /// Follows how far a stroke goes through the body, by a blade that came from one pose to another.
-    pub(crate) fn go_on_course(&mut self, [before, after]: [[Vector; 2]; 2], positions: &[Vector]) {
+    pub(crate) fn keep_course(&mut self, [before, after]: [[Vector; 2]; 2], positions: &[Vector]) {
         let holds = |place: [Vector; 2]| self.holds(place, positions);
         let begins_within = self.marks.course.blade.is_none() && holds(before);
         let is_rimmed =

@@ -48,9 +48,13 @@ pub(crate) struct Summary<'a> {
 }
 
 /// What was cut in a run.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct CutRecord {
     pub(crate) totals: CutTotals,
+    /// Area at rest (m^2) that strokes left of a body that they came through.
+    uncut: f64,
+    /// That in a sentence.
+    pub(crate) left_uncut: Option<String>,
     /// Mass (kg) of the body in the beginning and in the end.
     mass: [f64; 2],
     /// Pieces of the body in the end.
@@ -62,16 +66,19 @@ impl CutRecord {
     pub(crate) fn of(cutter: &Cutter, mass: f64) -> Self {
         Self {
             totals: *cutter.totals(),
+            uncut: cutter.uncut().map_or(0.0, |uncut| uncut.area),
+            left_uncut: cutter.left_uncut(),
             mass: [mass, cutter.mass()],
             pieces: cutter.pieces(),
         }
     }
 
-    fn to_json(self) -> Value {
+    fn to_json(&self) -> Value {
         let CutTotals {
             report,
             changes,
             blade_work,
+            uncut: _,
         } = self.totals;
         let energy = report.energy_gained;
         json!({
@@ -87,6 +94,7 @@ impl CutRecord {
             "kinetic_energy_gained_J": energy.map(|energy| energy.kinetic),
             "elastic_energy_gained_J": energy.map(|energy| energy.elastic),
             "work_of_the_blade_J": blade_work,
+            "left_uncut_m2": self.uncut,
             "pieces_at_the_end": self.pieces,
         })
     }

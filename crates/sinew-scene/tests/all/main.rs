@@ -17,6 +17,7 @@ mod good_scenes;
 mod lips;
 mod load_warnings;
 mod motions;
+mod moving_cuts;
 mod overlaps;
 mod places;
 mod plans;

@@ -221,7 +221,12 @@ fn probes_alone(
     onlooker.finish();
     let system = simulation.system();
     let outrun = simulation.outrun(integrator, &state);
-    let left = simulation.left_by_tools(&state);
+    let mut left = simulation.left_by_tools(&state);
+    left.extend(
+        cutter
+            .as_ref()
+            .and_then(|cutter| cutter.borrow().left_uncut()),
+    );
     let left = left.iter().map(String::as_str);
     let overlap = overlap.map(|overlap| overlap.to_string());
     let lost = loss.in_words();
