@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use sinew_core::vectors::dot;
 use sinew_core::{
     Acceleration, Contact, ElasticLaw, EnergyBehaviour, Inputs, LinearOperators, LoadTime, Moment,
-    State,
+    Ramp, State,
 };
 use sinew_fem::Model;
 use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
@@ -287,6 +287,24 @@ impl<'a> Balance<'a> {
             given,
             taken: self.is_watched.then(|| method - remainder - by_friction),
         })
+    }
+
+    /// Whether a load or a support changed between the last two rows, or may have.
+    pub(crate) fn has_changed(&self) -> bool {
+        let (Some(body), Some(last)) = (self.simulation.model().body(), &self.last) else {
+            return true;
+        };
+        let law = self.simulation.system().as_elastic();
+        let loads = body.problem.loads.iter().map(|load| &load.ramp);
+        let courses = body.problem.moves.iter().flat_map(|moving| &moving.courses);
+        let mut ramps = loads.chain(courses.map(|course| &course.ramp));
+        let (from, to) = (last.before, last.t);
+        let rests = |ramp: &Ramp| {
+            !ramp.is_input()
+                && ramp.is_constant_between(from, to)
+                && ramp.breakpoint_between(from, to).is_none()
+        };
+        law.is_none_or(ElasticLaw::loads_follow) || !ramps.all(rests)
     }
 
     /// The acceleration that the method keeps, where it matters; before the first step the consistent one.

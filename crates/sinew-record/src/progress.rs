@@ -28,35 +28,39 @@ pub(crate) struct Progress {
     pub(crate) taken: Taken,
 }
 
-/// Energy (J) that comes in little by little, by the remainder of the balance while no support moves: work of supports, a mean of the forces at two rows, is off by some
-/// per cent where they are far apart.
+/// Energy (J) that comes in little by little, by the remainder of the balance while loads and supports stay as they are: work of those that change is a mean of two rows, and off by some
+/// per cent where these are far apart.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Crept {
-    /// Mean remainder over the last rows: energies of a leapfrog swing from step to step.
+    /// Rows since a load or a support changed.
+    rows: u32,
+    /// The largest remainder in the first of them: energies of a leapfrog swing from step to step.
+    first: f64,
+    /// Mean remainder over the last ones.
     mean: f64,
-    /// Remainder and work of supports when one moved last.
-    before: f64,
-    supports: f64,
-    /// The most by which the mean rose since.
+    /// The most by which that was above the first.
     pub(crate) most: f64,
 }
 
 impl Crept {
+    /// Rows that count as the first.
+    const FIRST: u32 = 4;
+
     /// Rows that the mean is taken over.
-    const ROWS: f64 = 8.0;
+    const MEAN: f64 = 8.0;
 
-    /// Share of the energy that supports which rest do not bring in from row to row.
-    const AT_REST: f64 = 1e-4;
-
-    /// Takes up a row, with the largest energy so far.
-    pub(crate) fn see(&mut self, remainder: f64, supports: f64, energy: f64) {
-        if (supports - self.supports).abs() > Self::AT_REST * energy {
-            (self.mean, self.before) = (remainder, remainder);
-        } else {
-            self.mean += (remainder - self.mean) / Self::ROWS;
-            self.most = self.most.max(self.mean - self.before);
+    /// Takes up a row, before which loads or supports changed or did not.
+    pub(crate) fn see(&mut self, remainder: f64, has_changed: bool) {
+        if has_changed || self.rows == 0 {
+            (self.rows, self.first, self.mean) = (1, remainder, remainder);
+            return;
         }
-        self.supports = supports;
+        self.mean += (remainder - self.mean) / Self::MEAN;
+        if self.rows < Self::FIRST {
+            self.first = self.first.max(remainder);
+        }
+        self.rows = self.rows.saturating_add(1);
+        self.most = self.most.max(self.mean - self.first);
     }
 }
 
@@ -197,5 +201,34 @@ impl Work {
         self.limiter_hits += of.limiter_hits;
         self.fallbacks += of.fallbacks;
         self.retaken += of.retaken;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The most that crept in over rows of remainders, of which the first ones are under supports that move.
+    fn most(moved: usize, remainders: impl IntoIterator<Item = f64>) -> f64 {
+        let mut crept = Crept::default();
+        for (row, remainder) in remainders.into_iter().enumerate() {
+            crept.see(remainder, row < moved);
+        }
+        crept.most
+    }
+
+    #[test]
+    fn energy_that_creeps_in_while_supports_rest_is_told() {
+        let grown = (0..100).map(|row| 0.02 * f64::from((row - 40).max(0)) / 60.0);
+        let found = most(30, grown);
+        assert!((0.015..0.02).contains(&found), "{found}");
+    }
+
+    #[test]
+    fn neither_swings_of_a_leapfrog_nor_means_over_a_motion_count() {
+        let swings = (0..100).map(|row| 0.02 * f64::from(row).sin());
+        assert!(most(0, swings) < 0.001);
+        let off = (0..100).map(|row| 0.03 * (f64::from(row) / 10.0).min(1.0));
+        assert_eq!(most(11, off), 0.0);
     }
 }

@@ -177,7 +177,8 @@ impl RunRecorder<'_> {
             let energy = row.kinetic + row.elastic;
             let most = most.max(energy);
             self.progress.balance = [most, made.max(row.remainder)];
-            self.progress.crept.see(row.remainder, row.supports, most);
+            let has_changed = self.balance.has_changed();
+            self.progress.crept.see(row.remainder, has_changed);
             tables::energy_row(&mut self.line, &row);
             self.tables.energy.push(&self.line)?;
             if let (Some(reactions), Some(file)) = (&mut self.reactions, &mut self.tables.reactions)

@@ -137,7 +137,7 @@ pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
     warnings
 }
 
-/// Share of the largest energy beyond which a motion is wrong whose balance has so much too much: at any row, and as a mean over some while no support moves.
+/// Share of the largest energy beyond which a motion is wrong whose balance has so much too much: at any row, and as a mean over some while loads and supports stay as they are.
 const MADE_ENERGY: f64 = 0.1;
 const CREPT_ENERGY: f64 = 0.01;
 

@@ -258,7 +258,7 @@ fn squeezed(dt: &str) -> String {
     format!(
         "[mesh]\ncube = {{ cells = 2, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\nyoungs_modulus = 3500.0\n\
          poissons_ratio = 0.4\n[damping]\nmass = 5.0\n[[fixed]]\ngroup = \"bottom\"\n[[load]]\ngroup = \"top\"\ntraction = [0.0, 0.0, -400.0]\n\
-         ramp = {{ kind = \"sin2\", rise = 0.1 }}\n[run]\nduration = 0.4\nintegrator = \"central-difference\"\ndt = {dt}\n"
+         ramp = {{ kind = \"sin2\", rise = 0.1 }}\n[run]\nduration = 1.0\nintegrator = \"central-difference\"\ndt = {dt}\n"
     )
 }
 

@@ -169,7 +169,7 @@ fn a_node_that_one_ball_pushes_into_another_is_outside_of_both() {
     assert!(both > 10, "{both} steps in which both touch");
 }
 
-/// A ball at 2 m/s hits a free cube, which stiffens so much that its steps are cut into more parts while they touch, some of them twice: no momentum and no energy comes from that.
+/// A ball at 1 m/s hits a free cube, which stiffens so much that its steps are cut into more parts while they touch: no momentum and no energy comes from that.
 #[test]
 fn a_hit_gives_tool_and_tissue_the_same_impulse_where_steps_become_shorter() {
     for id in ["central-difference", "symplectic-euler"] {
@@ -191,12 +191,6 @@ fn a_hit_gives_tool_and_tissue_the_same_impulse_where_steps_become_shorter() {
                 "{id}: {off} N s of {impulse}"
             );
             parts.push(state.cut.unwrap().parts);
-            println!(
-                "{id} {:.5} parts {:?} off {off:e} impulse {impulse} force {:?}",
-                state.t(),
-                parts.last(),
-                pressed.force(&state)
-            );
         }
         assert!(parts.iter().min() < parts.iter().max(), "{parts:?}");
         let mut work = vec![0.0; state.u.len()];

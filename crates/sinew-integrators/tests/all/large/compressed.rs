@@ -2,9 +2,7 @@
 
 use crate::common::tissue::{body, held};
 use crate::common::{build, plain};
-use sinew_core::{
-    ElasticLaw, Inputs, LoadTime, Ramp, StableStep, State, StepReport, System, Trial,
-};
+use sinew_core::{ElasticLaw, Inputs, LoadTime, Ramp, StableStep, State, System, Trial};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{Course, Element, Law, Model, Moving};
 use sinew_integrators::explicit::Substeps;
@@ -87,17 +85,15 @@ fn compressed_tissue_gets_no_energy_from_steps_that_are_cut_by_its_stiffness() {
 
         let dt = Substeps::longest_part(duration / 50.0, 2.0 * rest);
         let mut integrator = build("central-difference", &plain().with_text("substeps", "auto"));
-        let (mut state, mut work) = (State::at_rest(model.dofs()), StepReport::default());
-        let (mut most, mut forces) = (0.0_f64, 0);
+        let mut state = State::at_rest(model.dofs());
+        let mut most = 0.0_f64;
         while state.t() < duration - 0.5 * dt {
-            work += integrator.step(&model, &mut state, dt).unwrap();
-            forces += u64::from(state.cut.unwrap().parts);
+            integrator.step(&model, &mut state, dt).unwrap();
             if state.t() > motion.1 {
                 most = most.max(energy(&model, &state));
             }
         }
         let made = most / expected - 1.0;
-        println!("{cells:?} {law:?} {motion:?}: {made:.5}, {work:?}, {forces}");
         assert!(made < 0.005, "{cells:?} {law:?} {motion:?}: {made}");
     }
 }
