@@ -11,7 +11,7 @@ use crate::limits::lagged;
 /// The correction takes loads as constant, so that loads that change cost order 2.
 ///
 /// Started from the Taylor series: `v_half = v0 + dt/2 a0 + dt^2/6 j0 + dt^3/24 q0` with
-/// `a0 = M^-1 (F(dt/3) - K u0 - D v0)`, by which `dt/2 a0` has the rate of the loads, `j0 = -M^-1 (K v0 + D a0)`, `q0 = -M^-1 K a0`.
+/// `a0 = M^-1 (F - K u0 - D v0)`, `j0 = M^-1 (F' - K v0 - D a0)`, `q0 = -M^-1 K a0`.
 #[derive(Debug, Default)]
 pub struct ModifiedLeapfrog;
 
@@ -40,13 +40,21 @@ impl Explicit for ModifiedLeapfrog {
         let sweep = |loads, dashpots_on| physics.sweep(1.0, w, loads, dashpots_on);
         let damped = |loads, on| sweep(loads, Some(on)).with_own(on, 0.0, -alpha);
 
+        // The rate of the loads, by a difference.
+        let change = |factor, share| Loads::All {
+            factor,
+            at: LoadAt::Within(share),
+        };
         let slope = [a.becomes_q(), w.becomes([(V, 1.0), (a, beta)])];
         let push = V.plus(dt / 2.0, a).and_q(dt * dt / 6.0);
         let jerk = [push, w.becomes([(a, 1.0)])];
         program.start = vec![
             Sweep::local().then(w.becomes([(U, 1.0), (V, beta)])),
-            damped(Loads::at(LoadAt::Within(1.0 / 3.0)), V).doing(slope),
-            damped(Loads::None, a).doing(jerk),
+            damped(Loads::at(LoadAt::Within(0.0)), V).doing(slope),
+            damped(change(3.0 / dt, 1.0 / 3.0), a).doing(jerk),
+            Sweep::of_stiffness(0.0, U, change(-3.0 / dt, 0.0))
+                .without_neighbours()
+                .then(V.plus_q(dt * dt / 6.0)),
             sweep(Loads::None, None).doing([V.plus_q(dt.powi(3) / 24.0), U.plus(dt, V)]),
         ];
         let plain = physics.sweep(1.0, U, Loads::at(LoadAt::Around), None);

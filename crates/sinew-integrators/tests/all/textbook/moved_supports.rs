@@ -142,11 +142,17 @@ fn a_body_and_its_clamp_at_one_speed_feel_no_force() {
             let scale = YOUNGS_MODULUS * size[1] * size[2] * 1.5 * method.dt / 0.05;
             let start = State::new(vec![0.0; model.dofs()], v.clone());
             let mut worst = 0.0_f64;
-            follow(&mut method, &model, (start, 6), |_, _, forces| {
+            follow(&mut method, &model, (start, 4), |_, _, forces| {
                 worst = worst.max(largest(forces.as_flattened()));
             });
             let off = worst / scale;
-            eprintln!("A {}, {law}, {stiffness}: {off:e}", method.name);
+            // An iteration that begins anew in the first step ends before its last digit.
+            let bound = if method.name.contains("chebyshev") {
+                1e-5
+            } else {
+                1e-9
+            };
+            assert!(off < bound, "{}, {law}, {stiffness}: {off:e}", method.name);
         }
     }
 }
@@ -157,14 +163,8 @@ fn a_bar_in_tension_pulls_by_its_law_whatever_the_cells() {
     let size = [0.2, 0.02, 0.02];
     let (strain, duration) = (0.02, 0.2);
     let area = size[1] * size[2];
-    // S = E e, P = F S.
-    let large = (1.0 + strain) * (strain + strain * strain / 2.0);
     let soft = linear(YOUNGS_MODULUS, 0.0);
-    for (cells, law, expected) in [
-        (10, soft, strain),
-        (20, soft, strain),
-        (10, hyperelastic("stvk", 0.0), large),
-    ] {
+    for (cells, law) in [(10, soft), (20, soft), (10, hyperelastic("stvk", 0.0))] {
         let mesh = structured::block([cells, 1, 1], size, Split::Mirrored).unwrap();
         let along = [true, false, false];
         let speed = strain * size[0] / duration;
@@ -189,24 +189,31 @@ fn a_bar_in_tension_pulls_by_its_law_whatever_the_cells() {
         for mut method in methods(&model, &small, 0.02) {
             let start = State::new(vec![0.0; model.dofs()], v.clone());
             let steps = 10;
-            let ratio = steps as f64 * method.dt / duration;
-            let mut pulls = [0.0; 2];
-            follow(&mut method, &model, (start, steps), |_, _, forces| {
-                pulls = [0.0; 2];
+            let (mut pulls, mut reached) = ([0.0; 2], 0);
+            follow(&mut method, &model, (start, steps), |step, _, forces| {
+                (pulls, reached) = ([0.0; 2], step);
                 for (force, point) in forces.iter().zip(&mesh.points) {
                     pulls[usize::from(point[0] > 0.1)] += force[0];
                 }
             });
+            if reached < steps {
+                // Loads that change with time are not for all.
+                assert!(method.name.contains("two-step"), "{} refuses", method.name);
+                continue;
+            }
+            let strain = steps as f64 * method.dt * speed / size[0];
             let expected = match is_linear(&model) {
-                true => expected * ratio,
-                false => {
-                    let e = strain * ratio;
-                    (1.0 + e) * (e + e * e / 2.0)
-                }
+                true => strain,
+                // S = E e, P = F S.
+                false => (1.0 + strain) * (strain + strain * strain / 2.0),
             };
             for (end, pull) in [-1.0, 1.0].into_iter().zip(pulls) {
-                let off = end * pull / (YOUNGS_MODULUS * expected * area) - 1.0;
-                eprintln!("B {cells} {law} {}: {off:e}", method.name);
+                let off = end * pull / (YOUNGS_MODULUS * area * expected) - 1.0;
+                assert!(
+                    off.abs() < 1e-8,
+                    "{cells} cells, {law}, {}: {off:e}",
+                    method.name
+                );
             }
         }
     }
@@ -245,19 +252,22 @@ fn a_shaken_block_is_pushed_by_its_mass_times_the_acceleration() {
     let behind = along_x(-acceleration(0.0)).into_iter().zip(small.mass());
     let behind: Vec<f64> = behind.map(|(a, mass)| a * mass).collect();
     let u = static_solution(&small, &behind).unwrap();
-    let steps = 40;
-    for law in [soft, hyperelastic("neo-hookean", 0.3)] {
-        // Rows of a table for each step; none: a formula.
-        for rows in [0.0, 1.0, 4.0, 3.7] {
-            let courses = |dt: f64| match rows {
-                0.0 => vec![
+    let steps = 24;
+    // Rows of a table for each step; none: a formula.
+    for (law, all_rows) in [
+        (soft, &[0.0, 1.0, 3.7][..]),
+        (hyperelastic("neo-hookean", 0.3), &[1.0]),
+    ] {
+        for &rows in all_rows {
+            let courses = |dt: f64| match rows == 0.0 {
+                true => vec![
                     Course::at_velocity([speed, 0.0, 0.0]),
                     Course {
                         displacement: [amplitude, 0.0, 0.0],
                         ramp: Ramp::Sin2 { rise },
                     },
                 ],
-                _ => {
+                false => {
                     let count = ((steps + 2) as f64 * rows) as usize;
                     let times: Vec<f64> = (0..count).map(|row| row as f64 * dt / rows).collect();
                     let places: Vec<[f64; 3]> =
@@ -278,7 +288,11 @@ fn a_shaken_block_is_pushed_by_its_mass_times_the_acceleration() {
                         worst = worst.max(off.abs());
                     }
                 });
-                eprintln!("C {}, {law}, {rows} rows a step: {worst:e}", method.name);
+                assert!(
+                    worst < 0.01,
+                    "{}, {law}, {rows} rows a step: {worst:e}",
+                    method.name
+                );
             }
         }
     }
