@@ -13,7 +13,7 @@ const MOST_PRODUCTS: usize = 400;
 const LOOK: usize = 10;
 const FOUND: f64 = 1e-4;
 
-/// The slowest motion that strains a body, to some thousandths of its frequency.
+/// The slowest motion that strains a body, or one about as slow: to some thousandths of its frequency, or a few hundredths in bodies that are much longer than thick.
 #[derive(Debug)]
 pub(crate) struct SlowestMode {
     /// Its shape.
@@ -23,7 +23,7 @@ pub(crate) struct SlowestMode {
 }
 
 impl SlowestMode {
-    /// Lowers Rayleigh's quotient of K and M by conjugate gradients with the blocks of K for a preconditioner (Bradbury and Fletcher, Numer. Math. 9, 1966), beside the rigid motions
+    /// Lowers Rayleigh's quotient of K and M by conjugate gradients (Bradbury and Fletcher, Numer. Math. 9, 1966) with the blocks of K for a preconditioner and directions of Polak and Ribiere, beside the rigid motions
     /// of these parts; `None` where nothing is strained.
     pub(crate) fn of(operators: &LinearOperators, parts: &[FreePart]) -> Option<Self> {
         let (stiffness, mass) = (operators.stiffness(), operators.mass());
@@ -42,7 +42,7 @@ impl SlowestMode {
         let n = operators.dofs();
         let zeros = || vec![0.0; n];
         let (mut x, mut kx, mut direction, mut kd) = (zeros(), zeros(), zeros(), zeros());
-        let (mut slope, mut led) = (zeros(), zeros());
+        let (mut slope, mut slope_before, mut led) = (zeros(), zeros(), zeros());
         // Components that nothing resists have no part in it.
         inverse.multiply(&noise(n, 7), &mut x);
         project(&mut x);
@@ -50,7 +50,8 @@ impl SlowestMode {
         let (mut before, mut steepness_before) = (f64::INFINITY, 0.0);
         for product in 0..MOST_PRODUCTS {
             let size = weighted_dot(mass, &x, &x).sqrt();
-            if !(size > 0.0 && size.is_finite()) {
+            let is_sound = size > 0.0 && size.is_finite();
+            if !is_sound {
                 return None;
             }
             scale(&mut x, 1.0 / size);
@@ -62,19 +63,23 @@ impl SlowestMode {
                 }
                 before = quotient;
             }
+            std::mem::swap(&mut slope, &mut slope_before);
             for (slope, ((kx, x), mass)) in slope.iter_mut().zip(kx.iter().zip(&x).zip(mass)) {
                 *slope = kx - quotient * mass * x;
             }
             inverse.multiply(&slope, &mut led);
             project(&mut led);
             let steepness = dot(&slope, &led);
-            if !(steepness > 0.0) {
+            let goes_on = steepness > 0.0;
+            if !goes_on {
                 break;
             }
+            // The last slope and direction were those of a vector `size` times as long.
             let conjugate = match steepness_before > 0.0 {
-                true => steepness * size / steepness_before,
+                true => (size * steepness - dot(&led, &slope_before)) / steepness_before,
                 false => 0.0,
             };
+            let conjugate = conjugate.max(0.0);
             steepness_before = steepness;
             for (direction, led) in direction.iter_mut().zip(&led) {
                 *direction = conjugate * *direction - led;

@@ -2,8 +2,8 @@
 
 use sinew_cnn::{CellBlocks, Deflation, Inverse, Stabiliser};
 use sinew_core::{
-    Acceleration, Inertia, LoadTime, Meeting, State, Step, StepError, StepReport, Stepped, System,
-    VelocityTime,
+    Acceleration, Contact, Inertia, LoadTime, Meeting, State, Step, StepError, StepReport, Stepped,
+    System, VelocityTime,
 };
 use std::sync::Arc;
 
@@ -39,14 +39,15 @@ struct TouchedParts {
 impl SolvedSteps {
     pub(super) fn new(stabiliser: &Stabiliser, system: &dyn System, sweeps: u64) -> Self {
         let majorant = stabiliser.majorant();
+        let room = |of: fn(&dyn Contact) -> usize| system.contact().map_or(0, of);
         let touched = |deflation: &Arc<Deflation>| TouchedParts {
             blocks: Arc::clone(majorant.inverse()),
             deflation: Arc::clone(deflation),
             contact: system
                 .contact()
                 .map(|contact| CoupledContact::new(contact, majorant.dofs(), deflation.count())),
-            kept: Vec::new(),
-            pushed: Vec::new(),
+            kept: Vec::with_capacity(room(|contact| contact.kept())),
+            pushed: Vec::with_capacity(room(|contact| contact.cells().len())),
         };
         let zeros = || vec![0.0; majorant.dofs()];
         Self {

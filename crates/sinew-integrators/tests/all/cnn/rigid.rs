@@ -295,7 +295,7 @@ fn the_slowest_motion_is_slowed_by_the_factor_that_is_told() {
             let told = stabiliser.slowing().unwrap();
             let found = 2.0 / dt * (0.5 * dt * lowest(&stabilising(&stabiliser, n))).asin();
             let factor = omega / found;
-            assert!((told.period * omega / std::f64::consts::TAU - 1.0).abs() < 0.01);
+            assert!((told.period * omega / std::f64::consts::TAU - 1.0).abs() < 0.05);
             assert!(factor > 1.01, "{share}: {factor}");
             assert!(
                 (told.factor / factor - 1.0).abs() < 0.05,
