@@ -248,8 +248,7 @@ impl CuttableBody {
     /// Whether the blade has come over a face between two tetrahedra, given by one of them and the vertex opposite: over its centroid, or past its nodes.
     pub(crate) fn is_swept(&self, tet: u32, vertex: usize, other: u32) -> bool {
         let towards = self.vertex_towards(other, tet);
-        let is_swept_beyond =
-            towards.is_some_and(|vertex| self.marks.of(other).has_swept(vertex));
+        let is_swept_beyond = towards.is_some_and(|vertex| self.marks.of(other).has_swept(vertex));
         let mut nodes = FACES[vertex]
             .into_iter()
             .map(|corner| self.tets[tet as usize][corner]);

@@ -115,7 +115,11 @@ impl CuttableBody {
         };
         // Of the blade only what is beside tissue: a turn of the tissue would else warp the sheet far from it.
         let (first, last) = ((least - room).max(0.0), (most + room).min(1.0));
-        let (first, last) = if first < last { (first, last) } else { (0.0, 1.0) };
+        let (first, last) = if first < last {
+            (first, last)
+        } else {
+            (0.0, 1.0)
+        };
         let at = |[from, to]: [Vector; 2], share: f64| match share {
             share if share >= 1.0 => to,
             share => add(from, scaled(sub(to, from), share)),

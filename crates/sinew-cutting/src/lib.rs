@@ -62,5 +62,5 @@ pub use report::{Removal, Stroke};
 pub use saved::SavedBodyError;
 pub use sheet::Sheet;
 pub use snap::FREQUENCY_GROWTH;
-pub use uncut::Uncut;
 pub use strokes::{BladeAct, BladePose, Strokes, StrokesError};
+pub use uncut::Uncut;

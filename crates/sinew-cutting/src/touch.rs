@@ -188,7 +188,12 @@ impl CuttableBody {
 
     /// Finds the tetrahedra, increasing, that this look has not touched, one of whose nodes the blade has passed in it, and at which something may be left
     /// to be cut, into `room.left`.
-    pub(crate) fn find_left(&mut self, touched: &[(u32, Passed)], sheet: &Sheet, positions: &[Vector]) {
+    pub(crate) fn find_left(
+        &mut self,
+        touched: &[(u32, Passed)],
+        sheet: &Sheet,
+        positions: &[Vector],
+    ) {
         let mut left = std::mem::take(&mut self.room.left);
         left.clear();
         // To see further nodes may add to those that were passed.

@@ -22,10 +22,7 @@ impl Uncut {
     pub fn and(self, other: Self) -> Self {
         let area = self.area + other.area;
         let share = other.area / area;
-        let place = add(
-            scaled(self.place, 1.0 - share),
-            scaled(other.place, share),
-        );
+        let place = add(scaled(self.place, 1.0 - share), scaled(other.place, share));
         Self { area, place }
     }
 }

@@ -9,7 +9,10 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
@@ -27,7 +30,11 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 fn unit(a: [f64; 3]) -> [f64; 3] {
@@ -52,7 +59,11 @@ impl Motion {
         let from = add(place, MIDDLE, -1.0);
         let strained = self.gradient.map(|row| share * dot(row, from));
         let phase = dot(self.along, from) / 0.05 + self.turns * share;
-        add(add(add(place, strained, 1.0), self.drift, share), self.wave, phase.sin())
+        add(
+            add(add(place, strained, 1.0), self.drift, share),
+            self.wave,
+            phase.sin(),
+        )
     }
 }
 
@@ -72,7 +83,13 @@ impl Way {
 }
 
 /// Cuts a moving body through; the number of pieces.
-fn cut_through(mesh: &TetMesh, way: &Way, motion: &Motion, steps: u32, snap: f64) -> (usize, CuttableBody) {
+fn cut_through(
+    mesh: &TetMesh,
+    way: &Way,
+    motion: &Motion,
+    steps: u32,
+    snap: f64,
+) -> (usize, CuttableBody) {
     let mut body = body(mesh, 0.45);
     let mut positions = mesh.points.clone();
     for step in 0..steps {
@@ -84,7 +101,9 @@ fn cut_through(mesh: &TetMesh, way: &Way, motion: &Motion, steps: u32, snap: f64
                 let tets = body.tets_at(node);
                 let sides = tets.iter().map(|tet| {
                     let nodes = mesh.tets[*tet as usize];
-                    let middle = nodes.into_iter().fold([0.0; 3], |sum, node| add(sum, mesh.points[node as usize], 0.25));
+                    let middle = nodes.into_iter().fold([0.0; 3], |sum, node| {
+                        add(sum, mesh.points[node as usize], 0.25)
+                    });
                     dot(way.normal, add(middle, way.through, -1.0)).signum()
                 });
                 sides.sum::<f64>() / tets.len() as f64
@@ -92,8 +111,13 @@ fn cut_through(mesh: &TetMesh, way: &Way, motion: &Motion, steps: u32, snap: f64
             .collect();
         for (node, place) in positions.iter_mut().enumerate() {
             let at_rest = body.points()[node];
-            let behind = (front - dot(way.ahead, add(at_rest, way.through, -1.0))).clamp(0.0, 0.1) / 0.1;
-            *place = add(motion.at(at_rest, share(step)), way.normal, motion.opening * parted[node] * behind);
+            let behind =
+                (front - dot(way.ahead, add(at_rest, way.through, -1.0))).clamp(0.0, 0.1) / 0.1;
+            *place = add(
+                motion.at(at_rest, share(step)),
+                way.normal,
+                motion.opening * parted[node] * behind,
+            );
         }
         let sheet = Sheet::swept(way.blade(share(step)), way.blade(share(step + 1))).unwrap();
         body.stroke(&sheet, &mut positions, snap).unwrap();
@@ -250,5 +274,8 @@ fn what_a_blade_leaves_of_a_body_that_it_came_through_is_told() {
     let left = left.unwrap();
     assert_eq!(pieces, 1);
     assert!((left.area - 0.005).abs() < 1e-12, "{left:?}");
-    assert!(left.place.iter().all(|x| (x - 0.05).abs() < 1e-12), "{left:?}");
+    assert!(
+        left.place.iter().all(|x| (x - 0.05).abs() < 1e-12),
+        "{left:?}"
+    );
 }

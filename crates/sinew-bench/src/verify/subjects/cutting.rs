@@ -155,7 +155,10 @@ fn checks() -> Vec<Check> {
     ));
     let through = || {
         [
-            ("strokes that leave other than two pieces", Asked::value(0.0, 0.0)),
+            (
+                "strokes that leave other than two pieces",
+                Asked::value(0.0, 0.0),
+            ),
             ("area told as left uncut (m^2)", Asked::value(0.0, 0.0)),
         ]
     };

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use sinew_core::{Inputs, Options, Ramp, State};
+use sinew_core::{Inputs, Options, Ramp, State, System};
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{Course, CutModel, Element, Law, Model, Moving, On, Problem};
 use sinew_mesh::TetMesh;
@@ -231,4 +231,13 @@ pub(super) fn free() -> Result<Vec<f64>, VerifyError> {
         left.see(after_stroke(&mut cut, &mut state, &blade, steps)?);
     }
     Ok(vec![left.not_two, left.uncut])
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn temporary() {
+        println!("free {:?}", super::free().unwrap());
+        println!("tension {:?}", super::under_tension().unwrap());
+    }
 }
