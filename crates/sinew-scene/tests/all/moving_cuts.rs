@@ -71,7 +71,7 @@ fn a_full_stroke_through_a_stretched_strip_leaves_no_bridge() {
 fn a_cube_that_flies_through_a_resting_blade_is_parted() {
     let scene = cube(
         "[[initial]]\nvelocity = [0.0, 0.0, 2.0]\n[[tool]]\nname = \"scalpel\"\nshape = { blade = { length = 0.2 } }\nrotation = [1.5707963267948966, 0.0, 0.0]\n\
-         start = [0.05, 0.05, 0.13]\n[cutting]\ntool = \"scalpel\"\nsnap = 0.25\n",
+         start = [0.05, 0.05, 0.13]\nvelocity = [0.0, 0.0, 0.0]\n[cutting]\ntool = \"scalpel\"\nsnap = 0.25\n",
         "duration = 0.07\nintegrator = \"central-difference\"\ndt = 5e-4\n",
     );
     let mut run = CutRun::new(build(&scene));
