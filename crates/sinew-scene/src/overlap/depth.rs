@@ -10,7 +10,7 @@ use sinew_tools::vector::{Vector, add, length, scaled, sub};
 use super::inside::SurfacePoint;
 
 /// The corners of a tetrahedron's faces, each opposite the corner of the same place.
-const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+pub(super) const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// Stands for the outside.
 const OUTSIDE: u32 = u32::MAX;
@@ -109,12 +109,14 @@ impl Depths {
         self.layers[tet as usize]
     }
 
-    /// The distance (m) of a point in a tetrahedron from the surface, if it is larger than `least` (m): from all triangles of the surface that do not hold the point.
+    /// The distance (m) of a point in a tetrahedron from the surface, if it is larger than `least` (m): from all triangles of the surface that do not hold the point. None
+    /// after so many looks at tetrahedra.
     pub(super) fn beyond(
         &mut self,
         (mesh, places): (&TetMesh, &[Vector]),
         (point, tet): (&SurfacePoint, u32),
         least: f64,
+        looks: &mut usize,
     ) -> Option<f64> {
         let faces = |of: u32, neighbours: &[[u32; 4]]| {
             let nodes = mesh.tets[of as usize];
@@ -134,6 +136,7 @@ impl Depths {
         let mut next = BinaryHeap::from([(std::cmp::Reverse(self.layer(tet)), tet)]);
         self.seen[tet as usize] = self.search;
         while let Some((_, of)) = next.pop() {
+            *looks = looks.checked_sub(1)?;
             for (behind, distance) in faces(of, &self.neighbours) {
                 if distance > least {
                     continue;
@@ -157,6 +160,7 @@ impl Depths {
             if std::mem::replace(seen, self.search) == self.search {
                 continue;
             }
+            *looks = looks.checked_sub(1)?;
             for (behind, to_face) in faces(tet, &self.neighbours) {
                 if behind == OUTSIDE || self.seen[behind as usize] != self.search {
                     next.push(Reached {
@@ -170,7 +174,8 @@ impl Depths {
     }
 }
 
-fn distance(point: Vector, triangle: [Vector; 3]) -> f64 {
+/// The distance (m) of a point from a triangle.
+pub(super) fn distance(point: Vector, triangle: [Vector; 3]) -> f64 {
     let weights = nearest_of_triangle(&triangle, point);
     let corners = triangle.iter().zip(weights);
     let nearest = corners.fold([0.0; 3], |sum, (corner, weight)| {

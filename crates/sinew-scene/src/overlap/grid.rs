@@ -92,19 +92,21 @@ impl Grid {
         self.starts[0] = 0;
     }
 
-    /// Calls `take` with each box that meets this one, by its place among `boxes`, with which the grid was filled; seldom twice.
-    pub(super) fn visit(&self, of: &Bounds, boxes: &[Bounds], mut take: impl FnMut(u32)) {
+    /// Calls `take` with each box that meets this one, by its place among `boxes`, with which the grid was filled; seldom twice. Returns how many it compared.
+    pub(super) fn visit(&self, of: &Bounds, boxes: &[Bounds], mut take: impl FnMut(u32)) -> usize {
         let span = self.span(of);
         if count(&span) > boxes.len() as f64 {
             let all = (0..).zip(boxes);
             all.filter(|(_, other)| meet(of, other))
                 .for_each(|(number, _)| take(number));
-            return;
+            return boxes.len();
         }
         let buckets = self.starts.len() - 1;
+        let mut compared = 0;
         each_cell(&span, |cell| {
             let bucket = hash(cell, buckets);
             let entries = self.starts[bucket] as usize..self.starts[bucket + 1] as usize;
+            compared += entries.len();
             for number in &self.entries[entries] {
                 // Of all cells that both are in the lowest counts.
                 let [low, _] = &self.spans[*number as usize];
@@ -114,6 +116,7 @@ impl Grid {
                 }
             }
         });
+        compared
     }
 
     /// The cells that a box reaches into.

@@ -8,6 +8,9 @@ use super::grid::{Bounds, Grid, bounds, longest};
 /// Share of a tetrahedron's volume by which a point on its face may count as outside, and is taken in.
 const ON_FACE: f64 = 1e-9;
 
+/// Comparisons for each tetrahedron after which no more are looked at: far more than any but tangled bodies take.
+const COMPARISONS: usize = 200;
+
 /// A point of the surface: a node, or one between nodes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SurfacePoint {
@@ -82,11 +85,14 @@ impl<'a> Placed<'a> {
         let boxes: Vec<Bounds> = points.iter().map(|point| [point.at; 2]).collect();
         let mut grid = Grid::default();
         grid.fill(&boxes, self.size);
-        let mut found = Vec::new();
+        let (mut found, mut compared) = (Vec::new(), 0);
         for tet in &self.tets {
+            if compared > COMPARISONS * self.tets.len() {
+                break;
+            }
             let nodes = self.mesh.tets[*tet as usize];
             let corners = nodes.map(|node| self.places[node as usize]);
-            grid.visit(&bounds(&corners, 0.0), &boxes, |number| {
+            compared += grid.visit(&bounds(&corners, 0.0), &boxes, |number| {
                 let point = &points[number as usize];
                 let is_own = part_of(nodes[0]) == part_of(point.between[0]);
                 let is_crushed = || {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use sinew_mesh::TetMesh;
 use sinew_tools::vector::{Vector, between, length, sub};
 
-use super::depth::Depths;
+use super::depth::{Depths, FACES, distance};
 use super::grid::{Bounds, Grid, bounds, include, longest, meet};
 use super::inside::{Placed, SurfacePoint};
 use super::segment::{are_apart, crossing};
@@ -13,6 +13,12 @@ use crate::simulation::part_of_nodes;
 
 /// Share of a body's size, or of its largest displacement where that is more, up to which surfaces touch: single precision rounds places by less.
 const TOUCHES: f64 = 1e-6;
+
+/// Comparisons for each edge of the surface after which a state is given up: one in which everything is near everything is no longer a body.
+const COMPARISONS: usize = 1000;
+
+/// Tetrahedra that the measuring of depths may look at, as a multiple of their number, or of 1000.
+const LOOKS: usize = 20;
 
 /// A point of the surface that is in a tetrahedron which does not hold it.
 #[derive(Debug, Clone, Copy)]
@@ -29,6 +35,8 @@ pub(super) struct Inside {
 pub(super) struct OverlapSearch<'a> {
     mesh: &'a TetMesh,
     triangles: Cow<'a, [[u32; 3]]>,
+    /// The same with their nodes in ascending order, sorted.
+    faces: Vec<[u32; 3]>,
     edges: Vec<[u32; 2]>,
     nodes: Vec<u32>,
     /// The part of each node, and their number.
@@ -66,6 +74,9 @@ impl<'a> OverlapSearch<'a> {
         }
         edges.sort_unstable();
         edges.dedup();
+        let mut faces = triangles.to_vec();
+        faces.iter_mut().for_each(|face| face.sort_unstable());
+        faces.sort_unstable();
         let mut nodes: Vec<u32> = triangles.as_flattened().to_vec();
         nodes.sort_unstable();
         nodes.dedup();
@@ -74,6 +85,7 @@ impl<'a> OverlapSearch<'a> {
             size: longest(&bounds(&mesh.points, 0.0)),
             mesh,
             triangles,
+            faces,
             edges,
             nodes,
             part_of,
@@ -109,7 +121,7 @@ impl<'a> OverlapSearch<'a> {
             return None;
         }
         let touching = TOUCHES * self.size.max(moved);
-        let near = self.near(places, touching);
+        let near = self.near(places, touching)?;
         let is_concerned = self.concerned(places, &near);
         if !is_concerned.contains(&true) {
             return None;
@@ -142,8 +154,15 @@ impl<'a> OverlapSearch<'a> {
         [own, inside.tet].map(|tet| (tet, self.part_of[tets[tet as usize][0] as usize]))
     }
 
-    /// Edges and triangles of the surface that are no farther apart than `touching` (m), and have no node in common.
-    fn near(&mut self, places: &[Vector], touching: f64) -> Vec<[u32; 2]> {
+    /// Whether a face is one of the surface.
+    fn is_outer(&self, face: [u32; 3]) -> bool {
+        let mut face = face;
+        face.sort_unstable();
+        self.faces.binary_search(&face).is_ok()
+    }
+
+    /// Edges and triangles of the surface that are no farther apart than `touching` (m), and have no node in common; none of a state that is given up.
+    fn near(&mut self, places: &[Vector], touching: f64) -> Option<Vec<[u32; 2]>> {
         let at = |node: u32| places[node as usize];
         self.boxes.clear();
         let boxes = self.triangles.iter();
@@ -152,10 +171,11 @@ impl<'a> OverlapSearch<'a> {
         let sizes: f64 = self.boxes.iter().map(longest).sum();
         self.grid
             .fill(&self.boxes, sizes / self.boxes.len().max(1) as f64);
-        let mut near = Vec::new();
+        let (mut near, mut compared) = (Vec::new(), 0);
         for (number, edge) in (0..).zip(&self.edges) {
             let segment = edge.map(at);
-            self.grid
+            compared += self
+                .grid
                 .visit(&bounds(&segment, 0.0), &self.boxes, |triangle| {
                     let nodes = self.triangles[triangle as usize];
                     let is_own = edge.iter().any(|node| nodes.contains(node));
@@ -163,8 +183,11 @@ impl<'a> OverlapSearch<'a> {
                         near.push([number, triangle]);
                     }
                 });
+            if compared > COMPARISONS * self.edges.len() {
+                return None;
+            }
         }
-        near
+        Some(near)
     }
 
     /// Whether each part may be in another one, or in itself: its surface is near another one, or the box of one of two parts is within the other's.
@@ -252,11 +275,22 @@ impl<'a> OverlapSearch<'a> {
         mut found: Vec<(u32, u32)>,
         touching: f64,
     ) -> Option<Inside> {
+        // What lies on the surface of the tetrahedron that it is in is no deeper than that; so do lips at rest.
+        found.retain(|(number, tet)| {
+            let nodes = self.mesh.tets[*tet as usize];
+            let at = points[*number as usize].at;
+            !FACES.iter().any(|face| {
+                let face = face.map(|corner| nodes[corner]);
+                distance(at, face.map(|node| places[node as usize])) <= touching
+                    && self.is_outer(face)
+            })
+        });
         if found.is_empty() {
             return None;
         }
         let mesh = self.mesh;
         let depths = self.depths.get_or_insert_with(|| Depths::new(mesh));
+        let mut looks = LOOKS * mesh.tets.len().max(1000);
         // Once the deepest is known, others are soon told from it.
         found.sort_by_key(|(point, tet)| (std::cmp::Reverse(depths.layer(*tet)), *point, *tet));
         let mut deepest: Option<Inside> = None;
@@ -269,7 +303,7 @@ impl<'a> OverlapSearch<'a> {
                 _ => touching,
             };
             let least = deepest.map_or(unsaid, |deepest| deepest.depth.max(unsaid));
-            if let Some(depth) = depths.beyond((mesh, places), (point, tet), least) {
+            if let Some(depth) = depths.beyond((mesh, places), (point, tet), least, &mut looks) {
                 deepest = Some(Inside {
                     depth,
                     at: point.at,
