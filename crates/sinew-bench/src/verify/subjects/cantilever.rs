@@ -1,5 +1,6 @@
 //! A cantilever ten times as long as thick under shear at its tip.
 
+use sinew_core::System;
 use sinew_core::vectors::dot;
 use sinew_fem::{LoadKind, Model};
 use sinew_integrators::static_solution;
