@@ -44,8 +44,14 @@ const COLD: usize = 2;
 /// Steps from which the others are told: as many as methods take from one look at the stiffness to the next, and more.
 const ENOUGH: usize = 40;
 
-/// Time (s) that they take at least, where steps are short, and by which they end where steps are long.
-const TIME: [f64; 2] = [0.03, 0.5];
+/// Time (s) that they take at least, where steps are short.
+const LEAST: f64 = 0.03;
+
+/// The same for force laws, of which steps take more work as the motion goes on.
+const LEAST_OF_LAWS: f64 = 0.25;
+
+/// Time (s) by which they end where steps are long.
+const MOST: f64 = 0.5;
 
 impl Forecast {
     /// Sets an integrator up and takes some of the scene's first steps with it, for some hundredths of a second or, where steps are long, up to half a second and a step.
@@ -74,11 +80,14 @@ impl Forecast {
         };
         let cold = take(COLD.min(run.steps))?;
         let (mut warm, mut next) = (Taken::default(), COLD);
+        let least = match system.as_linear() {
+            Some(_) => LEAST,
+            None => LEAST_OF_LAWS,
+        };
         loop {
             let left = run.steps - cold.steps - warm.steps;
             let steps = next.min(left);
-            let [least, most] = TIME;
-            if steps == 0 || warm.wall >= most || (warm.steps >= ENOUGH && warm.wall >= least) {
+            if steps == 0 || warm.wall >= MOST || (warm.steps >= ENOUGH && warm.wall >= least) {
                 break;
             }
             let taken = take(steps)?;

@@ -17,7 +17,7 @@ fn simulation(text: &str) -> Simulation {
 /// A column that can only stretch along z, pulled at its top: one-dimensional waves of speed `sqrt((lambda + 2 mu)/rho)`.
 fn column(cells: usize) -> String {
     format!(
-        "[mesh]\ncube = {{ cells = {cells}, edge = {EDGE} }}\n[[region]]\ndensity = {DENSITY}\nmodel = \"linear\"\n\
+        "[mesh]\ncube = {{ cells = {cells}, edge = {EDGE}, split = \"kuhn\" }}\n[[region]]\ndensity = {DENSITY}\nmodel = \"linear\"\n\
          youngs_modulus = 3000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\naxes = \"z\"\n[[fixed]]\n\
          where = {{ box = [[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]] }}\naxes = \"xy\"\n[[load]]\ngroup = \"top\"\n\
          traction = [0.0, 0.0, {TRACTION}]\nramp = {{ kind = \"sin2\", rise = {RISE} }}\n[run]\nduration = 0.2\n\

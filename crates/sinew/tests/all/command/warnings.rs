@@ -203,7 +203,7 @@ fn a_run_of_more_than_a_minute_is_warned_of_before_it_begins() {
 /// Fibres that catch a thrown cube: its stable step falls far below that at rest, which this one is half of.
 const CAUGHT: &str = r#"
 [mesh]
-cube = { cells = 4, edge = 0.1 }
+cube = { cells = 4, edge = 0.1, split = "kuhn" }
 [[region]]
 density = 1000.0
 model = "stable-neo-hookean"
