@@ -159,7 +159,6 @@ mod tests {
                 frequency: 1.0 / 3.0,
                 phase: -0.1,
             },
-            Ramp::Position(Box::new(Ramp::Sin2 { rise: 0.3 })),
         ] {
             let scaled = inputs.add_factor_of(ramp).unwrap();
             inputs.set(scaled, 0.15, 1.0 / 7.0).unwrap();

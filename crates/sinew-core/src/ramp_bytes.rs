@@ -5,18 +5,11 @@ use crate::ramp::Ramp;
 
 /// The kind of a rate, before the ramp whose rate it is.
 const RATE: u8 = 6;
-/// The kind of a place, before the ramp that it follows.
-const POSITION: u8 = 8;
 
 /// Writes a ramp, which follows no input.
 pub(crate) fn write(ramp: &Ramp, out: &mut Writer) {
-    let outer = match ramp {
-        Ramp::Rate(of) => Some((RATE, of)),
-        Ramp::Position(of) => Some((POSITION, of)),
-        _ => None,
-    };
-    if let Some((kind, of)) = outer {
-        out.flags([kind, 0, 0, 0]);
+    if let Ramp::Rate(of) = ramp {
+        out.flags([RATE, 0, 0, 0]);
         return write(of, out);
     }
     let (kind, numbers, course): (u8, &[f64], [&[f64]; 2]) = match ramp {
@@ -48,14 +41,10 @@ pub(crate) fn write(ramp: &Ramp, out: &mut Writer) {
 /// Reads what [`write`] wrote.
 pub(crate) fn read(rest: &mut Reader<'_>) -> Result<Ramp, BytesError> {
     Ok(match kind(rest)? {
-        // Of these there are no rates and places.
-        outer @ (RATE | POSITION) => {
+        // Of a rate there is none.
+        RATE => {
             let of = kind(rest)?;
-            let of = Box::new(plain(of, rest)?);
-            match outer {
-                RATE => Ramp::Rate(of),
-                _ => Ramp::Position(of),
-            }
+            Ramp::Rate(Box::new(plain(of, rest)?))
         }
         of => plain(of, rest)?,
     })
