@@ -125,7 +125,7 @@ fn a_state_in_which_a_law_with_memory_has_no_meaning() {
         "where = { above = { z = 0.2 } }\ndisplacement = [0.0, 0.0, -0.35]",
     );
     assert!(
-        refused.starts_with("scene.toml:18: [[initial]] 1: the body cannot begin so: element "),
+        refused.starts_with("scene.toml:19: [[initial]] 1: the body cannot begin so: element "),
         "{refused}"
     );
 }
