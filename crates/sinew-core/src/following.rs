@@ -8,7 +8,10 @@ pub const PRODUCTS_OF_BEGINNING: u64 = 16;
 /// Share of the estimate up to which eigenvalues count as too small to look for.
 const TOO_SMALL: f64 = 0.9;
 
-/// An estimate from below of the largest eigenvalue of `M^-1 S`, S symmetric and M diagonal, where S is hardly another one than in the call before: one product improves
+/// Size of the noise that is added with each product, as a share of the field: one that has found its vector would have nothing of another that grows elsewhere.
+const NOISE: f64 = 0.1;
+
+/// An estimate from below, by some thousandths, of the largest eigenvalue of `M^-1 S`, S symmetric and M diagonal, where S is hardly another one than in the call before: one product improves
 /// the two fields, of the length of `mass` each, that have turned towards its vector. Where there are none it begins from noise that is always the same, by
 /// [`PRODUCTS_OF_BEGINNING`] products. `multiply(x, out)` writes `out = S x`; `room` has the length of `mass`.
 ///
@@ -62,8 +65,27 @@ pub fn follow_largest_eigenvalue<E>(
         let size = weighted_dot(mass, now, now).sqrt();
         scale(now, 1.0 / size);
         scale(before, 1.0 / size);
+        let share = NOISE / (n as f64).sqrt();
+        for (dof, ((now, mass), product)) in now.iter_mut().zip(mass).zip(&*room).enumerate() {
+            // None where S knows of nothing.
+            if *product != 0.0 {
+                *now += sign(dof) * share / mass.sqrt();
+            }
+        }
     }
     Ok(estimate)
+}
+
+/// A sign at random that is the same in each call (splitmix64: Steele, Lea and Flood, OOPSLA 2014).
+fn sign(dof: usize) -> f64 {
+    let mut hash = (dof as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    hash = (hash ^ (hash >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    hash = (hash ^ (hash >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    if (hash ^ (hash >> 31)) & 1 == 0 {
+        1.0
+    } else {
+        -1.0
+    }
 }
 
 #[cfg(test)]
@@ -111,7 +133,7 @@ mod tests {
             let share = follow(&mut fields, &mass, now) / exact(&mass, now);
             assert!(share <= 1.0 + 1e-9, "product {product}: {share}");
             assert!(share >= 0.8, "product {product}: {share}");
-            assert!(product < 50 || share > 0.999, "product {product}: {share}");
+            assert!(product < 20 || share > 0.99, "product {product}: {share}");
         }
     }
 
@@ -132,7 +154,7 @@ mod tests {
                 Ok(found) => found,
             };
         }
-        assert!((found - 1.0).abs() < 1e-9, "{found}");
+        assert!((found - 1.0).abs() < 1e-2, "{found}");
     }
 
     #[test]
