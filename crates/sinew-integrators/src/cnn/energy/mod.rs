@@ -5,6 +5,7 @@ mod certificate;
 mod descent;
 mod kind;
 mod point;
+mod quadratic;
 mod rigid;
 mod steps;
 mod touched;

@@ -3,7 +3,7 @@
 use sinew_cnn::{Deflation, RigidMotions};
 use sinew_core::FreePart;
 
-use super::descent::Quadratic;
+use super::quadratic::Quadratic;
 
 /// The parts that may move as rigid bodies. The potential of a rigid motion is that of its inertia alone, and so its least is known; sweeps then go on by blocks that rigid motions do not feel.
 pub(super) struct Rigid {

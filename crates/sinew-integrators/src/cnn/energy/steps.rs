@@ -7,9 +7,10 @@ use sinew_core::{
 };
 
 use super::certificate::Certificate;
-use super::descent::{Descent, Found, Quadratic};
+use super::descent::{Descent, Found};
 use super::kind::Kind;
 use super::point::{Law, Point};
+use super::quadratic::Quadratic;
 use super::touched::{SetOut, Taken, Touched};
 use crate::StepByHand;
 

@@ -4,8 +4,9 @@ use sinew_cnn::Deflation;
 use sinew_core::vectors::{dot, norm};
 use sinew_core::{AllShown, Contact, EvaluationError, Inertia, Meeting, State, Step, StepReport};
 
-use super::descent::{Descent, Found, MOST_HALVINGS, Quadratic, ROUNDING};
+use super::descent::{Descent, Found, MOST_HALVINGS, ROUNDING};
 use super::point::{Law, Point};
+use super::quadratic::Quadratic;
 use crate::cnn::coupled_contact::{Coupled, CoupledContact};
 
 /// Times each cell's own block, without inertia, by which the potential is bounded at first.
