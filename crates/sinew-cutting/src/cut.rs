@@ -17,8 +17,9 @@ impl CuttableBody {
     /// Cuts by a sheet in the current configuration, in which the nodes have these positions (m). Copies of nodes get the positions
     /// of what they are copies of, and nodes that are moved at rest onto the sheet theirs.
     ///
-    /// Nodes within a share `snap` of their shortest edge are moved first; 0 moves none. A face is cut that has tetrahedra of both
-    /// sides, once its centroid was swept and the blade has come through the tetrahedra beside it. So one that was entered in part
+    /// Nodes within a share `snap` of their shortest edge are moved first; 0 moves none. Where the sheet begins where the last one ended, its beginning
+    /// goes with the tissue that has moved since, and nodes keep the sides on which they were as the blade passed them. A face is cut that has tetrahedra of
+    /// both sides, once the blade is over its centroid or past its nodes, and has come through the tetrahedra beside it. So one that was entered in part
     /// stays whole until a later stroke comes through; [`CuttableBody::lift`] forgets.
     ///
     /// # Errors

@@ -232,12 +232,3 @@ pub(super) fn free() -> Result<Vec<f64>, VerifyError> {
     }
     Ok(vec![left.not_two, left.uncut])
 }
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn temporary() {
-        println!("free {:?}", super::free().unwrap());
-        println!("tension {:?}", super::under_tension().unwrap());
-    }
-}
