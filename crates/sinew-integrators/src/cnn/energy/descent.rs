@@ -102,7 +102,7 @@ enum Turn {
 }
 
 impl Descent {
-    /// Of cells with so many layers, and stiffness damping or not.
+    /// Room for cells with so many layers, and for stiffness damping where there is any.
     pub(super) fn new(layers: usize, dofs: usize, is_viscous: bool) -> Self {
         let zeros = || vec![0.0; dofs];
         Self {
