@@ -11,11 +11,11 @@ use crate::hyperelastic::LawVisitor;
 pub(crate) enum Wanted {
     /// A tangent of a kind.
     Kind(TangentKind),
-    /// That which bounds a stable step: the exact tangent, with fibres that are idle as if they were pulled, since they may be before the next look.
+    /// The exact tangent with fibres that are idle as if they were pulled, since they may be before the next look: it bounds a stable step.
     Stiffest,
     /// Viscosity for a factor of 1 s; of stress that relaxes, as it is at once.
     Viscosity,
-    /// That which bounds a stable step: viscosity, with fibres that are idle as if they were pulled.
+    /// Viscosity with fibres that are idle as if they were pulled: it bounds a stable step.
     MostViscous,
 }
 

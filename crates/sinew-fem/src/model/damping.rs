@@ -31,7 +31,7 @@ impl Model {
         Ok(by_mass + by_matrices + by_viscosity)
     }
 
-    /// That of dashpots and of the stiffness damping of linear regions.
+    /// The power (W) of dashpots and of the stiffness damping of linear regions.
     fn power_of_matrices(&self, v: &[[f64; 3]]) -> f64 {
         let damping = self.operators.damping();
         if damping.stiffness == 0.0 && damping.extra.is_none() {
@@ -72,7 +72,7 @@ impl Model {
         at_held.sum::<f64>() - dot(&free, &force)
     }
 
-    /// That of the viscosity of hyperelastic regions, for a factor of 1 s.
+    /// The power (W) of the viscosity of hyperelastic regions, for a factor of 1 s.
     fn large_viscous_power(&self, u: &[[f64; 3]], v: &[[f64; 3]]) -> Result<f64, EvaluationError> {
         let Some(large) = &self.large else {
             return Ok(0.0);

@@ -403,7 +403,7 @@ impl ElasticLaw for Model {
         !self.motions.is_empty()
     }
 
-    /// What supports of linear regions do by their motion is among the loads.
+    /// Without the motion of supports of linear regions, which is among the loads.
     fn viscous_force(
         &self,
         trial: &Trial<'_>,

@@ -160,7 +160,6 @@ fn all_methods_converge_to_one_damped_motion() {
         };
         let [coarse, fine] =
             [dt, 0.5 * dt].map(|dt| relative_error(&[at_end(method, &options, dt)], &exact));
-        println!("{method}: {coarse:e} {fine:e}");
         let expected = 0.6 * f64::from(1 << order);
         assert!(coarse / fine > expected, "`{method}`: {coarse:e} {fine:e}");
         assert!(
@@ -182,7 +181,6 @@ fn newtons_method_takes_few_iterations_under_damping_by_the_rate_of_strain() {
             .iter()
             .find(|fact| fact.name == "newton_iterations_a_step");
         let mean = mean.unwrap().value;
-        println!("{method}: {mean}");
         assert!(mean < 4.0, "`{method}`: {mean} iterations a step");
     }
 }
@@ -207,7 +205,8 @@ fn a_body_that_glides_with_its_supports_feels_no_damping() {
         let mesh = structured::cube(2, 0.1, Split::Mirrored).unwrap();
         let model = Model::build(&mesh, &problem).unwrap();
         for kind in ["trap", "ie"] {
-            let options = plain().with_text("kind", kind);
+            // Enough for what sweeps leave of a step to be nothing.
+            let options = sweeps(40.0).with_text("kind", kind);
             let v = model.nodes().iter().flat_map(|_| speed).collect();
             let mut state = State::new(vec![0.0; model.dofs()], v);
             advance(
@@ -220,14 +219,14 @@ fn a_body_that_glides_with_its_supports_feels_no_damping() {
             let off = state.v.as_chunks::<3>().0.iter();
             let off = off.flat_map(|v| [0, 1, 2].map(|k| (v[k] - speed[k]).abs()));
             let off = off.fold(0.0, f64::max);
-            assert!(off < 1e-9, "{element}, {kind}: {off:e} m/s");
+            assert!(off < 1e-6, "{element}, {kind}: {off:e} m/s");
             let force = model
                 .reaction(state.t(), &state.u, &state.v, &"bottom".into())
                 .unwrap();
             let size = force
                 .into_iter()
                 .fold(0.0, |size: f64, x| size.max(x.abs()));
-            assert!(size < 1e-7, "{element}, {kind}: {force:?} N");
+            assert!(size < 1e-4, "{element}, {kind}: {force:?} N");
         }
     }
 }
