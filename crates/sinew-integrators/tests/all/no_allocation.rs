@@ -83,7 +83,12 @@ fn neither_do_networks_on_a_body_that_nothing_holds() {
     let mesh = structured::cube(2, 0.1, Split::Kuhn).unwrap();
     let model = Model::build(&mesh, &body(linear(5000.0, 0.3))).unwrap();
     let with = |kind: &str| plain().with("inner", inner(kind, Some(3.0)));
-    let inners = [plain(), with("jacobi"), with("chebyshev"), with("gauss-seidel")];
+    let inners = [
+        plain(),
+        with("jacobi"),
+        with("chebyshev"),
+        with("gauss-seidel"),
+    ];
     let inners = inners.map(|options| ("cnn-stabilised", options));
     let ie = plain().with("kind", OptionValue::Text("ie".into()));
     let energies = [("cnn-energy", plain()), ("cnn-energy", ie)];
