@@ -153,7 +153,7 @@ fn a_base_pushes_with_the_whole_mass_whatever_its_way() {
         let values: Vec<f64> = times.iter().map(|t| way(*t)).collect();
         for rows in ["", "[output]\nenergy = { every = 0.01 }\n"] {
             let text = format!(
-                "[mesh]\ncube = {{ cells = 2, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
+                "[mesh]\ncube = {{ cells = 2, edge = 0.1, split = \"kuhn\" }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
                  youngs_modulus = 50000.0\npoissons_ratio = 0.3\n[[move]]\ngroup = \"bottom\"\n\
                  displacement = [1.0, 0.0, 0.0]\nramp = {{ kind = \"table\", times = {times:?}, values = {values:?} }}\n\
                  [run]\nduration = {end}\nintegrator = \"newmark\"\ndt = 0.002\n{rows}"
@@ -193,7 +193,7 @@ fn dashpots_at_moved_supports_are_in_it() {
                 .iter()
                 .fold(0.0_f64, |most, x| x.abs().max(most))
         };
-        assert!(most("damped_J") > 0.1 * most("work_of_supports_J"));
+        assert!(most("damped_J") > 0.05 * most("work_of_supports_J"));
         most("remainder_J") / most("work_of_supports_J")
     };
     let (coarse, fine) = (remainder("0.002"), remainder("0.001"));
@@ -230,7 +230,10 @@ fn stiffness_damping_at_moved_supports_of_soft_tissue_is_in_it() {
             };
             let damped = &energy["damped_J"];
             assert!(damped.windows(2).all(|rows| rows[1] >= rows[0]), "{law}");
-            assert!(most("damped_J") > 0.1 * most("work_of_supports_J"), "{law}");
+            assert!(
+                most("damped_J") > 0.05 * most("work_of_supports_J"),
+                "{law}"
+            );
             most("remainder_J") / most("work_of_supports_J")
         };
         let (coarse, fine) = (remainder("0.004"), remainder("0.002"));
@@ -300,7 +303,7 @@ fn methods_that_take_much_energy_are_told_with_one_that_keeps_it() {
         ))
     };
     let pushed = "[[load]]\ngroup = \"top\"\nforce = [0.3, 0.0, 0.0]\n";
-    let moved = "[[move]]\ngroup = \"top\"\ndisplacement = [0.01, 0.0, 0.0]\nramp = { kind = \"sin2\", rise = 0.02 }\n";
+    let moved = "[[move]]\ngroup = \"top\"\ndisplacement = [0.01, 0.0, 0.0]\nramp = { kind = \"sin2\", rise = 0.05 }\n";
     let rare = format!("{pushed}[output]\nenergy = {{ every = 0.1 }}\n");
     let released = "[[initial]]\ndisplacement = [\"0.2 * z\", 0.0, 0.0]\n";
     let euler = "integrator = \"implicit-euler\"\ndt = 0.01";
