@@ -9,8 +9,12 @@ use sinew_core::{Clock, LinearOperators, State};
 use super::faber::Ellipse;
 use super::fastest_turn;
 
-/// Derivatives of a load's factor that count: in a step a factor turns by at most pi, and pi^32/32! is 3e-20.
+/// Derivatives of a load's factor that count: between breakpoints a factor turns by at most pi, and pi^32/32! is 3e-20.
 const DERIVATIVES: usize = 32;
+
+/// Most angle (rad) by which a sine turns in a step: terms are as many as the body's motion asks for, and turns of pi of a sine that is
+/// faster than the body were off by 1e-4 with them.
+const MOST_TURN: f64 = PI / 8.0;
 
 /// Share by which the ellipse is larger than the spectrum, whose ends are found from inside.
 const MARGIN: f64 = 0.01;
@@ -79,7 +83,7 @@ impl<'a> Expansion<'a> {
         Self {
             operators,
             ellipse,
-            longest_step: (reach / ellipse.capacity).min(PI / fastest_turn(operators)),
+            longest_step: (reach / ellipse.capacity).min(MOST_TURN / fastest_turn(operators)),
             breakpoints,
             factors: [factors.clone(), factors],
             now: at_rest.clone(),

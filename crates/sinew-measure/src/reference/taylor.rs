@@ -264,8 +264,16 @@ mod tests {
                 for t in [0.07, 0.5, 3.0] {
                     taylor.advance(&mut state, t, |_| {});
                     let exact = under_a_sine(2.0, rate, phase, t);
-                    assert!((state.u[0] - exact).abs() < 1e-10, "{frequency} Hz at {t}");
+                    let off = state.u[0] - exact;
+                    assert!(
+                        off.abs() < 1e-10,
+                        "{frequency} Hz at {t}: {off:e} m of {exact}"
+                    );
                 }
+            }
+            // A series of many terms a step has too many steps then to test here.
+            if frequency > 100.0 {
+                continue;
             }
             let mut series = super::super::Expansion::new(&operators, &spectrum, 3.0);
             let (mut state, times) = (State::at_rest(1), [0.07, 0.5, 3.0]);
@@ -273,10 +281,10 @@ mod tests {
             while reached < times.len() {
                 reached += series.step(&mut state, &times[reached..], |seen, _| {
                     let exact = under_a_sine(2.0, rate, phase, seen.t());
+                    let (off, t) = (seen.u[0] - exact, seen.t());
                     assert!(
-                        (seen.u[0] - exact).abs() < 1e-10,
-                        "{frequency} Hz at {}",
-                        seen.t()
+                        off.abs() < 1e-10,
+                        "{frequency} Hz at {t}: {off:e} m of {exact}"
                     );
                 });
             }
