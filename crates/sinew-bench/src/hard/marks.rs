@@ -12,6 +12,7 @@ use super::checks::{
 use super::error::HardError;
 use super::large;
 use super::mark::Asked;
+use crate::planned::yardstick;
 use crate::results::{Mark, StabilityMap};
 
 /// The cases and rows that marks are taken from.
@@ -70,12 +71,10 @@ pub(crate) fn of_maps(maps: &[StabilityMap]) -> Mark {
         "bounded within the stable step, unbounded beyond 1.1 of it: no run against it",
         0.0,
     );
+    let leapfrog = yardstick().integrator;
     let (mut within, mut beyond, mut against) = (0_u32, 0_u32, 0_u32);
     for map in maps {
-        let own = map
-            .panels
-            .iter()
-            .filter(|panel| panel.method == "central-difference");
+        let own = map.panels.iter().filter(|panel| panel.method == leapfrog);
         for (limit, runs) in own.flat_map(|panel| panel.stable_steps.iter().zip(&panel.runs)) {
             let Some(limit) = *limit else {
                 return asked.not_measured("a stable step is not known");
