@@ -120,7 +120,7 @@ pub struct Row {
     pub guarded: bool,
     /// Inverted elements in the last state.
     pub inverted: u64,
-    /// Depth (m) to which parts or surfaces of the body were in each other at the instants of the comparison; none where they were not.
+    /// Depth (m) to which parts or surfaces of the body were in each other at instants spread over the run; none where they were not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub overlap: Option<f64>,
     /// Work counts over the run; they reproduce, seconds do not.
