@@ -33,6 +33,7 @@
 //! ```
 
 mod body;
+mod course;
 mod cut;
 mod drift;
 mod error;
@@ -49,6 +50,7 @@ mod sheet;
 mod snap;
 mod split;
 mod strokes;
+mod swept;
 mod tet;
 mod touch;
 mod uncut;

@@ -1,7 +1,7 @@
 //! How far a blade has come through each tetrahedron.
 
+use crate::course::Course;
 use crate::tet::EDGES;
-use crate::uncut::Course;
 
 /// How far the blade has come through one tetrahedron since it was set on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! A cut body as bytes, from which it goes on with the same bits.
 
 use crate::body::CuttableBody;
+use crate::course::Course;
 use crate::incidence::Incidence;
 use crate::marks::{Mark, Marks, NodeSide};
-use crate::uncut::Course;
 
 /// Bytes that are none of this body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

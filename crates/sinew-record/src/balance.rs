@@ -285,7 +285,7 @@ impl<'a> Balance<'a> {
             method: self.form.map(|_| method),
             remainder,
             given,
-            taken: self.is_watched.then(|| method - remainder - by_friction),
+            taken: self.is_watched.then_some(method - remainder - by_friction),
         })
     }
 

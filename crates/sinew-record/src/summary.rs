@@ -240,7 +240,7 @@ impl Summary<'_> {
                 "parts": overlap.parts,
             })),
             "mass_kg": self.cuts.map(|cuts| json!({ "start": cuts.mass[0], "end": cuts.mass[1] })),
-            "cuts": self.cuts.map(|cuts| cuts.to_json()),
+            "cuts": self.cuts.map(CutRecord::to_json),
             "work": work,
             "warnings": record.warnings.iter().chain(self.warnings).collect::<Vec<_>>(),
             "regions": regions,

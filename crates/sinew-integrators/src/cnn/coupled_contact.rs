@@ -254,9 +254,9 @@ impl CoupledContact {
         for (place, cell) in contact.cells().iter().enumerate() {
             let shift = self.shift(place);
             let first = 3 * *cell as usize;
-            for axis in 0..3 {
-                state.v[first + axis] = self.v[3 * place + axis] + shift[axis];
-                state.u[first + axis] = self.u[3 * place + axis] + meeting.dt * shift[axis];
+            for (axis, shift) in shift.into_iter().enumerate() {
+                state.v[first + axis] = self.v[3 * place + axis] + shift;
+                state.u[first + axis] = self.u[3 * place + axis] + meeting.dt * shift;
             }
         }
         kept.clone_into(&mut state.contact);
@@ -333,9 +333,10 @@ impl CoupledContact {
                 return;
             }
             for (motion, c) in moved.iter().zip(&self.answer[first..]) {
-                for axis in 0..3 {
-                    state.v[3 * cell + axis] += c * motion[axis];
-                    state.u[3 * cell + axis] += dt * c * motion[axis];
+                let (v, u) = (&mut state.v[3 * cell..], &mut state.u[3 * cell..]);
+                for ((v, u), motion) in v.iter_mut().zip(u).zip(motion) {
+                    *v += c * motion;
+                    *u += dt * c * motion;
                 }
             }
         });
