@@ -7,6 +7,9 @@ use crate::vector::{Vector, add, bounds_of, cross, length, mean, scaled, sub};
 /// Share of the longest edge within which the end of a sheet and the beginning of the next one are at one place.
 const SAME_PLACE: f64 = 1e-6;
 
+/// The part of tetrahedra in chips.
+const CHIP: u32 = NONE - 1;
+
 /// What a stroke through a body left uncut between the parts to its sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uncut {
@@ -38,23 +41,86 @@ impl CuttableBody {
         if self.holds(blade, &self.marks.places) {
             return None;
         }
-        let mut all: Option<Uncut> = None;
-        for tet in 0..self.tets.len() as u32 {
-            let mark = self.marks.of(tet);
-            for (vertex, corners) in FACES.into_iter().enumerate() {
-                let other = self.neighbours[tet as usize][vertex];
-                if other == NONE || mark.side >= 0 || self.marks.of(other).side <= 0 {
-                    continue;
+        let bridges: Vec<(u32, usize)> = self.faces_between_sides().collect();
+        if bridges.is_empty() {
+            return None;
+        }
+        let parts = self.parts();
+        let faces = bridges.into_iter().filter_map(|(tet, vertex)| {
+            let beside = [tet, self.neighbours[tet as usize][vertex]];
+            let [one, other] = beside.map(|tet| parts[tet as usize]);
+            // Tissue that was cut and flies back behind the blade takes sides anew there.
+            let is_within =
+                || one == other && !beside.iter().any(|tet| self.marks.of(*tet).is_settled());
+            if one == CHIP || other == CHIP || is_within() {
+                return None;
+            }
+            let nodes = FACES[vertex].map(|corner| self.tets[tet as usize][corner]);
+            let [a, b, c] = nodes.map(|node| self.points[node as usize]);
+            let area = length(cross(sub(b, a), sub(c, a))) / 2.0;
+            let place = mean(nodes.map(|node| self.marks.places[node as usize]));
+            Some(Uncut { area, place })
+        });
+        faces.reduce(Uncut::and)
+    }
+
+    /// Whole faces between the sides of the blade, each by its tetrahedron on the lower side and the vertex opposite.
+    fn faces_between_sides(&self) -> impl Iterator<Item = (u32, usize)> {
+        let below = (0..self.tets.len() as u32).filter(|tet| self.marks.of(*tet).side < 0);
+        below.flat_map(move |tet| {
+            let neighbours = self.neighbours[tet as usize].into_iter().enumerate();
+            let above = neighbours.filter(|(_, other)| *other != NONE && self.is_above(*other));
+            above.map(move |(vertex, _)| (tet, vertex))
+        })
+    }
+
+    fn is_above(&self, tet: u32) -> bool {
+        self.marks.of(tet).side > 0
+    }
+
+    /// The part of each tetrahedron, if all faces between the sides were cut; [`CHIP`] where the blade has touched all of it, and it is not the largest one of a
+    /// side that has no other. Chips that stay on the other side make a cut rough, and are no bridges.
+    fn parts(&self) -> Vec<u32> {
+        let tets = self.tets.len();
+        let mut parts = vec![NONE; tets];
+        // Those that may be chips, by side, and whether there is anything else on it.
+        let mut touched: [Vec<Vec<u32>>; 2] = Default::default();
+        let mut has_more = [false; 2];
+        for first in 0..tets as u32 {
+            if parts[first as usize] != NONE {
+                continue;
+            }
+            parts[first as usize] = first;
+            let mut part = vec![first];
+            let mut next = 0;
+            while let Some(tet) = part.get(next).copied() {
+                next += 1;
+                let side = self.marks.of(tet).side;
+                for other in self.neighbours[tet as usize] {
+                    let is_joined = other != NONE && side * self.marks.of(other).side >= 0;
+                    if is_joined && parts[other as usize] == NONE {
+                        parts[other as usize] = first;
+                        part.push(other);
+                    }
                 }
-                let nodes = corners.map(|corner| self.tets[tet as usize][corner]);
-                let [a, b, c] = nodes.map(|node| self.points[node as usize]);
-                let area = length(cross(sub(b, a), sub(c, a))) / 2.0;
-                let place = mean(nodes.map(|node| self.marks.places[node as usize]));
-                let face = Uncut { area, place };
-                all = Some(all.map_or(face, |all| all.and(face)));
+            }
+            let sides = || part.iter().map(|tet| self.marks.of(*tet).side);
+            if sides().all(|side| side != 0) {
+                touched[usize::from(self.is_above(first))].push(part);
+            } else {
+                has_more[0] |= sides().any(|side| side < 0);
+                has_more[1] |= sides().any(|side| side > 0);
             }
         }
-        all
+        for (chips, has_more) in touched.iter_mut().zip(has_more) {
+            chips.sort_unstable_by_key(Vec::len);
+            if !has_more {
+                chips.pop();
+            }
+            let of_chips = chips.iter().flatten();
+            of_chips.for_each(|tet| parts[*tet as usize] = CHIP);
+        }
+        parts
     }
 
     /// Whether a blade that is here goes on from where the last sheet ended.
