@@ -135,6 +135,13 @@ impl RigidMotions {
         }
     }
 
+    /// Sets the part's cells of a vector to 0.
+    pub fn clear(&self, of: &mut [f64]) {
+        for cell in &self.free.cells {
+            of[LAYERS * *cell as usize..][..LAYERS].fill(0.0);
+        }
+    }
+
     /// Writes the rigid displacement y (m) of the part from the displacement `u` (m) on, however large, at which `y'M y/2 - b'y` is least for the forces b (N) `pull` and the
     /// diagonal M (N/m) of `inertia`; `places` is room. Cells of other parts stay as they are.
     ///
@@ -146,9 +153,7 @@ impl RigidMotions {
         inertia: impl Fn(usize) -> f64,
         (y, places): (&mut [f64], &mut [f64]),
     ) {
-        for cell in &self.free.cells {
-            y[LAYERS * *cell as usize..][..LAYERS].fill(0.0);
-        }
+        self.clear(y);
         for _ in 0..MOST_TURNS {
             for cell in &self.free.cells {
                 let first = LAYERS * *cell as usize;

@@ -7,8 +7,8 @@ use sinew_cnn::{
     Slowing, Stabiliser, Sweep,
 };
 use sinew_core::{
-    Acceleration, EnergyBehaviour, Fact, Needs, OptionError, OptionValue, Options, Properties,
-    SetupError, StepReport, System, VelocityTime,
+    Acceleration, EnergyBehaviour, Fact, Load, Needs, OptionError, OptionValue, Options,
+    Properties, Ramp, SetupError, StepReport, System, VelocityTime,
 };
 
 use super::solved::SolvedSteps;
@@ -44,6 +44,8 @@ pub struct CnnStabilised {
     gamma: GammaRule,
     blend: Blend,
     stabiliser: Option<Stabiliser>,
+    /// Whether supports move.
+    is_carried: bool,
 }
 
 impl CnnStabilised {
@@ -219,6 +221,8 @@ impl Scheme for CnnStabilised {
         let stabiliser = Stabiliser::new(operators, dt, self.gamma, self.blend, self.inner)
             .sparing(system.free_parts());
         self.stabiliser = None;
+        let is_place = |load: &Load| matches!(load.ramp, Ramp::Position(_));
+        self.is_carried = operators.loads().iter().any(is_place);
         let physics = Physics::of(system);
         if stabiliser.majorant().adds_nothing() {
             return Ok(CentralDifference.program(&physics, dt).into());
@@ -267,7 +271,15 @@ impl Scheme for CnnStabilised {
                 slowing.period, slowing.factor
             )
         };
-        stabiliser.slowing().map(remark).into_iter().collect()
+        let braked = "supports move, and what is added to the mass brakes the body that they carry: forces on them are too large by what that takes \
+                      (shorter steps or more sweeps of `inner` come nearer; `newmark` and `generalized-alpha` carry it at any step)";
+        let braked = self.is_carried.then(|| braked.to_owned());
+        stabiliser
+            .slowing()
+            .map(remark)
+            .into_iter()
+            .chain(braked)
+            .collect()
     }
 }
 

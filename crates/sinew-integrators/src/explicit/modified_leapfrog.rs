@@ -40,6 +40,9 @@ impl Explicit for ModifiedLeapfrog {
         let sweep = |loads, dashpots_on| physics.sweep(1.0, w, loads, dashpots_on);
         let damped = |loads, on| sweep(loads, Some(on)).with_own(on, 0.0, -alpha);
 
+        // What a step multiplies K by: the correction sees damping too, by cells and by supports in motion alike.
+        let damped_u = if beta == 0.0 { U } else { w };
+
         // The rate of the loads, by a difference.
         let change = |factor, share| Loads::All {
             factor,
@@ -57,13 +60,17 @@ impl Explicit for ModifiedLeapfrog {
                 .then(V.plus_q(dt * dt / 6.0)),
             sweep(Loads::None, None).doing([V.plus_q(dt.powi(3) / 24.0), U.plus(dt, V)]),
         ];
-        let plain = physics.sweep(1.0, U, Loads::at(LoadAt::Around), None);
-        let correction = w.becomes([(a, dt * dt / 12.0), (V, beta)]);
+        let plain = physics.sweep(1.0, damped_u, Loads::at(LoadAt::Around), Some(V));
+        let correction = w.becomes([(a, dt * dt / 12.0)]);
         // v+ - v- = h (a - alpha v-).
         let h = dt / (1.0 + alpha * dt / 2.0);
         let kick = V.becomes([(V, 1.0 - alpha * h), (a, h)]).and_q(h);
-        let corrected = sweep(Loads::None, Some(V)).doing([kick, U.plus(dt, V)]);
-        program.step = vec![plain.doing([a.becomes_q(), correction]), corrected];
+        let corrected = sweep(Loads::None, None).doing([kick, U.plus(dt, V)]);
+        if beta != 0.0 {
+            program.step = vec![Sweep::local().then(w.becomes([(U, 1.0), (V, beta)]))];
+        }
+        let plain = plain.doing([a.becomes_q(), correction]);
+        program.step.extend([plain, corrected]);
         program
     }
 }

@@ -25,8 +25,9 @@ pub(super) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Directions are those of Polak and Ribiere, never negative (Gilbert and Nocedal, SIAM J. Optim. 2, 1992). They begin anew with every step,
 /// so that nothing is remembered.
 ///
-/// Parts that may move as rigid bodies are first led to the least of the potential over such motions, which the elastic energy does not feel, and the blocks are then those of a [`Deflation`](sinew_cnn::Deflation): so
-/// sweeps find what is left, and no stiffness of a block brakes what moves as a whole.
+/// They set out from where the velocity at the start of the step leads, if the potential is not higher there than at the start: what moves on as it did is found at once, and no stiffness of a block brakes it.
+/// Parts that may move as rigid bodies are led to the least of the potential over such motions, which the elastic energy does not feel, and the blocks are then those of a [`Deflation`](sinew_cnn::Deflation): so
+/// sweeps find what is left.
 pub(super) struct Descent {
     /// The displacement over the step (m).
     pub(super) moved: Vec<f64>,
@@ -160,7 +161,8 @@ impl Descent {
             .add_viscous_blocks(&law.damped(), 1.0, &mut self.viscous_blocks)
     }
 
-    /// Goes to the least of the potential over rigid motions, where it is lower there; whether it is. Then takes them out of the blocks.
+    /// Goes where the velocity at the start of the step leads, and parts that may move as rigid bodies to the least of the potential over such motions, where it is
+    /// lower there; or these alone. Whether it went anywhere. Then takes rigid motions out of the blocks.
     fn lead(
         &mut self,
         law: &Law<'_>,
@@ -168,42 +170,69 @@ impl Descent {
         start: &Point,
         work: &mut StepReport,
     ) -> Result<bool, EvaluationError> {
+        for (y, v) in self.direction.iter_mut().zip(law.v) {
+            *y = law.dt * v;
+        }
+        if let Some(rigid) = &mut self.rigid {
+            rigid.lead(&start.u, quadratic, law.is_quadratic, &mut self.direction);
+        }
+        let mut is_lower = self.go_to_direction(law, quadratic, start, work)?;
         let Some(rigid) = &mut self.rigid else {
-            return Ok(false);
+            return Ok(is_lower);
         };
-        let y = &mut self.direction;
-        rigid.lead(&start.u, quadratic, law.is_quadratic, y);
-        let mut is_lower = false;
-        for ((u, start), y) in self.trial.u.iter_mut().zip(&start.u).zip(&*y) {
+        if !is_lower {
+            self.direction.fill(0.0);
+            rigid.lead(&start.u, quadratic, law.is_quadratic, &mut self.direction);
+            is_lower = self.go_to_direction(law, quadratic, start, work)?;
+        }
+        if let Some(rigid) = &mut self.rigid {
+            self.blocks.write_inverse(1.0, &mut rigid.inverse);
+            let about = (!law.is_quadratic).then_some(&*self.reached.u);
+            let inertia = |dof: usize| quadratic.mass_weight * quadratic.masses[dof];
+            let (added, inverse) = ((1.0, &*self.own), (1.0, &*rigid.inverse));
+            rigid.deflation.weigh(about, added, inverse, inertia);
+        }
+        Ok(is_lower)
+    }
+
+    /// Goes from the start of the step as far as the direction, where the potential is not higher there; whether it is not.
+    fn go_to_direction(
+        &mut self,
+        law: &Law<'_>,
+        quadratic: &Quadratic<'_>,
+        start: &Point,
+        work: &mut StepReport,
+    ) -> Result<bool, EvaluationError> {
+        let y = &self.direction;
+        if norm(y) == 0.0 {
+            return Ok(false);
+        }
+        for ((u, start), y) in self.trial.u.iter_mut().zip(&start.u).zip(y) {
             *u = start + y;
         }
         *work += StepReport::ONE_FORCE;
-        if self.trial.evaluate(law).is_ok() && self.trial.is_finite() {
-            let mut curvature = quadratic.mass_weight * weighted_dot(quadratic.masses, y, y);
-            if law.is_damped() {
-                law.damping_product(y, &mut self.damped_direction)?;
-                work.sweeps += 1;
-                curvature += quadratic.damping_weight * dot(y, &self.damped_direction);
-            }
-            let slope = dot_of_difference(&start.force, quadratic.pull, y);
-            let beyond = start.energy_beyond_slope(&self.trial, (y, 1.0), (law, self.stiff));
-            let change = slope + 0.5 * curvature + beyond;
-            let forces = norm(&start.force) + norm(&self.trial.force);
-            is_lower = change <= ROUNDING * norm(y) * forces;
+        if self.trial.evaluate(law).is_err() || !self.trial.is_finite() {
+            return Ok(false);
         }
-        if is_lower {
-            self.moved.copy_from_slice(y);
-            if law.is_damped() {
-                self.damped.copy_from_slice(&self.damped_direction);
-            }
-            std::mem::swap(&mut self.reached, &mut self.trial);
+        let mut curvature = quadratic.mass_weight * weighted_dot(quadratic.masses, y, y);
+        if law.is_damped() {
+            law.damping_product(y, &mut self.damped_direction)?;
+            work.sweeps += 1;
+            curvature += quadratic.damping_weight * dot(y, &self.damped_direction);
         }
-        self.blocks.write_inverse(1.0, &mut rigid.inverse);
-        let about = (!law.is_quadratic).then_some(&*self.reached.u);
-        let inertia = |dof: usize| quadratic.mass_weight * quadratic.masses[dof];
-        let (added, inverse) = ((1.0, &*self.own), (1.0, &*rigid.inverse));
-        rigid.deflation.weigh(about, added, inverse, inertia);
-        Ok(is_lower)
+        let slope = dot_of_difference(&start.force, quadratic.pull, y);
+        let beyond = start.energy_beyond_slope(&self.trial, (y, 1.0), (law, self.stiff));
+        let change = slope + 0.5 * curvature + beyond;
+        let forces = norm(&start.force) + norm(&self.trial.force);
+        if change > ROUNDING * norm(y) * forces {
+            return Ok(false);
+        }
+        self.moved.copy_from_slice(y);
+        if law.is_damped() {
+            self.damped.copy_from_slice(&self.damped_direction);
+        }
+        std::mem::swap(&mut self.reached, &mut self.trial);
+        Ok(true)
     }
 
     /// Finds the diagonal blocks of the potential's second derivative at the start of the step, without inertia.

@@ -33,7 +33,7 @@ impl Rigid {
         })
     }
 
-    /// Writes the rigid displacements (m) from `u` (m) on at which the potential is least, were there no elastic energy; 0 elsewhere. Those of a quadratic law are small ones about rest.
+    /// Writes the rigid displacements (m) from `u` (m) on at which the potential is least, were there no elastic energy; other cells stay as they are. Those of a quadratic law are small ones about rest.
     pub(super) fn lead(
         &mut self,
         u: &[f64],
@@ -48,9 +48,9 @@ impl Rigid {
             ..
         } = quadratic;
         let inertia = |dof: usize| mass_weight * masses[dof];
-        out.fill(0.0);
         for part in &mut self.parts {
             if is_quadratic {
+                part.clear(out);
                 part.add_small(None, pull, inertia, (1.0, &mut *out));
             } else {
                 part.lead(u, pull, inertia, (&mut *out, &mut self.places));

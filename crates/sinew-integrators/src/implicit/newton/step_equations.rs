@@ -34,6 +34,25 @@ pub(in crate::implicit) struct Unknown<'e> {
     pub(in crate::implicit) of_old_forces: f64,
     /// Times of the loads at both ends of the step.
     pub(in crate::implicit) loads: [LoadTime<'e>; 2],
+    /// Where stiffness damping acts.
+    pub(in crate::implicit) viscosity: ViscousPlace<'e>,
+}
+
+/// The displacement at which stiffness damping acts on the velocity of a step's end.
+#[derive(Clone, Copy)]
+pub(in crate::implicit) struct ViscousPlace<'e> {
+    /// Where supports are, and how fast they move.
+    pub(in crate::implicit) load: LoadTime<'e>,
+    /// The time (s) by which the displacement lies before the end, at that velocity. A velocity that is the way of a step over its time belongs to the middle:
+    /// there `sym(F'dF)` is the change of Green's strain, whatever the body turns in a step.
+    pub(in crate::implicit) before: f64,
+}
+
+impl<'e> ViscousPlace<'e> {
+    /// The end of a step with these times of loads.
+    pub(in crate::implicit) fn at_end([_, load]: [LoadTime<'e>; 2]) -> Self {
+        Self { load, before: 0.0 }
+    }
 }
 
 impl Unknown<'_> {
@@ -64,7 +83,8 @@ struct Viscous {
     /// Its force (N) where the last tangent was made, and beside it.
     force: Vec<f64>,
     beside: Vec<f64>,
-    /// Displacement (m) beside the point evaluated.
+    /// Displacement (m) at which it acts, and beside that.
+    at: Vec<f64>,
     u: Vec<f64>,
     /// Size of the smallest cell (m), or what there is in its place.
     cell: f64,
@@ -81,6 +101,13 @@ impl StepEquations<'_> {
             self.u[i] = u[i] + of_u * x;
             self.v[i] = v[i] + of_v * x;
         }
+        if self.is_viscous() {
+            let before = self.unknown.viscosity.before;
+            let ends = self.u.iter().zip(&*self.v);
+            for (at, (u, v)) in self.viscous.at.iter_mut().zip(ends) {
+                *at = u - before * v;
+            }
+        }
     }
 
     fn trial(&self) -> Trial<'_> {
@@ -90,6 +117,15 @@ impl StepEquations<'_> {
             u: self.u,
             v: self.v,
             internal: &self.state.internal,
+        }
+    }
+
+    /// The point at which stiffness damping acts.
+    fn viscous_trial(&self) -> Trial<'_> {
+        Trial {
+            load: self.unknown.viscosity.load,
+            u: &self.viscous.at,
+            ..self.trial()
         }
     }
 
@@ -112,7 +148,9 @@ impl StepEquations<'_> {
             work.sweeps += 1;
             viscous.resize(net.len(), 0.0);
             let all = Velocities::All(trial.v);
-            found = self.law.viscous_force(&trial, all, &mut viscous);
+            found = self
+                .law
+                .viscous_force(&self.viscous_trial(), all, &mut viscous);
             add_scaled(-1.0, &viscous, net);
         }
         let forces = net.iter_mut().zip(&point.elastic);
@@ -135,14 +173,15 @@ impl StepEquations<'_> {
         let Viscous {
             force,
             beside,
+            at,
             u,
             cell,
         } = &mut *self.viscous;
         let length = PROBE * if *cell > 0.0 { *cell } else { size } / size;
-        u.copy_from_slice(self.u);
+        u.copy_from_slice(at);
         add_scaled(length, change, u);
         let trial = Trial {
-            load: self.unknown.loads[1],
+            load: self.unknown.viscosity.load,
             dt: self.step.dt,
             u,
             v: self.v,
@@ -151,7 +190,8 @@ impl StepEquations<'_> {
         let all = Velocities::All(self.v);
         // Where the law has no meaning beside the point, iterations go on without.
         if self.law.viscous_force(&trial, all, beside).is_ok() {
-            let [_, k] = self.unknown.coefficients;
+            let [d, k] = self.unknown.coefficients;
+            let k = k - self.unknown.viscosity.before * d;
             for (out, (beside, force)) in out.iter_mut().zip(beside.iter().zip(&*force)) {
                 *out += k / length * (beside - force);
             }
@@ -220,10 +260,12 @@ impl Equations for StepEquations<'_> {
         if !self.is_viscous() {
             return Ok(());
         }
-        self.law.add_viscosity(&self.trial(), d, out)?;
+        self.law.add_viscosity(&self.viscous_trial(), d, out)?;
         let mut viscous = std::mem::take(&mut self.viscous.force);
         let all = Velocities::All(self.v);
-        let found = self.law.viscous_force(&self.trial(), all, &mut viscous);
+        let found = self
+            .law
+            .viscous_force(&self.viscous_trial(), all, &mut viscous);
         self.viscous.force = viscous;
         found
     }
@@ -306,7 +348,8 @@ impl NewtonSteps {
             ..Viscous::default()
         };
         if law.damping().stiffness != 0.0 {
-            (viscous.force, viscous.beside, viscous.u) = (zeros(), zeros(), zeros());
+            (viscous.force, viscous.beside) = (zeros(), zeros());
+            (viscous.at, viscous.u) = (zeros(), zeros());
         }
         Ok(Self {
             integrator,
@@ -356,6 +399,10 @@ impl NewtonSteps {
             state,
             unknown: Unknown {
                 loads: unknown.loads.map(|load| load.under(step.inputs)),
+                viscosity: ViscousPlace {
+                    load: unknown.viscosity.load.under(step.inputs),
+                    ..unknown.viscosity
+                },
                 ..unknown
             },
             old_forces: &self.old_forces,

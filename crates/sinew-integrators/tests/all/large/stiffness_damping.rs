@@ -86,6 +86,36 @@ fn a_spinning_plate_keeps_its_angular_momentum() {
     }
 }
 
+/// In long steps a velocity is the way of a step over its time, which strains a body that turns unless it is taken half way.
+#[test]
+fn damping_brings_no_energy_into_a_plate_that_turns_far_in_a_step() {
+    let mesh = structured::block([3, 3, 1], [0.09, 0.09, 0.03], Split::Mirrored).unwrap();
+    let mut problem = tissue("neo-hookean", Element::P1);
+    problem.damping.stiffness = 0.05;
+    let model = Model::build(&mesh, &problem).unwrap();
+    for dt in [0.005, 0.02] {
+        let mut state = State::new(vec![0.0; model.dofs()], spin(&mesh, 0.09, 20.0));
+        let mut method = build("implicit-euler", &plain());
+        let mut before = energy(&model, &state);
+        for _ in 0..20 {
+            advance(&mut *method, &model, &mut state, 1, dt);
+            let now = energy(&model, &state);
+            assert!(now <= before * (1.0 + 1e-9), "{dt}: {now} {before}");
+            before = now;
+        }
+    }
+}
+
+/// Kinetic and elastic energy (J).
+fn energy(model: &Model, state: &State) -> f64 {
+    let trial = Trial::of(state, LoadTime::at(state.t()));
+    let mut force = vec![0.0; state.u.len()];
+    let elastic = model.elastic_force(&trial, &mut force).unwrap().energy;
+    let masses = model.mass().iter().zip(&state.v);
+    let kinetic: f64 = masses.map(|(mass, v)| 0.5 * mass * v * v).sum();
+    kinetic + elastic
+}
+
 /// Under pressure all round p V is its potential; with that and the elastic one the energy of a free body only falls.
 #[test]
 fn under_pressure_that_follows_the_surface_a_damped_body_gains_no_energy() {
@@ -100,23 +130,18 @@ fn under_pressure_that_follows_the_surface_a_damped_body_gains_no_energy() {
         })
         .into();
     let model = Model::build(&mesh, &problem).unwrap();
-    let energy = |state: &State| {
+    let with_pressure = |state: &State| {
         let mut moved = mesh.clone();
         moved.points = places(&mesh, &state.u);
         let volume: f64 = moved.signed_volumes().iter().sum();
-        let trial = Trial::of(state, LoadTime::at(0.0));
-        let mut force = vec![0.0; state.u.len()];
-        let elastic = model.elastic_force(&trial, &mut force).unwrap().energy;
-        let masses = model.mass().iter().zip(&state.v);
-        let kinetic: f64 = masses.map(|(mass, v)| 0.5 * mass * v * v).sum();
-        kinetic + elastic + pressure * (volume - 0.09 * 0.09 * 0.03)
+        energy(&model, state) + pressure * (volume - 0.09 * 0.09 * 0.03)
     };
     let mut state = State::new(vec![0.0; model.dofs()], spin(&mesh, 0.09, 3.0));
     let mut method = build("newmark", &plain());
-    let (mut before, first) = (energy(&state), energy(&state));
+    let (mut before, first) = (with_pressure(&state), with_pressure(&state));
     for _ in 0..30 {
         advance(&mut *method, &model, &mut state, 10, 1e-3);
-        let now = energy(&state);
+        let now = with_pressure(&state);
         assert!(now < before + 1e-4 * first.abs(), "{now} {before} {first}");
         before = now;
     }
@@ -205,8 +230,7 @@ fn a_body_that_glides_with_its_supports_feels_no_damping() {
         let mesh = structured::cube(2, 0.1, Split::Mirrored).unwrap();
         let model = Model::build(&mesh, &problem).unwrap();
         for kind in ["trap", "ie"] {
-            // Enough for what sweeps leave of a step to be nothing.
-            let options = sweeps(40.0).with_text("kind", kind);
+            let options = sweeps(1.0).with_text("kind", kind);
             let v = model.nodes().iter().flat_map(|_| speed).collect();
             let mut state = State::new(vec![0.0; model.dofs()], v);
             advance(
@@ -219,14 +243,14 @@ fn a_body_that_glides_with_its_supports_feels_no_damping() {
             let off = state.v.as_chunks::<3>().0.iter();
             let off = off.flat_map(|v| [0, 1, 2].map(|k| (v[k] - speed[k]).abs()));
             let off = off.fold(0.0, f64::max);
-            assert!(off < 1e-6, "{element}, {kind}: {off:e} m/s");
+            assert!(off < 1e-12, "{element}, {kind}: {off:e} m/s");
             let force = model
                 .reaction(state.t(), &state.u, &state.v, &"bottom".into())
                 .unwrap();
             let size = force
                 .into_iter()
                 .fold(0.0, |size: f64, x| size.max(x.abs()));
-            assert!(size < 1e-4, "{element}, {kind}: {force:?} N");
+            assert!(size < 1e-9, "{element}, {kind}: {force:?} N");
         }
     }
 }
