@@ -165,7 +165,18 @@ fn a_material_in_which_linear_tetrahedra_lock_is_named() {
     let locks = one("poissons_ratio = 0.4", "poissons_ratio = 0.45");
     assert_eq!(locks.kind, WarningKind::Locking);
     assert_eq!(number(&locks, "poissons_ratio"), 0.45);
-    insta::assert_snapshot!(locks, @r#"[[region]] 1 has poissons_ratio = 0.45: near 0.5 plain tetrahedra are stiffer than their material; at 0.45 a beam three to four of them thick on a "mirrored" grid bends by 72 to 83 % of what it should, at 0.3 by 76 to 85 %; give the region element = "fbar-edge""#);
+    insta::assert_snapshot!(locks, @r#"[[region]] 1 has poissons_ratio = 0.45: near 0.5 plain tetrahedra are stiffer than their material; at 0.45 a beam three to four cells thick, each as long as thick, on a "mirrored" grid bends by 72 to 83 % of what it should, at 0.3 by 76 to 85 %; give the region element = "fbar-edge""#);
+    let long = QUIET.replace(
+        "cube = { cells = 2, edge = 0.1 }",
+        "block = { cells = [2, 2, 2], size = [0.05, 0.1, 0.1] }",
+    );
+    let long =
+        only(build(&long.replace("poissons_ratio = 0.4", "poissons_ratio = 0.45")).warnings());
+    assert!(
+        long.to_string()
+            .contains("; cells 2 times as long as thick, as here, bend less; "),
+        "{long}"
+    );
     let springs = "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }";
     let law = "model = \"linear\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.4";
     assert_eq!(warned(law, springs), []);
