@@ -25,6 +25,7 @@ mod blocks;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 mod damping_matrix;
+mod equilibrium;
 mod gauss_seidel;
 mod machine;
 mod majorant;
@@ -37,6 +38,7 @@ mod stabiliser;
 mod templates;
 
 pub use blocks::CellBlocks;
+pub use equilibrium::equilibrium;
 pub use machine::{FollowedLoad, Machine, ReferenceMachine, StepTime};
 pub use majorant::{Blend, DampingShare, GammaRule, Majorant};
 pub use power_iteration::largest_eigenvalue;

@@ -1,12 +1,14 @@
 //! `cnn-stabilised` where no program expresses how P is solved with.
 
 use sinew_cnn::{CellBlocks, Deflation, Inverse, Stabiliser};
+use sinew_core::vectors::add_scaled;
 use sinew_core::{
-    Acceleration, Contact, Inertia, LoadTime, Meeting, State, Step, StepError, StepReport, Stepped,
-    System, VelocityTime,
+    Acceleration, Contact, Inertia, LinearOperators, LoadTime, Meeting, State, Step, StepError,
+    StepReport, Stepped, System, VelocityTime,
 };
 use std::sync::Arc;
 
+use super::carried::Carried;
 use super::coupled_contact::{Coupled, CoupledContact};
 use crate::StepByHand;
 
@@ -24,6 +26,7 @@ pub struct SolvedSteps {
     change: Vec<f64>,
     before: Vec<f64>,
     touched: Option<TouchedParts>,
+    carried: Carried,
 }
 
 /// What contact needs.
@@ -37,7 +40,11 @@ struct TouchedParts {
 }
 
 impl SolvedSteps {
-    pub(super) fn new(stabiliser: &Stabiliser, system: &dyn System, sweeps: u64) -> Self {
+    pub(super) fn new(
+        stabiliser: &Stabiliser,
+        (system, operators): (&dyn System, &LinearOperators),
+        sweeps: u64,
+    ) -> Self {
         let majorant = stabiliser.majorant();
         let room = |of: fn(&dyn Contact) -> usize| system.contact().map_or(0, of);
         let touched = |deflation: &Arc<Deflation>| TouchedParts {
@@ -50,12 +57,15 @@ impl SolvedSteps {
             pushed: Vec::with_capacity(room(|contact| contact.cells().len())),
         };
         let zeros = || vec![0.0; majorant.dofs()];
+        let is_carried = Carried::carries(operators);
         Self {
             inverse: stabiliser.solver(),
             lagging: 1.0 - majorant.damping_share(),
             sweeps,
             reason: if stabiliser.spares() {
                 "parts of the body may move as rigid ones, which the stabilising matrix must not slow down, and that takes sums over all of their cells"
+            } else if is_carried {
+                "supports move, and the stabilising matrix must not brake what they carry, which reaches over all cells"
             } else {
                 "a Gauss-Seidel iteration takes the cells one after the other, and a sweep takes all at once"
             },
@@ -63,6 +73,7 @@ impl SolvedSteps {
             change: zeros(),
             before: zeros(),
             touched: stabiliser.deflation().map(touched),
+            carried: Carried::of(operators),
         }
     }
 
@@ -138,7 +149,19 @@ impl StepByHand for SolvedSteps {
         for ((force, mass), v) in moving {
             *force = weight * *force + if running { 0.0 } else { mass * v };
         }
+        let centred = 1.0 - self.lagging;
+        let when = (state.t(), dt, !running);
+        let is_carried = step
+            .system
+            .as_linear()
+            .is_some_and(|linear| self.carried.look(linear.operators(), when, centred));
+        if is_carried {
+            add_scaled(-1.0, &self.carried.impulse, &mut self.force);
+        }
         self.inverse.solve(&self.force, &mut self.change);
+        if is_carried {
+            add_scaled(1.0, &self.carried.change, &mut self.change);
+        }
         self.before.copy_from_slice(&state.v);
         let moving = state.u.iter_mut().zip(&mut state.v);
         for ((u, v), change) in moving.zip(&self.change) {

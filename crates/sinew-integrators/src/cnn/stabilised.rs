@@ -7,10 +7,11 @@ use sinew_cnn::{
     Slowing, Stabiliser, Sweep,
 };
 use sinew_core::{
-    Acceleration, EnergyBehaviour, Fact, Load, Needs, OptionError, OptionValue, Options,
-    Properties, Ramp, SetupError, StepReport, System, VelocityTime,
+    Acceleration, EnergyBehaviour, Fact, Needs, OptionError, OptionValue, Options, Properties,
+    SetupError, StepReport, System, VelocityTime,
 };
 
+use super::carried::Carried;
 use super::solved::SolvedSteps;
 use crate::explicit::{CentralDifference, GuardOption};
 use crate::scheme::linear;
@@ -44,8 +45,6 @@ pub struct CnnStabilised {
     gamma: GammaRule,
     blend: Blend,
     stabiliser: Option<Stabiliser>,
-    /// Whether supports move.
-    is_carried: bool,
 }
 
 impl CnnStabilised {
@@ -221,16 +220,17 @@ impl Scheme for CnnStabilised {
         let stabiliser = Stabiliser::new(operators, dt, self.gamma, self.blend, self.inner)
             .sparing(system.free_parts());
         self.stabiliser = None;
-        let is_place = |load: &Load| matches!(load.ramp, Ramp::Position(_));
-        self.is_carried = operators.loads().iter().any(is_place);
         let physics = Physics::of(system);
         if stabiliser.majorant().adds_nothing() {
             return Ok(CentralDifference.program(&physics, dt).into());
         }
-        let made = match program(&stabiliser, &physics, dt) {
+        // Contact is met by programs, or beside sums over parts.
+        let is_open = system.contact().is_none() || stabiliser.spares();
+        let is_carried = is_open && Carried::carries(operators);
+        let made = match program(&stabiliser, &physics, dt).filter(|_| !is_carried) {
             Some(program) => program.into(),
             None => {
-                let steps = SolvedSteps::new(&stabiliser, system, self.inner.sweeps());
+                let steps = SolvedSteps::new(&stabiliser, (system, operators), self.inner.sweeps());
                 SetUp::by_hand(steps, StepReport::default())
             }
         };
@@ -271,15 +271,7 @@ impl Scheme for CnnStabilised {
                 slowing.period, slowing.factor
             )
         };
-        let braked = "supports move, and what is added to the mass brakes the body that they carry: forces on them are too large by what that takes \
-                      (shorter steps or more sweeps of `inner` come nearer; `newmark` and `generalized-alpha` carry it at any step)";
-        let braked = self.is_carried.then(|| braked.to_owned());
-        stabiliser
-            .slowing()
-            .map(remark)
-            .into_iter()
-            .chain(braked)
-            .collect()
+        stabiliser.slowing().map(remark).into_iter().collect()
     }
 }
 

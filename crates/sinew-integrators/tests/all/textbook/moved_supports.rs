@@ -152,6 +152,81 @@ fn a_body_and_its_clamp_at_one_speed_feel_no_force() {
     }
 }
 
+/// The stabilised network at these multiples of the step of central difference, on a block whose end moves as `course` says, with all of it at this velocity (m/s) first: the
+/// largest force (N) on the support in so many steps, from the third on.
+fn beyond_the_stable_step(
+    (times, options): (f64, &Options),
+    (stiffness, modulus): (f64, f64),
+    (course, velocity): (Course, [f64; 3]),
+    steps: usize,
+) -> f64 {
+    let mesh = structured::block([4, 1, 1], [0.2, 0.05, 0.05], Split::Kuhn).unwrap();
+    let problem = Problem {
+        moves: vec![Moving {
+            on: face(&mesh, 0, 0.0),
+            axes: [true; 3],
+            courses: vec![course],
+        }],
+        damping: Rayleigh {
+            mass: 0.0,
+            stiffness,
+        },
+        ..body(linear(modulus, 0.3))
+    };
+    let model = Model::build(&mesh, &problem).unwrap();
+    let dt = times * 2.0 / Spectrum::of(model.operators()).omega_max;
+    let mut integrator = build("cnn-stabilised", options);
+    integrator.prepare(&model, dt).unwrap();
+    let mut method = Method {
+        name: format!("{times} times the stable step with {options:?}"),
+        integrator,
+        dt,
+    };
+    let v = velocity.iter().copied().cycle().take(model.dofs());
+    let start = State::new(vec![0.0; model.dofs()], v.collect());
+    let mut largest_force = 0.0_f64;
+    follow(&mut method, &model, (start, steps), |step, _, forces| {
+        if step > 2 {
+            let sum = [0, 1, 2].map(|axis| forces.iter().map(|force| force[axis]).sum::<f64>());
+            largest_force = largest_force.max(largest(&sum));
+        }
+    });
+    largest_force
+}
+
+#[test]
+fn beyond_the_stable_step_the_stabilised_network_carries_what_supports_carry() {
+    let velocity = [1.5, -0.4, 0.9];
+    let chebyshev = sinew_integrators::entry("cnn-stabilised")
+        .map(|entry| (entry.variants)().remove(0))
+        .unwrap();
+    for options in [&Options::new(), &chebyshev] {
+        for (times, stiffness) in [(2.0, 0.0), (9.0, 0.0), (4.0, 2e-3)] {
+            let glide = (Course::at_velocity(velocity), velocity);
+            let damped = (stiffness, YOUNGS_MODULUS);
+            let force = beyond_the_stable_step((times, options), damped, glide, 6);
+            assert!(force < 1e-6, "{times} {options:?}: {force:e} N");
+        }
+    }
+    // Shaken slowly against its slowest motion, which is slowed down, a body resists by its mass.
+    let (frequency, amplitude) = (0.1, 0.04);
+    let omega = 2.0 * PI * frequency;
+    let sine = Course {
+        displacement: [0.0, 0.0, amplitude],
+        ramp: Ramp::Sine {
+            frequency,
+            phase: 0.0,
+        },
+    };
+    let shaken = (sine, [0.0, 0.0, omega * amplitude]);
+    let force = beyond_the_stable_step((6.0, &Options::new()), (0.0, 2e6), shaken, 2000);
+    let expected = DENSITY * 0.2 * 0.05 * 0.05 * omega * omega * amplitude;
+    assert!(
+        (force / expected - 1.0).abs() < 0.05,
+        "{force} N of {expected} N"
+    );
+}
+
 /// A bar that is stretched at one speed all over, held along its whole length sideways: there is no inertia, whatever the cells.
 #[test]
 fn a_bar_in_tension_pulls_by_its_law_whatever_the_cells() {
