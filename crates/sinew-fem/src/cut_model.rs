@@ -575,9 +575,10 @@ impl CutModel {
         };
         let model = self.model_on(&mesh)?;
         let after = model.state_after_cut(&self.model, state, inputs, carried)?;
+        let when = LoadTime::at(state.t()).under(inputs);
         let energies = (
-            self.model.energy(&state.u, &state.v),
-            model.energy(&after.u, &after.v),
+            self.model.energy_with_supports(when, &state.u, &state.v)?,
+            model.energy_with_supports(when, &after.u, &after.v)?,
         );
         if let (Some(before), Some(after)) = energies {
             report.energy_gained = Some(gained(before, after));

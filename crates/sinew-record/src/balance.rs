@@ -100,6 +100,65 @@ pub(crate) struct Balance<'a> {
     form: Option<NumericalDissipation>,
     /// Whether the method takes energy by itself, and each step is looked at to tell how much.
     is_watched: bool,
+    /// Whether each step has a row.
+    has_rows_of_steps: bool,
+}
+
+/// A row, with all nodes then where some are moved.
+type End<'a> = (&'a LastRow, Option<&'a Nodes>);
+
+/// Work (J) of loads and of supports, without what these give the inertia of their own nodes, and energy (J) that damping took.
+#[derive(Debug, Clone, Copy)]
+struct Work {
+    loads: f64,
+    supports: f64,
+    damped: f64,
+}
+
+impl Work {
+    /// That of an interval, better known by both of its halves: the error of each falls as the square of the length (Richardson).
+    fn extrapolated(self, [first, second]: [Self; 2]) -> Self {
+        let better = |part: fn(&Self) -> f64| {
+            let halves = part(&first) + part(&second);
+            halves + (halves - part(&self)) / 3.0
+        };
+        Self {
+            loads: better(|work| work.loads),
+            supports: better(|work| work.supports),
+            damped: better(|work| work.damped),
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        [self.loads, self.supports, self.damped]
+            .iter()
+            .all(|work| work.is_finite())
+    }
+}
+
+/// The motion half way between two rows, by the cubic curve that has their displacements and velocities.
+fn half_way([last, here]: [&LastRow; 2]) -> LastRow {
+    let span = here.t - last.t;
+    let mean = |[a, b]: [&[f64]; 2]| -> Vec<f64> {
+        let pairs = a.iter().zip(b);
+        pairs.map(|(a, b)| 0.5 * (a + b)).collect()
+    };
+    let mut u = mean([&last.u, &here.u]);
+    for (u, (before, after)) in u.iter_mut().zip(last.v.iter().zip(&here.v)) {
+        *u += span / 8.0 * (before - after);
+    }
+    let ends = here.u.iter().zip(&last.u).zip(last.v.iter().zip(&here.v));
+    let speed = |((after, before), (v_before, v_after)): ((&f64, &f64), (&f64, &f64))| {
+        1.5 * (after - before) / span - 0.25 * (v_before + v_after)
+    };
+    LastRow {
+        t: 0.5 * (last.t + here.t),
+        before: last.t,
+        u,
+        v: ends.map(speed).collect(),
+        a: Vec::new(),
+        internal: mean([&last.internal, &here.internal]),
+    }
 }
 
 /// Displacements (m) of all nodes, held and moved ones included, and the forces (N) that do work on them.
@@ -126,6 +185,7 @@ impl<'a> Balance<'a> {
             nodes: None,
             form: None,
             is_watched: false,
+            has_rows_of_steps: rows.is_every_step(),
         };
         // Beside steps that are sweeps a look at each of them costs too much where rows are rare for that reason.
         balance.is_watched = !balance.has_memory()
@@ -239,17 +299,14 @@ impl<'a> Balance<'a> {
         let (kinetic, elastic) = self.stored(&here, nodes.as_ref())?;
         let mut taken = 0.0;
         if let Some(last) = &self.last {
-            if let (Some(before), Some(after)) = (&self.nodes, &nodes) {
-                let ends = [&before.u[..], &after.u];
-                self.sums.loads += work([&before.loads, &after.loads], ends);
-                self.sums.supports += work([&before.supports, &after.supports], ends)
-                    + (after.kinetic[1] - before.kinetic[1])
-                    + self.damping_of_supports([last, &here], ends, inputs)?;
-                taken = self.damped([last, &here], Some(ends))?;
+            let ends = [(last, self.nodes.as_ref()), (&here, nodes.as_ref())];
+            let work = self.work_between(ends, moment)?;
+            self.sums.loads += work.loads;
+            self.sums.supports += work.supports;
+            taken = work.damped;
+            if let [(_, Some(before)), (_, Some(after))] = ends {
+                self.sums.supports += after.kinetic[1] - before.kinetic[1];
             } else {
-                let (before, after) = self.loads_at_ends(last, &here, inputs);
-                self.sums.loads += work([&before, &after], [&last.u, &here.u]);
-                taken = self.damped([last, &here], None)?;
                 self.sums.method += self.taken_by_method(last, &here, inputs);
             }
             self.sums.at_contacts += self.work_at_contacts(moment.state, last, &here);
@@ -286,6 +343,64 @@ impl<'a> Balance<'a> {
             remainder,
             given,
             taken: self.is_watched.then_some(method - remainder - by_friction),
+        })
+    }
+
+    /// What loads, supports and damping do between two rows.
+    ///
+    /// Where the rows are a step apart that was cut into parts, it is that over both halves too, with the motion half way, and the error of the means, which falls by four with
+    /// the halves, is taken out.
+    fn work_between(
+        &self,
+        ends: [End<'_>; 2],
+        moment: &Moment<'_>,
+    ) -> Result<Work, RecordRunError> {
+        let inputs = moment.inputs;
+        let whole = self.work_of_means(ends, inputs)?;
+        let [(last, _), (here, _)] = ends;
+        if !self.is_of_parts(here.t - last.t, moment.state) {
+            return Ok(whole);
+        }
+        let middle = half_way([last, here]);
+        // The motion half way is an estimate: where a law has no meaning there, the means are what is known.
+        let halves = self
+            .nodes(&middle, inputs)
+            .and_then(|nodes| {
+                let middle = (&middle, nodes.as_ref());
+                let first = self.work_of_means([ends[0], middle], inputs)?;
+                Ok([first, self.work_of_means([middle, ends[1]], inputs)?])
+            })
+            .ok();
+        let better = halves.map(|halves| whole.extrapolated(halves));
+        Ok(better.filter(Work::is_finite).unwrap_or(whole))
+    }
+
+    /// Whether the step between two rows that are `span` (s) apart was cut into parts.
+    fn is_of_parts(&self, span: f64, state: &State) -> bool {
+        let part = state.clock.last_step();
+        self.has_rows_of_steps && part.is_some_and(|part| part < 0.75 * span)
+    }
+
+    /// What loads, supports and damping do between two instants, by the mean of the forces at both.
+    fn work_of_means(
+        &self,
+        [(last, before), (here, after)]: [End<'_>; 2],
+        inputs: &Inputs,
+    ) -> Result<Work, RecordRunError> {
+        if let (Some(before), Some(after)) = (before, after) {
+            let ends = [&before.u[..], &after.u];
+            return Ok(Work {
+                loads: work([&before.loads, &after.loads], ends),
+                supports: work([&before.supports, &after.supports], ends)
+                    + self.damping_of_supports([last, here], ends, inputs)?,
+                damped: self.damped([last, here], Some(ends))?,
+            });
+        }
+        let (before, after) = self.loads_at_ends(last, here, inputs);
+        Ok(Work {
+            loads: work([&before, &after], [&last.u, &here.u]),
+            supports: 0.0,
+            damped: self.damped([last, here], None)?,
         })
     }
 

@@ -6,6 +6,7 @@ use sinew_scene::Overlap;
 
 use crate::balance::Sums;
 use crate::taken_energy::Taken;
+use crate::tool_rows::Received;
 
 /// How far a run is, and what it has seen: all that later steps do not tell.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -26,6 +27,9 @@ pub(crate) struct Progress {
     pub(crate) crept: Crept,
     #[serde(default)]
     pub(crate) taken: Taken,
+    /// What tools had received at their last row.
+    #[serde(default)]
+    pub(crate) received: Received,
 }
 
 /// Energy (J) that comes in little by little, by the remainder of the balance while loads and supports stay as they are: work of those that change is a mean of two rows, and off by some

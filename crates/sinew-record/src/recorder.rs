@@ -201,7 +201,7 @@ impl RunRecorder<'_> {
         if let (Some(tools), Some(file)) = (&self.tools, &mut self.tables.tools)
             && self.schedules.probes.is_due(step)
         {
-            tools.row(&mut self.line, moment);
+            tools.row(&mut self.line, moment, &mut self.progress.received);
             file.push(&self.line)?;
         }
         self.progress.steps = step;

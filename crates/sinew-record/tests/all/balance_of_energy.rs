@@ -396,3 +396,56 @@ fn energy_that_tissue_takes_is_not_told_as_the_methods() {
         assert_eq!(told(&body(region, more, run)), None, "{region}{more}{run}");
     }
 }
+
+/// A row comes after several parts of a step, with the motion between them: the balance closes as with a fixed step that is as long as parts at rest.
+#[test]
+fn steps_that_are_taken_again_leave_what_a_fixed_step_leaves_of_the_work_of_supports() {
+    for (ratio, rise) in [(0.45, 0.05), (0.3, 0.06)] {
+        let largest = |dt: &str| {
+            let text = format!(
+                "[mesh]\nblock = {{ cells = [3, 3, 5], size = [0.06, 0.06, 0.1], split = \"mirrored\" }}\n[[region]]\ndensity = 1060.0\n\
+                 model = \"neo-hookean\"\nyoungs_modulus = 4000.0\npoissons_ratio = {ratio}\nelement = \"fbar-edge\"\n[[fixed]]\n\
+                 group = \"bottom\"\n[[move]]\ngroup = \"top\"\ndisplacement = [0.0, 0.0, -0.03]\n\
+                 ramp = {{ kind = \"sin2\", rise = {rise} }}\n[run]\nduration = 0.6\nintegrator = \"central-difference\"\ndt = {dt}\n"
+            );
+            let place = tempfile::tempdir().unwrap();
+            let path = place.path().join("out");
+            let end = run(&path, &crate::common::build(&text), &mut ());
+            let energy = table(&path.join("energy.csv"));
+            let most = |name: &str| {
+                energy[name]
+                    .iter()
+                    .fold(0.0_f64, |most, x| x.abs().max(most))
+            };
+            let remainder = most("remainder_J") / most("work_of_supports_J");
+            (remainder, end.retaken)
+        };
+        let ((of_parts, retaken), (fixed, none)) = (largest("\"auto\""), largest("0.003"));
+        assert!(retaken > 0 && none == 0, "steps are taken again");
+        assert!(of_parts < fixed && fixed < 0.01, "{of_parts} {fixed}");
+    }
+}
+
+/// Damping over a step of several parts is that of the motion within it.
+#[test]
+fn steps_of_several_parts_leave_little_of_what_damping_takes() {
+    let last = |dt: &str| {
+        let text = format!(
+            "gravity = [0.0, 0.0, -4.0]\n[mesh]\nblock = {{ cells = [2, 2, 5], size = [0.04, 0.04, 0.1], split = \"mirrored\" }}\n[[region]]\n\
+             density = 1060.0\nmodel = \"neo-hookean\"\nyoungs_modulus = 4000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n\
+             [damping]\nmass = 20.0\n[run]\nduration = 0.6\nintegrator = \"central-difference\"\n{dt}\n"
+        );
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("out");
+        run(&path, &crate::common::build(&text), &mut ());
+        let energy = table(&path.join("energy.csv"));
+        let [remainder, damped] =
+            ["remainder_J", "damped_J"].map(|name| *energy[name].last().unwrap());
+        remainder / damped
+    };
+    let (of_parts, whole) = (
+        last("dt = 0.012\nsubsteps = 6").abs(),
+        last("dt = 0.002").abs(),
+    );
+    assert!(of_parts < 1e-3 + 2.0 * whole, "{of_parts} {whole}");
+}
