@@ -143,11 +143,11 @@ impl Scheme for CnnEnergy {
             Kind::ImplicitEuler => 1,
             Kind::Trapezoidal => 2,
         };
-        // y is off by dt^(2 sweeps + 1) a step, with other damping by dt^(sweeps + 1), and v by that over dt.
+        // Where the velocity leads y is off by dt^2, and each sweep leaves dt^2 of it, with other damping dt; v is off by that over dt.
         let sweeps = self.sweeps.min(8) as u8;
-        let order = of_formula.min(2 * sweeps - 1);
+        let order = of_formula.min(2 * sweeps);
         Properties::of_order(order, Needs::Tangents, EnergyBehaviour::NeverRises)
-            .with_other_damping(of_formula.min(sweeps - 1))
+            .with_other_damping(of_formula.min(sweeps))
     }
 
     fn set_up(
