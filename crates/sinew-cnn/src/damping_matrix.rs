@@ -7,13 +7,15 @@ pub(crate) fn damping_matrix(operators: &LinearOperators) -> BlockMatrix {
     let damping = operators.damping();
     let mut whole = stiffness_and_dashpots(operators, damping.stiffness, 1.0);
     let layers = whole.layers().count();
-    for cell in 0..whole.pattern().cells() {
-        let mut diagonal = vec![0.0; layers * layers];
-        for layer in 0..layers {
-            diagonal[layer * (layers + 1)] = damping.mass * operators.mass()[cell * layers + layer];
+    for (cell, mass) in operators.mass().chunks_exact(layers).enumerate() {
+        // Every row of a pattern has its own cell.
+        let blocks = whole.row_blocks_mut(cell);
+        for (_, block) in blocks.filter(|(column, _)| *column == cell) {
+            let diagonal = block.iter_mut().step_by(layers + 1);
+            for (entry, mass) in diagonal.zip(mass) {
+                *entry += damping.mass * mass;
+            }
         }
-        let added = whole.add_block(cell as u32, cell as u32, &diagonal);
-        debug_assert_eq!(added, Ok(()));
     }
     whole
 }
@@ -27,12 +29,13 @@ pub(crate) fn stiffness_and_dashpots(
     let mut sum = BlockMatrix::clone(operators.stiffness());
     sum.scale_rows(&vec![of_stiffness; operators.dofs()]);
     if let Some(dashpots) = &operators.damping().extra {
-        let mut scaled = BlockMatrix::clone(dashpots);
-        scaled.scale_rows(&vec![of_dashpots; operators.dofs()]);
         for cell in 0..sum.pattern().cells() {
-            for (column, block) in scaled.row_blocks(cell) {
-                let added = sum.add_block(cell as u32, column as u32, block);
-                debug_assert_eq!(added, Ok(()));
+            // Both have one pattern (`LinearOperators::new`).
+            let blocks = sum.row_blocks_mut(cell).zip(dashpots.row_blocks(cell));
+            for ((_, block), (_, added)) in blocks {
+                for (entry, added) in block.iter_mut().zip(added) {
+                    *entry += of_dashpots * added;
+                }
             }
         }
     }

@@ -5,7 +5,7 @@ use crate::majorant::Majorant;
 
 /// `P = (D + L) D^-1 (D + L')` of `A = L + D + L'`, which is `A + L D^-1 L'`, repeated.
 #[derive(Clone, Debug)]
-pub struct GaussSeidel {
+pub(crate) struct GaussSeidel {
     majorant: Majorant,
     sweeps: u32,
     /// Inverse diagonal blocks of A.
@@ -36,7 +36,7 @@ impl GaussSeidel {
     }
 
     /// `out = P^-1 r`. Allocates nothing.
-    pub fn solve(&mut self, r: &[f64], out: &mut [f64]) {
+    pub(crate) fn solve(&mut self, r: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for sweep in 0..self.sweeps {
             self.residual.copy_from_slice(r);

@@ -25,17 +25,20 @@ mod blocks;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 mod damping_matrix;
+mod equilibrium;
 mod gauss_seidel;
 mod machine;
 mod majorant;
 mod power_iteration;
 mod program;
+mod rigid;
 mod saturation;
+mod slowest;
 mod stabiliser;
 mod templates;
 
 pub use blocks::CellBlocks;
-pub use gauss_seidel::GaussSeidel;
+pub use equilibrium::equilibrium;
 pub use machine::{FollowedLoad, Machine, ReferenceMachine, StepTime};
 pub use majorant::{Blend, DampingShare, GammaRule, Majorant};
 pub use power_iteration::largest_eigenvalue;
@@ -43,8 +46,9 @@ pub use program::{
     CellInertia, Clamp, Forces, LoadAt, Loads, Moments, OwnTerm, Physics, Product, Program,
     Quotient, Register, Sweep, Term, Traffic, Update, Weight, When,
 };
+pub use rigid::{Deflation, Projection, RigidMotions};
 pub use saturation::{Saturation, SaturationError};
-pub use stabiliser::{Inner, Solution, Stabiliser};
+pub use stabiliser::{Inner, Inverse, Slowing, Solution, Stabiliser};
 pub use templates::{TemplateError, Templates};
 
 #[cfg(test)]

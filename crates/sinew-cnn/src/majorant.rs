@@ -65,6 +65,8 @@ pub struct Majorant {
     damping_share: f64,
     mass_suffices: bool,
     gamma: f64,
+    /// `gamma blockdiag(W)`; empty where M' suffices.
+    added: CellBlocks,
     inverse: Arc<CellBlocks>,
     floor: f64,
 }
@@ -105,19 +107,22 @@ impl Majorant {
             damping_share,
             mass_suffices,
             gamma: 0.0,
+            added: CellBlocks::default(),
             inverse: Arc::default(),
             floor: 1.0,
         };
         if !mass_suffices {
-            majorant.gamma = majorant.add_majorant_of_w(rule, &mut blocks);
+            let (gamma, added) = majorant.majorant_of_w(rule);
+            blocks.add(&added, 1.0);
+            (majorant.gamma, majorant.added) = (gamma, added);
         }
         majorant.inverse = Arc::new(blocks.inverse());
         majorant.floor = blunted(smallest_ratio(mass, &blocks, layers.count()));
         majorant
     }
 
-    /// Finds gamma and adds `gamma blockdiag(W)`.
-    fn add_majorant_of_w(&self, rule: GammaRule, blocks: &mut CellBlocks) -> f64 {
+    /// Finds gamma and `gamma blockdiag(W)`.
+    fn majorant_of_w(&self, rule: GammaRule) -> (f64, CellBlocks) {
         let operators = &self.operators;
         let of_stiffness = self.stiffness_weight();
         let sum;
@@ -140,8 +145,9 @@ impl Majorant {
             }
             _ => gamma(rule, matrix, &diagonal),
         };
-        blocks.add(&diagonal, weight * gamma);
-        gamma
+        let mut added = CellBlocks::of_mass(matrix.layers(), operators.mass(), 0.0);
+        added.add(&diagonal, weight * gamma);
+        (gamma, added)
     }
 
     /// The share s of `dt^2/4 K` that is in it.
@@ -190,6 +196,27 @@ impl Majorant {
     #[must_use]
     pub fn inverse(&self) -> &Arc<CellBlocks> {
         &self.inverse
+    }
+
+    /// `gamma blockdiag(W)`; empty where M' suffices.
+    #[must_use]
+    pub(crate) fn added(&self) -> &CellBlocks {
+        &self.added
+    }
+
+    /// M' of a degree of freedom (kg).
+    pub(crate) fn inertia(&self, dof: usize) -> f64 {
+        (1.0 + self.dt / 2.0 * self.operators.damping().mass) * self.operators.mass()[dof]
+    }
+
+    /// `out = W x`: one sweep.
+    pub(crate) fn multiply_added(&self, x: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        let stiffness = self.operators.stiffness();
+        stiffness.subtract_scaled_product(-self.stiffness_weight(), x, out);
+        if let Some(extra) = &self.operators.damping().extra {
+            extra.subtract_scaled_product(-self.dashpot_weight(), x, out);
+        }
     }
 
     /// A as weights of the mass, of K and, where there are any, of the dashpots.

@@ -3,11 +3,15 @@
 use std::sync::Arc;
 
 use sinew_core::spectrum::largest_eigenvalue_of_pencil;
-use sinew_core::{Batch, Inputs, LinearModel, LinearOperators, State, VelocityTime};
+use sinew_core::vectors::{dot, weighted_dot};
+use sinew_core::{Batch, FreePart, Inputs, LinearModel, LinearOperators, State, VelocityTime};
 
+use crate::blocks::CellBlocks;
 use crate::gauss_seidel::GaussSeidel;
 use crate::majorant::{Blend, DampingShare, GammaRule, Majorant};
 use crate::program::{Forces, Product, Program, Quotient, Register, Sweep, Update};
+use crate::rigid::{Deflation, Projection};
+use crate::slowest::SlowestMode;
 use crate::{Machine, ReferenceMachine};
 
 /// Ways in which P is built from a [`Majorant`] P1 and its A. All start cold: truncated iterations that
@@ -58,6 +62,12 @@ impl Inner {
         }
     }
 
+    /// Whether P is one block for each cell.
+    #[must_use]
+    pub fn is_single(self) -> bool {
+        matches!(self, Self::Block | Self::Jacobi { sweeps: 1 })
+    }
+
     /// Sweeps of the network that one solution takes.
     #[must_use]
     pub fn sweeps(self) -> u64 {
@@ -77,11 +87,41 @@ impl Inner {
 ///
 /// With `P > dt/2 D + dt^2/4 K` the leapfrog step `P (v+ - v-) = dt (F - K u - D v-)`, `u += dt v+`
 /// never gains energy, at any step (see [`Stabiliser::certificate`]).
+///
+/// Where parts may move as rigid bodies, which strain nothing, P is M' on these motions ([`Stabiliser::sparing`]): so a body that nothing holds falls, flies and turns as it would at any step.
 #[derive(Clone, Debug)]
 pub struct Stabiliser {
     majorant: Majorant,
     inner: Inner,
+    spared: Spared,
+    parts: Vec<FreePart>,
+    dt: f64,
 }
+
+/// The slowest elastic motion of a body, and what is added to the mass makes of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slowing {
+    /// Its period (s).
+    pub period: f64,
+    /// Its period in the steps that are taken, as a multiple of that.
+    pub factor: f64,
+}
+
+/// The slowest elastic motion, which does not depend on the step.
+struct Slowest(Option<SlowestMode>);
+
+/// Rigid motions that P leaves M'.
+#[derive(Clone, Debug)]
+enum Spared {
+    None,
+    /// By the blocks.
+    Blocks(Arc<Deflation>),
+    /// Beside an iteration.
+    Iteration(Arc<Projection>),
+}
+
+/// Energy of W in a motion, as a share of what the blocks hold in it, below which it is a rigid one to rounding.
+const RIGID: f64 = 1e-10;
 
 /// Iterations by which a solution begins and goes on.
 enum Iteration {
@@ -108,6 +148,136 @@ impl Stabiliser {
         Self {
             majorant: Majorant::new(operators, dt, rule, blend, inner.damping_share()),
             inner,
+            spared: Spared::None,
+            parts: Vec::new(),
+            dt,
+        }
+    }
+
+    /// The same with P = M' on the rigid motions of these parts, as far as W resists none of them. P stays above A: with the blocks by
+    /// [`Deflation`], beside an iteration by [`Projection`].
+    #[must_use]
+    pub fn sparing(mut self, parts: Vec<FreePart>) -> Self {
+        if self.majorant.adds_nothing() || self.majorant.mass_suffices() {
+            self.parts = parts;
+            return self;
+        }
+        self.parts = self.without_resistance(parts);
+        if self.parts.is_empty() {
+            return self;
+        }
+        let (majorant, parts) = (&self.majorant, self.parts.clone());
+        let inertia = |dof| majorant.inertia(dof);
+        let spared = if self.inner.is_single() {
+            let mut deflation = Deflation::new(parts);
+            let added = (1.0, majorant.added().entries());
+            deflation.weigh(None, added, (1.0, majorant.inverse().entries()), inertia);
+            Spared::Blocks(Arc::new(deflation))
+        } else {
+            Spared::Iteration(Arc::new(Projection::new(parts, inertia)))
+        };
+        Self { spared, ..self }
+    }
+
+    /// The parts with those of their motions that W resists to rounding only: not with springs that resist turns, for instance.
+    fn without_resistance(&self, mut parts: Vec<FreePart>) -> Vec<FreePart> {
+        let n = self.majorant.dofs();
+        let (mut x, mut product, mut bound) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let most = parts.iter().map(|part| part.twists.len()).max();
+        let mut is_free: Vec<Vec<bool>> = vec![Vec::new(); parts.len()];
+        for motion in 0..most.unwrap_or(0) {
+            x.fill(0.0);
+            for part in &parts {
+                let Some(twist) = part.twists.get(motion) else {
+                    continue;
+                };
+                let places = part.cells.iter().zip(&part.rest).zip(&part.moves);
+                for ((cell, rest), moves) in places {
+                    let at = twist.at([0, 1, 2].map(|axis| rest[axis] - part.centre[axis]));
+                    for axis in (0..3).filter(|axis| moves[*axis]) {
+                        x[3 * *cell as usize + axis] = at[axis];
+                    }
+                }
+            }
+            self.majorant.multiply_added(&x, &mut product);
+            self.majorant.added().multiply(&x, &mut bound);
+            for (part, is_free) in parts.iter().zip(&mut is_free) {
+                if motion < part.twists.len() {
+                    let along = |values: &[f64]| {
+                        let dofs = part.cells.iter().flat_map(|cell| {
+                            let first = 3 * *cell as usize;
+                            first..first + 3
+                        });
+                        dofs.map(|dof| x[dof] * values[dof]).sum::<f64>()
+                    };
+                    is_free.push(along(&product) <= RIGID * along(&bound));
+                }
+            }
+        }
+        for (part, is_free) in parts.iter_mut().zip(&is_free) {
+            let mut of_motion = is_free.iter();
+            part.twists.retain(|_| of_motion.next() == Some(&true));
+        }
+        parts.retain(|part| !part.twists.is_empty());
+        parts
+    }
+
+    /// The slowest elastic motion and by how much steps slow it down, by the inertia that it has in P instead of M; `None` where nothing is added or nothing strained.
+    /// Its first request takes some hundred sweeps.
+    #[must_use]
+    pub fn slowing(&self) -> Option<Slowing> {
+        let majorant = &self.majorant;
+        if majorant.adds_nothing() {
+            return None;
+        }
+        let operators = majorant.operators();
+        let slowest =
+            operators.derived(|operators| Slowest(SlowestMode::of(operators, &self.parts)));
+        let SlowestMode {
+            shape,
+            omega_squared,
+        } = slowest.0.as_ref()?;
+        let mass = operators.mass();
+        let own = weighted_dot(mass, shape, shape);
+        let share = if self.inner.is_single() {
+            let mut with_added = vec![0.0; shape.len()];
+            majorant.added().multiply(shape, &mut with_added);
+            let inertia = shape.iter().enumerate();
+            let inertia = inertia
+                .map(|(dof, x)| majorant.inertia(dof) * x * x)
+                .sum::<f64>();
+            let deflated = self
+                .deflation()
+                .map(|deflation| deflation.taken_out(shape, shape));
+            own / (inertia + dot(shape, &with_added) - deflated.unwrap_or(0.0))
+        } else {
+            // By the inverse alone: (M x)' P^-1 M x.
+            let force: Vec<f64> = mass.iter().zip(shape).map(|(mass, x)| mass * x).collect();
+            let mut moved = force.clone();
+            self.solve(&force, &mut moved);
+            dot(&force, &moved) / own
+        };
+        let half = 0.5 * self.dt;
+        let omega = omega_squared.sqrt();
+        let found = (half * omega * share.sqrt()).min(1.0).asin() / half;
+        Some(Slowing {
+            period: std::f64::consts::TAU / omega,
+            factor: omega / found,
+        })
+    }
+
+    /// Whether rigid motions are spared, so that P takes sums over all cells of a part.
+    #[must_use]
+    pub fn spares(&self) -> bool {
+        !matches!(self.spared, Spared::None)
+    }
+
+    /// The rigid motions that its blocks leave out, where they are all that P is made of.
+    #[must_use]
+    pub fn deflation(&self) -> Option<&Arc<Deflation>> {
+        match &self.spared {
+            Spared::Blocks(deflation) => Some(deflation),
+            Spared::None | Spared::Iteration(_) => None,
         }
     }
 
@@ -118,8 +288,16 @@ impl Stabiliser {
     }
 
     /// Sweeps after which each cell knows `P^-1 r`, r being rho of the sweep `right_side`; `None` where
-    /// no program can express it, since cells would have to go one after the other.
+    /// no program can express it, since cells would have to go one after the other, or need sums over all of them.
     pub fn sweeps(&self, program: &mut Program, right_side: Sweep) -> Option<Solution> {
+        if self.spares() {
+            return None;
+        }
+        self.sweeps_of_iteration(program, right_side)
+    }
+
+    /// The same for P without regard to rigid motions.
+    fn sweeps_of_iteration(&self, program: &mut Program, right_side: Sweep) -> Option<Solution> {
         let iteration = match self.inner {
             _ if self.majorant.mass_suffices() => Iteration::Jacobi(self.inner.sweeps() + 1),
             Inner::Block => Iteration::Single,
@@ -198,22 +376,27 @@ impl Stabiliser {
     /// `E = v'(P - dt/2 D - dt^2/4 K) v/2 + u' K u/2` falls by `dt v' D v` in each step.
     #[must_use]
     pub fn certificate(&self) -> f64 {
-        let mut solver = Solver::new(self);
+        let mut inverse = self.solver();
         largest_eigenvalue_of_pencil(
             self.majorant.dofs(),
             |x, out| self.majorant.multiply_required(x, out),
-            |x, out| solver.solve(x, out),
+            |x, out| inverse.solve(x, out),
         )
+    }
+
+    /// `P^-1` with room of its own.
+    #[must_use]
+    pub fn solver(&self) -> Inverse {
+        Inverse::new(self)
     }
 
     /// `out = P^-1 r`, with room of its own on each call.
     pub fn solve(&self, r: &[f64], out: &mut [f64]) {
-        Solver::new(self).solve(r, out);
+        self.solver().solve(r, out);
     }
 
     /// The iteration in the order of the cells, where that is the inner one.
-    #[must_use]
-    pub fn gauss_seidel(&self) -> Option<GaussSeidel> {
+    fn gauss_seidel(&self) -> Option<GaussSeidel> {
         match self.inner {
             Inner::GaussSeidel { sweeps } if !self.majorant.mass_suffices() => {
                 Some(GaussSeidel::new(&self.majorant, sweeps))
@@ -288,19 +471,61 @@ fn of_register(r: Register) -> Sweep {
 }
 
 /// `P^-1` by itself.
+pub struct Inverse {
+    solver: Solver,
+    spared: Spared,
+    /// What an iteration is given.
+    right: Vec<f64>,
+}
+
 enum Solver {
+    Blocks(Arc<CellBlocks>),
     Program(Box<(ReferenceMachine, LinearModel, State)>),
-    GaussSeidel(GaussSeidel),
+    GaussSeidel(Box<GaussSeidel>),
+}
+
+impl Inverse {
+    fn new(stabiliser: &Stabiliser) -> Self {
+        let spared = stabiliser.spared.clone();
+        let right = match &spared {
+            Spared::Iteration(_) => vec![0.0; stabiliser.majorant.dofs()],
+            Spared::None | Spared::Blocks(_) => Vec::new(),
+        };
+        let solver = match (&spared, stabiliser.gauss_seidel()) {
+            (Spared::Blocks(_), _) => Solver::Blocks(Arc::clone(stabiliser.majorant.inverse())),
+            (_, Some(gauss_seidel)) => Solver::GaussSeidel(Box::new(gauss_seidel)),
+            (_, None) => Solver::of_program(stabiliser),
+        };
+        Self {
+            solver,
+            spared,
+            right,
+        }
+    }
+
+    /// `out = P^-1 r`.
+    pub fn solve(&mut self, r: &[f64], out: &mut [f64]) {
+        match &self.spared {
+            Spared::None => self.solver.solve(r, out),
+            Spared::Blocks(deflation) => {
+                self.solver.solve(r, out);
+                deflation.correct(r, out);
+            }
+            Spared::Iteration(projection) => {
+                self.right.copy_from_slice(r);
+                projection.take_out(&mut self.right);
+                self.solver.solve(&self.right, out);
+                projection.put_back(r, out);
+            }
+        }
+    }
 }
 
 impl Solver {
-    fn new(stabiliser: &Stabiliser) -> Self {
-        if let Some(gauss_seidel) = stabiliser.gauss_seidel() {
-            return Self::GaussSeidel(gauss_seidel);
-        }
+    fn of_program(stabiliser: &Stabiliser) -> Self {
         let mut program = Program::new(VelocityTime::Same);
         let right_side = Sweep::local().with_own(Register::U, 1.0, 0.0);
-        if let Some(solution) = stabiliser.sweeps(&mut program, right_side) {
+        if let Some(solution) = stabiliser.sweeps_of_iteration(&mut program, right_side) {
             let out = solution.added_to(Register::V.becomes([]), 1.0);
             program.step = solution.then([out]);
         }
@@ -313,6 +538,7 @@ impl Solver {
 
     fn solve(&mut self, r: &[f64], out: &mut [f64]) {
         match self {
+            Self::Blocks(inverse) => inverse.multiply(r, out),
             Self::GaussSeidel(gauss_seidel) => gauss_seidel.solve(r, out),
             Self::Program(parts) => {
                 let (machine, system, state) = parts.as_mut();

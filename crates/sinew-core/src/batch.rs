@@ -359,43 +359,59 @@ impl<'a> Batch<'a> {
                 let clamped = guarding.apply(state, self.dt, stepped.acceleration);
                 stepped.work.saturated = stepped.work.saturated.max(clamped);
             }
-            self.end_step(state, stepped);
+            self.end_step(state, stepped)?;
         }
         Ok(())
     }
 
     /// Ends a step, or a part of one, that moved the state and was clamped where it had to be.
     /// [`Batch::each`] does so itself.
-    pub fn end_step(&mut self, state: &mut State, stepped: Stepped) {
-        if self.end_part(state, stepped) {
+    ///
+    /// # Errors
+    /// [`StepError::Refused`] when the system does not accept the state, which is then that of the end of the step.
+    pub fn end_step(&mut self, state: &mut State, stepped: Stepped) -> Result<(), StepError> {
+        if self.end_part(state, stepped)? {
             self.diverged = worst_beyond(&state.u, self.divergence_limit);
             self.sample(state);
         }
+        Ok(())
     }
 
     /// Ends a step, or a part of one, of a machine that holds u and v in a form of its own and knows that
     /// no displacement is beyond [`Batch::divergence_limit`]. The state needs to hold what
     /// [`Batch::watched`] names, and all of u and v only where [`Batch::looks_at_steps`].
-    pub fn end_step_within_limit(&mut self, state: &mut State, stepped: Stepped) {
-        if self.end_part(state, stepped) {
+    ///
+    /// # Errors
+    /// As [`Batch::end_step`].
+    pub fn end_step_within_limit(
+        &mut self,
+        state: &mut State,
+        stepped: Stepped,
+    ) -> Result<(), StepError> {
+        if self.end_part(state, stepped)? {
             self.sample(state);
         }
+        Ok(())
     }
 
     /// Ends a part, on the clock and for the system; whether it ends a step.
-    fn end_part(&mut self, state: &mut State, stepped: Stepped) -> bool {
+    fn end_part(&mut self, state: &mut State, stepped: Stepped) -> Result<bool, StepError> {
         state.end_step(self.dt, stepped.velocity, stepped.acceleration);
         state.loads = self.loads;
-        self.system.accept(state, self.inputs, self.dt);
+        let accepted = self.system.accept(state, self.inputs, self.dt);
+        accepted.map_err(|source| StepError::Refused {
+            t: state.t(),
+            source,
+        })?;
         self.step_work.add_part(stepped.work);
         self.parts_taken += 1;
         if self.parts_taken < self.parts {
-            return false;
+            return Ok(false);
         }
         self.parts_taken = 0;
         self.taken += 1;
         self.work += std::mem::take(&mut self.step_work);
-        true
+        Ok(true)
     }
 
     fn sample(&mut self, state: &State) {

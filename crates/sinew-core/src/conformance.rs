@@ -73,6 +73,8 @@ mod contract;
 mod faults;
 mod forces;
 mod hardening;
+#[cfg(test)]
+mod heun;
 mod inputs;
 mod memory;
 mod problems;

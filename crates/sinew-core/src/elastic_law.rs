@@ -7,11 +7,12 @@ use sinew_sparse::{BlockMatrix, Pattern};
 use crate::evaluation_error::EvaluationError;
 use crate::operators::{Damping, LinearOperators};
 use crate::trial::Trial;
-use crate::vectors::dot;
+use crate::vectors::{add_scaled, dot, scale};
 
 /// The elastic part of a force law: forces that are the gradient of an energy, and their derivative.
 ///
-/// With `W(u)` the energy, the law's net force is `f_ext(u) - dW/du - D v`, D being [`ElasticLaw::damping`]. Methods that
+/// With `W(u)` the energy, the law's net force is `f_ext(u) - dW/du - (alpha M + E) v - V(u) v`: alpha and the constant matrix E are those of
+/// [`ElasticLaw::damping`], V is the stiffness damping of [`ElasticLaw::viscous_force`]. Methods that
 /// solve equations or watch the energy need it ([`crate::Needs::Tangents`]). Points are those of [`crate::ForceLaw::net_force`];
 /// evaluation changes nothing.
 pub trait ElasticLaw: Send + Sync {
@@ -28,10 +29,10 @@ pub trait ElasticLaw: Send + Sync {
     /// The couplings between cells that a tangent may have.
     fn pattern(&self) -> &Arc<Pattern>;
 
-    /// `out = d2W/du2` (N/m) of a kind, on [`ElasticLaw::pattern`].
+    /// `out = d2W/du2` (N/m) of a kind, on [`ElasticLaw::pattern`] or one that has its couplings.
     ///
     /// # Errors
-    /// As [`ElasticLaw::elastic_force`].
+    /// As [`ElasticLaw::elastic_force`], and where `out` has no block for a coupling; its entries are then unspecified.
     fn tangent(
         &self,
         trial: &Trial<'_>,
@@ -51,6 +52,20 @@ pub trait ElasticLaw: Send + Sync {
         out: &mut [f64],
     ) -> Result<(), EvaluationError>;
 
+    /// `out = S w` (N), S being the matrix by which stable steps go, symmetric: the exact tangent, with what loads that follow the surface add to it, and with
+    /// parts that are idle but may act before the next step as if they did. About two sweeps.
+    ///
+    /// # Errors
+    /// As [`ElasticLaw::elastic_force`].
+    fn stiffest_product(
+        &self,
+        trial: &Trial<'_>,
+        w: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        self.tangent_product(trial, TangentKind::Exact, w, out)
+    }
+
     /// Writes a symmetric positive semidefinite block (N/m, row-major, layers each way) for every cell: its own block of the tangent, or more
     /// where that has a negative eigenvalue.
     ///
@@ -65,15 +80,109 @@ pub trait ElasticLaw: Send + Sync {
 
     /// `out -= factor dF/du` (N/m), the symmetric part, with the loads F as far as they depend on the displacement: what Newton's method
     /// adds to the exact tangent.
-    fn add_load_stiffness(&self, _trial: &Trial<'_>, _factor: f64, _out: &mut BlockMatrix) {}
+    ///
+    /// # Errors
+    /// [`EvaluationError`] where `out` has no block for a coupling; its entries are then unspecified.
+    fn add_load_stiffness(
+        &self,
+        _trial: &Trial<'_>,
+        _factor: f64,
+        _out: &mut BlockMatrix,
+    ) -> Result<(), EvaluationError> {
+        Ok(())
+    }
 
     /// `out = -factor dF/du w` (N), the part of the derivative without symmetry: what [`ElasticLaw::add_load_stiffness`] leaves out.
     fn load_skew_product(&self, _trial: &Trial<'_>, _factor: f64, _w: &[f64], out: &mut [f64]) {
         out.fill(0.0);
     }
 
-    /// `D`: the mass-proportional rate, the factor of the tangent, and a constant matrix.
+    /// The mass-proportional rate, the factor of stiffness damping, and a constant matrix.
     fn damping(&self) -> &Damping;
+
+    /// Whether supports move, so that damping between them and cells does work.
+    fn supports_move(&self) -> bool {
+        false
+    }
+
+    /// `out = V(u) w` (N): the force of stiffness damping at the trial's displacement for velocities w, of which V is a function of the
+    /// displacement alone, symmetric and positive semidefinite. About a sweep.
+    ///
+    /// Unless a law has another, V is the factor times the tangent with rotations held fast, and supports are at rest. A law of bodies that turn
+    /// needs one that does not act on a rigid motion.
+    ///
+    /// # Errors
+    /// As [`ElasticLaw::elastic_force`].
+    fn viscous_force(
+        &self,
+        trial: &Trial<'_>,
+        of: Velocities<'_>,
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        let factor = self.damping().stiffness;
+        match of {
+            Velocities::Cells(w) | Velocities::All(w) if factor != 0.0 => {
+                self.tangent_product(trial, TangentKind::Frozen, w, out)?;
+                scale(out, factor);
+            }
+            _ => out.fill(0.0),
+        }
+        Ok(())
+    }
+
+    /// `out += factor V(u)` (N s/m, times the factor), on [`ElasticLaw::pattern`]. Allocates a matrix, unless a law has its own.
+    ///
+    /// # Errors
+    /// As [`ElasticLaw::elastic_force`].
+    fn add_viscosity(
+        &self,
+        trial: &Trial<'_>,
+        factor: f64,
+        out: &mut BlockMatrix,
+    ) -> Result<(), EvaluationError> {
+        let factor = factor * self.damping().stiffness;
+        if factor != 0.0 {
+            let mut tangent = BlockMatrix::zeros(Arc::clone(self.pattern()), out.layers());
+            self.tangent(trial, TangentKind::Frozen, &mut tangent)?;
+            let added = out.add_scaled(factor, &tangent);
+            added.map_err(|error| EvaluationError {
+                element: 0,
+                reason: error.to_string(),
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Adds `factor` times the own blocks of V(u), or more, to those of all cells, as [`ElasticLaw::node_blocks`] writes them. Allocates them, unless a
+    /// law has its own.
+    ///
+    /// # Errors
+    /// As [`ElasticLaw::elastic_force`].
+    fn add_viscous_blocks(
+        &self,
+        trial: &Trial<'_>,
+        factor: f64,
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        let factor = factor * self.damping().stiffness;
+        if factor != 0.0 {
+            let mut blocks = vec![0.0; out.len()];
+            self.node_blocks(trial, &mut blocks)?;
+            add_scaled(factor, &blocks, out);
+        }
+        Ok(())
+    }
+}
+
+/// The velocities (m/s) that stiffness damping acts on.
+#[derive(Clone, Copy, Debug)]
+pub enum Velocities<'a> {
+    /// These of the degrees of freedom, with supports at rest.
+    Cells(&'a [f64]),
+    /// These of the degrees of freedom, and those of supports at the trial's time.
+    All(&'a [f64]),
+    /// Those of supports alone.
+    Supports,
 }
 
 /// Matrices as the elastic law `W = u'K u/2`.
@@ -100,9 +209,7 @@ impl ElasticLaw for LinearOperators {
         _kind: TangentKind,
         out: &mut BlockMatrix,
     ) -> Result<(), EvaluationError> {
-        let set = out.set_to(self.stiffness());
-        debug_assert!(set.is_ok(), "a matrix on the law's own pattern");
-        Ok(())
+        Ok(out.set_to(self.stiffness())?)
     }
 
     fn tangent_product(
@@ -129,6 +236,22 @@ impl ElasticLaw for LinearOperators {
 
     fn damping(&self) -> &Damping {
         Self::damping(self)
+    }
+
+    fn add_viscous_blocks(
+        &self,
+        _trial: &Trial<'_>,
+        factor: f64,
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        let factor = factor * self.damping().stiffness;
+        let entries = self.stiffness().layers().count().pow(2);
+        for (cell, out) in out.chunks_exact_mut(entries).enumerate() {
+            if let Some(block) = self.stiffness().block(cell, cell) {
+                add_scaled(factor, block, out);
+            }
+        }
+        Ok(())
     }
 }
 

@@ -195,6 +195,7 @@ impl Ramp {
         match self {
             Self::Input(channel) => inputs.value_of(*channel),
             Self::InputRate(channel) => inputs.rate_of(*channel),
+            Self::Position(of) => of.known(inputs),
             known => known,
         }
     }
@@ -202,7 +203,7 @@ impl Ramp {
     /// The channel that this ramp follows and that inputs do not have.
     #[must_use]
     pub fn missing_input(&self, inputs: &Inputs) -> Option<Channel> {
-        match self {
+        match self.course() {
             Self::Input(channel) | Self::InputRate(channel) if !inputs.has(*channel) => {
                 Some(*channel)
             }

@@ -151,6 +151,14 @@ mod tests {
                 times: vec![0.1, 0.5],
                 values: vec![-1.0, 1.0 / 3.0],
             },
+            Ramp::Table {
+                times: vec![0.1, 0.3, 0.3],
+                values: vec![-1.0, 1.0 / 3.0, 0.0],
+            },
+            Ramp::Sine {
+                frequency: 1.0 / 3.0,
+                phase: -0.1,
+            },
         ] {
             let scaled = inputs.add_factor_of(ramp).unwrap();
             inputs.set(scaled, 0.15, 1.0 / 7.0).unwrap();

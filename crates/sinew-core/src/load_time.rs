@@ -1,12 +1,19 @@
 //! Instants and windows of time at which a step takes its loads.
 
+use std::f64::consts::PI;
+
 use crate::clock::Clock;
 use crate::gauss::gauss_points;
 use crate::input::Inputs;
 use crate::ramp::Ramp;
 
-/// Windows in a rise of a squared sine from which on it counts as smooth at both ends.
+/// Windows in half a period of a sine from which on it counts as smooth, the rise of a squared one at both
+/// ends.
 const LONG_RISE: f64 = 2.0;
+
+/// Phase (rad) that a sine goes through in a piece of time, up to which Gauss' rule integrates it to
+/// rounding.
+const FEW_RADIANS: f64 = 2.0;
 
 /// The instant at which a step takes its loads, with the window of time they act for and the inputs
 /// that are known.
@@ -14,7 +21,7 @@ const LONG_RISE: f64 = 2.0;
 /// A load that is smooth over the window is taken at the instant. One that jumps or has a kink
 /// inside is replaced by a mean over the window, weighted so that its impulse arrives however it varies
 /// between two instants, and so that a method keeps the order that it has for smooth loads, up
-/// to order 2.
+/// to order 2. Places of supports ([`Ramp::Position`]) are taken at the instant whatever the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadTime<'a> {
     t: f64,
@@ -145,6 +152,20 @@ impl<'a> LoadTime<'a> {
         self.t
     }
 
+    /// Times (s) on both sides of the instant, inside the window by a rounding; the same where there is one side only.
+    fn beside(self) -> [f64; 2] {
+        let (from, to) = match self.window {
+            Window::Instant => return [self.t; 2],
+            Window::Smooth { from, to } => return [0.5 * (from + to); 2],
+            _ => self.span(),
+        };
+        let slack = Clock::ROUNDING * from.abs().max(to.abs());
+        match to - from > 2.0 * slack {
+            true => [-slack, slack].map(|side| (self.t + side).clamp(from + slack, to - slack)),
+            false => [0.5 * (from + to); 2],
+        }
+    }
+
     /// Start and end (s) of the time in which loads matter: the window, or the instant.
     #[must_use]
     pub fn span(self) -> (f64, f64) {
@@ -169,8 +190,10 @@ impl Ramp {
     #[must_use]
     pub fn factor(&self, when: LoadTime<'_>) -> f64 {
         let LoadTime { t, window, inputs } = when;
-        if let Self::Input(_) | Self::InputRate(_) = self {
-            return self.known(inputs).factor(when);
+        match self {
+            Self::Input(_) | Self::InputRate(_) => return self.known(inputs).factor(when),
+            Self::Position(of) => return of.known(inputs).place(when),
+            _ => {}
         }
         let (from, to) = match window {
             Window::Instant => return self.value(t),
@@ -190,7 +213,9 @@ impl Ramp {
             Window::Hat { .. } => 2.0 * (t - from).max(to - t),
             _ => to - from,
         };
-        if self.is_smooth_in_steps(from, to, length) {
+        // Methods that take means over a step move by them: the velocity of a support is then the way that it goes over the time.
+        let is_way = matches!((self, window), (Self::Rate(_), Window::Mean { .. }));
+        if !is_way && self.is_smooth_in_steps(from, to, length) {
             // The mean of a line is its value at the centre of the weights. Taken at the instant, it would
             // not fit the means on both sides of a kink, and the impulse of a table would depend on
             // where its kinks fall.
@@ -202,6 +227,7 @@ impl Ramp {
             };
             return match self {
                 Self::Sin2 { .. } => self.value(t),
+                Self::Sine { .. } => self.value_within(from, to, t),
                 _ => self.value_within(from, to, centre),
             };
         }
@@ -223,24 +249,69 @@ impl Ramp {
         }
     }
 
+    /// The value at the instant, through all jumps and kinks: at either end of a window that inside, and at a jump in the midst of
+    /// one the mean of both sides. For places of supports, which follow no input ([`Ramp::known`]).
+    #[must_use]
+    pub fn place(&self, when: LoadTime<'_>) -> f64 {
+        let value = |at: f64| self.derivative_of_piece(0, at, when.t);
+        let [before, after] = when.beside();
+        match before == after {
+            true => value(after),
+            false => 0.5 * (value(before) + value(after)),
+        }
+    }
+
+    /// The second derivative (1/s^2) at the instant, as [`Ramp::place`]. A kink inside a window adds its change of slope over the
+    /// time, with weights that fall linearly from the instant to 0 at both ends: at the centre of a window of two steps this is the second
+    /// difference of the values, and added up over steps nothing of a change of speed is lost.
+    #[must_use]
+    pub fn bend(&self, when: LoadTime<'_>) -> f64 {
+        let LoadTime { t, .. } = when;
+        let [_, after] = when.beside();
+        let smooth = self.derivative_of_piece(2, after, t);
+        let (from, to) = when.span();
+        let slack = Clock::ROUNDING * from.abs().max(to.abs());
+        let next = |after: f64| self.breakpoint_between(after + slack, to - slack);
+        let slope = |from: f64, to: f64, t: f64| self.derivative_of_piece(1, 0.5 * (from + to), t);
+        let (mut sum, mut start, mut kink) = (0.0, from, next(from));
+        while let Some(at) = kink {
+            let following = next(at);
+            let change = slope(at, following.unwrap_or(to), at) - slope(start, at, at);
+            let weight = match at < t {
+                true => (at - from) / (t - from),
+                false => (to - at) / (to - t),
+            };
+            sum += 2.0 / (to - from) * weight * change;
+            (start, kink) = (at, following);
+        }
+        smooth + sum
+    }
+
     /// Whether a step over `from`..`to` (s) may take the value as it finds it: no breakpoint lies
     /// between, rounding of either instant apart. A rise of a squared sine that is long compared with
     /// the step is smooth at its ends too, where value and slope are continuous; a short one is smooth
-    /// nowhere, so that all steps over it see means of it.
+    /// nowhere, so that all steps over it see means of it. Nor is a sine of a short period, of which samples
+    /// would make a slower one.
     #[must_use]
     pub fn is_smooth_between(&self, from: f64, to: f64) -> bool {
         self.is_smooth_in_steps(from, to, to - from)
     }
 
     fn is_smooth_in_steps(&self, from: f64, to: f64, length: f64) -> bool {
-        let is_short = |rise: f64| rise < LONG_RISE * length && to > 0.0 && from < rise;
+        let is_short = |half: f64| half < LONG_RISE * length && to > 0.0;
+        let is_short_rise = |rise: f64| is_short(rise) && from < rise;
         match self {
-            Self::Sin2 { rise } => return !is_short(*rise),
+            Self::Sin2 { rise } => return !is_short_rise(*rise),
             // The rate of a long rise has kinks where the rise begins and ends.
-            Self::Rate(of) if matches!(**of, Self::Sin2 { rise } if is_short(rise)) => {
+            Self::Rate(of) if matches!(**of, Self::Sin2 { rise } if is_short_rise(rise)) => {
                 return false;
             }
             _ => {}
+        }
+        if let Some([_, rate, _]) = self.sine_at(to)
+            && is_short(PI / rate)
+        {
+            return false;
         }
         let slack = Clock::ROUNDING * from.abs().max(to.abs());
         if let Self::Scaled(of, scaling) = self {
@@ -251,7 +322,7 @@ impl Ramp {
     }
 
     /// The integral of the value times a linear weight between two instants (s), by pieces between
-    /// breakpoints: exact but for that of a sine, which is to rounding. Breakpoints that only rounding
+    /// breakpoints: exact but for that of a squared sine, which is to rounding. Breakpoints that only rounding
     /// keeps from an end cut no piece off, or the bits would depend on what comes after the end.
     fn integral(&self, from: f64, to: f64, weight: impl Fn(f64) -> f64) -> f64 {
         let slack = Clock::ROUNDING * from.abs().max(to.abs());
@@ -259,13 +330,32 @@ impl Ramp {
         while start < to {
             let next = self.breakpoint_between(start + slack, to - slack);
             let end = next.unwrap_or(to);
-            let terms = gauss_points(start, end)
-                .map(|(s, share)| share * weight(s) * self.value_within(start, end, s));
-            sum += terms.sum::<f64>();
+            let sine = self.sine_at(0.5 * (start + end));
+            sum += match sine.filter(|[_, rate, _]| rate * (end - start) > FEW_RADIANS) {
+                Some(sine) => integral_of_sine(sine, [start, end], &weight),
+                None => gauss_points(start, end)
+                    .map(|(s, share)| share * weight(s) * self.value_within(start, end, s))
+                    .sum(),
+            };
             start = end;
         }
         sum
     }
+}
+
+/// The integral of `size sin(rate t + phase)` times a linear weight between two instants (s).
+fn integral_of_sine(
+    [size, rate, phase]: [f64; 3],
+    [from, to]: [f64; 2],
+    weight: impl Fn(f64) -> f64,
+) -> f64 {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let slope = (weight(to) - weight(from)) / (to - from);
+    let (sin, cos) = (rate * middle + phase).sin_cos();
+    let (sin_half, cos_half) = (rate * half).sin_cos();
+    let even = weight(middle) * sin * sin_half / rate;
+    let odd = slope * cos * (sin_half - rate * half * cos_half) / (rate * rate);
+    2.0 * size * (even + odd)
 }
 
 #[cfg(test)]
@@ -419,16 +509,98 @@ mod tests {
             let way = if window == 4 { 0.975 } else { 1.0 };
             assert!((found - way).abs() < 1e-12, "window {window}: {found}");
         }
-        // A long rise is sampled, with means at its two kinks: the error falls as dt^2.
+        // A long rise is sampled, with means at its two kinks, where a method does not move by means: the error falls as dt^2.
         let of = Ramp::Sin2 { rise: 0.713 };
         let errors =
             |dt: f64| sums(dt, |when| of.rate().factor(when)).map(|found| (found - 1.0).abs());
         for (window, (coarse, fine)) in errors(0.02).into_iter().zip(errors(0.005)).enumerate() {
+            let is_way = window < 2;
             assert!(
-                coarse < 2e-3 && fine < coarse / 10.0,
+                if is_way {
+                    coarse.max(fine) < 1e-12
+                } else {
+                    coarse < 2e-3 && fine < coarse / 10.0
+                },
                 "window {window}: {coarse} {fine}"
             );
         }
+    }
+
+    #[test]
+    fn a_place_is_that_of_the_instant_whatever_the_window() {
+        let dt = 0.05;
+        let table = Ramp::Table {
+            times: vec![0.013, 0.021, 0.1, 0.213, 0.7],
+            values: vec![0.0, 3.0, -1.0, 2.0, 2.5],
+        };
+        let rises = [0.03, 0.4].map(|rise| Ramp::Sin2 { rise });
+        for of in [table, Ramp::Linear].into_iter().chain(rises) {
+            let place = Ramp::Position(Box::new(of.clone()));
+            for t in (0..15).map(|n| f64::from(n) * dt) {
+                let [start, end] = LoadTime::at_both_ends(t, dt, 0.7);
+                for (when, at) in [
+                    (LoadTime::start_of(t, dt), t),
+                    (LoadTime::end_of(t, dt), t + dt),
+                    (LoadTime::within(t, dt, 0.3), t + 0.3 * dt),
+                    (LoadTime::around(t, dt, dt), t),
+                    (LoadTime::around(t, 0.0, dt), t),
+                    (LoadTime::smooth_in(t, t, dt), t),
+                    (LoadTime::at(t), t),
+                    (start, t),
+                    (end, t + dt),
+                ] {
+                    // Over a kink no window is smooth.
+                    if when != LoadTime::smooth_in(t, t, dt) || of.is_smooth_between(t, t + dt) {
+                        let off = (place.factor(when) - of.value(at)).abs();
+                        assert!(off < 1e-13, "{of:?} {when:?}: {off:e}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_place_that_jumps_is_that_inside_the_step() {
+        let place = Ramp::Position(Box::new(pulse(0.1, 0.3)));
+        let factor = |when: LoadTime<'_>| place.factor(when);
+        assert_eq!(factor(LoadTime::end_of(0.05, 0.05)), 0.0);
+        assert_eq!(factor(LoadTime::start_of(0.1, 0.05)), 1.0);
+        // What a leapfrog takes: the mean of both sides.
+        assert_eq!(factor(LoadTime::around(0.1, 0.05, 0.05)), 0.5);
+        assert_eq!(factor(LoadTime::around(0.1, 0.0, 0.05)), 1.0);
+        assert_eq!(factor(LoadTime::at(0.1)), 1.0);
+    }
+
+    #[test]
+    fn bends_over_steps_add_up_to_the_speed_gained() {
+        let dt = 0.05;
+        let around = |n: i32| LoadTime::around(f64::from(n) * dt, dt, dt);
+        for spacing in [0.05, 0.0125, 0.0173, 0.31] {
+            // From rest to rest along a parabola between.
+            let rows = (0..).map(|row| 0.1 + f64::from(row) * spacing);
+            let times: Vec<f64> = rows.take_while(|t| *t < 0.8).collect();
+            let values: Vec<f64> = times.iter().map(|t| (t - 0.1).powi(2)).collect();
+            let table = Ramp::Table {
+                times: [&times[..], &[0.9, 1.0]].concat(),
+                values: [&values[..], &[1.0, 1.0]].concat(),
+            };
+            let gained: f64 = (0..=20).map(|n| dt * table.bend(around(n))).sum();
+            assert!(gained.abs() < 1e-12, "{spacing}: {gained:e}");
+            let kink = Ramp::Table {
+                times: vec![0.0, 0.3 + spacing, 2.0],
+                values: vec![0.0, 0.0, 3.4 - 2.0 * spacing],
+            };
+            let gained: f64 = (0..=20).map(|n| dt * kink.bend(around(n))).sum();
+            assert!((gained - 2.0).abs() < 1e-12, "{spacing}: {gained:e}");
+            if spacing == dt {
+                let second = table.bend(around(8));
+                assert!((second - 2.0).abs() < 1e-12, "{second}");
+            }
+        }
+        let rise = Ramp::Sin2 { rise: 0.4 };
+        let mut smooth = [0.0; 3];
+        rise.derivatives_after(3.0 * dt, &mut smooth);
+        assert_eq!(rise.bend(around(3)), smooth[2]);
     }
 
     #[test]
@@ -492,6 +664,115 @@ mod tests {
         let lost = (0..fine).map(|n| (f64::from(n) + 0.5) * h);
         let lost: f64 = lost.map(|s| h * weight(s) * (1.0 - ramp.value(s))).sum();
         assert!((falling - (1.0 - lost)).abs() < 1e-10);
+    }
+
+    /// Integral of `sin(rate t + phase)` from t = 0 on.
+    fn way_of_sine(rate: f64, phase: f64, t: f64) -> f64 {
+        (phase.cos() - (rate * t + phase).cos()) / rate
+    }
+
+    #[test]
+    fn a_sine_of_a_short_period_enters_by_its_means() {
+        let dt = 0.01;
+        // Samples of a period of one step would be a constant load.
+        for (frequency, phase) in [(100.0, 0.9), (37.0, 0.0), (260.0, -0.4), (1e5, 0.3)] {
+            let (ramp, rate) = (Ramp::Sine { frequency, phase }, 2.0 * PI * frequency);
+            let scaled = Ramp::Scaled(
+                Box::new(ramp.clone()),
+                Scaling {
+                    times: vec![0.0042],
+                    factors: vec![-2.0],
+                },
+            );
+            for n in 0..7 {
+                let t = f64::from(n) * dt;
+                let whole = |to: f64| way_of_sine(rate, phase, to) - way_of_sine(rate, phase, t);
+                let mean = ramp.factor(LoadTime::start_of(t, dt));
+                assert!(
+                    (mean - whole(t + dt) / dt).abs() < 1e-10,
+                    "{frequency} Hz from {t}"
+                );
+                let ends = LoadTime::at_both_ends(t, dt, 0.5).map(|when| ramp.factor(when));
+                let sum = 0.5 * (ends[0] + ends[1]);
+                assert!((sum - mean).abs() < 1e-10, "{frequency} Hz from {t}");
+                let rate_of = ramp.rate().factor(LoadTime::start_of(t, dt));
+                let change = (ramp.value(t + dt) - ramp.value(t)) / dt;
+                assert!(
+                    (rate_of - change).abs() < 1e-9 * rate,
+                    "{frequency} Hz from {t}"
+                );
+                if n == 0 {
+                    let before = way_of_sine(rate, phase, 0.0042);
+                    let after = way_of_sine(rate, phase, dt) - before;
+                    let found = scaled.factor(LoadTime::start_of(0.0, dt));
+                    let expected = (before - 2.0 * after) / dt;
+                    assert!((found - expected).abs() < 1e-10, "{frequency} Hz");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_hat_over_a_short_sine_has_the_weights_of_a_leapfrog() {
+        let (dt, frequency, phase) = (0.01, 137.0, 0.2);
+        let ramp = Ramp::Sine { frequency, phase };
+        let (t, fine) = (0.03, 400_000);
+        let h = 2.0 * dt / f64::from(fine);
+        let terms = (0..fine).map(|n| t - dt + (f64::from(n) + 0.5) * h);
+        let sum: f64 = terms
+            .map(|s| h * (1.0 - (s - t).abs() / dt) / dt * ramp.value(s))
+            .sum();
+        let found = ramp.factor(LoadTime::around(t, dt, dt));
+        assert!((found - sum).abs() < 1e-8, "{found} {sum}");
+    }
+
+    #[test]
+    fn a_sine_of_a_long_period_is_sampled_and_begins_at_once() {
+        let ramp = Ramp::Sine {
+            frequency: 3.0,
+            phase: 0.5 * PI,
+        };
+        for t in [0.05, 0.1, 0.2, 0.35] {
+            let value = ramp.value(t);
+            for when in [
+                LoadTime::around(t, 0.01, 0.01),
+                LoadTime::start_of(t, 0.01),
+                LoadTime::within(t - 0.005, 0.01, 0.5),
+            ] {
+                assert!((ramp.factor(when) - value).abs() < 1e-15, "at {t}");
+            }
+        }
+        assert!((ramp.factor(LoadTime::start_of(0.0, 0.01)) - 1.0).abs() < 1e-15);
+        assert!((ramp.factor(LoadTime::around(0.0, 0.0, 0.01)) - 1.0).abs() < 1e-15);
+    }
+
+    /// A table that ends abruptly, on a step or within one.
+    #[test]
+    fn a_jump_of_a_table_acts_from_its_step_on_and_within_a_step_by_its_mean() {
+        let dropped = |at: f64| Ramp::Table {
+            times: vec![0.0, at, at],
+            values: vec![1.0, 1.0, 0.0],
+        };
+        let dt = 0.05;
+        let on = dropped(0.3);
+        for n in 0..12_i32 {
+            let t = f64::from(n) * dt;
+            let expected = f64::from(n < 6);
+            assert_eq!(on.factor(LoadTime::start_of(t, dt)), expected, "step {n}");
+            assert_eq!(on.factor(LoadTime::end_of(t, dt)), expected, "step {n}");
+            for share in [0.0, 0.5, 1.0] {
+                let found = on.factor(LoadTime::within(t, dt, share));
+                assert_eq!(found, expected, "step {n}");
+            }
+            let both = LoadTime::at_both_ends(t, dt, 0.5).map(|when| on.factor(when));
+            assert_eq!(both, [expected; 2], "step {n}");
+        }
+        let within = dropped(0.3 + 0.3 * dt);
+        let step = |n: f64| within.factor(LoadTime::start_of(n * dt, dt));
+        assert_eq!((step(5.0), step(7.0)), (1.0, 0.0));
+        assert!((step(6.0) - 0.3).abs() < 1e-12);
+        let both = LoadTime::at_both_ends(6.0 * dt, dt, 0.5).map(|when| within.factor(when));
+        assert!((0.5 * (both[0] + both[1]) - 0.3).abs() < 1e-12);
     }
 
     #[test]

@@ -18,8 +18,14 @@ pub(crate) fn write(ramp: &Ramp, out: &mut Writer) {
         Ramp::Pulse { from, to } => (2, &[*from, *to], [&[], &[]]),
         Ramp::Table { times, values } => (3, &[], [times, values]),
         Ramp::Hold { times, values } => (4, &[], [times, values]),
-        // `Ramp::check` lets no other one be scaled.
-        _ => (5, &[], [&[], &[]]),
+        Ramp::Sine { frequency, phase } => (7, &[*frequency, *phase], [&[], &[]]),
+        // `Ramp::check` lets none of the others be scaled.
+        Ramp::Linear
+        | Ramp::Rate(_)
+        | Ramp::Position(_)
+        | Ramp::Input(_)
+        | Ramp::InputRate(_)
+        | Ramp::Scaled(..) => (5, &[], [&[], &[]]),
     };
     out.flags([kind, 0, 0, 0]);
     numbers.iter().for_each(|number| out.number(*number));
@@ -72,6 +78,10 @@ fn plain(kind: u8, rest: &mut Reader<'_>) -> Result<Ramp, BytesError> {
         3 => Ramp::Table { times, values },
         4 => Ramp::Hold { times, values },
         5 => Ramp::Linear,
+        7 => Ramp::Sine {
+            frequency: rest.number()?,
+            phase: rest.number()?,
+        },
         _ => return Err(rest.impossible("ramp")),
     })
 }

@@ -1,5 +1,6 @@
 //! Extreme eigenvalues, from which stable steps follow, and what loads excite between them.
 
+pub use crate::following::{PRODUCTS_OF_BEGINNING, follow_largest_eigenvalue};
 pub use crate::lanczos::{
     PRODUCTS_OF_ESTIMATE, estimated_largest_eigenvalue, largest_eigenvalue,
     largest_eigenvalue_of_pencil,

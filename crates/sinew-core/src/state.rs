@@ -36,6 +36,9 @@ pub struct State {
     pub start: Option<Start>,
     /// The parts into which steps are cut by the current stiffness, where a method does so.
     pub cut: Option<StepCut>,
+    /// Two fields over all degrees of freedom that have turned towards the body's fastest motion, where steps are cut by it
+    /// ([`crate::spectrum::follow_largest_eigenvalue`]); empty elsewhere.
+    pub fastest: Vec<f64>,
 }
 
 /// The cut of steps into parts that the current stiffness of a system allows.
@@ -43,12 +46,12 @@ pub struct State {
 pub struct StepCut {
     /// Parts of a step.
     pub parts: u32,
-    /// Parts taken since the stable step was found.
+    /// Parts taken since what a product does not tell was found.
     pub taken: u32,
-    /// The stable step (s) that was found.
+    /// The stable step (s) that was found last.
     pub stable_step: f64,
-    /// The largest trace of a cell's own block over its mass (1/s^2) then; 0 where the law has no such blocks.
-    pub stiffest_cell: f64,
+    /// The largest eigenvalue of `M^-1 D` over that of `M^-1 K` (s), D being the damping but for that by mass, as found then.
+    pub damping: f64,
 }
 
 impl Clone for State {
@@ -72,12 +75,14 @@ impl Clone for State {
             loads,
             start,
             cut,
+            fastest,
         } = other;
         self.u.clone_from(u);
         self.v.clone_from(v);
         self.a.clone_from(a);
         self.internal.clone_from(internal);
         self.contact.clone_from(contact);
+        self.fastest.clone_from(fastest);
         (self.clock, self.loads, self.start, self.cut) = (*clock, *loads, *start, *cut);
         (self.velocity, self.acceleration) = (*velocity, *acceleration);
     }
@@ -97,6 +102,7 @@ impl PartialEq for State {
             loads: _,
             start,
             cut,
+            fastest,
         } = self;
         (clock, velocity, acceleration, start, cut)
             == (
@@ -107,7 +113,7 @@ impl PartialEq for State {
                 &other.cut,
             )
             && (u, v, a) == (&other.u, &other.v, &other.a)
-            && (internal, contact) == (&other.internal, &other.contact)
+            && (internal, contact, fastest) == (&other.internal, &other.contact, &other.fastest)
     }
 }
 
@@ -165,6 +171,7 @@ impl State {
             loads: None,
             start: None,
             cut: None,
+            fastest: Vec::new(),
         }
     }
 

@@ -5,7 +5,7 @@ use crate::system::loads_revision;
 use crate::{Acceleration, Clock, Contact, Start, State, StepCut, System, VelocityTime};
 
 const KIND: Kind = Kind {
-    name: b"sinew state v4\r\n",
+    name: b"sinew state v5\r\n",
     words: "state",
 };
 
@@ -64,8 +64,9 @@ impl State {
         out.count(self.cut.map_or(0, |cut| cut.parts.into()));
         out.count(self.cut.map_or(0, |cut| cut.taken.into()));
         out.number(self.cut.map_or(0.0, |cut| cut.stable_step));
-        out.number(self.cut.map_or(0.0, |cut| cut.stiffest_cell));
-        for vector in [&self.u, &self.v, &self.a, &self.internal, &self.contact] {
+        out.number(self.cut.map_or(0.0, |cut| cut.damping));
+        let vectors = [&self.u, &self.v, &self.a, &self.internal, &self.contact];
+        for vector in vectors.into_iter().chain([&self.fastest]) {
             out.count(vector.len() as u64);
             vector.iter().for_each(|value| out.number(*value));
         }
@@ -100,14 +101,14 @@ impl State {
         let (base, dt, steps) = (rest.number()?, rest.number()?, rest.count()?);
         let energy = rest.number()?;
         let (parts, taken) = (rest.count()?, rest.count()?);
-        let (stable_step, stiffest_cell) = (rest.number()?, rest.number()?);
+        let (stable_step, damping) = (rest.number()?, rest.number()?);
         let cut = match (u32::try_from(parts), u32::try_from(taken)) {
             (Ok(0), Ok(_)) => None,
             (Ok(parts), Ok(taken)) => Some(StepCut {
                 parts,
                 taken,
                 stable_step,
-                stiffest_cell,
+                damping,
             }),
             _ => return Err(rest.impossible("cut of steps").into()),
         };
@@ -115,7 +116,7 @@ impl State {
             (0..rest.count_of(8)?).map(|_| rest.number()).collect()
         };
         let (u, v, a) = (vector()?, vector()?, vector()?);
-        let (internal, contact) = (vector()?, vector()?);
+        let (internal, contact, fastest) = (vector()?, vector()?, vector()?);
         rest.end()?;
 
         let fits = |what, state, system| match state == system {
@@ -138,6 +139,9 @@ impl State {
         if !contact.is_empty() {
             fits("numbers of contact", contact.len(), kept)?;
         }
+        if !fastest.is_empty() {
+            fits("fields of the fastest motion", fastest.len(), 2 * dofs)?;
+        }
         if fingerprint != system.fingerprint() {
             return Err(StateBytesError::OtherSystem);
         }
@@ -156,6 +160,7 @@ impl State {
             }),
             loads: loads_revision(system).filter(|_| has_loads),
             cut,
+            fastest,
         })
     }
 }

@@ -41,6 +41,16 @@ impl State {
         inputs: &Inputs,
         out: &mut [f64],
     ) -> Result<(), EvaluationError> {
+        self.velocity_with((system, true), inputs, out)
+    }
+
+    /// The velocity at the displacement's time, with the last step's forces of contact or without them.
+    fn velocity_with(
+        &self,
+        (system, is_touched): (&dyn System, bool),
+        inputs: &Inputs,
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
         let staggered = self
             .clock
             .last_step()
@@ -64,7 +74,7 @@ impl State {
             internal: &self.internal,
         };
         system.net_force(&trial, out)?;
-        if let Some(contact) = system.contact() {
+        if let Some(contact) = system.contact().filter(|_| is_touched) {
             contact.add_forces(self, false, out);
         }
         let acceleration = out.iter_mut().zip(system.mass());
@@ -76,6 +86,9 @@ impl State {
 
     /// Moves a staggered velocity to the displacement's time, so that any method can go on from
     /// here; returns whether it was staggered. `work` has the length of `u`.
+    ///
+    /// Contact has no part in that: whatever takes the next step lets it push by as much as the whole of the time between two
+    /// velocities asks for, and what it pushes by is what tools receive.
     ///
     /// # Errors
     /// [`SynchroniseError`] when the system refuses the state, or the velocity is a mean over a step.
@@ -91,7 +104,7 @@ impl State {
         if let (VelocityTime::MeanOverStep, Some(dt)) = (self.velocity, self.clock.last_step()) {
             return Err(SynchroniseError::Mean { dt });
         }
-        self.velocity_at_t(system, inputs, work)?;
+        self.velocity_with((system, false), inputs, work)?;
         self.v.copy_from_slice(work);
         self.velocity = VelocityTime::Same;
         self.acceleration = Acceleration::None;

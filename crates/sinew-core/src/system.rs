@@ -8,6 +8,7 @@ use crate::element_forces::ElementForces;
 use crate::elements::Elements;
 use crate::energy::Energy;
 use crate::evaluation_error::EvaluationError;
+use crate::free_part::FreePart;
 use crate::input::Inputs;
 use crate::load_time::LoadTime;
 use crate::operators::LinearOperators;
@@ -54,7 +55,17 @@ pub trait System: Send + Sync {
     /// Tells that a step was accepted and the state is its result, `dt` (s) after the one before. Called once per step, or per
     /// part of a step that is cut; laws with memory update the state's internal variables here. By hand it is called for a change that
     /// takes no time, with 0, and for one after which all relaxes, with infinity.
-    fn accept(&self, _state: &mut State, _inputs: &Inputs, _dt: f64) {}
+    ///
+    /// # Errors
+    /// [`EvaluationError`] for a state outside the domain of a law with memory; the internal variables are then unspecified.
+    fn accept(
+        &self,
+        _state: &mut State,
+        _inputs: &Inputs,
+        _dt: f64,
+    ) -> Result<(), EvaluationError> {
+        Ok(())
+    }
 
     /// Whether [`System::accept`] looks at the state. Where it does not, machines that hold u and v in a form
     /// of their own need not write them out after each step.
@@ -65,6 +76,11 @@ pub trait System: Send + Sync {
     /// Positions of the cells at rest (m), where the system has them: machines look for rows that repeat.
     fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
         None
+    }
+
+    /// Its connected parts that supports leave rigid motions, where the system knows them: these strain nothing and must cost nothing but their inertia.
+    fn free_parts(&self) -> Vec<FreePart> {
+        Vec::new()
     }
 
     /// The largest stiffness of any material against compression, `lambda + 2 mu`, over the smallest of any against shear,

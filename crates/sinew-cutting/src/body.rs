@@ -13,7 +13,7 @@ use crate::report::{Removal, Stroke};
 use crate::seen::SeenNodes;
 use crate::tet::{EDGES, FACES};
 
-use crate::vector::{Vector, length, sub};
+use crate::vector::{Vector, bounds_of, length, sub};
 
 /// Stands for no tetrahedron.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -61,6 +61,12 @@ pub(crate) struct Room {
     /// Tetrahedra that are to be looked at.
     pub(crate) queue: Vec<u32>,
     pub(crate) touched: Vec<(u32, Passed)>,
+    /// Nodes that the blade has passed in this look.
+    pub(crate) passed: Vec<u32>,
+    /// Other tetrahedra at these nodes.
+    pub(crate) left: Vec<u32>,
+    /// The last look in which each tetrahedron at such a node was listed.
+    pub(crate) listed_in: Vec<u32>,
     pub(crate) nodes: SeenNodes,
     /// Nodes that may be moved, with their distance from the sheet by their shortest edge.
     pub(crate) near: Vec<(f64, u32)>,
@@ -77,6 +83,7 @@ impl Room {
     pub(crate) fn start_look(&mut self, nodes: usize) {
         self.look = self.look.wrapping_add(1);
         self.touched.clear();
+        self.passed.clear();
         self.queue.clear();
         self.nodes.resize(nodes);
     }
@@ -165,6 +172,9 @@ impl CuttableBody {
                 group_of: vec![0; tets],
                 queue: Vec::with_capacity(tets),
                 touched: Vec::with_capacity(tets),
+                passed: Vec::with_capacity(nodes + spare),
+                left: Vec::with_capacity(tets),
+                listed_in: vec![0; tets],
                 nodes: SeenNodes::with_room(nodes + spare),
                 near: Vec::with_capacity(nodes + spare),
                 corners: Vec::with_capacity(nodes + spare),
@@ -275,9 +285,7 @@ impl CuttableBody {
     /// Whether a blade, a segment between two ends (m), is in the body where its nodes have these positions (m).
     #[must_use]
     pub fn holds(&self, [from, to]: [[f64; 3]; 2], positions: &[[f64; 3]]) -> bool {
-        let extreme =
-            |of: fn(f64, f64) -> f64| std::array::from_fn(|axis| of(from[axis], to[axis]));
-        let is_near = self.is_near([extreme(f64::min), extreme(f64::max)]);
+        let is_near = self.is_near(bounds_of([from, to]));
         let near = (0..).zip(positions).filter(|(_, place)| is_near(place));
         let mut tets = near.flat_map(|(node, _)| self.incidence.of(node));
         tets.any(|tet| {

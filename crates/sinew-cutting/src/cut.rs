@@ -4,9 +4,11 @@ use crate::body::{CuttableBody, NONE};
 use crate::error::CutError;
 use crate::passed::Passed;
 use crate::report::Stroke;
+use crate::seen::Flat;
 use crate::sheet::Sheet;
-use crate::tet::FACES;
-use crate::vector::{Vector, cross, dot, length, sub};
+use crate::tet::{EDGES, FACES};
+use crate::uncut::Uncut;
+use crate::vector::{Vector, cross, length, sub};
 
 /// Passes over the tetrahedra that a sheet touches in which these may change sides.
 const SMOOTHING: usize = 2;
@@ -15,8 +17,9 @@ impl CuttableBody {
     /// Cuts by a sheet in the current configuration, in which the nodes have these positions (m). Copies of nodes get the positions
     /// of what they are copies of, and nodes that are moved at rest onto the sheet theirs.
     ///
-    /// Nodes within a share `snap` of their shortest edge are moved first; 0 moves none. A face is cut that has tetrahedra of both
-    /// sides, once its centroid was swept and the blade has come through the tetrahedra beside it. So one that was entered in part
+    /// Nodes within a share `snap` of their shortest edge are moved first; 0 moves none. Where the sheet begins where the last one ended, its beginning
+    /// goes with the tissue that has moved since, and nodes keep the sides on which they were as the blade passed them. A face is cut that has tetrahedra of
+    /// both sides, once the blade is over its centroid or past its nodes, and has come through the tetrahedra beside it. So one that was entered in part
     /// stays whole until a later stroke comes through; [`CuttableBody::lift`] forgets.
     ///
     /// # Errors
@@ -27,19 +30,49 @@ impl CuttableBody {
         positions: &mut Vec<[f64; 3]>,
         snap: f64,
     ) -> Result<&Stroke, CutError> {
+        self.follow(sheet.poses(), positions, snap)
+    }
+
+    /// Cuts what a blade, a segment, passes from one pose to the next, each given by its two ends (m), as [`CuttableBody::stroke`] does by a sheet.
+    /// A blade that rests cuts the tissue that comes through it.
+    ///
+    /// # Errors
+    /// Same as [`CuttableBody::stroke`].
+    pub fn follow(
+        &mut self,
+        poses: [[[f64; 3]; 2]; 2],
+        positions: &mut Vec<[f64; 3]>,
+        snap: f64,
+    ) -> Result<&Stroke, CutError> {
         self.require_positions(positions)?;
         self.stroke.clear();
-        let turned = self
-            .marks
-            .normal
-            .is_some_and(|last| dot(last, sheet.normal()) < 0.0);
-        let sheet = if turned { sheet.reversed() } else { *sheet };
-        self.marks.normal = Some(sheet.normal());
-        self.find_touched(&sheet, positions);
+        if !self.goes_on(poses[0]) {
+            if self.marks.course.blade.is_some() && self.is_in_the_air(poses, positions) {
+                // Another blade than that of the stroke at hand, which goes on after it.
+                self.room.start_look(positions.len());
+                return Ok(&self.stroke);
+            }
+            self.marks.start_anew();
+        }
+        match self.swept(poses, positions) {
+            Some(sheet) => {
+                let sheet = self.turned_as_before(&sheet);
+                self.cut_by(&sheet, positions, snap);
+                self.marks.heading = Some(sheet.heading());
+            }
+            None => self.room.start_look(positions.len()),
+        }
+        self.keep_course(poses, positions);
+        self.marks.keep_places(positions);
+        Ok(&self.stroke)
+    }
+
+    fn cut_by(&mut self, sheet: &Sheet, positions: &mut Vec<Vector>, snap: f64) {
+        self.find_touched(sheet, positions);
         if snap > 0.0 {
-            self.snap(&sheet, positions, snap);
+            self.snap(sheet, positions, snap);
             if !self.stroke.moved.is_empty() {
-                self.look_again(&sheet);
+                self.look_again(sheet);
             }
         }
         let touched = std::mem::take(&mut self.room.touched);
@@ -49,23 +82,29 @@ impl CuttableBody {
         for of_tet in &touched {
             self.mark(*of_tet);
         }
+        self.find_left(&touched, sheet, positions);
+        let left = std::mem::take(&mut self.room.left);
+        let both = || touched.iter().map(|(tet, _)| tet).chain(&left);
+        for tet in both() {
+            self.complete(*tet, sheet);
+        }
         for _ in 0..SMOOTHING {
-            for (tet, _) in &touched {
+            for tet in both() {
                 self.smooth(*tet, positions);
             }
         }
-        for (tet, _) in &touched {
+        for tet in both() {
             self.cut_faces_of(*tet);
         }
-        self.room.touched = touched;
+        (self.room.touched, self.room.left) = (touched, left);
         self.split(positions);
-        self.marks.keep_places(positions);
-        Ok(&self.stroke)
     }
 
-    /// Lifts the blade: the next stroke goes on with no tetrahedron that this one left entered in part.
-    pub fn lift(&mut self) {
+    /// Lifts the blade: the next stroke goes on with no tetrahedron that this one left entered in part. What it left uncut, as [`CuttableBody::uncut`].
+    pub fn lift(&mut self) -> Option<Uncut> {
+        let uncut = self.uncut();
         self.marks.clear();
+        uncut
     }
 
     /// Cuts faces, each given by a tetrahedron and the vertex (0 to 3) opposite. Faces of the surface stay what they are.
@@ -108,6 +147,35 @@ impl CuttableBody {
         passed.faces().for_each(|face| mark.sweep(face));
         if mark.side == 0 {
             mark.side = self.beside(tet).side();
+        }
+        self.marks.set(tet, mark);
+    }
+
+    /// Takes the edges of a tetrahedron as crossed that join nodes which the blade has passed on different sides: where they lay as it passed counts, and
+    /// not where tissue has moved since.
+    fn complete(&mut self, tet: u32, sheet: &Sheet) {
+        let (beside, nodes) = (self.beside(tet), self.tets[tet as usize]);
+        let flats = self.room.nodes.flats(nodes);
+        let is_passed = nodes.map(|node| self.marks.has_passed(node));
+        let mut mark = self.marks.of(tet);
+        for (edge, [i, j]) in EDGES.into_iter().enumerate() {
+            let [from, to] = [i, j].map(|end| beside.0[end]);
+            let is_behind = || {
+                let between = Flat::between([flats[i], flats[j]], from / (from - to));
+                !sheet.is_beyond_end(between)
+            };
+            if is_passed[i] && is_passed[j] && from * to < 0.0 && is_behind() {
+                mark.cross(edge);
+                for end in [i, j] {
+                    self.marks.settle_node(nodes[end], beside.0[end]);
+                }
+            }
+        }
+        for vertex in (0..4).filter(|vertex| is_passed[*vertex] && beside.0[*vertex] == 0.0) {
+            mark.lay(vertex);
+        }
+        if !mark.is_settled() && (mark.side == 0 || !beside.is_divided()) {
+            mark.side = beside.side();
         }
         self.marks.set(tet, mark);
     }
@@ -157,25 +225,37 @@ impl CuttableBody {
         if !self.lets_through(tet) {
             return;
         }
-        let mark = self.marks.of(tet);
+        let own = self.side_of(tet);
         for vertex in 0..4 {
             let other = self.neighbours[tet as usize][vertex];
             if other == NONE {
                 continue;
             }
-            let beyond = self.marks.of(other);
-            let swept_beyond = || {
-                let towards = self.vertex_towards(other, tet);
-                towards.is_some_and(|vertex| beyond.has_swept(vertex))
-            };
-            if !(mark.has_swept(vertex) || swept_beyond()) {
+            if !self.is_swept(tet, vertex, other) {
                 continue;
             }
             let side = self.side_of(other);
-            if side != mark.side && self.lets_through(other) {
+            if side != own && self.lets_through(other) {
                 self.cut_face(tet, vertex);
+                for (beside, side) in [(tet, own), (other, side)] {
+                    let mut mark = self.marks.of(beside);
+                    mark.side = side;
+                    self.marks.set(beside, mark);
+                }
             }
         }
+    }
+
+    /// Whether the blade has come over a face between two tetrahedra, given by one of them and the vertex opposite: over its centroid, or past its nodes.
+    pub(crate) fn is_swept(&self, tet: u32, vertex: usize, other: u32) -> bool {
+        let towards = self.vertex_towards(other, tet);
+        let is_swept_beyond = towards.is_some_and(|vertex| self.marks.of(other).has_swept(vertex));
+        let mut nodes = FACES[vertex]
+            .into_iter()
+            .map(|corner| self.tets[tet as usize][corner]);
+        self.marks.of(tet).has_swept(vertex)
+            || is_swept_beyond
+            || nodes.all(|node| self.marks.has_passed(node))
     }
 
     /// Whether faces of a tetrahedron may be cut: the blade has come through it, or passes beside it.

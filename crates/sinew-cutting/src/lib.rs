@@ -1,6 +1,6 @@
 //! Cuts through bodies of tetrahedra.
 //!
-//! A blade, a segment, sweeps a [`Sheet`] from one pose to the next, in the current configuration. [`CuttableBody::stroke`] moves nodes near
+//! A blade, a segment, sweeps a [`Sheet`] from one pose to the next through tissue that may move meanwhile. [`CuttableBody::stroke`] moves nodes near
 //! it onto it, cuts the faces that are nearest to it, and splits their nodes (Nienhuys and van der Stappen, A surgery simulation
 //! supporting cuts and finite element deformation, MICCAI 2001). No tetrahedron is born, so mass stays what it is, and no stable
 //! step falls below the bound of the single tetrahedra. [`CuttableBody::remove`] takes tetrahedra away with their mass.
@@ -33,7 +33,9 @@
 //! ```
 
 mod body;
+mod course;
 mod cut;
+mod drift;
 mod error;
 mod incidence;
 mod marks;
@@ -48,8 +50,10 @@ mod sheet;
 mod snap;
 mod split;
 mod strokes;
+mod swept;
 mod tet;
 mod touch;
+mod uncut;
 mod vector;
 
 pub use body::{CuttableBody, spare_nodes};
@@ -61,3 +65,4 @@ pub use saved::SavedBodyError;
 pub use sheet::Sheet;
 pub use snap::FREQUENCY_GROWTH;
 pub use strokes::{BladeAct, BladePose, Strokes, StrokesError};
+pub use uncut::Uncut;

@@ -1,5 +1,6 @@
 //! How far a blade has come through each tetrahedron.
 
+use crate::course::Course;
 use crate::tet::EDGES;
 
 /// How far the blade has come through one tetrahedron since it was set on.
@@ -92,6 +93,15 @@ pub(crate) enum NodeSide {
 }
 
 impl NodeSide {
+    /// The side at a distance from the sheet.
+    fn at(distance: f64) -> Self {
+        match distance {
+            distance if distance < 0.0 => Self::Below,
+            distance if distance > 0.0 => Self::Above,
+            _ => Self::OnSheet,
+        }
+    }
+
     pub(crate) fn to_byte(self) -> u8 {
         match self {
             Self::Open => 0,
@@ -117,23 +127,34 @@ pub(crate) struct Marks {
     of: Vec<Mark>,
     /// Tetrahedra with a mark.
     marked: Vec<u32>,
-    /// Normal of the last sheet.
+    /// Mean normal of the last sheets, at most 1 long.
     pub(crate) normal: Option<[f64; 3]>,
+    /// Direction across the blade in which it went last.
+    pub(crate) heading: Option<[f64; 3]>,
+    pub(crate) course: Course,
     /// The side of each node.
     pub(crate) sides: Vec<NodeSide>,
+    /// The side of each node that the blade has passed, as it was then.
+    pub(crate) passed: Vec<NodeSide>,
     /// Where each node was when the last sheet came (m); empty before the first one.
     pub(crate) places: Vec<[f64; 3]>,
 }
 
 impl Marks {
     pub(crate) fn new(nodes: usize, tets: usize, spare: usize) -> Self {
-        let mut sides = Vec::with_capacity(nodes + spare);
-        sides.resize(nodes, NodeSide::default());
+        let open = || {
+            let mut open = Vec::with_capacity(nodes + spare);
+            open.resize(nodes, NodeSide::default());
+            open
+        };
         Self {
             of: vec![Mark::default(); tets],
             marked: Vec::with_capacity(tets),
             normal: None,
-            sides,
+            heading: None,
+            course: Course::default(),
+            sides: open(),
+            passed: open(),
             places: Vec::with_capacity(nodes + spare),
         }
     }
@@ -142,15 +163,39 @@ impl Marks {
         self.sides[node as usize]
     }
 
+    /// The side of a node for the stroke at hand, by an edge of it that was crossed, or else as the blade passed it.
+    pub(crate) fn known_side(&self, node: u32) -> NodeSide {
+        match self.sides[node as usize] {
+            NodeSide::Open => self.passed[node as usize],
+            side => side,
+        }
+    }
+
+    /// Whether the blade has passed a node.
+    pub(crate) fn has_passed(&self, node: u32) -> bool {
+        self.passed[node as usize] != NodeSide::Open
+    }
+
+    /// Notes that the blade passes a node at this distance from the sheet; whether it is the first time.
+    pub(crate) fn pass_node(&mut self, node: u32, distance: f64) -> bool {
+        let passed = &mut self.passed[node as usize];
+        let is_first = *passed == NodeSide::Open;
+        if is_first {
+            *passed = NodeSide::at(distance);
+        }
+        is_first
+    }
+
+    /// Forgets which nodes the blade has passed.
+    pub(crate) fn forget_passed(&mut self) {
+        self.passed.fill(NodeSide::default());
+    }
+
     /// Settles the side of a node at this distance from the sheet, unless it is.
     pub(crate) fn settle_node(&mut self, node: u32, distance: f64) {
         let side = &mut self.sides[node as usize];
         if *side == NodeSide::Open {
-            *side = match distance {
-                distance if distance < 0.0 => NodeSide::Below,
-                distance if distance > 0.0 => NodeSide::Above,
-                _ => NodeSide::OnSheet,
-            };
+            *side = NodeSide::at(distance);
         }
     }
 
@@ -168,6 +213,12 @@ impl Marks {
         self.places.extend_from_slice(places);
     }
 
+    /// Forgets where tissue was and where the blade headed, as one begins that has not come from where the last sheet ended.
+    pub(crate) fn start_anew(&mut self) {
+        self.heading = None;
+        self.places.clear();
+    }
+
     /// Notes the place (m) to which a node was moved, so that this counts as no motion.
     pub(crate) fn set_place(&mut self, node: u32, place: [f64; 3]) {
         if let Some(before) = self.places.get_mut(node as usize) {
@@ -178,6 +229,7 @@ impl Marks {
     /// A node more, which lies where another one does.
     pub(crate) fn copy_node(&mut self, node: u32) {
         self.sides.push(self.sides[node as usize]);
+        self.passed.push(self.passed[node as usize]);
         if let Some(place) = self.places.get(node as usize) {
             self.places.push(*place);
         }
@@ -198,9 +250,11 @@ impl Marks {
         for tet in self.marked.drain(..) {
             self.of[tet as usize] = Mark::default();
         }
-        self.normal = None;
+        (self.normal, self.heading) = (None, None);
+        self.course = Course::default();
         self.places.clear();
         self.sides.fill(NodeSide::default());
+        self.forget_passed();
     }
 }
 

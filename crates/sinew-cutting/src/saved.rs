@@ -1,6 +1,7 @@
 //! A cut body as bytes, from which it goes on with the same bits.
 
 use crate::body::CuttableBody;
+use crate::course::Course;
 use crate::incidence::Incidence;
 use crate::marks::{Mark, Marks, NodeSide};
 
@@ -18,12 +19,21 @@ impl CuttableBody {
         for count in counts {
             bytes.extend((count as u64).to_le_bytes());
         }
-        let normal = self.marks.normal;
-        bytes.push(u8::from(normal.is_some()));
+        let Marks {
+            normal,
+            heading,
+            course,
+            ..
+        } = self.marks;
+        bytes.extend([normal, heading].map(|direction| u8::from(direction.is_some())));
+        bytes.extend([course.blade.is_some(), course.is_rimmed, course.is_out].map(u8::from));
         let places = self.points.as_flattened().iter();
         bytes.push(u8::from(!self.marks.places.is_empty()));
         let numbers = places
             .chain(normal.as_slice().as_flattened())
+            .chain(heading.as_slice().as_flattened())
+            .chain(course.blade.as_slice().as_flattened().as_flattened())
+            .chain([&course.back])
             .chain(self.marks.places.as_flattened());
         bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
         let corners = self.tets.as_flattened().iter();
@@ -32,7 +42,8 @@ impl CuttableBody {
         bytes.extend(names.flat_map(|name| name.to_le_bytes()));
         let flags = self.is_kept.iter().chain(&self.is_removed);
         bytes.extend(flags.map(|flag| u8::from(*flag)));
-        bytes.extend(self.marks.sides.iter().map(|side| side.to_byte()));
+        let sides = self.marks.sides.iter().chain(&self.marks.passed);
+        bytes.extend(sides.map(|side| side.to_byte()));
         for tet in 0..self.tets.len() as u32 {
             bytes.extend(self.marks.of(tet).to_bytes());
         }
@@ -51,11 +62,18 @@ impl CuttableBody {
         if !is_mine || nodes < first || nodes > first + 4 * tets {
             return Err(SavedBodyError);
         }
-        let (has_normal, has_places) = (rest.flag()?, rest.flag()?);
+        let [has_normal, has_heading] = [rest.flag()?, rest.flag()?];
+        let [has_blade, is_rimmed, is_out] = [rest.flag()?, rest.flag()?, rest.flag()?];
+        let has_places = rest.flag()?;
         let points = rest.vectors(nodes)?;
-        let normal = match has_normal {
-            true => rest.vectors(1)?.first().copied(),
-            false => None,
+        let normal = rest.vectors(usize::from(has_normal))?.first().copied();
+        let heading = rest.vectors(usize::from(has_heading))?.first().copied();
+        let blade = rest.vectors(2 * usize::from(has_blade))?;
+        let course = Course {
+            blade: blade.first_chunk().copied(),
+            is_rimmed,
+            is_out,
+            back: f64::from_le_bytes(rest.take()?),
         };
         let places = rest.vectors(if has_places { nodes } else { 0 })?;
         let origins = rest.names(nodes)?;
@@ -65,7 +83,7 @@ impl CuttableBody {
         let is_removed = rest.flags(tets)?;
         let spare = self.points.capacity().saturating_sub(nodes);
         let mut marks = Marks::new(nodes, tets, spare);
-        for side in &mut marks.sides {
+        for side in marks.sides.iter_mut().chain(&mut marks.passed) {
             let [byte] = rest.take()?;
             *side = NodeSide::from_byte(byte);
         }
@@ -76,7 +94,7 @@ impl CuttableBody {
                 marks.set(tet, mark);
             }
         }
-        marks.normal = normal;
+        (marks.normal, marks.heading, marks.course) = (normal, heading, course);
         let within =
             |names: &[u32], limit: usize| names.iter().all(|name| (*name as usize) < limit);
         let is_neighbour = |name: &u32| *name == crate::body::NONE || (*name as usize) < tets;
@@ -215,7 +233,7 @@ mod tests {
         longer.push(0);
         let mut wrong = bytes.clone();
         // A corner beyond all nodes.
-        let corner = 26 + 24 * cut.nodes() + 24 + 24 * cut.nodes() + 4 * cut.nodes();
+        let corner = 30 + 24 * cut.nodes() + (2 + 2) * 24 + 8 + 24 * cut.nodes() + 4 * cut.nodes();
         wrong[corner..corner + 4].copy_from_slice(&u32::MAX.to_le_bytes());
         let mut huge = bytes.clone();
         huge[..8].copy_from_slice(&u64::MAX.to_le_bytes());

@@ -5,7 +5,7 @@
 pub(crate) struct Flat {
     /// Its place in the plane, from the sheet's centre.
     pub(crate) place: [f64; 2],
-    /// How far it has moved there since the blade was where the sheet begins.
+    /// How much farther than the sheet's beginning it has moved there since the blade was at that.
     pub(crate) shift: [f64; 2],
 }
 
@@ -65,6 +65,11 @@ impl SeenNodes {
 
     pub(crate) fn flats(&self, nodes: [u32; 4]) -> [Flat; 4] {
         nodes.map(|node| self.flats[node as usize])
+    }
+
+    /// The distance of a node from the plane, and its place in it.
+    pub(crate) fn of(&self, node: u32) -> (f64, Flat) {
+        (self.distances[node as usize], self.flats[node as usize])
     }
 
     /// Whether a node is seen for the first time in a look.

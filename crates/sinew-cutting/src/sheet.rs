@@ -1,7 +1,8 @@
 //! The surface that a blade sweeps.
 
+use crate::drift::Drift;
 use crate::seen::Flat;
-use crate::vector::{Vector, add, cross, dot, length, mean, scaled, sub};
+use crate::vector::{Vector, add, bounds_of, cross, dot, length, mean, scaled, sub};
 
 /// Share of its size by which the rim of a sheet reaches out, so that nothing is lost between two that follow each other.
 const RIM: f64 = 1e-9;
@@ -22,6 +23,8 @@ pub struct Sheet {
     /// The box around them, rim included.
     flat_bounds: [[f64; 2]; 2],
     size: f64,
+    /// How the tissue moved with which the beginning went.
+    drift: Drift,
 }
 
 impl Sheet {
@@ -60,7 +63,39 @@ impl Sheet {
             corners_flat: flat,
             flat_bounds,
             size,
+            drift: Drift::default(),
         })
+    }
+
+    /// The same sheet, whose beginning went with tissue.
+    pub(crate) fn with_drift(self, drift: Drift) -> Self {
+        Self { drift, ..self }
+    }
+
+    /// The way that tissue has gone, beside the blade at a place before it.
+    pub(crate) fn drift_at(&self, before: Vector) -> Vector {
+        self.drift.at(before)
+    }
+
+    /// The two poses of the blade, each given by its two ends (m).
+    #[must_use]
+    pub fn poses(&self) -> [[[f64; 3]; 2]; 2] {
+        let [a, b, c, d] = self.corners;
+        [[a, b], [d, c]]
+    }
+
+    /// The unit direction across the blade in which it goes.
+    pub(crate) fn heading(&self) -> Vector {
+        let [a, b, c, d] = self.corners;
+        let (blade, way) = (sub(b, a), sub(add(c, d), add(a, b)));
+        let across = sub(way, scaled(blade, dot(way, blade) / dot(blade, blade)));
+        scaled(across, 1.0 / length(across))
+    }
+
+    /// How far an end of the blade goes, at most.
+    pub(crate) fn way(&self) -> f64 {
+        let [a, b, c, d] = self.corners;
+        length(sub(d, a)).max(length(sub(c, b)))
     }
 
     /// The unit normal of the mean plane: blade times motion.
@@ -86,9 +121,10 @@ impl Sheet {
     /// A point of tissue in the sheet's plane, which has moved so far since the blade was where the sheet begins.
     pub(crate) fn flat(&self, point: Vector, moved: Vector) -> Flat {
         let flat = |vector: Vector| self.axes.map(|axis| dot(axis, vector));
+        let drift = self.drift.at(sub(point, moved));
         Flat {
             place: flat(sub(point, self.centre)),
-            shift: flat(moved),
+            shift: flat(sub(moved, drift)),
         }
     }
 
@@ -126,8 +162,7 @@ impl Sheet {
     }
 
     /// Whether a point of the plane is ahead of where the blade is in the end.
-    pub(crate) fn is_beyond_end(&self, point: Vector) -> bool {
-        let Flat { place, .. } = self.flat(point, [0.0; 3]);
+    pub(crate) fn is_beyond_end(&self, Flat { place, .. }: Flat) -> bool {
         let [a, b, c, d] = self.corners_flat;
         let side = |from: [f64; 2], to: [f64; 2]| {
             let way = [c[0] - d[0], c[1] - d[1]];
@@ -154,14 +189,7 @@ impl Sheet {
 
     /// The least and greatest coordinates of the sheet.
     pub(crate) fn bounds(&self) -> [Vector; 2] {
-        let extreme = |choose: fn(f64, f64) -> f64| {
-            std::array::from_fn(|axis| {
-                let of_corner = |corner: &Vector| corner[axis];
-                let first = self.corners[0][axis];
-                self.corners.iter().map(of_corner).fold(first, choose)
-            })
-        };
-        [extreme(f64::min), extreme(f64::max)]
+        bounds_of(self.corners)
     }
 }
 
@@ -230,7 +258,7 @@ mod tests {
                 assert!(!passes(-scale, 0.1 * scale), "{scale}");
                 assert!(!passes(-0.1 * scale, scale), "{scale}");
             }
-            let ahead = |x: f64, y: f64| sheet.is_beyond_end([x, y, 0.0]);
+            let ahead = |x: f64, y: f64| sheet.is_beyond_end(sheet.flat([x, y, 0.0], [0.0; 3]));
             let [_, [x, y, _]] = after;
             assert!(ahead(0.5 * x - 0.01, 0.5 * y) && !ahead(0.5 * x + 0.01, 0.5 * y));
             assert!(ahead(0.01 - 0.4 * x, -0.4 * y) && !ahead(-0.4 * x - 0.01, -0.4 * y));

@@ -103,8 +103,11 @@ impl CuttableBody {
             self.marks.set_place(node, now);
             self.marks.settle_node(node, 0.0);
             self.see_node(node, sheet, now);
-            if !sheet.is_beyond_end(now) {
+            if !sheet.is_beyond_end(sheet.flat(now, [0.0; 3])) {
                 // The blade is past it: no later sheet would find it.
+                if self.marks.pass_node(node, 0.0) {
+                    self.room.passed.push(node);
+                }
                 for tet in self.incidence.of(node) {
                     let corners = self.tets[*tet as usize];
                     if let Some(vertex) = corners.iter().position(|corner| *corner == node) {

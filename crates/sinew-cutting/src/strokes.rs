@@ -2,8 +2,6 @@
 
 use std::collections::HashSet;
 
-use crate::sheet::Sheet;
-
 /// Largest coordinate of a blade's end (m).
 const FARTHEST: f64 = 1e6;
 
@@ -99,15 +97,11 @@ pub struct Strokes(Vec<BladePose>);
 
 /// What a blade does within a time.
 #[derive(Clone, Copy, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "each is used as it comes, and none is kept"
-)]
 pub enum BladeAct {
     /// It is lifted, or set on anew.
     Lift,
-    /// It sweeps a sheet.
-    Sweep(Sheet),
+    /// It goes from one pose to another, each given by both ends (m), or rests.
+    Sweep([[[f64; 3]; 2]; 2]),
 }
 
 impl Strokes {
@@ -153,8 +147,8 @@ impl Strokes {
         Ok(Self(poses))
     }
 
-    /// What the blade does after `from` and up to `to` (s), in order: a sheet for each straight line of which a part falls into that time, and a lift where
-    /// a stroke ends from `from` on. Cut at any instants, a time has the same sheets and lifts put together.
+    /// What the blade does after `from` and up to `to` (s), in order: a sweep for each straight line of which a part falls into that time, and a lift where
+    /// a stroke ends from `from` on. Cut at any instants, a time has the same sweeps and lifts put together.
     pub fn between(&self, from: f64, to: f64) -> impl Iterator<Item = BladeAct> {
         let first = self
             .0
@@ -185,8 +179,7 @@ impl Strokes {
                 ends
             };
             let (begin, finish) = (start.t.max(from), end.t.min(to));
-            let sheet = (begin < finish).then(|| Sheet::swept(at(begin), at(finish)));
-            Some(BladeAct::Sweep(sheet.flatten()?))
+            (begin < finish).then(|| BladeAct::Sweep([at(begin), at(finish)]))
         })
     }
 
@@ -228,20 +221,17 @@ mod tests {
         ]
     }
 
-    /// Where sheets begin and end along x.
+    /// Where sweeps begin and end along x.
     fn swept(strokes: &Strokes, from: f64, to: f64) -> Vec<Option<[f64; 2]>> {
         let act = |act| match act {
             BladeAct::Lift => None,
-            BladeAct::Sweep(sheet) => {
-                let [low, high] = sheet.bounds();
-                Some([low[0], high[0]])
-            }
+            BladeAct::Sweep([before, after]) => Some([before[0][0], after[0][0]]),
         };
         strokes.between(from, to).map(act).collect()
     }
 
     #[test]
-    fn a_time_has_the_sheets_of_the_lines_in_it_and_a_lift_where_the_stroke_changes() {
+    fn a_time_has_the_sweeps_of_the_lines_in_it_and_a_lift_where_the_stroke_changes() {
         let strokes = Strokes::new(table()).unwrap();
         let all = swept(&strokes, 0.0, 1.0);
         assert_eq!(
@@ -265,16 +255,16 @@ mod tests {
     }
 
     #[test]
-    fn sheets_of_steps_follow_each_other_without_a_gap() {
+    fn sweeps_of_steps_follow_each_other_without_a_gap() {
         let strokes = Strokes::new(table()).unwrap();
         let steps = (0..100).map(|n| 0.007 * f64::from(n));
-        let sheets = steps.flat_map(|t| swept(&strokes, t, t + 0.007));
+        let sweeps = steps.flat_map(|t| swept(&strokes, t, t + 0.007));
         let mut last: Option<f64> = None;
-        for sheet in sheets {
-            if let (Some([low, _]), Some(last)) = (sheet, last) {
+        for sweep in sweeps {
+            if let (Some([low, _]), Some(last)) = (sweep, last) {
                 assert!((low - last).abs() < 1e-12, "{low} {last}");
             }
-            last = sheet.map(|[_, high]| high);
+            last = sweep.map(|[_, high]| high);
         }
     }
 

@@ -6,10 +6,13 @@ use crate::passed::Passed;
 use crate::seen::Flat;
 use crate::sheet::Sheet;
 use crate::tet::{EDGES, FACES};
-use crate::vector::Vector;
+use crate::vector::{Vector, dot, sub};
 
 /// Share of its shortest edge within which a node lies on a sheet.
 const ON_SHEET: f64 = 1e-6;
+
+/// Share of the longest edge within which a node is at the blade's edge.
+const AT_EDGE: f64 = 0.02;
 
 /// Distances of a tetrahedron's vertices from a sheet's plane; 0 for those that lie on it.
 #[derive(Clone, Copy)]
@@ -48,6 +51,7 @@ impl CuttableBody {
         for node in self.tets[tet as usize] {
             if self.room.nodes.is_new(node, self.room.look) {
                 self.see_node(node, sheet, positions[node as usize]);
+                self.pass(node, sheet, positions[node as usize]);
             }
         }
     }
@@ -56,7 +60,7 @@ impl CuttableBody {
     pub(crate) fn see_node(&mut self, node: u32, sheet: &Sheet, place: Vector) {
         let distance = sheet.distance(place);
         let least = ON_SHEET * self.edge_at(node);
-        let distance = match self.marks.side_of_node(node) {
+        let distance = match self.marks.known_side(node) {
             NodeSide::OnSheet => 0.0,
             NodeSide::Open if distance.abs() <= least => 0.0,
             NodeSide::Open => distance,
@@ -65,6 +69,35 @@ impl CuttableBody {
         };
         let flat = sheet.flat(place, self.marks.moved(node, place));
         self.room.nodes.set(node, distance, flat);
+    }
+
+    /// Notes a node that this look has seen and is here now, where the blade passes it for the first time.
+    fn pass(&mut self, node: u32, sheet: &Sheet, place: Vector) {
+        let (distance, flat) = self.room.nodes.of(node);
+        if self.marks.has_passed(node) {
+            return;
+        }
+        if sheet.passes(flat) || self.is_passed_by_turn(node, sheet, place) {
+            self.marks.pass_node(node, distance);
+            self.room.passed.push(node);
+        }
+    }
+
+    /// Whether a node that lay ahead of the blade lies behind it since its way has turned, as those on the outer side do.
+    fn is_passed_by_turn(&self, node: u32, sheet: &Sheet, place: Vector) -> bool {
+        let Some(last) = self.marks.heading else {
+            return false;
+        };
+        let (now, [[first, end], _]) = (sheet.heading(), sheet.poses());
+        // Seen from the node, which has moved, the blade began here.
+        let before = sub(place, self.marks.moved(node, place));
+        let from = sub(before, sub(first, sheet.drift_at(before)));
+        let blade = sub(end, first);
+        let share = dot(from, blade) / dot(blade, blade);
+        let is_beside = (0.0..=1.0).contains(&share);
+        // Sheets of different planes do not meet to the last digit.
+        let room = AT_EDGE * self.longest_edge;
+        is_beside && dot(last, now) > 0.0 && dot(last, from) > -room && dot(now, from) < room
     }
 
     /// What a sheet passes of a tetrahedron whose nodes this look has seen.
@@ -132,6 +165,11 @@ impl CuttableBody {
                 self.room.see(*tet);
             }
         }
+        let is_out = self.room.queue.is_empty();
+        if std::mem::replace(&mut self.marks.course.is_out, is_out) && !is_out {
+            // The blade comes in again, and to the sides of it is other tissue.
+            self.marks.forget_passed();
+        }
         while let Some(tet) = self.room.queue.pop() {
             self.see_nodes(tet, sheet, positions);
             let passed = self.passed(tet, sheet);
@@ -146,6 +184,47 @@ impl CuttableBody {
             }
         }
         self.room.touched.sort_unstable_by_key(|(tet, _)| *tet);
+    }
+
+    /// Finds the tetrahedra, increasing, that this look has not touched, one of whose nodes the blade has passed in it, and at which something may be left
+    /// to be cut, into `room.left`.
+    pub(crate) fn find_left(
+        &mut self,
+        touched: &[(u32, Passed)],
+        sheet: &Sheet,
+        positions: &[Vector],
+    ) {
+        let mut left = std::mem::take(&mut self.room.left);
+        left.clear();
+        // To see further nodes may add to those that were passed.
+        let mut place = 0;
+        while let Some(node) = self.room.passed.get(place).copied() {
+            place += 1;
+            for at_node in 0..self.incidence.of(node).len() {
+                let tet = self.incidence.of(node)[at_node];
+                let listed_in = &mut self.room.listed_in[tet as usize];
+                if std::mem::replace(listed_in, self.room.look) == self.room.look {
+                    continue;
+                }
+                self.see_nodes(tet, sheet, positions);
+                let neighbours = self.neighbours[tet as usize];
+                let neighbours = neighbours.into_iter().filter(|other| *other != NONE);
+                let is_entered = |other: u32| self.marks.of(other).is_entered();
+                if self.beside(tet).is_at_plane() || neighbours.clone().any(is_entered) {
+                    for other in neighbours {
+                        self.see_nodes(other, sheet, positions);
+                    }
+                    left.push(tet);
+                }
+            }
+        }
+        let is_touched = |tet: &u32| {
+            let at = touched.binary_search_by_key(tet, |(touched, _)| *touched);
+            at.is_ok()
+        };
+        left.retain(|tet| !is_touched(tet));
+        left.sort_unstable();
+        self.room.left = left;
     }
 
     /// Sees again what the sheet passes of the tetrahedra that it touched, some of whose nodes were moved.

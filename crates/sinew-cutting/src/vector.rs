@@ -34,3 +34,17 @@ pub(crate) fn length(a: Vector) -> f64 {
 pub(crate) fn mean<const N: usize>(points: [Vector; N]) -> Vector {
     scaled(points.into_iter().fold([0.0; 3], add), 1.0 / N as f64)
 }
+
+/// The least and the greatest coordinates of some points.
+pub(crate) fn bounds_of<const N: usize>(points: [Vector; N]) -> [Vector; 2] {
+    let extreme = |from: f64, choose: fn(f64, f64) -> f64| {
+        std::array::from_fn(|axis| {
+            let along = points.iter().map(|point| point[axis]);
+            along.fold(from, choose)
+        })
+    };
+    [
+        extreme(f64::INFINITY, f64::min),
+        extreme(f64::NEG_INFINITY, f64::max),
+    ]
+}

@@ -6,13 +6,14 @@ use std::sync::Arc;
 use sinew_core::{Energy, Inputs, LinearSystem, LoadTime, State, System};
 use sinew_cutting::{
     CutError, CuttableBody, FREQUENCY_GROWTH, Removal, SavedBodyError, Sheet, Stroke,
-    TetProperties, spare_nodes,
+    TetProperties, Uncut, spare_nodes,
 };
 use sinew_mesh::{CutMesh, MovedNode, TetMesh};
 
 use crate::error::{Cause, FemError};
 use crate::in_place::InPlace;
 use crate::model::{CutStateError, FieldError, NodesCarried, TetFrequencies};
+use crate::motion::Field;
 use crate::{Fixed, Model, On, Problem};
 
 /// No 4-node tetrahedron has a larger factor between its matrix and its blocks.
@@ -269,15 +270,29 @@ impl CutModel {
         state: &mut State,
         inputs: &Inputs,
     ) -> Result<CutReport, CutModelError> {
+        self.follow(sheet.poses(), state, inputs)
+    }
+
+    /// Cuts what a blade passes from one pose to the next, each given by its two ends (m), as [`CutModel::stroke`] does by a sheet. A blade that rests
+    /// cuts the tissue that has come through it since the last time.
+    ///
+    /// # Errors
+    /// Same as [`CutModel::stroke`].
+    pub fn follow(
+        &mut self,
+        poses: [[[f64; 3]; 2]; 2],
+        state: &mut State,
+        inputs: &Inputs,
+    ) -> Result<CutReport, CutModelError> {
         self.find_positions(state, inputs)?;
         let nodes = self.body.nodes();
-        self.body.stroke(sheet, &mut self.positions, self.snap)?;
+        self.body.follow(poses, &mut self.positions, self.snap)?;
         self.split(nodes, state, inputs)
     }
 
-    /// Lifts the blade: the next stroke goes on with no tetrahedron that this one left entered in part.
-    pub fn lift(&mut self) {
-        self.body.lift();
+    /// Lifts the blade: the next stroke goes on with no tetrahedron that this one left entered in part. What it left uncut of a body that it came through.
+    pub fn lift(&mut self) -> Option<Uncut> {
+        self.body.lift()
     }
 
     /// Cuts faces, each given by a tetrahedron of the uncut mesh and the vertex (0 to 3) opposite.
@@ -367,7 +382,9 @@ impl CutModel {
         when: LoadTime<'_>,
         state: &State,
     ) -> Result<CutReport, CutModelError> {
-        let displacement = self.model.at_nodes(when, 0, Some(&state.u))?;
+        let displacement = self
+            .model
+            .at_nodes(when, Field::Displacement, Some(&state.u))?;
         let mut report = CutReport::default();
         for (tet, nodes) in self.mesh.tets.iter().zip(&self.mesh.mesh.tets) {
             if tets[*tet as usize] {
@@ -558,9 +575,10 @@ impl CutModel {
         };
         let model = self.model_on(&mesh)?;
         let after = model.state_after_cut(&self.model, state, inputs, carried)?;
+        let when = LoadTime::at(state.t()).under(inputs);
         let energies = (
-            self.model.energy(&state.u, &state.v),
-            model.energy(&after.u, &after.v),
+            self.model.energy_with_supports(when, &state.u, &state.v)?,
+            model.energy_with_supports(when, &after.u, &after.v)?,
         );
         if let (Some(before), Some(after)) = energies {
             report.energy_gained = Some(gained(before, after));

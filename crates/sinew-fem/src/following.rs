@@ -1,6 +1,6 @@
 //! Pressure that follows a surface as it deforms.
 
-use sinew_core::{BlockMatrix, ElementStiffness, LoadTime, Ramp};
+use sinew_core::{BlockMatrix, ElementStiffness, EvaluationError, LoadTime, Ramp};
 use sinew_mesh::TetMesh;
 
 use crate::cells::Cells;
@@ -108,16 +108,19 @@ impl FollowingPressure {
     ///
     /// With `w_a = x_b - x_c` and so on around, `df_i/dx_j = p/6 [w_j]_x` at each corner i. What is not symmetric cancels along edges
     /// between two triangles; it remains at free edges of the loaded surface only (Bufler, ZAMP 35, 1984).
+    ///
+    /// # Errors
+    /// [`EvaluationError`] if the matrix has no block for two corners.
     pub(crate) fn add_stiffness(
         &self,
         factor: f64,
         cells: &Cells,
         displacement: impl Fn(u32) -> [f64; 3],
         out: &mut BlockMatrix,
-    ) {
+    ) -> Result<(), EvaluationError> {
         let share = factor * self.pressure / -12.0;
         if share == 0.0 {
-            return;
+            return Ok(());
         }
         let mut moving = ElementStiffness::default();
         for triangle in &self.triangles {
@@ -134,9 +137,9 @@ impl FollowingPressure {
                 }
             }
             moving_part(&whole, &triangle.nodes, cells, &mut moving);
-            let added = out.add_element(&moving.cells, &moving.matrix);
-            debug_assert!(added.is_ok(), "corners of a tetrahedron are neighbours");
+            out.add_element(&moving.cells, &moving.matrix)?;
         }
+        Ok(())
     }
 
     /// Calls `add` with nodes and a part of the derivative of `-factor` times the forces, times a change of the displacement (N).

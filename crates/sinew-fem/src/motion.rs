@@ -25,20 +25,34 @@ pub(crate) struct MovedPart {
     /// Nodes (0-based), increasing.
     pub(crate) nodes: Vec<u32>,
     pub(crate) courses: Vec<Course>,
+    /// The rate of each course's ramp.
+    rates: Vec<Ramp>,
 }
 
-/// Displacement (m), velocity (m/s) and acceleration (m/s^2).
-type Motion = [[f64; 3]; 3];
+/// Which derivative of a motion is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Field {
+    /// Displacement (m).
+    Displacement,
+    /// Velocity (m/s).
+    Velocity,
+    /// Acceleration (m/s^2).
+    Acceleration,
+}
 
 /// Parts whose motions need no memory of their own: a frame that looks at them allocates nothing.
 const FEW: usize = 8;
 
-/// The motions of all parts at an instant: of the first few, and of the others.
-pub(crate) struct MotionsAt([Motion; FEW], Vec<Motion>);
+/// A field of all parts at an instant: of the first few, and of the others.
+pub(crate) struct MotionsAt {
+    few: [[f64; 3]; FEW],
+    others: Vec<[f64; 3]>,
+    field: Field,
+}
 
 impl MotionsAt {
-    fn of(&self, part: u32) -> Option<&Motion> {
-        let (part, Self(few, others)) = (part as usize, self);
+    fn of(&self, part: u32) -> Option<&[f64; 3]> {
+        let (part, Self { few, others, .. }) = (part as usize, self);
         few.get(part).or_else(|| others.get(part - FEW))
     }
 }
@@ -72,6 +86,7 @@ impl Motions {
             parts.push(MovedPart {
                 nodes,
                 courses: courses.clone(),
+                rates: courses.iter().map(|course| course.ramp.rate()).collect(),
             });
         }
         let nodes = (0..).zip(by).filter(|(_, by)| *by != [None; 3]);
@@ -137,11 +152,15 @@ impl Motions {
         Some(by[axis]? as usize)
     }
 
-    /// The motions of all parts at an instant. Allocates nothing for a few parts.
-    pub(crate) fn at(&self, when: LoadTime<'_>) -> MotionsAt {
-        let mut parts = self.parts.iter().map(|part| part.at(when));
-        let few = std::array::from_fn(|_| parts.next().unwrap_or_default());
-        MotionsAt(few, parts.collect())
+    /// A field of all parts, as a step takes it: displacements at the instant, velocities as those of loads that they make, and accelerations
+    /// with the kinks inside the window. Allocates nothing for a few parts.
+    pub(crate) fn at(&self, when: LoadTime<'_>, field: Field) -> MotionsAt {
+        let mut parts = self.parts.iter().map(|part| part.at(when, field));
+        MotionsAt {
+            few: std::array::from_fn(|_| parts.next().unwrap_or_default()),
+            others: parts.collect(),
+            field,
+        }
     }
 
     /// The ramps of all courses.
@@ -150,15 +169,14 @@ impl Motions {
         courses.map(|course| &course.ramp)
     }
 
-    /// A field (number `order` of displacement, velocity and acceleration) at a node; 0 in components that are
-    /// not moved.
-    pub(crate) fn field(&self, at: &MotionsAt, order: usize, node: u32) -> [f64; 3] {
+    /// The field at a node; 0 in components that are not moved.
+    pub(crate) fn at_node(&self, at: &MotionsAt, node: u32) -> [f64; 3] {
         if self.nodes.is_empty() && self.frozen.is_empty() {
             return [0.0; 3];
         }
         match self.nodes.binary_search_by_key(&node, |(node, _)| *node) {
             Err(_) => match self.frozen(node) {
-                Some(courses) if order == 0 => {
+                Some(courses) if at.field == Field::Displacement => {
                     std::array::from_fn(|axis| courses[axis].displacement[axis])
                 }
                 _ => [0.0; 3],
@@ -166,23 +184,24 @@ impl Motions {
             Ok(found) => std::array::from_fn(|axis| {
                 let part = self.nodes[found].1[axis];
                 let motion = part.and_then(|part| at.of(part));
-                motion.map_or(0.0, |motion| motion[order][axis])
+                motion.map_or(0.0, |motion| motion[axis])
             }),
         }
     }
 }
 
 impl MovedPart {
-    fn at(&self, when: LoadTime<'_>) -> Motion {
-        let mut sums = [[0.0; 3]; 3];
-        for Course { displacement, ramp } in &self.courses {
-            let mut derivatives = [0.0; 3];
+    fn at(&self, when: LoadTime<'_>, field: Field) -> [f64; 3] {
+        let mut sums = [0.0; 3];
+        for (Course { displacement, ramp }, rate) in self.courses.iter().zip(&self.rates) {
             let known = ramp.known(when.inputs());
-            known.derivatives_after(when.t(), &mut derivatives);
-            for (sum, derivative) in sums.iter_mut().zip(derivatives) {
-                for (sum, displacement) in sum.iter_mut().zip(displacement) {
-                    *sum += displacement * derivative;
-                }
+            let factor = match field {
+                Field::Displacement => known.place(when),
+                Field::Velocity => rate.factor(when),
+                Field::Acceleration => known.bend(when),
+            };
+            for (sum, displacement) in sums.iter_mut().zip(displacement) {
+                *sum += displacement * factor;
             }
         }
         sums

@@ -92,6 +92,10 @@ impl<E: Explicit> Scheme for E {
         }))
     }
 
+    fn stable_step_of(&self, spectrum: &Spectrum) -> StableStep {
+        E::stable_step(self, spectrum)
+    }
+
     fn set_up(
         &mut self,
         system: &dyn System,

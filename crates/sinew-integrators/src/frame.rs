@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use sinew_cnn::{Machine, Program};
+use sinew_core::spectrum::Spectrum;
 use sinew_core::{
     Batch, Fact, Guarding, Integrator, LoadOverStep, Prepared, Properties, SetupError, StableStep,
     State, StepError, StepReport, System, VelocityTime,
@@ -86,6 +87,10 @@ impl<M: Scheme> Stepper for Frame<M> {
 
     fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
         self.scheme.numerical_dissipation()
+    }
+
+    fn stable_step_of(&self, spectrum: &Spectrum) -> StableStep {
+        self.scheme.stable_step_of(spectrum)
     }
 
     fn computed_by(&self) -> Vec<String> {

@@ -5,6 +5,7 @@ use sinew_core::{LinearOperators, Ramp};
 /// Loads with one ramp, added up.
 #[derive(Clone, Debug)]
 pub(crate) struct LoadCase {
+    /// The factor over time, however steps take it.
     pub(crate) ramp: Ramp,
     /// The force (N) on each degree of freedom.
     pub(crate) force: Vec<f64>,
@@ -15,10 +16,12 @@ impl LoadCase {
     pub(crate) fn of(operators: &LinearOperators) -> Vec<Self> {
         let mut cases: Vec<Self> = Vec::new();
         for load in operators.loads() {
-            let at = cases.iter().position(|case| case.ramp == load.ramp);
+            let at = cases
+                .iter()
+                .position(|case| &case.ramp == load.ramp.course());
             let at = at.unwrap_or_else(|| {
                 cases.push(Self {
-                    ramp: load.ramp.clone(),
+                    ramp: load.ramp.course().clone(),
                     force: vec![0.0; operators.dofs()],
                 });
                 cases.len() - 1
@@ -37,10 +40,17 @@ impl LoadCase {
             Ramp::Table { values, .. } | Ramp::Hold { values, .. } => {
                 values.iter().fold(0.0, |peak, x| x.abs().max(peak))
             }
-            Ramp::Step | Ramp::Sin2 { .. } | Ramp::Pulse { .. } => 1.0,
+            Ramp::Step | Ramp::Sin2 { .. } | Ramp::Sine { .. } | Ramp::Pulse { .. } => 1.0,
+            Ramp::Rate(of) if matches!(**of, Ramp::Sine { .. }) => {
+                of.angular_frequency().unwrap_or(1.0)
+            }
             // Half of what it rises and falls by.
             Ramp::Rate(_) => 0.5 * self.ramp.variation(),
-            Ramp::Linear | Ramp::Input(_) | Ramp::InputRate(_) | Ramp::Scaled(..) => 1.0,
+            Ramp::Linear
+            | Ramp::Input(_)
+            | Ramp::InputRate(_)
+            | Ramp::Scaled(..)
+            | Ramp::Position(_) => 1.0,
         }
     }
 }

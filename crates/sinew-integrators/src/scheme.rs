@@ -3,6 +3,7 @@
 use std::convert::Infallible;
 
 use sinew_cnn::Program;
+use sinew_core::spectrum::Spectrum;
 use sinew_core::{
     Fact, LinearSystem, Needs, Properties, SetupError, StableStep, State, Step, StepError,
     StepReport, Stepped, System,
@@ -70,6 +71,11 @@ pub trait Scheme: Send + Sized + 'static {
         _about: Option<&State>,
     ) -> Result<StableStep, SetupError> {
         Ok(StableStep::Any)
+    }
+
+    /// The largest stable step where these are the fastest motions.
+    fn stable_step_of(&self, _spectrum: &Spectrum) -> StableStep {
+        StableStep::Unknown
     }
 
     /// Makes its steps of `dt` (s) on a system. The step and the masses are sound, and the system

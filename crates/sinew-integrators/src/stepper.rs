@@ -1,7 +1,8 @@
 //! Integrators that may have a program.
 
 use sinew_cnn::Program;
-use sinew_core::Integrator;
+use sinew_core::spectrum::Spectrum;
+use sinew_core::{Integrator, StableStep};
 
 use crate::numerical_dissipation::NumericalDissipation;
 
@@ -16,6 +17,17 @@ pub trait Stepper: Integrator {
     /// The energy that it takes by itself from a linear system, where there is a closed form.
     fn numerical_dissipation(&self) -> Option<NumericalDissipation> {
         None
+    }
+
+    /// The largest step at which it is stable where these are the fastest motions.
+    fn stable_step_of(&self, _spectrum: &Spectrum) -> StableStep {
+        StableStep::Unknown
+    }
+
+    /// Cuts the parts into which it cuts steps by itself into so many each from now on; false where steps are as long as its caller asks for, or cut into a number of parts that was given. Who
+    /// compares a run with one of shorter steps needs it: half of a step that is cut in two is the same two parts.
+    fn refine(&mut self, _times: u32) -> bool {
+        false
     }
 
     /// What computes its steps, and what that costs in error, one sentence each; empty before set-up and

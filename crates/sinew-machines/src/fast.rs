@@ -511,10 +511,9 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
             } else if !batch.watched().is_empty() {
                 write(self.loaded).show_watched(self.layout, batch.watched(), state);
             }
-            if exceeded {
-                batch.end_step(state, stepped);
-            } else {
-                batch.end_step_within_limit(state, stepped);
+            match exceeded {
+                true => batch.end_step(state, stepped)?,
+                false => batch.end_step_within_limit(state, stepped)?,
             }
         }
         if !written {

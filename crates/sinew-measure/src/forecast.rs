@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use sinew_core::{Integrator, Run, SetupError, SimulateError, simulate};
+use sinew_core::{Integrator, Run, SetupError, SimulateError, StepReport, simulate};
 use sinew_scene::Simulation;
 
 use crate::cpu_time::process_cpu_time;
@@ -14,9 +14,9 @@ pub struct Forecast {
     pub dt: f64,
     /// Number of steps of the run.
     pub steps: usize,
-    /// Sweeps of a step.
+    /// Sweeps of a step, the mean over the run.
     pub sweeps_per_step: f64,
-    /// Solutions of a linear system of a step.
+    /// Solutions of a linear system of a step, the mean over the run.
     pub solves_per_step: f64,
     /// Time (s) that set-up took by the clock on the wall; next to none where the integrator was set up already.
     pub setup_s: f64,
@@ -38,14 +38,23 @@ pub enum ForecastError {
     Run(#[from] SimulateError),
 }
 
-/// Steps that are not timed, since they find caches empty.
+/// Steps that stand for themselves alone: they find caches empty, and some methods look at the body before the first of them.
 const COLD: usize = 2;
 
-/// Time (s) after which the steps taken are enough.
-const ENOUGH: f64 = 0.03;
+/// Steps from which the others are told: as many as methods take from one look at the stiffness to the next, and more.
+const ENOUGH: usize = 40;
+
+/// Time (s) that they take at least, where steps are short.
+const LEAST: f64 = 0.03;
+
+/// The same for force laws, of which steps take more work as the motion goes on.
+const LEAST_OF_LAWS: f64 = 0.25;
+
+/// Time (s) by which they end where steps are long.
+const MOST: f64 = 0.5;
 
 impl Forecast {
-    /// Sets an integrator up and takes some of the scene's first steps with it, some hundredths of a second of them.
+    /// Sets an integrator up and takes some of the scene's first steps with it, for some hundredths of a second or, where steps are long, up to half a second and a step.
     ///
     /// # Errors
     /// [`ForecastError`].
@@ -57,34 +66,53 @@ impl Forecast {
         let begun = Instant::now();
         integrator.prepare(system, run.dt)?;
         let setup_s = begun.elapsed().as_secs_f64();
+        let mut state = simulation.initial_state().clone();
         let mut take = |steps: usize| {
-            let mut state = simulation.initial_state().clone();
             let part = Run { steps, ..run };
-            simulate(system, integrator, &mut state, &part, &mut ())
-        };
-        take(COLD.min(run.steps))?;
-        let mut steps = COLD;
-        let (report, wall, cpu) = loop {
-            steps = steps.min(run.steps.max(1));
             let (begun, before) = (Instant::now(), process_cpu_time());
-            let report = take(steps)?;
-            let wall = begun.elapsed().as_secs_f64();
-            let cpu = (process_cpu_time() - before).as_secs_f64();
-            // A run that diverges ends early.
-            if wall >= ENOUGH || report.steps < steps || steps >= run.steps {
-                break (report, wall, cpu);
-            }
-            steps *= 4;
+            let report = simulate(system, integrator, &mut state, &part, &mut ())?;
+            Ok::<Taken, SimulateError>(Taken {
+                steps: report.steps,
+                work: report.work,
+                wall: begun.elapsed().as_secs_f64(),
+                cpu: (process_cpu_time() - before).as_secs_f64(),
+            })
         };
-        let taken = report.steps.max(1) as f64;
+        let cold = take(COLD.min(run.steps))?;
+        let (mut warm, mut next) = (Taken::default(), COLD);
+        let least = match system.as_linear() {
+            Some(_) => LEAST,
+            None => LEAST_OF_LAWS,
+        };
+        loop {
+            let left = run.steps - cold.steps - warm.steps;
+            let steps = next.min(left);
+            if steps == 0 || warm.wall >= MOST || (warm.steps >= ENOUGH && warm.wall >= least) {
+                break;
+            }
+            let taken = take(steps)?;
+            warm.add(&taken);
+            // A run that diverges ends early.
+            if taken.steps < steps {
+                break;
+            }
+            next *= 2;
+        }
+        let mean = |of: &dyn Fn(&Taken) -> f64| {
+            let later = match warm.steps {
+                0 => 0.0,
+                steps => of(&warm) / steps as f64 * (run.steps - cold.steps) as f64,
+            };
+            (of(&cold) + later) / run.steps.max(1) as f64
+        };
         Ok(Self {
             dt: run.dt,
             steps: run.steps,
-            sweeps_per_step: report.work.sweeps as f64 / taken,
-            solves_per_step: report.work.solves as f64 / taken,
+            sweeps_per_step: mean(&|taken| taken.work.sweeps as f64),
+            solves_per_step: mean(&|taken| taken.work.solves as f64),
             setup_s,
-            step_s: wall / taken,
-            step_cpu_s: cpu / taken,
+            step_s: mean(&|taken| taken.wall),
+            step_cpu_s: mean(&|taken| taken.cpu),
         })
     }
 
@@ -128,5 +156,23 @@ impl Forecast {
     #[must_use]
     pub fn sweeps(&self) -> f64 {
         self.sweeps_per_step * self.steps as f64
+    }
+}
+
+/// Steps with their work and time (s).
+#[derive(Clone, Copy, Debug, Default)]
+struct Taken {
+    steps: usize,
+    work: StepReport,
+    wall: f64,
+    cpu: f64,
+}
+
+impl Taken {
+    fn add(&mut self, other: &Self) {
+        self.steps += other.steps;
+        self.work += other.work;
+        self.wall += other.wall;
+        self.cpu += other.cpu;
     }
 }

@@ -6,6 +6,8 @@ use sinew_core::{
     SimulateError, StepError, System, Verdict, simulate,
 };
 
+use sinew_scene::OverlapWatch;
+
 use crate::case::Case;
 use crate::cpu_time::thread_cpu_time;
 use crate::deformation::DeformationWatch;
@@ -80,6 +82,8 @@ pub fn measure_with(
         let mut comparison = Comparison::new(&track, stride, run);
         comparison.history = (!case.is_whole()).then(|| ErrorHistory::new(is_damped(system)));
         comparison.deformation = DeformationWatch::of(case.simulation());
+        let body = case.simulation().model().body();
+        comparison.overlaps = body.filter(|_| case.is_whole()).map(OverlapWatch::new);
         let mut state = start.clone();
         let report = simulate(system, integrator, &mut state, run, &mut comparison);
         (comparison, state, report)
@@ -155,6 +159,11 @@ pub fn measure_with(
         inverted: system
             .inverted_elements(state.t().into(), &state.u)
             .unwrap_or(0) as u64,
+        overlap: comparison
+            .overlaps
+            .as_ref()
+            .and_then(OverlapWatch::deepest)
+            .map(|overlap| overlap.depth),
         work: work(&report, setup.factorizations),
         cpu_s_per_s: time_per_run / simulated,
         us_per_step: time_per_run / steps * 1e6,
@@ -208,6 +217,9 @@ fn work(report: &RunReport, setup_factorizations: u64) -> Work {
     }
 }
 
+/// Most looks of a run at surfaces that may be in each other: a look costs as much as some steps.
+const LOOKS: usize = 10;
+
 /// Compares each state with the reference as it comes; keeps no copies.
 struct Comparison<'a> {
     track: &'a Track,
@@ -225,6 +237,8 @@ struct Comparison<'a> {
     history: Option<ErrorHistory>,
     /// Present for bodies that follow a force law.
     deformation: Option<DeformationWatch<'a>>,
+    /// Present for bodies in whole runs.
+    overlaps: Option<OverlapWatch<'a>>,
     max_u: f64,
     late: LateRange,
 }
@@ -243,6 +257,7 @@ impl<'a> Comparison<'a> {
             impulses: [Vec::new(), Vec::new()],
             history: None,
             deformation: None,
+            overlaps: None,
             max_u: 0.0,
             late: LateRange::new(dofs),
         }
@@ -250,6 +265,12 @@ impl<'a> Comparison<'a> {
 }
 
 impl Comparison<'_> {
+    /// Whether surfaces are looked at after this step: evenly over the run, at its end too.
+    fn is_look(&self) -> bool {
+        let looks = |step: usize| step * LOOKS / self.steps.max(1);
+        self.step == self.steps || self.step > 0 && looks(self.step) > looks(self.step - 1)
+    }
+
     /// Compares what has been received since the last instant: the mean forces of that time.
     fn compare_impulses(&mut self, moment: &Moment<'_>) {
         let reference = self.track.impulses.get(self.step / self.stride);
@@ -289,6 +310,14 @@ impl Recorder for Comparison<'_> {
             if let Some(history) = &mut self.history {
                 history.include(state.t(), &state.u, reference);
             }
+        }
+        let is_look = self.is_look();
+        if let (Some(overlaps), true) = (&mut self.overlaps, is_look) {
+            let looked = overlaps.look_at_state(state);
+            looked.map_err(|error| RecordError {
+                t: state.t(),
+                source: Box::new(error),
+            })?;
         }
         if let Some(deformation) = &mut self.deformation {
             deformation.look(moment);

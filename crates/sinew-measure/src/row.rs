@@ -120,6 +120,9 @@ pub struct Row {
     pub guarded: bool,
     /// Inverted elements in the last state.
     pub inverted: u64,
+    /// Depth (m) to which parts or surfaces of the body were in each other at instants spread over the run; none where they were not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub overlap: Option<f64>,
     /// Work counts over the run; they reproduce, seconds do not.
     pub work: Work,
     /// CPU seconds per simulated second (thread CPU time, median of the repeats).

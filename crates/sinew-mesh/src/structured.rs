@@ -16,7 +16,7 @@ use crate::tet_mesh::{Group, GroupMembers, OUTWARD_FACES, TetMesh};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Split {
     /// Every hexahedron around its diagonal from the lowest to the highest corner (Kuhn 1960). All diagonals point one
-    /// way, which makes the mesh stiffer in some directions than in others.
+    /// way, which makes the mesh stiffer in some directions than in others: a beam of plain tetrahedra bends sideways, too.
     Kuhn,
     /// [`Split::Kuhn`] with hexahedron (i, j, k) reflected in x, y, z where i, j, k is odd. No direction is
     /// preferred over its mirror image.

@@ -1,10 +1,10 @@
 //! The balance of energy of a run.
 
 use serde::{Deserialize, Serialize};
-use sinew_core::vectors::{dot, weighted_dot};
+use sinew_core::vectors::dot;
 use sinew_core::{
-    Acceleration, Contact, Damping, ElasticLaw, Inputs, LinearOperators, LoadTime, Moment, State,
-    Trial,
+    Acceleration, Contact, ElasticLaw, EnergyBehaviour, Inputs, LinearOperators, LoadTime, Moment,
+    Ramp, State,
 };
 use sinew_fem::Model;
 use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
@@ -35,6 +35,10 @@ pub(crate) struct Energies {
     /// What the energy gained beyond all that: what memory stores and dissipates, which is less than 0 then; what the method, where that is not known, and the distance of the rows bring
     /// in or take away.
     pub(crate) remainder: f64,
+    /// All that was put in until then: the energy of the start and the work since.
+    pub(crate) given: f64,
+    /// Energy that the method took since the beginning, where it is one that does and each step is looked at.
+    pub(crate) taken: Option<f64>,
 }
 
 /// Sums of a balance, all that a checkpoint keeps of it beside the last motion.
@@ -45,7 +49,25 @@ pub(crate) struct Sums {
     supports: f64,
     damped: f64,
     method: f64,
+    /// Work of tools' forces on the nodes, which is less than that of tools by what friction takes.
+    at_contacts: f64,
     pub(crate) cuts: f64,
+    /// Energy (J) that damping brought in, which it never should.
+    #[serde(default)]
+    pub(crate) driven: f64,
+}
+
+/// Share of the energies below which a fall of what damping took is rounding.
+const ROUNDING: f64 = 1e-11;
+
+impl Sums {
+    /// Counts what damping took (J) between two rows, of a motion with this energy (J).
+    fn count_damped(&mut self, taken: f64, energy: f64) {
+        self.damped += taken;
+        if taken < -ROUNDING * (energy.abs() + self.damped.abs()) {
+            self.driven -= taken;
+        }
+    }
 }
 
 /// Motion at the last row: time (s), displacement (m) and velocity (m/s) of the degrees of freedom, and the acceleration
@@ -66,7 +88,8 @@ pub(crate) struct LastRow {
 ///
 /// Between two rows forces are taken as the mean of both ends and velocities as `du/dt`, so that for the mean
 /// acceleration method (Newmark with gamma 1/2 and beta 1/4), with a row for every step, nothing remains but rounding,
-/// jumps and kinks of loads included. Those of prescribed motions, and of loads beside them, remain in part.
+/// jumps and kinks of loads included. What a support gives the inertia and the damping of its own nodes is counted by what these hold and
+/// take, whatever jumps its speed makes. Loads that jump or bend beside moved supports remain in part.
 pub(crate) struct Balance<'a> {
     simulation: &'a Simulation,
     pub(crate) sums: Sums,
@@ -75,14 +98,77 @@ pub(crate) struct Balance<'a> {
     nodes: Option<Nodes>,
     /// What the method takes, where that is known.
     form: Option<NumericalDissipation>,
+    /// Whether the method takes energy by itself, and each step is looked at to tell how much.
+    is_watched: bool,
+    /// Whether each step has a row.
+    has_rows_of_steps: bool,
+}
+
+/// A row, with all nodes then where some are moved.
+type End<'a> = (&'a LastRow, Option<&'a Nodes>);
+
+/// Work (J) of loads and of supports, without what these give the inertia of their own nodes, and energy (J) that damping took.
+#[derive(Debug, Clone, Copy)]
+struct Work {
+    loads: f64,
+    supports: f64,
+    damped: f64,
+}
+
+impl Work {
+    /// That of an interval, better known by both of its halves: the error of each falls as the square of the length (Richardson).
+    fn extrapolated(self, [first, second]: [Self; 2]) -> Self {
+        let better = |part: fn(&Self) -> f64| {
+            let halves = part(&first) + part(&second);
+            halves + (halves - part(&self)) / 3.0
+        };
+        Self {
+            loads: better(|work| work.loads),
+            supports: better(|work| work.supports),
+            damped: better(|work| work.damped),
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        [self.loads, self.supports, self.damped]
+            .iter()
+            .all(|work| work.is_finite())
+    }
+}
+
+/// The motion half way between two rows, by the cubic curve that has their displacements and velocities.
+fn half_way([last, here]: [&LastRow; 2]) -> LastRow {
+    let span = here.t - last.t;
+    let mean = |[a, b]: [&[f64]; 2]| -> Vec<f64> {
+        let pairs = a.iter().zip(b);
+        pairs.map(|(a, b)| 0.5 * (a + b)).collect()
+    };
+    let mut u = mean([&last.u, &here.u]);
+    for (u, (before, after)) in u.iter_mut().zip(last.v.iter().zip(&here.v)) {
+        *u += span / 8.0 * (before - after);
+    }
+    let ends = here.u.iter().zip(&last.u).zip(last.v.iter().zip(&here.v));
+    let speed = |((after, before), (v_before, v_after)): ((&f64, &f64), (&f64, &f64))| {
+        1.5 * (after - before) / span - 0.25 * (v_before + v_after)
+    };
+    LastRow {
+        t: 0.5 * (last.t + here.t),
+        before: last.t,
+        u,
+        v: ends.map(speed).collect(),
+        a: Vec::new(),
+        internal: mean([&last.internal, &here.internal]),
+    }
 }
 
 /// Displacements (m) of all nodes, held and moved ones included, and the forces (N) that do work on them.
 struct Nodes {
     u: Vec<f64>,
     loads: Vec<f64>,
-    /// Of supports and moved parts.
+    /// Of supports and moved parts, against what the body holds elastically.
     supports: Vec<f64>,
+    /// Kinetic energy (J) of all nodes, and of the components that are moved.
+    kinetic: [f64; 2],
 }
 
 impl<'a> Balance<'a> {
@@ -98,7 +184,14 @@ impl<'a> Balance<'a> {
             last: None,
             nodes: None,
             form: None,
+            is_watched: false,
+            has_rows_of_steps: rows.is_every_step(),
         };
+        // Beside steps that are sweeps a look at each of them costs too much where rows are rare for that reason.
+        balance.is_watched = !balance.has_memory()
+            && method.is_some_and(|method| {
+                takes_energy(method) && (rows.is_every_step() || !is_program(method))
+            });
         // The form is that of one step of free degrees of freedom.
         if !simulation.is_cut()
             && rows.is_every_step()
@@ -132,6 +225,11 @@ impl<'a> Balance<'a> {
     /// Whether it is known what the method takes.
     pub(crate) fn knows_method(&self) -> bool {
         self.form.is_some()
+    }
+
+    /// Whether each step is looked at, of which a row needs not be due.
+    pub(crate) fn looks_at_every_step(&self) -> bool {
+        self.is_watched
     }
 
     /// Goes on after a row that was written by an earlier run.
@@ -198,22 +296,24 @@ impl<'a> Balance<'a> {
         };
         let inputs = moment.inputs;
         let nodes = self.nodes(&here, inputs)?;
-        let (kinetic, elastic) = self.stored(&here, nodes.as_ref(), inputs)?;
+        let (kinetic, elastic) = self.stored(&here, nodes.as_ref())?;
+        let mut taken = 0.0;
         if let Some(last) = &self.last {
-            if let (Some(before), Some(after)) = (&self.nodes, &nodes) {
-                let ends = [&before.u[..], &after.u];
-                self.sums.loads += work([&before.loads, &after.loads], ends);
-                self.sums.supports += work([&before.supports, &after.supports], ends);
-                self.sums.damped += self.damped([last, &here], Some(ends), inputs)?;
+            let ends = [(last, self.nodes.as_ref()), (&here, nodes.as_ref())];
+            let work = self.work_between(ends, moment)?;
+            self.sums.loads += work.loads;
+            self.sums.supports += work.supports;
+            taken = work.damped;
+            if let [(_, Some(before)), (_, Some(after))] = ends {
+                self.sums.supports += after.kinetic[1] - before.kinetic[1];
             } else {
-                let (before, after) = self.loads_at_ends(last, &here, inputs);
-                self.sums.loads += work([&before, &after], [&last.u, &here.u]);
-                self.sums.damped += self.damped([last, &here], None, inputs)?;
                 self.sums.method += self.taken_by_method(last, &here, inputs);
             }
+            self.sums.at_contacts += self.work_at_contacts(moment.state, last, &here);
         } else {
             self.sums.first = kinetic + elastic;
         }
+        self.sums.count_damped(taken, kinetic + elastic);
         self.nodes = nodes;
         self.last = Some(here);
         let Sums {
@@ -222,10 +322,14 @@ impl<'a> Balance<'a> {
             supports,
             damped,
             method,
+            at_contacts,
             cuts,
+            ..
         } = self.sums;
         let tools = self.tools().map(|tools| tools.work(moment.state));
         let given = first + loads + supports + tools.unwrap_or(0.0) + cuts;
+        let remainder = kinetic + elastic - given + damped + method;
+        let by_friction = tools.map_or(0.0, |tools| tools - at_contacts);
         Ok(Energies {
             t,
             kinetic,
@@ -236,8 +340,86 @@ impl<'a> Balance<'a> {
             cuts: self.has_cuts().then_some(cuts),
             damped,
             method: self.form.map(|_| method),
-            remainder: kinetic + elastic - given + damped + method,
+            remainder,
+            given,
+            taken: self.is_watched.then_some(method - remainder - by_friction),
         })
+    }
+
+    /// What loads, supports and damping do between two rows.
+    ///
+    /// Where the rows are a step apart that was cut into parts, it is that over both halves too, with the motion half way, and the error of the means, which falls by four with
+    /// the halves, is taken out.
+    fn work_between(
+        &self,
+        ends: [End<'_>; 2],
+        moment: &Moment<'_>,
+    ) -> Result<Work, RecordRunError> {
+        let inputs = moment.inputs;
+        let whole = self.work_of_means(ends, inputs)?;
+        let [(last, _), (here, _)] = ends;
+        if !self.is_of_parts(here.t - last.t, moment.state) {
+            return Ok(whole);
+        }
+        let middle = half_way([last, here]);
+        // The motion half way is an estimate: where a law has no meaning there, the means are what is known.
+        let halves = self
+            .nodes(&middle, inputs)
+            .and_then(|nodes| {
+                let middle = (&middle, nodes.as_ref());
+                let first = self.work_of_means([ends[0], middle], inputs)?;
+                Ok([first, self.work_of_means([middle, ends[1]], inputs)?])
+            })
+            .ok();
+        let better = halves.map(|halves| whole.extrapolated(halves));
+        Ok(better.filter(Work::is_finite).unwrap_or(whole))
+    }
+
+    /// Whether the step between two rows that are `span` (s) apart was cut into parts.
+    fn is_of_parts(&self, span: f64, state: &State) -> bool {
+        let part = state.clock.last_step();
+        self.has_rows_of_steps && part.is_some_and(|part| part < 0.75 * span)
+    }
+
+    /// What loads, supports and damping do between two instants, by the mean of the forces at both.
+    fn work_of_means(
+        &self,
+        [(last, before), (here, after)]: [End<'_>; 2],
+        inputs: &Inputs,
+    ) -> Result<Work, RecordRunError> {
+        if let (Some(before), Some(after)) = (before, after) {
+            let ends = [&before.u[..], &after.u];
+            return Ok(Work {
+                loads: work([&before.loads, &after.loads], ends),
+                supports: work([&before.supports, &after.supports], ends)
+                    + self.damping_of_supports([last, here], ends, inputs)?,
+                damped: self.damped([last, here], Some(ends))?,
+            });
+        }
+        let (before, after) = self.loads_at_ends(last, here, inputs);
+        Ok(Work {
+            loads: work([&before, &after], [&last.u, &here.u]),
+            supports: 0.0,
+            damped: self.damped([last, here], None)?,
+        })
+    }
+
+    /// Whether a load or a support changed between the last two rows, or may have.
+    pub(crate) fn has_changed(&self) -> bool {
+        let (Some(body), Some(last)) = (self.simulation.model().body(), &self.last) else {
+            return true;
+        };
+        let law = self.simulation.system().as_elastic();
+        let loads = body.problem.loads.iter().map(|load| &load.ramp);
+        let courses = body.problem.moves.iter().flat_map(|moving| &moving.courses);
+        let mut ramps = loads.chain(courses.map(|course| &course.ramp));
+        let (from, to) = (last.before, last.t);
+        let rests = |ramp: &Ramp| {
+            !ramp.is_input()
+                && ramp.is_constant_between(from, to)
+                && ramp.breakpoint_between(from, to).is_none()
+        };
+        law.is_none_or(ElasticLaw::loads_follow) || !ramps.all(rests)
     }
 
     /// The acceleration that the method keeps, where it matters; before the first step the consistent one.
@@ -288,6 +470,16 @@ impl<'a> Balance<'a> {
         form.taken(operators, dt, [first, last])
     }
 
+    /// The work (J) of tools' forces on the nodes in the step between two rows, where it is asked for.
+    fn work_at_contacts(&self, state: &State, last: &LastRow, here: &LastRow) -> f64 {
+        let Some(tools) = self.tools().filter(|_| self.is_watched) else {
+            return 0.0;
+        };
+        let mut forces = vec![0.0; here.u.len()];
+        tools.add_forces(state, false, &mut forces);
+        work([&forces, &forces], [&last.u, &here.u])
+    }
+
     /// Loads (N) of the degrees of freedom at two rows, whose mean has the impulse of the loads between them, jumps included.
     fn loads_at_ends(
         &self,
@@ -313,26 +505,34 @@ impl<'a> Balance<'a> {
             return Ok(None);
         };
         let mut u = vec![[0.0; 3]; model.mesh().points.len()];
-        let (mut loads, mut supports) = (u.clone(), u.clone());
+        let still = u.clone();
+        let (mut v, mut loads, mut supports) = (u.clone(), u.clone(), u.clone());
         let when = LoadTime::at(row.t).under(inputs);
         model.displacements_at(when, &row.u, &mut u)?;
+        model.velocities_at(when, &row.v, &mut v)?;
         model.load_forces(when, &u, &mut loads)?;
         let body = model.with_memory(&row.internal);
-        body.reactions(when, &row.u, &row.v, &mut supports)?;
+        body.moving_reactions(when, [&u, &still, &still], &mut supports)?;
+        let mut kinetic = [0.0; 2];
+        for (node, (v, mass)) in (0..).zip(v.iter().zip(model.node_masses())) {
+            for (axis, v) in v.iter().enumerate() {
+                let energy = 0.5 * mass * v * v;
+                kinetic[0] += energy;
+                if !moves_by_itself(model, node, axis) {
+                    kinetic[1] += energy;
+                }
+            }
+        }
         Ok(Some(Nodes {
             u: u.into_flattened(),
             loads: loads.into_flattened(),
             supports: supports.into_flattened(),
+            kinetic,
         }))
     }
 
     /// Kinetic and elastic energy.
-    fn stored(
-        &self,
-        row: &LastRow,
-        nodes: Option<&Nodes>,
-        inputs: &Inputs,
-    ) -> Result<(f64, f64), RecordRunError> {
+    fn stored(&self, row: &LastRow, nodes: Option<&Nodes>) -> Result<(f64, f64), RecordRunError> {
         let (Some(model), Some(nodes)) = (self.moved_body(), nodes) else {
             let energy = match self.simulation.model() {
                 SceneModel::Body(_) => self.simulation.system().energy(&row.u, &row.v),
@@ -344,21 +544,56 @@ impl<'a> Balance<'a> {
                 (energy.kinetic, energy.elastic)
             }));
         };
-        let mut v = vec![[0.0; 3]; model.mesh().points.len()];
-        model.velocities_at(LoadTime::at(row.t).under(inputs), &row.v, &mut v)?;
-        let moving = v.iter().zip(model.node_masses());
-        let kinetic = moving.map(|(v, mass)| 0.5 * mass * v.iter().map(|v| v * v).sum::<f64>());
         let elastic = model.elastic_energy(nodes.u.as_chunks::<3>().0)?;
-        Ok((kinetic.sum(), elastic))
+        Ok((nodes.kinetic[0], elastic))
     }
 
-    /// Energy (J) that damping takes between two rows: `w' D w dt` with `w = du/dt`; of a body with moved parts, whose
+    /// Work (J) of supports against damping at the components that they move, between two rows with these displacements (m) of all
+    /// nodes: `w_p' (D w)_p dt` with `w = du/dt`.
+    fn damping_of_supports(
+        &self,
+        [last, here]: [&LastRow; 2],
+        [before, after]: [&[f64]; 2],
+        inputs: &Inputs,
+    ) -> Result<f64, RecordRunError> {
+        let span = here.t - last.t;
+        let Some(model) = self.moved_body() else {
+            return Ok(0.0);
+        };
+        let damping = self.simulation.system().as_elastic();
+        let is_damped = damping.map(ElasticLaw::damping).is_some_and(|damping| {
+            damping.mass != 0.0 || damping.stiffness != 0.0 || damping.extra.is_some()
+        });
+        if !is_damped || span <= 0.0 {
+            return Ok(0.0);
+        }
+        let ends = || before.iter().zip(after);
+        let middle: Vec<f64> = ends().map(|(a, b)| 0.5 * (a + b)).collect();
+        let w: Vec<f64> = ends().map(|(a, b)| (b - a) / span).collect();
+        let [middle, w] = [&middle, &w].map(|field| field.as_chunks::<3>().0);
+        let still = vec![[0.0; 3]; w.len()];
+        let when = LoadTime::at(here.t).under(inputs);
+        let forces = |v: &[[f64; 3]]| -> Result<Vec<[f64; 3]>, RecordRunError> {
+            let mut out = still.clone();
+            model.moving_reactions(when, [middle, v, &still], &mut out)?;
+            Ok(out)
+        };
+        // At rest they are the loads, and what the body holds.
+        let (moving, resting) = (forces(w)?, forces(&still)?);
+        let (moving, resting) = (moving.as_flattened(), resting.as_flattened());
+        let terms = w.as_flattened().iter().zip(moving.iter().zip(resting));
+        Ok(span
+            * terms
+                .map(|(w, (moving, resting))| w * (moving - resting))
+                .sum::<f64>())
+    }
+
+    /// Energy (J) that damping takes between two rows: `w' D w dt` with `w = du/dt`, and D half way between them; of a body with moved parts, whose
     /// nodes have these displacements (m) then, with all its nodes.
     fn damped(
         &self,
         [last, here]: [&LastRow; 2],
         nodes: Option<[&[f64]; 2]>,
-        inputs: &Inputs,
     ) -> Result<f64, RecordRunError> {
         let (span, system) = (here.t - last.t, self.simulation.system());
         let Some(damping) = system.as_elastic().map(ElasticLaw::damping) else {
@@ -369,88 +604,55 @@ impl<'a> Balance<'a> {
         {
             return Ok(0.0);
         }
-        let mean = |after: &[f64], before: &[f64]| -> Vec<f64> {
+        let rate = |[before, after]: [&[f64]; 2]| -> Vec<f64> {
             let ends = after.iter().zip(before);
             ends.map(|(after, before)| (after - before) / span)
                 .collect()
         };
-        let own = mean(&here.u, &last.u);
-        let free = match self.operators() {
-            Some(operators) => {
-                let mut force = vec![0.0; own.len()];
-                operators.subtract_damping(&own, &mut force);
-                -dot(&force, &own)
-            }
-            None => self.power_of_damping(damping, [last, here], &own, inputs)?,
-        };
-        let (Some(model), Some([u_before, u_after])) = (self.moved_body(), nodes) else {
-            return Ok(span * free);
-        };
-        let w = mean(u_after, u_before);
-        let w = w.as_chunks::<3>().0;
-        // With f for free components and p for held ones, and D being symmetric, w' D w is
-        // w_f' D_ff w_f + 2 w_p' (D w)_p - w_p' D_pp w_p.
-        let mut held = w.to_vec();
-        for (node, own) in (0..).zip(&mut held) {
-            for (axis, own) in own.iter_mut().enumerate() {
-                if moves_by_itself(model, node, axis) {
-                    *own = 0.0;
-                }
-            }
+        let own = [&last.u[..], &here.u];
+        if let (None, Some(operators)) = (nodes, self.operators()) {
+            let (w, mut force) = (rate(own), vec![0.0; system.dofs()]);
+            operators.subtract_damping(&w, &mut force);
+            return Ok(-span * dot(&force, &w));
         }
-        let still = vec![[0.0; 3]; w.len()];
-        let when = LoadTime::at(here.t).under(inputs);
-        let rows = |v: &[[f64; 3]]| -> Result<Vec<[f64; 3]>, RecordRunError> {
-            let mut out = vec![[0.0; 3]; w.len()];
-            model.moving_reactions(when, [&still, v, &still], &mut out)?;
-            Ok(out)
+        let Some(body) = self.simulation.model().body() else {
+            return Ok(0.0);
         };
-        // Without motion they are the loads alone.
-        let (all, own_rows, loads) = (rows(w)?, rows(&held)?, rows(&still)?);
-        let mut at_held = 0.0;
-        for (((w, all), own), load) in held.iter().zip(&all).zip(&own_rows).zip(&loads) {
-            for axis in 0..3 {
-                at_held += w[axis] * (2.0 * all[axis] - own[axis] - load[axis]);
+        let of_body = |row: &LastRow| -> Result<Vec<f64>, RecordRunError> {
+            let mut u = vec![[0.0; 3]; body.model.mesh().points.len()];
+            body.model
+                .displacements_at(LoadTime::at(row.t), &row.u, &mut u)?;
+            Ok(u.into_flattened())
+        };
+        let found;
+        let ends = match nodes {
+            Some(ends) => ends,
+            None => {
+                found = [of_body(last)?, of_body(here)?];
+                [&found[0][..], &found[1]]
             }
-        }
-        Ok(span * (free + at_held))
+        };
+        let w = rate(ends);
+        let [before, after] = ends;
+        let middle = before.iter().zip(after).map(|(a, b)| 0.5 * (a + b));
+        let middle: Vec<f64> = middle.collect();
+        let motion = [&middle, &w].map(|field| field.as_chunks::<3>().0);
+        Ok(span * body.model.damping_power(motion)?)
     }
+}
 
-    /// The power (W) of a force law's damping at a velocity half way between two rows: that of constant matrices or, where the tangent
-    /// damps, what the velocity changes in the net force there.
-    fn power_of_damping(
-        &self,
-        damping: &Damping,
-        [last, here]: [&LastRow; 2],
-        velocity: &[f64],
-        inputs: &Inputs,
-    ) -> Result<f64, RecordRunError> {
-        let system = self.simulation.system();
-        if damping.stiffness == 0.0 {
-            let mut force = vec![0.0; velocity.len()];
-            if let Some(extra) = &damping.extra {
-                extra.multiply(velocity, &mut force);
-            }
-            let of_mass = weighted_dot(system.mass(), velocity, velocity);
-            return Ok(damping.mass * of_mass + dot(&force, velocity));
-        }
-        let ends = last.u.iter().zip(&here.u);
-        let u: Vec<f64> = ends.map(|(a, b)| 0.5 * (a + b)).collect();
-        let force = |v: &[f64]| -> Result<Vec<f64>, RecordRunError> {
-            let mut force = vec![0.0; u.len()];
-            let trial = Trial {
-                load: LoadTime::at(0.5 * (last.t + here.t)).under(inputs),
-                dt: 0.0,
-                u: &u,
-                v,
-                internal: &[],
-            };
-            system.net_force(&trial, &mut force)?;
-            Ok(force)
-        };
-        let (still, moving) = (force(&vec![0.0; u.len()])?, force(velocity)?);
-        Ok(dot(&still, velocity) - dot(&moving, velocity))
-    }
+/// Whether a method takes energy by itself from a motion that nothing damps.
+fn takes_energy(method: &dyn Stepper) -> bool {
+    let behaviour = method.properties().energy;
+    matches!(
+        behaviour,
+        EnergyBehaviour::Falls | EnergyBehaviour::NeverRises
+    )
+}
+
+/// Whether a machine runs its steps.
+fn is_program(method: &dyn Stepper) -> bool {
+    sinew_integrators::entry(method.id()).is_some_and(|entry| entry.programs)
 }
 
 /// Whether a component of a node is a degree of freedom.
@@ -469,4 +671,19 @@ fn work([before, after]: [&[f64]; 2], [u_before, u_after]: [&[f64]; 2]) -> f64 {
     terms
         .map(|((before, after), (u_before, u_after))| 0.5 * (before + after) * (u_after - u_before))
         .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn damping_that_gives_energy_is_found_and_rounding_is_not() {
+        let mut sums = Sums::default();
+        sums.count_damped(1.0, 5.0);
+        sums.count_damped(-1e-12, 5.0);
+        assert_eq!(sums.driven, 0.0);
+        sums.count_damped(-1e-6, 5.0);
+        assert!((sums.driven - 1e-6).abs() < 1e-12, "{sums:?}");
+    }
 }

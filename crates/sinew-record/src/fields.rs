@@ -1,6 +1,6 @@
 //! Fields over the body at an instant.
 
-use sinew_core::{Moment, System};
+use sinew_core::{LoadTime, Moment, System};
 use sinew_fem::{Model, stress};
 use sinew_mesh::vtu::{Array, Grid, VtuEncoding};
 use sinew_mesh::{BoundarySurface, CellType};
@@ -81,6 +81,8 @@ impl Tets {
 #[derive(Debug)]
 pub(crate) struct Fields<'a> {
     model: &'a Model,
+    /// Step of the run (s).
+    dt: f64,
     settings: OutputSettings,
     u: Vec<[f64; 3]>,
     v: Vec<[f64; 3]>,
@@ -98,7 +100,8 @@ pub(crate) struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    pub(crate) fn new(model: &'a Model, settings: OutputSettings) -> Self {
+    /// Those of a run in steps of `dt` (s).
+    pub(crate) fn new(model: &'a Model, dt: f64, settings: OutputSettings) -> Self {
         let nodes = model.mesh().points.len();
         let springs = model
             .report()
@@ -109,6 +112,7 @@ impl<'a> Fields<'a> {
         let of_nodes = |is_asked: bool| vec![[0.0; 3]; if is_asked { nodes } else { 0 }];
         Self {
             model,
+            dt,
             settings,
             u: of_nodes(true),
             v: of_nodes(true),
@@ -150,7 +154,8 @@ impl<'a> Fields<'a> {
         self.model.displacements_at(*t, u, &mut self.u)?;
         self.model.velocities_at(*t, v, &mut self.v)?;
         if self.settings.acceleration {
-            self.model.accelerations_at(*t, a, &mut self.a)?;
+            let when = LoadTime::around(*t, self.dt.min(*t), self.dt);
+            self.model.accelerations_at(when, a, &mut self.a)?;
         }
         if let Some(fields) = &mut self.contact {
             fields.take(self.model, surface, contact, &self.u);

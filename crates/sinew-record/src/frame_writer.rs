@@ -6,6 +6,7 @@ use std::thread::Scope;
 
 use sinew_core::{Moment, vectors};
 use sinew_mesh::{BoundarySurface, TetMesh};
+use sinew_scene::OverlapWatch;
 use sinew_scene::output::OwnedFolder;
 
 use crate::error::RecordRunError;
@@ -40,6 +41,7 @@ pub(crate) struct FrameJob<'a> {
     pub(crate) surface: &'a BoundarySurface,
     pub(crate) fields: Fields<'a>,
     pub(crate) is_cut: bool,
+    pub(crate) overlaps: OverlapWatch<'a>,
     pub(crate) seen: &'a Mutex<SeenInFrames>,
 }
 
@@ -50,6 +52,8 @@ impl FrameJob<'_> {
         self.fields
             .write(self.folder, self.surface, snapshot, seen)?;
         let displacements = self.fields.displacements();
+        self.overlaps.look(snapshot.t, displacements);
+        seen.see_overlap(self.overlaps.deepest());
         let (mut node, mut most) = (0, 0.0);
         for (index, u) in displacements.iter().enumerate() {
             let size = vectors::norm(u);

@@ -41,6 +41,7 @@ mod compare;
 mod contact_fields;
 mod csv;
 mod cut_words;
+mod energy_loss;
 mod error;
 mod fields;
 mod folder_size;
@@ -50,6 +51,7 @@ mod growth;
 mod made_energy;
 #[cfg(feature = "implicit")]
 mod modes;
+mod overlap_looks;
 mod pace;
 mod progress;
 mod recorder;
@@ -64,16 +66,19 @@ mod stretch;
 mod summary;
 mod surface;
 mod tables;
+mod taken_energy;
 mod tool_rows;
 
 pub use companion::Companion;
 pub use compare::{CompareError, Comparison, Difference, compare};
 pub use cut_words::words_of_cuts;
+pub use energy_loss::EnergyLoss;
 pub use error::RecordRunError;
 pub use folder_size::FolderSize;
 pub use growth::EnergyGrowth;
 #[cfg(feature = "implicit")]
 pub use modes::{ModesError, NaturalMode, check_modes_folder, natural_modes, write_modes};
+pub use overlap_looks::OverlapLooks;
 pub use pace::Pace;
 pub use request::Request;
 pub use run_end::{Ended, RunEnd};

@@ -2,8 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 use sinew_core::StepReport;
+use sinew_scene::Overlap;
 
 use crate::balance::Sums;
+use crate::taken_energy::Taken;
+use crate::tool_rows::Received;
 
 /// How far a run is, and what it has seen: all that later steps do not tell.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -20,6 +23,49 @@ pub(crate) struct Progress {
     pub(crate) kinetic: [f64; 2],
     /// The largest sum of kinetic and elastic energy (J), and the largest remainder of the balance.
     pub(crate) balance: [f64; 2],
+    #[serde(default)]
+    pub(crate) crept: Crept,
+    #[serde(default)]
+    pub(crate) taken: Taken,
+    /// What tools had received at their last row.
+    #[serde(default)]
+    pub(crate) received: Received,
+}
+
+/// Energy (J) that comes in little by little, by the remainder of the balance while loads and supports stay as they are: work of those that change is a mean of two rows, and off by some
+/// per cent where these are far apart.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Crept {
+    /// Rows since a load or a support changed.
+    rows: u32,
+    /// The largest remainder in the first of them: energies of a leapfrog swing from step to step.
+    first: f64,
+    /// Mean remainder over the last ones.
+    mean: f64,
+    /// The most by which that was above the first.
+    pub(crate) most: f64,
+}
+
+impl Crept {
+    /// Rows that count as the first.
+    const FIRST: u32 = 4;
+
+    /// Rows that the mean is taken over.
+    const MEAN: f64 = 8.0;
+
+    /// Takes up a row, before which loads or supports changed or did not.
+    pub(crate) fn see(&mut self, remainder: f64, has_changed: bool) {
+        if has_changed || self.rows == 0 {
+            (self.rows, self.first, self.mean) = (1, remainder, remainder);
+            return;
+        }
+        self.mean += (remainder - self.mean) / Self::MEAN;
+        if self.rows < Self::FIRST {
+            self.first = self.first.max(remainder);
+        }
+        self.rows = self.rows.saturating_add(1);
+        self.most = self.most.max(self.mean - self.first);
+    }
 }
 
 /// Bytes of the files that grow.
@@ -44,6 +90,60 @@ pub(crate) struct Seen {
     pub(crate) linear_rotation: Largest,
     /// Tetrahedra with a volume of 0 or below, the most at an instant.
     pub(crate) inverted: usize,
+    /// Where the body was deepest in itself.
+    #[serde(default)]
+    pub(crate) overlap: Option<SeenOverlap>,
+}
+
+/// An [`Overlap`], as a checkpoint keeps it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SeenOverlap {
+    depth: f64,
+    t: f64,
+    at: [f64; 3],
+    node: u64,
+    parts: [String; 2],
+}
+
+impl Seen {
+    /// Takes an overlap if it is deeper than that so far.
+    pub(crate) fn see_overlap(&mut self, overlap: Option<&Overlap>) {
+        let known = self.overlap.as_ref().map_or(0.0, |known| known.depth);
+        if let Some(overlap) = overlap.filter(|overlap| overlap.depth > known) {
+            let Overlap {
+                depth,
+                t,
+                at,
+                node,
+                parts,
+            } = overlap.clone();
+            self.overlap = Some(SeenOverlap {
+                depth,
+                t,
+                at,
+                node,
+                parts,
+            });
+        }
+    }
+
+    /// The deepest overlap.
+    pub(crate) fn overlap(&self) -> Option<Overlap> {
+        let SeenOverlap {
+            depth,
+            t,
+            at,
+            node,
+            parts,
+        } = self.overlap.clone()?;
+        Some(Overlap {
+            depth,
+            t,
+            at,
+            node,
+            parts,
+        })
+    }
 }
 
 /// A largest value with its time (s) and the tag of the node or the tetrahedron that it is at.
@@ -105,5 +205,34 @@ impl Work {
         self.limiter_hits += of.limiter_hits;
         self.fallbacks += of.fallbacks;
         self.retaken += of.retaken;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The most that crept in over rows of remainders, of which the first ones are under supports that move.
+    fn most(moved: usize, remainders: impl IntoIterator<Item = f64>) -> f64 {
+        let mut crept = Crept::default();
+        for (row, remainder) in remainders.into_iter().enumerate() {
+            crept.see(remainder, row < moved);
+        }
+        crept.most
+    }
+
+    #[test]
+    fn energy_that_creeps_in_while_supports_rest_is_told() {
+        let grown = (0..100).map(|row| 0.02 * f64::from((row - 40).max(0)) / 60.0);
+        let found = most(30, grown);
+        assert!((0.015..0.02).contains(&found), "{found}");
+    }
+
+    #[test]
+    fn neither_swings_of_a_leapfrog_nor_means_over_a_motion_count() {
+        let swings = (0..100).map(|row| 0.02 * f64::from(row).sin());
+        assert!(most(0, swings) < 0.001);
+        let off = (0..100).map(|row| 0.03 * (f64::from(row) / 10.0).min(1.0));
+        assert_eq!(most(11, off), 0.0);
     }
 }

@@ -157,23 +157,37 @@ impl RunRecorder<'_> {
             .schedules
             .fields
             .is_some_and(|fields| fields.is_due(step));
-        if energy || frame {
+        let look = energy || self.balance.looks_at_every_step();
+        if look || frame {
             // Of a staggered method it takes a force evaluation.
             self.v.resize(moment.state.u.len(), 0.0);
             moment.velocity(&mut self.v)?;
         }
-        if energy {
-            let row = self.balance.row(moment, &self.v)?;
+        let row = match look {
+            true => Some(self.balance.row(moment, &self.v)?),
+            false => None,
+        };
+        if let Some(row) = &row {
+            self.progress.taken.see(row);
+        }
+        if let Some(row) = row.filter(|_| energy) {
             let kinetic = &mut self.progress.kinetic;
             *kinetic = [kinetic[0].max(row.kinetic), row.kinetic];
             let [most, made] = self.progress.balance;
             let energy = row.kinetic + row.elastic;
-            self.progress.balance = [most.max(energy), made.max(row.remainder)];
+            let most = most.max(energy);
+            self.progress.balance = [most, made.max(row.remainder)];
+            let has_changed = self.balance.has_changed();
+            self.progress.crept.see(row.remainder, has_changed);
             tables::energy_row(&mut self.line, &row);
             self.tables.energy.push(&self.line)?;
             if let (Some(reactions), Some(file)) = (&mut self.reactions, &mut self.tables.reactions)
             {
-                reactions.row(&mut self.line, moment, &self.v)?;
+                let t = moment.state.t();
+                let before = self.balance.last.as_ref().map_or(0.0, |row| t - row.before);
+                let next = self.schedules.energy.next(step + 1);
+                let after = next.map_or(before, |next| (next - step) as f64 * self.simulation.dt());
+                reactions.row(&mut self.line, moment, &self.v, [before, after])?;
                 file.push(&self.line)?;
             }
         }
@@ -187,7 +201,7 @@ impl RunRecorder<'_> {
         if let (Some(tools), Some(file)) = (&self.tools, &mut self.tables.tools)
             && self.schedules.probes.is_due(step)
         {
-            tools.row(&mut self.line, moment);
+            tools.row(&mut self.line, moment, &mut self.progress.received);
             file.push(&self.line)?;
         }
         self.progress.steps = step;
@@ -265,7 +279,10 @@ impl Recorder for RunRecorder<'_> {
     fn next(&mut self, step: usize) -> Option<usize> {
         let step = self.before + step;
         let fields = self.schedules.fields.and_then(|fields| fields.next(step));
-        let energy = self.schedules.energy.next(step);
+        let energy = match self.balance.looks_at_every_step() {
+            true => Some(step),
+            false => self.schedules.energy.next(step),
+        };
         let end = self.schedules.steps;
         let probes = match self.probes.need_moments() || self.tools.is_some() {
             true => self.schedules.probes.next(step),

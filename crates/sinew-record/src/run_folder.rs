@@ -10,7 +10,7 @@ use sinew_core::{State, StepReport};
 use sinew_integrators::Stepper;
 use sinew_mesh::BoundarySurface;
 use sinew_scene::output::{OutputError, OwnedFolder, Tenant};
-use sinew_scene::{Cutter, ProbeRows, Scene, Simulation};
+use sinew_scene::{Cutter, OverlapWatch, ProbeRows, Scene, Simulation};
 
 use crate::balance::{Balance, LastRow};
 use crate::checkpoint::{self, Checkpoint};
@@ -327,8 +327,9 @@ impl RunFolder {
                     folder: &self.folder,
                     mesh: &body.mesh,
                     surface,
-                    fields: Fields::new(&body.model, *simulation.scene().output()),
+                    fields: Fields::new(&body.model, simulation.dt(), *simulation.scene().output()),
                     is_cut: body.cut.is_some(),
+                    overlaps: OverlapWatch::new(body).with_surface(surface),
                     seen: &seen,
                 };
                 FrameWriter::start(scope, job)
@@ -405,10 +406,22 @@ impl RunFolder {
             surface::write(surface, &self.folder, &body.mesh)?;
             frames::write_series(&self.folder, times)?;
         }
+        if let Some(body) = simulation.model().body()
+            && matches!(ended, Ended::Refused { .. } | Ended::Interrupted { .. })
+        {
+            // A run that came to its end, or beyond all bounds, has been looked at as far as it goes.
+            let mut overlaps = OverlapWatch::new(body);
+            overlaps.look_at_state(state)?;
+            progress.seen.see_overlap(overlaps.deepest());
+        }
         let mut warnings = summary::warnings(&progress.seen);
         warnings.extend(summary::made_energy(simulation, &progress));
+        warnings.extend(summary::driven_by_damping(&progress));
+        let methods = stepping.methods_in_words();
+        warnings.extend(progress.taken.in_words(simulation, &methods));
         warnings.extend(outrun);
         warnings.extend(simulation.left_by_tools(state));
+        warnings.extend(cuts.as_ref().and_then(|cuts| cuts.left_uncut.clone()));
         let wall = begun.elapsed().as_secs_f64();
         let summary = Summary {
             simulation,

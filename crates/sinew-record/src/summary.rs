@@ -48,9 +48,13 @@ pub(crate) struct Summary<'a> {
 }
 
 /// What was cut in a run.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct CutRecord {
     pub(crate) totals: CutTotals,
+    /// Area at rest (m^2) that strokes left of a body that they came through.
+    uncut: f64,
+    /// That in a sentence.
+    pub(crate) left_uncut: Option<String>,
     /// Mass (kg) of the body in the beginning and in the end.
     mass: [f64; 2],
     /// Pieces of the body in the end.
@@ -62,16 +66,19 @@ impl CutRecord {
     pub(crate) fn of(cutter: &Cutter, mass: f64) -> Self {
         Self {
             totals: *cutter.totals(),
+            uncut: cutter.uncut().map_or(0.0, |uncut| uncut.area),
+            left_uncut: cutter.left_uncut(),
             mass: [mass, cutter.mass()],
             pieces: cutter.pieces(),
         }
     }
 
-    fn to_json(self) -> Value {
+    fn to_json(&self) -> Value {
         let CutTotals {
             report,
             changes,
             blade_work,
+            uncut: _,
         } = self.totals;
         let energy = report.energy_gained;
         json!({
@@ -87,12 +94,13 @@ impl CutRecord {
             "kinetic_energy_gained_J": energy.map(|energy| energy.kinetic),
             "elastic_energy_gained_J": energy.map(|energy| energy.elastic),
             "work_of_the_blade_J": blade_work,
+            "left_uncut_m2": self.uncut,
             "pieces_at_the_end": self.pieces,
         })
     }
 }
 
-/// What a motion warns of: deformations beyond small-strain theory.
+/// What a motion warns of: deformations beyond small-strain theory, and bodies that pass through each other.
 ///
 /// A rotation by an angle theta is a strain of `1 - cos theta` to the linear theory, .034 at 15 degrees; at a strain of
 /// 10 % the quadratic terms that it leaves out are about as large as 10 % of those that it keeps.
@@ -125,20 +133,40 @@ pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
             seen.inverted
         ));
     }
+    warnings.extend(seen.overlap().map(|overlap| overlap.to_string()));
     warnings
 }
 
-/// Share of the largest energy beyond which a motion is wrong whose balance has so much too much.
+/// Share of the largest energy beyond which a motion is wrong whose balance has so much too much: at any row, and as a mean over some while loads and supports stay as they are.
 const MADE_ENERGY: f64 = 0.1;
+const CREPT_ENERGY: f64 = 0.01;
 
 /// A warning where a motion of large deformation has more energy than it was given. What a method takes is no such sign.
 pub(crate) fn made_energy(simulation: &Simulation, progress: &Progress) -> Option<String> {
     let [most, made] = progress.balance;
     let is_known = simulation.system().as_linear().is_none() && !has_stored_energy(simulation);
-    (is_known && made > MADE_ENERGY * most && made > THERMAL).then(|| {
+    let crept = progress.crept.most;
+    let is_made = made > MADE_ENERGY * most || crept > CREPT_ENERGY * most;
+    let made = if made > MADE_ENERGY * most {
+        made
+    } else {
+        crept
+    };
+    (is_known && is_made && made > THERMAL).then(|| {
         format!(
             "the motion has {made:.3e} J more than it was given, of {most:.3e} J at most: its fastest part is wrong; {}",
             remedy(simulation)
+        )
+    })
+}
+
+/// A warning where damping gave energy to the motion, which no law of damping here does: the results are wrong.
+pub(crate) fn driven_by_damping(progress: &Progress) -> Option<String> {
+    let driven = progress.energy.driven;
+    (driven > THERMAL).then(|| {
+        format!(
+            "damping gave the motion {driven:.3e} J, though it can only take energy: this is an error of sinew, and the motion is wrong; \
+             please report it with the scene"
         )
     })
 }
@@ -204,8 +232,15 @@ impl Summary<'_> {
             "options": self.stepping.options(),
             "error": "not known: `sinew plan --tolerance` measures it",
             "extremes": extremes,
+            "overlap": seen.overlap().map(|overlap| json!({
+                "depth_m": overlap.depth,
+                "t_s": overlap.t,
+                "at_m": overlap.at,
+                "node": overlap.node,
+                "parts": overlap.parts,
+            })),
             "mass_kg": self.cuts.map(|cuts| json!({ "start": cuts.mass[0], "end": cuts.mass[1] })),
-            "cuts": self.cuts.map(|cuts| cuts.to_json()),
+            "cuts": self.cuts.map(CutRecord::to_json),
             "work": work,
             "warnings": record.warnings.iter().chain(self.warnings).collect::<Vec<_>>(),
             "regions": regions,

@@ -132,17 +132,20 @@ impl<'a> Reactions<'a> {
         text
     }
 
+    /// A row, with the times (s) to those before and after it: of a moved part's speed that changes in an instant, each row has its
+    /// share, so that all together have the whole impulse.
     pub(crate) fn row(
         &mut self,
         out: &mut String,
         moment: &Moment<'_>,
         v: &[f64],
+        [before, after]: [f64; 2],
     ) -> Result<(), RecordRunError> {
         let Some(body) = self.simulation.model().body() else {
             return Ok(());
         };
         let (t, u) = (moment.state.t(), &moment.state.u);
-        let when = LoadTime::at(t).under(moment.inputs);
+        let when = LoadTime::around(t, before, after).under(moment.inputs);
         let with_memory = body.model.with_memory(&moment.state.internal);
         with_memory.reactions(when, u, v, &mut self.forces)?;
         body.subtract_contact(moment.state, &mut self.forces);

@@ -2,13 +2,46 @@
 
 use std::fmt::Write;
 
+use serde::{Deserialize, Serialize};
 use sinew_core::Moment;
 use sinew_scene::Simulation;
-use sinew_tools::{Motion, Tool, Tools};
+use sinew_tools::{Motion, Tool, ToolReport, Tools};
 
 use crate::tables;
 
 pub(crate) const NAME: &str = "tools.csv";
+
+/// What tools had received at the last row: the time (s), and of each its impulse (N s) and angular impulse (N m s).
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Received {
+    t: f64,
+    impulses: Vec<[[f64; 3]; 2]>,
+}
+
+impl Received {
+    /// The mean force (N) and torque (N m) on a tool from the last row to a time (s); of the first row those of the step before.
+    fn means(&self, t: f64, index: usize, report: &ToolReport) -> [[f64; 3]; 2] {
+        let span = t - self.t;
+        let Some(before) = self.impulses.get(index).filter(|_| span > 0.0) else {
+            return [report.force, report.torque];
+        };
+        let now = impulses(report);
+        let mean = |vector: usize, axis: usize| (now[vector][axis] - before[vector][axis]) / span;
+        [0, 1].map(|vector| [0, 1, 2].map(|axis| mean(vector, axis)))
+    }
+
+    /// Takes note of a row.
+    fn note(&mut self, t: f64, reports: impl Iterator<Item = ToolReport>) {
+        self.t = t;
+        self.impulses.clear();
+        self.impulses
+            .extend(reports.map(|report| impulses(&report)));
+    }
+}
+
+fn impulses(report: &ToolReport) -> [[f64; 3]; 2] {
+    [report.impulse, report.angular_impulse]
+}
 
 /// Positions, forces and contacts of all tools.
 pub(crate) struct ToolRows<'a> {
@@ -51,7 +84,7 @@ impl<'a> ToolRows<'a> {
         for Tool { name, body, .. } in self.tools.tools() {
             let _ = writeln!(
                 text,
-                "# {name}: force and torque about its own origin are those on the tool, means over the step before; work is done on the body; \
+                "# {name}: force and torque about its own origin are those on the tool, means over the time since the row before; work is done on the body; \
                  the gap is that of its deepest node; passes are the pieces in which its stroke is followed; the residual is what an iteration for its contacts left, a share of the largest displacement by a contact"
             );
             if body.is_some() {
@@ -67,10 +100,12 @@ impl<'a> ToolRows<'a> {
         text
     }
 
-    pub(crate) fn row(&self, out: &mut String, moment: &Moment<'_>) {
+    /// A row, since what tools had received at the one before.
+    pub(crate) fn row(&self, out: &mut String, moment: &Moment<'_>, received: &mut Received) {
         out.clear();
         let Moment { state, inputs, .. } = moment;
-        tables::push(out, state.t());
+        let t = state.t();
+        tables::push(out, t);
         for (index, tool) in self.tools.tools().iter().enumerate() {
             let report = self.tools.report(state, index);
             let pose = self.tools.pose(state, inputs, index);
@@ -78,7 +113,8 @@ impl<'a> ToolRows<'a> {
             let rotation = turns(tool).then(|| pose.rotation_vector());
             let vectors = [Some(pose.position()), rotation];
             let vectors = vectors.into_iter().flatten();
-            let vectors = vectors.chain([report.force, report.torque]).flatten();
+            let means = received.means(t, index, &report);
+            let vectors = vectors.chain(means).flatten();
             for value in vectors.chain([report.work]) {
                 out.push(',');
                 tables::push(out, value);
@@ -94,6 +130,8 @@ impl<'a> ToolRows<'a> {
             }
         }
         out.push('\n');
+        let all = 0..self.tools.tools().len();
+        received.note(t, all.map(|index| self.tools.report(state, index)));
     }
 }
 

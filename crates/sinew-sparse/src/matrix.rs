@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::error::AssemblyError;
 use crate::pattern::Pattern;
 use crate::rows_of_cells::RowsOfCells;
+use crate::vectors;
 
 /// Degrees of freedom of a cell, that is, layers of the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -291,6 +292,17 @@ impl BlockMatrix {
             .zip(self.values[range.start * len..range.end * len].chunks_exact(len))
     }
 
+    /// The blocks of one row with their columns, in increasing column order, to be changed.
+    pub fn row_blocks_mut(&mut self, row: usize) -> impl Iterator<Item = (usize, &mut [f64])> {
+        let len = self.layers.block_len();
+        let range = self.pattern.row(row);
+        self.pattern
+            .neighbours(row)
+            .iter()
+            .map(|&column| column as usize)
+            .zip(self.values[range.start * len..range.end * len].chunks_exact_mut(len))
+    }
+
     /// Multiplies every scalar row by its entry of `scale` (length [`BlockMatrix::dofs`]);
     /// rows beyond the end of `scale` stay as they are.
     pub fn scale_rows(&mut self, scale: &[f64]) {
@@ -306,6 +318,32 @@ impl BlockMatrix {
                 }
             }
         }
+    }
+
+    /// Multiplies all entries.
+    pub fn scale(&mut self, factor: f64) {
+        vectors::scale(&mut self.values, factor);
+    }
+
+    /// Adds a multiple of a matrix of the same layers whose pattern is a part of this one's.
+    ///
+    /// # Errors
+    /// As [`Self::set_to`].
+    pub fn add_scaled(&mut self, factor: f64, other: &Self) -> Result<(), AssemblyError> {
+        if Arc::ptr_eq(&self.pattern, &other.pattern) && self.layers == other.layers {
+            vectors::add_scaled(factor, &other.values, &mut self.values);
+            return Ok(());
+        }
+        let mut scaled = [0.0; Layers::Three.block_len()];
+        for row in 0..other.pattern.cells() {
+            for (column, block) in other.row_blocks(row) {
+                let scaled = &mut scaled[..block.len()];
+                scaled.fill(0.0);
+                vectors::add_scaled(factor, block, scaled);
+                self.add_block(row as u32, column as u32, scaled)?;
+            }
+        }
+        Ok(())
     }
 
     /// Sets the scalar rows and columns of the marked degrees of freedom to zero.

@@ -8,7 +8,7 @@ use sinew_mesh::structured::{Split, cube};
 fn main() -> Result<(), Box<dyn Error>> {
     let mesh = match std::env::args().nth(1) {
         Some(path) => read_msh_file(path)?.to_tet_mesh()?,
-        None => cube(4, 0.1, Split::Kuhn)?,
+        None => cube(4, 0.1, Split::Mirrored)?,
     };
     println!(
         "{} nodes, {} tetrahedra",

@@ -46,7 +46,7 @@ ramp = { kind = "sin2", rise = 0.2 }
 duration = 0.4
 samples = 20
 integrator = "rk4"
-dt = 0.005
+dt = 0.0025
 "#;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut case = Case::new("block", scene.build()?)?;
     println!("method                  dt [ms]   sweeps   error [%]   step [us]");
     let mut own = Vec::new();
-    for dt in [0.005, 0.0025] {
+    for dt in [0.0025, 0.00125] {
         let row = measure_with(
             &mut case,
             "ssp-rk3",

@@ -154,7 +154,7 @@ impl Varied {
     fn case(&self, value: f64) -> Result<Case, MapError> {
         let duration = LONGEST * f64::from(self.samples);
         let text = format!(
-            "[mesh]\ncube = {{ cells = {CELLS}, edge = {EDGE} }}\n{}\n\
+            "[mesh]\ncube = {{ cells = {CELLS}, edge = {EDGE}, split = \"kuhn\" }}\n{}\n\
              [[fixed]]\ngroup = \"sides\"\n\
              [[load]]\ngroup = \"top\"\ntraction = [0.0, 0.0, -100.0]\n\
              [run]\nduration = {duration}\nsamples = {}\nintegrator = \"newmark\"\ndt = {LONGEST}\n",

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sinew_core::{OptionError, SetupError};
+use sinew_core::{EvaluationError, OptionError, SetupError, StepError};
 use sinew_fem::{FemError, Model, Problem, Rayleigh};
 use sinew_mesh::structured::{Split, StructuredError, cube};
 use sinew_mesh::{GroupMembers, MshFileError, TetMesh, TetMeshError, read_msh_file};
@@ -39,6 +39,12 @@ pub enum KernelBenchError {
     /// A method that cannot be set up.
     #[error(transparent)]
     Method(#[from] SetupError),
+    /// A step that fails.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// Forces that cannot be computed.
+    #[error(transparent)]
+    Forces(#[from] EvaluationError),
 }
 
 /// The peers' cube at several sizes, a body that no lattice fits, an organ and, where there is one, a larger mesh

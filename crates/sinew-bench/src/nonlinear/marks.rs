@@ -87,23 +87,31 @@ fn steps_follow_the_stiffness(rows: &[Row]) -> Mark {
     }
 }
 
-/// Errors at 10 ms of an independent implementation, of the methods of a quick run behind the yardstick.
-const OF_OTHERS: [f64; 2] = [0.0044, 0.0178];
+/// Errors at 10 ms of an independent implementation, of the methods of a quick run behind the yardstick, and whether that takes the same steps: its sweeps set out from rest, and
+/// those here from where the velocity leads.
+const OF_OTHERS: [(f64, bool); 2] = [(0.0044, true), (0.0178, false)];
 
 /// The pushed cube at 10 ms, beside an independent implementation.
 fn errors_are_those_of_others(rows: &[Row]) -> Mark {
     let asked = mark(
         "errors are those of an independent implementation",
-        "two methods on the pushed cube at 10 ms, each error to 3 %".to_owned(),
+        "two methods on the pushed cube at 10 ms: the error to 3 %, that of sweeps no larger"
+            .to_owned(),
         0.03,
     );
-    let apart = |(method, known): (&MethodChoice, &f64)| {
+    let apart = |(method, (known, is_same)): (&MethodChoice, &(f64, bool))| {
         let row = rows.iter().find(|row| {
             row.case == "push"
                 && row.integrator == method.integrator
                 && (row.dt - 0.01).abs() < 1e-9
         })?;
-        Some(((error(row) / known - 1.0).abs(), at(row)))
+        let beyond = error(row) / known - 1.0;
+        let apart = if *is_same {
+            beyond.abs()
+        } else {
+            beyond.max(0.0)
+        };
+        Some((apart, at(row)))
     };
     let few = methods::few();
     let compared = few.iter().skip(1).zip(&OF_OTHERS);

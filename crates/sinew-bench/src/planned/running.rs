@@ -60,7 +60,13 @@ impl Running<'_> {
                 }
             }
             let finest = finest.as_ref().filter(|(law, _)| *law == body.law);
-            let mesh_error = finest.and_then(|(_, finest)| finest.error_of(&case).ok());
+            let mesh_error = match finest.map(|(_, finest)| finest.error_of(&case)).transpose() {
+                Ok(error) => error,
+                Err(found) => {
+                    self.skip(planned.id, "error of the mesh".into(), 0.0, &found);
+                    None
+                }
+            };
             self.info(planned, &case, finest.map(|(_, finest)| finest));
             self.runs(planned, &mut case, &body, mesh_error);
         }

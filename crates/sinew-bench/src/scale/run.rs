@@ -3,7 +3,9 @@
 use std::time::Instant;
 
 use sinew_core::CountingAllocator;
-use sinew_core::{Equations, Layers, LinearOperators, LinearSystem, Revision, System, simulate};
+use sinew_core::{
+    Equations, FreePart, Layers, LinearOperators, LinearSystem, Revision, System, simulate,
+};
 use sinew_measure::{Effort, MeasureError, measure, on_one_thread, process_cpu_time};
 
 use super::cube::Cube;
@@ -129,6 +131,10 @@ impl System for Fresh<'_> {
 
     fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
         self.body.cell_positions()
+    }
+
+    fn free_parts(&self) -> Vec<FreePart> {
+        self.body.free_parts()
     }
 
     fn stiffness_contrast(&self) -> Option<f64> {

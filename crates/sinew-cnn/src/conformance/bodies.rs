@@ -79,6 +79,7 @@ impl Run<'_> {
             let system = &*self.body.system;
             let mut batch = Batch::new(system, Inputs::none(), self.dt, *steps);
             machine.run(&mut batch, &mut state)?;
+            assert_eq!(batch.taken(), *steps, "{}: steps taken", self.name);
             work += batch.work();
         }
         Ok((state, work))
@@ -159,10 +160,10 @@ pub fn batches_of_bodies_allocate_nothing(methods: &[Method], bodies: &[Body], m
         for steps in [1, 1, run.steps] {
             let system = &*run.body.system;
             let mut batch = Batch::new(system, Inputs::none(), run.dt, steps);
-            let count = CountingAllocator::count(|| {
-                let done = machine.run(&mut batch, &mut state);
-                debug_assert!(done.is_ok(), "{done:?}");
-            });
+            let mut done = Ok(());
+            let count = CountingAllocator::count(|| done = machine.run(&mut batch, &mut state));
+            assert!(done.is_ok(), "{}: {done:?}", run.name);
+            assert_eq!(batch.taken(), steps, "{}: steps taken", run.name);
             assert_eq!(count, 0, "{}: allocations in {steps} steps", run.name);
         }
     }

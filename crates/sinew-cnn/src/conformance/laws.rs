@@ -126,10 +126,10 @@ pub fn batches_allocate_nothing(methods: &[Method], make: &Make) {
         state.a.resize(state.u.len(), 0.0);
         for steps in [1, 1, 50] {
             let mut batch = Batch::new(&run.case.system, Inputs::none(), run.case.dt, steps);
-            let count = CountingAllocator::count(|| {
-                let done = machine.run(&mut batch, &mut state);
-                debug_assert!(done.is_ok());
-            });
+            let mut done = Ok(());
+            let count = CountingAllocator::count(|| done = machine.run(&mut batch, &mut state));
+            assert!(done.is_ok(), "{}: {done:?}", run.name);
+            assert_eq!(batch.taken(), steps, "{}: steps taken", run.name);
             assert_eq!(count, 0, "{}: allocations in {steps} steps", run.name);
         }
     };

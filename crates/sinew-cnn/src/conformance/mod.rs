@@ -55,7 +55,9 @@ pub use laws::{
     batches_allocate_nothing, batches_change_not_a_bit, steps_are_those_of_the_definition,
     steps_of_many_cells_are_those_of_the_definition,
 };
-pub use refusing::a_refused_trial_leaves_the_machine_usable;
+pub use refusing::{
+    a_machine_without_a_program_refuses, a_refused_trial_leaves_the_machine_usable,
+};
 pub use work::work_is_counted;
 
 use crate::{Machine, Program};
@@ -173,6 +175,11 @@ macro_rules! machine_conformance {
             #[test]
             fn a_refused_trial_leaves_the_machine_usable() {
                 conformance::a_refused_trial_leaves_the_machine_usable(&$methods, &make);
+            }
+
+            #[test]
+            fn a_machine_without_a_program_refuses() {
+                conformance::a_machine_without_a_program_refuses(&make);
             }
         }
     };

@@ -73,6 +73,24 @@ pub fn a_refused_trial_leaves_the_machine_usable(methods: &[Method], make: &Make
     }
 }
 
+/// A machine to which no program was given takes no step, and says so.
+pub fn a_machine_without_a_program_refuses(make: &Make) {
+    let kind = Kind {
+        layers: Layers::Three,
+        damped: Damped::ByMass,
+        changing: Changing::Not,
+        held: false,
+        cells: SMALL,
+    };
+    let case = case(kind, 0.2, LoadOverStep::Any);
+    let mut state = case.start.clone();
+    let mut batch = Batch::new(&case.system, Inputs::none(), case.dt, 3);
+    let done = make().run(&mut batch, &mut state);
+    assert!(matches!(done, Err(StepError::NotPrepared)), "{done:?}");
+    assert_eq!(batch.taken(), 0, "steps taken");
+    assert_eq!(bits(&state.u), bits(&case.start.u), "u");
+}
+
 /// The forces of a linear system, refused beyond a displacement (m).
 struct Refusing {
     bound: f64,

@@ -88,6 +88,10 @@ enum Mistake {
     StopsAfterARefusal,
     /// A refused step is passed over in silence.
     HidesARefusal,
+    /// Every step fails.
+    FailsEveryStep,
+    /// No step is taken, in silence.
+    TakesNoStep,
 }
 
 impl Mistake {
@@ -146,6 +150,14 @@ impl Machine for Broken {
             return Ok(());
         }
         match self.mistake {
+            Mistake::FailsEveryStep => {
+                return Err(StepError::Inaccurate {
+                    integrator: "broken",
+                    t: state.t(),
+                    reason: "it always does".to_owned(),
+                });
+            }
+            Mistake::TakesNoStep => return Ok(()),
             Mistake::Allocates => drop(black_box(vec![0.0; 3])),
             Mistake::CountsTooMuch => batch.count(StepReport {
                 sweeps: 1,
@@ -185,7 +197,11 @@ fn work_is_counted(_: &[Method], make: &Make) {
     conformance::work_is_counted(make);
 }
 
-const LAWS: [Law; 7] = [
+fn a_machine_without_a_program_refuses(_: &[Method], make: &Make) {
+    conformance::a_machine_without_a_program_refuses(make);
+}
+
+const LAWS: [Law; 8] = [
     conformance::steps_are_those_of_the_definition,
     conformance::steps_of_many_cells_are_those_of_the_definition,
     conformance::motions_converge_to_the_exact_ones,
@@ -193,12 +209,22 @@ const LAWS: [Law; 7] = [
     conformance::batches_allocate_nothing,
     work_is_counted,
     conformance::a_refused_trial_leaves_the_machine_usable,
+    a_machine_without_a_program_refuses,
 ];
 
 #[test]
 fn a_machine_without_a_mistake_keeps_every_law() {
     for (number, law) in LAWS.into_iter().enumerate() {
         assert!(!notices(law, Mistake::None), "law {number}");
+    }
+}
+
+#[test]
+fn a_machine_that_fails_or_takes_no_step_breaks_every_law() {
+    for mistake in [Mistake::FailsEveryStep, Mistake::TakesNoStep] {
+        for (number, law) in LAWS.into_iter().enumerate() {
+            assert!(notices(law, mistake), "law {number}: {mistake:?}");
+        }
     }
 }
 
@@ -213,6 +239,7 @@ fn every_law_notices_the_machines_that_break_it() {
         allocate,
         counted,
         usable,
+        _,
     ] = LAWS;
     let of_definition = [
         Mistake::UpdatesBackwards,

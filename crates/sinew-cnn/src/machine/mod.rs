@@ -42,6 +42,6 @@ pub trait Machine: Send + std::fmt::Debug {
     /// holds at the displacement's time, or in the middle of a last part where the program leaves it there.
     ///
     /// # Errors
-    /// [`StepError::Refused`] when the system refuses a trial state.
+    /// [`StepError::Refused`] when the system refuses a trial state, [`StepError::NotPrepared`] if no program was loaded.
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError>;
 }

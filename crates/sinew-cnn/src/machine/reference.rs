@@ -48,7 +48,7 @@ impl Machine for ReferenceMachine {
 
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {
         let Some(program) = self.program.clone() else {
-            return Ok(());
+            return Err(StepError::NotPrepared);
         };
         if program.acceleration != Acceleration::None {
             state.a.resize(state.u.len(), 0.0);
@@ -103,7 +103,7 @@ impl ReferenceMachine {
                 velocity: program.velocity,
                 acceleration,
             };
-            batch.end_step(state, stepped);
+            batch.end_step(state, stepped)?;
         }
         Ok(())
     }

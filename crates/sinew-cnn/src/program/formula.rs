@@ -238,6 +238,7 @@ impl Program {
 fn instant(at: LoadAt) -> String {
     match at {
         LoadAt::Within(1.0) => "F(t + dt)".into(),
+        LoadAt::Within(share) if share == 1.0 / 3.0 => "F(t + dt/3)".into(),
         LoadAt::Within(share) if share != 0.0 => format!("F(t + {share} dt)"),
         LoadAt::StartOf | LoadAt::Within(_) | LoadAt::Around | LoadAt::From | LoadAt::Smooth => {
             "F(t)".into()

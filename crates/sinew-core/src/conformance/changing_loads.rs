@@ -1,6 +1,6 @@
 //! Laws on loads that change and on the time at which they do.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use super::boxed::Boxed;
 use super::problems::{
@@ -151,6 +151,48 @@ fn sine(rise: f64, damping: f64) -> Motion {
     }
 }
 
+/// A rise from 0 to 1 that ends abruptly.
+fn dropped(from: f64, to: f64, damping: f64) -> Motion {
+    let slope = 1.0 / (to - from);
+    Motion {
+        ramp: Ramp::Table {
+            times: vec![from, to, to],
+            values: vec![0.0, 1.0, 0.0],
+        },
+        exact: Box::new(move |t| {
+            let after = |t: f64| after_slope(damping, t);
+            let (rise, top, end) = (after(t - from), after(t - to), after_step(damping, t - to));
+            std::array::from_fn(|i| slope * (rise[i] - top[i]) - end[i])
+        }),
+        smooth: false,
+    }
+}
+
+/// A sine that has begun at t = 0, somewhere in its period.
+fn sinusoid(frequency: f64, phase: f64, damping: f64) -> Motion {
+    let rate = TAU * frequency;
+    Motion {
+        ramp: Ramp::Sine { frequency, phase },
+        exact: Box::new(move |t| {
+            from_modes(|omega| {
+                // q'' + c q' + w^2 q = g sin(r t + phase): q = a cos(r t + phase) + b sin(r t + phase).
+                let (g, p, s) = (FORCE / MASS, omega * omega - rate * rate, damping * rate);
+                let (a, b) = (-g * s / (p * p + s * s), g * p / (p * p + s * s));
+                let at = |turned: f64| a * turned.cos() + b * turned.sin();
+                let free = DampedOscillator {
+                    omega,
+                    damping,
+                    load: 0.0,
+                    displacement: -at(phase),
+                    velocity: -rate * (b * phase.cos() - a * phase.sin()),
+                };
+                at(rate * t + phase) + free.at(t).0
+            })
+        }),
+        smooth: true,
+    }
+}
+
 /// The rate of a triangle of height 1, which jumps: the pull of a moving support by dashpots.
 fn rate_of_triangle(from: f64, to: f64, damping: f64) -> Motion {
     let of = triangle(from, to, damping).ramp;
@@ -202,6 +244,10 @@ pub fn order_with_changing_loads_is_as_declared(make: &dyn Fn() -> Boxed) {
             pulse(between(4.0), between(11.0), damping),
             triangle(on(3.0), on(13.0), damping),
             triangle(between(3.0), between(12.0), damping),
+            dropped(on(3.0), on(13.0), damping),
+            dropped(between(3.0), between(12.0), damping),
+            sinusoid(0.8 / duration, 0.0, damping),
+            sinusoid(1.3 / duration, 2.1, damping),
             rate_of_sine(duration, damping, true),
             rate_of_sine(on(9.0), damping, false),
             rate_of_sine(between(9.0), damping, false),
@@ -300,9 +346,14 @@ pub fn the_impulse_of_a_load_arrives_wherever_it_falls(make: &dyn Fn() -> Boxed)
                 times: vec![from, 0.5 * (from + to), to],
                 values: vec![0.0, 2.0, 0.0],
             };
+            let dropped = Ramp::Table {
+                times: vec![from, to, to],
+                values: vec![0.0, 2.0, 0.0],
+            };
             // One comes with the start of the run.
             for ramp in [
                 Ramp::Pulse { from, to },
+                dropped,
                 triangle(from, to),
                 triangle(0.0, width),
             ] {

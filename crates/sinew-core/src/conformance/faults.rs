@@ -127,7 +127,11 @@ impl Integrator for Method {
                 }
             }
             match self.fault {
-                Fault::AcceptsTwice => step.system.accept(state, step.inputs, step.dt),
+                Fault::AcceptsTwice => {
+                    let t = state.t();
+                    let accepted = step.system.accept(state, step.inputs, step.dt);
+                    accepted.map_err(|source| StepError::Refused { t, source })?;
+                }
                 Fault::ChangesInternalVariables => {
                     state.internal.iter_mut().for_each(|z| *z += 1.0);
                 }

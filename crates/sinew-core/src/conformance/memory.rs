@@ -87,8 +87,9 @@ impl System for Maxwell {
     fn internal_variables(&self) -> usize {
         1
     }
-    fn accept(&self, state: &mut State, _inputs: &Inputs, dt: f64) {
+    fn accept(&self, state: &mut State, _inputs: &Inputs, dt: f64) -> Result<(), EvaluationError> {
         state.internal[0] = Self::elongation(state.internal[0], state.u[0], state.v[0], dt);
+        Ok(())
     }
 }
 
@@ -203,11 +204,12 @@ impl System for Counting {
     fn internal_variables(&self) -> usize {
         2
     }
-    fn accept(&self, state: &mut State, _inputs: &Inputs, dt: f64) {
+    fn accept(&self, state: &mut State, _inputs: &Inputs, dt: f64) -> Result<(), EvaluationError> {
         state.internal[0] += 1.0;
         state.internal[1] += dt;
         let mut accepted = self.accepted.lock().unwrap_or_else(PoisonError::into_inner);
         *accepted = (state.t(), state.internal[0]);
+        Ok(())
     }
 }
 
@@ -216,14 +218,11 @@ impl ForceLaw for Counting {
         let (t, count) = self.accepted();
         let at = trial.load.t();
         if trial.internal[0] != count || (at - t - trial.dt).abs() > 1e-14 || trial.dt < 0.0 {
-            return Err(EvaluationError {
-                element: 0,
-                reason: format!(
-                    "a trial at {at} s, {} s after the accepted state, which is at {t} s; internal \
-                     variables {:?} after {count} accepted steps",
-                    trial.dt, trial.internal
-                ),
-            });
+            return Err(EvaluationError::of_body(format_args!(
+                "a trial at {at} s, {} s after the accepted state, which is at {t} s; internal \
+                 variables {:?} after {count} accepted steps",
+                trial.dt, trial.internal
+            )));
         }
         let operators = self.inner.operators();
         operators.net_force(trial.load, trial.u, trial.v, out);

@@ -3,10 +3,10 @@
 use std::cell::RefCell;
 
 use sinew_core::{
-    Batch, EnergyBehaviour, EvaluationError, ForceLaw, ForceModel, Inputs, Integrator, Layers,
-    LoadTime, Moment, Needs, Outcome, Prepared, Properties, RecordError, Recorder, Recorders, Run,
-    RunReport, SetupError, SimulateError, StableStep, State, StepError, StepReport, Stepped,
-    System, Trial, Verdict, Watch, simulate,
+    Batch, EnergyBehaviour, Equations, EvaluationError, ForceLaw, ForceModel, Inputs, Integrator,
+    Layers, LoadTime, Moment, Needs, Outcome, Prepared, Properties, RecordError, Recorder,
+    Recorders, Revision, Run, RunReport, SetupError, SimulateError, StableStep, State, StepError,
+    StepReport, Stepped, System, Trial, Verdict, Watch, simulate,
 };
 
 /// Two masses of 1 kg, each on a spring of its own (N/m), that refuse to be moved beyond a limit (m).
@@ -379,4 +379,52 @@ fn a_watch_that_stops_ends_the_run_after_its_batch() {
     let report = simulate(&system, &mut method, &mut state, &whole, &mut recorder).unwrap();
     assert_eq!((report.outcome, report.steps), (Outcome::Stopped, 20));
     assert_eq!(rows(&told).len(), 21);
+}
+
+/// Springs with a memory that does not take a displacement beyond a limit (m).
+struct Remembering {
+    springs: ForceModel<Springs>,
+    limit: f64,
+}
+
+impl System for Remembering {
+    fn dofs(&self) -> usize {
+        self.springs.dofs()
+    }
+    fn layers(&self) -> Layers {
+        self.springs.layers()
+    }
+    fn mass(&self) -> &[f64] {
+        self.springs.mass()
+    }
+    fn revision(&self) -> Revision {
+        self.springs.revision()
+    }
+    fn equations(&self) -> Equations<'_> {
+        self.springs.equations()
+    }
+    fn accept(&self, state: &mut State, _inputs: &Inputs, _dt: f64) -> Result<(), EvaluationError> {
+        match state.u.iter().find(|u| u.abs() > self.limit) {
+            Some(u) => Err(EvaluationError::of_body(format_args!("moved by {u} m"))),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Also the last step of a run, after which nothing is evaluated.
+#[test]
+fn a_state_that_the_system_does_not_accept_ends_the_batch_with_the_reason() {
+    let system = Remembering {
+        springs: springs([0.0; 2], f64::INFINITY),
+        limit: 1.0,
+    };
+    let mut state = State::new(vec![0.7, 0.0], vec![0.2, 0.0]);
+    let mut method = Method::default();
+    method.step(&system, &mut state, 1.0).unwrap();
+    let refused = method.step(&system, &mut state, 1.0).unwrap_err();
+    let StepError::Refused { t, source } = refused else {
+        panic!("{refused}");
+    };
+    assert_eq!((t, source.element), (2.0, 0));
+    assert!(source.reason.starts_with("moved by 1.0"), "{source}");
 }

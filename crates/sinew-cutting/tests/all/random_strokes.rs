@@ -67,7 +67,7 @@ proptest! {
             match deed {
                 Deed::Stroke([from, to], snap) => cut(from, to, snap),
                 Deed::GoOn(to, snap) => cut(last, to, snap),
-                Deed::Lift => body.lift(),
+                Deed::Lift => drop(body.lift()),
                 Deed::Remove(centre, radius) => {
                     let inside = |p: [f64; 3]| (0..3).map(|i| (p[i] - centre[i]).powi(2)).sum::<f64>() < radius * radius;
                     removed += body.remove(inside, &mut positions).unwrap().mass;

@@ -51,6 +51,9 @@ pub struct FibrePoint<N> {
     derivatives: [N; 2],
     /// The second derivative that it has, or would have as soon as it is pulled.
     second_when_pulled: N,
+    /// The second derivative at rest on the side of tension, and 0 in compression.
+    viscosity: N,
+    viscosity_when_pulled: N,
     /// Half of dX/dF.
     slope: Tensor<N>,
     /// `J^-2/3` and `kd I1 + (1 - 3 kd) I4` where X is freed of volume change.
@@ -145,12 +148,15 @@ impl Fibres {
                 [grown * pulled, grown * N::of(2.0).mul_add(square, one)]
             }
         };
+        let at_rest = N::of(self.modulus_at_rest());
         FibrePoint {
             deformation: *deformation,
             direction,
             stretch: pulled,
             derivatives: [first, N::select_le(stretch, zero, zero, second)],
             second_when_pulled: second,
+            viscosity: N::select_le(stretch, zero, zero, at_rest),
+            viscosity_when_pulled: at_rest,
             slope,
             split,
         }
@@ -243,6 +249,29 @@ impl Fibres {
         at.slope.scaled(along)
     }
 
+    /// The stress of stiffness damping by a rate of F, for a factor of 1 s: that of the modulus at rest for the rate of X, while fibres are pulled. As
+    /// X is a function of Green's strain, it is objective, and it never does work.
+    #[inline(always)]
+    pub(crate) fn viscous_stress<N: Number>(
+        &self,
+        at: &FibrePoint<N>,
+        rate: Tensor<N>,
+    ) -> Tensor<N> {
+        let along = N::of(4.0) * at.viscosity * at.slope.contracted(rate);
+        at.slope.scaled(along)
+    }
+
+    /// A node's own block of [`Self::viscous_stress`], for each m^3.
+    #[inline(always)]
+    pub(crate) fn viscous_block<N: Number>(
+        &self,
+        at: &FibrePoint<N>,
+        gradient: [N; 3],
+    ) -> Tensor<N> {
+        let along = at.slope.on(gradient);
+        Tensor::outer(along, along).scaled(N::of(4.0) * at.viscosity)
+    }
+
     /// A node's own block of [`Self::semidefinite_tangent`], for each m^3.
     #[inline(always)]
     pub fn node_block<N: Number>(&self, at: &FibrePoint<N>, gradient: [N; 3]) -> Tensor<N> {
@@ -261,12 +290,13 @@ impl Fibres {
 }
 
 impl<N: Number> FibrePoint<N> {
-    /// The same with the stiffness of fibres in tension where they are idle: no state near this one is stiffer by much.
+    /// The same with the stiffness and the viscosity of fibres in tension where they are idle: no state near this one is stiffer by much.
     #[must_use]
     pub fn as_if_pulled(self) -> Self {
         let [first, _] = self.derivatives;
         Self {
             derivatives: [first, self.second_when_pulled],
+            viscosity: self.viscosity_when_pulled,
             ..self
         }
     }

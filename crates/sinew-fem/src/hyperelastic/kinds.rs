@@ -12,6 +12,7 @@ use super::parameters::{ParameterError, Parameters};
 use super::stable_neo_hookean::StableNeoHookean;
 use super::stable_neo_hookean_log::StableNeoHookeanLog;
 use super::stvk::Stvk;
+use super::viscous::Viscous;
 
 /// What is done with a law whose type is known, so that loops inside are compiled for it.
 pub trait LawVisitor {
@@ -112,6 +113,23 @@ impl LawVisitor for Tell {
 }
 
 impl Hyperelastic {
+    /// Does something with the law's viscosity by its type, of which there is one for each measure of volume.
+    pub(crate) fn with_viscosity<V: LawVisitor>(&self, visitor: V) -> V::Output {
+        let lame = self.lame();
+        match *self {
+            Self::NeoHookean(_)
+            | Self::StableNeoHookean(_)
+            | Self::MooneyRivlin(_)
+            | Self::NeoHookeanIso(_)
+            | Self::StableNeoHookeanLog(_) => {
+                visitor.visit(Viscous::new(StableNeoHookean::of(lame), lame))
+            }
+            Self::Corotational(law) => visitor.visit(Viscous::new(law, lame)),
+            Self::Stvk(law) => visitor.visit(Viscous::new(law, lame)),
+            Self::NeoHookeanLog(law) => visitor.visit(Viscous::new(law, lame)),
+        }
+    }
+
     /// Its name in scenes.
     #[must_use]
     pub fn id(&self) -> &'static str {

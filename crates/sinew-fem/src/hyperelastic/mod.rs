@@ -33,6 +33,7 @@ mod stable_neo_hookean;
 mod stable_neo_hookean_log;
 mod stvk;
 mod tensor;
+mod viscous;
 
 pub use corotational::Corotational;
 pub use decomposition::SingularValues;

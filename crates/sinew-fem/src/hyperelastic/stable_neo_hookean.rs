@@ -28,8 +28,12 @@ impl StableNeoHookean {
     ///
     /// [`ParameterError`] where a parameter is outside its range or another law's.
     pub fn new(parameters: &Parameters) -> Result<Self, ParameterError> {
-        let (lambda, mu) = parameters.moduli(Self::ID)?;
-        Ok(Self { lambda, mu })
+        Ok(Self::of(parameters.moduli(Self::ID)?))
+    }
+
+    /// The law with Lame's constants (Pa) at small strain.
+    pub(super) fn of((lambda, mu): (f64, f64)) -> Self {
+        Self { lambda, mu }
     }
 }
 

@@ -11,6 +11,7 @@ use super::kept::{load_entries, store_entries};
 use super::memory::{Points, Relaxing};
 use super::region::HyperelasticRegion;
 use super::rest::Rest;
+use super::wanted::Wanted;
 use crate::hyperelastic::fibres::FibrePoint;
 use crate::hyperelastic::prony::first_piola;
 use crate::hyperelastic::{Deformation, Tensor, dot};
@@ -94,29 +95,30 @@ pub(super) struct TangentBeside<'a, N> {
     factor_of_fibres: f64,
     /// R (Pa).
     carried: Option<Tensor<N>>,
-    is_exact: bool,
+    wanted: Wanted,
 }
 
 impl<'a, N: Number<Real = f64>> TangentBeside<'a, N> {
-    /// The tangent of a kind; idle fibres may count as pulled.
+    /// The tangent, or the viscosity.
     #[inline(always)]
     pub(super) fn of(
         region: &'a HyperelasticRegion,
         relaxing: &Relaxing<'_>,
         first: usize,
         deformation: &Deformation<N>,
-        (kind, idle_count): (TangentKind, bool),
+        wanted: Wanted,
     ) -> Self {
         let fibres = region.fibres.as_ref().map(|fibres| {
             let at = fibres.at(first, deformation);
+            let idle_count = wanted.idle_fibres_count();
             (fibres, if idle_count { at.as_if_pulled() } else { at })
         });
-        let is_exact = kind == TangentKind::Exact;
+        let is_exact = wanted.kind() == TangentKind::Exact;
         Self {
             fibres,
             factor_of_fibres: relaxing.factor_of_fibres(),
             carried: relaxing.carried_tensor(Points::Tets, first, is_exact),
-            is_exact,
+            wanted,
         }
     }
 
@@ -125,10 +127,10 @@ impl<'a, N: Number<Real = f64>> TangentBeside<'a, N> {
     pub(super) fn with(&self, stress: Tensor<N>, change: Tensor<N>) -> Tensor<N> {
         let mut stress = stress;
         if let Some((RegionFibres { fibres, .. }, at)) = &self.fibres {
-            let tangent = if self.is_exact {
-                fibres.tangent(at, change)
-            } else {
-                fibres.semidefinite_tangent(at, change)
+            let tangent = match self.wanted {
+                Wanted::Viscosity | Wanted::MostViscous => fibres.viscous_stress(at, change),
+                Wanted::Stiffest | Wanted::Kind(TangentKind::Exact) => fibres.tangent(at, change),
+                Wanted::Kind(_) => fibres.semidefinite_tangent(at, change),
             };
             stress = stress.plus(N::of(self.factor_of_fibres), tangent);
         }
@@ -147,12 +149,15 @@ pub(super) fn block_beside<N: Number<Real = f64>>(
     relaxing: &Relaxing<'_>,
     first: usize,
     deformation: &Deformation<N>,
-    gradient: [N; 3],
+    (wanted, gradient): (Wanted, [N; 3]),
 ) -> Tensor<N> {
     let mut block = carried_block(relaxing, (Points::Tets, first), gradient);
     if let Some(fibres) = &region.fibres {
         let at = fibres.at(first, deformation).as_if_pulled();
-        let own = fibres.fibres.node_block(&at, gradient);
+        let own = match wanted.is_viscosity() {
+            true => fibres.fibres.viscous_block(&at, gradient),
+            false => fibres.fibres.node_block(&at, gradient),
+        };
         block = block.plus(N::of(relaxing.factor_of_fibres()), own);
     }
     block

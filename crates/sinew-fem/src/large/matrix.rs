@@ -1,6 +1,6 @@
-//! The tangent as a matrix.
+//! The tangent, or the viscosity, as a matrix.
 
-use sinew_core::{BlockMatrix, ElementStiffness, EvaluationError, TangentKind};
+use sinew_core::{AssemblyError, BlockMatrix, ElementStiffness, EvaluationError};
 
 use super::beside::TangentBeside;
 use super::means::{at_edges, means, require, take_dilation};
@@ -8,46 +8,54 @@ use super::memory::{Past, Relaxing};
 use super::product::{EdgeTangent, OwnTangent, left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
+use super::wanted::Wanted;
 use crate::cells::Cells;
 use crate::elements::moving_part;
 use crate::hyperelastic::{Deformation, HyperelasticLaw, LawVisitor, Tensor};
 use crate::smoothing::Average;
 
-/// Adds the tangent of a region, on a pattern that has its couplings.
+/// Adds so many times the tangent, or the viscosity, of a region.
+///
+/// # Errors
+/// [`EvaluationError`] when the law is outside its domain, or the matrix has no block for a coupling.
 pub(super) fn add(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
     past: Past<'_>,
-    kind: TangentKind,
-    (cells, out): (&Cells, &mut BlockMatrix),
+    wanted: Wanted,
+    (cells, factor, out): (&Cells, f64, &mut BlockMatrix),
 ) -> Result<(), EvaluationError> {
     let mut sum = Sum {
         cells,
+        factor,
         out,
         average: Average::default(),
         whole: Vec::new(),
         moving: ElementStiffness::default(),
     };
-    region.law.with_law(Tangents {
+    let tangents = Tangents {
         region,
         scratch,
-        relaxing: Relaxing::of(region.memory.as_ref(), past),
-        kind,
+        relaxing: wanted.relaxing(region, past),
+        wanted,
         sum: &mut sum,
-    })
+    };
+    wanted.with_law(region, tangents)
 }
 
 struct Tangents<'a, 'o> {
     region: &'a HyperelasticRegion,
     scratch: &'a mut Scratch,
     relaxing: Relaxing<'a>,
-    kind: TangentKind,
+    wanted: Wanted,
     sum: &'a mut Sum<'o>,
 }
 
 /// The matrix, and room for one part of it.
 struct Sum<'o> {
     cells: &'o Cells,
+    /// By which it is multiplied.
+    factor: f64,
     out: &'o mut BlockMatrix,
     average: Average,
     /// Entries (N/m) of a part between all its nodes, row-major and node-major.
@@ -63,12 +71,13 @@ impl LawVisitor for Tangents<'_, '_> {
             region,
             scratch,
             relaxing,
-            kind,
+            wanted,
             sum,
         } = self;
+        let kind = wanted.kind();
         let (rest, lambda) = (&region.rest, law.lame().0);
         let beside_of = |tet: usize, deformation: &Deformation<f64>| {
-            TangentBeside::of(region, &relaxing, tet, deformation, (kind, false))
+            TangentBeside::of(region, &relaxing, tet, deformation, wanted)
         };
         if !region.is_smoothed() {
             for tet in rest.tets() {
@@ -78,7 +87,7 @@ impl LawVisitor for Tangents<'_, '_> {
                 let own = OwnTangent::of(&law, &at, left, kind);
                 let beside = beside_of(tet, &at.deformation);
                 sum.average.of(std::iter::once(region.tet(tet)));
-                sum.add(1.0, |change| beside.with(own.on(change), change));
+                sum.add(1.0, |change| beside.with(own.on(change), change))?;
             }
             return Ok(());
         }
@@ -90,20 +99,21 @@ impl LawVisitor for Tangents<'_, '_> {
             let own = OwnTangent::of(&law, &at, left, kind);
             let beside = beside_of(tet, &at.deformation);
             sum.average.of(std::iter::once(region.tet(tet)));
-            sum.add(1.0, |change| beside.with(own.on(change), change));
+            sum.add(1.0, |change| beside.with(own.on(change), change))?;
         }
         for (edge, average) in region.edge_averages().iter().enumerate() {
             let at = at_edges::<f64, L>(region, &law, edge, &scratch.gradients, &relaxing)?;
             let tangent = EdgeTangent::of(&law, &at, (region, &relaxing, edge), kind);
             sum.average.clone_from(average);
-            sum.add(region.edge_share / 6.0, |change| tangent.on(change));
+            sum.add(region.edge_share / 6.0, |change| tangent.on(change))?;
         }
         for patch in 0..region.patches.count() {
             take_dilation(region, &law, patch, scratch, &mut sum.average);
             let lambda = region.stiffness_of_patch(patch) * lambda;
             let lambda = relaxing.factor_of_dilation() * lambda;
-            sum.average.stiffness(1.0, [lambda, 0.0], &mut sum.whole);
-            sum.add_whole();
+            let share = sum.factor;
+            sum.average.stiffness(share, [lambda, 0.0], &mut sum.whole);
+            sum.add_whole()?;
         }
         Ok(())
     }
@@ -111,9 +121,13 @@ impl LawVisitor for Tangents<'_, '_> {
 
 impl Sum<'_> {
     /// Adds `V g_aJ H_iJkL g_bL` between the nodes of the average, for a share of its volume V.
-    fn add(&mut self, share: f64, tangent: impl Fn(Tensor<f64>) -> Tensor<f64>) {
+    fn add(
+        &mut self,
+        share: f64,
+        tangent: impl Fn(Tensor<f64>) -> Tensor<f64>,
+    ) -> Result<(), AssemblyError> {
         let average = &self.average;
-        let volume = share * average.volume;
+        let volume = self.factor * share * average.volume;
         let columns = 3 * average.nodes.len();
         self.whole.clear();
         self.whole.resize(columns * columns, 0.0);
@@ -129,19 +143,17 @@ impl Sum<'_> {
                 }
             }
         }
-        self.add_whole();
+        self.add_whole()
     }
 
-    fn add_whole(&mut self) {
+    fn add_whole(&mut self) -> Result<(), AssemblyError> {
         moving_part(
             &self.whole,
             &self.average.nodes,
             self.cells,
             &mut self.moving,
         );
-        let added = self
-            .out
-            .add_element(&self.moving.cells, &self.moving.matrix);
-        debug_assert!(added.is_ok(), "the pattern was made of the same sets");
+        self.out
+            .add_element(&self.moving.cells, &self.moving.matrix)
     }
 }

@@ -23,17 +23,18 @@ mod scratch;
 mod stiffness;
 mod stress;
 mod threads;
+mod wanted;
 mod when;
 
 pub(crate) use memory::Past;
-pub(crate) use product::Wanted;
 pub(crate) use region::{HyperelasticRegion, RegionLaw};
 pub(crate) use scratch::{Scratch, fill};
 pub(crate) use threads::SharedForces;
+pub(crate) use wanted::Wanted;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use sinew_core::{BlockMatrix, Deformed, EvaluationError, TangentKind};
+use sinew_core::{BlockMatrix, Deformed, EvaluationError};
 use sinew_mesh::TetMesh;
 use sinew_sparse::simd::{InstructionSet, SharedSlice};
 
@@ -196,7 +197,7 @@ impl LargeDeformation {
         self.all.regions.iter().map(count).sum()
     }
 
-    /// Computes the tangent at the displacement in the scratch times the change in it, as forces (N) at the corners.
+    /// Computes the tangent, or the viscosity, at the displacement in the scratch times the change in it, as forces (N) at the corners.
     pub(crate) fn product(
         &self,
         scratch: &mut Scratch,
@@ -220,28 +221,30 @@ impl LargeDeformation {
         }
     }
 
-    /// Adds the tangent at the displacement in the scratch.
+    /// Adds so many times the tangent, or the viscosity, at the displacement in the scratch.
     pub(crate) fn add_tangent(
         &self,
         scratch: &mut Scratch,
         past: Past<'_>,
-        kind: TangentKind,
-        cells: &Cells,
-        out: &mut BlockMatrix,
+        wanted: Wanted,
+        (cells, factor, out): (&Cells, f64, &mut BlockMatrix),
     ) -> Result<(), EvaluationError> {
         let mut regions = self.all.regions.iter();
-        regions.try_for_each(|region| matrix::add(region, scratch, past, kind, (cells, &mut *out)))
+        regions.try_for_each(|region| {
+            matrix::add(region, scratch, past, wanted, (cells, factor, &mut *out))
+        })
     }
 
-    /// Adds own blocks of the tangent at the displacement in the scratch: calls `add` with each node and its block (N/m).
+    /// Adds own blocks of the tangent, or of the viscosity, at the displacement in the scratch: calls `add` with each node and its block (N/m).
     pub(crate) fn node_blocks(
         &self,
         scratch: &mut Scratch,
         past: Past<'_>,
+        wanted: Wanted,
         mut add: impl FnMut(u32, [[f64; 3]; 3]),
     ) -> Result<(), EvaluationError> {
-        let mut regions = self.all.regions.iter();
-        regions.try_for_each(|region| node_blocks::add(region, scratch, past, self.set, &mut add))
+        let (how, mut regions) = ((wanted, self.set), self.all.regions.iter());
+        regions.try_for_each(|region| node_blocks::add(region, scratch, past, how, &mut add))
     }
 
     /// The Cauchy stress (Pa) of a tetrahedron of the mesh, in the order of [`crate::stress`], with the displacement (m) of each node; `None`

@@ -1,4 +1,4 @@
-//! Own blocks of the tangent, positive semidefinite in any state.
+//! Own blocks of the tangent, or of the viscosity, positive semidefinite in any state.
 
 use sinew_core::EvaluationError;
 use sinew_sparse::simd::{InstructionSet, Number, Vectors, WithReal};
@@ -11,6 +11,7 @@ use super::memory::{Past, Points, Relaxing};
 use super::product::{left_of_smoothed, left_of_tets};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
+use super::wanted::Wanted;
 use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Point, Tensor};
 use crate::smoothing::Average;
 
@@ -19,22 +20,25 @@ pub(super) fn add(
     region: &HyperelasticRegion,
     scratch: &mut Scratch,
     past: Past<'_>,
-    set: InstructionSet,
+    (wanted, set): (Wanted, InstructionSet),
     add: &mut dyn FnMut(u32, [[f64; 3]; 3]),
 ) -> Result<(), EvaluationError> {
-    region.law.with_law(Blocks {
+    let blocks = Blocks {
         region,
         scratch,
-        relaxing: Relaxing::of(region.memory.as_ref(), past),
+        relaxing: wanted.relaxing(region, past),
+        wanted,
         set,
         add,
-    })
+    };
+    wanted.with_law(region, blocks)
 }
 
 struct Blocks<'a> {
     region: &'a HyperelasticRegion,
     scratch: &'a mut Scratch,
     relaxing: Relaxing<'a>,
+    wanted: Wanted,
     set: InstructionSet,
     add: &'a mut dyn FnMut(u32, [[f64; 3]; 3]),
 }
@@ -44,7 +48,7 @@ impl LawVisitor for Blocks<'_> {
 
     fn visit<L: HyperelasticLaw>(mut self, law: L) -> Self::Output {
         let (set, blocks) = (self.set, &mut self);
-        if blocks.region.has_beside() {
+        if blocks.wanted.has_beside(blocks.region) {
             Sweep::<L, true> { blocks, law }.run::<f64>()?;
         } else {
             f64::with_vectors_or_numbers(set, Sweep::<L, false> { blocks, law })?;
@@ -78,6 +82,7 @@ impl<L: HyperelasticLaw, const ALL: bool> WithReal<f64> for Sweep<'_, '_, L, ALL
             region,
             scratch,
             relaxing,
+            wanted,
             add,
             ..
         } = self.blocks;
@@ -110,7 +115,7 @@ impl<L: HyperelasticLaw, const ALL: bool> WithReal<f64> for Sweep<'_, '_, L, ALL
                 let mut block = own_block(law, &at, left, gradient);
                 if ALL {
                     let at = &at.deformation;
-                    block = block + block_beside(region, relaxing, first, at, gradient);
+                    block = block + block_beside(region, relaxing, first, at, (*wanted, gradient));
                 }
                 store(block.scaled(rest.volumes(first)), &mut lanes);
                 let nodes = rest.nodes_from(vertex, first);

@@ -1,4 +1,4 @@
-//! Products of the tangent with a change of the displacement, without a matrix.
+//! Products of a tangent, or of the viscosity, with a change of the displacement, without a matrix.
 
 use sinew_core::{EvaluationError, TangentKind};
 use sinew_sparse::simd::{InstructionSet, Number, Vectors, WithReal};
@@ -10,19 +10,8 @@ use super::means::{add, at_edges, mean_at_edges, means, require};
 use super::memory::{Past, Points, Relaxing};
 use super::region::HyperelasticRegion;
 use super::scratch::Scratch;
+use super::wanted::Wanted;
 use crate::hyperelastic::{Bulk, HyperelasticLaw, LawVisitor, Linearised, Point, Tensor};
-
-/// The tangent of a product.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Wanted {
-    /// One of a kind.
-    Kind(TangentKind),
-    /// That which stiffness damping multiplies: the exact one, so that the rate of a stress is damped, but with rotations held fast where a
-    /// law has one, which is semidefinite; of stress that relaxes, as it is at once.
-    Damped,
-    /// That which bounds a stable step: the exact one, with fibres that are idle as if they were pulled, since they may be before the next look.
-    Stiffest,
-}
 
 /// Writes the change of the forces at the corners of a region's tetrahedra, by these instructions.
 pub(super) fn product(
@@ -32,16 +21,14 @@ pub(super) fn product(
     wanted: Wanted,
     set: InstructionSet,
 ) -> Result<(), EvaluationError> {
-    region.law.with_law(Products {
+    let products = Products {
         region,
         scratch,
-        relaxing: match wanted {
-            Wanted::Damped => Relaxing::none(),
-            Wanted::Kind(_) | Wanted::Stiffest => Relaxing::of(region.memory.as_ref(), past),
-        },
+        relaxing: wanted.relaxing(region, past),
         wanted,
         set,
-    })
+    };
+    wanted.with_law(region, products)
 }
 
 struct Products<'a> {
@@ -52,21 +39,17 @@ struct Products<'a> {
     set: InstructionSet,
 }
 
+impl Products<'_> {
+    fn has_beside(&self) -> bool {
+        self.wanted.has_beside(self.region)
+    }
+}
+
 impl LawVisitor for Products<'_> {
     type Output = Result<(), EvaluationError>;
 
     fn visit<L: HyperelasticLaw>(self, law: L) -> Self::Output {
-        let kind = match self.wanted {
-            Wanted::Kind(kind) => kind,
-            Wanted::Stiffest => TangentKind::Exact,
-            Wanted::Damped => {
-                let at = law.at(Tensor::<f64>::zero());
-                match law.frozen_tangent(&at, Tensor::zero()) {
-                    Some(_) => TangentKind::Frozen,
-                    None => TangentKind::Exact,
-                }
-            }
-        };
+        let kind = self.wanted.kind();
         let set = self.set;
         let projects = Linearised::<f64, L>::projects(&law, kind);
         let sweep = Sweep::<L, false> {
@@ -74,7 +57,7 @@ impl LawVisitor for Products<'_> {
             law,
             kind,
         };
-        if sweep.products.region.has_beside() || projects {
+        if sweep.products.has_beside() || projects {
             sweep.of_all().run::<f64>()
         } else {
             f64::with_vectors_or_numbers(set, sweep)
@@ -188,8 +171,7 @@ impl<'a, L: HyperelasticLaw, const ALL: bool> Sweep<'a, L, ALL> {
                 stress = stress.plus(N::of(region.edge_share / 6.0), load(&sums));
             }
             if ALL {
-                let how = (kind, wanted == Wanted::Stiffest);
-                let beside = TangentBeside::of(region, &relaxing, first, &at.deformation, how);
+                let beside = TangentBeside::of(region, &relaxing, first, &at.deformation, wanted);
                 stress = beside.with(stress, change);
             }
             rest.forces(first, stress, &mut corners[4 * first..]);

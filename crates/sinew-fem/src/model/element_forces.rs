@@ -16,7 +16,7 @@ use super::Model;
 use super::field_error::require_inputs;
 use crate::following::FollowingPressure;
 use crate::large::SharedForces;
-use crate::motion::Motions;
+use crate::motion::{Field, Motions};
 
 /// Marks what is not there.
 const NONE: u32 = u32::MAX;
@@ -219,13 +219,10 @@ impl<T: Vectors + ElementPrecision> ElementSweep<T> for Sweep<T> {
         if self.moved.is_empty() {
             return Ok(());
         }
-        require_inputs(self.motions.ramps(), when.inputs()).map_err(|error| EvaluationError {
-            element: 0,
-            reason: error.to_string(),
-        })?;
-        let at = self.motions.at(when);
+        require_inputs(self.motions.ramps(), when.inputs()).map_err(EvaluationError::of_body)?;
+        let at = self.motions.at(when, Field::Displacement);
         for (node, position) in &self.moved {
-            let [x, y, z] = self.motions.field(&at, 0, *node).map(<T as Real>::of);
+            let [x, y, z] = self.motions.at_node(&at, *node).map(<T as Real>::of);
             match self.offsets.get_mut(*position as usize) {
                 Some(offset) => *offset = [x, y, z],
                 // SAFETY: `self` is borrowed for this call alone.
@@ -323,10 +320,7 @@ impl<T: Vectors + ElementPrecision> ElementSweep<T> for Sweep<T> {
             .map(|forces| forces.make_alone(displacement));
         match refused {
             Some(Err(error)) => error,
-            Some(Ok(())) | None => EvaluationError {
-                element: 0,
-                reason: "its law has no meaning there".to_owned(),
-            },
+            Some(Ok(())) | None => EvaluationError::of_body("its law has no meaning there"),
         }
     }
 }

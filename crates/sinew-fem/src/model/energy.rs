@@ -1,6 +1,6 @@
 //! Energies and loads over all nodes, held and moved ones included.
 
-use sinew_core::LoadTime;
+use sinew_core::{Energy, LoadTime, System};
 
 use super::Model;
 use super::field_error::{FieldError, require_inputs};
@@ -37,6 +37,27 @@ impl Model {
         let linear = (0..parts.count()).filter(|part| !parts.is_hyperelastic(*part));
         let linear: f64 = linear.map(energy).sum();
         Ok(linear + self.large_energy(displacement))
+    }
+
+    /// The kinetic and elastic energy (J) of a motion at a time, as a balance of energy counts them: where parts are moved, those of held and moved nodes
+    /// included. `None` outside a law's domain.
+    pub(crate) fn energy_with_supports(
+        &self,
+        when: LoadTime<'_>,
+        u: &[f64],
+        v: &[f64],
+    ) -> Result<Option<Energy>, FieldError> {
+        if self.motions.is_empty() {
+            return Ok(self.energy(u, v));
+        }
+        let mut nodes = vec![[0.0; 3]; self.mesh.points.len()];
+        self.velocities_at(when, v, &mut nodes)?;
+        let squares = nodes.iter().map(|v| v.iter().map(|v| v * v).sum::<f64>());
+        let terms = squares.zip(self.node_masses());
+        let kinetic = terms.map(|(square, mass)| 0.5 * mass * square).sum();
+        self.displacements_at(when, u, &mut nodes)?;
+        let elastic = self.elastic_energy(&nodes)?;
+        Ok(elastic.is_finite().then_some(Energy { kinetic, elastic }))
     }
 
     /// Writes the forces (N) of loads and gravity at each node of the mesh at a time (s), with these displacements (m) of the nodes

@@ -3,14 +3,16 @@
 use std::sync::Arc;
 
 use sinew_core::spectrum::{Spectrum, estimated_largest_eigenvalue, largest_eigenvalue};
+use sinew_core::vectors::scale;
 use sinew_core::{
     BlockMatrix, Damping, Deformed, ElasticLaw, ElementForces, EvaluationError, ForceLaw, Hash,
-    LoadTime, Pattern, State, TangentKind, Trial,
+    LoadTime, Pattern, State, TangentKind, Trial, Velocities,
 };
 
 use super::Model;
 use crate::following::{FollowingPressure, Part};
 use crate::large::{LargeDeformation, Past, Scratch, Wanted, fill};
+use crate::motion::Field;
 
 /// A hyperelastic body at a trial point. Evaluations of models without such regions leave everything to the matrices.
 impl Model {
@@ -25,7 +27,12 @@ impl Model {
             return Ok(T::default());
         };
         large.with_scratch(|scratch| {
-            self.fill(when, 0, u, &mut scratch.displacement)?;
+            self.fill(
+                when,
+                Field::Displacement,
+                Some(u),
+                &mut scratch.displacement,
+            )?;
             with(large, scratch)
         })
     }
@@ -67,20 +74,16 @@ impl Model {
     fn fill(
         &self,
         when: LoadTime<'_>,
-        order: usize,
-        values: &[f64],
+        field: Field,
+        values: Option<&[f64]>,
         out: &mut [[f64; 4]],
     ) -> Result<(), EvaluationError> {
-        let field = self.at_nodes(when, order, Some(values));
-        let field = field.map_err(|error| EvaluationError {
-            element: 0,
-            reason: error.to_string(),
-        })?;
-        fill(out, field);
+        let field = self.at_nodes(when, field, values);
+        fill(out, field.map_err(EvaluationError::of_body)?);
         Ok(())
     }
 
-    /// `out = K w` (N), K being a tangent.
+    /// `out = K w` (N), K being a tangent or the viscosity.
     fn product(
         &self,
         trial: &Trial<'_>,
@@ -94,6 +97,32 @@ impl Model {
             large.product(scratch, past(trial), wanted)?;
             self.add_at_nodes(large, scratch, 1.0, out);
             Ok(())
+        })
+    }
+
+    /// Adds so many times the own blocks (N/m) of hyperelastic regions to those of all cells.
+    fn add_large_blocks(
+        &self,
+        trial: &Trial<'_>,
+        (wanted, factor): (Wanted, f64),
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        let cells = &self.body.cells;
+        self.at_trial((trial.load, trial.u), |large, scratch| {
+            large.node_blocks(scratch, past(trial), wanted, |node, block| {
+                let Some(cell) = cells.of_node(node) else {
+                    return;
+                };
+                let first = 3 * cell as usize;
+                for (k, out) in out[9 * cell as usize..9 * cell as usize + 9]
+                    .iter_mut()
+                    .enumerate()
+                {
+                    if !cells.pinned[first + k / 3] && !cells.pinned[first + k % 3] {
+                        *out += factor * block[k / 3][k % 3];
+                    }
+                }
+            })
         })
     }
 
@@ -143,7 +172,7 @@ impl Model {
         when: LoadTime<'_>,
         u: &'a [f64],
     ) -> impl Fn(u32) -> [f64; 3] + 'a {
-        let known = self.at_nodes(when, 0, Some(u)).ok();
+        let known = self.at_nodes(when, Field::Displacement, Some(u)).ok();
         move |node| match &known {
             Some(known) => known(node),
             None => self.body.cells.at_node(u, node),
@@ -167,8 +196,13 @@ impl ForceLaw for Model {
             self.add_at_nodes(large, scratch, -1.0, out);
             self.add_following(trial.load, |node| at(&scratch.displacement, node), out);
             if beta != 0.0 {
-                self.fill(trial.load, 1, trial.v, &mut scratch.change)?;
-                large.product(scratch, past(trial), Wanted::Damped)?;
+                self.fill(
+                    trial.load,
+                    Field::Velocity,
+                    Some(trial.v),
+                    &mut scratch.change,
+                )?;
+                large.product(scratch, past(trial), Wanted::Viscosity)?;
                 self.add_at_nodes(large, scratch, -beta, out);
             }
             Ok(())
@@ -236,24 +270,32 @@ impl ForceLaw for Model {
             internal: about.map_or(&[], |state| &state.internal),
         };
         let mut failed = false;
-        let mut product = |x: &[f64], out: &mut [f64]| {
-            let product = self.product(&trial, Wanted::Stiffest, x, out);
-            self.add_load_product(&trial, (Part::Symmetric, 1.0), x, out);
+        let mut product = |wanted: Wanted, x: &[f64], out: &mut [f64]| {
+            let product = self.product(&trial, wanted, x, out);
             failed |= product.is_err() || !out.iter().all(|value| value.is_finite());
         };
         let largest = |product: &mut dyn FnMut(&[f64], &mut [f64])| match about {
             Some(_) => estimated_largest_eigenvalue(mass, product),
             None => largest_eigenvalue(mass, product),
         };
-        let eigenvalue = largest(&mut product).max(0.0);
+        let eigenvalue = largest(&mut |x, out| {
+            product(Wanted::Stiffest, x, out);
+            self.add_load_product(&trial, (Part::Symmetric, 1.0), x, out);
+        });
+        let eigenvalue = eigenvalue.max(0.0);
+        // Only at rest viscosity is the tangent.
+        let is_tangent = about.is_none() || damping.stiffness == 0.0;
         let damping_max = match &damping.extra {
-            None => damping.stiffness * eigenvalue,
-            Some(extra) => largest(&mut |x, out| {
-                product(x, out);
-                out.iter_mut()
-                    .for_each(|value| *value *= -damping.stiffness);
-                extra.subtract_product(x, out);
-                out.iter_mut().for_each(|value| *value = -*value);
+            None if is_tangent => damping.stiffness * eigenvalue,
+            extra => largest(&mut |x, out| {
+                out.fill(0.0);
+                if damping.stiffness != 0.0 {
+                    product(Wanted::MostViscous, x, out);
+                    scale(out, damping.stiffness);
+                }
+                if let Some(extra) = extra {
+                    extra.subtract_scaled_product(-1.0, x, out);
+                }
             }),
         };
         (!failed).then_some(Spectrum {
@@ -261,7 +303,7 @@ impl ForceLaw for Model {
             damping_max,
             mass_damping: damping.mass,
             stiffness_damping: damping.stiffness,
-            proportional: damping.extra.is_none(),
+            proportional: is_tangent && damping.extra.is_none(),
         })
     }
 }
@@ -294,10 +336,10 @@ impl ElasticLaw for Model {
         kind: TangentKind,
         out: &mut BlockMatrix,
     ) -> Result<(), EvaluationError> {
-        let set = out.set_to(self.operators.stiffness());
-        debug_assert!(set.is_ok(), "linear regions couple no others");
+        out.set_to(self.operators.stiffness())?;
         self.at_trial((trial.load, trial.u), |large, scratch| {
-            large.add_tangent(scratch, past(trial), kind, &self.body.cells, out)
+            let wanted = Wanted::Kind(kind);
+            large.add_tangent(scratch, past(trial), wanted, (&self.body.cells, 1.0, out))
         })
     }
 
@@ -311,40 +353,41 @@ impl ElasticLaw for Model {
         self.product(trial, Wanted::Kind(kind), w, out)
     }
 
+    fn stiffest_product(
+        &self,
+        trial: &Trial<'_>,
+        w: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        self.product(trial, Wanted::Stiffest, w, out)?;
+        self.add_load_product(trial, (Part::Symmetric, 1.0), w, out);
+        Ok(())
+    }
+
     fn node_blocks(&self, trial: &Trial<'_>, out: &mut [f64]) -> Result<(), EvaluationError> {
         self.operators.node_blocks(trial, out)?;
-        let cells = &self.body.cells;
-        self.at_trial((trial.load, trial.u), |large, scratch| {
-            large.node_blocks(scratch, past(trial), |node, block| {
-                let Some(cell) = cells.of_node(node) else {
-                    return;
-                };
-                let first = 3 * cell as usize;
-                for (k, out) in out[9 * cell as usize..9 * cell as usize + 9]
-                    .iter_mut()
-                    .enumerate()
-                {
-                    if !cells.pinned[first + k / 3] && !cells.pinned[first + k % 3] {
-                        *out += block[k / 3][k % 3];
-                    }
-                }
-            })
-        })
+        let tangent = Wanted::Kind(TangentKind::Exact);
+        self.add_large_blocks(trial, (tangent, 1.0), out)
     }
 
     fn loads_follow(&self) -> bool {
         !self.following.is_empty()
     }
 
-    fn add_load_stiffness(&self, trial: &Trial<'_>, factor: f64, out: &mut BlockMatrix) {
+    fn add_load_stiffness(
+        &self,
+        trial: &Trial<'_>,
+        factor: f64,
+        out: &mut BlockMatrix,
+    ) -> Result<(), EvaluationError> {
         if self.following.is_empty() {
-            return;
+            return Ok(());
         }
         let displacement = self.displacement_of(trial.load, trial.u);
-        for pressure in &*self.following {
+        self.following.iter().try_for_each(|pressure| {
             let factor = factor * pressure.factor(trial.load);
-            pressure.add_stiffness(factor, &self.body.cells, &displacement, out);
-        }
+            pressure.add_stiffness(factor, &self.body.cells, &displacement, out)
+        })
     }
 
     fn load_skew_product(&self, trial: &Trial<'_>, factor: f64, w: &[f64], out: &mut [f64]) {
@@ -354,6 +397,74 @@ impl ElasticLaw for Model {
 
     fn damping(&self) -> &Damping {
         self.operators.damping()
+    }
+
+    fn supports_move(&self) -> bool {
+        !self.motions.is_empty()
+    }
+
+    /// Without the motion of supports of linear regions, which is among the loads.
+    fn viscous_force(
+        &self,
+        trial: &Trial<'_>,
+        of: Velocities<'_>,
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        out.fill(0.0);
+        let beta = self.operators.damping().stiffness;
+        if beta == 0.0 {
+            return Ok(());
+        }
+        if let Velocities::Cells(w) | Velocities::All(w) = of {
+            self.operators.stiffness().multiply(w, out);
+            scale(out, beta);
+        }
+        self.at_trial((trial.load, trial.u), |large, scratch| {
+            let change = &mut scratch.change;
+            match of {
+                Velocities::Cells(w) => fill(change, |node| self.body.cells.at_node(w, node)),
+                Velocities::All(w) => self.fill(trial.load, Field::Velocity, Some(w), change)?,
+                Velocities::Supports => self.fill(trial.load, Field::Velocity, None, change)?,
+            }
+            large.product(scratch, past(trial), Wanted::Viscosity)?;
+            self.add_at_nodes(large, scratch, beta, out);
+            Ok(())
+        })
+    }
+
+    fn add_viscosity(
+        &self,
+        trial: &Trial<'_>,
+        factor: f64,
+        out: &mut BlockMatrix,
+    ) -> Result<(), EvaluationError> {
+        let factor = factor * self.operators.damping().stiffness;
+        if factor == 0.0 {
+            return Ok(());
+        }
+        let added = out.add_scaled(factor, self.operators.stiffness());
+        added.map_err(|error| EvaluationError {
+            element: 0,
+            reason: error.to_string(),
+        })?;
+        self.at_trial((trial.load, trial.u), |large, scratch| {
+            let to = (&self.body.cells, factor, out);
+            large.add_tangent(scratch, past(trial), Wanted::Viscosity, to)
+        })
+    }
+
+    fn add_viscous_blocks(
+        &self,
+        trial: &Trial<'_>,
+        factor: f64,
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        let scaled = factor * self.operators.damping().stiffness;
+        if scaled == 0.0 {
+            return Ok(());
+        }
+        self.operators.add_viscous_blocks(trial, factor, out)?;
+        self.add_large_blocks(trial, (Wanted::Viscosity, scaled), out)
     }
 }
 

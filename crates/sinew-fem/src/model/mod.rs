@@ -1,6 +1,7 @@
 //! The model of a body.
 
 mod after_cut;
+mod damping;
 mod deformed;
 mod element_bounds;
 mod element_forces;
@@ -9,6 +10,7 @@ mod field_error;
 mod follow_split;
 mod force_law;
 mod forces;
+mod free_parts;
 mod motion;
 mod nodes;
 mod other_ramps;

@@ -5,11 +5,12 @@ use sinew_core::{Load, LoadTime, Ramp};
 use super::Model;
 use super::field_error::{FieldError, require_inputs};
 use crate::error::{Cause, FemError, Item};
+use crate::motion::Field;
 use crate::{Course, SupportMotion};
 
 impl Model {
     /// This model with the pull of its prescribed motions among the loads: for each course `d r(t)` the loads
-    /// `-K_fp d r(t)` and `-D_fp d r'(t)`. Mass damping acts on the velocity of the moved nodes alone, and
+    /// `-K_fp d r(t)`, by the place where it is at the instant, and `-D_fp d r'(t)`. Mass damping acts on the velocity of the moved nodes alone, and
     /// so is part of their reactions only.
     pub(super) fn in_motion(mut self) -> Result<Self, FemError> {
         if self.motions.is_empty() {
@@ -34,7 +35,7 @@ impl Model {
                         self.load_items.push(item);
                     }
                 };
-                pull(course.ramp.clone(), stiffness);
+                pull(Ramp::Position(Box::new(course.ramp.clone())), stiffness);
                 pull(course.ramp.rate(), damping);
             }
         }
@@ -64,7 +65,7 @@ impl Model {
         u: &[f64],
         out: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
-        self.field_at(when.into(), 0, u, out)
+        self.field_at(when.into(), Field::Displacement, u, out)
     }
 
     /// Writes the velocities (m/s) of all nodes of the mesh at a time (s), with the velocity `v` (m/s) of the degrees of
@@ -78,7 +79,7 @@ impl Model {
         v: &[f64],
         out: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
-        self.field_at(when.into(), 1, v, out)
+        self.field_at(when.into(), Field::Velocity, v, out)
     }
 
     /// Writes the accelerations (m/s^2) of all nodes of the mesh at a time (s), with the acceleration `a` (m/s^2) of the
@@ -92,7 +93,7 @@ impl Model {
         a: &[f64],
         out: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
-        self.field_at(when.into(), 2, a, out)
+        self.field_at(when.into(), Field::Acceleration, a, out)
     }
 
     /// Writes the positions (m) of all nodes of the mesh at a time (s), with the displacement `u` (m) of the degrees
@@ -106,7 +107,7 @@ impl Model {
         u: &[f64],
         out: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
-        self.field_at(when.into(), 0, u, out)?;
+        self.field_at(when.into(), Field::Displacement, u, out)?;
         for (point, out) in self.mesh.points.iter().zip(out) {
             for (point, out) in point.iter().zip(out) {
                 *out += point;
@@ -127,7 +128,9 @@ impl Model {
     ) -> Result<[f64; 3], FieldError> {
         self.require_dofs("the displacement", u)?;
         self.require_node(node)?;
-        Ok(self.at_nodes(when.into(), 0, Some(u))?(node))
+        Ok(self.at_nodes(when.into(), Field::Displacement, Some(u))?(
+            node,
+        ))
     }
 
     /// A function that gives the velocity (m/s) of each mesh node (0-based) at a time (s), with the velocity `v` (m/s) of
@@ -141,35 +144,34 @@ impl Model {
         v: &'a [f64],
     ) -> Result<impl Fn(u32) -> [f64; 3] + 'a, FieldError> {
         self.require_dofs("the velocity", v)?;
-        self.at_nodes(when.into(), 1, Some(v))
+        self.at_nodes(when.into(), Field::Velocity, Some(v))
     }
 
-    /// A function that gives the field number `order` of displacement, velocity and acceleration at each node, from the
-    /// `values` of the degrees of freedom.
+    /// A function that gives a field at each node, from the `values` of the degrees of freedom.
     pub(crate) fn at_nodes<'a>(
         &'a self,
         when: LoadTime<'_>,
-        order: usize,
+        field: Field,
         values: Option<&'a [f64]>,
     ) -> Result<impl Fn(u32) -> [f64; 3] + 'a, FieldError> {
         require_inputs(self.motions.ramps(), when.inputs())?;
-        let at = self.motions.at(when);
+        let at = self.motions.at(when, field);
         Ok(move |node| {
             let own = values.map_or([0.0; 3], |values| self.body.cells.at_node(values, node));
-            sum(own, self.motions.field(&at, order, node))
+            sum(own, self.motions.at_node(&at, node))
         })
     }
 
     fn field_at(
         &self,
         when: LoadTime<'_>,
-        order: usize,
+        field: Field,
         values: &[f64],
         out: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
         self.require_nodes("the output", out)?;
         out.fill([0.0; 3]);
-        self.each_value(when, order, values, |node, value| {
+        self.each_value(when, field, values, |node, value| {
             let out = &mut out[node as usize];
             *out = sum(*out, value);
         })
@@ -184,18 +186,18 @@ impl Model {
         numbers: &[u32],
         places: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
-        self.each_value(when, 0, u, |node, displacement| {
+        self.each_value(when, Field::Displacement, u, |node, displacement| {
             let place = &mut places[numbers[node as usize] as usize];
             *place = sum(*place, displacement);
         })
     }
 
-    /// Calls `take` with the parts that the field number `order` has at nodes of the mesh: those that move by themselves, and then those
+    /// Calls `take` with the parts that a field has at nodes of the mesh: those that move by themselves, and then those
     /// that are moved.
     fn each_value(
         &self,
         when: LoadTime<'_>,
-        order: usize,
+        field: Field,
         values: &[f64],
         mut take: impl FnMut(u32, [f64; 3]),
     ) -> Result<(), FieldError> {
@@ -204,9 +206,9 @@ impl Model {
         for (cell, node) in self.body.cells.nodes.iter().enumerate() {
             take(*node, self.body.cells.at_cell(values, cell));
         }
-        let at = self.motions.at(when);
+        let at = self.motions.at(when, field);
         for node in self.motions.moved() {
-            take(node, self.motions.field(&at, order, node));
+            take(node, self.motions.at_node(&at, node));
         }
         Ok(())
     }

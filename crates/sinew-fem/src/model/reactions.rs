@@ -7,6 +7,7 @@ use super::field_error::{FieldError, require_inputs};
 use crate::On;
 use crate::border::Border;
 use crate::large::{Past, Wanted, fill};
+use crate::motion::Field;
 
 impl Model {
     /// Nodes (0-based) that are held or moved in some direction, increasing.
@@ -27,8 +28,9 @@ impl Model {
     ///
     /// At each held or moved component p it is `M_p (a_p + alpha v_p) + (K u + D v)_p - F_p(t)`: the force
     /// of its prescribed motion, the pull of all other components, less the model's own loads on p, so that all
-    /// reactions together are minus all loads where nothing moves. A velocity reached by a jump takes an
-    /// impulse, which is not a force. Loads that were given to the system in other ways are not
+    /// reactions together are minus all loads where nothing moves. A change of speed at an instant, as at a row of a table, takes an
+    /// impulse, which is a force over some time only: [`LoadTime::around`] names the time, two steps of a run or the distances to the rows
+    /// before and after, over which `a_p` is then a mean. Loads that were given to the system in other ways are not
     /// included; add those of [`NodalForces::dropped`](super::NodalForces) by hand.
     ///
     /// The first call sums up the rows of the held nodes; later ones allocate nothing but a few numbers for each
@@ -138,15 +140,24 @@ impl Model {
         motion: [&[[f64; 3]]; 3],
         out: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
+        self.moving_reactions_after(Past::RELAXED, when.into(), motion, out)
+    }
+
+    pub(super) fn moving_reactions_after(
+        &self,
+        past: Past<'_>,
+        when: LoadTime<'_>,
+        motion: [&[[f64; 3]]; 3],
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
         let names = ["the displacement", "the velocity", "the acceleration"];
         for (what, field) in names.into_iter().zip(motion) {
             self.require_nodes(what, field)?;
         }
         self.require_nodes("the output", out)?;
-        let when = when.into();
         self.require_held_inputs(when)?;
         let [u, v, a] = motion.map(|field| move |node: u32| field[node as usize]);
-        self.held_forces(when, self.row_forces((when, Past::RELAXED), u, v, a), out);
+        self.held_forces(when, self.row_forces((when, past), u, v, a), out);
         Ok(())
     }
 
@@ -165,9 +176,9 @@ impl Model {
         self.require_held_inputs(when)?;
         Ok(self.row_forces(
             (when, past),
-            self.at_nodes(when, 0, Some(u))?,
-            self.at_nodes(when, 1, Some(v))?,
-            self.at_nodes(when, 2, None)?,
+            self.at_nodes(when, Field::Displacement, Some(u))?,
+            self.at_nodes(centred(when), Field::Velocity, Some(v))?,
+            self.at_nodes(when, Field::Acceleration, None)?,
         ))
     }
 
@@ -219,7 +230,7 @@ impl Model {
             });
             if beta != 0.0 {
                 fill(&mut scratch.change, &v);
-                large.product(scratch, past, Wanted::Damped)?;
+                large.product(scratch, past, Wanted::Viscosity)?;
                 large.at_nodes(scratch, |node, force| {
                     subtract(&mut forces[node as usize], -beta, &force);
                 });
@@ -229,8 +240,10 @@ impl Model {
         if evaluated.is_err() {
             forces.fill([f64::NAN; 3]);
         }
+        // Forces at the instant: the window is that of accelerations.
+        let now = LoadTime::at(when.t()).under(when.inputs());
         for pressure in &*self.following {
-            pressure.forces(pressure.factor(when), &u, |node, force| {
+            pressure.forces(pressure.factor(now), &u, |node, force| {
                 subtract(&mut forces[node as usize], 1.0, &force);
             });
         }
@@ -256,13 +269,25 @@ impl Model {
     }
 
     /// The components that are held; zero in those that move by themselves.
-    fn held_part(&self, node: u32, force: [f64; 3]) -> [f64; 3] {
+    pub(super) fn held_part(&self, node: u32, force: [f64; 3]) -> [f64; 3] {
         let cells = &self.body.cells;
         std::array::from_fn(|axis| match cells.free_dof(node, axis) {
             Some(_) => 0.0,
             None => force[axis],
         })
     }
+}
+
+/// The time with as much of its window on both sides: the velocity of a kink in the midst is the mean of both, and where there is one side only,
+/// as at the start, it is that of the instant.
+fn centred(when: LoadTime<'_>) -> LoadTime<'_> {
+    let ((from, to), t) = (when.span(), when.t());
+    let half = (t - from).min(to - t);
+    let centred = match half > 0.0 {
+        true => LoadTime::around(t, half, half),
+        false => LoadTime::at(t),
+    };
+    centred.under(when.inputs())
 }
 
 /// The factor at an instant.

@@ -1,6 +1,6 @@
 //! Loads of a model at their full value, for bodies at rest.
 
-use sinew_core::{BlockMatrix, LoadTime, StaticLoad};
+use sinew_core::{BlockMatrix, EvaluationError, LoadTime, StaticLoad};
 
 use super::Model;
 use crate::following::{FollowingPressure, Part};
@@ -48,11 +48,16 @@ impl StaticLoad for ModelLoads<'_> {
         }
     }
 
-    fn add_stiffness(&self, u: &[f64], factor: f64, out: &mut BlockMatrix) {
+    fn add_stiffness(
+        &self,
+        u: &[f64],
+        factor: f64,
+        out: &mut BlockMatrix,
+    ) -> Result<(), EvaluationError> {
         let displacement = self.model.displacement_of(LoadTime::at(0.0), u);
-        for pressure in &self.following {
-            pressure.add_stiffness(factor, &self.model.body.cells, &displacement, out);
-        }
+        let cells = &self.model.body.cells;
+        let mut following = self.following.iter();
+        following.try_for_each(|pressure| pressure.add_stiffness(factor, cells, &displacement, out))
     }
 
     fn skew_product(&self, u: &[f64], factor: f64, w: &[f64], out: &mut [f64]) -> bool {

@@ -6,6 +6,7 @@ use super::Model;
 use super::field_error::{FieldError, require_length};
 use crate::large::Past;
 use crate::material::Material;
+use crate::motion::Field;
 use crate::smoothing::{MeanStrains, SmoothedStrain, scaled};
 use crate::springs::Spring;
 use crate::{stress, tetra};
@@ -28,7 +29,7 @@ impl Model {
     ) -> Result<(), FieldError> {
         self.require_dofs("the displacement", u)?;
         require_length("the output", out.len(), self.region_of.len())?;
-        let at_node = self.at_nodes(when.into(), 0, Some(u))?;
+        let at_node = self.at_nodes(when.into(), Field::Displacement, Some(u))?;
         for (tet, out) in out.iter_mut().enumerate() {
             *out = self.strain_of(&at_node, tet);
         }
@@ -64,7 +65,7 @@ impl Model {
     ) -> Result<(), FieldError> {
         self.strain(when, u, out)?;
         let means = self.mean_strains(|tet| out[tet]);
-        let at_node = self.at_nodes(when, 0, Some(u))?;
+        let at_node = self.at_nodes(when, Field::Displacement, Some(u))?;
         for (tet, out) in out.iter_mut().enumerate() {
             *out = match self.large_stress(tet, past, &at_node) {
                 Some(stress) => stress,
@@ -100,7 +101,7 @@ impl Model {
         if tet >= tets {
             return Err(FieldError::TetOutOfRange { tet, tets });
         }
-        let at_node = self.at_nodes(when, 0, Some(u))?;
+        let at_node = self.at_nodes(when, Field::Displacement, Some(u))?;
         if let Some(stress) = self.large_stress(tet, past, &at_node) {
             return Ok(stress);
         }

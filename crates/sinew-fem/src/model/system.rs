@@ -1,13 +1,15 @@
 //! The traits by which integrators see a model.
 
 use sinew_core::{
-    Contact, ElementStiffness, Elements, Energy, Equations, Inputs, Layers, LinearOperators,
-    LinearSystem, LoadTime, Revision, Scales, State, System, element_omegas_squared,
+    Contact, ElementStiffness, Elements, Energy, Equations, EvaluationError, FreePart, Inputs,
+    Layers, LinearOperators, LinearSystem, LoadTime, Revision, Scales, State, System,
+    element_omegas_squared,
 };
 
-use super::Model;
+use super::{Model, free_parts};
 use crate::large::fill;
 use crate::material::Material;
+use crate::motion::Field;
 use crate::parts::WholePart;
 use crate::tetra;
 
@@ -40,20 +42,19 @@ impl System for Model {
         self.large.as_ref().map_or(0, |large| large.variables())
     }
 
-    /// Brings memory up to date; where the law has no meaning, which the next evaluation refuses, it stays.
-    fn accept(&self, state: &mut State, inputs: &Inputs, dt: f64) {
+    /// Brings memory up to date.
+    fn accept(&self, state: &mut State, inputs: &Inputs, dt: f64) -> Result<(), EvaluationError> {
         let Some(large) = self.large.as_ref().filter(|large| large.variables() > 0) else {
-            return;
+            return Ok(());
         };
         let when = LoadTime::at(state.t()).under(inputs);
         let State { u, internal, .. } = state;
-        let Ok(displacement) = self.at_nodes(when, 0, Some(u)) else {
-            return;
-        };
+        let displacement = self.at_nodes(when, Field::Displacement, Some(u));
+        let displacement = displacement.map_err(EvaluationError::of_body)?;
         large.with_scratch(|scratch| {
             fill(&mut scratch.displacement, displacement);
-            let _ = large.remember(scratch, dt, internal);
-        });
+            large.remember(scratch, dt, internal)
+        })
     }
 
     fn contact(&self) -> Option<&dyn Contact> {
@@ -67,6 +68,10 @@ impl System for Model {
     fn cell_positions(&self) -> Option<Vec<[f64; 3]>> {
         let place = |node: &u32| self.mesh.points[*node as usize];
         Some(self.body.cells.nodes.iter().map(place).collect())
+    }
+
+    fn free_parts(&self) -> Vec<FreePart> {
+        free_parts::of(&self.mesh, &self.body.cells)
     }
 
     fn stiffness_contrast(&self) -> Option<f64> {
@@ -139,7 +144,7 @@ impl Model {
         if u.len() != self.dofs() {
             return None;
         }
-        let displacement = self.at_nodes(when, 0, Some(u)).ok()?;
+        let displacement = self.at_nodes(when, Field::Displacement, Some(u)).ok()?;
         let moved = move |node: u32| {
             let [x, y, z] = self.mesh.points[node as usize];
             let [ux, uy, uz] = displacement(node);

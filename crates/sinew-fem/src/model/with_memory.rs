@@ -78,4 +78,18 @@ impl WithMemory<'_> {
         self.model
             .reactions_after(self.past, when.into(), [u, v], out)
     }
+
+    /// [`Model::moving_reactions`].
+    ///
+    /// # Errors
+    /// Same as there.
+    pub fn moving_reactions<'a>(
+        &self,
+        when: impl Into<LoadTime<'a>>,
+        motion: [&[[f64; 3]]; 3],
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
+        self.model
+            .moving_reactions_after(self.past, when.into(), motion, out)
+    }
 }

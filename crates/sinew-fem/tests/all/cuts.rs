@@ -346,6 +346,8 @@ fn pieces_that_nothing_holds_can_be_frozen_where_they_are() {
     again.restore(&frozen.0.to_bytes()).unwrap();
     assert_eq!(again.to_bytes(), frozen.0.to_bytes());
     let nodes = again.body().nodes();
+    // Another stroke than the one before.
+    assert_eq!(again.lift(), None);
     let along = |z: f64| [[0.0512, -0.2, z], [0.0512, 0.3, z]];
     let down = Sheet::swept(along(0.3), along(0.072)).unwrap();
     again.stroke(&down, &mut frozen.1, none).unwrap();

@@ -1,10 +1,12 @@
 //! The cellular network as an integrator: one sweep of its templates a step, and a saturated
 //! output; and sweeps over nonlinear tissue that never raise its energy.
 
+mod carried;
+mod coupled_contact;
 mod energy;
 mod network;
-mod ordered;
 mod paper;
+mod solved;
 mod stabilised;
 mod symplectic;
 

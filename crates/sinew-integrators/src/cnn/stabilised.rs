@@ -4,14 +4,15 @@ use std::ops::Bound;
 
 use sinew_cnn::{
     Blend, CellInertia, DampingShare, GammaRule, Inner, LoadAt, Loads, Physics, Program, Register,
-    Stabiliser, Sweep,
+    Slowing, Stabiliser, Sweep,
 };
 use sinew_core::{
     Acceleration, EnergyBehaviour, Fact, Needs, OptionError, OptionValue, Options, Properties,
     SetupError, StepReport, System, VelocityTime,
 };
 
-use super::ordered::OrderedSteps;
+use super::carried::Carried;
+use super::solved::SolvedSteps;
 use crate::explicit::{CentralDifference, GuardOption};
 use crate::scheme::linear;
 use crate::{
@@ -27,7 +28,8 @@ use crate::{
 /// displacements, falls by `dt v' D v` a step: stable at any step, with the exact equilibrium
 /// K u = F. (Multiply the step by the mean of both velocities; the products with K telescope. The
 /// idea of adding stiffness to the mass is that of Chen and Ricles, J. Eng. Mech. 134, 2008, and of
-/// mass scaling.) Below .99 of central difference's limit nothing has to be added to M. Beyond it, as
+/// mass scaling.) Parts that may move as rigid bodies do so with their own mass ([`Stabiliser::sparing`]); elastic motions are slowed down, and set-up computes by how
+/// much the slowest one is ([`Stabiliser::slowing`]). Below .99 of central difference's limit nothing has to be added to M. Beyond it, as
 /// the inner iteration grows, it becomes Newmark's method with beta = s/4.
 ///
 /// Order 2 undamped and with mass damping. With stiffness damping or dashpots:
@@ -114,7 +116,7 @@ const S_OPTION: OptionHelp = OptionHelp {
 };
 
 impl Method for CnnStabilised {
-    const SUMMARY: &'static str = "cellular network, order 2 with mass damping, stable at any step; one sweep a step, more with `inner`";
+    const SUMMARY: &'static str = "cellular network, order 2 with mass damping, stable at any step; one sweep a step, more with `inner`; beyond central difference's step it slows elastic motions down, and `sinew plan` says by how much";
     const OPTIONS: &'static [OptionHelp] = &[INNER_OPTION, GAMMA_OPTION, S_OPTION];
 
     const GUARD: GuardOption = GuardOption::Any;
@@ -190,7 +192,7 @@ fn inner_of(value: &OptionValue) -> Option<Inner> {
 impl Scheme for CnnStabilised {
     const ID: &'static str = "cnn-stabilised";
 
-    type ByHand = OrderedSteps;
+    type ByHand = SolvedSteps;
 
     fn properties(&self) -> Properties {
         let plain = Properties::of_order(2, Needs::Matrices, EnergyBehaviour::Bounded);
@@ -212,21 +214,25 @@ impl Scheme for CnnStabilised {
         &mut self,
         system: &dyn System,
         dt: f64,
-        _before: Option<OrderedSteps>,
-    ) -> Result<SetUp<OrderedSteps>, SetupError> {
+        _before: Option<SolvedSteps>,
+    ) -> Result<SetUp<SolvedSteps>, SetupError> {
         let operators = linear(system, Self::ID)?.operators();
-        let stabiliser = Stabiliser::new(operators, dt, self.gamma, self.blend, self.inner);
+        let stabiliser = Stabiliser::new(operators, dt, self.gamma, self.blend, self.inner)
+            .sparing(system.free_parts());
         self.stabiliser = None;
         let physics = Physics::of(system);
         if stabiliser.majorant().adds_nothing() {
             return Ok(CentralDifference.program(&physics, dt).into());
         }
-        let made = match stabiliser.gauss_seidel() {
-            Some(solver) => {
-                let steps = OrderedSteps::new(solver, &stabiliser, self.inner.sweeps());
+        // Contact is met by programs, or beside sums over parts.
+        let is_open = system.contact().is_none() || stabiliser.spares();
+        let is_carried = is_open && Carried::carries(operators);
+        let made = match program(&stabiliser, &physics, dt).filter(|_| !is_carried) {
+            Some(program) => program.into(),
+            None => {
+                let steps = SolvedSteps::new(&stabiliser, (system, operators), self.inner.sweeps());
                 SetUp::by_hand(steps, StepReport::default())
             }
-            None => program(&stabiliser, &physics, dt).into(),
         };
         self.stabiliser = Some(stabiliser);
         Ok(made)
@@ -238,17 +244,39 @@ impl Scheme for CnnStabilised {
         };
         let majorant = stabiliser.majorant();
         let fact = |name, value| Fact { name, value };
-        vec![
+        let slowing = stabiliser.slowing();
+        let slowing = slowing.map(|slowing| fact("slowest_period", slowing.factor));
+        let facts = [
             fact("s", majorant.s()),
             fact(DAMPING_SHARE, majorant.damping_share()),
             fact("gamma", majorant.gamma()),
             fact("certificate", stabiliser.certificate()),
-        ]
+        ];
+        facts.into_iter().chain(slowing).collect()
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let Some(stabiliser) = self.stabiliser() else {
+            return Vec::new();
+        };
+        let remark = |slowing: Slowing| {
+            let rigid = if stabiliser.spares() {
+                "; parts that may move as rigid bodies fall, fly and turn as they should"
+            } else {
+                ""
+            };
+            format!(
+                "what is added to the mass slows elastic motions down: the period of the slowest one, {:.3} s, is {:.2} times as long at this step (shorter steps or more sweeps of \
+                 `inner` come nearer){rigid}",
+                slowing.period, slowing.factor
+            )
+        };
+        stabiliser.slowing().map(remark).into_iter().collect()
     }
 }
 
-/// The step as a program.
-fn program(stabiliser: &Stabiliser, physics: &Physics, dt: f64) -> Program {
+/// The step as a program; `None` where none expresses how P is solved with.
+fn program(stabiliser: &Stabiliser, physics: &Physics, dt: f64) -> Option<Program> {
     let (u, v, a) = (Register::U, Register::V, Register::A);
     let mut program = Program::new(VelocityTime::MiddleOfStep);
     // Kept so that the velocity at the displacement's time can be had: M^-1 of the force is not the
@@ -265,21 +293,19 @@ fn program(stabiliser: &Stabiliser, physics: &Physics, dt: f64) -> Program {
         start = start.with_dashpots(lagging, v);
     }
     let start = start.scaled(dt / 2.0).with_own(v, 0.0, 1.0);
-    if let Some(solution) = stabiliser.sweeps(&mut program, start) {
-        let weight = dt / 2.0;
-        let kick = solution.added_to(a.becomes([(v, -1.0 / weight)]), 1.0 / weight);
-        let first = solution.added_to(v.becomes([]), 1.0);
-        program.start = vec![before];
-        let moves = [kick.in_last_step(), first, u.plus(dt, v)];
-        program.start.extend(solution.then(moves));
-    }
+    let solution = stabiliser.sweeps(&mut program, start)?;
+    let weight = dt / 2.0;
+    let kick = solution.added_to(a.becomes([(v, -1.0 / weight)]), 1.0 / weight);
+    let first = solution.added_to(v.becomes([]), 1.0);
+    program.start = vec![before];
+    let moves = [kick.in_last_step(), first, u.plus(dt, v)];
+    program.start.extend(solution.then(moves));
 
     let force = program.net_force(physics, u, v, LoadAt::Around).scaled(dt);
-    if let Some(solution) = stabiliser.sweeps(&mut program, force) {
-        program.inertia = solution.is_single().then_some(CellInertia::Blocks);
-        let kick = solution.added_to(a.becomes([]), 1.0 / dt);
-        let next = solution.added_to(v.becomes([(v, 1.0)]), 1.0);
-        program.step = solution.then([kick.in_last_step(), next, u.plus(dt, v)]);
-    }
-    program
+    let solution = stabiliser.sweeps(&mut program, force)?;
+    program.inertia = solution.is_single().then_some(CellInertia::Blocks);
+    let kick = solution.added_to(a.becomes([]), 1.0 / dt);
+    let next = solution.added_to(v.becomes([(v, 1.0)]), 1.0);
+    program.step = solution.then([kick.in_last_step(), next, u.plus(dt, v)]);
+    Some(program)
 }

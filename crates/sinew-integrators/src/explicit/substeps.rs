@@ -1,10 +1,12 @@
 //! `substeps`: a step cut into equal parts.
 
 use sinew_cnn::Program;
-use sinew_core::spectrum::PRODUCTS_OF_ESTIMATE;
+use sinew_core::spectrum::{
+    PRODUCTS_OF_BEGINNING, PRODUCTS_OF_ESTIMATE, Spectrum, follow_largest_eigenvalue,
+};
 use sinew_core::{
-    Batch, Fact, Integrator, LoadTime, OptionError, Options, Prepared, Properties, SetupError,
-    StableStep, State, StepCut, StepError, StepReport, System, Trial,
+    Batch, Damping, ElasticLaw, Fact, Integrator, LoadTime, OptionError, Options, Prepared,
+    Properties, SetupError, StableStep, State, StepCut, StepError, StepReport, System, Trial,
 };
 
 use crate::{OptionDefault, OptionHelp, OptionKind, Stepper};
@@ -101,22 +103,24 @@ pub(super) fn whole(parts: f64) -> u32 {
     parts.ceil().clamp(1.0, f64::from(u32::MAX)) as u32
 }
 
-/// Parts after which the stable step of a law's current stiffness is found anew.
+/// Parts after which damping that is not by mass alone, and the stable step of a law that tells no tangent, are found anew. Until then damping is taken to grow with the stiffness.
 const PARTS_BETWEEN_LOOKS: u32 = 40;
 
-/// Parts after which the cells' own stiffness tells at the latest whether the stable step has shrunk.
+/// Parts after which the fastest motion tells at the latest whether the stable step has shrunk.
 const PARTS_BETWEEN_GLANCES: u32 = 4;
 
-/// Growth of the stiffest cell beyond which its stiffness no longer tells the stable step well enough.
-const MUCH_STIFFER: f64 = 4.0;
+/// Share of the stable step up to which parts stay as they are; of those that are longer more are made, so that they are within [`MARGIN`].
+const KEPT: f64 = 0.95;
 
-/// Change of a cell's velocity in a step, as the share of its size that it moves by in that time, or motion against a neighbour in it, from which on
-/// the stiffness is looked at at once.
+/// Most by which the stable step is expected to shrink until the next glance.
+const MOST_SHRINKING: f64 = 2.0;
+
+/// Motion of a cell in a step, as a share of its size, up to which it is not compared with that of its neighbours.
 const MUCH_MOTION: f64 = 0.05;
 
 /// Most motion of a cell against a neighbour in a part, as a share of its size: with more, strains pass by within a part, and energy comes from
 /// nothing although each part is stable.
-const MOST_MOTION: f64 = 0.15;
+const MOST_MOTION: f64 = 0.1;
 
 /// Largest number of parts into which the current stiffness may cut what takes two parts at rest: where it takes more, something is wrong, and a
 /// run would not end.
@@ -126,9 +130,11 @@ const MOST_PARTS: u32 = 1000;
 pub struct Substepped {
     inner: Box<dyn Stepper>,
     substeps: Substeps,
+    /// Parts into which each part is cut once more.
+    finer: u32,
     parts: Option<(sinew_core::Revision, f64, u32)>,
-    /// Own blocks of all cells (N/m).
-    blocks: Vec<f64>,
+    /// A force (N).
+    room: Vec<f64>,
     /// The state before the step under way.
     kept: State,
 }
@@ -140,14 +146,26 @@ impl Substepped {
         Self {
             inner,
             substeps,
+            finer: 1,
             parts: None,
-            blocks: Vec::new(),
+            room: Vec::new(),
             kept: State::at_rest(0),
         }
     }
 
     /// Parts, at rest, of what is cut by a law's current stiffness: with one, tissue that is a little stiffer would take twice as many.
     pub const PARTS_AT_REST: f64 = 2.0;
+
+    /// The stable step of what is cut, by that of its parts.
+    fn of_whole(&self, of_part: StableStep) -> StableStep {
+        match (of_part, self.substeps) {
+            (StableStep::UpTo(limit), Substeps::Fixed(parts)) => {
+                StableStep::UpTo(limit * f64::from(parts))
+            }
+            (StableStep::UpTo(limit), Substeps::Auto) if limit > 0.0 => StableStep::Any,
+            (other, _) => other,
+        }
+    }
 
     fn parts(&self, system: &dyn System, dt: f64) -> Result<u32, SetupError> {
         if let Some((revision, step, parts)) = self.parts
@@ -159,14 +177,20 @@ impl Substepped {
         match self.substeps {
             Substeps::Fixed(parts) => Ok(parts),
             Substeps::Auto => match self.inner.stable_step(system)? {
-                StableStep::Any => Ok(1),
+                StableStep::Any => Ok(self.finer),
                 StableStep::UpTo(limit) if limit > 0.0 && dt.is_finite() => {
-                    // By a law's current stiffness each of them is cut again.
-                    let parts = match system.as_linear() {
-                        Some(_) => 1.0,
-                        None => Self::PARTS_AT_REST,
-                    };
-                    Substeps::stable_parts_of(self.inner.id(), dt, parts * limit, "substeps")
+                    let id = self.inner.id();
+                    match system.as_linear() {
+                        Some(_) => Substeps::stable_parts_of(id, dt, limit, "substeps")
+                            .map(|parts| parts.saturating_mul(self.finer)),
+                        // By a law's current stiffness each of them is cut again.
+                        None => Substeps::stable_parts_of(
+                            id,
+                            dt,
+                            Self::PARTS_AT_REST * limit,
+                            "substeps",
+                        ),
+                    }
                 }
                 StableStep::UpTo(_) | StableStep::Unknown => Err(SetupError::Lacks {
                     integrator: self.inner.id(),
@@ -178,9 +202,9 @@ impl Substepped {
 }
 
 /// Parts by the current stiffness of a law, of what would take two at rest. They are a function of the state alone, in which they
-/// stand: the stable step is found from a fixed vector, after fixed numbers of parts. In between it is taken to shrink as the stiffest cell's own stiffness grows, of which a step has
-/// the square root: what is left is room until the next look. That costs about a force. A step that turns out to be too long for the
-/// stiffness that it led to, or that the law refuses, is taken again in shorter parts.
+/// stand: after each step, and after four parts of a longer one, a product of the tangent brings the estimate of the fastest motion up to date ([`follow_largest_eigenvalue`]), about two forces. Until
+/// the next one the stable step is taken to shrink as it did since the last one. A step that turns out to be too long for the
+/// stiffness that it led to, or that the law refuses, is taken again in shorter parts, from the state before it: contact, memory and what it made of the energy are undone.
 impl Substepped {
     fn run_by_current_stiffness(
         &mut self,
@@ -199,11 +223,22 @@ impl Substepped {
     }
 
     /// The cut of the first step.
-    fn first_cut(&mut self, batch: &mut Batch<'_>, state: &State) -> Result<StepCut, StepError> {
-        let cut = self.look(batch, state)?;
-        let parts = Substeps::parts_of(batch.dt(), cut.stable_step);
-        if parts <= MOST_PARTS {
-            return Ok(StepCut { parts, ..cut });
+    fn first_cut(
+        &mut self,
+        batch: &mut Batch<'_>,
+        state: &mut State,
+    ) -> Result<StepCut, StepError> {
+        let mut cut = StepCut {
+            parts: 1,
+            taken: PARTS_BETWEEN_LOOKS,
+            stable_step: f64::INFINITY,
+            damping: 0.0,
+        };
+        state.fastest.clear();
+        self.look(&mut cut, batch, state)?;
+        cut.parts = Substeps::parts_of(batch.dt(), cut.stable_step);
+        if cut.parts <= MOST_PARTS {
+            return Ok(cut);
         }
         Err(self.too_stiff(batch.dt(), state))
     }
@@ -217,9 +252,10 @@ impl Substepped {
     ) -> Result<(), StepError> {
         self.kept.clone_from(state);
         loop {
-            let part = batch.dt() / f64::from(cut.parts);
-            self.inner.prepare(batch.system(), part)?;
-            let tried = batch.try_in_parts(cut.parts, |batch| self.try_in(cut, batch, state));
+            let parts = cut.parts.saturating_mul(self.finer);
+            self.inner
+                .prepare(batch.system(), batch.dt() / f64::from(parts))?;
+            let tried = batch.try_in_parts(parts, |batch| self.try_in(cut, batch, state));
             let needed = match &tried {
                 Ok(needed) => *needed,
                 Err(StepError::Refused { .. }) => u32::MAX,
@@ -281,25 +317,21 @@ impl Substepped {
         state: &mut State,
     ) -> Result<u32, StepError> {
         let parts = cut.parts;
-        let stretches = parts.div_ceil(PARTS_BETWEEN_GLANCES);
-        let mut motion = 0.0;
+        let stretch = parts.div_ceil(parts.div_ceil(PARTS_BETWEEN_GLANCES));
         while batch.goes_on() {
-            let stretch = parts.div_ceil(stretches).min(batch.parts_left() as u32);
-            batch.next_parts(stretch, |batch| self.inner.run(batch, state))?;
+            let left = batch.parts_left() as u32 / self.finer;
+            let stretch = stretch.min(left);
+            batch.next_parts(stretch * self.finer, |batch| self.inner.run(batch, state))?;
             if batch.diverged().is_some() {
                 return Ok(u32::MAX);
             }
             cut.taken = cut.taken.saturating_add(stretch);
-            motion = if batch.goes_on() {
-                0.0
-            } else {
-                self.motion(batch.system(), state)
-            };
-            let needed = self.parts_needed(&mut cut, parts, motion, (batch, state))?;
+            let needed = self.parts_needed(&mut cut, parts, (batch, state))?;
             if needed > parts {
                 return Ok(needed);
             }
         }
+        let motion = self.motion(batch.system(), state);
         if motion > MOST_MOTION * f64::from(parts) {
             return Ok(whole(motion / MOST_MOTION));
         }
@@ -307,60 +339,28 @@ impl Substepped {
         Ok(parts)
     }
 
-    /// Looks at the stiffness after some of `parts` parts, where it is time to or the motion of cells against their neighbours was large, and brings the
-    /// cut up to date; the parts that the step needed.
+    /// Looks at the stiffness after some of `parts` parts, and brings the cut up to date; the parts that the step needed.
     fn parts_needed(
         &mut self,
         cut: &mut StepCut,
         parts: u32,
-        motion: f64,
-        (batch, state): (&mut Batch<'_>, &State),
+        (batch, state): (&mut Batch<'_>, &mut State),
     ) -> Result<u32, StepError> {
-        let (part, dt) = (batch.dt(), batch.dt() * f64::from(parts));
-        let growth = if cut.taken >= PARTS_BETWEEN_LOOKS {
-            f64::INFINITY
-        } else if parts > 2
-            || cut.taken % PARTS_BETWEEN_GLANCES < parts
-            || motion > MUCH_MOTION
-            || self.is_accelerated(dt, batch.system(), state)
-        {
-            // Not a number where the law has no such blocks.
-            self.stiffest_cell(batch, state)? / cut.stiffest_cell
-        } else {
-            1.0
-        };
-        if growth.is_nan() || growth <= 1.0 {
+        let before = cut.stable_step;
+        if !self.look(cut, batch, state)? {
             return Ok(parts);
         }
-        let (stable_step, room) = if growth <= MUCH_STIFFER {
-            (cut.stable_step / growth.sqrt(), growth.sqrt())
-        } else {
-            let before = cut.parts;
-            *cut = self.look(batch, state)?;
-            cut.parts = before;
-            // What grew so much may grow on.
-            let grew = growth.is_finite();
-            (
-                cut.stable_step,
-                if grew { MUCH_STIFFER.sqrt() } else { 1.0 },
-            )
-        };
-        let parts_by = |room: f64| Substeps::parts_of(dt, stable_step / room);
-        if part > stable_step {
-            return Ok(parts_by(room));
+        let part = batch.dt() * f64::from(self.finer);
+        let shrinking = (before / cut.stable_step).clamp(1.0, MOST_SHRINKING);
+        let expected = cut.stable_step / shrinking;
+        let enough = || Substeps::parts_of(part * f64::from(parts), expected);
+        if part > cut.stable_step {
+            return Ok(enough());
         }
-        cut.parts = cut.parts.max(parts_by(room).min(MOST_PARTS));
+        if part > KEPT * expected {
+            cut.parts = cut.parts.max(enough().min(MOST_PARTS));
+        }
         Ok(parts)
-    }
-
-    /// Whether some cell was accelerated so much since the step of `dt` (s) began that strains, and with them the stiffness, may have changed.
-    fn is_accelerated(&self, dt: f64, system: &dyn System, state: &State) -> bool {
-        let Some(scales) = system.scales() else {
-            return false;
-        };
-        let layers = system.layers().count();
-        let velocities = [&*state.v, &*self.kept.v];
-        largest_share(velocities, scales.cell_size, layers) * dt > MUCH_MOTION
     }
 
     /// The largest motion of a cell against a neighbour since the step began, over its size; 0 where none moved by more than [`MUCH_MOTION`] of
@@ -388,54 +388,97 @@ impl Substepped {
         (0..pattern.cells()).map(of_cell).fold(0.0, f64::max)
     }
 
-    /// A cut by the stable step about a state.
-    fn look(&mut self, batch: &mut Batch<'_>, state: &State) -> Result<StepCut, StepError> {
-        let stiffest_cell = self.stiffest_cell(batch, state)?;
-        batch.count(StepReport {
-            sweeps: PRODUCTS_OF_ESTIMATE,
-            ..StepReport::default()
-        });
-        let stable_step = match self.inner.stable_step_about(batch.system(), Some(state))? {
-            StableStep::Any => f64::INFINITY,
-            StableStep::UpTo(limit) => limit,
-            StableStep::Unknown => 0.0,
+    /// Brings the stable step up to date with a state; false where it is left as it was.
+    fn look(
+        &mut self,
+        cut: &mut StepCut,
+        batch: &mut Batch<'_>,
+        state: &mut State,
+    ) -> Result<bool, StepError> {
+        let system = batch.system();
+        let elastic = system.as_elastic();
+        let is_damped = |damping: &Damping| damping.stiffness != 0.0 || damping.extra.is_some();
+        let needs_all = elastic.is_none_or(|law| is_damped(law.damping()));
+        let found = if needs_all && cut.taken >= PARTS_BETWEEN_LOOKS {
+            cut.taken = 0;
+            batch.count(sweeps(PRODUCTS_OF_ESTIMATE * (1 + viscous_sweeps(system))));
+            system.spectrum(Some(state))
+        } else if elastic.is_some() {
+            None
+        } else {
+            return Ok(false);
         };
-        Ok(StepCut {
-            parts: 1,
-            taken: 0,
-            stable_step,
-            stiffest_cell,
-        })
+        if let Some(found) = found {
+            let squared = found.omega_max.powi(2);
+            let has_both = squared > 0.0 && found.damping_max > 0.0;
+            cut.damping = if has_both {
+                found.damping_max / squared
+            } else {
+                0.0
+            };
+        }
+        let spectrum = match elastic {
+            Some(law) => {
+                let eigenvalue = self.fastest(law, batch, state)?;
+                let damping = law.damping();
+                Some(Spectrum {
+                    omega_max: eigenvalue.sqrt(),
+                    damping_max: cut.damping * eigenvalue,
+                    mass_damping: damping.mass,
+                    stiffness_damping: damping.stiffness,
+                    proportional: damping.extra.is_none() && damping.stiffness == 0.0,
+                })
+            }
+            None => found,
+        };
+        let stable_step = spectrum.map(|spectrum| self.inner.stable_step_of(&spectrum));
+        cut.stable_step = match stable_step {
+            Some(StableStep::Any) => f64::INFINITY,
+            Some(StableStep::UpTo(limit)) => limit,
+            Some(StableStep::Unknown) | None => 0.0,
+        };
+        Ok(true)
     }
 
-    /// The largest trace of a cell's own block over its mass (1/s^2); 0 where the law has no such blocks.
-    fn stiffest_cell(&mut self, batch: &mut Batch<'_>, state: &State) -> Result<f64, StepError> {
-        let system = batch.system();
-        let Some(elastic) = system.as_elastic() else {
-            return Ok(0.0);
-        };
-        batch.count(StepReport {
-            sweeps: 1,
-            ..StepReport::default()
-        });
-        let layers = system.layers().count();
-        self.blocks.resize(layers * system.dofs(), 0.0);
+    /// The largest eigenvalue (1/s^2) of a law's tangent in a state over the masses.
+    fn fastest(
+        &mut self,
+        law: &dyn ElasticLaw,
+        batch: &mut Batch<'_>,
+        state: &mut State,
+    ) -> Result<f64, StepError> {
+        let mass = batch.system().mass();
+        let mut fields = std::mem::take(&mut state.fastest);
+        batch.count(sweeps(if fields.len() == 2 * mass.len() {
+            1
+        } else {
+            PRODUCTS_OF_BEGINNING
+        }));
+        self.room.resize(mass.len(), 0.0);
         let trial = Trial::of(state, LoadTime::at(state.t()).under(batch.inputs()));
-        let refused = |source| StepError::Refused {
+        let found = follow_largest_eigenvalue(&mut fields, mass, &mut self.room, |x, out| {
+            law.stiffest_product(&trial, x, out)
+        });
+        state.fastest = fields;
+        found.map_err(|source| StepError::Refused {
             t: state.t(),
             source,
-        };
-        elastic
-            .node_blocks(&trial, &mut self.blocks)
-            .map_err(refused)?;
-        let blocks = self.blocks.chunks_exact(layers * layers);
-        let cells = blocks.zip(system.mass().chunks_exact(layers));
-        let stiffness = cells.map(|(block, mass)| {
-            let trace: f64 = block.iter().step_by(layers + 1).sum();
-            trace / mass[0]
-        });
-        Ok(stiffness.fold(0.0, f64::max))
+        })
     }
+}
+
+/// The work of so many sweeps.
+fn sweeps(sweeps: u64) -> StepReport {
+    StepReport {
+        sweeps,
+        ..StepReport::default()
+    }
+}
+
+/// Sweeps that stiffness damping takes where the tangent takes one.
+fn viscous_sweeps(system: &dyn System) -> u64 {
+    let elastic = system.as_elastic();
+    elastic.map_or(0, |law| u64::from(law.damping().stiffness != 0.0))
 }
 
 /// The largest difference of two vectors in a cell over its size.
@@ -452,6 +495,18 @@ impl Stepper for Substepped {
     fn program(&self) -> Option<Program> {
         let (_, _, parts) = self.parts?;
         Some(self.inner.program()?.repeated(parts))
+    }
+
+    fn stable_step_of(&self, spectrum: &Spectrum) -> StableStep {
+        self.of_whole(self.inner.stable_step_of(spectrum))
+    }
+
+    fn refine(&mut self, times: u32) -> bool {
+        if self.substeps != Substeps::Auto {
+            return self.inner.refine(times);
+        }
+        (self.finer, self.parts) = (times.max(1), None);
+        true
     }
 
     fn computed_by(&self) -> Vec<String> {
@@ -488,13 +543,7 @@ impl Integrator for Substepped {
         system: &dyn System,
         state: Option<&State>,
     ) -> Result<StableStep, SetupError> {
-        match (self.inner.stable_step_about(system, state)?, self.substeps) {
-            (StableStep::UpTo(limit), Substeps::Fixed(parts)) => {
-                Ok(StableStep::UpTo(limit * f64::from(parts)))
-            }
-            (StableStep::UpTo(limit), Substeps::Auto) if limit > 0.0 => Ok(StableStep::Any),
-            (other, _) => Ok(other),
-        }
+        Ok(self.of_whole(self.inner.stable_step_about(system, state)?))
     }
 
     fn run(&mut self, batch: &mut Batch<'_>, state: &mut State) -> Result<(), StepError> {

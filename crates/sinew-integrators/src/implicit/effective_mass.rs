@@ -7,7 +7,7 @@ use sinew_core::{
 };
 
 use super::factor::{Combination, Factor};
-use super::newton::{NewtonSettings, NewtonSteps, Unknown};
+use super::newton::{NewtonSettings, NewtonSteps, Unknown, ViscousPlace};
 use crate::scheme::{Scheme, SetUp, StepByHand};
 
 /// One force and one solution.
@@ -163,6 +163,8 @@ pub(super) struct Sought {
     pub(super) of_old_forces: f64,
     /// Times of the loads at both ends of the step.
     pub(super) loads: [LoadTime<'static>; 2],
+    /// Where stiffness damping of force laws acts.
+    pub(super) viscosity: ViscousPlace<'static>,
 }
 
 impl Sought {
@@ -174,6 +176,7 @@ impl Sought {
             of_last_inertia: 0.0,
             of_old_forces: 0.0,
             loads,
+            viscosity: ViscousPlace::at_end(loads),
         }
     }
 }
@@ -209,6 +212,7 @@ impl EffectiveMass {
                     of_last_inertia: sought.of_last_inertia,
                     of_old_forces: sought.of_old_forces,
                     loads: sought.loads,
+                    viscosity: sought.viscosity,
                 };
                 newton.solve(step, state, unknown, &mut self.a)
             }

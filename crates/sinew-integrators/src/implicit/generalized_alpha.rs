@@ -8,7 +8,7 @@ use sinew_core::{
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, OneAcceleration, Sought};
-use super::newton::{ITERATIONS, NewtonSettings, TOLERANCE};
+use super::newton::{ITERATIONS, NewtonSettings, TOLERANCE, ViscousPlace};
 use crate::{Method, NumericalDissipation, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp};
 
 /// The generalised-alpha method (Chung and Hulbert, J. Appl. Mech. 60, 1993): the equation of motion
@@ -180,6 +180,7 @@ impl OneAcceleration for GeneralizedAlpha {
             of_last_inertia: divide * self.of_mass,
             of_old_forces: divide * old,
             loads: [start, end],
+            viscosity: ViscousPlace::at_end([start, end]),
         };
         work += effective.solve(step, state, sought, |forces, spare| {
             if old != 0.0 {

@@ -6,7 +6,7 @@ use sinew_core::{
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, OneAcceleration, Sought};
-use super::newton::{ITERATIONS, NewtonSettings, TOLERANCE};
+use super::newton::{ITERATIONS, NewtonSettings, TOLERANCE, ViscousPlace};
 use crate::{Method, NumericalDissipation, OptionHelp, Scheme, SetUp};
 
 /// `v+ = v + dt a+`, `u+ = u + dt v+` with `(M + dt D + dt^2 K) a+ = F(t + dt) - K (u + dt v) - D v`
@@ -87,7 +87,13 @@ impl OneAcceleration for ImplicitEuler {
         effective.v.copy_from_slice(&state.v);
         let t = state.t();
         let loads = [LoadTime::start_of(t, dt), LoadTime::end_of(t, dt)];
-        let sought = Sought::at_end(self.coefficients(dt), loads);
+        let sought = Sought {
+            viscosity: ViscousPlace {
+                load: LoadTime::within(t, dt, 0.5),
+                before: 0.5 * dt,
+            },
+            ..Sought::at_end(self.coefficients(dt), loads)
+        };
         let work = effective.solve(step, state, sought, |_, _| ())?;
         for ((u, v), a) in state.u.iter_mut().zip(&mut state.v).zip(&effective.a) {
             *v += dt * a;

@@ -58,7 +58,9 @@ impl Chebyshev {
         // later.
         let reach = fastest * dt;
         let count = (48.0 + 1.5 * reach).min(4.0 * HIGHEST_DEGREE as f64) as usize;
-        let points = quadrature(dt, fastest);
+        let swings = operators.loads().iter();
+        let swings = swings.filter_map(|load| load.ramp.angular_frequency());
+        let points = quadrature(dt, swings.fold(fastest, f64::max));
         let modes: Vec<Mode> = nodes(count, interval)
             .into_iter()
             .map(|lambda| Mode {
@@ -186,7 +188,10 @@ impl Chebyshev {
 
 /// Whether a ramp may change within a step when its jumps and kinks fall on ends of steps.
 fn may_change(ramp: &Ramp) -> bool {
-    !matches!(ramp, Ramp::Step | Ramp::Pulse { .. } | Ramp::Hold { .. })
+    !matches!(
+        ramp.course(),
+        Ramp::Step | Ramp::Pulse { .. } | Ramp::Hold { .. }
+    )
 }
 
 /// The update `target += moment x`.

@@ -77,6 +77,27 @@ fn no_integrator_allocates_after_its_second_step() {
     }
 }
 
+/// What may move as a rigid body takes sums over its cells.
+#[test]
+fn neither_do_networks_on_a_body_that_nothing_holds() {
+    let mesh = structured::cube(2, 0.1, Split::Kuhn).unwrap();
+    let model = Model::build(&mesh, &body(linear(5000.0, 0.3))).unwrap();
+    let with = |kind: &str| plain().with("inner", inner(kind, Some(3.0)));
+    let inners = [
+        plain(),
+        with("jacobi"),
+        with("chebyshev"),
+        with("gauss-seidel"),
+    ];
+    let inners = inners.map(|options| ("cnn-stabilised", options));
+    let ie = plain().with("kind", OptionValue::Text("ie".into()));
+    let energies = [("cnn-energy", plain()), ("cnn-energy", ie)];
+    for (id, options) in inners.into_iter().chain(energies) {
+        let count = allocations_of_steps(&model, id, &options, 0.05);
+        assert_eq!(count, 0, "`{id}` with {options:?}");
+    }
+}
+
 #[test]
 fn neither_does_a_guard_that_cuts_and_clamps() {
     // Forward Euler without damping grows at any step until it is clamped.

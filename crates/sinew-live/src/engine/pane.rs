@@ -54,6 +54,8 @@ pub(crate) struct Pane {
     force: Vec<f64>,
     /// The last pose that each tool was given.
     led: Vec<Option<[f64; 6]>>,
+    /// The impulse (N s) that each tool had received before the last step.
+    received: Vec<[f64; 3]>,
     /// Impulse on each tool (N s) and time (s) since the last picture.
     impulses: Vec<[f64; 3]>,
     span: f64,
@@ -121,6 +123,7 @@ impl Pane {
             force: vec![0.0; dofs],
             led: vec![None; tools],
             impulses: vec![[0.0; 3]; tools],
+            received: vec![[0.0; 3]; tools],
             span: 0.0,
             saturated: 0,
             steps: 0,
@@ -406,6 +409,7 @@ impl Pane {
                 .map_err(|error| error.to_string())?;
         }
         self.before.copy_from_slice(&self.session.state().u);
+        self.receive();
         let begun = Instant::now();
         let stepped = self.session.step();
         self.fit();
@@ -427,15 +431,26 @@ impl Pane {
         Ok(())
     }
 
+    /// Takes note of what tools have received before a step.
+    fn receive(&mut self) {
+        let state = self.session.state();
+        if let Some(tools) = self.session.simulation().model().tools() {
+            for (tool, received) in self.received.iter_mut().enumerate() {
+                *received = tools.report(state, tool).impulse;
+            }
+        }
+    }
+
     /// What is summed up step by step.
     fn look(&mut self, dt: f64) {
         let simulation = self.session.simulation();
         let (system, state) = (simulation.system(), self.session.state());
         if let Some(tools) = simulation.model().tools() {
-            for (tool, impulse) in self.impulses.iter_mut().enumerate() {
-                let force = tools.report(state, tool).force;
-                for (sum, force) in impulse.iter_mut().zip(force) {
-                    *sum += dt * force;
+            let all = self.impulses.iter_mut().zip(&self.received).enumerate();
+            for (tool, (impulse, before)) in all {
+                let after = tools.report(state, tool).impulse;
+                for axis in 0..3 {
+                    impulse[axis] += after[axis] - before[axis];
                 }
             }
         }

@@ -43,6 +43,17 @@ pub enum ConvergeError {
         /// The step (s).
         dt: f64,
     },
+    /// The run with half the step is the same, so that the two tell nothing of errors in time.
+    #[error(
+        "on mesh {level} the run in steps of {dt:e} s and that in half of them are the same to the last bit, so that they tell nothing of the error in time; \
+         take another dt, in seconds, or another method"
+    )]
+    SameRun {
+        /// The mesh, from 1 on.
+        level: usize,
+        /// The step (s).
+        dt: f64,
+    },
     /// A body that may be cut.
     #[error(
         "the body may be cut ([cutting]), on each mesh otherwise: take the table out to measure the motion of the whole body"

@@ -95,7 +95,7 @@ pub(super) fn solve(
         0 => 1,
         _ => parts(prediction.dt, stable_step(simulation)),
     };
-    let (run, report) = observe_run(simulation, prediction, places, cut)?;
+    let (run, report) = observe_run(simulation, prediction, places, (cut, false))?;
     let dt = prediction.dt / cut as f64;
     let mut level = Level {
         nodes: body.mesh.points.len(),
@@ -128,11 +128,21 @@ pub(super) fn solve(
             (eye.seen, Halving::OF_REFERENCE)
         }
         TimeCheck::HalfStep => {
-            let (halved, report) = observe_run(simulation, prediction, places, 2 * cut)?;
+            let (halved, report) = observe_run(simulation, prediction, places, (cut, true))?;
             if matches!(report.outcome, Outcome::Diverged { .. }) {
                 return Err(ConvergeError::Diverged {
                     level: number + 1,
                     dt: dt / 2.0,
+                });
+            }
+            if halved.moves()
+                && run
+                    .as_ref()
+                    .is_some_and(|run| run.nodes() == halved.nodes())
+            {
+                return Err(ConvergeError::SameRun {
+                    level: number + 1,
+                    dt,
                 });
             }
             level.work += report.work;
@@ -141,7 +151,7 @@ pub(super) fn solve(
             (halved, Halving::of(order))
         }
     };
-    if compared.nodes().iter().all(|u| *u == 0.0) {
+    if !compared.moves() {
         return Err(ConvergeError::NothingMoves);
     }
     let rest = match ends_at_rest {
@@ -158,20 +168,25 @@ pub(super) fn solve(
     })
 }
 
-/// Runs the scene's method with its step cut into parts.
+/// Runs the scene's method with its step cut into parts, or with half of these.
 fn observe_run(
     simulation: &Simulation,
     prediction: &Prediction,
     places: &Places,
-    cut: usize,
+    (cut, is_halved): (usize, bool),
 ) -> Result<(Observed, RunReport), ConvergeError> {
+    let mut integrator = simulation.integrator()?;
+    // A method that cuts steps by itself would cut half of one into half as many parts of the same length.
+    let cut = match is_halved && !integrator.refine(2) {
+        true => 2 * cut,
+        false => cut,
+    };
     let run = Run {
         dt: prediction.dt / cut as f64,
         steps: prediction.steps * cut,
         ..simulation.run()
     };
     let system = simulation.system();
-    let mut integrator = simulation.integrator()?;
     integrator.prepare(system, run.dt)?;
     let mut recorder = Instants {
         eye: Eye::new(simulation, places)?,

@@ -245,6 +245,11 @@ impl Observed {
     pub(super) fn nodes(&self) -> &[f64] {
         &self.nodes
     }
+
+    /// Whether any node was displaced.
+    pub(super) fn moves(&self) -> bool {
+        self.nodes.iter().any(|u| *u != 0.0)
+    }
 }
 
 impl Places {

@@ -17,7 +17,7 @@ fn simulation(text: &str) -> Simulation {
 /// A column that can only stretch along z, pulled at its top: one-dimensional waves of speed `sqrt((lambda + 2 mu)/rho)`.
 fn column(cells: usize) -> String {
     format!(
-        "[mesh]\ncube = {{ cells = {cells}, edge = {EDGE} }}\n[[region]]\ndensity = {DENSITY}\nmodel = \"linear\"\n\
+        "[mesh]\ncube = {{ cells = {cells}, edge = {EDGE}, split = \"kuhn\" }}\n[[region]]\ndensity = {DENSITY}\nmodel = \"linear\"\n\
          youngs_modulus = 3000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\naxes = \"z\"\n[[fixed]]\n\
          where = {{ box = [[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]] }}\naxes = \"xy\"\n[[load]]\ngroup = \"top\"\n\
          traction = [0.0, 0.0, {TRACTION}]\nramp = {{ kind = \"sin2\", rise = {RISE} }}\n[run]\nduration = 0.2\n\
@@ -251,4 +251,54 @@ fn the_force_on_a_tool_is_one_of_the_quantities() {
     // Held by a plate, it comes to rest elsewhere than under its loads.
     let rests = found.quantities.iter().filter(|of| of.when == When::Rest);
     assert_eq!(rests.count(), 0);
+}
+
+/// A cube of large deformation under a traction, in steps that are cut by its stiffness unless `dt` says otherwise.
+fn squeezed(dt: &str) -> String {
+    format!(
+        "[mesh]\ncube = {{ cells = 2, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\nyoungs_modulus = 3500.0\n\
+         poissons_ratio = 0.4\n[damping]\nmass = 5.0\n[[fixed]]\ngroup = \"bottom\"\n[[load]]\ngroup = \"top\"\ntraction = [0.0, 0.0, -400.0]\n\
+         ramp = {{ kind = \"sin2\", rise = 0.1 }}\n[run]\nduration = 1.0\nintegrator = \"central-difference\"\ndt = {dt}\n"
+    )
+}
+
+/// Half of a step that is cut in two by the stiffness is one part of the same length, so that the two runs would be the same.
+#[test]
+fn steps_that_are_cut_by_the_stiffness_have_the_error_in_time_that_fine_steps_tell() {
+    let (cut, fine) = (
+        simulation(&squeezed("\"auto\"")),
+        simulation(&squeezed("1e-4")),
+    );
+    let prediction = predict(&cut, 2).unwrap();
+    assert_eq!(prediction.time_check, TimeCheck::HalfStep);
+    let places = Places::of(&cut).unwrap();
+    let found = solve(&cut, &prediction, 0, &places, false).unwrap();
+    let run = found.run.unwrap();
+    let shorter = Prediction {
+        dt: prediction.dt / 64.0,
+        steps: 64 * prediction.steps,
+        stride: 64 * prediction.stride,
+        ..prediction.clone()
+    };
+    let truth = solve(&fine, &shorter, 0, &places, false).unwrap().compared;
+    let size = norm(truth.nodes());
+    let truth = distance(run.nodes(), truth.nodes()) / size;
+    let said = found.halving.error * distance(run.nodes(), found.compared.nodes()) / size;
+    assert!(truth > 1e-4, "{truth}");
+    assert!((0.7..1.4).contains(&(said / truth)), "{said} for {truth}");
+}
+
+/// A free body that nothing pushes, in steps of a power of two.
+#[test]
+fn runs_of_equal_bits_are_no_comparison() {
+    let text = "[mesh]\ncube = { cells = 1, edge = 0.125 }\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\nyoungs_modulus = 1000.0\n\
+                poissons_ratio = 0.3\n[[initial]]\ngroup = \"tissue\"\nvelocity = [0.5, 0.0, 0.0]\n[run]\nduration = 0.25\n\
+                integrator = \"central-difference\"\ndt = 0.00390625\nfree_flight = true\n";
+    let simulation = simulation(text);
+    let prediction = predict(&simulation, 2).unwrap();
+    let refused = converge(&simulation, &prediction).unwrap_err();
+    assert!(
+        matches!(refused, ConvergeError::SameRun { level: 1, .. }),
+        "{refused}"
+    );
 }

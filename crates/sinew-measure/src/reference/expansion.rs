@@ -1,13 +1,15 @@
 //! The motion of a linear system by Faber series of its exponential.
 
+use std::f64::consts::PI;
+
 use sinew_core::spectrum::Spectrum;
 use sinew_core::vectors::add_scaled;
 use sinew_core::{Clock, LinearOperators, State};
 
 use super::faber::Ellipse;
+use super::fastest_turn;
 
-/// Derivatives of a load's factor that count: between breakpoints a factor turns by at most pi, and
-/// pi^32/32! is 3e-20.
+/// Derivatives of a load's factor that count: in a step a factor turns by at most pi, and pi^32/32! is 3e-20.
 const DERIVATIVES: usize = 32;
 
 /// Share by which the ellipse is larger than the spectrum, whose ends are found from inside.
@@ -67,9 +69,11 @@ impl<'a> Expansion<'a> {
             .collect();
         breakpoints.sort_by(f64::total_cmp);
         let raised = |rate: f64| (1.0 + MARGIN) * rate;
+        // A load's factor is a motion of the system too, and may be the fastest.
+        let fastest = spectrum.omega_max.max(fastest_turn(operators));
         // Where nothing turns or decays, any ellipse will do.
-        let omega = match spectrum.omega_max + damping > 0.0 {
-            true => raised(spectrum.omega_max),
+        let omega = match fastest + damping > 0.0 {
+            true => raised(fastest),
             false => 1.0,
         };
         let ellipse = Ellipse::round(omega, raised(damping));
@@ -77,7 +81,7 @@ impl<'a> Expansion<'a> {
         Self {
             operators,
             ellipse,
-            longest_step: reach / ellipse.capacity,
+            longest_step: (reach / ellipse.capacity).min(PI / fastest_turn(operators)),
             breakpoints,
             factors: [factors.clone(), factors],
             now: at_rest.clone(),
@@ -119,7 +123,7 @@ impl<'a> Expansion<'a> {
         let passed = self.breakpoints.partition_point(|time| *time <= start);
         let stop = self.breakpoints.get(passed).copied();
         let stop = stop.unwrap_or(f64::INFINITY);
-        let gap = GAP / self.ellipse.capacity;
+        let gap = (GAP / self.ellipse.capacity).min(self.longest_step);
         let farthest = start + self.longest_step * (1.0 + 1e-9);
         let mut instants = Vec::with_capacity(LOOKS);
         let mut last = start;

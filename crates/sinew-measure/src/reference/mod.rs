@@ -23,3 +23,12 @@ pub use follow::{follow, follow_affordably};
 pub use taylor::Taylor;
 pub(crate) use track::{LateRange, TOLD_APART};
 pub use track::{ReferenceError, ReferenceMethod, Track};
+
+use sinew_core::LinearOperators;
+
+/// Largest angular frequency (rad/s) of the loads' factors, 0 if none is a sine.
+fn fastest_turn(operators: &LinearOperators) -> f64 {
+    let rates = operators.loads().iter();
+    let rates = rates.filter_map(|load| load.ramp.angular_frequency());
+    rates.fold(0.0, f64::max)
+}

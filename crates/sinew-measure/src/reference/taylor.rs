@@ -1,7 +1,11 @@
 //! The Taylor series of a linear system's motion.
 
+use std::f64::consts::PI;
+
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{Clock, LinearOperators, State};
+
+use super::fastest_turn;
 
 /// Largest |lambda| h, lambda being the fastest root of the motion. The series would hold beyond a
 /// few; shorter steps show the peaks of the motion between them.
@@ -16,8 +20,8 @@ const REACH_OF_CHECK: f64 = 12.0;
 /// Terms of a check. At |lambda| h = 12 the last is below 12^50/50! = 3e-11.
 const TERMS_OF_CHECK: usize = 50;
 
-/// Derivatives of a load's factor that count in a check: between breakpoints a factor turns by at most
-/// pi, and pi^32/32! is 3e-20.
+/// Derivatives of a load's factor that count in a check: in a step a factor turns by at most pi, and
+/// pi^32/32! is 3e-20.
 const DERIVATIVES_OF_CHECK: usize = 32;
 
 /// Steps a linear system by the Taylor series of its motion (Moler and Van Loan, SIAM Review 45,
@@ -79,7 +83,7 @@ impl<'a> Taylor<'a> {
         breakpoints.sort_by(f64::total_cmp);
         Self {
             operators,
-            longest_step: reach / fastest,
+            longest_step: (reach / fastest).min(reach.min(PI) / fastest_turn(operators)),
             terms,
             breakpoints,
             ramps: vec![vec![0.0; derivatives]; loads.len()],
@@ -218,7 +222,7 @@ mod tests {
         let operators = LinearOperators::oscillator(1.0, 400.0, 0.0)
             .and_then(|operators| operators.with_loads(vec![load]))
             .unwrap();
-        let (w, r) = (20.0_f64, std::f64::consts::PI / rise);
+        let (w, r) = (20.0_f64, PI / rise);
         let exact = |t: f64| {
             let forced = (1.0 - (w * t).cos()) / (w * w);
             let swinging = ((r * t).cos() - (w * t).cos()) / (w * w - r * r);
@@ -229,6 +233,57 @@ mod tests {
         for t in [0.07, 0.15, 0.29, 0.3] {
             taylor.advance(&mut state, t, |_| {});
             assert!((state.u[0] - exact(t)).abs() < 1e-15, "at {t}");
+        }
+    }
+
+    /// The displacement of `q'' + w^2 q = sin(r t + phase)` from rest.
+    fn under_a_sine(w: f64, r: f64, phase: f64, t: f64) -> f64 {
+        let size = (w * w - r * r).recip();
+        let at_start = [phase.sin(), r * phase.cos()].map(|part| size * part);
+        size * (r * t + phase).sin() - at_start[0] * (w * t).cos() - at_start[1] / w * (w * t).sin()
+    }
+
+    #[test]
+    fn a_sine_much_faster_than_the_body_matches_duhamels_integral() {
+        for (frequency, phase) in [(1.0, 0.0), (17.0, 0.8), (900.0, -1.3)] {
+            let load = Load {
+                ramp: Ramp::Sine { frequency, phase },
+                entries: vec![(0, 1.0)],
+            };
+            let operators = LinearOperators::oscillator(1.0, 4.0, 0.0)
+                .and_then(|operators| operators.with_loads(vec![load]))
+                .unwrap();
+            let rate = std::f64::consts::TAU * frequency;
+            let spectrum = Spectrum::of(&operators);
+            let both = [
+                Taylor::new(&operators, 1.0),
+                Taylor::checking(&operators, &spectrum),
+            ];
+            for mut taylor in both {
+                let mut state = State::at_rest(1);
+                for t in [0.07, 0.5, 3.0] {
+                    taylor.advance(&mut state, t, |_| {});
+                    let exact = under_a_sine(2.0, rate, phase, t);
+                    let off = state.u[0] - exact;
+                    assert!(
+                        off.abs() < 1e-10,
+                        "{frequency} Hz at {t}: {off:e} m of {exact}"
+                    );
+                }
+            }
+            let mut series = super::super::Expansion::new(&operators, &spectrum, 3.0);
+            let (mut state, times) = (State::at_rest(1), [0.07, 0.5, 3.0]);
+            let mut reached = 0;
+            while reached < times.len() {
+                reached += series.step(&mut state, &times[reached..], |seen, _| {
+                    let exact = under_a_sine(2.0, rate, phase, seen.t());
+                    let (off, t) = (seen.u[0] - exact, seen.t());
+                    assert!(
+                        off.abs() < 1e-10,
+                        "{frequency} Hz at {t}: {off:e} m of {exact}"
+                    );
+                });
+            }
         }
     }
 

@@ -86,6 +86,7 @@ impl Row {
             saturated,
             guarded: _,
             inverted: _,
+            overlap,
             work: _,
             cpu_s_per_s,
             us_per_step,
@@ -118,6 +119,7 @@ impl Row {
         gaps.maybe("step_over_critical", *step_over_critical);
         gaps.maybe("static_error", *static_error);
         gaps.maybe("energy_drift", *energy_drift);
+        gaps.maybe("overlap", *overlap);
         gaps.maybe("energy_rise", *energy_rise);
         gaps.maybe("smallest_volume_ratio", *smallest_volume_ratio);
         gaps.maybe("mesh_error", *mesh_error);

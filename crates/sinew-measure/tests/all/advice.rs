@@ -49,7 +49,7 @@ fn pressed_cube(cells: usize, rest: &str) -> Simulation {
 fn pressed_text(cells: usize, rest: &str) -> String {
     format!(
         "[mesh]
-cube = {{ cells = {cells}, edge = 0.1 }}
+cube = {{ cells = {cells}, edge = 0.1, split = \"kuhn\" }}
 [[region]]
 group = \"tissue\"
 density = 1060.0

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use sinew_core::Options;
 use sinew_measure::{Case, Effort, MethodChoice, Row, RowOutcome, measure};
-use sinew_scene::Scene;
+use sinew_scene::{Scene, SceneSource};
 
 fn case(name: &str, values: &[&str]) -> Case {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/nonlinear");
@@ -68,4 +69,52 @@ fn a_refused_step_is_the_end_of_a_row_with_its_reason() {
         refused.steps < 10 && refused.gaps().is_empty(),
         "{refused:?}"
     );
+}
+
+/// The relative L2 error of a case's reference against Runge and Kutta's method in steps of `dt` (s), and the error that it states.
+fn true_and_stated(text: &str, dt: f64) -> [f64; 2] {
+    let scene = Scene::parse(SceneSource::new("cube.toml", text)).unwrap();
+    let case = Case::new("case", scene.build().unwrap()).unwrap();
+    let simulation = case.simulation();
+    let mut rk4 = sinew_integrators::build("rk4", &Options::new()).unwrap();
+    let mut state = simulation.initial_state().clone();
+    let (mut apart, mut size) = (0.0, 0.0);
+    for (time, found) in case
+        .samples()
+        .times
+        .iter()
+        .zip(&case.samples().displacements)
+    {
+        while state.t() < time - 0.5 * dt {
+            rk4.step(simulation.system(), &mut state, dt).unwrap();
+        }
+        for (u, found) in state.u.iter().zip(found) {
+            apart += (u - found).powi(2);
+            size += u.powi(2);
+        }
+    }
+    [(apart / size).sqrt(), case.samples().error]
+}
+
+/// Instants at equal distances are rounded, which is no reason for steps of other lengths, and the check has errors of its own.
+#[test]
+fn stiffness_damping_leaves_the_error_of_a_reference_what_it_states() {
+    let cube = |cells: usize, more: &str, law: &str, duration: f64| {
+        format!(
+            "[mesh]\ncube = {{ cells = {cells}, edge = 0.1, split = \"kuhn\" }}\n[[region]]\ndensity = 1000.0\nyoungs_modulus = 5000.0\n\
+             poissons_ratio = 0.3\n{law}\n[[fixed]]\ngroup = \"bottom\"\n{more}\n[run]\nduration = {duration}\nintegrator = \"newmark\"\n\
+             dt = 0.01\n"
+        )
+    };
+    let sides = "[[load]]\nwhere = { above = { x = 0.0999 } }\npressure = 500.0\n[damping]\nmass = 3.0\nstiffness = 0.0005";
+    let drawn = "[[load]]\ngroup = \"top\"\nforce = [0.0, 0.7, 2.0]\nramp = { kind = \"sin2\", rise = 0.07 }\n[damping]\nstiffness = 0.002";
+    let edges = "model = \"neo-hookean\"\nelement = \"fbar-edge\"";
+    for text in [
+        cube(2, sides, edges, 0.5),
+        cube(2, drawn, "model = \"stable-neo-hookean\"", 0.3),
+    ] {
+        let [error, stated] = true_and_stated(&text, 5e-4);
+        println!("{error:e} {stated:e}");
+        assert!(error < stated && stated < 1e-4, "{error:e} {stated:e}");
+    }
 }

@@ -14,6 +14,7 @@ mod extrapolated_reference;
 mod forecasts;
 mod foreign_integrator;
 mod guard;
+mod overlaps;
 mod peers_cube;
 mod ready_scenes;
 mod reference_peaks;

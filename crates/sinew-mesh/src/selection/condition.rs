@@ -20,6 +20,13 @@ pub enum Condition {
         /// Its radius.
         radius: f64,
     },
+    /// In a straight cylinder with flat ends.
+    Cylinder {
+        /// The ends of its axis, which differ.
+        axis: [[f64; 3]; 2],
+        /// Its radius.
+        radius: f64,
+    },
     /// Near a plane.
     Plane {
         /// A point of the plane.
@@ -70,6 +77,15 @@ impl fmt::Display for Condition {
             Self::Sphere { center, radius } => {
                 write!(f, "within {radius} m of {}", Point(*center))
             }
+            Self::Cylinder {
+                axis: [from, to],
+                radius,
+            } => write!(
+                f,
+                "within {radius} m of the axis from {} to {}",
+                Point(*from),
+                Point(*to)
+            ),
             Self::Plane {
                 point,
                 normal,

@@ -138,6 +138,20 @@ fn holds_at(
             let distance = |point: &[f64; 3]| length(sub(*point, *center));
             return Ok(of_points(&|point| distance(point) <= radius + slack));
         }
+        Condition::Cylinder {
+            axis: [from, to],
+            radius,
+        } => {
+            let axis = sub(*to, *from);
+            let whole = length(axis);
+            let direction = axis.map(|x| x / whole);
+            return Ok(of_points(&|point| {
+                let at = sub(*point, *from);
+                let along = dot(at, direction);
+                let is_between = -slack <= along && along <= whole + slack;
+                is_between && length(cross(at, direction)) <= radius + slack
+            }));
+        }
         Condition::Plane {
             point,
             normal,

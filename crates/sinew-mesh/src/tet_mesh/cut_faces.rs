@@ -48,7 +48,8 @@ impl CutMesh {
     }
 
     /// Whether each node is one of several that cuts made of one.
-    pub(super) fn is_copied(&self) -> Vec<bool> {
+    #[must_use]
+    pub fn is_copied(&self) -> Vec<bool> {
         let count = self.origins.iter().max();
         let mut copies = vec![0_u32; count.map_or(0, |last| *last as usize + 1)];
         for origin in &self.origins {

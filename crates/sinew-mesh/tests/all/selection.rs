@@ -64,6 +64,39 @@ fn several_conditions_must_all_hold() {
 }
 
 #[test]
+fn a_cylinder_ends_at_its_flat_ends_and_takes_what_lies_on_it() {
+    let cube = cube();
+    let within = |from, to, radius| {
+        let axis = [from, to];
+        by(&[Condition::Cylinder { axis, radius }])
+    };
+    let count = |selection: &Selection| selection.nodes(&cube).unwrap().len();
+    // Along z: the node on the axis and its four neighbours, on the planes from z = .1 to .3.
+    let upright = within([0.2, 0.2, 0.1], [0.2, 0.2, 0.3], 0.1);
+    assert_eq!(count(&upright), 3 * 5);
+    let turned = within([0.2, 0.2, 0.3], [0.2, 0.2, 0.1], 0.1);
+    assert_eq!(count(&turned), 3 * 5);
+    // Along a diagonal of a face: on it are nodes at distances of sqrt 2 times .1.
+    let across = within([0.1, 0.1, 0.2], [0.3, 0.3, 0.2], 1e-6);
+    assert_eq!(count(&across), 3);
+    // A disc: ends so close that a plane is left.
+    let disc = within([0.2, 0.2, 0.2 - 1e-9], [0.2, 0.2, 0.2 + 1e-9], 0.15);
+    assert_eq!(count(&disc), 9);
+    assert_eq!(
+        upright.to_string(),
+        "within 0.1 m of the axis from (0.2, 0.2, 0.1) to (0.2, 0.2, 0.3)"
+    );
+    let beside = within([0.25, 0.25, 0.0], [0.25, 0.25, 0.4], 0.01);
+    assert!(matches!(
+        beside.nodes(&cube),
+        Err(SelectionError::Nothing { .. })
+    ));
+    // As many tetrahedra as have all corners inside: none is left of the box by a cylinder that holds it.
+    let around = within([0.2, 0.2, -0.1], [0.2, 0.2, 0.5], 0.3);
+    assert_eq!(around.tets(&cube).unwrap().len(), cube.tets.len());
+}
+
+#[test]
 fn a_plane_takes_both_of_its_sides() {
     let cube = cube();
     let near = |normal, within| {

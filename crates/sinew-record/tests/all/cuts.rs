@@ -279,3 +279,38 @@ fn sheets_from_outside_are_repeated_bit_for_bit_and_recorded() {
         "cut: NaN: expected finite numbers, at most 1e6 m in size"
     );
 }
+
+/// Elements that average strain change their energy as a body that is stretched is cut, whether a part of it is moved or not.
+#[test]
+fn energy_of_a_cut_is_known_where_supports_move() {
+    let strokes = "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n1,0.06,0.0103,-0.03,-0.02,0.0103,-0.03,0.04\n1,0.08,0.0103,0.05,-0.02,0.0103,0.05,0.04\n";
+    let moved = "[[move]]\nwhere = { above = { x = 0.02, y = 0.02, z = 0.02 } }\naxes = \"y\"\ndisplacement = [0.0, 0.00001, 0.0]\n\
+                 ramp = { kind = \"sin2\", rise = 0.05 }\n";
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("strokes.csv"), strokes).unwrap();
+    let of_cuts = ["", moved].map(|moved| {
+        let text = format!(
+            "[mesh]\nblock = {{ cells = [4, 4, 4], size = [0.02, 0.02, 0.02], split = \"mirrored\" }}\n[[region]]\ndensity = 1060.0\n\
+             model = \"neo-hookean\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.45\nelement = \"fbar-edge\"\n[[fixed]]\n\
+             where = {{ below = {{ x = 0.0 }} }}\n{moved}[[load]]\nwhere = {{ above = {{ x = 0.02 }} }}\nforce = [0.4, 0.0, 0.0]\n\
+             ramp = {{ kind = \"sin2\", rise = 0.05 }}\n[damping]\nmass = 30.0\n[cutting]\ntable = \"strokes.csv\"\nsnap = 0\n\
+             [run]\nduration = 0.1\nintegrator = \"central-difference\"\ndt = 0.0002\nfree_flight = true\n"
+        );
+        let path = place.path().join("scene.toml");
+        fs::write(&path, text).unwrap();
+        let mut simulation = Scene::load(&path).unwrap().build().unwrap();
+        simulation.end_at_duration();
+        let out = place.path().join(format!("out{}", moved.len()));
+        let end = run(&out, &simulation, &mut ());
+        assert_eq!(end.ended, Ended::Finished);
+        let energy = table(&out.join("energy.csv"));
+        let [cuts, remainder] =
+            ["of_cuts_J", "remainder_J"].map(|name| *energy[name].last().unwrap());
+        assert!(cuts.abs() > 1e-5, "{cuts}");
+        assert!(remainder.abs() < 0.1 * cuts.abs(), "{remainder} {cuts}");
+        let gained = summary(&out)["cuts"]["elastic_energy_gained_J"].as_f64();
+        assert!((gained.unwrap() / cuts - 1.0).abs() < 1e-6);
+        cuts
+    });
+    assert!((of_cuts[1] / of_cuts[0] - 1.0).abs() < 0.2, "{of_cuts:?}");
+}

@@ -7,6 +7,7 @@ mod balance_of_energy;
 mod common;
 mod comparisons;
 mod cuts;
+mod overlaps;
 mod reference_page;
 mod replays;
 mod resumed_runs;

@@ -16,7 +16,7 @@ const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/run-folder.m
 /// Names of each section of the page, or of each file of a folder.
 type Names = BTreeMap<String, BTreeSet<String>>;
 
-const BODY: &str = "[mesh]\ncube = { cells = 3, edge = 0.1 }\n[[fixed]]\ngroup = \"bottom\"\n[[probe]]\nname = \"tip\"\n\
+const BODY: &str = "[mesh]\ncube = { cells = 3, edge = 0.1, split = \"kuhn\" }\n[[fixed]]\ngroup = \"bottom\"\n[[probe]]\nname = \"tip\"\n\
     point = [0.0, 0.0, 0.1]\n[[region]]\ndensity = 1000.0\nyoungs_modulus = 3000.0\npoissons_ratio = 0.3\n";
 
 const LOADED: &str = "model = \"linear\"\n[[load]]\nname = \"press\"\ngroup = \"top\"\ntraction = [0.0, 0.0, -20.0]\n\
@@ -40,7 +40,7 @@ const CUT: &str = "model = \"linear\"\n[[tool]]\nname = \"blade\"\nshape = { bla
 const RELAXING: &str = "model = \"neo-hookean\"\nprony = [[0.3, 0.05]]\n[run]\nduration = 0.02\n\
     integrator = \"central-difference\"\ndt = 0.001\n";
 
-/// Far beyond its stable step.
+/// Far beyond its stable step, so that surfaces pass through each other.
 const WILD: &str = "model = \"linear\"\n[[load]]\ngroup = \"top\"\ntraction = [0.0, 0.0, -20.0]\n[run]\nduration = 10.0\n\
     integrator = \"central-difference\"\ndt = 0.1\n";
 

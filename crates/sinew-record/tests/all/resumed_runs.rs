@@ -80,6 +80,8 @@ fn the_bytes_do_not_depend_on_interruptions() {
         let whole = place.path().join("whole");
         assert_eq!(run(&whole, &simulation, &mut ()).ended, Ended::Finished);
         let expected = contents(&whole);
+        let summary = str::from_utf8(&expected["summary.json"]).unwrap();
+        assert!(summary.contains("\"overlap\":null"), "{summary}");
         for steps in [&[1][..], &[2, 3, 4], &[40], &[17, 60, 61]] {
             let cut = place.path().join(format!("cut-{}", steps.len()));
             let _ = fs::remove_dir_all(&cut);

@@ -212,3 +212,36 @@ fn a_plate_on_a_coupling_shares_the_way_with_the_tissue() {
         "{hand}"
     );
 }
+
+/// A step is cut into parts, of each of which contact has a force of its own, and rows may be several steps apart.
+#[test]
+fn forces_of_rows_add_up_to_the_momentum_of_a_body_whose_steps_are_taken_again() {
+    for rows in ["", "probes = { every = 0.01 }\n"] {
+        let text = format!(
+            "[mesh]\nblock = {{ cells = [3, 3, 3], size = [0.05, 0.05, 0.05], split = \"mirrored\" }}\n[[region]]\ndensity = 1060.0\n\
+             model = \"neo-hookean\"\nyoungs_modulus = 4000.0\npoissons_ratio = 0.45\nelement = \"fbar-edge\"\n[[tool]]\nname = \"plate\"\n\
+             shape = {{ plane = {{}} }}\nrotation = [{}, 0.0, 0.0]\nstart = [0.025, 0.025, 0.0505]\nvelocity = [0.0, 0.0, -0.5]\n\
+             [[probe]]\nname = \"body\"\ngroup = \"tissue\"\nquantity = \"velocity\"\n\
+             [run]\nduration = 0.2\nintegrator = \"central-difference\"\ndt = \"auto\"\nfree_flight = true\n[output]\n{rows}",
+            std::f64::consts::PI
+        );
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("out");
+        let end = run(&path, &crate::common::build(&text), &mut ());
+        assert!(end.retaken > 0, "steps are taken again");
+        let (tools, probes) = (
+            table(&path.join("tools.csv")),
+            table(&path.join("probes.csv")),
+        );
+        let spans = tools["t_s"].windows(2).map(|t| t[1] - t[0]);
+        let forces = spans.zip(&tools["plate_force_z_N"][1..]);
+        let impulse: f64 = forces.map(|(span, force)| span * force).sum();
+        let mass = 1060.0 * 0.05_f64.powi(3);
+        let momentum = mass * probes["body_v_z_m_per_s"].last().unwrap();
+        assert!(momentum < -0.1);
+        assert!(
+            (impulse / -momentum - 1.0).abs() < 1e-9,
+            "{rows} {impulse} {momentum}"
+        );
+    }
+}

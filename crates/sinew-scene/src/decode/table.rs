@@ -352,6 +352,14 @@ impl<'a> Table<'a> {
         self.place.error(Some(span), fault)
     }
 
+    /// The error for a value of a key that fits by itself, and not together with the others.
+    pub(crate) fn value_misfit(&self, key: &'static str, expected: &str) -> SceneError {
+        match self.given(key) {
+            Some(value) => self.misfit(key, value, expected.to_owned(), Misfit::Value),
+            None => self.missing(key, expected.to_owned()),
+        }
+    }
+
     /// A value as the user wrote it, on one line and shortened.
     fn written(&self, value: &Spanned<DeValue<'_>>) -> String {
         let text = self.scene.text().get(value.span()).unwrap_or_default();

@@ -131,7 +131,7 @@ pub enum Fault {
     /// A mesh file that cannot be read.
     #[error(transparent)]
     MeshFile(#[from] sinew_mesh::MshFileError),
-    /// A table of positions that cannot be used.
+    /// A table over time that cannot be used.
     #[error(transparent)]
     MotionTable(#[from] crate::simulation::MotionTableError),
     /// A tool that does not fit the body, or cannot be.
@@ -166,12 +166,6 @@ pub enum Fault {
     NothingLeft {
         /// Tetrahedra of the mesh.
         tets: usize,
-    },
-    /// A probe for which several nodes are selected.
-    #[error("{nodes} nodes are selected, and a probe follows one")]
-    SeveralNodes {
-        /// How many are selected.
-        nodes: usize,
     },
     /// A body that cannot be modelled.
     #[error("{}", .0.cause())]
@@ -210,6 +204,9 @@ pub enum Fault {
         /// The duration (s).
         duration: f64,
     },
+    /// A state at t = 0 in which a law with memory has no meaning.
+    #[error("the body cannot begin so: {0}")]
+    InitialState(sinew_core::EvaluationError),
     /// A static state that cannot be solved for.
     #[cfg(feature = "implicit")]
     #[error("no static state: {0}")]

@@ -12,8 +12,10 @@ use super::section::PlanSection;
 use super::{cutting, tools};
 use crate::formula::Formula;
 use crate::number::{count, length, short, vector};
-use crate::scene::{Body, Initial, MeshChanges, MeshSource, Quantity, Rotation, Way};
-use crate::simulation::{BodyModel, Probe, SelectedPart};
+use crate::scene::{
+    Body, Cutting, Initial, Lips, LoosePieces, MeshChanges, MeshSource, Quantity, Rotation, Way,
+};
+use crate::simulation::{BodyModel, Probe, SelectedPart, part_of_nodes};
 
 /// The sections about a body and its probes.
 pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<PlanSection> {
@@ -30,10 +32,27 @@ pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<
         PlanSection::new("moves", moves(body, built)),
         PlanSection::new("tools", tools::lines(body, built)),
         PlanSection::new("cutting", cutting::lines(body, built)),
+        PlanSection::new("apart", apart(body, built)),
         PlanSection::new("loads", loads(body, report)),
         PlanSection::new("initial", initial.collect()),
         PlanSection::new("probes", probes.iter().map(probe).collect()),
     ]
+}
+
+/// What nothing keeps apart: parts of the mesh, and pieces that cuts may take off.
+fn apart(body: &Body, built: &BodyModel) -> Vec<String> {
+    const TOLD: &str = "where they are in each other a run warns";
+    let parts = part_of_nodes(&built.mesh).1;
+    let falls = |cutting: &Cutting| cutting.pieces == LoosePieces::Fall;
+    let cutting = body.cutting.as_ref().filter(|cutting| falls(cutting));
+    let of_parts = (parts > 1).then(|| format!("{parts} parts: nothing keeps them apart; {TOLD}"));
+    let of_pieces = cutting.map(|cutting| match cutting.lips {
+        Lips::Contact => format!(
+            "pieces that cuts take off: nothing keeps them apart but the lips of their cut, while these face each other; {TOLD}"
+        ),
+        Lips::Free => format!("pieces that cuts take off: nothing keeps them apart; {TOLD}"),
+    });
+    of_parts.into_iter().chain(of_pieces).collect()
 }
 
 fn mesh(body: &Body, built: &BodyModel, report: &ModelReport) -> Vec<String> {

@@ -118,7 +118,7 @@ pub(super) const TABLE: Key<Text, Optional> = Key::optional(
 
 const TOOL: Key<Text, Optional> = Key::optional(
     "tool",
-    "The name of a `[[tool]]` with `shape = { blade = { length = 0.02 } }`: it cuts wherever it goes, and nothing while it stays where it is.",
+    "The name of a `[[tool]]` with `shape = { blade = { length = 0.02 } }`: it cuts wherever it goes, and where it rests the tissue that comes through it.",
     Text::any("the name of a tool with the shape of a blade"),
     "no tool cuts",
 );

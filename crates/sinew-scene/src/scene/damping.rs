@@ -8,7 +8,8 @@ use crate::error::SceneError;
 pub(super) const DAMPING: TableDescription = TableDescription {
     name: "damping",
     meaning: "Damping of the whole body in proportion to its mass and its stiffness: D = `mass` M + `stiffness` K, as \
-              Rayleigh has it. Springs may have dashpots besides, see `damping_ratio`.",
+              Rayleigh has it; in large deformation `stiffness` damps the rate of Green's strain by the stiffness at rest, so that turns \
+              are not damped. Springs may have dashpots besides, see `damping_ratio`.",
     keys: &[&MASS, &STIFFNESS],
     needs: Needs::Any,
     examples: &["[damping]\nmass = 80.0\nstiffness = 1e-4\n"],

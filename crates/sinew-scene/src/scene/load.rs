@@ -1,5 +1,7 @@
 //! `[[load]]`: forces on the body.
 
+use std::path::PathBuf;
+
 use sinew_core::Ramp;
 use sinew_fem::{LoadKind, LoadSpec, On};
 
@@ -74,7 +76,7 @@ const FORCE: Key<Vector> = Key::required(
 )
 .unit("N");
 
-const RAMP_OF_LOAD: Key<Inner, Usual> = Key::usual(
+pub(super) const RAMP_OF_LOAD: Key<Inner, Usual> = Key::usual(
     "ramp",
     "Factor of the load over time.",
     Inner::one("a table such as { kind = \"sin2\", rise = 0.2 }", &RAMP),
@@ -85,6 +87,8 @@ const RAMP_OF_LOAD: Key<Inner, Usual> = Key::usual(
 pub(super) struct LoadTables {
     /// The loads.
     pub(super) specs: Vec<LoadSpec>,
+    /// The CSV file of the factor of each, if it is in one.
+    pub(super) files: Vec<Option<PathBuf>>,
     /// The name of each, if it has one.
     pub(super) names: Vec<Option<String>>,
     /// The place of each in the text.
@@ -97,8 +101,12 @@ pub(super) fn read_all(
     is_large: bool,
     selections: &mut Selections,
 ) -> Result<LoadTables, SceneError> {
-    let specs = tables.iter().map(|table| read(table, is_large, selections));
-    let specs = specs.collect::<Result<_, _>>()?;
+    let (mut specs, mut files) = (Vec::new(), Vec::new());
+    for table in &tables {
+        let (spec, file) = read(table, is_large, selections)?;
+        specs.push(spec);
+        files.push(file);
+    }
     let mut names: Vec<Option<String>> = Vec::new();
     for table in &tables {
         let name = table.read(&NAME)?;
@@ -113,6 +121,7 @@ pub(super) fn read_all(
     let places = tables.into_iter().map(Table::into_place).collect();
     Ok(LoadTables {
         specs,
+        files,
         names,
         places,
     })
@@ -122,7 +131,7 @@ fn read(
     table: &Table<'_>,
     is_large: bool,
     selections: &mut Selections,
-) -> Result<LoadSpec, SceneError> {
+) -> Result<(LoadSpec, Option<PathBuf>), SceneError> {
     let kind = match table.exactly_one()? {
         key if key == TRACTION.name => LoadKind::Traction(table.read(&TRACTION)?),
         key if key == FORCE.name => LoadKind::Force(table.read(&FORCE)?),
@@ -137,12 +146,16 @@ fn read(
     };
     let group = selections.one_of(table, (&GROUP, &WHERE), members)?;
     let ramp = table.table(&RAMP_OF_LOAD)?;
-    let ramp = ramp.as_ref().map(ramp::read).transpose()?;
-    Ok(LoadSpec {
+    let factor = match &ramp {
+        Some(ramp) => ramp::read(ramp)?,
+        None => Ramp::Step.into(),
+    };
+    let spec = LoadSpec {
         on: On::Group(group),
         kind,
-        ramp: ramp.unwrap_or(Ramp::Step),
-    })
+        ramp: factor.ramp,
+    };
+    Ok((spec, factor.file))
 }
 
 fn pressure(table: &Table<'_>, is_large: bool) -> Result<LoadKind, SceneError> {

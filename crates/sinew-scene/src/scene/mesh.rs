@@ -66,7 +66,8 @@ const MOST_CELLS_IN_ALL: usize = MOST_CELLS * MOST_CELLS * MOST_CELLS;
 pub(super) const MESH: TableDescription = TableDescription {
     name: "mesh",
     meaning: "The shape of the body: a mesh of tetrahedra from a file of gmsh, or a cube or a block made here. What a scene \
-              says besides is in the metres and axes of the body, after `scale` and `rotate`.",
+              says besides is in the metres and axes of the body, after `scale` and `rotate`. \
+              Parts that share no node, and surfaces of one part, are kept apart by nothing: a run warns where one is in another.",
     keys: &[&FILE, &CUBE, &BLOCK, &SCALE, &ROTATE, &ORDER],
     needs: Needs::OneOf(&[FILE.name, CUBE.name, BLOCK.name]),
     examples: &[
@@ -130,7 +131,7 @@ const CUBES: TableDescription = TableDescription {
     meaning: "A cube of equal cells, each cut into tetrahedra.",
     keys: &[&CELLS, &EDGE, &SPLIT],
     needs: Needs::Any,
-    examples: &["{ cells = 10, edge = 0.2, split = \"mirrored\" }"],
+    examples: &["{ cells = 10, edge = 0.2, split = \"kuhn\" }"],
 };
 
 const CELLS: Key<Count> = Key::required(
@@ -151,10 +152,12 @@ const EDGE: Key<Number> = Key::required(
 
 const SPLIT: Key<Words<Split>, Or<Split>> = Key::or(
     "split",
-    "How cells are cut. `\"kuhn\"`: all their diagonals point one way, which makes the mesh stiffer in some directions. \
-     `\"mirrored\"`: they point in turn, and no direction is preferred over its mirror image.",
-    Words(&[("kuhn", Split::Kuhn), ("mirrored", Split::Mirrored)]),
-    Split::Kuhn,
+    "How cells are cut. `\"mirrored\"`: their diagonals point in turn, so that no direction is preferred over its mirror image; with an even number of cells \
+     a body is its own. `\"kuhn\"`: all point one way. Plain tetrahedra, three to four of them across a beam, then bend it sideways too, by 7 to 11 % of its deflection at \
+     Poisson's ratio .3 and by a third at .49, and lock the more; with `element = \"fbar-edge\"` by 1 to 2 %, and deflection and torsion come nearer to theory than on mirrored cells \
+     (`element` has figures). So it is for such elements, for comparisons with the grids of other programs, and for measuring locking, which mirrored cells hide.",
+    Words(&[("mirrored", Split::Mirrored), ("kuhn", Split::Kuhn)]),
+    Split::Mirrored,
 );
 
 const BLOCKS: TableDescription = TableDescription {
@@ -162,7 +165,7 @@ const BLOCKS: TableDescription = TableDescription {
     meaning: "A block of equal cells, each cut into tetrahedra.",
     keys: &[&CELLS_OF_BLOCK, &SIZE, &SPLIT],
     needs: Needs::Any,
-    examples: &["{ cells = [24, 4, 4], size = [0.3, 0.05, 0.05], split = \"kuhn\" }"],
+    examples: &["{ cells = [24, 4, 4], size = [0.3, 0.05, 0.05], split = \"mirrored\" }"],
 };
 
 const CELLS_OF_BLOCK: Key<Vector<Count, usize>> = Key::required(

@@ -29,6 +29,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use sinew_core::Ramp;
 use sinew_fem::Problem;
 use toml::de::DeTable;
 
@@ -93,6 +94,9 @@ pub struct Body {
     pub tools: Vec<Tool>,
     /// What cuts it; `None` for a body that stays whole.
     pub cutting: Option<Cutting>,
+    /// The CSV file of the factor of each load of `problem`, as written, if it is in one. `problem` has the factor once
+    /// the scene is built.
+    pub load_files: Vec<Option<PathBuf>>,
     /// The name of each load of `problem`, if it has one.
     pub load_names: Vec<Option<String>>,
     /// Its state at t = 0.
@@ -230,6 +234,39 @@ impl Scene {
         &self.output
     }
 
+    /// The scene with the factors of loads and motions that are in files, each read by `read`.
+    pub(crate) fn with_factors(
+        mut self,
+        read: impl Fn(&Path) -> Result<Ramp, Fault>,
+    ) -> Result<Self, SceneError> {
+        let Self {
+            subject, places, ..
+        } = &mut self;
+        let Subject::Body(body) = subject else {
+            return Ok(self);
+        };
+        let read_at = |place: &Place, key: &str, written: &Path| {
+            let path = place.scene().resolve(written);
+            read(&path).map_err(|fault| place.value_fault(key, fault))
+        };
+        let loads = body.problem.loads.iter_mut().zip(&body.load_files);
+        for (index, (load, file)) in loads.enumerate() {
+            if let Some(written) = file {
+                let place = places.of(&places.loads, index);
+                load.ramp = read_at(place, load::RAMP_OF_LOAD.name, written)?;
+            }
+        }
+        for (index, motion) in body.motions.iter_mut().enumerate() {
+            if let (Some(written), Way::Displacement(_, ramp)) =
+                (&motion.ramp_file, &mut motion.way)
+            {
+                let place = places.of(&places.motions, index);
+                *ramp = read_at(place, motion::RAMP_OF_MOTION.name, written)?;
+            }
+        }
+        Ok(self)
+    }
+
     pub(crate) fn places(&self) -> &Places {
         &self.places
     }
@@ -252,6 +289,7 @@ impl Scene {
                 motions,
                 tools,
                 cutting,
+                load_files,
                 ..
             } = &**body;
             if let MeshSource::File(written) = mesh {
@@ -268,6 +306,9 @@ impl Scene {
             if let Some(Blade::Table(written)) = cutting.as_ref().map(|cutting| &cutting.blade) {
                 files.push(source.resolve(written));
             }
+            let factors = motions.iter().map(|motion| &motion.ramp_file);
+            let factors = load_files.iter().chain(factors).flatten();
+            files.extend(factors.map(|written| source.resolve(written)));
         }
         files
     }
@@ -284,18 +325,29 @@ impl Scene {
         };
         let file = of_table(MESH_TABLE.name, mesh::FILE.name);
         let strokes = of_table(CUTTING_TABLE.name, cutting::TABLE.name);
-        let of_list = |list: &str, key: &str| -> Vec<&str> {
+        // The value at these keys, each in the table of the one before, of all tables of a list.
+        let of_list = |list: &str, keys: &[&str]| -> Vec<&str> {
             let tables = document.get_ref().get(list);
             let tables = tables.and_then(|tables| tables.get_ref().as_array());
             let tables = tables.into_iter().flat_map(|tables| tables.iter());
-            let named =
-                tables.filter_map(|table| table.get_ref().as_table()?.get(key)?.get_ref().as_str());
+            let named = tables.filter_map(|table| {
+                let value = keys.iter().try_fold(table.get_ref(), |value, key| {
+                    Some(value.as_table()?.get(*key)?.get_ref())
+                });
+                value?.as_str()
+            });
             named.collect()
         };
-        let motions = of_list(MOTIONS.name, motion::TABLE.name);
-        let tools = of_list(TOOLS.name, tool::TABLE.name);
+        let motions = of_list(MOTIONS.name, &[motion::TABLE.name]);
+        let tools = of_list(TOOLS.name, &[tool::TABLE.name]);
+        let factors = [
+            (LOADS.name, load::RAMP_OF_LOAD.name),
+            (MOTIONS.name, motion::RAMP_OF_MOTION.name),
+        ];
+        let factors = factors.map(|(list, ramp)| of_list(list, &[ramp, ramp::FILE.name]));
         let source = SceneSource::new(path, "");
         let named = file.into_iter().chain(motions).chain(tools).chain(strokes);
+        let named = named.chain(factors.into_iter().flatten());
         let named = named.map(|written| source.resolve(Path::new(written)));
         std::iter::once(path.to_owned()).chain(named).collect()
     }
@@ -420,6 +472,7 @@ impl Body {
             motions,
             tools,
             cutting,
+            load_files: loads.files,
             load_names: loads.names,
             initial,
             probes,

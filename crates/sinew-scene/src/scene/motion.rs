@@ -19,6 +19,9 @@ pub struct Motion {
     pub axes: [bool; 3],
     /// The way it goes.
     pub way: Way,
+    /// The CSV file of the factor of a displacement, as written, if it is in one. `way` has the factor once the scene is
+    /// built.
+    pub ramp_file: Option<PathBuf>,
 }
 
 /// The way that a part is moved, relative to rest.
@@ -85,7 +88,7 @@ pub(super) const TABLE: Key<Text> = Key::required(
     Text::any("the path of a CSV file, seen from the scene"),
 );
 
-const RAMP_OF_MOTION: Key<Inner> = Key::required(
+pub(super) const RAMP_OF_MOTION: Key<Inner> = Key::required(
     "ramp",
     "Factor of the displacement over time.",
     Inner::one("a table such as { kind = \"sin2\", rise = 0.2 }", &RAMP),
@@ -107,16 +110,23 @@ pub(super) fn read_all(
 fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Motion, SceneError> {
     let way = table.exactly_one()?;
     table.check_conditions()?;
+    let (group, axes) = (
+        selections.one_of(table, (&GROUP, &WHERE), Members::Nodes)?,
+        table.read(&AXES)?,
+    );
+    let (way, ramp_file) = match way {
+        key if key == DISPLACEMENT.name => {
+            let displacement = table.read(&DISPLACEMENT)?;
+            let factor = ramp::read(&table.table(&RAMP_OF_MOTION)?)?;
+            (Way::Displacement(displacement, factor.ramp), factor.file)
+        }
+        key if key == VELOCITY.name => (Way::Velocity(table.read(&VELOCITY)?), None),
+        _ => (Way::Table(table.read(&TABLE)?.into()), None),
+    };
     Ok(Motion {
-        group: selections.one_of(table, (&GROUP, &WHERE), Members::Nodes)?,
-        axes: table.read(&AXES)?,
-        way: match way {
-            key if key == DISPLACEMENT.name => Way::Displacement(
-                table.read(&DISPLACEMENT)?,
-                ramp::read(&table.table(&RAMP_OF_MOTION)?)?,
-            ),
-            key if key == VELOCITY.name => Way::Velocity(table.read(&VELOCITY)?),
-            _ => Way::Table(table.read(&TABLE)?.into()),
-        },
+        group,
+        axes,
+        way,
+        ramp_file,
     })
 }

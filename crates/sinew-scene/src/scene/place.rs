@@ -19,13 +19,16 @@ const MEANING: &str = "A place in the body at rest. Where there are several keys
 pub(super) const PLACE: TableDescription = TableDescription {
     name: "place",
     meaning: MEANING,
-    keys: &[&BELOW, &ABOVE, &BOX, &SPHERE, &PLANE, &FACE, &NODES],
+    keys: &[
+        &BELOW, &ABOVE, &BOX, &SPHERE, &CYLINDER, &PLANE, &FACE, &NODES,
+    ],
     needs: Needs::Some,
     examples: &[
         "{ below = { z = 0.001 } }",
         "{ above = { x = 0.05, z = 0.199 } }",
         "{ box = [[0.0, 0.0, 0.19], [0.1, 0.1, 0.2]] }",
         "{ sphere = { center = [0.1, 0.1, 0.2], radius = 0.02 } }",
+        "{ cylinder = { axis_from = [0.1, 0.1, 0.0], axis_to = [0.1, 0.1, 0.2], radius = 0.02 } }",
         "{ plane = { point = [0.0, 0.0, 0.2], normal = [0, 0, 1], within = 1e-6 } }",
         "{ above = { z = 0.1 }, face = { normal = [0, 0, 1], angle = 20 } }",
         "{ nodes = [4, 40, 65] }",
@@ -40,6 +43,7 @@ pub(super) const PLACE_OF_TETRAHEDRA: TableDescription = TableDescription {
         &ABOVE,
         &BOX,
         &SPHERE,
+        &CYLINDER,
         &PLANE,
         &FACE_OF_TETRAHEDRA,
         &NODES,
@@ -49,6 +53,7 @@ pub(super) const PLACE_OF_TETRAHEDRA: TableDescription = TableDescription {
         "{ above = { z = 0.1 } }",
         "{ box = [[0.0, 0.0, 0.1], [0.2, 0.2, 0.2]] }",
         "{ sphere = { center = [0.1, 0.1, 0.1], radius = 0.05 } }",
+        "{ cylinder = { axis_from = [0.1, 0.1, 0.0], axis_to = [0.1, 0.1, 0.2], radius = 0.06 } }",
         "{ plane = { point = [0.0, 0.0, 0.1], normal = [1, 0, 1], within = 0.05 } }",
         "{ nodes = [4, 40, 65, 71] }",
     ],
@@ -83,6 +88,16 @@ const SPHERE: Key<Inner, Optional> = Key::optional(
     Inner::one(
         "a table such as { center = [0, 0, 0], radius = 0.01 }",
         &SPHERES,
+    ),
+    NO_CONDITION,
+);
+
+const CYLINDER: Key<Inner, Optional> = Key::optional(
+    "cylinder",
+    "Nodes in a straight cylinder with flat ends.",
+    Inner::one(
+        "a table such as { axis_from = [0, 0, 0], axis_to = [0, 0, 0.1], radius = 0.01 }",
+        &CYLINDERS,
     ),
     NO_CONDITION,
 );
@@ -160,6 +175,30 @@ const RADIUS: Key<Number> = Key::required(
 )
 .unit("m");
 
+const CYLINDERS: TableDescription = TableDescription {
+    name: "cylinder",
+    meaning: "A straight cylinder, which ends at both ends of its axis.",
+    keys: &[&AXIS_FROM, &AXIS_TO, &RADIUS],
+    needs: Needs::Any,
+    examples: &["{ axis_from = [0.1, 0.1, 0.0], axis_to = [0.1, 0.1, 0.2], radius = 0.02 }"],
+};
+
+const AXIS_FROM: Key<Vector> = Key::required(
+    "axis_from",
+    "One end of the axis, in the middle of an end face.",
+    Vector::finite("[x, y, z] in m, all finite"),
+)
+.unit("m");
+
+const AXIS_TO: Key<Vector> = Key::required(
+    "axis_to",
+    "The other end of the axis.",
+    Vector::finite(ANOTHER_END),
+)
+.unit("m");
+
+const ANOTHER_END: &str = "[x, y, z] in m, all finite, at another place than `axis_from`";
+
 const PLANES: TableDescription = TableDescription {
     name: "plane",
     meaning: "A plane and the distance within which nodes belong to it.",
@@ -228,6 +267,17 @@ pub(super) fn conditions(place: &Table<'_>) -> Result<Vec<On>, SceneError> {
         conditions.push(On::Sphere {
             center: sphere.read(&CENTER)?,
             radius: sphere.read(&RADIUS)?,
+        });
+    }
+    if let Some(cylinder) = place.table(&CYLINDER)? {
+        let axis = [cylinder.read(&AXIS_FROM)?, cylinder.read(&AXIS_TO)?];
+        let [from, to] = axis;
+        if !has_length(&[0, 1, 2].map(|i| to[i] - from[i])) {
+            return Err(cylinder.value_misfit(AXIS_TO.name, ANOTHER_END));
+        }
+        conditions.push(On::Cylinder {
+            axis,
+            radius: cylinder.read(&RADIUS)?,
         });
     }
     if let Some(plane) = place.table(&PLANE)? {

@@ -23,9 +23,7 @@ pub struct ProbePoint {
 pub enum ProbeAt {
     /// The node nearest to a position in the undeformed body (m); for stress the tetrahedron that holds it.
     Point([f64; 3]),
-    /// The only node of a group.
-    Group(String),
-    /// The mean over a group: by area over triangles, by volume over tetrahedra.
+    /// The mean over a group: by area over triangles, by volume over tetrahedra, alike over nodes.
     Mean(String),
 }
 
@@ -42,12 +40,14 @@ pub enum Quantity {
 
 pub(super) const PROBE: TableDescription = TableDescription {
     name: "probe",
-    meaning: "A node or a part of the body of which the motion or the stress is written down.",
+    meaning: "A node or a part of the body of which the motion or the stress is written down: of a part, the mean over it, alike over the \
+              nodes that `where` chooses.",
     keys: &[&NAME, &POINT, &TO, &COUNT, &WHERE, &GROUP, &QUANTITY],
     needs: Needs::Any,
     examples: &[
         "[[probe]]\nname = \"top-centre\"\npoint = [0.1, 0.1, 0.2]\n",
         "[[probe]]\nname = \"node-42\"\nwhere = { nodes = [42] }\n",
+        "[[probe]]\nname = \"rim\"\nwhere = { above = { z = 0.199 } }\n",
         "[[probe]]\nname = \"axis\"\npoint = [0.1, 0.1, 0.0]\nto = [0.1, 0.1, 0.2]\ncount = 5\n",
         "[[probe]]\nname = \"top\"\ngroup = \"top\"\nquantity = \"velocity\"\n",
         "[[probe]]\nname = \"inside\"\npoint = [0.1, 0.1, 0.1]\nquantity = \"stress\"\n",
@@ -146,7 +146,7 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Vec<ProbePoint
         Ok(vec![ProbePoint { name, at, quantity }])
     };
     if let Some(group) = selections.place(table, &WHERE, Members::Nodes)? {
-        return one(ProbeAt::Group(group));
+        return one(ProbeAt::Mean(group));
     }
     if let Some(group) = table.read(&GROUP)? {
         return one(ProbeAt::Mean(group));

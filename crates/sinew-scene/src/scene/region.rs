@@ -121,7 +121,9 @@ const ELEMENT: Key<Words<ElementName>, Or<ElementName>> = Key::or(
     "element",
     "The strain that tetrahedra resist. `\"p1\"`: their own, which is constant; they are too stiff in bending, and locked near \
      incompressibility. `\"fbar\"`: changes of volume are averaged over patches of tetrahedra, which takes the locking away. \
-     `\"fbar-edge\"`: shear is averaged over edges as well, for bending; three to four times the blocks of the matrix, and the same error with far fewer tetrahedra.",
+     `\"fbar-edge\"`: shear is averaged over edges as well, for bending; three to four times the blocks of the matrix, and the same error with far fewer tetrahedra. \
+     A beam four cells thick bends by .98 (`split = \"kuhn\"`) or .95 (`\"mirrored\"`) of what it should at Poisson's ratios up to .499, and twists by .95 or .87: a bar that is twisted \
+     takes about six cells for .98 or .94.",
     Words(&[
         ("p1", ElementName::P1),
         (FBAR, ElementName::Fbar),

@@ -80,7 +80,9 @@ pub(super) fn cut_plan(body: &Body, places: &Places) -> Result<Option<Arc<CutPla
 
 /// A prescribed motion, its table read.
 fn moving(motion: &Motion, places: &Places, index: usize) -> Result<Moving, SceneError> {
-    let Motion { group, axes, way } = motion;
+    let Motion {
+        group, axes, way, ..
+    } = motion;
     let courses = match way {
         Way::Displacement(displacement, ramp) => vec![Course {
             displacement: *displacement,

@@ -9,6 +9,7 @@ use super::Simulation;
 use super::body;
 use super::mesh::{self, MeshAndWarnings};
 use super::model::SceneModel;
+use super::motion_table;
 use super::{probe, start, step, tool, touched_steps};
 use crate::error::{Fault, MOST_STEPS, SceneError};
 use crate::scene::{Body, Oscillator, Places, Scene, Subject, TimeStep};
@@ -32,6 +33,14 @@ impl Scene {
     }
 
     fn assemble(
+        self,
+        make_mesh: impl FnOnce(&Body, &Places) -> Result<MeshAndWarnings, SceneError>,
+    ) -> Result<Simulation, SceneError> {
+        let scene = self.with_factors(|path| Ok(motion_table::read_factor(path)?))?;
+        scene.assemble_with_factors(make_mesh)
+    }
+
+    fn assemble_with_factors(
         self,
         make_mesh: impl FnOnce(&Body, &Places) -> Result<MeshAndWarnings, SceneError>,
     ) -> Result<Simulation, SceneError> {

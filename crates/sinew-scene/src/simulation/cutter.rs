@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, OnceLock};
 
 use sinew_core::{Energy, Inputs, State, System};
-use sinew_cutting::{BladeAct, SavedBodyError, Sheet};
+use sinew_cutting::{BladeAct, SavedBodyError, Uncut};
 use sinew_fem::{CutModel, CutModelError, CutReport, Problem};
 use sinew_mesh::TetMesh;
 use sinew_tools::{Convex, Tools, ToolsError};
@@ -14,7 +14,7 @@ use super::cut_plan::CutPlan;
 use super::model::{BodyModel, SceneModel};
 use super::probe::Probe;
 use super::{Simulation, tool};
-use crate::number::length;
+use crate::number::{length, short};
 use crate::scene::{Blade, Cutting, LoosePieces, Subject};
 
 /// What was cut since a motion began.
@@ -26,6 +26,8 @@ pub struct CutTotals {
     pub changes: u64,
     /// Work (J) of the blade: the toughness times the area.
     pub blade_work: f64,
+    /// What strokes that were lifted left uncut of a body that they came through.
+    pub uncut: Option<Uncut>,
 }
 
 impl CutTotals {
@@ -181,8 +183,8 @@ impl Cutter {
             // What comes before the motion cuts the body that it starts with.
             for act in strokes.between(followed.unwrap_or(f64::NEG_INFINITY), end) {
                 match act {
-                    BladeAct::Lift => self.cut.lift(),
-                    BladeAct::Sweep(sheet) => self.sweep(&sheet, state, inputs)?,
+                    BladeAct::Lift => self.lift(),
+                    BladeAct::Sweep(poses) => self.sweep(poses, state, inputs)?,
                 }
             }
         }
@@ -200,15 +202,13 @@ impl Cutter {
                 edge(tools, *blade, t, inputs)
             };
             for part in 0..parts {
-                if let [Some(from), Some(to)] = [part, part + 1].map(at)
-                    && let Some(sheet) = Sheet::swept(from, to)
-                {
-                    self.sweep(&sheet, state, inputs)?;
+                if let [Some(from), Some(to)] = [part, part + 1].map(at) {
+                    self.sweep([from, to], state, inputs)?;
                     // In tissue a short way may touch nothing of what tells how far a blade has come.
                     let is_in = self.cut.body().is_touched() || self.is_in && self.cut.holds(to);
                     // Once, as it comes out: another blade may be in.
                     if std::mem::replace(&mut self.is_in, is_in) && !is_in {
-                        self.cut.lift();
+                        self.lift();
                     }
                 }
             }
@@ -224,28 +224,45 @@ impl Cutter {
         self.go_on(epoch, simulation, state, inputs)
     }
 
-    /// Cuts by the sheet that a blade sweeps from one place to another (its two ends, m), in the configuration of the state. Where the
+    /// Cuts what a blade passes from one place to another (its two ends, m), in the configuration of the state. Where the
     /// body changes: the scene as it goes on, and the state is carried over to it.
     ///
     /// # Errors
     /// [`CuttingError`]; the run cannot go on then.
     pub fn cut(
         &mut self,
-        [from, to]: [[[f64; 3]; 2]; 2],
+        poses: [[[f64; 3]; 2]; 2],
         simulation: &Simulation,
         state: &mut State,
         inputs: &Inputs,
     ) -> Result<Option<Simulation>, CuttingError> {
         let epoch = self.begin(simulation, state);
-        if let Some(sheet) = Sheet::swept(from, to) {
-            self.sweep(&sheet, state, inputs)?;
-        }
+        self.sweep(poses, state, inputs)?;
         self.go_on(epoch, simulation, state, inputs)
     }
 
     /// Lifts a blade from outside: its next sheet goes on with no tetrahedron that it left entered in part.
     pub fn lift(&mut self) {
-        self.cut.lift();
+        let uncut = self.cut.lift();
+        self.totals.uncut = both(self.totals.uncut, uncut);
+    }
+
+    /// What strokes left uncut of a body that they came through, the stroke at hand included where its blade is out of the body.
+    #[must_use]
+    pub fn uncut(&self) -> Option<Uncut> {
+        both(self.totals.uncut, self.cut.body().uncut())
+    }
+
+    /// A sentence about what strokes left uncut of a body that they came through.
+    #[must_use]
+    pub fn left_uncut(&self) -> Option<String> {
+        let Uncut { area, place } = self.uncut()?;
+        let [x, y, z] = place.map(short);
+        Some(format!(
+            "strokes that came through the body left {} m2 of it uncut, about [{x}, {y}, {z}] m: the parts to both sides hang together there until a \
+             further stroke goes through",
+            short(area)
+        ))
     }
 
     /// All that it needs to go on, as bytes.
@@ -255,7 +272,9 @@ impl Cutter {
             report,
             changes,
             blade_work,
+            uncut,
         } = self.totals;
+        let [x, y, z] = uncut.map_or([f64::NAN; 3], |uncut| uncut.place);
         let energy = report.energy_gained;
         let parts = energy.map_or([f64::NAN; 2], |energy| [energy.kinetic, energy.elastic]);
         let numbers = [
@@ -266,6 +285,10 @@ impl Cutter {
             blade_work,
             parts[0],
             parts[1],
+            uncut.map_or(f64::NAN, |uncut| uncut.area),
+            x,
+            y,
+            z,
         ];
         let counts = [
             report.faces,
@@ -298,25 +321,30 @@ impl Cutter {
         simulation: &Simulation,
     ) -> Result<Option<Simulation>, CuttingError> {
         let other = || CuttingError::from(CutModelError::from(SavedBodyError));
-        let (head, body) = bytes.split_at_checked(14 * 8).ok_or_else(other)?;
+        let (head, body) = bytes.split_at_checked(18 * 8).ok_or_else(other)?;
         let words: Vec<[u8; 8]> = head.as_chunks().0.to_vec();
         let number = |place: usize| f64::from_le_bytes(words[place]);
         let count = |place: usize| u64::from_le_bytes(words[place]) as usize;
         self.cut.restore(body)?;
         let (kinetic, elastic) = (number(6), number(7));
         self.followed = Some(number(1)).filter(|t| !t.is_nan());
-        self.is_in = count(13) > 0;
+        self.is_in = count(17) > 0;
+        let uncut = Uncut {
+            area: number(8),
+            place: [number(9), number(10), number(11)],
+        };
         self.totals = CutTotals {
             changes: u64::from_le_bytes(words[0]),
             blade_work: number(5),
+            uncut: (!uncut.area.is_nan()).then_some(uncut),
             report: CutReport {
-                faces: count(8),
+                faces: count(12),
                 area: number(2),
-                new_nodes: count(9),
-                moved_nodes: count(10),
+                new_nodes: count(13),
+                moved_nodes: count(14),
                 mass_gained: number(3),
-                removed_tets: count(11),
-                frozen_tets: count(12),
+                removed_tets: count(15),
+                frozen_tets: count(16),
                 removed_mass: number(4),
                 energy_gained: (!kinetic.is_nan()).then_some(Energy { kinetic, elastic }),
             },
@@ -330,11 +358,11 @@ impl Cutter {
 
     fn sweep(
         &mut self,
-        sheet: &Sheet,
+        poses: [[[f64; 3]; 2]; 2],
         state: &mut State,
         inputs: &Inputs,
     ) -> Result<(), CuttingError> {
-        let report = self.cut.stroke(sheet, state, inputs)?;
+        let report = self.cut.follow(poses, state, inputs)?;
         self.totals.blade_work += self.plan.cutting.toughness * report.area;
         self.totals.report.add(&report);
         Ok(())
@@ -460,6 +488,14 @@ impl Cutter {
             stable_step: OnceLock::new(),
             cutting: before.cutting.clone(),
         })
+    }
+}
+
+/// What two strokes left.
+fn both(one: Option<Uncut>, other: Option<Uncut>) -> Option<Uncut> {
+    match (one, other) {
+        (Some(one), Some(other)) => Some(one.and(other)),
+        (one, other) => one.or(other),
     }
 }
 

@@ -59,15 +59,17 @@ impl fmt::Display for LoadRemedy {
     }
 }
 
-/// A load that comes and goes within one step: its impulse arrives, but its course is not followed.
+/// A load that comes and goes within one step, or swings within four: its impulse arrives, but its course is not followed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UnresolvedLoad {
     /// The load in the terms of the scene.
     pub load: String,
     /// The instant of the first of two changes (s).
     pub from: f64,
-    /// Time between the two changes (s), which is a step that follows the load.
+    /// Time between the two changes or quarter of a period (s), which is a step that follows the load.
     pub length: f64,
+    /// The period (s) of a load that swings.
+    pub period: Option<f64>,
     /// The step (s).
     pub dt: f64,
 }
@@ -78,8 +80,16 @@ impl fmt::Display for UnresolvedLoad {
             load,
             from,
             length,
+            period,
             dt,
         } = self;
+        if let Some(period) = period {
+            return write!(
+                f,
+                "{load} swings with a period of {period:.3e} s, of which dt = {dt} s is more than a quarter: its impulse \
+                 arrives, but its course is not followed; dt = {length:.3e} s would follow it"
+            );
+        }
         write!(
             f,
             "{load} changes twice within {length:.3e} s at t = {from} s, less than dt = {dt} s: its impulse \

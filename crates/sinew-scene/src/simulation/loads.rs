@@ -48,8 +48,8 @@ impl Simulation {
         })
     }
 
-    /// The first load of the scene that comes and goes within one step; `None` where there is none, or the
-    /// integrator is exact.
+    /// The first load of the scene that comes and goes within one step, or swings within four; `None` where there is
+    /// none, or the integrator is exact.
     #[must_use]
     pub fn unresolved_load(&self) -> Option<UnresolvedLoad> {
         let integrator = self.integrator().ok()?;
@@ -58,19 +58,35 @@ impl Simulation {
         }
         let (dt, until) = (self.dt(), self.run().steps as f64 * self.dt());
         let shortest = |ramp: &Ramp| {
+            if let Ramp::Sine { frequency, .. } = ramp {
+                return Some((0.25 / frequency, 0.0, Some(1.0 / frequency)));
+            }
             let points = ramp.breakpoints();
             let within = points
                 .windows(2)
                 .filter(|pair| pair[0] < until && pair[1] > 0.0);
-            let lengths = within.map(|pair| (pair[1] - pair[0], pair[0]));
+            let lengths = within.map(|pair| (pair[1] - pair[0], pair[0], None));
             lengths.min_by(|a, b| a.0.total_cmp(&b.0))
         };
-        self.loads().iter().enumerate().find_map(|(index, load)| {
-            let (length, from) = shortest(&load.ramp)?;
+        // Loads on a body of large deformation are not among those of its matrices.
+        let of_scene = match (self.scene().subject(), self.system().as_linear()) {
+            (Subject::Body(body), None) => Some(body),
+            _ => None,
+        };
+        let ramps: Vec<&Ramp> = match of_scene {
+            Some(body) => body.problem.loads.iter().map(|load| &load.ramp).collect(),
+            None => self.loads().iter().map(|load| &load.ramp).collect(),
+        };
+        ramps.into_iter().enumerate().find_map(|(index, ramp)| {
+            let (length, from, period) = shortest(ramp)?;
             (length < (1.0 - 1e-9) * dt).then(|| UnresolvedLoad {
-                load: self.load_in_words(index),
+                load: match of_scene {
+                    Some(body) => body.load_in_words(index),
+                    None => self.load_in_words(index),
+                },
                 from,
                 length,
+                period,
                 dt,
             })
         })

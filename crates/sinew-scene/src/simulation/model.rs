@@ -41,7 +41,7 @@ pub struct BodyModel {
 
 impl BodyModel {
     /// The triangles of the surface, found at the first request.
-    pub(super) fn surface(&self) -> &[[u32; 3]] {
+    pub(crate) fn surface(&self) -> &[[u32; 3]] {
         self.surface.get_or_init(|| self.mesh.boundary(None))
     }
 }

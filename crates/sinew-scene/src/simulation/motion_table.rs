@@ -1,7 +1,8 @@
-//! Tables of positions, poses and strokes in CSV files.
+//! Tables of positions, poses, strokes and factors in CSV files.
 
 use std::path::{Path, PathBuf};
 
+use sinew_core::Ramp;
 use sinew_cutting::{BladePose, Strokes};
 
 /// The column of times.
@@ -33,13 +34,16 @@ const STROKES: [&str; 8] = [
     "stroke", TIME, "ax_m", "ay_m", "az_m", "bx_m", "by_m", "bz_m",
 ];
 
+/// Columns of a table of factors.
+const FACTORS: [&str; 2] = [TIME, "factor"];
+
 /// Rows of numbers, as many in each as there are columns.
 struct Rows {
     columns: &'static [&'static str],
     rows: Vec<Vec<f64>>,
 }
 
-/// A table of positions that cannot be used: its file, its line, and what is wrong.
+/// A table over time that cannot be used: its file, its line, and what is wrong.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{}: {fault}", path.display(), line.map_or_else(String::new, |line| format!(":{line}")))]
 pub struct MotionTableError {
@@ -68,14 +72,14 @@ impl MotionTableError {
     }
 }
 
-/// A fault in a table of positions.
+/// A fault in a table over time.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MotionTableFault {
     /// A file that cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(#[from] std::io::Error),
-    /// Other columns than those of a table of positions.
+    /// Other columns than those of such a table.
     #[error("the first line is {found:?}: expected the names of the columns, {expected}")]
     Header {
         /// The line, shortened.
@@ -107,6 +111,14 @@ pub enum MotionTableFault {
         /// That of the row before (s).
         last: f64,
     },
+    /// A third row of factors at one time.
+    #[error(
+        "t_s = {t} is the time of the two rows before: expected two rows at most, the factor before a jump and that after it"
+    )]
+    Jump {
+        /// The time (s).
+        t: f64,
+    },
     /// A table without a row.
     #[error("there is no row below the names of the columns: expected at least one")]
     NoRows,
@@ -131,7 +143,7 @@ impl MotionTable {
 
     /// The table of a text, or the line that is at fault.
     fn parse(text: &str, axes: [bool; 3]) -> Result<Self, (usize, MotionTableFault)> {
-        let rows = Rows::parse(text, &[&POSITIONS])?;
+        let rows = Rows::parse(text, &[&POSITIONS], 1)?;
         let table = Self {
             times: rows.times(),
             positions: rows.vectors(1),
@@ -158,7 +170,7 @@ impl PoseTable {
 
     /// The table of a text, or the line that is at fault.
     fn parse(text: &str) -> Result<Self, (usize, MotionTableFault)> {
-        let rows = Rows::parse(text, &[&POSITIONS, &POSES])?;
+        let rows = Rows::parse(text, &[&POSITIONS, &POSES], 1)?;
         Ok(Self {
             times: rows.times(),
             positions: rows.vectors(1),
@@ -177,7 +189,7 @@ pub(super) fn read_strokes(path: &Path) -> Result<Strokes, MotionTableError> {
 
 /// The strokes of a text, or the line that is at fault.
 fn strokes(text: &str) -> Result<Strokes, (usize, MotionTableFault)> {
-    let rows = Rows::parse(text, &[&STROKES])?;
+    let rows = Rows::parse(text, &[&STROKES], 1)?;
     let ends = rows.vectors(2).into_iter().zip(rows.vectors(5));
     let poses = rows.rows.iter().zip(ends).map(|(row, (a, b))| BladePose {
         stroke: row[0],
@@ -186,6 +198,20 @@ fn strokes(text: &str) -> Result<Strokes, (usize, MotionTableFault)> {
     });
     // Row 1 is on line 2, below the names.
     Strokes::new(poses.collect()).map_err(|error| (error.row() + 1, error.into()))
+}
+
+/// Reads a table of factors, in which two rows at one time are a jump.
+pub(super) fn read_factor(path: &Path) -> Result<Ramp, MotionTableError> {
+    read(path, factor)
+}
+
+/// The factor of a text, or the line that is at fault.
+fn factor(text: &str) -> Result<Ramp, (usize, MotionTableFault)> {
+    let rows = Rows::parse(text, &[&FACTORS], 2)?;
+    Ok(Ramp::Table {
+        times: rows.times(),
+        values: rows.rows.iter().map(|row| row[1]).collect(),
+    })
 }
 
 /// Reads a file and makes a table of its text.
@@ -203,10 +229,12 @@ fn read<T>(
 }
 
 impl Rows {
-    /// The rows of a text with one of these sets of columns, or the line that is at fault.
+    /// The rows of a text with one of these sets of columns, up to `at_once` of which may have one time, or the line that
+    /// is at fault.
     fn parse(
         text: &str,
         accepted: &[&'static [&'static str]],
+        at_once: usize,
     ) -> Result<Self, (usize, MotionTableFault)> {
         // Spreadsheets begin a file with a mark of its byte order.
         let text = text.trim_start_matches('\u{feff}').trim_end();
@@ -229,10 +257,15 @@ impl Rows {
         for (line, row) in lines {
             let row = numbers(row, columns).map_err(|fault| (line, fault))?;
             let t = row[time];
-            if let Some(last) = rows.last().map(|last| last[time])
-                && t <= last
-            {
-                return Err((line, MotionTableFault::Order { t, last }));
+            let before = rows.iter().rev().map(|row| row[time]);
+            match before.clone().next() {
+                Some(last) if t < last || (t == last && at_once == 1) => {
+                    return Err((line, MotionTableFault::Order { t, last }));
+                }
+                _ if before.take_while(|last| *last == t).count() >= at_once => {
+                    return Err((line, MotionTableFault::Jump { t }));
+                }
+                _ => {}
             }
             rows.push(row);
         }
@@ -337,6 +370,41 @@ mod tests {
             "1: there is no row below the names of the columns: expected at least one"
         );
     }
+
+    #[test]
+    fn two_factors_at_one_time_are_a_jump_and_a_third_is_a_fault() {
+        let expected = Ramp::Table {
+            times: vec![0.0, 0.1, 0.1],
+            values: vec![0.0, 1.0, -0.5],
+        };
+        assert_eq!(
+            factor("t_s,factor\n0,0\n0.1,1\n0.1,-0.5\n").unwrap(),
+            expected
+        );
+        let fault = |rows: &str| {
+            let (line, fault) = factor(&format!("t_s,factor\n{rows}")).unwrap_err();
+            format!("{line}: {fault}")
+        };
+        assert_eq!(
+            fault("0,0\n0.1,1\n0.1,0\n0.1,2\n"),
+            "5: t_s = 0.1 is the time of the two rows before: expected two rows at most, the factor before a jump and that \
+             after it"
+        );
+        assert_eq!(
+            fault("0.1,1\n0.1,0\n0,0\n"),
+            "4: t_s = 0 does not come after 0.1, the time of the row before"
+        );
+        assert_eq!(
+            fault("0,none"),
+            "2: factor is \"none\": expected a finite number"
+        );
+        let (line, fault) = factor("t_s,force_N\n0,0").unwrap_err();
+        assert_eq!(
+            format!("{line}: {fault}"),
+            "1: the first line is \"t_s,force_N\": expected the names of the columns, t_s,factor"
+        );
+    }
+
     #[test]
     fn poses_have_rotations_or_none() {
         let table = PoseTable::parse("t_s,x_m,y_m,z_m\n0,1,2,3\n").unwrap();

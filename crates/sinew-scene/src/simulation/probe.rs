@@ -191,11 +191,14 @@ fn of_motion(point: &ProbePoint, body: &BodyModel) -> Result<Probe, Fault> {
     };
     let (node, shares, place) = match &point.at {
         ProbeAt::Point(point) => at_node(mesh.nearest_node(*point)),
-        ProbeAt::Group(name) => at_node((only_node(mesh, name)?, 0.0)),
         ProbeAt::Mean(group) => {
             let shares = shares_of_nodes(mesh, group)?;
-            let place = format!("mean over the {} nodes of `{group}`", shares.len());
-            (None, shares, place)
+            if let [(node, _)] = shares[..] {
+                at_node((node, 0.0))
+            } else {
+                let place = format!("mean over the {} nodes of `{group}`", shares.len());
+                (None, shares, place)
+            }
         }
     };
     let nodes = shares
@@ -220,16 +223,15 @@ fn of_stress(point: &ProbePoint, body: &BodyModel) -> Result<Probe, Fault> {
             let place = format!("tetrahedron {}", mesh.tet_tags[tet as usize]);
             (vec![(tet, 1.0)], place)
         }
-        ProbeAt::Group(name) => {
-            let node = only_node(mesh, name)?;
-            let tag = mesh.node_tags[node as usize];
-            let tets = by_volume(mesh, |tet| mesh.tets[tet as usize].contains(&node));
-            let place = format!("mean over the {} tetrahedra at node {tag}", tets.len());
-            (tets, place)
-        }
         ProbeAt::Mean(name) => {
             let tets = shares_of_tets(mesh, name)?;
-            let place = format!("mean over {} tetrahedra of `{name}`", tets.len());
+            let place = match mesh.group_nodes(mesh.group(name)?)[..] {
+                [node] => {
+                    let tag = mesh.node_tags[node as usize];
+                    format!("mean over the {} tetrahedra at node {tag}", tets.len())
+                }
+                _ => format!("mean over {} tetrahedra of `{name}`", tets.len()),
+            };
             (tets, place)
         }
     };
@@ -257,16 +259,6 @@ fn of_stress(point: &ProbePoint, body: &BodyModel) -> Result<Probe, Fault> {
         place,
         is_gone: false,
     })
-}
-
-fn only_node(mesh: &TetMesh, group: &str) -> Result<u32, Fault> {
-    match mesh.group_nodes(mesh.group(group)?)[..] {
-        [node] => Ok(node),
-        ref nodes => {
-            let nodes = nodes.len();
-            Err(Fault::SeveralNodes { nodes })
-        }
-    }
 }
 
 /// The share of each node in the mean of a linear field over a group, in the order of the nodes.

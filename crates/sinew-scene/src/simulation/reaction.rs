@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use sinew_core::{EvaluationError, Inputs, State};
+use sinew_core::{EvaluationError, Inputs, LoadTime, State};
 use sinew_fem::{FieldError, On};
 
 use super::Simulation;
@@ -112,7 +112,8 @@ impl Simulation {
     }
 
     /// The forces of the scene's supports and motions in a state, in the order of the scene; none for an
-    /// oscillator. See [`sinew_fem::Model::reactions`], also for single nodes.
+    /// oscillator. See [`sinew_fem::Model::reactions`], also for single nodes. Of a moved part's speed that changes in an instant they have
+    /// the mean over a step on both sides.
     ///
     /// # Errors
     /// [`ReactionError`] when the state is that of another system or the system refuses it.
@@ -124,7 +125,9 @@ impl Simulation {
         state.velocity_at_t(self.system(), Inputs::none(), &mut v)?;
         let mut forces = vec![[0.0; 3]; built.mesh.points.len()];
         let body = built.model.with_memory(&state.internal);
-        body.reactions(state.t(), &state.u, &v, &mut forces)?;
+        let (t, dt) = (state.t(), state.clock.last_step().unwrap_or(0.0));
+        let when = LoadTime::around(t, dt.min(t), dt);
+        body.reactions(when, &state.u, &v, &mut forces)?;
         built.subtract_contact(state, &mut forces);
         let parts = self.held_parts()?.into_iter();
         Ok(parts

@@ -23,7 +23,13 @@ pub(super) fn state(body: &Body, places: &Places, built: &BodyModel) -> Result<S
         })?;
     }
     // A displacement that is given comes about at t = 0.
-    built.model.accept(&mut state, Inputs::none(), 0.0);
+    let accepted = built.model.accept(&mut state, Inputs::none(), 0.0);
+    accepted.map_err(|error| {
+        let last = body.initial.len().saturating_sub(1);
+        places
+            .of(&places.initial, last)
+            .fault(Fault::InitialState(error))
+    })?;
     Ok(state)
 }
 
@@ -52,8 +58,8 @@ fn apply(
         Initial::Static { loads } => {
             state.u = at_rest(&places_of(loads, body), &built.model)?;
             state.internal.fill(0.0);
-            built.model.accept(state, Inputs::none(), f64::INFINITY);
-            Ok(())
+            let accepted = built.model.accept(state, Inputs::none(), f64::INFINITY);
+            accepted.map_err(Fault::InitialState)
         }
     }
 }

@@ -119,6 +119,7 @@ fn the_papers_cube() {
             }],
             gravity: None,
         },
+        load_files: vec![None],
         load_names: vec![None],
         initial: Vec::new(),
         probes: vec![ProbePoint {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::common::CutRun;
 use sinew_core::{LinearSystem, State, System};
-use sinew_scene::{Scene, Simulation};
+use sinew_scene::{Overlap, OverlapWatch, Scene, Simulation};
 
 const E: f64 = 3500.0;
 const EXPLICIT: &str = "integrator = \"symplectic-euler\"\ndt = 4e-4\n";
@@ -25,7 +25,7 @@ fn across([low, high]: [f64; 2]) -> String {
 fn bar_of_strokes(folder: &Path, strokes: &str, more: &str, lips: &str, run: &str) -> Simulation {
     let strokes = format!("stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n{strokes}");
     let text = format!(
-        "{more}[mesh]\nblock = {{ cells = [2, 2, 6], size = [0.02, 0.02, 0.06] }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
+        "{more}[mesh]\nblock = {{ cells = [2, 2, 6], size = [0.02, 0.02, 0.06], split = \"kuhn\" }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
          youngs_modulus = {E}\npoissons_ratio = 0.0\n[[fixed]]\nwhere = {{ below = {{ z = 0.0 }} }}\n{TIP}[cutting]\ntable = \"strokes.csv\"\n{lips}\n\
          [run]\nduration = 1.5\n{run}"
     );
@@ -38,6 +38,13 @@ fn bar_of_strokes(folder: &Path, strokes: &str, more: &str, lips: &str, run: &st
 const DAMPED: &str = "[damping]\nmass = 40.0\nstiffness = 0.0\n";
 const DOWN: &str = "gravity = [0.0, 0.0, -9.81]\n";
 const TIP: &str = "[[probe]]\nname = \"tip\"\npoint = [0.02, 0.02, 0.06]\n";
+
+/// What is told of surfaces in each other at the end of a run.
+fn overlap(run: &CutRun) -> Option<Overlap> {
+    let mut watch = OverlapWatch::new(run.simulation.model().body().unwrap());
+    watch.look_at_state(&run.state).unwrap();
+    watch.into_deepest()
+}
 
 /// The mean displacement (m) of the top along z at the end of a run, and what of it ran.
 fn sunk(scene: Simulation) -> (f64, CutRun) {
@@ -100,20 +107,26 @@ fn a_plate_on_a_cut_bar_presses_with_e_a_d_over_l() {
         let force = contact.report(&run.state, 0).force[2];
         let residual = contact.lips_report(&run.state).largest_residual;
         let said = run.simulation.left_by_tools(&run.state).join("\n");
-        (force, residual, (run.cutter.borrow().pieces(), top, said))
+        let depth = overlap(&run).map(|overlap| overlap.depth);
+        (
+            force,
+            residual,
+            (run.cutter.borrow().pieces(), top, said, depth),
+        )
     };
     let expected = E * 4e-4 * 0.002 / 0.06;
     // Where cuts cross, four nodes are there for one.
     for (crossing, pieces) in [("", 2), (crossing, 4)] {
-        let (met, residual, (now, _, said)) = pressed(crossing, "lips = \"contact\"");
+        let (met, residual, (now, _, said, depth)) = pressed(crossing, "lips = \"contact\"");
         assert!((met / expected - 1.0).abs() < 1e-9, "{met} {expected}");
         assert!(residual <= 1e-12, "{residual}");
-        assert_eq!((now, said.as_str()), (pieces, ""));
+        assert_eq!((now, said.as_str(), depth), (pieces, "", None));
     }
     // The loose half goes into the other as a rigid one, as far as the plate pushes it and a little
     // further on its own.
-    let (free, _, (_, top, said)) = pressed("", "lips = \"free\"");
+    let (free, _, (_, top, said, depth)) = pressed("", "lips = \"free\"");
     assert!(free < 0.01 * expected, "{free} {expected}");
+    assert!((depth.unwrap() / top - 1.0).abs() < 1e-3, "{depth:?} {top}");
     let overlap: Vec<f64> = said
         .split(' ')
         .filter_map(|word| word.parse().ok())
@@ -181,9 +194,12 @@ fn lips_that_bounce_on_each_other_bring_in_no_energy() {
         run.advance(1);
         assert_eq!(run.cutter.borrow().pieces(), 2);
         let (mut energy, mut met): (Energy, usize) = (Energy::NONE, 0);
-        for _ in 0..2000 {
+        for step in 0..2000 {
             run.advance(1);
             energy = energy.that_fell(&run, dt);
+            if heights[0] == heights[1] && step % 100 == 0 {
+                assert_eq!(overlap(&run), None);
+            }
             let contact = run.simulation.model().contact().unwrap();
             met += contact.lips_report(&run.state).contacts;
         }

@@ -17,11 +17,14 @@ mod good_scenes;
 mod lips;
 mod load_warnings;
 mod motions;
+mod moving_cuts;
+mod overlaps;
 mod places;
 mod plans;
 mod probes;
 #[cfg(feature = "implicit")]
 mod proposals;
+mod ramps;
 #[cfg(feature = "implicit")]
 mod ready_scenes;
 mod simulations;

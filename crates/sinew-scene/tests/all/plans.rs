@@ -34,7 +34,7 @@ fn papers_cube() -> Plan {
     let scene = fs::read_to_string(PAPERS_CUBE).unwrap();
     let file = "file = \"../meshes/paper-cube.msh\"";
     assert!(scene.contains(file));
-    plan(&scene.replace(file, "cube = { cells = 10, edge = 0.2 }"))
+    plan(&scene.replace(file, "cube = { cells = 10, edge = 0.2, split = \"kuhn\" }"))
 }
 
 #[test]

@@ -147,7 +147,6 @@ fn places_that_contradict_each_other_are_refused() {
             "point = [0.0, 0.0, 0.0]\nquantity = \"speed\"\n",
             "\"displacement\", \"velocity\" or \"stress\"",
         ),
-        ("where = { above = { z = 0.05 } }\n", "a probe follows one"),
     ] {
         let said = refused(more);
         assert!(said.contains(expected), "{said}");
@@ -164,6 +163,39 @@ fn places_that_contradict_each_other_are_refused() {
         said.contains("not known in [[region]] 1, which is made of springs"),
         "{said}"
     );
+}
+
+/// Nodes that are chosen by where they lie are a group of nodes: their mean, alike over all.
+#[cfg(feature = "implicit")]
+#[test]
+fn a_probe_of_several_nodes_is_their_mean() {
+    let columns = run(&format!(
+        "{PULLED}integrator = \"newmark\"\ndt = 0.001\n[[initial]]\nstatic = [\"pull\"]\n\
+         [[probe]]\nname = \"two\"\nwhere = {{ nodes = [1, 63] }}\n\
+         [[probe]]\nname = \"one\"\nwhere = {{ nodes = [63] }}\n\
+         [[probe]]\nname = \"other\"\nwhere = {{ nodes = [1] }}\n\
+         [[probe]]\nname = \"upper\"\nwhere = {{ above = {{ z = 0.05 }} }}\n\
+         [[probe]]\nname = \"core\"\nwhere = {{ cylinder = {{ axis_from = [0.01, 0.01, 0.0], axis_to = [0.01, 0.01, 0.04], radius = 0.001 }} }}\n\
+         [[probe]]\nname = \"rate\"\nwhere = {{ above = {{ z = 0.05 }} }}\nquantity = \"velocity\"\n\
+         [[probe]]\nname = \"tension\"\nwhere = {{ above = {{ z = 0.05 }} }}\nquantity = \"stress\"\n"
+    ));
+    let last = |name: &str| *columns[name].last().unwrap();
+    let stretch = 30.0 / 3000.0;
+    let mean = 0.5 * (last("one_u_z_m") + last("other_u_z_m"));
+    assert!((last("two_u_z_m") - mean).abs() < 1e-15 && mean > 1e-4);
+    for (name, expected) in [
+        // The planes z = .05 and z = .06 have as many nodes.
+        ("upper_u_z_m", stretch * 0.055),
+        ("core_u_z_m", stretch * 0.02),
+        ("tension_s_zz_Pa", 30.0),
+        ("rate_v_z_m_per_s", 0.0),
+    ] {
+        let found = last(name);
+        assert!(
+            (found - expected).abs() < 1e-8 * (1.0 + expected.abs()),
+            "{name}: {found} {expected}"
+        );
+    }
 }
 
 /// In a linear field the mean is the field at the centroid: of areas for triangles, of volumes for tetrahedra, whose sizes

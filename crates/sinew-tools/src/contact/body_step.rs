@@ -7,6 +7,9 @@
 //! `dt f (v+ + v-)/2`, exactly: so contact needs of it what it needs of tissue. A body that swings faster than the step tells would turn about in each step for ever: it
 //! gets a damper and a mass more ([`Spring`]), which leaves the balance as it is.
 //!
+//! Where the step before was of another length, impulses are those of the time between the two velocities, half of either step, as on the tissue, and `d_before` is `d - dt_before (v- - w-)`. The balance
+//! is then off by `k D (dt - dt_before)(v+ - v-)/4`, of order 2, once.
+//!
 //! Beside tissue whose velocities hold at the ends of steps it is implicit Euler's, `m (v+ - v) = -dt k d_after - dt b (v+ - w+) + dt f`, of which `P = m + dt b + dt^2 k`:
 //! there contact works at `v+`, and `(m v+^2 + k d_after^2)/2` rises by no more than that and the work of the path.
 //!
@@ -25,6 +28,10 @@ const GYROSCOPIC: usize = 3;
 #[derive(Clone, Debug)]
 pub(super) struct BodyStep {
     dt: f64,
+    /// The length of the step before (s).
+    dt_before: f64,
+    /// The time (s) between the velocities before and after.
+    kick: f64,
     is_staggered: bool,
     before: Pose,
     /// The coupling along, and about its own axes.
@@ -47,13 +54,18 @@ pub(super) struct BodyStep {
 }
 
 impl BodyStep {
-    /// A step of `dt` (s) without contact, with the poses of the path before and after it.
+    /// A step of `dt` (s) after one of another length, without contact, with the poses of the path before and after it.
     pub(super) fn new(
         body: &ToolBody,
         numbers: &[f64; OF_BODY],
         path: [Pose; 2],
-        (dt, is_staggered): (f64, bool),
+        ([dt_before, dt], is_staggered): ([f64; 2], bool),
     ) -> Self {
+        let kick = if is_staggered {
+            0.5 * (dt_before + dt)
+        } else {
+            dt
+        };
         let now = Twist::between(&path[0], &path[1]).times(1.0 / dt);
         let (before, last, earlier) = match Body::read(numbers) {
             Some(body) => (body.pose, body.velocity, body.path),
@@ -71,10 +83,12 @@ impl BodyStep {
         };
         let along = spring(body.mass, body.coupling);
         let about = inertia.map(|moment| spring(moment, body.rotational_coupling));
-        let metric = along.metric(dt, is_staggered);
-        let metrics = about.map(|spring| spring.metric(dt, is_staggered));
+        let metric = along.metric([dt, kick], is_staggered);
+        let metrics = about.map(|spring| spring.metric([dt, kick], is_staggered));
         let mut step = Self {
             dt,
+            dt_before,
+            kick,
             is_staggered,
             before,
             spring: along,
@@ -96,11 +110,11 @@ impl BodyStep {
         for _ in 0..GYROSCOPIC {
             let turned = add(spin, scaled(change, share));
             let momentum = [0, 1, 2].map(|axis| inertia[axis] * turned[axis]);
-            let torque = scaled(sub(turning, cross(spin, momentum)), dt);
-            change = solved(metrics, scaled(momentum, -dt * share), torque);
+            let torque = scaled(sub(turning, cross(spin, momentum)), kick);
+            change = solved(metrics, scaled(momentum, -kick * share), torque);
         }
         step.free = Twist {
-            along: add(last.along, scaled(pull.along, dt / metric)),
+            along: add(last.along, scaled(pull.along, kick / metric)),
             about: add(last.about, before.turned(change)),
         };
         step
@@ -111,7 +125,10 @@ impl BodyStep {
         let [earlier, now] = self.path;
         let relative = [self.last.minus(earlier), after.minus(now)];
         let (offset, slip) = if self.is_staggered {
-            let change = relative[1].minus(relative[0]).times(self.dt / 4.0);
+            let ways = relative[1]
+                .times(self.dt)
+                .minus(relative[0].times(self.dt_before));
+            let change = ways.times(0.25);
             let slip = relative[0].plus(relative[1]).times(0.5);
             (self.offset.plus(change), slip)
         } else {
@@ -191,7 +208,7 @@ impl BodyStep {
         } else {
             (now, 1.0)
         };
-        let work = self.dt * pull.dot(hand);
+        let work = self.kick * pull.dot(hand);
         let offset = velocity.minus(now).times(self.dt * share).plus(self.offset);
         let spin = self.before.turned_back(velocity.about);
         let turning: f64 = (0..3)
@@ -248,15 +265,15 @@ impl Spring {
         }
     }
 
-    /// What a step of `dt` (s) divides impulses by.
-    fn metric(&self, dt: f64, is_staggered: bool) -> f64 {
+    /// What a step of `dt` (s), with a time `kick` (s) between the velocities before and after, divides impulses by.
+    fn metric(&self, [dt, kick]: [f64; 2], is_staggered: bool) -> f64 {
         let Self {
             mass,
             stiffness,
             damper,
         } = *self;
-        let half = if is_staggered { dt / 2.0 } else { dt };
-        mass + half * damper + half * half * stiffness
+        let share = if is_staggered { 0.5 } else { 1.0 };
+        mass + share * kick * (damper + share * dt * stiffness)
     }
 }
 

@@ -3,8 +3,8 @@
 use super::links::Links;
 use super::lips::LipLink;
 use super::record::{
-    CONTACTS, DEPTH, FORCE, IMPULSE, LARGEST_LIP_RESIDUAL, LARGEST_RESIDUAL, LIP_CONTACTS,
-    LIP_RESIDUAL, OF_HELD, OF_TOOL, RESIDUAL, RIVAL, Record, SEIZED, TORQUE, WORK,
+    ANGULAR_IMPULSE, CONTACTS, DEPTH, FORCE, IMPULSE, LARGEST_LIP_RESIDUAL, LARGEST_RESIDUAL,
+    LIP_CONTACTS, LIP_RESIDUAL, OF_HELD, OF_TOOL, RESIDUAL, RIVAL, Record, SEIZED, TORQUE, WORK,
 };
 use super::tool_step::{ToolStep, Way};
 use super::tools::{MOST_TOOLS, Tools};
@@ -143,6 +143,7 @@ impl Count<'_> {
         let torque = cross(sub(end, step.now.position()), force);
         for axis in 0..3 {
             numbers[IMPULSE + axis] -= dt * force[axis];
+            numbers[ANGULAR_IMPULSE + axis] -= dt * torque[axis];
             numbers[FORCE + axis] -= force[axis];
             numbers[TORQUE + axis] -= torque[axis];
         }

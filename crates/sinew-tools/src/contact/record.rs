@@ -9,12 +9,12 @@ use crate::pose::Pose;
 use crate::vector::{Vector, add, scaled};
 
 /// Numbers of a tool.
-pub(super) const OF_TOOL: usize = 18;
+pub(super) const OF_TOOL: usize = 21;
 
 /// Their places: the force (N) and the torque (N m) on it, its work (J) and how deep (m) it had to leave a node in it so far, its contacts, the pieces
 /// in which its way was followed, the impulse (N s) that it has received so far, what the iteration for its contacts left in the last step and at most, how many cells it has
 /// seized so far, the number, from 1 on, of a tool that held a cell which it would have seized, and the most passes that a step would have needed so far, where
-/// that is more than are made.
+/// that is more than are made, and the angular impulse (N m s) about its own origin that it has received so far.
 pub(super) const FORCE: usize = 0;
 pub(super) const TORQUE: usize = 3;
 pub(super) const WORK: usize = 6;
@@ -27,6 +27,7 @@ pub(super) const LARGEST_RESIDUAL: usize = 14;
 pub(super) const SEIZED: usize = 15;
 pub(super) const RIVAL: usize = 16;
 pub(super) const NEEDED_PASSES: usize = 17;
+pub(super) const ANGULAR_IMPULSE: usize = 18;
 
 /// Numbers of a tool that is a body of its own.
 pub(super) const OF_BODY: usize = 21;
@@ -177,7 +178,8 @@ impl<'a> Record<'a> {
         for numbers in self.tools.iter_mut() {
             let before = std::mem::replace(numbers, [0.0; OF_TOOL]);
             let since = [WORK, DEPTH, LARGEST_RESIDUAL, SEIZED, RIVAL, NEEDED_PASSES];
-            for place in since.into_iter().chain(IMPULSE..IMPULSE + 3) {
+            let impulses = (IMPULSE..IMPULSE + 3).chain(ANGULAR_IMPULSE..ANGULAR_IMPULSE + 3);
+            for place in since.into_iter().chain(impulses) {
                 numbers[place] = before[place];
             }
         }

@@ -3,8 +3,8 @@
 use sinew_core::{Inputs, State};
 
 use super::record::{
-    Body, CONTACTS, DEPTH, FORCE, IMPULSE, LARGEST_RESIDUAL, NEEDED_PASSES, OF_BODY, OF_CELL,
-    OF_TOOL, PASSES, RESIDUAL, RIVAL, SEIZED, TORQUE, WORK,
+    ANGULAR_IMPULSE, Body, CONTACTS, DEPTH, FORCE, IMPULSE, LARGEST_RESIDUAL, NEEDED_PASSES,
+    OF_BODY, OF_CELL, OF_TOOL, PASSES, RESIDUAL, RIVAL, SEIZED, TORQUE, WORK,
 };
 use super::tool::{Corner, Tool};
 use super::tools::Tools;
@@ -14,12 +14,14 @@ use crate::vector::dot;
 /// A tool after a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolReport {
-    /// The force on it (N), friction included: the mean over the step.
+    /// The force on it (N), friction included: the mean over the step, or over the last part of one that is cut into parts.
     pub force: [f64; 3],
     /// The torque on it (N m) about its origin.
     pub torque: [f64; 3],
     /// The impulse (N s) that it has received since the motion began: its growth over any time is the mean force then.
     pub impulse: [f64; 3],
+    /// The angular impulse (N m s) that it has received since the motion began, of torques about its own origin wherever that was.
+    pub angular_impulse: [f64; 3],
     /// The work (J) that it did on the body since the motion began.
     pub work: f64,
     /// How deep (m) it had to leave a node in it since the motion began: one that is held in the direction of the contact, or has no room between surfaces.
@@ -95,6 +97,7 @@ impl Tools {
             force: [0, 1, 2].map(|axis| numbers[FORCE + axis]),
             torque: [0, 1, 2].map(|axis| numbers[TORQUE + axis]),
             impulse: [0, 1, 2].map(|axis| numbers[IMPULSE + axis]),
+            angular_impulse: [0, 1, 2].map(|axis| numbers[ANGULAR_IMPULSE + axis]),
             work: numbers[WORK],
             depth: numbers[DEPTH],
             contacts: numbers[CONTACTS] as usize,

@@ -131,7 +131,8 @@ impl ToolStep {
         self.steps_at_work = if is_staggered { 2.0 } else { 1.0 };
         [self.before, self.after] = path;
         if let (Some(body), Some(kept)) = (&tool.body, kept) {
-            let body = BodyStep::new(body, kept, path, (dt, is_staggered));
+            let dt_before = earlier.map_or(dt, |(_, last)| last);
+            let body = BodyStep::new(body, kept, path, ([dt_before, dt], is_staggered));
             (self.before, self.after) = (body.before(), body.after());
             self.body = Some(body);
         }

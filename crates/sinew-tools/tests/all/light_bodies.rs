@@ -71,8 +71,12 @@ fn a_light_tool_that_rubs_makes_no_energy() {
                 let dt = share * pressed.stable_step();
                 let (rise, largest) = rise_and_largest(&pressed, id, dt);
                 assert!(largest > 1e-4, "the ball presses: {largest}");
-                // In explicit steps normals turn with the ball, by what it rolls in a step.
-                let limit = if id == "cnn-energy" { 1e-12 } else { 3e-4 };
+                // Normals turn with a ball that rolls, by what it rolls in a step: a contact slips round it by d, along a plane that leaves the ball by d^2/(2 r).
+                let limit = match (id, friction) {
+                    ("cnn-energy", 0.0) => 1e-12,
+                    ("cnn-energy", _) => 1e-6,
+                    _ => 3e-4,
+                };
                 assert!(
                     rise <= limit * largest,
                     "{id} {share} {mass} {damping} {friction}: {rise} of {largest}"

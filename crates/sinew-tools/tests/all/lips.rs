@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use pressed::{Block, Pressed, staggered_energy, through, tool};
-use sinew_core::{State, System};
+use sinew_core::{OptionValue, Options, State, System};
 use sinew_fem::Model;
 use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{Split, block};
@@ -152,6 +152,41 @@ fn the_upper_half_of_a_block_rests_on_its_lips_by_its_weight() {
     assert!(cut.pressed.tools.lips_report(&state).contacts > 0);
     // Heights of nodes that were one: by the slope they differ by less than a hundredth of an edge.
     assert!(cut.overlap(&state) < 1e-4, "{}", cut.overlap(&state));
+}
+
+/// Nothing rubs, and nothing brakes: the upper half slides as far as a point would.
+#[test]
+fn the_upper_half_slides_on_its_lips_by_its_own_weight_alone() {
+    let mut shape = Block::of([0.04, 0.04, HEIGHT], [2, 2, 4]);
+    shape.gravity = Some([0.8, 0.0, -1.0]);
+    let cut = Cut::of(&shape, Vec::new());
+    let above = cut.is_above();
+    let kind = Options::new().with("kind", OptionValue::Text("ie".into()));
+    let limit = cut.pressed.stable_step();
+    let runs = [
+        ("cnn-energy", &kind, 0.1e-3),
+        ("cnn-energy", &kind, 1e-3),
+        ("cnn-energy", &kind, 4.5 * limit),
+        ("cnn-stabilised", &Options::new(), 2.3 * limit),
+        ("cnn-stabilised", &Options::new(), 4.5 * limit),
+    ];
+    for (id, options, dt) in runs {
+        let mut state = cut.pressed.at_rest();
+        let steps = (0.1_f64 / dt).round() as usize;
+        cut.pressed
+            .run_with(&mut state, (id, options.clone()), dt, steps);
+        let masses = cut.pressed.model.mass().as_chunks::<3>().0;
+        let speeds = state.v.as_chunks::<3>().0;
+        let moving = masses.iter().zip(speeds).zip(&above);
+        let moving = moving.filter(|(_, is_above)| **is_above);
+        let [momentum, mass] = moving.fold([0.0; 2], |[p, m], ((mass, v), _)| {
+            [p + mass[0] * v[0], m + mass[0]]
+        });
+        // The network's first step has half of the force.
+        let halves = if id == "cnn-stabilised" { 0.5 } else { 0.0 };
+        let found = momentum / mass / (0.8 * dt * (steps as f64 - halves));
+        assert!((found - 1.0).abs() < 0.03, "{id}, {dt} s: {found}");
+    }
 }
 
 #[test]

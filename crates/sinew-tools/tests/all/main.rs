@@ -8,6 +8,7 @@ mod bodies;
 mod common;
 mod energy_sweeps;
 mod first_contact;
+mod free_motion;
 mod light_bodies;
 mod lips;
 mod nearest;

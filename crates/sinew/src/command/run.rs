@@ -8,10 +8,13 @@ use sinew_core::{
 };
 use sinew_integrators::Stepper;
 use sinew_measure::Forecast;
-use sinew_record::{Companion, EnergyGrowth, Request, RunFolder, words_of_cuts};
+use sinew_record::{
+    Companion, EnergyGrowth, EnergyLoss, OverlapLooks, Request, RunFolder, words_of_cuts,
+};
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
 use sinew_scene::{
-    Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Seen, Simulation, Warning, WarningKind,
+    Overlap, Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Seen, Simulation, Warning,
+    WarningKind,
 };
 
 mod arguments;
@@ -169,6 +172,8 @@ fn probes_alone(
     let whole = simulation.run();
     let mut onlooker = Onlooker::new(interruption, whole.steps, simulation.settings().duration);
     let mut growth = EnergyGrowth::new(simulation);
+    let mut overlap = None;
+    let mut loss = EnergyLoss::new(simulation, integrator);
     // The scene on the body as cuts left it.
     let mut cut: Option<Simulation> = None;
     let mut taken = RunReport {
@@ -179,11 +184,13 @@ fn probes_alone(
     let (csv, report, simulation) = loop {
         let now = cut.as_ref().unwrap_or(simulation);
         let mut csv = output.with_rows(ProbeRows::new(now));
+        let mut overlaps = OverlapLooks::new(now);
         let mut recorders = Recorders::new()
             .with_lent(&mut csv)
+            .with_lent(&mut overlaps)
             .with_lent(&mut onlooker);
         if cutter.is_none() {
-            recorders = recorders.with_lent(&mut growth);
+            recorders = recorders.with_lent(&mut growth).with_lent(&mut loss);
         }
         let seen = Seen {
             steps: taken.steps,
@@ -197,6 +204,7 @@ fn probes_alone(
         let moving = (cutter.as_ref(), integrator, &mut state);
         let stretch = now.stretch(moving, &run, (&mut recorders, seen));
         drop(recorders);
+        overlap = Overlap::deeper(overlap, overlaps.into_deepest());
         let stretch = match stretch {
             Ok(stretch) => stretch,
             Err(error) => break (csv, Err(error), now),
@@ -213,11 +221,20 @@ fn probes_alone(
     onlooker.finish();
     let system = simulation.system();
     let outrun = simulation.outrun(integrator, &state);
-    let left = simulation.left_by_tools(&state);
+    let mut left = simulation.left_by_tools(&state);
+    left.extend(
+        cutter
+            .as_ref()
+            .and_then(|cutter| cutter.borrow().left_uncut()),
+    );
     let left = left.iter().map(String::as_str);
+    let overlap = overlap.map(|overlap| overlap.to_string());
+    let lost = loss.in_words();
     for warning in growth
         .in_words()
         .into_iter()
+        .chain(overlap.as_deref())
+        .chain(lost.as_deref())
         .chain(outrun.as_deref())
         .chain(left)
     {

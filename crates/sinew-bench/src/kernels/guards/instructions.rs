@@ -51,12 +51,12 @@ fn of<T: ElementPrecision>(
             let machine = FastMachine::new(layout.clone()).with_instructions(set);
             Runner::new(Box::new(machine), (model, &program, dt), &start)
         });
-        let mut ratios: Vec<f64> = (0..laps)
-            .map(|_| {
-                let [portable, best] = runners.each_mut().map(|runner| runner.take(steps).1);
-                portable / best
-            })
-            .collect();
+        let mut ratios: Vec<f64> = Vec::with_capacity(laps);
+        for _ in 0..laps {
+            let [portable, best] = &mut runners;
+            let (portable, best) = (portable.take(steps)?.1, best.take(steps)?.1);
+            ratios.push(portable / best);
+        }
         guards.push(Guard {
             name: format!(
                 "{kind} {}, {} over portable instructions, times as fast",

@@ -10,6 +10,7 @@ use sinew_integrators::Frame;
 use sinew_integrators::cnn::CnnStabilised;
 use sinew_mesh::structured::{Split, block, cube};
 
+use super::full_strokes;
 use crate::verify::bodies::{DENSITY, YOUNGS_MODULUS, body, held};
 use crate::verify::check::{Asked, Check, Source};
 use crate::verify::error::VerifyError;
@@ -35,6 +36,9 @@ const BOUNDS: Source = Source::Independent(
 const SUM: Source = Source::ClosedForm(
     "M, K and the blocks of K are sums over tetrahedra, which a cut only puts together otherwise",
 );
+
+const THROUGH: Source =
+    Source::ClosedForm("a blade that comes through a body, past both sides of it, parts it in two");
 
 fn checks() -> Vec<Check> {
     let mut checks = Vec::new();
@@ -148,6 +152,27 @@ fn checks() -> Vec<Check> {
         ],
         SUM,
         |_| removal(),
+    ));
+    let through = || {
+        [
+            (
+                "strokes that leave other than two pieces",
+                Asked::value(0.0, 0.0),
+            ),
+            ("area told as left uncut (m^2)", Asked::value(0.0, 0.0)),
+        ]
+    };
+    checks.push(Check::several(
+        "20 sheets through a strip held at strains of 0 to 30 %, three laws, central difference at 0.5 ms",
+        through(),
+        THROUGH,
+        |_| full_strokes::under_tension(),
+    ));
+    checks.push(Check::several(
+        "20 sheets through a free cube, strained by 0 to 30 %, 100 random velocities, three laws",
+        through(),
+        THROUGH,
+        |_| full_strokes::free(),
     ));
     checks.push(Check::one(
         "mirrored cube under gravity, slit in the middle",

@@ -413,16 +413,24 @@ const METHODS: &[Row] = &[
     ),
 ];
 
+/// Sweeps from which on a step hardly depends on where they set out from. The prototype's set out from rest, and those of the library from where the velocity leads: with
+/// fewer its errors are no more than bounds.
+const FINISHED: u32 = 16;
+
 /// Errors of implicit and cellular methods on a scene.
 fn methods(scene: Scene) -> Check {
     let rows = move || METHODS.iter().filter(move |row| row.0 == scene);
     let figures = rows().flat_map(|&(_, id, own, ms, error, iterations)| {
+        let is_unfinished = own.is_some_and(|(_, sweeps)| sweeps < FINISHED);
         let own = own.map_or_else(String::new, |(kind, sweeps)| {
             format!(" {kind}, {sweeps} sweeps")
         });
         let label = format!("{id}{own}, {ms} ms");
         let digit = if error < 0.01 { 1e-4 } else { 1e-3 };
-        let asked = Asked::value(error, f64::max(0.05 * error, 0.5 * digit));
+        let asked = match is_unfinished {
+            true => Asked::at_most(1.3 * error),
+            false => Asked::value(error, f64::max(0.05 * error, 0.5 * digit)),
+        };
         let counted = iterations.map(|count| {
             let figure = format!("{label}: Newton iterations a step");
             (figure, Asked::relative(count, 0.15))

@@ -11,6 +11,7 @@ mod energy;
 mod fibres;
 mod free_cube;
 mod free_tools;
+mod full_strokes;
 mod hanging_bar;
 mod haptics;
 mod held_cube;

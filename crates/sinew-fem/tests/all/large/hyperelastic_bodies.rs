@@ -4,7 +4,7 @@ use crate::common::{
     at, at_most, body, build, dot, edges, elastic, held, jitter, linear, max_abs, product,
     relative_difference, stiffness_times, uneven_cube, waves,
 };
-use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, System, TangentKind};
+use sinew_core::{BlockMatrix, ElasticLaw, ForceLaw, Layers, Pattern, System, TangentKind};
 use sinew_fem::hyperelastic::{Hyperelastic, Parameters};
 use sinew_fem::{Element, FromMesh, Law, Model, Problem, Region, Tissue};
 use sinew_mesh::structured::{self, Split};
@@ -458,6 +458,50 @@ fn reactions_are_the_forces_that_are_missing() {
                     (reaction / missing - 1.0).abs() < 1e-11,
                     "{element}: {reaction} {missing}"
                 );
+            }
+        }
+    }
+}
+
+/// A tangent without a block for each coupling would be another matrix, also of linear regions; with more blocks it is the same.
+#[test]
+fn a_tangent_on_another_pattern_is_refused_and_on_a_larger_one_taken() {
+    let mesh = uneven_cube();
+    for problem in [
+        body(linear(YOUNGS_MODULUS, NU)),
+        of("neo-hookean", Element::P1),
+        of("corotational", edges(0.9)),
+    ] {
+        let model = build(&mesh, &problem);
+        let u = bent(&mesh, &model, 0.3);
+        let v = vec![0.0; u.len()];
+        let cells = model.pattern().cells();
+        let on = |elements: Vec<Vec<u32>>, layers: Layers| {
+            let pattern = Pattern::from_elements(cells, elements).unwrap();
+            BlockMatrix::zeros(pattern.into(), layers)
+        };
+        let alone = (0..cells as u32).map(|cell| vec![cell]).collect();
+        let mut diagonal = on(alone, Layers::Three);
+        let kind = TangentKind::Exact;
+        let refused = model.tangent(&at(&u, &v), kind, &mut diagonal).unwrap_err();
+        assert!(
+            refused.element == 0 && refused.reason.contains("not neighbours in the pattern"),
+            "{refused}"
+        );
+        let all = || vec![(0..cells as u32).collect()];
+        let mut scalar = on(all(), Layers::One);
+        assert!(model.tangent(&at(&u, &v), kind, &mut scalar).is_err());
+        let (mut full, mut own) = (
+            on(all(), Layers::Three),
+            BlockMatrix::zeros(model.pattern().clone(), Layers::Three),
+        );
+        for matrix in [&mut full, &mut own] {
+            model.tangent(&at(&u, &v), kind, matrix).unwrap();
+        }
+        for row in 0..cells {
+            for (column, block) in full.row_blocks(row) {
+                let expected = own.block(row, column);
+                assert!(expected.map_or(block.iter().all(|x| *x == 0.0), |own| own == block));
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Large deformation.
 
+mod damping;
 mod fibrous_bodies;
 mod hyperelastic_bodies;
 mod laws_on_vectors;

@@ -134,7 +134,7 @@ fn used(mesh: &TetMesh, model: &Model) -> State {
     state.internal = vec![0.0; model.internal_variables()];
     for (size, dt) in [(0.5, 0.0), (-0.2, 0.03)] {
         state.u = bent(mesh, model, size);
-        model.accept(&mut state, &Inputs::default(), dt);
+        model.accept(&mut state, &Inputs::default(), dt).unwrap();
     }
     state
 }

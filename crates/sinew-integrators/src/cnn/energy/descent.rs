@@ -1,10 +1,12 @@
 //! Sweeps that lower a step's potential.
 
-use sinew_core::vectors::{add_scaled, dot, norm, weighted_dot};
-use sinew_core::{EvaluationError, StepReport, TangentKind};
+use sinew_core::vectors::{add_scaled, dot, dot_of_difference, norm, weighted_dot};
+use sinew_core::{ElasticLaw, EvaluationError, StepReport, System, TangentKind};
 
 use super::cell_factors::CellFactors;
 use super::point::{Law, Point};
+use super::quadratic::Quadratic;
+use super::rigid::Rigid;
 
 /// Share of the first slope by which a sweep lowers the potential at least (Armijo, Pacific J. Math. 16, 1966).
 const ARMIJO: f64 = 1e-4;
@@ -18,41 +20,14 @@ pub(super) const MOST_HALVINGS: u32 = 60;
 /// Multiples of the rounding of forces within which a slope says nothing.
 pub(super) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// `m/2 y'M y + d/2 y'D y - b'y`, y being the displacement over the step: what a step's potential holds besides `W`.
-pub(super) struct Quadratic<'a> {
-    /// M (kg).
-    pub(super) masses: &'a [f64],
-    /// m (1/s^2).
-    pub(super) mass_weight: f64,
-    /// d (1/s).
-    pub(super) damping_weight: f64,
-    /// b (N).
-    pub(super) pull: &'a [f64],
-}
-
-impl Quadratic<'_> {
-    /// The potential's slope (N) where a displacement y (m), with D y (N) where anything damps, has led to the law's force (N).
-    pub(super) fn write_slope(
-        &self,
-        (moved, damped): (&[f64], Option<&[f64]>),
-        force: &[f64],
-        out: &mut [f64],
-    ) {
-        let values = moved.iter().zip(self.masses).zip(self.pull);
-        let values = values.zip(force).zip(&mut *out);
-        for ((((moved, mass), pull), force), slope) in values {
-            *slope = self.mass_weight * mass * moved - pull + force;
-        }
-        if let Some(damped) = damped {
-            add_scaled(self.damping_weight, damped, out);
-        }
-    }
-}
-
 /// A displacement over a step that is improved by nonlinear conjugate gradients with the cells' own blocks for a preconditioner.
 ///
 /// Directions are those of Polak and Ribiere, never negative (Gilbert and Nocedal, SIAM J. Optim. 2, 1992). They begin anew with every step,
 /// so that nothing is remembered.
+///
+/// They set out from where the velocity at the start of the step leads, if the potential is not higher there than at the start: what moves on as it did is found at once, and no stiffness of a block brakes it.
+/// Parts that may move as rigid bodies are led to the least of the potential over such motions, which the elastic energy does not feel, and the blocks are then those of a [`Deflation`](sinew_cnn::Deflation): so
+/// sweeps find what is left.
 pub(super) struct Descent {
     /// The displacement over the step (m).
     pub(super) moved: Vec<f64>,
@@ -60,7 +35,11 @@ pub(super) struct Descent {
     pub(super) reached: Point,
     trial: Point,
     layers: usize,
+    /// The cells' own blocks (N/m) of the potential's second derivative without inertia, row by row.
+    pub(super) own: Vec<f64>,
     pub(super) blocks: CellFactors,
+    /// Own blocks of stiffness damping in the step (N s/m); empty where there is none.
+    viscous_blocks: Vec<f64>,
     gradient: Vec<f64>,
     gradient_before: Vec<f64>,
     preconditioned: Vec<f64>,
@@ -72,6 +51,8 @@ pub(super) struct Descent {
     /// D times `moved`, and times the direction, without alpha M.
     damped: Vec<f64>,
     damped_direction: Vec<f64>,
+    /// Present where parts may move as rigid bodies.
+    pub(super) rigid: Option<Rigid>,
 }
 
 /// End of the sweeps of a step.
@@ -100,14 +81,19 @@ enum Turn {
 }
 
 impl Descent {
-    pub(super) fn new(layers: usize, dofs: usize) -> Self {
+    pub(super) fn new(system: &dyn System) -> Self {
+        let (layers, dofs) = (system.layers().count(), system.dofs());
+        let is_viscous = |law: &dyn ElasticLaw| law.damping().stiffness != 0.0;
+        let is_viscous = system.as_elastic().is_some_and(is_viscous);
         let zeros = || vec![0.0; dofs];
         Self {
             moved: zeros(),
             reached: Point::new(dofs),
             trial: Point::new(dofs),
             layers,
+            own: vec![0.0; dofs * layers],
             blocks: CellFactors::new(layers, dofs),
+            viscous_blocks: vec![0.0; if is_viscous { layers * dofs } else { 0 }],
             gradient: zeros(),
             gradient_before: zeros(),
             preconditioned: zeros(),
@@ -116,6 +102,7 @@ impl Descent {
             stiff: 0.0,
             damped: zeros(),
             damped_direction: zeros(),
+            rigid: Rigid::new(system.free_parts(), dofs),
         }
     }
 
@@ -141,9 +128,13 @@ impl Descent {
         work: &mut StepReport,
     ) -> Result<Found, EvaluationError> {
         self.restart(start);
-        self.factorise(law, quadratic, start)?;
+        self.look(law, quadratic, start)?;
+        self.factorise(quadratic, 1.0);
         work.sweeps += 1;
         let (mut before, mut found) = (None, Found::Nothing);
+        if self.lead(law, quadratic, start, work)? {
+            found = Found::Lower;
+        }
         for _ in 0..sweeps {
             let (slope, steepness) = match self.turn(law, quadratic, before) {
                 Turn::Level => return Ok(Found::Lower),
@@ -160,38 +151,139 @@ impl Descent {
         Ok(found)
     }
 
-    /// Factorises the diagonal blocks of the potential's second derivative at the start of the step.
-    pub(super) fn factorise(
+    /// Takes the own blocks of stiffness damping where it is held in the step.
+    ///
+    /// # Errors
+    /// [`EvaluationError`] when the law is outside its domain there.
+    pub(super) fn take_viscosity(&mut self, law: &Law<'_>) -> Result<(), EvaluationError> {
+        self.viscous_blocks.fill(0.0);
+        law.law
+            .add_viscous_blocks(&law.damped(), 1.0, &mut self.viscous_blocks)
+    }
+
+    /// Goes where the velocity at the start of the step leads, and parts that may move as rigid bodies to the least of the potential over such motions, where it is
+    /// lower there; or these alone. Whether it went anywhere. Then takes rigid motions out of the blocks.
+    fn lead(
+        &mut self,
+        law: &Law<'_>,
+        quadratic: &Quadratic<'_>,
+        start: &Point,
+        work: &mut StepReport,
+    ) -> Result<bool, EvaluationError> {
+        for (y, v) in self.direction.iter_mut().zip(law.v) {
+            *y = law.dt * v;
+        }
+        if let Some(rigid) = &mut self.rigid {
+            rigid.lead(&start.u, quadratic, law.is_quadratic, &mut self.direction);
+        }
+        let mut is_lower = self.go_to_direction(law, quadratic, start, work)?;
+        let Some(rigid) = &mut self.rigid else {
+            return Ok(is_lower);
+        };
+        if !is_lower {
+            self.direction.fill(0.0);
+            rigid.lead(&start.u, quadratic, law.is_quadratic, &mut self.direction);
+            is_lower = self.go_to_direction(law, quadratic, start, work)?;
+        }
+        if let Some(rigid) = &mut self.rigid {
+            self.blocks.write_inverse(1.0, &mut rigid.inverse);
+            let about = (!law.is_quadratic).then_some(&*self.reached.u);
+            let inertia = |dof: usize| quadratic.mass_weight * quadratic.masses[dof];
+            let (added, inverse) = ((1.0, &*self.own), (1.0, &*rigid.inverse));
+            rigid.deflation.weigh(about, added, inverse, inertia);
+        }
+        Ok(is_lower)
+    }
+
+    /// Goes from the start of the step as far as the direction, where the potential is not higher there; whether it is not.
+    fn go_to_direction(
+        &mut self,
+        law: &Law<'_>,
+        quadratic: &Quadratic<'_>,
+        start: &Point,
+        work: &mut StepReport,
+    ) -> Result<bool, EvaluationError> {
+        let y = &self.direction;
+        if norm(y) == 0.0 {
+            return Ok(false);
+        }
+        for ((u, start), y) in self.trial.u.iter_mut().zip(&start.u).zip(y) {
+            *u = start + y;
+        }
+        *work += StepReport::ONE_FORCE;
+        if self.trial.evaluate(law).is_err() || !self.trial.is_finite() {
+            return Ok(false);
+        }
+        let mut curvature = quadratic.mass_weight * weighted_dot(quadratic.masses, y, y);
+        if law.is_damped() {
+            law.damping_product(y, &mut self.damped_direction)?;
+            work.sweeps += 1;
+            curvature += quadratic.damping_weight * dot(y, &self.damped_direction);
+        }
+        let slope = dot_of_difference(&start.force, quadratic.pull, y);
+        let beyond = start.energy_beyond_slope(&self.trial, (y, 1.0), (law, self.stiff));
+        let change = slope + 0.5 * curvature + beyond;
+        let forces = norm(&start.force) + norm(&self.trial.force);
+        if change > ROUNDING * norm(y) * forces {
+            return Ok(false);
+        }
+        self.moved.copy_from_slice(y);
+        if law.is_damped() {
+            self.damped.copy_from_slice(&self.damped_direction);
+        }
+        std::mem::swap(&mut self.reached, &mut self.trial);
+        Ok(true)
+    }
+
+    /// Finds the diagonal blocks of the potential's second derivative at the start of the step, without inertia.
+    pub(super) fn look(
         &mut self,
         law: &Law<'_>,
         quadratic: &Quadratic<'_>,
         start: &Point,
     ) -> Result<(), EvaluationError> {
-        let entries = self.blocks.entries_mut();
-        law.law.node_blocks(&law.at(&start.u), entries)?;
+        let own = &mut self.own;
+        law.law.node_blocks(&law.at(&start.u), own)?;
         let layers = self.layers;
         let terms = self.preconditioned.iter_mut().zip(&start.u).enumerate();
         for (dof, (term, u)) in terms {
-            *term = entries[dof * layers + dof % layers] * u * u;
+            *term = own[dof * layers + dof % layers] * u * u;
         }
         self.stiff = norm(&self.preconditioned);
         let damping = law.law.damping();
         let weight = quadratic.damping_weight;
-        for entry in &mut *entries {
-            *entry *= 1.0 + weight * damping.stiffness;
-        }
+        add_scaled(weight, &self.viscous_blocks, own);
         if let Some(extra) = &damping.extra {
             let of_cell = extra.layers().count().pow(2);
-            for (cell, entries) in entries.chunks_exact_mut(of_cell).enumerate() {
+            for (cell, entries) in own.chunks_exact_mut(of_cell).enumerate() {
                 if let Some(block) = extra.block(cell, cell) {
                     add_scaled(weight, block, entries);
                 }
             }
         }
-        let masses = quadratic.masses;
-        self.blocks
-            .factorise(|dof| quadratic.mass_weight * masses[dof]);
         Ok(())
+    }
+
+    /// Factorises these blocks, so many times, with the inertia.
+    pub(super) fn factorise(&mut self, quadratic: &Quadratic<'_>, factor: f64) {
+        let entries = self.blocks.entries_mut().iter_mut();
+        entries
+            .zip(&self.own)
+            .for_each(|(entry, own)| *entry = factor * own);
+        self.blocks
+            .factorise(|dof| quadratic.mass_weight * quadratic.masses[dof]);
+    }
+
+    /// `x'B x` (J) for the blocks B of the cells without inertia.
+    pub(super) fn own_product(&self, x: &[f64]) -> f64 {
+        let n = self.layers;
+        let cells = self.own.chunks_exact(n * n).zip(x.chunks_exact(n));
+        let of_cell = |(block, x): (&[f64], &[f64])| {
+            let rows = block.chunks_exact(n).zip(x);
+            rows.map(|(row, x_i)| x_i * row.iter().zip(x).map(|(b, x_j)| b * x_j).sum::<f64>())
+                .sum::<f64>()
+        };
+        cells.map(of_cell).sum()
     }
 
     /// Finds the next direction; `before` is the steepness of the last.
@@ -205,6 +297,11 @@ impl Descent {
         );
         self.preconditioned.copy_from_slice(&self.gradient);
         self.blocks.solve(&mut self.preconditioned);
+        if let Some(rigid) = &self.rigid {
+            rigid
+                .deflation
+                .correct(&self.gradient, &mut self.preconditioned);
+        }
         let steepness = dot(&self.gradient, &self.preconditioned);
         if !steepness.is_finite() {
             return Turn::NotFinite;
@@ -249,7 +346,7 @@ impl Descent {
         let mut curvature =
             quadratic.mass_weight * weighted_dot(quadratic.masses, direction, direction);
         if law.is_damped() {
-            law.damping_product(&start.u, direction, &mut self.damped_direction)?;
+            law.damping_product(direction, &mut self.damped_direction)?;
             work.sweeps += 1;
             curvature += quadratic.damping_weight * dot(direction, &self.damped_direction);
         }

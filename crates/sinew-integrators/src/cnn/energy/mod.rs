@@ -5,6 +5,8 @@ mod certificate;
 mod descent;
 mod kind;
 mod point;
+mod quadratic;
+mod rigid;
 mod steps;
 mod touched;
 
@@ -48,14 +50,16 @@ pub use self::kind::Kind;
 /// cell by cell, friction included, and `E+ <= E + P'y + W` holds with the work W of the tools (the proof is with the sweeps, `touched.rs`). The trapezoidal rule
 /// would let nodes bounce off a tool that they follow, and is refused.
 ///
-/// Damping enters the potential whole: the mass-proportional part, dashpots, and the stiffness-proportional part by the tangent at
-/// the start of the step without negative eigenvalues.
+/// Damping enters the potential whole: the mass-proportional part, dashpots, and stiffness damping as it is half way through the step by the velocity at its
+/// start, which takes the place of a function of the displacement. It has no negative eigenvalues anywhere. What supports in motion do by it is a load, and its work one of P.
 ///
 /// # Order
 ///
-/// Sweeps begin with y = 0, an error of `dt v`, and each leaves a share of it that falls as `dt^2`, or as `dt` with stiffness damping or
+/// Parts that may move as rigid bodies are led to the least of the potential over such motions first, by finite turns, so that no sweep is needed for what moves as a whole ([`sinew_cnn::RigidMotions`]).
+///
+/// Sweeps begin with no displacement beside that, an error of `dt v`, and each leaves a share of it that falls as `dt^2`, or as `dt` with stiffness damping or
 /// dashpots, which weigh `dt` times more. So the order is that of the formula from two sweeps on (from one for implicit Euler), with
-/// such damping from three (two). On a law whose tangent moves, stiffness damping by that at the start of the step is of order 1.
+/// such damping from three (two).
 #[derive(Clone, Copy, Debug)]
 pub struct CnnEnergy {
     kind: Kind,
@@ -139,11 +143,11 @@ impl Scheme for CnnEnergy {
             Kind::ImplicitEuler => 1,
             Kind::Trapezoidal => 2,
         };
-        // y is off by dt^(2 sweeps + 1) a step, with other damping by dt^(sweeps + 1), and v by that over dt.
+        // Where the velocity leads y is off by dt^2, and each sweep leaves dt^2 of it, with other damping dt; v is off by that over dt.
         let sweeps = self.sweeps.min(8) as u8;
-        let order = of_formula.min(2 * sweeps - 1);
+        let order = of_formula.min(2 * sweeps);
         Properties::of_order(order, Needs::Tangents, EnergyBehaviour::NeverRises)
-            .with_other_damping(of_formula.min(sweeps - 1))
+            .with_other_damping(of_formula.min(sweeps))
     }
 
     fn set_up(

@@ -1,7 +1,7 @@
 //! Points that an elastic law has been evaluated at.
 
-use sinew_core::vectors::{dot, dot_of_difference, scale};
-use sinew_core::{ElasticLaw, EvaluationError, LoadTime, TangentKind, Trial};
+use sinew_core::vectors::{dot, dot_of_difference};
+use sinew_core::{ElasticLaw, EvaluationError, LoadTime, Trial, Velocities};
 
 /// Multiples of the rounding of two energies within which their difference says nothing.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -77,6 +77,21 @@ pub(super) struct Law<'a> {
     /// Velocity (m/s) of the last accepted state.
     pub(super) v: &'a [f64],
     pub(super) internal: &'a [f64],
+    /// The time and the displacement (m) at which stiffness damping is held throughout the step, so that it is a quadratic form.
+    pub(super) held_at: (LoadTime<'a>, &'a [f64]),
+}
+
+impl<'a> Law<'a> {
+    /// The same with stiffness damping held at a time and a displacement.
+    pub(super) fn damped_at<'b>(self, when: LoadTime<'b>, u: &'b [f64]) -> Law<'b>
+    where
+        'a: 'b,
+    {
+        Law {
+            held_at: (when, u),
+            ..self
+        }
+    }
 }
 
 impl Law<'_> {
@@ -90,34 +105,54 @@ impl Law<'_> {
         }
     }
 
-    /// Whether the tangent damps.
-    pub(super) fn has_tangent_damping(&self) -> bool {
+    /// The point at which stiffness damping is held.
+    pub(super) fn damped(&self) -> Trial<'_> {
+        let (load, u) = self.held_at;
+        Trial { load, ..self.at(u) }
+    }
+
+    /// Whether there is stiffness damping.
+    pub(super) fn is_viscous(&self) -> bool {
         self.law.damping().stiffness != 0.0
     }
 
     /// Whether anything but the mass-proportional rate damps.
     pub(super) fn is_damped(&self) -> bool {
-        let damping = self.law.damping();
-        damping.stiffness != 0.0 || damping.extra.is_some()
+        self.is_viscous() || self.law.damping().extra.is_some()
     }
 
-    /// `out = D v` (N) without the mass-proportional part. The tangent in D is that at `u` without negative eigenvalues, so that D
-    /// never brings energy in.
+    /// `out = D w` (N) without the mass-proportional part, for velocities (m/s), or any multiple of them, with supports at rest. D is that of the step, and has no
+    /// negative eigenvalues.
     pub(super) fn damping_product(
+        &self,
+        w: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
+        self.damping((self.damped(), Velocities::Cells(w)), w, out)
+    }
+
+    /// The force (N) of all damping but the mass-proportional one at a displacement (m) and velocities (m/s), those of supports included.
+    pub(super) fn damping_force(
         &self,
         u: &[f64],
         v: &[f64],
         out: &mut [f64],
     ) -> Result<(), EvaluationError> {
-        let damping = self.law.damping();
+        self.damping((self.at(u), Velocities::All(v)), v, out)
+    }
+
+    fn damping(
+        &self,
+        (trial, of): (Trial<'_>, Velocities<'_>),
+        w: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
         out.fill(0.0);
-        if damping.stiffness != 0.0 {
-            self.law
-                .tangent_product(&self.at(u), TangentKind::Frozen, v, out)?;
-            scale(out, damping.stiffness);
+        if self.is_viscous() {
+            self.law.viscous_force(&trial, of, out)?;
         }
-        if let Some(extra) = &damping.extra {
-            extra.subtract_scaled_product(-1.0, v, out);
+        if let Some(extra) = &self.law.damping().extra {
+            extra.subtract_scaled_product(-1.0, w, out);
         }
         Ok(())
     }

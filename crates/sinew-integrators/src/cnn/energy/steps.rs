@@ -1,16 +1,17 @@
 //! Steps whose energy never rises.
 
-use sinew_core::vectors::{dot, dot_of_difference, scale, weighted_dot};
+use sinew_core::vectors::{add_scaled, dot, dot_of_difference, scale, weighted_dot};
 use sinew_core::{
     Acceleration, Contact, ElasticLaw, EvaluationError, Fact, LoadTime, Needs, State, Step,
-    StepError, StepReport, Stepped, System,
+    StepError, StepReport, Stepped, System, Velocities,
 };
 
 use super::certificate::Certificate;
-use super::descent::{Descent, Found, Quadratic};
+use super::descent::{Descent, Found};
 use super::kind::Kind;
 use super::point::{Law, Point};
-use super::touched::{Taken, Touched};
+use super::quadratic::Quadratic;
+use super::touched::{SetOut, Taken, Touched};
 use crate::StepByHand;
 
 /// Relative excess of the kinetic energy that counts as rounding where the limiter takes it.
@@ -29,9 +30,13 @@ pub struct EnergySteps {
     load_before: Vec<f64>,
     load: Vec<f64>,
     mean_load: Vec<f64>,
-    /// The linear part of the step's potential (N), and D v.
+    /// The linear part of the step's potential (N), and the force of damping at one end of the step.
     pull: Vec<f64>,
     damped: Vec<f64>,
+    /// Room for the displacement (m) at which stiffness damping is held throughout a step.
+    middle: Vec<f64>,
+    /// The force (N) of that damping by the motion of supports.
+    drag: Vec<f64>,
     /// Velocity at the end of the step (m/s), and acceleration at its start (m/s^2).
     v: Vec<f64>,
     a: Vec<f64>,
@@ -61,18 +66,23 @@ impl EnergySteps {
         before: Option<Self>,
     ) -> Self {
         let zeros = || vec![0.0; system.dofs()];
+        let descent = Descent::new(system);
         Self {
             id,
             kind,
             sweeps,
-            descent: Descent::new(system.layers().count(), system.dofs()),
-            touched: system.contact().map(|_| Touched::new(system.dofs())),
+            touched: system
+                .contact()
+                .map(|contact| Touched::new(contact, &descent, system.dofs())),
+            descent,
             start: Point::new(system.dofs()),
             load_before: zeros(),
             load: zeros(),
             mean_load: zeros(),
             pull: zeros(),
             damped: zeros(),
+            middle: zeros(),
+            drag: zeros(),
             v: zeros(),
             a: zeros(),
             certificate: before.map_or_else(Certificate::default, |before| before.certificate),
@@ -135,16 +145,56 @@ impl EnergySteps {
         self.start.u.copy_from_slice(&state.u);
         let evaluated = self.start.evaluate(&law);
         evaluated.map_err(|source| refused(load, source))?;
-        let damped = law.damping_product(&state.u, &state.v, &mut self.damped);
+        let damped = law.damping_force(&state.u, &state.v, &mut self.damped);
         damped.map_err(|source| refused(load, source))?;
         let mut work = StepReport::ONE_FORCE;
-        work.sweeps += u64::from(law.has_tangent_damping());
+        work.sweeps += u64::from(law.is_viscous());
         let rate = law.law.damping().mass;
         for (dof, a) in self.a.iter_mut().enumerate() {
             let force = self.load_before[dof] - self.start.force[dof] - self.damped[dof];
             *a = force / masses[dof] - rate * state.v[dof];
         }
         Ok(work)
+    }
+
+    /// Finds where stiffness damping is held in the step: half way, as far as the velocity at its start tells, so that a body that turns is not damped and the
+    /// order is kept; where the step starts, if the law has no meaning half way. What it does by the motion of supports is a load of the step.
+    fn hold_viscosity<'a>(
+        &mut self,
+        law: Law<'a>,
+        (step, state): (&Step<'a>, &State),
+        middle: &'a mut [f64],
+        work: &mut StepReport,
+    ) -> Result<Law<'a>, EvaluationError> {
+        if !law.is_viscous() {
+            return Ok(law);
+        }
+        let half = 0.5 * step.dt;
+        let values = middle.iter_mut().zip(&state.u).zip(&state.v);
+        for ((middle, u), v) in values {
+            *middle = u + half * v;
+        }
+        let mut when = LoadTime::at(state.t() + half).under(step.inputs);
+        work.sweeps += 1;
+        if self
+            .descent
+            .take_viscosity(&law.damped_at(when, middle))
+            .is_err()
+        {
+            // Too far for the law.
+            middle.copy_from_slice(&state.u);
+            when = LoadTime::at(state.t()).under(step.inputs);
+            work.sweeps += 1;
+            self.descent.take_viscosity(&law.damped_at(when, middle))?;
+        }
+        let law = law.damped_at(when, middle);
+        if law.law.supports_move() {
+            work.sweeps += 1;
+            law.law
+                .viscous_force(&law.damped(), Velocities::Supports, &mut self.drag)?;
+            add_scaled(-1.0, &self.drag, &mut self.mean_load);
+        }
+        Ok(law)
     }
 
     /// Lowers the potential of a formula from the start of the step on.
@@ -167,13 +217,20 @@ impl EnergySteps {
             }
             Kind::Trapezoidal => {
                 if law.is_damped() {
-                    law.damping_product(&state.u, &state.v, &mut self.damped)?;
-                    work.sweeps += u64::from(law.has_tangent_damping());
+                    // That of the start of the step, which its acceleration has lost already: in the step it is held half way.
+                    let [start, _] = ends(state.t(), dt).map(|when| when.under(step.inputs));
+                    let at_start = Law {
+                        load: start,
+                        ..*law
+                    };
+                    at_start.damping_force(&state.u, &state.v, &mut self.damped)?;
+                    work.sweeps += u64::from(law.is_viscous());
                 }
                 for (dof, pull) in self.pull.iter_mut().enumerate() {
                     let (v, a) = (state.v[dof], self.a[dof]);
                     let inertia = masses[dof] * (4.0 * v / dt + a + rate * v);
-                    *pull = inertia + self.damped[dof] + self.load[dof];
+                    let drag = 2.0 * self.drag[dof];
+                    *pull = inertia + self.damped[dof] - drag + self.load[dof];
                 }
             }
         }
@@ -201,15 +258,17 @@ impl EnergySteps {
             step,
             state,
         };
-        let found = touched.lower(taken, &mut self.descent, self.sweeps, work)?;
+        let carried = (SetOut::Carried, self.sweeps);
+        let found = touched.lower(taken, &mut self.descent, carried, work)?;
         let room = kinetic - self.potential_change(law) + self.work_of_contact(contact, state);
-        if room >= 0.0 || found != Found::Lower {
+        if found == Found::NotFinite || found == Found::Lower && room >= 0.0 {
             return Ok(Attempt { room, found });
         }
         work.fallbacks += 1;
-        if let Some(touched) = &mut self.touched {
-            touched.back_to_first(&mut self.descent);
-        }
+        let Some(touched) = &mut self.touched else {
+            return Ok(Attempt { room, found });
+        };
+        let found = touched.lower(taken, &mut self.descent, (SetOut::Still, 1), work)?;
         let room = kinetic - self.potential_change(law) + self.work_of_contact(contact, state);
         Ok(Attempt { room, found })
     }
@@ -251,6 +310,7 @@ fn law_at<'a>(
         dt,
         v: &state.v,
         internal: &state.internal,
+        held_at: (load.under(step.inputs), &state.u),
     }
 }
 
@@ -271,6 +331,30 @@ impl StepByHand for EnergySteps {
     }
 
     fn step(&mut self, step: &Step<'_>, state: &mut State) -> Result<Stepped, StepError> {
+        let mut middle = std::mem::take(&mut self.middle);
+        middle.resize(state.u.len(), 0.0);
+        let stepped = self.take_step(step, state, &mut middle);
+        self.middle = middle;
+        stepped
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        self.certificate.facts()
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        vec![self.certificate.in_words()]
+    }
+}
+
+impl EnergySteps {
+    /// Takes a step, with room for a displacement.
+    fn take_step(
+        &mut self,
+        step: &Step<'_>,
+        state: &mut State,
+        middle: &mut [f64],
+    ) -> Result<Stepped, StepError> {
         let law = step.system.as_elastic();
         let elastic = law.ok_or_else(|| Needs::Tangents.lacking(self.id))?;
         let (t, dt, masses) = (state.t(), step.dt, step.system.mass());
@@ -297,6 +381,9 @@ impl StepByHand for EnergySteps {
         if !self.start.is_finite() {
             return Err(inaccurate(self.id, "the elastic energy is not finite"));
         }
+        let law = self
+            .hold_viscosity(law, (step, state), middle, &mut work)
+            .map_err(refused)?;
         let mut kind = self.kind;
         let mut attempt = self
             .attempt(kind, &law, (step, state), &mut work)
@@ -353,9 +440,9 @@ impl StepByHand for EnergySteps {
 
         if self.kind == Kind::Trapezoidal {
             let reached = &self.descent.reached;
-            law.damping_product(&reached.u, &self.v, &mut self.damped)
+            law.damping_force(&reached.u, &self.v, &mut self.damped)
                 .map_err(refused)?;
-            work.sweeps += u64::from(law.has_tangent_damping());
+            work.sweeps += u64::from(law.is_viscous());
             let rate = elastic.damping().mass;
             state.a.resize(self.v.len(), 0.0);
             for (dof, a) in state.a.iter_mut().enumerate() {
@@ -376,13 +463,5 @@ impl StepByHand for EnergySteps {
             acceleration,
             ..Stepped::at_same_time(work)
         })
-    }
-
-    fn facts(&self) -> Vec<Fact> {
-        self.certificate.facts()
-    }
-
-    fn remarks(&self) -> Vec<String> {
-        vec![self.certificate.in_words()]
     }
 }

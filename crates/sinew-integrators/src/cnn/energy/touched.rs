@@ -1,23 +1,44 @@
 //! Sweeps that lower a step's potential while something pushes cells from outside.
 
-use sinew_core::vectors::{dot, norm, weighted_dot};
+use sinew_cnn::Deflation;
+use sinew_core::vectors::{dot, norm};
 use sinew_core::{AllShown, Contact, EvaluationError, Inertia, Meeting, State, Step, StepReport};
 
-use super::descent::{Descent, Found, MOST_HALVINGS, Quadratic, ROUNDING};
+use super::descent::{Descent, Found, MOST_HALVINGS, ROUNDING};
 use super::point::{Law, Point};
+use super::quadratic::Quadratic;
+use crate::cnn::coupled_contact::{Coupled, CoupledContact};
 
-/// Times each cell's own block by which the potential is bounded at first.
+/// Times each cell's own block, without inertia, by which the potential is bounded at first.
 const FIRST_BOUND: f64 = 2.0;
+
+/// The highest bound that leaves rigid motions their inertia: where the potential rises along such a motion, as that of a large turn may, no higher one helps.
+const MOST_DEFLATED: f64 = 64.0;
+
+/// Displacement over a step from which sweeps set out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SetOut {
+    /// That of the velocity at its beginning, or none where the law refuses it.
+    Carried,
+    /// None.
+    Still,
+}
 
 /// A displacement over a step, improved by sweeps of which each minimises a bound of the potential, exactly and with contact.
 ///
-/// The bound about a displacement z is `Phi(z) + g'(y - z) + beta/2 (y - z)'B (y - z)`, with the cells' own blocks B. Its minimum lies where
-/// contact, in the metric `beta dt^2 B`, leaves the cells that were led to `z - B^-1 g/beta`. So each sweep ends with forces of contact that fit its
+/// The bound about a displacement z is `Phi(z) + g'(y - z) + (y - z)'(m M + beta B)(y - z)/2`, with the inertia as it is and the cells' own blocks B of
+/// the rest, so many times that it is one. Its minimum lies where contact, in the metric `dt^2 (m M + beta B)`, leaves the cells that were led to
+/// `z - (m M + beta B)^-1 g`. So each sweep ends with forces of contact that fit its
 /// displacement, friction included. It is a proximal gradient method with a momentum that begins anew where it leads uphill (Beck and Teboulle,
 /// SIAM J. Imaging Sci. 2, 2009; O'Donoghue and Candes, Found. Comput. Math. 15, 2015).
 ///
-/// After the first sweep, from z = 0, `Phi(y) <= Phi(0) + lambda'y - beta/2 y'B y` with the forces lambda, for every law: the potential rises by the
-/// work of contact at most. Where later sweeps do not keep to that, the first one stands. Contacts that act on each other are found by an iteration, and what it leaves may be
+/// Sweeps set out from `z = dt v`, where `y - z` is of the order of `dt^2`: what moves freely goes on in the first one. A bound of the inertia, such as twice
+/// of it, would keep a share of the velocity in each step, however short.
+///
+/// Parts that may move as rigid bodies feel nothing of B ([`Deflation`]), and turn by z as far as they turn in dt. In one block for each cell they would be braked by all that holds a cell in its neighbours.
+///
+/// One sweep from z = 0 by whole blocks ends where `Phi(y) <= Phi(0) + lambda'y - y'(m M + beta B)y/2` with the forces lambda, for every law: the potential rises by the
+/// work of contact at most. Where other sweeps do not keep to that, this one is taken. Contacts that act on each other are found by an iteration, and what it leaves may be
 /// more than that: then the body stays where it is, unless something pushes it from there.
 pub(super) struct Touched {
     /// The state that contact is shown: that at the start of the step, but for u, v and what contact keeps.
@@ -36,21 +57,15 @@ pub(super) struct Touched {
     damped: Vec<f64>,
     /// Inverse blocks of the metric (1/kg).
     inverse: Vec<f64>,
+    /// Present where parts may move as rigid bodies.
+    coupled: Option<CoupledContact>,
+    /// Whether the metric leaves rigid motions their inertia.
+    is_deflated: bool,
     pushed: Vec<u32>,
-    first: FirstSweep,
     /// What contact kept in the last sweep that was taken, or before the step.
     kept: Vec<f64>,
     /// Why the law refused the last trial, if it did.
     refused: Option<EvaluationError>,
-}
-
-/// What the first sweep leads to.
-struct FirstSweep {
-    /// Displacement (m).
-    moved: Vec<f64>,
-    reached: Point,
-    /// What contact keeps.
-    contact: Vec<f64>,
 }
 
 /// A step that is taken, from a point of a law on.
@@ -65,7 +80,8 @@ pub(super) struct Taken<'a> {
 }
 
 impl Touched {
-    pub(super) fn new(dofs: usize) -> Self {
+    pub(super) fn new(contact: &dyn Contact, descent: &Descent, dofs: usize) -> Self {
+        let rigid = descent.rigid.as_ref();
         let zeros = || vec![0.0; dofs];
         Self {
             shown: State::at_rest(dofs),
@@ -78,18 +94,15 @@ impl Touched {
             swept: zeros(),
             damped: zeros(),
             inverse: vec![0.0; 3 * dofs],
+            coupled: rigid.map(|rigid| CoupledContact::new(contact, dofs, rigid.deflation.count())),
+            is_deflated: false,
             pushed: Vec::new(),
-            first: FirstSweep {
-                moved: zeros(),
-                reached: Point::new(dofs),
-                contact: Vec::new(),
-            },
             kept: Vec::new(),
             refused: None,
         }
     }
 
-    /// Lowers the potential by so many sweeps from the start of the step on; their end is left in `descent`.
+    /// Lowers the potential by so many sweeps; their end is left in `descent`.
     ///
     /// # Errors
     /// [`EvaluationError`] when the law has no own blocks or no damping where it has a force, or refuses where tools push the tissue.
@@ -97,7 +110,7 @@ impl Touched {
         &mut self,
         taken: Taken<'_>,
         descent: &mut Descent,
-        sweeps: u32,
+        (set_out, sweeps): (SetOut, u32),
         work: &mut StepReport,
     ) -> Result<Found, EvaluationError> {
         let Taken {
@@ -105,16 +118,34 @@ impl Touched {
             quadratic,
             start,
             state,
+            step,
             ..
         } = taken;
         descent.restart(start);
-        descent.factorise(law, quadratic, start)?;
+        descent.look(law, quadratic, start)?;
         work.sweeps += 1;
         self.shown.clone_from(state);
         self.kept.clone_from(&state.contact);
         self.before.fill(0.0);
-        let (mut bound, mut share, mut momentum) = (FIRST_BOUND, 0.0, 1.0_f64);
-        self.weigh(descent, bound, taken.step.dt);
+        if set_out == SetOut::Carried {
+            for (before, v) in self.before.iter_mut().zip(&state.v) {
+                *before = step.dt * v;
+            }
+            if let (Some(rigid), false) = (&mut descent.rigid, law.is_quadratic) {
+                rigid.turn(&start.u, quadratic.masses, &mut self.before);
+            }
+        }
+        let (mut bound, mut momentum) = (FIRST_BOUND, 1.0_f64);
+        let mut share = match set_out {
+            // From where `before` is.
+            SetOut::Carried => -1.0,
+            SetOut::Still => 0.0,
+        };
+        self.is_deflated = set_out == SetOut::Carried && descent.rigid.is_some();
+        for ((u, start), before) in self.trial.u.iter_mut().zip(&start.u).zip(&self.before) {
+            *u = start + before;
+        }
+        self.weigh(taken, descent, bound);
         for sweep in 0..sweeps {
             self.set_out(taken, descent, share, work)?;
             if !norm(&self.gradient).is_finite() {
@@ -127,25 +158,26 @@ impl Touched {
                     return Ok(Found::Lower);
                 }
                 // Where tools are does not depend on the bound: no higher one leads back to where the law is defined.
-                return self.refused.take().map_or(Ok(Found::Nothing), Err);
+                return match (set_out, self.refused.take()) {
+                    (SetOut::Still, Some(refused)) => Err(refused),
+                    _ => Ok(Found::Nothing),
+                };
             }
             self.kept.clone_from(&self.shown.contact);
             let places = self.swept.iter_mut().zip(&self.trial.u).zip(&start.u);
             for ((swept, u), start) in places {
                 *swept = u - start;
             }
-            self.before.copy_from_slice(&descent.moved);
+            if sweep > 0 {
+                self.before.copy_from_slice(&descent.moved);
+            }
             descent.moved.copy_from_slice(&self.swept);
             std::mem::swap(&mut descent.reached, &mut self.trial);
-            if sweep == 0 {
-                self.first.moved.copy_from_slice(&descent.moved);
-                self.first.reached.clone_from(&descent.reached);
-                self.first.contact.clone_from(&self.shown.contact);
-            }
             for (swept, before) in self.swept.iter_mut().zip(&self.before) {
                 *swept -= before;
             }
-            let uphill = -descent.blocks.product(&self.change, &self.swept);
+            let uphill = self.taken_out(descent, &self.swept)
+                - descent.blocks.product(&self.change, &self.swept);
             let next = 0.5 * (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt());
             (share, momentum) = match uphill > 0.0 {
                 true => (0.0, 1.0),
@@ -153,13 +185,6 @@ impl Touched {
             };
         }
         Ok(Found::Lower)
-    }
-
-    /// Goes back to what the first sweep led to.
-    pub(super) fn back_to_first(&mut self, descent: &mut Descent) {
-        descent.moved.copy_from_slice(&self.first.moved);
-        descent.reached.clone_from(&self.first.reached);
-        self.shown.contact.clone_from(&self.first.contact);
     }
 
     /// Stays where the step began, with the forces of the step before, if nothing pushes a cell away from there.
@@ -171,7 +196,7 @@ impl Touched {
     ) -> bool {
         self.shown.u.copy_from_slice(&start.u);
         self.shown.v.fill(0.0);
-        self.push(contact, step, state);
+        self.push(contact, step, state, None);
         self.shown.contact.clone_from(&state.contact);
         let is_free = self.shown.u == start.u;
         if is_free {
@@ -181,7 +206,13 @@ impl Touched {
     }
 
     /// Lets contact push the cells from where they are led to, in the metric of the last sweep.
-    fn push(&mut self, contact: &dyn Contact, step: &Step<'_>, state: &State) {
+    fn push(
+        &mut self,
+        contact: &dyn Contact,
+        step: &Step<'_>,
+        state: &State,
+        deflation: Option<&Deflation>,
+    ) {
         self.shown.contact.clone_from(&state.contact);
         self.pushed.clear();
         let meeting = Meeting {
@@ -193,7 +224,19 @@ impl Touched {
             saturation: f64::INFINITY,
             is_staggered: false,
         };
-        contact.meet(&meeting, &mut AllShown, &mut self.shown, &mut self.pushed);
+        let (shown, pushed) = (&mut self.shown, &mut self.pushed);
+        match (deflation, &mut self.coupled) {
+            (Some(deflation), Some(coupled)) => {
+                let coupling = Coupled {
+                    contact,
+                    meeting: &meeting,
+                    deflation,
+                    kept: &state.contact,
+                };
+                coupled.meet(coupling, shown, pushed);
+            }
+            _ => contact.meet(&meeting, &mut AllShown, shown, pushed),
+        }
     }
 
     /// The state after the sweeps as contact left it, at the clock of the start.
@@ -235,7 +278,7 @@ impl Touched {
             self.base.clone_from(&descent.reached);
         }
         if law.is_damped() {
-            law.damping_product(&start.u, &self.origin, &mut self.damped)?;
+            law.damping_product(&self.origin, &mut self.damped)?;
             work.sweeps += 1;
         }
         let damped = law.is_damped().then_some(&*self.damped);
@@ -252,38 +295,63 @@ impl Touched {
         work: &mut StepReport,
     ) -> Result<bool, EvaluationError> {
         for _ in 0..=MOST_HALVINGS {
-            self.meet(taken, descent, *bound);
+            self.meet(taken, descent);
             *work += StepReport::ONE_FORCE;
             if self.is_below(taken, descent, *bound, work)? {
                 return Ok(true);
             }
             work.backtracks += 1;
             *bound *= 2.0;
-            self.weigh(descent, *bound, taken.step.dt);
+            self.weigh(taken, descent, *bound);
         }
         Ok(false)
     }
 
-    /// Takes the blocks, so many times, for the metric of contact in steps of `dt` (s).
-    fn weigh(&mut self, descent: &Descent, bound: f64, dt: f64) {
-        let factor = 1.0 / (bound * dt * dt);
-        descent.blocks.write_inverse(factor, &mut self.inverse);
+    /// Makes the metric of a bound.
+    fn weigh(&mut self, taken: Taken<'_>, descent: &mut Descent, bound: f64) {
+        let dt = taken.step.dt;
+        descent.factorise(taken.quadratic, bound);
+        let scale = 1.0 / (dt * dt);
+        descent.blocks.write_inverse(scale, &mut self.inverse);
+        self.is_deflated &= bound <= MOST_DEFLATED;
+        if let (Some(rigid), true) = (&mut descent.rigid, self.is_deflated) {
+            let quadratic = taken.quadratic;
+            let inertia = |dof: usize| quadratic.mass_weight * quadratic.masses[dof];
+            let about = (!taken.law.is_quadratic).then_some(&*self.trial.u);
+            let (added, inverse) = ((bound, &*descent.own), (scale, &*self.inverse));
+            rigid.deflation.weigh(about, added, inverse, inertia);
+        }
+    }
+
+    /// By how much (J) the metric is less than its blocks, for the way from z to a trial and another one.
+    fn taken_out(&self, descent: &Descent, other: &[f64]) -> f64 {
+        match &descent.rigid {
+            Some(rigid) if self.is_deflated => rigid.deflation.taken_out(&self.change, other),
+            _ => 0.0,
+        }
     }
 
     /// Leads the cells down the slope and lets contact push them.
-    fn meet(&mut self, taken: Taken<'_>, descent: &Descent, bound: f64) {
+    fn meet(&mut self, taken: Taken<'_>, descent: &Descent) {
         let dt = taken.step.dt;
         self.change.copy_from_slice(&self.gradient);
         descent.blocks.solve(&mut self.change);
+        let deflation = match &descent.rigid {
+            Some(rigid) if self.is_deflated => Some(&rigid.deflation),
+            _ => None,
+        };
+        if let Some(deflation) = deflation {
+            deflation.correct(&self.gradient, &mut self.change);
+        }
         let State { u, v, .. } = &mut self.shown;
         let values = u.iter_mut().zip(v).zip(&taken.start.u);
         let values = values.zip(self.origin.iter().zip(&self.change));
         for (((u, v), start), (origin, slope)) in values {
-            let moved = origin - slope / bound;
+            let moved = origin - slope;
             *u = start + moved;
             *v = moved / dt;
         }
-        self.push(taken.contact, taken.step, taken.state);
+        self.push(taken.contact, taken.step, taken.state, deflation);
         self.trial.u.copy_from_slice(&self.shown.u);
         let values = self.change.iter_mut().zip(&self.trial.u);
         let values = values.zip(taken.start.u.iter().zip(&self.origin));
@@ -300,29 +368,25 @@ impl Touched {
         bound: f64,
         work: &mut StepReport,
     ) -> Result<bool, EvaluationError> {
-        let Taken {
-            law,
-            quadratic,
-            start,
-            ..
-        } = taken;
+        let Taken { law, quadratic, .. } = taken;
         self.refused = self.trial.evaluate(law).err();
         if self.refused.is_some() || !self.trial.is_finite() {
             return Ok(false);
         }
         let change = &self.change;
-        let mut curved = quadratic.mass_weight * weighted_dot(quadratic.masses, change, change);
+        // The inertia is the same in both.
+        let mut curved = 0.0;
         if law.is_damped() {
-            law.damping_product(&start.u, change, &mut self.damped)?;
+            law.damping_product(change, &mut self.damped)?;
             work.sweeps += 1;
-            curved += quadratic.damping_weight * dot(change, &self.damped);
+            curved = quadratic.damping_weight * dot(change, &self.damped);
         }
         let beyond =
             self.base
                 .energy_beyond_slope(&self.trial, (change, 1.0), (law, descent.stiff));
         let forces = norm(&self.base.force) + norm(&self.trial.force);
         let rounding = ROUNDING * norm(change) * forces;
-        let limit = bound * descent.blocks.product(change, change);
+        let limit = bound * descent.own_product(change) - self.taken_out(descent, change);
         Ok(0.5 * curved + beyond <= 0.5 * limit + rounding)
     }
 }

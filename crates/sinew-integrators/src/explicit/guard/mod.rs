@@ -6,6 +6,7 @@ mod load_work;
 mod option;
 
 use sinew_cnn::Program;
+use sinew_core::spectrum::Spectrum;
 use sinew_core::{
     Batch, Fact, Guarding, Integrator, Prepared, Properties, Revision, SetupError, StableStep,
     Start, State, StepError, StepReport, System,
@@ -45,6 +46,8 @@ pub struct Guarded {
     /// The method's stable step on the current system.
     stable: Option<(Revision, StableStep)>,
     parts: u32,
+    /// Parts into which each of them is cut once more.
+    finer: u32,
 }
 
 impl Guarded {
@@ -65,6 +68,7 @@ impl Guarded {
             guarding: Guarding::default(),
             stable: None,
             parts: 1,
+            finer: 1,
         }
     }
 
@@ -109,12 +113,13 @@ impl Guarded {
             StableStep::UpTo(_) | StableStep::Unknown => {
                 self.limits.set_step(dt, LEAST_ROOM);
                 let passed = dt * self.limits.largest_rate();
-                self.parts = whole(passed / Limits::SHARE_OF_SIZE).min(MOST_PARTS_BY_SIZE);
+                let parts = whole(passed / Limits::SHARE_OF_SIZE).min(MOST_PARTS_BY_SIZE);
+                self.parts = self.finer * parts;
                 return Ok(());
             }
         };
-        let part = dt / f64::from(parts);
-        self.parts = parts;
+        self.parts = self.finer * parts;
+        let part = dt / f64::from(self.parts);
         let room = room(part / limit, part * system.mass_damping());
         self.limits.set_step(part, room);
         Ok(())
@@ -127,6 +132,19 @@ impl Stepper for Guarded {
         let part = self.prepared.step()? / f64::from(parts);
         let guarded = self.inner.program()?.guarded(limits, part);
         Some(guarded.repeated(parts))
+    }
+
+    fn stable_step_of(&self, spectrum: &Spectrum) -> StableStep {
+        self.inner.stable_step_of(spectrum)
+    }
+
+    fn refine(&mut self, times: u32) -> bool {
+        if self.guard != Guard::Auto {
+            return self.inner.refine(times);
+        }
+        self.prepared.forget();
+        self.finer = times;
+        true
     }
 
     fn computed_by(&self) -> Vec<String> {

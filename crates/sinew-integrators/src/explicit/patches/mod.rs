@@ -11,6 +11,7 @@ mod stiff_elements;
 use std::sync::Arc;
 
 use sinew_cnn::Physics;
+use sinew_core::spectrum::Spectrum;
 use sinew_core::{
     Acceleration, BlockMatrix, Damping, ElementStiffness, Fact, Layers, LinearOperators, LoadTime,
     Needs, OperatorError, OptionError, Options, Pattern, Properties, SetupError, StableStep, State,
@@ -118,6 +119,10 @@ impl Scheme for PatchedCentralDifference {
         let linear = system.as_linear().ok_or_else(|| self.lacking())?;
         let stiff = StiffElements::of(linear, integrator)?;
         Ok(stiff.stable_step())
+    }
+
+    fn stable_step_of(&self, spectrum: &Spectrum) -> StableStep {
+        Explicit::stable_step(&CentralDifference, spectrum)
     }
 
     fn set_up(

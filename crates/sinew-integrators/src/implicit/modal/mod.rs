@@ -22,7 +22,7 @@ pub use self::basis::Vectors;
 use self::basis::{Basis, Choice};
 use self::columns::{add, lift_two, project_two};
 use self::failure::Failure;
-use self::motion::{Mode, Piece, Response, harmonic_rate};
+use self::motion::{Mode, Piece, Response};
 use crate::exponential::Exponential;
 use crate::load_case::LoadCase;
 use crate::scheme::linear;
@@ -237,7 +237,7 @@ impl ModalSteps {
             .map(|mode| Response::to_linear(*mode, dt, room));
         self.linear = linear.collect();
         let harmonic = self.cases.iter().map(|case| {
-            let rate = harmonic_rate(&case.ramp);
+            let rate = case.ramp.angular_frequency();
             let responses = rate.map(|rate| {
                 let of = |mode: &Mode| Response::to_harmonic(*mode, dt, rate, room);
                 modes.iter().map(of).collect()
@@ -332,7 +332,7 @@ impl ModalSteps {
                     (q, p) = (q + dq, p + dp);
                 };
                 push(linear, piece.linear);
-                let rate = harmonic_rate(&self.cases[case].ramp);
+                let rate = self.cases[case].ramp.angular_frequency();
                 if let (Some(sizes), Some(rate)) = (piece.harmonic, rate) {
                     let response = match whole_step {
                         true => self.harmonic[case][i],

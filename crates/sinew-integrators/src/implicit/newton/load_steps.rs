@@ -78,7 +78,7 @@ impl Equations for StaticEquations<'_> {
     ) -> Result<(), EvaluationError> {
         self.law.tangent(&self.trial(x), kind, out)?;
         if kind == TangentKind::Exact {
-            self.load.add_stiffness(x, self.share, out);
+            self.load.add_stiffness(x, self.share, out)?;
         }
         Ok(())
     }

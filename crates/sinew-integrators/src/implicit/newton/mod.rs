@@ -12,4 +12,4 @@ pub(super) use self::load_steps::follow_load;
 pub use self::newton_error::NewtonError;
 pub use self::settings::NewtonSettings;
 pub(super) use self::settings::{ITERATIONS, TOLERANCE};
-pub(super) use self::step_equations::{NewtonSteps, Unknown};
+pub(super) use self::step_equations::{NewtonSteps, Unknown, ViscousPlace};

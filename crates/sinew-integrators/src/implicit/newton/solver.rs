@@ -37,7 +37,7 @@ pub(super) trait Equations {
     fn evaluate(&mut self, point: &mut Point, work: &mut StepReport)
     -> Result<(), EvaluationError>;
 
-    /// `out = dg_elastic/du` of a kind at `x`, before it is combined.
+    /// `out`: the part of dg/dx at `x` that is combined with masses and other damping, of a kind.
     ///
     /// # Errors
     /// As [`Equations::evaluate`].
@@ -51,9 +51,14 @@ pub(super) trait Equations {
     /// The masses (kg), and the derivative of g as a combination of them, the tangent and the other damping.
     fn derivative(&self) -> (&[f64], Combination);
 
-    /// Writes the part of the derivative without symmetry at `x`, which is not in the tangent, times a change of x; whether there is any.
+    /// Writes the part of the derivative at `x` that has no symmetry, and so is not in the tangent, times a change of x; whether there is any.
     fn skew_product(&mut self, _x: &[f64], _change: &[f64], _out: &mut [f64]) -> bool {
         false
+    }
+
+    /// Sweeps that a tangent and a product of the part without symmetry take for stiffness damping.
+    fn viscous_sweeps(&self) -> u64 {
+        0
     }
 
     /// Size of the forces that balance each other at a point, in the norm by these weights.
@@ -161,6 +166,10 @@ impl Newton {
             None => Factor::analyse(matrices)?,
         };
         let dofs = weights.len();
+        let mut unsymmetric = Unsymmetric::default();
+        if law.damping().stiffness != 0.0 || law.loads_follow() {
+            unsymmetric.reserve(dofs);
+        }
         Ok(Self {
             settings,
             factor,
@@ -172,7 +181,7 @@ impl Newton {
             trial: Point::new(dofs),
             refusal: None,
             singular: None,
-            unsymmetric: Unsymmetric::default(),
+            unsymmetric,
         })
     }
 
@@ -279,7 +288,7 @@ impl Newton {
             self.refusal = Some(refusal);
             return None;
         }
-        work.sweeps += 1;
+        work.sweeps += 1 + 2 * equations.viscous_sweeps();
         work.factorizations += 1;
         let (mass, combination) = equations.derivative();
         let matrices = Matrices {
@@ -301,7 +310,9 @@ impl Newton {
             let x = &self.point.x;
             let skew = |change: &[f64], out: &mut [f64]| equations.skew_product(x, change, out);
             let direction = &mut self.direction;
-            work.solves += self.unsymmetric.solve(&mut self.factor, skew, direction);
+            let solves = self.unsymmetric.solve(&mut self.factor, skew, direction);
+            work.solves += solves;
+            work.sweeps += (solves + 1) * equations.viscous_sweeps();
         }
         work.projected_solves += u64::from(kind != TangentKind::Exact);
         Some(dot(&self.point.residual, &self.direction))

@@ -3,7 +3,7 @@
 use sinew_core::vectors::{add_scaled, dot, largest, scale, weighted_dot};
 use sinew_core::{
     BlockMatrix, ElasticLaw, EvaluationError, Fact, LoadTime, Needs, SetupError, State, Step,
-    StepError, StepReport, System, TangentKind, Trial,
+    StepError, StepReport, System, TangentKind, Trial, Velocities,
 };
 
 use super::energy_watch::EnergyWatch;
@@ -11,6 +11,9 @@ use super::newton_error::NewtonError;
 use super::settings::NewtonSettings;
 use super::solver::{Equations, Newton, Point};
 use crate::implicit::factor::{Combination, Factor};
+
+/// Distance at which the change of stiffness damping is looked at, as a share of the smallest cell.
+const PROBE: f64 = 1e-6;
 
 /// Share of the size of body and motion by which rounding moves positions.
 const ROUNDING: f64 = 1e-14;
@@ -31,6 +34,25 @@ pub(in crate::implicit) struct Unknown<'e> {
     pub(in crate::implicit) of_old_forces: f64,
     /// Times of the loads at both ends of the step.
     pub(in crate::implicit) loads: [LoadTime<'e>; 2],
+    /// Where stiffness damping acts.
+    pub(in crate::implicit) viscosity: ViscousPlace<'e>,
+}
+
+/// The displacement at which stiffness damping acts on the velocity of a step's end.
+#[derive(Clone, Copy)]
+pub(in crate::implicit) struct ViscousPlace<'e> {
+    /// Where supports are, and how fast they move.
+    pub(in crate::implicit) load: LoadTime<'e>,
+    /// The time (s) by which the displacement lies before the end, at that velocity. A velocity that is the way of a step over its time belongs to the middle:
+    /// there `sym(F'dF)` is the change of Green's strain, whatever the body turns in a step.
+    pub(in crate::implicit) before: f64,
+}
+
+impl<'e> ViscousPlace<'e> {
+    /// The end of a step with these times of loads.
+    pub(in crate::implicit) fn at_end([_, load]: [LoadTime<'e>; 2]) -> Self {
+        Self { load, before: 0.0 }
+    }
 }
 
 impl Unknown<'_> {
@@ -52,6 +74,20 @@ struct StepEquations<'s> {
     v: &'s mut [f64],
     /// Change of positions (m) that is lost in rounding.
     rounding: f64,
+    viscous: &'s mut Viscous,
+}
+
+/// Room for stiffness damping.
+#[derive(Default)]
+struct Viscous {
+    /// Its force (N) where the last tangent was made, and beside it.
+    force: Vec<f64>,
+    beside: Vec<f64>,
+    /// Displacement (m) at which it acts, and beside that.
+    at: Vec<f64>,
+    u: Vec<f64>,
+    /// Size of the smallest cell (m), or what there is in its place.
+    cell: f64,
 }
 
 impl StepEquations<'_> {
@@ -65,6 +101,13 @@ impl StepEquations<'_> {
             self.u[i] = u[i] + of_u * x;
             self.v[i] = v[i] + of_v * x;
         }
+        if self.is_viscous() {
+            let before = self.unknown.viscosity.before;
+            let ends = self.u.iter().zip(&*self.v);
+            for (at, (u, v)) in self.viscous.at.iter_mut().zip(ends) {
+                *at = u - before * v;
+            }
+        }
     }
 
     fn trial(&self) -> Trial<'_> {
@@ -77,15 +120,39 @@ impl StepEquations<'_> {
         }
     }
 
-    /// Writes the net force (N) into the residual, from the elastic one, which is known; only the tangent of stiffness damping takes another sweep.
-    fn net_force(&self, point: &mut Point, work: &mut StepReport) -> Result<(), EvaluationError> {
+    /// The point at which stiffness damping acts.
+    fn viscous_trial(&self) -> Trial<'_> {
+        Trial {
+            load: self.unknown.viscosity.load,
+            u: &self.viscous.at,
+            ..self.trial()
+        }
+    }
+
+    fn is_viscous(&self) -> bool {
+        self.law.damping().stiffness != 0.0
+    }
+
+    /// Writes the net force (N) into the residual, from the elastic one, which is known; only stiffness damping takes another sweep.
+    fn net_force(
+        &mut self,
+        point: &mut Point,
+        work: &mut StepReport,
+    ) -> Result<(), EvaluationError> {
+        let mut viscous = std::mem::take(&mut self.viscous.beside);
         let (trial, system, damping) = (self.trial(), self.step.system, self.law.damping());
         let net = &mut point.residual;
+        system.external_force(trial.load, trial.u, net);
+        let mut found = Ok(());
         if damping.stiffness != 0.0 {
             work.sweeps += 1;
-            return system.net_force(&trial, net);
+            viscous.resize(net.len(), 0.0);
+            let all = Velocities::All(trial.v);
+            found = self
+                .law
+                .viscous_force(&self.viscous_trial(), all, &mut viscous);
+            add_scaled(-1.0, &viscous, net);
         }
-        system.external_force(trial.load, trial.u, net);
         let forces = net.iter_mut().zip(&point.elastic);
         for (((net, elastic), mass), v) in forces.zip(system.mass()).zip(trial.v) {
             *net -= elastic + damping.mass * mass * v;
@@ -93,7 +160,42 @@ impl StepEquations<'_> {
         if let Some(extra) = &damping.extra {
             extra.subtract_product(trial.v, net);
         }
-        Ok(())
+        self.viscous.beside = viscous;
+        found
+    }
+
+    /// `out += dV/du(change) v` (N), c and k included: the part of the derivative of stiffness damping that its matrix lacks, by a difference.
+    fn add_change_of_viscosity(&mut self, change: &[f64], out: &mut [f64]) {
+        let size = largest(change);
+        if !(size > 0.0 && size.is_finite()) {
+            return;
+        }
+        let Viscous {
+            force,
+            beside,
+            at,
+            u,
+            cell,
+        } = &mut *self.viscous;
+        let length = PROBE * if *cell > 0.0 { *cell } else { size } / size;
+        u.copy_from_slice(at);
+        add_scaled(length, change, u);
+        let trial = Trial {
+            load: self.unknown.viscosity.load,
+            dt: self.step.dt,
+            u,
+            v: self.v,
+            internal: &self.state.internal,
+        };
+        let all = Velocities::All(self.v);
+        // Where the law has no meaning beside the point, iterations go on without.
+        if self.law.viscous_force(&trial, all, beside).is_ok() {
+            let [d, k] = self.unknown.coefficients;
+            let k = k - self.unknown.viscosity.before * d;
+            for (out, (beside, force)) in out.iter_mut().zip(beside.iter().zip(&*force)) {
+                *out += k / length * (beside - force);
+            }
+        }
     }
 
     /// Sets x so that the displacement is the state's moved on by its velocity for a time (s), as far as x moves it.
@@ -151,30 +253,49 @@ impl Equations for StepEquations<'_> {
         self.place(x);
         self.law.tangent(&self.trial(), kind, out)?;
         if kind == TangentKind::Exact {
-            // The combination multiplies the tangent by k + d beta, loads by k.
-            let [d, k] = self.unknown.coefficients;
-            let share = k / (k + d * self.law.damping().stiffness);
-            self.law.add_load_stiffness(&self.trial(), share, out);
+            self.law.add_load_stiffness(&self.trial(), 1.0, out)?;
         }
-        Ok(())
+        let [d, k] = self.unknown.coefficients;
+        out.scale(k);
+        if !self.is_viscous() {
+            return Ok(());
+        }
+        self.law.add_viscosity(&self.viscous_trial(), d, out)?;
+        let mut viscous = std::mem::take(&mut self.viscous.force);
+        let all = Velocities::All(self.v);
+        let found = self
+            .law
+            .viscous_force(&self.viscous_trial(), all, &mut viscous);
+        self.viscous.force = viscous;
+        found
     }
 
     fn skew_product(&mut self, x: &[f64], change: &[f64], out: &mut [f64]) -> bool {
-        if !self.law.loads_follow() {
+        if !self.law.loads_follow() && !self.is_viscous() {
             return false;
         }
         self.place(x);
         let [_, k] = self.unknown.coefficients;
+        // Zeros where loads do not follow.
         self.law.load_skew_product(&self.trial(), k, change, out);
+        if self.is_viscous() {
+            self.add_change_of_viscosity(change, out);
+        }
         true
+    }
+
+    fn viscous_sweeps(&self) -> u64 {
+        u64::from(self.is_viscous())
     }
 
     fn derivative(&self) -> (&[f64], Combination) {
         let [d, k] = self.unknown.coefficients;
-        (
-            self.step.system.mass(),
-            Combination::of_step(self.law.damping(), d, k),
-        )
+        // The tangent has k and stiffness damping.
+        let combination = Combination {
+            stiffness: 1.0,
+            ..Combination::of_step(self.law.damping(), d, k)
+        };
+        (self.step.system.mass(), combination)
     }
 
     fn forces(&self, point: &Point, weights: &[f64]) -> f64 {
@@ -196,6 +317,7 @@ pub(in crate::implicit) struct NewtonSteps {
     u: Vec<f64>,
     v: Vec<f64>,
     old_forces: Vec<f64>,
+    viscous: Viscous,
     /// Size of the body (m), 0 where it has none.
     extent: f64,
     watch: EnergyWatch,
@@ -219,9 +341,20 @@ impl NewtonSteps {
         let newton = Newton::set_up(law, system.layers(), per_mass, settings, known)
             .map_err(|error| error.at_set_up(integrator))?;
         let zeros = || vec![0.0; system.dofs()];
+        let smallest = |sizes: &[f64]| sizes.iter().copied().fold(f64::INFINITY, f64::min);
+        let cell = system.scales().map(|scales| smallest(scales.cell_size));
+        let mut viscous = Viscous {
+            cell: cell.filter(|cell| cell.is_finite()).unwrap_or(0.0),
+            ..Viscous::default()
+        };
+        if law.damping().stiffness != 0.0 {
+            (viscous.force, viscous.beside) = (zeros(), zeros());
+            (viscous.at, viscous.u) = (zeros(), zeros());
+        }
         Ok(Self {
             integrator,
             newton,
+            viscous,
             u: zeros(),
             v: zeros(),
             old_forces: zeros(),
@@ -266,12 +399,17 @@ impl NewtonSteps {
             state,
             unknown: Unknown {
                 loads: unknown.loads.map(|load| load.under(step.inputs)),
+                viscosity: ViscousPlace {
+                    load: unknown.viscosity.load.under(step.inputs),
+                    ..unknown.viscosity
+                },
                 ..unknown
             },
             old_forces: &self.old_forces,
             u: &mut self.u,
             v: &mut self.v,
             rounding: ROUNDING * size,
+            viscous: &mut self.viscous,
         };
         equations.begin_at(0.0, &mut point.x);
         equations.begin_at(step.dt, &mut trial.x);

@@ -17,7 +17,16 @@ pub(super) struct Unsymmetric {
     product: Vec<f64>,
 }
 
+/// Vectors of the basis that there is room for beforehand: as many as a part takes that is a tenth of the matrix.
+const USUAL: usize = 5;
+
 impl Unsymmetric {
+    /// Makes room for vectors of so many entries.
+    pub(super) fn reserve(&mut self, entries: usize) {
+        self.product.resize(entries, 0.0);
+        self.basis.resize_with(USUAL, || vec![0.0; entries]);
+    }
+
     /// Turns the solution `x` of `K x = b` into that of `(K + S) x = b`, by the generalised minimal residual method with the factor of K as
     /// the preconditioner (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7, 1986); the number of solutions with the factor. `skew` writes
     /// S times a vector, or says that there is no S.

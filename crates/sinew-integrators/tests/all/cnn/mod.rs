@@ -2,4 +2,5 @@
 
 mod bit_identity;
 mod energy;
+mod rigid;
 mod stabilised;

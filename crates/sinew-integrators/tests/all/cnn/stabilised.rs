@@ -624,7 +624,10 @@ fn facts_say_what_was_added() {
         integrator.prepare(&system, dt).unwrap();
         let facts = integrator.facts();
         let names: Vec<&str> = facts.iter().map(|fact| fact.name).collect();
-        assert_eq!(names, ["s", "s_d", "gamma", "certificate"]);
+        assert_eq!(
+            names,
+            ["s", "s_d", "gamma", "certificate", "slowest_period"]
+        );
         facts.iter().map(|fact| fact.value).collect::<Vec<f64>>()
     };
     let (power, circles) = (facts("power"), facts("gershgorin"));

@@ -66,7 +66,8 @@ fn lagging_damping_costs_the_order_and_no_sweep() {
         let first = integrator.step(&system, &mut state, 1e-4).unwrap();
         let second = integrator.step(&system, &mut state, 1e-4).unwrap();
         assert_eq!((first.sweeps, second.sweeps), (3, 2));
-        assert_eq!((first.force_evaluations, second.force_evaluations), (1, 1));
+        // The first step asks for the rate of loads, too.
+        assert_eq!((first.force_evaluations, second.force_evaluations), (2, 1));
         if lags {
             let order = order(&system, &moving(48), 128);
             assert!((order - 1.0).abs() <= 0.1, "{order}");

@@ -7,8 +7,8 @@ use crate::common::tissue::{body, held, linear};
 use crate::common::{advance, build, diverged, largest, plain, relative_error, saturation, watch};
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    Acceleration, Equations, Integrator, Layers, LinearModel, LinearOperators, LinearSystem, Load,
-    OptionValue, Options, Ramp, Revision, Run, StableStep, State, System,
+    Acceleration, Equations, EvaluationError, Integrator, Layers, LinearModel, LinearOperators,
+    LinearSystem, Load, OptionValue, Options, Ramp, Revision, Run, StableStep, State, System,
 };
 use sinew_fem::{LoadKind, LoadSpec, Model, Problem};
 use sinew_integrators::explicit::{GuardOption, Guarded};
@@ -624,8 +624,14 @@ impl System for Told {
     fn equations(&self) -> Equations<'_> {
         self.inner.equations()
     }
-    fn accept(&self, state: &mut State, _inputs: &sinew_core::Inputs, _dt: f64) {
+    fn accept(
+        &self,
+        state: &mut State,
+        _inputs: &sinew_core::Inputs,
+        _dt: f64,
+    ) -> Result<(), EvaluationError> {
         self.states.lock().unwrap().push(state.clone());
+        Ok(())
     }
 }
 

@@ -2,7 +2,8 @@
 
 use crate::common::{build, plain};
 use sinew_core::{
-    BlockMatrix, ElasticLaw, ForceLaw, Inputs, LoadTime, Options, Ramp, State, System, Trial,
+    BlockMatrix, ElasticLaw, ForceLaw, Inputs, LoadTime, Options, Pattern, Ramp, State, StaticLoad,
+    System, Trial,
 };
 use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{
@@ -134,7 +135,9 @@ fn forces_of_pressure_all_round_are_the_gradient_of_the_volume_and_their_stiffne
         v: &vec![0.0; u.len()],
         internal: &[],
     };
-    model.add_load_stiffness(&trial, 2.0, &mut stiffness);
+    model
+        .add_load_stiffness(&trial, 2.0, &mut stiffness)
+        .unwrap();
     let (mut product, mut unit) = (vec![0.0; u.len()], vec![0.0; u.len()]);
     let h = 1e-3 * SIZE;
     let size = force.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
@@ -172,7 +175,9 @@ fn the_derivative_of_pressure_on_one_side_is_the_sum_of_its_symmetric_and_its_sk
         internal: &[],
     };
     let mut stiffness = BlockMatrix::zeros(ElasticLaw::pattern(&model).clone(), model.layers());
-    model.add_load_stiffness(&trial, 1.0, &mut stiffness);
+    model
+        .add_load_stiffness(&trial, 1.0, &mut stiffness)
+        .unwrap();
     let along = displaced(&model, |[x, y, z]| {
         [y - z, 2.0 * x * z, (40.0 * x).sin() * 0.1]
     });
@@ -365,5 +370,28 @@ fn a_cube_finds_its_equilibrium_under_pressure_on_one_side() {
             size(&left) < 1e-7 * size(&external(&model, &u)),
             "{pressure}"
         );
+    }
+}
+
+#[test]
+fn the_derivative_of_pressure_needs_a_matrix_with_the_couplings_of_its_surface() {
+    let model = Model::build(&block(2), &pressed(Element::P1, 500.0, &ALL_ROUND)).unwrap();
+    let u = displaced(&model, bent);
+    let trial = Trial {
+        load: LoadTime::at(0.0),
+        dt: 0.0,
+        u: &u,
+        v: &vec![0.0; u.len()],
+        internal: &[],
+    };
+    let cells = ElasticLaw::pattern(&model).cells();
+    let alone = Pattern::from_elements(cells, (0..cells as u32).map(|cell| [cell])).unwrap();
+    let mut diagonal = BlockMatrix::zeros(alone.into(), model.layers());
+    for refused in [
+        model.add_load_stiffness(&trial, 1.0, &mut diagonal),
+        StaticLoad::add_stiffness(&model.full_loads(&[0]), &u, 1.0, &mut diagonal),
+    ] {
+        let reason = refused.unwrap_err().reason;
+        assert!(reason.contains("not neighbours in the pattern"), "{reason}");
     }
 }

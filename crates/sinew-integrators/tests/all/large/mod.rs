@@ -1,7 +1,10 @@
 //! Large deformation.
 
 #[cfg(feature = "implicit")]
+mod compressed;
 mod following_pressure;
 mod large_motion;
 #[cfg(feature = "implicit")]
 mod relaxing_tissue;
+#[cfg(feature = "implicit")]
+mod stiffness_damping;

@@ -8,6 +8,8 @@ mod late_loads;
 #[cfg(feature = "implicit")]
 mod moved_parts;
 #[cfg(feature = "implicit")]
+mod moved_supports;
+#[cfg(feature = "implicit")]
 mod numerical_dissipation;
 mod paper_cube;
 mod paper_oscillator;

@@ -67,7 +67,7 @@ fn used(body: &Body) -> Vec<&str> {
     });
     let probes = body.probes.iter().filter_map(|probe| match &probe.at {
         ProbeAt::Mean(group) => Some(group.as_str()),
-        ProbeAt::Point(_) | ProbeAt::Group(_) => None,
+        ProbeAt::Point(_) => None,
     });
     let on = on.chain(regions).chain(motions).chain(tools).chain(initial);
     on.chain(probes).collect()

@@ -1,10 +1,9 @@
 //! Parts of the body that no support holds.
 
-use std::collections::BTreeMap;
-
 use super::{Warning, WarningKind};
 use crate::number::{count, short, vector};
 use crate::simulation::model::BodyModel;
+use crate::simulation::parts::part_of_nodes;
 
 /// Parts that a warning lists one by one.
 const LISTED: usize = 5;
@@ -59,43 +58,28 @@ pub(super) fn free(built: &BodyModel) -> Option<Warning> {
     Some(Warning::new(WarningKind::FreePart, what, mend).with(&numbers))
 }
 
-/// The connected parts of the body, by their lowest nodes.
+/// The connected parts of the body, in the order of their lowest nodes.
 fn parts(built: &BodyModel) -> Vec<Part> {
     let mesh = &built.mesh;
-    let mut above: Vec<u32> = (0..).take(mesh.points.len()).collect();
-    for tet in &mesh.tets {
-        for pair in tet.windows(2) {
-            let (a, b) = (root(&mut above, pair[0]), root(&mut above, pair[1]));
-            above[a.max(b) as usize] = a.min(b);
-        }
-    }
-    let mut parts: BTreeMap<u32, Part> = BTreeMap::new();
-    for (index, tet) in mesh.tets.iter().enumerate() {
-        let lowest = root(&mut above, tet[0]);
-        let part = parts.entry(lowest).or_default();
-        part.at = mesh.points[lowest as usize];
-        part.tets += 1;
-        part.volume += mesh.volume(index);
-    }
+    let (part_of, count) = part_of_nodes(mesh);
+    let mut parts: Vec<Part> = Vec::with_capacity(count);
     let pinned = built.model.pinned();
-    for node in (0u32..).take(mesh.points.len()) {
-        let held = match built.model.cell_of_node(node) {
+    for (node, (at, part)) in (0u32..).zip(mesh.points.iter().zip(&part_of)) {
+        if *part as usize == parts.len() {
+            parts.push(Part {
+                at: *at,
+                ..Part::default()
+            });
+        }
+        parts[*part as usize].held |= match built.model.cell_of_node(node) {
             None => true,
             Some(cell) => pinned[3 * cell as usize..][..3].contains(&true),
         };
-        if held && let Some(part) = parts.get_mut(&root(&mut above, node)) {
-            part.held = true;
-        }
     }
-    parts.into_values().collect()
-}
-
-/// The lowest node known to be connected to a node; halves the way there for the next search.
-fn root(above: &mut [u32], mut node: u32) -> u32 {
-    while above[node as usize] != node {
-        let next = above[node as usize];
-        above[node as usize] = above[next as usize];
-        node = above[node as usize];
+    for (index, tet) in mesh.tets.iter().enumerate() {
+        let part = &mut parts[part_of[tet[0] as usize] as usize];
+        part.tets += 1;
+        part.volume += mesh.volume(index);
     }
-    node
+    parts
 }

@@ -109,3 +109,23 @@ fn a_formula_without_a_finite_value_at_a_node() {
         @"scene.toml:19: [[initial]] 1: a formula gives inf at (0.1, 0.1, 0.1) m: expected a finite number everywhere on the part"
     );
 }
+
+/// Where no step has been taken yet: memory begins with the displacement that is given.
+#[test]
+fn a_state_in_which_a_law_with_memory_has_no_meaning() {
+    let relaxing = BODY
+        .replace(
+            "model = \"springs\"\nyoungs_modulus = 3500.0\nsprings = { rule = \"lloyd\" }",
+            "model = \"neo-hookean\"\nyoungs_modulus = 3500.0\npoissons_ratio = 0.3\nprony = [[0.3, 0.1]]",
+        )
+        .replace("group = \"sides\"", "group = \"bottom\"");
+    let refused = refusal(
+        &relaxing,
+        "velocity = [0.0, 0.0, 1.0]",
+        "where = { above = { z = 0.2 } }\ndisplacement = [0.0, 0.0, -0.35]",
+    );
+    assert!(
+        refused.starts_with("scene.toml:19: [[initial]] 1: the body cannot begin so: element "),
+        "{refused}"
+    );
+}

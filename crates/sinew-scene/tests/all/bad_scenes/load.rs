@@ -103,7 +103,7 @@ fn unknown_ramp() {
 fn no_kind_of_ramp() {
     insta::assert_snapshot!(
         refusal(BODY, "{ kind = \"step\" }", "{ rise = 1.0 }"),
-        @r#"scene.toml:17: [[load]] 1 ramp: `kind` is missing: expected "step", "sin2", "pulse" or "table""#
+        @"scene.toml:17: [[load]] 1 ramp: expected exactly one of `kind`, `sine`, `table`, found none"
     );
 }
 
@@ -202,5 +202,66 @@ fn pressure_that_follows_a_linear_region() {
     insta::assert_snapshot!(
         refusal(BODY, "traction = [0.0, 0.0, -500.0]", "pressure = 500.0\nfollow = true"),
         @r#"scene.toml:17: [[load]] 1: `follow` needs a region of large deformation, such as `model = "neo-hookean"`"#
+    );
+}
+
+#[test]
+fn a_sine_that_is_none() {
+    let sine = |keys: &str| refusal(BODY, "{ kind = \"step\" }", &format!("{{ sine = {keys} }}"));
+    insta::assert_snapshot!(
+        sine("{ frequency = 0.0 }"),
+        @"scene.toml:17: [[load]] 1 ramp sine: frequency = 0.0: expected a finite frequency above 0 Hz"
+    );
+    insta::assert_snapshot!(
+        sine("{ phase = 1.0 }"),
+        @"scene.toml:17: [[load]] 1 ramp sine: `frequency` is missing: expected a finite frequency above 0 Hz"
+    );
+    insta::assert_snapshot!(
+        sine("{ frequency = 1.0, phase = inf }"),
+        @"scene.toml:17: [[load]] 1 ramp sine: phase = inf: expected a finite angle in rad"
+    );
+    insta::assert_snapshot!(
+        sine("{ frequency = 1.0 }, kind = \"step\""),
+        @"scene.toml:17: [[load]] 1 ramp: expected exactly one of `kind`, `sine`, `table`, found `kind`, `sine`"
+    );
+}
+
+#[test]
+fn a_third_value_at_one_time() {
+    let table = "{ kind = \"table\", times = [0.0, 0.1, 0.1, 0.1], values = [0, 1, 2, 3] }";
+    insta::assert_snapshot!(
+        refusal(BODY, "{ kind = \"step\" }", table),
+        @"scene.toml:17: [[load]] 1 ramp: entry 3 of the table is the third at t = 0.1 s: expected two at most, the value before a jump and that after it"
+    );
+}
+
+#[test]
+fn a_file_of_factors_that_is_not_there_or_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let with = |written: &str| {
+        let path = folder.path().join(written);
+        refusal(
+            BODY,
+            "{ kind = \"step\" }",
+            &format!("{{ table = {:?} }}", path.display().to_string()),
+        )
+        .replace(&folder.path().display().to_string(), "<folder>")
+    };
+    insta::assert_snapshot!(
+        with("load.csv"),
+        @"scene.toml:17: [[load]] 1: <folder>/load.csv: cannot be read: No such file or directory (os error 2)"
+    );
+    std::fs::write(
+        folder.path().join("late.csv"),
+        "t_s,factor\n0,0\n0.2,1\n0.1,0\n",
+    )
+    .unwrap();
+    insta::assert_snapshot!(
+        with("late.csv"),
+        @"scene.toml:17: [[load]] 1: <folder>/late.csv:4: t_s = 0.1 does not come after 0.2, the time of the row before"
+    );
+    insta::assert_snapshot!(
+        refusal(BODY, "{ kind = \"step\" }", "{ table = \"\" }"),
+        @r#"scene.toml:17: [[load]] 1 ramp: table = "": expected the path of a CSV file, seen from the scene"#
     );
 }

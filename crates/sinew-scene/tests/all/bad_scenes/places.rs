@@ -39,7 +39,7 @@ fn no_condition() {
 fn an_unknown_condition() {
     insta::assert_snapshot!(refusal(PLACED, FLOOR, "where = { blow = { z = 0.0 } }"), @"
     scene.toml:16: [[fixed]] 1 where: unknown key `blow`; did you mean `below`?
-    help: the keys here are `below`, `above`, `box`, `sphere`, `plane`, `face`, `nodes`
+    help: the keys here are `below`, `above`, `box`, `sphere`, `cylinder`, `plane`, `face`, `nodes`
     ");
 }
 
@@ -70,8 +70,24 @@ fn a_node_that_the_file_does_not_have() {
 }
 
 #[test]
-fn several_nodes_for_a_probe() {
-    insta::assert_snapshot!(refusal(PLACED, "nodes = [27]", "nodes = [26, 27]"), @"scene.toml:29: [[probe]] 1: 2 nodes are selected, and a probe follows one");
+fn a_cylinder_without_an_axis() {
+    let with = |axis_to: &str| {
+        format!(
+            "where = {{ cylinder = {{ axis_from = [0.1, 0.1, 0.0], {axis_to}radius = 0.01 }} }}"
+        )
+    };
+    insta::assert_snapshot!(
+        refusal(PLACED, FLOOR, &with("axis_to = [0.1, 0.1, 0.0], ")),
+        @"scene.toml:16: [[fixed]] 1 where cylinder: axis_to = [0.1, 0.1, 0.0]: expected [x, y, z] in m, all finite, at another place than `axis_from`"
+    );
+    insta::assert_snapshot!(
+        refusal(PLACED, FLOOR, &with("")),
+        @"scene.toml:16: [[fixed]] 1 where cylinder: `axis_to` is missing: expected [x, y, z] in m, all finite, at another place than `axis_from`"
+    );
+    insta::assert_snapshot!(
+        refusal(PLACED, FLOOR, &with("axis_to = [0.1, 0.1, 1e200], ").replace("0.01", "0.0")),
+        @"scene.toml:16: [[fixed]] 1 where cylinder: axis_to = [0.1, 0.1, 1e200]: expected [x, y, z] in m, all finite, at another place than `axis_from`"
+    );
 }
 
 #[test]

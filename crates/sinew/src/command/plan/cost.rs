@@ -21,6 +21,8 @@ pub(super) struct Cost {
     pub(super) folder: FolderSize,
     /// Simulated time (s).
     duration: f64,
+    /// Whether the work of a step follows the motion.
+    is_law: bool,
 }
 
 impl Cost {
@@ -47,6 +49,7 @@ impl Cost {
             forecast,
             folder: FolderSize::of(simulation),
             duration: settings.duration,
+            is_law: simulation.system().as_linear().is_none(),
         }
     }
 
@@ -71,12 +74,17 @@ impl Cost {
                 };
                 format!(
                     "time: {} sweeps{solves} for {} s, {} CPU s per simulated second on one thread; {} s by this computer's clock \
-                     in all, with {} s of set-up, as its first steps took here",
+                     in all, with {} s of set-up, as its first steps took here{}",
                     short(forecast.sweeps()),
                     short(self.duration),
                     three(forecast.cpu_s_per_s()),
                     three(forecast.run_s()),
-                    three(forecast.setup_s)
+                    three(forecast.setup_s),
+                    if self.is_law {
+                        "; more where tissue gets stiffer later on"
+                    } else {
+                        ""
+                    }
                 )
             }
             Err(reason) => format!("time: {reason}"),

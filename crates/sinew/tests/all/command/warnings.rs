@@ -46,7 +46,13 @@ fn warned_by_run(scene: &Path) -> Vec<String> {
         .err
         .lines()
         .filter_map(|line| line.strip_prefix("warning: "));
-    warnings.map(str::to_owned).collect()
+    // What a motion does, no plan knows.
+    let of_motion =
+        |warning: &&str| warning.ends_with("nothing keeps parts or surfaces of a body apart");
+    warnings
+        .filter(|warning| !of_motion(warning))
+        .map(str::to_owned)
+        .collect()
 }
 
 #[test]
@@ -203,7 +209,7 @@ fn a_run_of_more_than_a_minute_is_warned_of_before_it_begins() {
 /// Fibres that catch a thrown cube: its stable step falls far below that at rest, which this one is half of.
 const CAUGHT: &str = r#"
 [mesh]
-cube = { cells = 4, edge = 0.1 }
+cube = { cells = 4, edge = 0.1, split = "kuhn" }
 [[region]]
 density = 1000.0
 model = "stable-neo-hookean"

@@ -1,0 +1,20 @@
+//! Rigid motions of parts of a body, which feel nothing of what a step adds to the inertia.
+
+mod deflation;
+mod factor;
+mod motions;
+mod projection;
+
+pub use deflation::Deflation;
+pub use motions::RigidMotions;
+pub(crate) use motions::by_diagonal;
+pub use projection::Projection;
+
+/// Motions of a part, at most.
+const MOST: usize = 6;
+
+/// Components of a cell.
+const LAYERS: usize = 3;
+
+/// A number for each motion of a part.
+type Coefficients = [f64; MOST];

@@ -1,0 +1,24 @@
+//! How tissue along a blade moves.
+
+use crate::vector::{Vector, add, dot, scaled, sub};
+
+/// How tissue along a blade has moved since the blade was where it begins: linear along the blade.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Drift {
+    /// The first end of the blade.
+    pub(crate) from: Vector,
+    /// The blade by its length squared.
+    pub(crate) along: Vector,
+    /// The way of tissue at the first end.
+    pub(crate) at_first: Vector,
+    /// The way of tissue at the last end less that.
+    pub(crate) slope: Vector,
+}
+
+impl Drift {
+    /// The way of tissue beside the blade at a place before it.
+    pub(crate) fn at(&self, before: Vector) -> Vector {
+        let share = dot(sub(before, self.from), self.along);
+        add(self.at_first, scaled(self.slope, share))
+    }
+}

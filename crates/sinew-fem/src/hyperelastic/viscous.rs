@@ -1,0 +1,113 @@
+//! The viscosity of a law: what stiffness damping multiplies.
+
+use sinew_sparse::simd::Number;
+
+use super::deformation::Deformation;
+use super::law::{Bulk, HyperelasticLaw, Point};
+use super::tensor::{Tensor, dot};
+
+/// A law whose tangent is the viscosity of stiffness damping, and whose stress is 0, so that loops over tangents make products, matrices and own
+/// blocks of damping too.
+///
+/// Its second Piola-Kirchhoff stress is that of the elasticity at rest for the rate of Green's strain E, with the law's own dilation theta:
+/// `S = 2 mu E' + lambda theta' d theta/dE`, that is `P = 2 mu F sym(F'dF) + lambda (d theta/dF : dF) d theta/dF` for a rate dF of F. It is objective, as
+/// E and theta are; `S : E' = 2 mu E':E' + lambda theta'^2` is never below 0, in any state; at rest it is the tangent of the law.
+///
+/// The law given names the dilation; laws with the same one have the same viscosity.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Viscous<L> {
+    dilation: L,
+    /// Lame's constants (Pa).
+    lambda: f64,
+    mu: f64,
+}
+
+impl<L> Viscous<L> {
+    pub(super) fn new(dilation: L, (lambda, mu): (f64, f64)) -> Self {
+        Self {
+            dilation,
+            lambda,
+            mu,
+        }
+    }
+}
+
+impl<L: HyperelasticLaw> HyperelasticLaw for Viscous<L> {
+    const ID: &'static str = L::ID;
+    const DEFINED_WHEN_INVERTED: bool = L::DEFINED_WHEN_INVERTED;
+
+    type Own<N: Number> = L::Own<N>;
+
+    fn lame(&self) -> (f64, f64) {
+        (self.lambda, self.mu)
+    }
+
+    #[inline(always)]
+    fn own<N: Number>(&self, deformation: &Deformation<N>) -> Self::Own<N> {
+        self.dilation.own(deformation)
+    }
+
+    #[inline(always)]
+    fn energy<N: Number>(&self, _at: &Point<N, Self::Own<N>>) -> N {
+        N::of(0.0)
+    }
+
+    #[inline(always)]
+    fn stress<N: Number>(&self, _at: &Point<N, Self::Own<N>>) -> Tensor<N> {
+        Tensor::zero()
+    }
+
+    /// `2 mu F sym(F'dF)`.
+    #[inline(always)]
+    fn tangent<N: Number>(&self, at: &Point<N, Self::Own<N>>, change: Tensor<N>) -> Tensor<N> {
+        let one_side = at.gradient.transposed_times(change);
+        let strain = one_side + one_side.transposed();
+        (at.gradient * strain).scaled(N::of(self.mu))
+    }
+
+    #[inline(always)]
+    fn dilation<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> N {
+        self.dilation.dilation(at)
+    }
+
+    #[inline(always)]
+    fn dilation_gradient<N: Number>(&self, at: &Point<N, Self::Own<N>>) -> Tensor<N> {
+        self.dilation.dilation_gradient(at)
+    }
+
+    /// 0: the rate of the dilation acts along its gradient alone.
+    #[inline(always)]
+    fn dilation_tangent<N: Number>(&self, _at: &Point<N, Self::Own<N>>, _: Tensor<N>) -> Tensor<N> {
+        Tensor::zero()
+    }
+
+    #[inline(always)]
+    fn tangent_with<N: Number>(
+        &self,
+        at: &Point<N, Self::Own<N>>,
+        bulk: Bulk<N>,
+        change: Tensor<N>,
+    ) -> Tensor<N> {
+        let gradient = self.dilation_gradient(at);
+        let local = self.tangent(at, change);
+        local.plus(bulk.modulus * gradient.contracted(change), gradient)
+    }
+
+    /// `mu (|g|^2 F F' + F g (F g)') + modulus c g (c g)'`, c being the gradient of the dilation.
+    #[inline(always)]
+    fn node_block<N: Number>(
+        &self,
+        at: &Point<N, Self::Own<N>>,
+        bulk: Bulk<N>,
+        gradient: [N; 3],
+    ) -> Tensor<N> {
+        let mu = N::of(self.mu);
+        let along = at.gradient.on(gradient);
+        let normal = self.dilation_gradient(at).on(gradient);
+        let squared = at.gradient.times_transposed(at.gradient);
+        Tensor::outer(along, along)
+            .plus(dot(gradient, gradient), squared)
+            .scaled(mu)
+            .plus(bulk.modulus, Tensor::outer(normal, normal))
+    }
+}

@@ -1,0 +1,369 @@
+//! Bodies whose supports move, by every method and law, against closed forms.
+
+use std::f64::consts::PI;
+
+use sinew_core::spectrum::Spectrum;
+use sinew_core::{
+    Inputs, Integrator, LinearSystem, LoadTime, Options, Ramp, SetupError, StableStep, State,
+    System,
+};
+use sinew_fem::hyperelastic::Parameters;
+use sinew_fem::{Course, Fixed, Law, Model, Moving, On, Problem, Rayleigh};
+use sinew_integrators::{entries, static_solution};
+use sinew_mesh::TetMesh;
+use sinew_mesh::structured::{self, Split};
+
+use crate::common::tissue::{DENSITY, body, held, linear};
+use crate::common::{build, largest};
+
+const YOUNGS_MODULUS: f64 = 5000.0;
+
+fn hyperelastic(id: &'static str, poissons_ratio: f64) -> Law {
+    let parameters = Parameters::new(YOUNGS_MODULUS, poissons_ratio);
+    Law::Hyperelastic { id, parameters }
+}
+
+/// A method with a step (s) for a body.
+struct Method {
+    name: String,
+    integrator: Box<dyn Integrator>,
+    dt: f64,
+}
+
+/// All methods and their variants that take a body, with a step of `long` (s), or where they must follow the fastest motion, a quarter of
+/// what that allows. `small` is the body at small strain.
+fn methods(model: &Model, small: &Model, long: f64) -> Vec<Method> {
+    let critical = 2.0 / Spectrum::of(small.operators()).omega_max;
+    let mut methods = Vec::new();
+    for entry in entries() {
+        let variants = (entry.variants)().into_iter();
+        for options in std::iter::once(Options::new()).chain(variants) {
+            let options = match entry.id {
+                // Iterations until they have come to rest.
+                "cnn-energy" => options.with_number("sweeps", 60.0),
+                _ => options,
+            };
+            let name = format!("`{}` with {options:?}", entry.id);
+            let mut integrator = build(entry.id, &options);
+            let dt = match integrator.stable_step(model) {
+                Ok(StableStep::UpTo(0.0)) => critical / 64.0,
+                Ok(StableStep::UpTo(limit)) => long.min(limit / 4.0),
+                // Its added mass slows what it does not resolve.
+                Ok(_) if entry.id == "cnn-stabilised" => long.min(critical / 4.0),
+                Ok(_) => long,
+                Err(_) => continue,
+            };
+            match integrator.prepare(model, dt) {
+                Ok(_) => methods.push(Method {
+                    name,
+                    integrator,
+                    dt,
+                }),
+                Err(SetupError::Lacks { .. }) => {}
+                Err(error) => panic!("{name}: {error}"),
+            }
+        }
+    }
+    methods
+}
+
+/// Steps of a body, each shown with its number, its time (s) and the forces (N) of supports at all nodes; none where a method refuses the motion.
+fn follow(
+    method: &mut Method,
+    model: &Model,
+    (mut state, steps): (State, usize),
+    mut see: impl FnMut(usize, f64, &[[f64; 3]]),
+) {
+    let dt = method.dt;
+    let mut forces = vec![[0.0; 3]; model.mesh().points.len()];
+    let mut v = vec![0.0; model.dofs()];
+    for step in 0..=steps {
+        if step > 0 {
+            match method.integrator.step(model, &mut state, dt) {
+                Ok(_) => {}
+                Err(sinew_core::StepError::Inaccurate { .. }) => return,
+                Err(error) => panic!("{}: {error}", method.name),
+            }
+        }
+        let t = state.t();
+        state.velocity_at_t(model, Inputs::none(), &mut v).unwrap();
+        let when = LoadTime::around(t, dt.min(t), dt);
+        model.reactions(when, &state.u, &v, &mut forces).unwrap();
+        see(step, t, &forces);
+    }
+}
+
+/// The nodes of a mesh at one end of an axis.
+fn face(mesh: &TetMesh, axis: usize, at: f64) -> On {
+    let is_there = |(_, point): &(u32, &[f64; 3])| (point[axis] - at).abs() < 1e-9;
+    let nodes = (0..).zip(&mesh.points).filter(is_there);
+    On::Nodes(nodes.map(|(node, _)| node).collect())
+}
+
+fn is_linear(model: &Model) -> bool {
+    (model as &dyn System).as_linear().is_some()
+}
+
+/// Newton's first law, at steps beyond the fastest motion where a method takes them.
+#[test]
+fn a_body_and_its_clamp_at_one_speed_feel_no_force() {
+    let size = [0.2, 0.05, 0.05];
+    let velocity = [1.5, -0.4, 0.9];
+    let mesh = structured::block([4, 1, 1], size, Split::Kuhn).unwrap();
+    let soft = linear(YOUNGS_MODULUS, 0.3);
+    let large = hyperelastic("neo-hookean", 0.3);
+    for (law, stiffness) in [(soft, 0.0), (soft, 2e-3), (large, 0.0), (large, 2e-3)] {
+        let problem = |law| Problem {
+            moves: vec![Moving {
+                on: face(&mesh, 0, 0.0),
+                axes: [true; 3],
+                courses: vec![Course::at_velocity(velocity)],
+            }],
+            damping: Rayleigh {
+                mass: 0.0,
+                stiffness,
+            },
+            ..body(law)
+        };
+        let [model, small] = [law, soft].map(|law| Model::build(&mesh, &problem(law)).unwrap());
+        let v: Vec<f64> = velocity
+            .iter()
+            .copied()
+            .cycle()
+            .take(model.dofs())
+            .collect();
+        for mut method in methods(&model, &small, 0.01) {
+            // What a support that is a step off pulls with.
+            let scale = YOUNGS_MODULUS * size[1] * size[2] * 1.5 * method.dt / 0.05;
+            let start = State::new(vec![0.0; model.dofs()], v.clone());
+            let mut worst = 0.0_f64;
+            follow(&mut method, &model, (start, 4), |_, _, forces| {
+                worst = worst.max(largest(forces.as_flattened()));
+            });
+            let off = worst / scale;
+            // An iteration that begins anew in the first step ends before its last digit.
+            let bound = if method.name.contains("chebyshev") {
+                1e-5
+            } else {
+                1e-9
+            };
+            assert!(off < bound, "{}, {law}, {stiffness}: {off:e}", method.name);
+        }
+    }
+}
+
+/// The stabilised network at these multiples of the step of central difference, on a block whose end moves as `course` says, with all of it at this velocity (m/s) first: the
+/// largest force (N) on the support in so many steps, from the third on.
+fn beyond_the_stable_step(
+    (times, options): (f64, &Options),
+    (stiffness, modulus): (f64, f64),
+    (course, velocity): (Course, [f64; 3]),
+    steps: usize,
+) -> f64 {
+    let mesh = structured::block([4, 1, 1], [0.2, 0.05, 0.05], Split::Kuhn).unwrap();
+    let problem = Problem {
+        moves: vec![Moving {
+            on: face(&mesh, 0, 0.0),
+            axes: [true; 3],
+            courses: vec![course],
+        }],
+        damping: Rayleigh {
+            mass: 0.0,
+            stiffness,
+        },
+        ..body(linear(modulus, 0.3))
+    };
+    let model = Model::build(&mesh, &problem).unwrap();
+    let dt = times * 2.0 / Spectrum::of(model.operators()).omega_max;
+    let mut integrator = build("cnn-stabilised", options);
+    integrator.prepare(&model, dt).unwrap();
+    let mut method = Method {
+        name: format!("{times} times the stable step with {options:?}"),
+        integrator,
+        dt,
+    };
+    let v = velocity.iter().copied().cycle().take(model.dofs());
+    let start = State::new(vec![0.0; model.dofs()], v.collect());
+    let mut largest_force = 0.0_f64;
+    follow(&mut method, &model, (start, steps), |step, _, forces| {
+        if step > 2 {
+            let sum = [0, 1, 2].map(|axis| forces.iter().map(|force| force[axis]).sum::<f64>());
+            largest_force = largest_force.max(largest(&sum));
+        }
+    });
+    largest_force
+}
+
+#[test]
+fn beyond_the_stable_step_the_stabilised_network_carries_what_supports_carry() {
+    let velocity = [1.5, -0.4, 0.9];
+    let chebyshev = sinew_integrators::entry("cnn-stabilised")
+        .map(|entry| (entry.variants)().remove(0))
+        .unwrap();
+    for options in [&Options::new(), &chebyshev] {
+        for (times, stiffness) in [(2.0, 0.0), (9.0, 0.0), (4.0, 2e-3)] {
+            let glide = (Course::at_velocity(velocity), velocity);
+            let damped = (stiffness, YOUNGS_MODULUS);
+            let force = beyond_the_stable_step((times, options), damped, glide, 6);
+            assert!(force < 1e-6, "{times} {options:?}: {force:e} N");
+        }
+    }
+    // Shaken slowly against its slowest motion, which is slowed down, a body resists by its mass.
+    let (frequency, amplitude) = (0.1, 0.04);
+    let omega = 2.0 * PI * frequency;
+    let sine = Course {
+        displacement: [0.0, 0.0, amplitude],
+        ramp: Ramp::Sine {
+            frequency,
+            phase: 0.0,
+        },
+    };
+    let shaken = (sine, [0.0, 0.0, omega * amplitude]);
+    let force = beyond_the_stable_step((6.0, &Options::new()), (0.0, 2e6), shaken, 2000);
+    let expected = DENSITY * 0.2 * 0.05 * 0.05 * omega * omega * amplitude;
+    assert!(
+        (force / expected - 1.0).abs() < 0.05,
+        "{force} N of {expected} N"
+    );
+}
+
+/// A bar that is stretched at one speed all over, held along its whole length sideways: there is no inertia, whatever the cells.
+#[test]
+fn a_bar_in_tension_pulls_by_its_law_whatever_the_cells() {
+    let size = [0.2, 0.02, 0.02];
+    let (strain, duration) = (0.02, 0.2);
+    let area = size[1] * size[2];
+    let soft = linear(YOUNGS_MODULUS, 0.0);
+    for (cells, law) in [(10, soft), (20, soft), (10, hyperelastic("stvk", 0.0))] {
+        let mesh = structured::block([cells, 1, 1], size, Split::Mirrored).unwrap();
+        let along = [true, false, false];
+        let speed = strain * size[0] / duration;
+        let problem = |law| Problem {
+            fixed: vec![
+                held("tissue", [false, true, true]),
+                Fixed {
+                    on: face(&mesh, 0, 0.0),
+                    axes: along,
+                },
+            ],
+            moves: vec![Moving {
+                on: face(&mesh, 0, size[0]),
+                axes: along,
+                courses: vec![Course::at_velocity([speed, 0.0, 0.0])],
+            }],
+            ..body(law)
+        };
+        let [model, small] = [law, soft].map(|law| Model::build(&mesh, &problem(law)).unwrap());
+        let of_node = |node: &u32| [mesh.points[*node as usize][0] / size[0] * speed, 0.0, 0.0];
+        let v: Vec<f64> = model.nodes().iter().flat_map(of_node).collect();
+        for mut method in methods(&model, &small, 0.02) {
+            let start = State::new(vec![0.0; model.dofs()], v.clone());
+            let steps = 10;
+            let (mut pulls, mut reached) = ([0.0; 2], 0);
+            follow(&mut method, &model, (start, steps), |step, _, forces| {
+                (pulls, reached) = ([0.0; 2], step);
+                for (force, point) in forces.iter().zip(&mesh.points) {
+                    pulls[usize::from(point[0] > 0.1)] += force[0];
+                }
+            });
+            if reached < steps {
+                // Loads that change with time are not for all.
+                assert!(method.name.contains("two-step"), "{} refuses", method.name);
+                continue;
+            }
+            let strain = steps as f64 * method.dt * speed / size[0];
+            let expected = match is_linear(&model) {
+                true => strain,
+                // S = E e, P = F S.
+                false => (1.0 + strain) * (strain + strain * strain / 2.0),
+            };
+            for (end, pull) in [-1.0, 1.0].into_iter().zip(pulls) {
+                let off = end * pull / (YOUNGS_MODULUS * area * expected) - 1.0;
+                assert!(
+                    off.abs() < 1e-8,
+                    "{cells} cells, {law}, {}: {off:e}",
+                    method.name
+                );
+            }
+        }
+    }
+}
+
+/// A block on a table that moves at a speed and gains more: the table pushes with the whole mass times the acceleration, its own nodes' share
+/// included, however its way is given.
+#[test]
+fn a_shaken_block_is_pushed_by_its_mass_times_the_acceleration() {
+    let edge = 0.1;
+    let mesh = structured::cube(2, edge, Split::Mirrored).unwrap();
+    let soft = linear(YOUNGS_MODULUS, 0.3);
+    let (speed, amplitude, rise) = (1.0, 0.05, 1.0);
+    let mass = DENSITY * edge.powi(3);
+    let place = |t: f64| speed * t + amplitude * (PI * t / (2.0 * rise)).sin().powi(2);
+    let acceleration = |t: f64| amplitude * PI * PI / (2.0 * rise * rise) * (PI * t / rise).cos();
+    let still = Moving {
+        on: face(&mesh, 2, 0.0),
+        axes: [true; 3],
+        courses: Vec::new(),
+    };
+    let problem = |law, courses: Vec<Course>| Problem {
+        moves: vec![Moving {
+            courses,
+            ..still.clone()
+        }],
+        ..body(law)
+    };
+    let small = Model::build(&mesh, &problem(soft, Vec::new())).unwrap();
+    let critical = 2.0 / Spectrum::of(small.operators()).omega_max;
+    // Hangs behind from the start on, so that nothing swings.
+    let along_x = |size: f64| -> Vec<f64> {
+        let axes = [size, 0.0, 0.0];
+        axes.into_iter().cycle().take(small.dofs()).collect()
+    };
+    let behind = along_x(-acceleration(0.0)).into_iter().zip(small.mass());
+    let behind: Vec<f64> = behind.map(|(a, mass)| a * mass).collect();
+    let u = static_solution(&small, &behind).unwrap();
+    let steps = 24;
+    // Rows of a table for each step; none: a formula.
+    for (law, all_rows) in [
+        (soft, &[0.0, 1.0, 3.7][..]),
+        (hyperelastic("neo-hookean", 0.3), &[1.0]),
+    ] {
+        for &rows in all_rows {
+            let courses = |dt: f64| match rows == 0.0 {
+                true => vec![
+                    Course::at_velocity([speed, 0.0, 0.0]),
+                    Course {
+                        displacement: [amplitude, 0.0, 0.0],
+                        ramp: Ramp::Sin2 { rise },
+                    },
+                ],
+                false => {
+                    let count = ((steps + 2) as f64 * rows) as usize;
+                    let times: Vec<f64> = (0..count).map(|row| row as f64 * dt / rows).collect();
+                    let places: Vec<[f64; 3]> =
+                        times.iter().map(|t| [place(*t), 0.0, 0.0]).collect();
+                    Course::along(&times, &places)
+                }
+            };
+            let resting = Model::build(&mesh, &problem(law, Vec::new())).unwrap();
+            for mut method in methods(&resting, &small, critical / 20.0) {
+                let model = Model::build(&mesh, &problem(law, courses(method.dt))).unwrap();
+                let start = State::new(u.clone(), along_x(speed));
+                let mut worst = 0.0_f64;
+                follow(&mut method, &model, (start, steps), |step, t, forces| {
+                    // A table gains no speed before its second row.
+                    if step > 0 {
+                        let push: f64 = forces.iter().map(|force| force[0]).sum();
+                        let off = push / (mass * acceleration(t)) - 1.0;
+                        worst = worst.max(off.abs());
+                    }
+                });
+                assert!(
+                    worst < 0.01,
+                    "{}, {law}, {rows} rows a step: {worst:e}",
+                    method.name
+                );
+            }
+        }
+    }
+}

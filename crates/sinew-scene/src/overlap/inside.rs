@@ -1,0 +1,126 @@
+//! Points of the surface that are in tetrahedra.
+
+use sinew_mesh::TetMesh;
+use sinew_tools::vector::{Vector, cross, dot, sub};
+
+use super::grid::{Bounds, Grid, bounds, longest};
+
+/// Share of a tetrahedron's volume by which a point on its face may count as outside, and is taken in.
+const ON_FACE: f64 = 1e-9;
+
+/// Comparisons for each tetrahedron after which no more are looked at: far more than any but tangled bodies take.
+const COMPARISONS: usize = 200;
+
+/// A point of the surface: a node, or one between nodes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SurfacePoint {
+    /// Its place (m).
+    pub(super) at: Vector,
+    /// The nodes between which it lies; some of them may stand here twice.
+    pub(super) between: [u32; 3],
+}
+
+impl SurfacePoint {
+    /// A node at its place (m).
+    pub(super) fn node(node: u32, at: Vector) -> Self {
+        Self {
+            at,
+            between: [node; 3],
+        }
+    }
+
+    /// Whether any of its nodes is one of these.
+    pub(super) fn is_at(&self, nodes: &[u32]) -> bool {
+        self.between.iter().any(|node| nodes.contains(node))
+    }
+}
+
+/// Tetrahedra as they lie in a state, and how to find points in them.
+pub(super) struct Placed<'a> {
+    mesh: &'a TetMesh,
+    places: &'a [Vector],
+    /// The tetrahedra looked at.
+    tets: Vec<u32>,
+    /// Whether each node has a tetrahedron that is turned inside out.
+    is_crushed: Vec<bool>,
+    /// Their mean size (m).
+    size: f64,
+}
+
+impl<'a> Placed<'a> {
+    /// These tetrahedra, where nodes are at these places (m).
+    pub(super) fn new(mesh: &'a TetMesh, places: &'a [Vector], mut tets: Vec<u32>) -> Self {
+        let mut is_crushed = vec![false; places.len()];
+        let mut size = 0.0;
+        tets.retain(|tet| {
+            let nodes = mesh.tets[*tet as usize];
+            let now = nodes.map(|node| places[node as usize]);
+            let stands = volume(&now) * mesh.volume(*tet as usize) > 0.0;
+            if stands {
+                size += longest(&bounds(&now, 0.0));
+            } else {
+                nodes
+                    .iter()
+                    .for_each(|node| is_crushed[*node as usize] = true);
+            }
+            stands
+        });
+        Self {
+            size: size / tets.len().max(1) as f64,
+            mesh,
+            places,
+            tets,
+            is_crushed,
+        }
+    }
+
+    /// The points, by their places among those given, that lie in tetrahedra which do not hold them, with these tetrahedra.
+    ///
+    /// Points at tetrahedra that are inside out count in other parts only: in their own they are where crushing led them, which is told as such.
+    pub(super) fn find(
+        &self,
+        points: &[SurfacePoint],
+        part_of: impl Fn(u32) -> u32,
+    ) -> Vec<(u32, u32)> {
+        let boxes: Vec<Bounds> = points.iter().map(|point| [point.at; 2]).collect();
+        let mut grid = Grid::default();
+        grid.fill(&boxes, self.size);
+        let (mut found, mut compared) = (Vec::new(), 0);
+        for tet in &self.tets {
+            if compared > COMPARISONS * self.tets.len() {
+                break;
+            }
+            let nodes = self.mesh.tets[*tet as usize];
+            let corners = nodes.map(|node| self.places[node as usize]);
+            compared += grid.visit(&bounds(&corners, 0.0), &boxes, |number| {
+                let point = &points[number as usize];
+                let is_own = part_of(nodes[0]) == part_of(point.between[0]);
+                let is_crushed = || {
+                    let mut between = point.between.iter();
+                    between.any(|node| self.is_crushed[*node as usize])
+                };
+                if !point.is_at(&nodes)
+                    && is_within(&corners, point.at)
+                    && !(is_own && is_crushed())
+                {
+                    found.push((number, *tet));
+                }
+            });
+        }
+        found
+    }
+}
+
+/// Six times the volume (m^3) of a tetrahedron, negative inside out.
+fn volume([a, b, c, d]: &[Vector; 4]) -> f64 {
+    dot(sub(*b, *a), cross(sub(*c, *a), sub(*d, *a)))
+}
+
+fn is_within(corners: &[Vector; 4], at: Vector) -> bool {
+    let whole = volume(corners);
+    (0..4).all(|corner| {
+        let mut moved = *corners;
+        moved[corner] = at;
+        volume(&moved) / whole >= -ON_FACE
+    })
+}

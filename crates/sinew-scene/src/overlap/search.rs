@@ -1,0 +1,330 @@
+//! The search for the point of a body that is deepest in it.
+
+use std::borrow::Cow;
+
+use sinew_mesh::TetMesh;
+use sinew_tools::vector::{Vector, between, length, sub};
+
+use super::depth::{Depths, FACES, distance};
+use super::grid::{Bounds, Grid, bounds, include, longest, meet};
+use super::inside::{Placed, SurfacePoint};
+use super::segment::{are_apart, crossing};
+use crate::simulation::part_of_nodes;
+
+/// Share of a body's size, or of its largest displacement where that is more, up to which surfaces touch: single precision rounds places by less.
+const TOUCHES: f64 = 1e-6;
+
+/// Comparisons for each edge of the surface after which a state is given up: one in which everything is near everything is no longer a body.
+const COMPARISONS: usize = 1000;
+
+/// Tetrahedra that the measuring of depths may look at, as a multiple of their number, or of 1000.
+const LOOKS: usize = 20;
+
+/// A point of the surface that is in a tetrahedron which does not hold it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Inside {
+    /// The distance (m) from the surface around the tetrahedron.
+    pub(super) depth: f64,
+    pub(super) at: Vector,
+    /// The node at the point, or the one next to it.
+    pub(super) node: u32,
+    pub(super) tet: u32,
+}
+
+/// What is looked at in each state of a body.
+pub(super) struct OverlapSearch<'a> {
+    mesh: &'a TetMesh,
+    triangles: Cow<'a, [[u32; 3]]>,
+    /// The same with their nodes in ascending order, sorted.
+    faces: Vec<[u32; 3]>,
+    edges: Vec<[u32; 2]>,
+    nodes: Vec<u32>,
+    /// The part of each node, and their number.
+    part_of: Vec<u32>,
+    parts: usize,
+    /// The largest extent (m) of the body at rest.
+    size: f64,
+    /// Depth (m) up to which points may be in tetrahedra at the lips of cuts; none where lips are nothing of their own.
+    lips: Option<Lips>,
+    /// Made where a point was found inside.
+    depths: Option<Depths>,
+    boxes: Vec<Bounds>,
+    grid: Grid,
+}
+
+/// Lips of cuts that keep each other apart, node by node.
+pub(super) struct Lips {
+    /// Whether each node is one of several that cuts made of one.
+    pub(super) is_copied: Vec<bool>,
+    /// Share of an edge by which surfaces between their nodes may overlap.
+    pub(super) share: f64,
+}
+
+impl<'a> OverlapSearch<'a> {
+    /// A search in a mesh with this surface.
+    pub(super) fn new(
+        mesh: &'a TetMesh,
+        triangles: Cow<'a, [[u32; 3]]>,
+        lips: Option<Lips>,
+    ) -> Self {
+        let sides = |[a, b, c]: &[u32; 3]| [[*a, *b], [*b, *c], [*c, *a]];
+        let mut edges: Vec<[u32; 2]> = triangles.iter().flat_map(sides).collect();
+        for edge in &mut edges {
+            edge.sort_unstable();
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        let mut faces = triangles.to_vec();
+        faces.iter_mut().for_each(|face| face.sort_unstable());
+        faces.sort_unstable();
+        let mut nodes: Vec<u32> = triangles.as_flattened().to_vec();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let (part_of, parts) = part_of_nodes(mesh);
+        Self {
+            size: longest(&bounds(&mesh.points, 0.0)),
+            mesh,
+            triangles,
+            faces,
+            edges,
+            nodes,
+            part_of,
+            parts,
+            lips,
+            depths: None,
+            boxes: Vec::new(),
+            grid: Grid::default(),
+        }
+    }
+
+    /// The deepest point where nodes are at these places (m); none where no surface is in a part, and of a state that is not finite.
+    pub(super) fn deepest(&mut self, places: &[Vector]) -> Option<Inside> {
+        let points = self.mesh.points.iter();
+        let moved = points.zip(places).map(|(rest, place)| {
+            let way = sub(*place, *rest).map(f64::abs);
+            way.into_iter().fold(0.0, |most, along| {
+                if along > most || along.is_nan() {
+                    along
+                } else {
+                    most
+                }
+            })
+        });
+        let moved = moved.fold(0.0, |most, way| {
+            if way > most || way.is_nan() {
+                way
+            } else {
+                most
+            }
+        });
+        if !moved.is_finite() {
+            return None;
+        }
+        let touching = TOUCHES * self.size.max(moved);
+        let near = self.near(places, touching)?;
+        let is_concerned = self.concerned(places, &near);
+        if !is_concerned.contains(&true) {
+            return None;
+        }
+        let concerned = |node: u32| is_concerned[self.part_of[node as usize] as usize];
+        let tets = (0..).zip(&self.mesh.tets);
+        let tets = tets.filter(|(_, nodes)| concerned(nodes[0]));
+        let placed = Placed::new(self.mesh, places, tets.map(|(tet, _)| tet).collect());
+        let at_nodes = self.nodes.iter().filter(|node| concerned(**node));
+        let at_nodes: Vec<SurfacePoint> = at_nodes
+            .map(|node| SurfacePoint::node(*node, places[*node as usize]))
+            .collect();
+        let between_nodes = self.between_nodes(places, &near, touching, concerned);
+        let part_of = |node: u32| self.part_of[node as usize];
+        let found = [at_nodes, between_nodes].map(|points| {
+            let found = placed.find(&points, part_of);
+            (points, found)
+        });
+        let mut found = found.into_iter();
+        found.find_map(|(points, found)| self.deepest_of(places, &points, found, touching))
+    }
+
+    /// A tetrahedron that holds the node of a point inside, and the one in which it is, each with its part.
+    pub(super) fn tets_of(&self, inside: &Inside) -> [(u32, u32); 2] {
+        let tets = &self.mesh.tets;
+        let own = (0..)
+            .zip(tets)
+            .find(|(_, nodes)| nodes.contains(&inside.node));
+        let own = own.map_or(inside.tet, |(tet, _)| tet);
+        [own, inside.tet].map(|tet| (tet, self.part_of[tets[tet as usize][0] as usize]))
+    }
+
+    /// Whether a face is one of the surface.
+    fn is_outer(&self, face: [u32; 3]) -> bool {
+        let mut face = face;
+        face.sort_unstable();
+        self.faces.binary_search(&face).is_ok()
+    }
+
+    /// Edges and triangles of the surface that are no farther apart than `touching` (m), and have no node in common; none of a state that is given up.
+    fn near(&mut self, places: &[Vector], touching: f64) -> Option<Vec<[u32; 2]>> {
+        let at = |node: u32| places[node as usize];
+        self.boxes.clear();
+        let boxes = self.triangles.iter();
+        self.boxes
+            .extend(boxes.map(|nodes| bounds(&nodes.map(at), touching)));
+        let sizes: f64 = self.boxes.iter().map(longest).sum();
+        self.grid
+            .fill(&self.boxes, sizes / self.boxes.len().max(1) as f64);
+        let (mut near, mut compared) = (Vec::new(), 0);
+        for (number, edge) in (0..).zip(&self.edges) {
+            let segment = edge.map(at);
+            compared += self
+                .grid
+                .visit(&bounds(&segment, 0.0), &self.boxes, |triangle| {
+                    let nodes = self.triangles[triangle as usize];
+                    let is_own = edge.iter().any(|node| nodes.contains(node));
+                    if !is_own && !are_apart(segment, nodes.map(at), touching) {
+                        near.push([number, triangle]);
+                    }
+                });
+            if compared > COMPARISONS * self.edges.len() {
+                return None;
+            }
+        }
+        Some(near)
+    }
+
+    /// Whether each part may be in another one, or in itself: its surface is near another one, or the box of one of two parts is within the other's.
+    fn concerned(&self, places: &[Vector], near: &[[u32; 2]]) -> Vec<bool> {
+        let mut is_concerned = vec![false; self.parts];
+        for [edge, triangle] in near {
+            for node in [
+                self.edges[*edge as usize][0],
+                self.triangles[*triangle as usize][0],
+            ] {
+                is_concerned[self.part_of[node as usize] as usize] = true;
+            }
+        }
+        if self.parts == 1 {
+            return is_concerned;
+        }
+        let mut boxes = vec![bounds(&[], 0.0); self.parts];
+        for node in &self.nodes {
+            let part = self.part_of[*node as usize];
+            include(&mut boxes[part as usize], &places[*node as usize]);
+        }
+        let mut by_low: Vec<usize> = (0..self.parts).collect();
+        by_low.sort_by(|one, other| boxes[*one][0][0].total_cmp(&boxes[*other][0][0]));
+        for (number, one) in by_low.iter().enumerate() {
+            let others = by_low[number + 1..].iter();
+            for other in others.take_while(|other| boxes[**other][0][0] <= boxes[*one][1][0]) {
+                let [a, b] = [&boxes[*one], &boxes[*other]];
+                let is_in = |a: &Bounds, b: &Bounds| meet(&[a[0]; 2], b) && meet(&[a[1]; 2], b);
+                if is_in(a, b) || is_in(b, a) {
+                    is_concerned[*one] = true;
+                    is_concerned[*other] = true;
+                }
+            }
+        }
+        is_concerned
+    }
+
+    /// Points of triangles and edges that may be inside where no node is: centroids, and the middles of what of an edge is between two triangles that it goes through.
+    fn between_nodes(
+        &self,
+        places: &[Vector],
+        near: &[[u32; 2]],
+        touching: f64,
+        concerned: impl Fn(u32) -> bool,
+    ) -> Vec<SurfacePoint> {
+        let at = |node: u32| places[node as usize];
+        let triangles = self.triangles.iter().filter(|nodes| concerned(nodes[0]));
+        let mut points: Vec<SurfacePoint> = triangles
+            .map(|nodes| SurfacePoint {
+                at: [0, 1, 2]
+                    .map(|axis| nodes.map(|node| at(node)[axis]).iter().sum::<f64>() / 3.0),
+                between: *nodes,
+            })
+            .collect();
+        for of_edge in near.chunk_by(|one, other| one[0] == other[0]) {
+            let [Some([edge, _]), ..] = [of_edge.first()] else {
+                continue;
+            };
+            let [from, to] = self.edges[*edge as usize];
+            let segment = [at(from), at(to)];
+            let shares = of_edge.iter().filter_map(|[_, triangle]| {
+                crossing(segment, self.triangles[*triangle as usize].map(at))
+            });
+            let mut shares: Vec<f64> = shares.collect();
+            shares.sort_by(f64::total_cmp);
+            let apart = touching / length(sub(segment[1], segment[0]));
+            let pairs = shares.windows(2).filter(|pair| pair[1] - pair[0] > apart);
+            points.extend(pairs.map(|pair| {
+                let share = 0.5 * (pair[0] + pair[1]);
+                let nearest = if share > 0.5 { to } else { from };
+                SurfacePoint {
+                    at: between(segment[0], segment[1], share),
+                    between: [nearest, from, to],
+                }
+            }));
+        }
+        points
+    }
+
+    /// The deepest of some points found in tetrahedra, where it is deeper than touching surfaces are.
+    fn deepest_of(
+        &mut self,
+        places: &[Vector],
+        points: &[SurfacePoint],
+        mut found: Vec<(u32, u32)>,
+        touching: f64,
+    ) -> Option<Inside> {
+        // What lies on the surface of the tetrahedron that it is in is no deeper than that; so do lips at rest.
+        found.retain(|(number, tet)| {
+            let nodes = self.mesh.tets[*tet as usize];
+            let at = points[*number as usize].at;
+            !FACES.iter().any(|face| {
+                let face = face.map(|corner| nodes[corner]);
+                distance(at, face.map(|node| places[node as usize])) <= touching
+                    && self.is_outer(face)
+            })
+        });
+        if found.is_empty() {
+            return None;
+        }
+        let mesh = self.mesh;
+        let depths = self.depths.get_or_insert_with(|| Depths::new(mesh));
+        let mut looks = LOOKS * mesh.tets.len().max(1000);
+        // Once the deepest is known, others are soon told from it.
+        found.sort_by_key(|(point, tet)| (std::cmp::Reverse(depths.layer(*tet)), *point, *tet));
+        let mut deepest: Option<Inside> = None;
+        for (number, tet) in found {
+            let point = &points[number as usize];
+            let unsaid = match &self.lips {
+                Some(lips) if lips.are_at(point, mesh.tets[tet as usize]) => {
+                    touching.max(lips.share * mesh_edge(mesh, tet))
+                }
+                _ => touching,
+            };
+            let least = deepest.map_or(unsaid, |deepest| deepest.depth.max(unsaid));
+            if let Some(depth) = depths.beyond((mesh, places), (point, tet), least, &mut looks) {
+                deepest = Some(Inside {
+                    depth,
+                    at: point.at,
+                    node: point.between[0],
+                    tet,
+                });
+            }
+        }
+        deepest
+    }
+}
+
+impl Lips {
+    fn are_at(&self, point: &SurfacePoint, tet: [u32; 4]) -> bool {
+        let is_copied = |node: &u32| self.is_copied[*node as usize];
+        point.between.iter().any(is_copied) && tet.iter().any(is_copied)
+    }
+}
+
+/// The largest extent (m) of a tetrahedron at rest along the axes.
+fn mesh_edge(mesh: &TetMesh, tet: u32) -> f64 {
+    let nodes = mesh.tets[tet as usize];
+    longest(&bounds(&nodes.map(|node| mesh.points[node as usize]), 0.0))
+}

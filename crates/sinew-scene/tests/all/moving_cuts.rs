@@ -1,0 +1,117 @@
+//! Strokes through bodies that move while they are cut.
+
+use std::fs;
+
+use crate::common::{CutRun, build};
+use sinew_core::Inputs;
+use sinew_scene::Scene;
+
+const STROKES: &str = "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n";
+
+/// Runs a scene whose strokes stand in a table: the pieces, and what was left uncut.
+fn cut(text: &str, strokes: &str) -> (usize, Option<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(
+        folder.path().join("strokes.csv"),
+        format!("{STROKES}{strokes}"),
+    )
+    .unwrap();
+    fs::write(&path, text).unwrap();
+    let mut run = CutRun::new(Scene::load(path).and_then(Scene::build).unwrap());
+    run.advance(run.simulation.run().steps);
+    let cutter = run.cutter.into_inner();
+    (cutter.pieces(), cutter.left_uncut())
+}
+
+fn cube(more: &str, run: &str) -> String {
+    format!(
+        "[mesh]\ncube = {{ cells = 4, edge = 0.1, split = \"kuhn\" }}\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\nyoungs_modulus = 4000.0\n\
+         poissons_ratio = 0.4\n{more}[run]\nfree_flight = true\n{run}"
+    )
+}
+
+#[test]
+fn a_stroke_through_a_free_cube_that_deforms_parts_it_by_every_method_with_and_without_moved_nodes()
+{
+    let strokes = "1,0.010,0.05,-0.01,0.2,0.05,0.11,0.2\n1,0.0115,0.05,-0.01,-0.1,0.05,0.11,-0.1\n";
+    for method in ["implicit-euler", "central-difference"] {
+        for snap in [0.0, 0.25] {
+            let scene = cube(
+                &format!(
+                    "[[initial]]\nvelocity = [\"0.07*(z-0.05)/0.05\", 0.0, \"0.09*(z-0.05)/0.05\"]\n[cutting]\ntable = \"strokes.csv\"\nsnap = {snap}\n"
+                ),
+                &format!("duration = 0.014\nintegrator = \"{method}\"\ndt = 5e-4\n"),
+            );
+            assert_eq!(cut(&scene, strokes), (2, None), "{method} {snap}");
+        }
+    }
+}
+
+#[test]
+fn a_full_stroke_through_a_stretched_strip_leaves_no_bridge() {
+    let strip = |strain: f64| {
+        format!(
+            "[mesh]\nblock = {{ cells = [8, 4, 2], size = [0.08, 0.04, 0.01] }}\n[[region]]\ndensity = 1060.0\nmodel = \"neo-hookean\"\n\
+             youngs_modulus = 3500.0\npoissons_ratio = 0.0\n[damping]\nmass = 40.0\n[[fixed]]\nwhere = {{ below = {{ x = 0.0 }} }}\n[[move]]\n\
+             where = {{ above = {{ x = 0.08 }} }}\naxes = \"x\"\ndisplacement = [{}, 0.0, 0.0]\nramp = {{ kind = \"sin2\", rise = 0.1 }}\n[cutting]\n\
+             table = \"strokes.csv\"\nsnap = 0.25\n[run]\nduration = 0.5\nintegrator = \"central-difference\"\ndt = 1e-3\n",
+            0.08 * strain
+        )
+    };
+    for (strain, x) in [(0.1, 0.042), (0.25, 0.051)] {
+        let strokes = format!(
+            "1,0.2,{x},-0.005,-0.005,{x},-0.005,0.02\n1,0.48,{x},0.05,-0.005,{x},0.05,0.02\n"
+        );
+        assert_eq!(cut(&strip(strain), &strokes), (2, None), "{strain}");
+    }
+}
+
+#[test]
+fn a_cube_that_flies_through_a_resting_blade_is_parted() {
+    let scene = cube(
+        "[[initial]]\nvelocity = [0.0, 0.0, 2.0]\n[[tool]]\nname = \"scalpel\"\nshape = { blade = { length = 0.2 } }\nrotation = [1.5707963267948966, 0.0, 0.0]\n\
+         start = [0.05, 0.05, 0.13]\nvelocity = [0.0, 0.0, 0.0]\n[cutting]\ntool = \"scalpel\"\nsnap = 0.25\n",
+        "duration = 0.07\nintegrator = \"central-difference\"\ndt = 5e-4\n",
+    );
+    let mut run = CutRun::new(build(&scene));
+    run.advance(run.simulation.run().steps);
+    let cutter = run.cutter.into_inner();
+    assert_eq!((cutter.pieces(), cutter.left_uncut()), (2, None));
+    assert!((cutter.totals().report.area - 0.01).abs() < 1e-6);
+}
+
+#[test]
+fn what_a_hand_leaps_over_is_told_with_its_area_and_place() {
+    let scene = cube(
+        "[cutting]\n",
+        "duration = 0.01\nintegrator = \"central-difference\"\ndt = 5e-4\n",
+    );
+    let simulation = build(&scene);
+    let mut cutter = simulation.cutter().unwrap().unwrap();
+    let mut state = simulation.initial_state().clone();
+    let blade = |z: f64| [[0.05, -0.01, z], [0.05, 0.11, z]];
+    let cut = cutter.cut(
+        [blade(0.12), blade(0.07)],
+        &simulation,
+        &mut state,
+        Inputs::none(),
+    );
+    let now = cut.unwrap().unwrap();
+    assert_eq!(cutter.left_uncut(), None, "it is in the body");
+    let cut = cutter.cut(
+        [blade(0.03), blade(-0.02)],
+        &now,
+        &mut state,
+        Inputs::none(),
+    );
+    assert!(cut.unwrap().is_some());
+    let said = "strokes that came through the body left 0.005 m2 of it uncut, about [0.05, 0.05, 0.05] m: the parts to both sides hang together \
+                there until a further stroke goes through";
+    assert_eq!(cutter.left_uncut().as_deref(), Some(said));
+    cutter.lift();
+    assert_eq!(cutter.left_uncut().as_deref(), Some(said));
+    let mut restored = simulation.cutter().unwrap().unwrap();
+    restored.restore(&cutter.to_bytes(), &simulation).unwrap();
+    assert_eq!(restored.left_uncut().as_deref(), Some(said));
+}

@@ -1,0 +1,191 @@
+//! Cellular energy steps beside tools: what no tool pushes moves as it would without any.
+
+use crate::common::pressed;
+
+use std::f64::consts::PI;
+
+use pressed::{Block, tool};
+use sinew_core::{OptionValue, Options, Run, State, System, simulate};
+use sinew_fem::Model;
+use sinew_fem::hyperelastic::Hyperelastic;
+use sinew_mesh::structured::{Split, block};
+use sinew_tools::{Convex, Motion, Pose, Tool};
+
+fn energy_sweeps(sweeps: u32) -> (&'static str, Options) {
+    let options = Options::new().with("kind", OptionValue::Text("ie".into()));
+    (
+        "cnn-energy",
+        options.with("sweeps", OptionValue::Number(f64::from(sweeps))),
+    )
+}
+
+fn far_ball() -> Tool {
+    let pose = Pose::new([0.0, 0.0, 5.0], [0.0; 3]);
+    tool(Convex::sphere(0.01).unwrap(), Motion::Held(pose))
+}
+
+/// A plane whose tissue is above it, or below.
+fn plane(height: f64, tissue_is_above: bool) -> Tool {
+    let turn = if tissue_is_above { 0.0 } else { PI };
+    let pose = Pose::new([0.0, 0.0, height], [turn, 0.0, 0.0]);
+    tool(Convex::Plane, Motion::Held(pose))
+}
+
+fn laws() -> [Option<&'static str>; 2] {
+    [None, Some(Hyperelastic::IDS[0])]
+}
+
+#[test]
+fn a_body_flies_on_beside_a_tool_that_is_far_away() {
+    let velocity = [0.3, -0.1, 0.2];
+    for law in laws() {
+        let mut cube = Block::of([0.06; 3], [3; 3]);
+        (cube.law, cube.is_held, cube.nu) = (law, false, 0.3);
+        let pressed = cube.with(vec![far_ball()]);
+        for (sweeps, dt) in [(1, 1e-4), (4, 1e-4), (1, 2e-3), (4, 2e-3)] {
+            let mut state = pressed.at_rest();
+            let components = state.v.iter_mut().zip(velocity.iter().cycle());
+            components.for_each(|(v, along)| *v = *along);
+            pressed.run_with(&mut state, energy_sweeps(sweeps), dt, 50);
+            for (v, along) in state.v.iter().zip(velocity.iter().cycle()) {
+                assert!((v - along).abs() < 1e-10, "{law:?}, {sweeps}, {dt}: {v}");
+            }
+        }
+    }
+}
+
+/// The mean displacement (m) along x of a cube that stands on its bottom and swings sideways from rest, every 4 ms up to 60 ms.
+fn sway(model: &Model, method: (&str, Options), dt: f64) -> Vec<f64> {
+    let mut integrator = sinew_integrators::build(method.0, &method.1).unwrap();
+    let mut state = State::at_rest(model.dofs());
+    let run = Run {
+        dt,
+        steps: (4e-3 / dt).round() as usize,
+        divergence_limit: f64::INFINITY,
+    };
+    let mut next = || {
+        simulate(model, &mut *integrator, &mut state, &run, &mut ()).unwrap();
+        let along = state.u.iter().step_by(3);
+        along.sum::<f64>() / (state.u.len() / 3) as f64
+    };
+    (0..15).map(|_| next()).collect()
+}
+
+/// The largest difference of two motions, as a share of the second one's size.
+fn off(found: &[f64], exact: &[f64]) -> f64 {
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |a, b| b.abs().max(a));
+    let mut differences = found.iter().zip(exact).map(|(a, b)| a - b);
+    largest(&mut differences) / largest(&mut exact.iter().copied())
+}
+
+fn assert_order_1(motion: impl Fn(f64) -> Vec<f64>, exact: &[f64], label: &str) {
+    let errors = [2e-3, 1e-3, 0.5e-3].map(|dt| off(&motion(dt), exact));
+    assert!(errors[2] < 0.03, "{label}: {errors:?}");
+    for pair in errors.windows(2) {
+        let ratio = pair[0] / pair[1];
+        assert!((1.5..2.6).contains(&ratio), "{label}: {errors:?}");
+    }
+}
+
+#[test]
+fn a_body_swings_beside_a_tool_that_is_far_away_in_order_1() {
+    for law in laws() {
+        let mut cube = Block::of([0.06; 3], [3; 3]);
+        (cube.law, cube.nu, cube.gravity) = (law, 0.42, Some([3.0, 0.0, -6.0]));
+        let pressed = cube.with(vec![far_ball()]);
+        let mesh = block(cube.cells, cube.size, Split::Kuhn).unwrap();
+        let alone = Model::build(&mesh, &cube.problem()).unwrap();
+        let exact = sway(&alone, ("newmark", Options::new()), 0.5e-3);
+        let motion = |dt: f64| sway(&pressed.model, energy_sweeps(4), dt);
+        assert_order_1(motion, &exact, &format!("{law:?}"));
+        // Beside those of the formula, the errors of four sweeps are small.
+        let formula = sway(&alone, ("implicit-euler", Options::new()), 1e-3);
+        let of_sweeps = off(&motion(1e-3), &formula);
+        assert!(of_sweeps < 2e-3, "{law:?}: {of_sweeps:e}");
+    }
+}
+
+#[test]
+fn a_body_swings_beneath_a_plate_that_rests_on_it_in_order_1() {
+    for law in laws() {
+        let mut cube = Block::of([0.06; 3], [3; 3]);
+        (cube.law, cube.nu, cube.gravity) = (law, 0.3, Some([2.0, 0.0, 3.0]));
+        let pressed = cube.with(vec![plane(0.06, false)]);
+        // Its own error is that of a step twenty times as short.
+        let exact = sway(
+            &pressed.model,
+            ("symplectic-euler", Options::new()),
+            0.05e-3,
+        );
+        let motion = |dt: f64| sway(&pressed.model, energy_sweeps(4), dt);
+        assert_order_1(motion, &exact, &format!("{law:?}"));
+    }
+}
+
+#[test]
+fn a_block_that_slides_is_slowed_by_friction_and_by_nothing_else() {
+    let (friction, g, start) = (0.3, 9.81, 0.5);
+    let mut slab = Block::of([0.06, 0.06, 0.02], [3, 3, 1]);
+    (slab.is_held, slab.gravity) = (false, Some([0.0, 0.0, -g]));
+    let floor = Tool {
+        friction,
+        ..plane(0.0, true)
+    };
+    let pressed = slab.with(vec![floor]);
+    for sweeps in [2, 4, 8, 16] {
+        let mut state = pressed.at_rest();
+        state.v.iter_mut().step_by(3).for_each(|v| *v = start);
+        let (dt, steps) = (0.5e-3, 200);
+        pressed.run_with(&mut state, energy_sweeps(sweeps), dt, steps);
+        let expected = start - friction * g * dt * steps as f64;
+        let (found, _) = pressed.mean_velocity(&state, 0);
+        assert!(
+            (found - expected).abs() < 0.03 * expected,
+            "{sweeps} sweeps: {found} {expected}"
+        );
+    }
+}
+
+/// A slab that slides on the floor by a sideways pull, from rest: Newton's second law of the slab as a whole, at any step.
+#[test]
+fn a_slab_slides_as_a_point_would_at_any_step() {
+    let (friction, pull, weight) = (0.1, 1.5, 6.0);
+    let mut slab = Block::of([0.06, 0.06, 0.02], [3, 3, 1]);
+    (slab.is_held, slab.nu) = (false, 0.3);
+    slab.gravity = Some([pull, 0.0, -weight]);
+    let floor = Tool {
+        friction,
+        ..plane(0.0, true)
+    };
+    let pressed = slab.with(vec![floor]);
+    let limit = pressed.stable_step();
+    let expected = pull - friction * weight;
+    for share in [1.1, 2.3, 4.5, 9.0] {
+        let dt = share * limit;
+        let steps = (0.4 / dt).round() as usize;
+        let methods = [
+            ("cnn-stabilised", Options::new()),
+            energy_sweeps(4),
+            energy_sweeps(16),
+        ];
+        for (id, options) in methods {
+            let mut state = pressed.at_rest();
+            let label = format!("{id} {options:?}, {share}");
+            pressed.run_with(&mut state, (id, options), dt, steps);
+            let (v, _) = pressed.mean_velocity(&state, 0);
+            // The network's first step has half of the force.
+            let halves = if id == "cnn-stabilised" { 0.5 } else { 0.0 };
+            let time = dt * (steps as f64 - halves);
+            let found = v / time;
+            assert!(
+                (found / expected - 1.0).abs() < 0.05,
+                "{label}: {found} {expected}"
+            );
+            // It bears its weight: a mean over all steps by the impulse.
+            let [_, _, z] = pressed.tools.report(&state, 0).impulse;
+            let mass: f64 = pressed.model.mass().iter().step_by(3).sum();
+            let borne = -z / time / (mass * weight);
+            assert!((borne - 1.0).abs() < 0.1, "{label}: {borne}");
+        }
+    }
+}
