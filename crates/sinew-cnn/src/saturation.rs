@@ -62,3 +62,19 @@ impl Saturation {
         x.abs() >= self.voltage
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Saturation;
+
+    #[test]
+    fn a_cell_at_its_limit_is_saturated() {
+        let saturation = Saturation::at(2.0).unwrap();
+        assert_eq!(
+            [2.5, -3.0, 1.0].map(|x| saturation.output(x)),
+            [2.0, -2.0, 1.0]
+        );
+        let found = [2.0, -2.0, 2.1, 1.9].map(|x| saturation.saturates(x));
+        assert_eq!(found, [true, true, true, false]);
+    }
+}

@@ -227,6 +227,20 @@ fn minus(exponent: i32) -> String {
 mod tests {
     use super::*;
 
+    #[test]
+    fn steps_are_1_2_or_5_times_a_power_of_ten() {
+        for (least, step) in [
+            (0.9, 1.0),
+            (1.1, 2.0),
+            (2.1, 5.0),
+            (4.5, 5.0),
+            (5.1, 10.0),
+            (0.03, 0.05),
+        ] {
+            assert!((nice_step(least) / step - 1.0).abs() < 1e-12, "{least}");
+        }
+    }
+
     fn labels(axis: &Axis, data: &[f64], wanted: usize) -> Vec<String> {
         let fitted = axis.fitted(data.iter().copied());
         let ticks = fitted.ticks(wanted);

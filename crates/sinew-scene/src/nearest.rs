@@ -28,4 +28,10 @@ mod tests {
         assert_eq!(nearest("Group", known), Some("group"));
         assert_eq!(nearest("xyzzy", known), None);
     }
+
+    #[test]
+    fn of_several_similar_names_it_is_the_most_similar() {
+        let known = ["youngs_moduli", "youngs_modulus", "young_module"];
+        assert_eq!(nearest("young_modulus", known), Some("youngs_modulus"));
+    }
 }
