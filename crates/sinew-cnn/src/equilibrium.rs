@@ -5,16 +5,22 @@ use sinew_core::vectors::{add_scaled, dot, norm};
 
 use crate::blocks::CellBlocks;
 
-/// What is left of the forces, as a share of them, at which a displacement is found.
-const FOUND: f64 = 1e-12;
-
 /// Most products with K.
-const MOST_PRODUCTS: usize = 5000;
+const MOST_PRODUCTS: usize = 20_000;
 
-/// The displacement (m) x of `K x = f` under forces f (N), by conjugate gradients with the cells' own blocks for a preconditioner (Hestenes and Stiefel, J. Res. Natl. Bur. Stand. 49, 1952). Motions that
-/// nothing resists have no part in it, if the forces do no work on them.
+/// Where a body rests under forces, and how nearly.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Equilibrium {
+    /// x of `K x = f` (m).
+    pub displacement: Vec<f64>,
+    /// `||K x - f|| / ||f||`; 0 without forces.
+    pub left: f64,
+}
+
+/// The displacement at rest under forces f (N), until what is left of them is a share `enough`, by conjugate gradients with the cells' own blocks for a preconditioner (Hestenes and Stiefel,
+/// J. Res. Natl. Bur. Stand. 49, 1952), which needs no factor. More is left where forces move a part that nothing holds. Motions that nothing resists have no part in it otherwise.
 #[must_use]
-pub fn equilibrium(operators: &LinearOperators, force: &[f64]) -> Vec<f64> {
+pub fn equilibrium(operators: &LinearOperators, force: &[f64], enough: f64) -> Equilibrium {
     let stiffness = operators.stiffness();
     let mut blocks = CellBlocks::of_mass(stiffness.layers(), operators.mass(), 0.0);
     blocks.add_diagonal(stiffness, 1.0);
@@ -24,9 +30,9 @@ pub fn equilibrium(operators: &LinearOperators, force: &[f64]) -> Vec<f64> {
     inverse.multiply(&left, &mut led);
     let mut direction = led.clone();
     let mut steepness = dot(&left, &led);
-    let enough = FOUND * norm(force);
+    let size = norm(force);
     for _ in 0..MOST_PRODUCTS {
-        if norm(&left) <= enough {
+        if norm(&left) <= enough * size {
             break;
         }
         stiffness.multiply(&direction, &mut product);
@@ -44,5 +50,9 @@ pub fn equilibrium(operators: &LinearOperators, force: &[f64]) -> Vec<f64> {
             *direction = conjugate * *direction + led;
         }
     }
-    x
+    let left = norm(&left);
+    Equilibrium {
+        displacement: x,
+        left: if size == 0.0 { 0.0 } else { left / size },
+    }
 }

@@ -38,7 +38,7 @@ mod stabiliser;
 mod templates;
 
 pub use blocks::CellBlocks;
-pub use equilibrium::equilibrium;
+pub use equilibrium::{Equilibrium, equilibrium};
 pub use machine::{FollowedLoad, Machine, ReferenceMachine, StepTime};
 pub use majorant::{Blend, DampingShare, GammaRule, Majorant};
 pub use power_iteration::largest_eigenvalue;

@@ -48,4 +48,5 @@ pub use option_kind::OptionKind;
 pub use registry::{Entry, build, entries, entry, ids, with_threads};
 pub use rounding::LEAST_F32_ROUNDING;
 pub use scheme::{Scheme, SetUp, StepByHand, Steps};
+pub use sinew_cnn::{Equilibrium, equilibrium};
 pub use stepper::Stepper;

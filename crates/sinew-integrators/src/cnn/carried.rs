@@ -4,6 +4,9 @@ use sinew_cnn::equilibrium;
 use sinew_core::vectors::add_scaled;
 use sinew_core::{LinearOperators, LoadTime, Ramp};
 
+/// What is left of forces, as a share of them, at which a carried displacement is found.
+const FOUND: f64 = 1e-12;
+
 /// The displacements by which supports in motion carry a body without inertia, `K g = -K_p d`: what a stabilising matrix adds to the mass must not brake these.
 #[derive(Debug, Default)]
 pub(super) struct Carried {
@@ -43,7 +46,7 @@ impl Carried {
                 }
                 Course {
                     ramp: load.ramp.clone(),
-                    carried: equilibrium(operators, &force),
+                    carried: equilibrium(operators, &force, FOUND).displacement,
                     force,
                 }
             })

@@ -5,7 +5,6 @@
 //! alone, which [`richardson`] continues; each differs from the first on its mesh by the error in time.
 
 mod caveats;
-mod equilibrium;
 mod error;
 mod level;
 mod observed;
