@@ -272,6 +272,12 @@ impl Stabiliser {
         !matches!(self.spared, Spared::None)
     }
 
+    /// Whether P is made of one block for each cell, beside rigid motions that it may spare: a force on a cell then moves that cell alone, or its part as a whole.
+    #[must_use]
+    pub fn is_of_blocks(&self) -> bool {
+        self.inner.is_single()
+    }
+
     /// The rigid motions that its blocks leave out, where they are all that P is made of.
     #[must_use]
     pub fn deflation(&self) -> Option<&Arc<Deflation>> {

@@ -3,8 +3,8 @@
 use sinew_cnn::{CellBlocks, Deflation, Inverse, Stabiliser};
 use sinew_core::vectors::add_scaled;
 use sinew_core::{
-    Acceleration, Contact, Inertia, LinearOperators, LoadTime, Meeting, State, Step, StepError,
-    StepReport, Stepped, System, VelocityTime,
+    Acceleration, AllShown, Contact, Inertia, LinearOperators, LoadTime, Meeting, State, Step,
+    StepError, StepReport, Stepped, System, VelocityTime,
 };
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::StepByHand;
 /// What contact's iteration may leave without a word.
 const SETTLED: f64 = 1e-6;
 
-/// The step of [`super::CnnStabilised`] with sums over all cells of a part, or with an iteration in the order of the cells.
+/// The step of [`super::CnnStabilised`] with sums over all cells of a part, beside supports in motion, or with an iteration in the order of the cells.
 pub struct SolvedSteps {
     inverse: Inverse,
     /// Share of the damping that P does not hold.
@@ -25,18 +25,23 @@ pub struct SolvedSteps {
     force: Vec<f64>,
     change: Vec<f64>,
     before: Vec<f64>,
-    touched: Option<TouchedParts>,
+    touched: Option<Touched>,
     carried: Carried,
 }
 
 /// What contact needs.
-struct TouchedParts {
+struct Touched {
     blocks: Arc<CellBlocks>,
-    deflation: Arc<Deflation>,
-    /// Present where something touches the body.
-    contact: Option<CoupledContact>,
-    kept: Vec<f64>,
+    /// Present where parts that may move as rigid ones are touched.
+    coupled: Option<CoupledParts>,
     pushed: Vec<u32>,
+}
+
+/// Rigid motions, which answer to contact as a whole.
+struct CoupledParts {
+    deflation: Arc<Deflation>,
+    contact: CoupledContact,
+    kept: Vec<f64>,
 }
 
 impl SolvedSteps {
@@ -46,15 +51,15 @@ impl SolvedSteps {
         sweeps: u64,
     ) -> Self {
         let majorant = stabiliser.majorant();
-        let room = |of: fn(&dyn Contact) -> usize| system.contact().map_or(0, of);
-        let touched = |deflation: &Arc<Deflation>| TouchedParts {
-            blocks: Arc::clone(majorant.inverse()),
+        let coupled = |(contact, deflation): (&dyn Contact, &Arc<Deflation>)| CoupledParts {
             deflation: Arc::clone(deflation),
-            contact: system
-                .contact()
-                .map(|contact| CoupledContact::new(contact, majorant.dofs(), deflation.count())),
-            kept: Vec::with_capacity(room(|contact| contact.kept())),
-            pushed: Vec::with_capacity(room(|contact| contact.cells().len())),
+            contact: CoupledContact::new(contact, majorant.dofs(), deflation.count()),
+            kept: Vec::with_capacity(contact.kept()),
+        };
+        let touched = || Touched {
+            blocks: Arc::clone(majorant.inverse()),
+            coupled: system.contact().zip(stabiliser.deflation()).map(coupled),
+            pushed: Vec::with_capacity(system.contact().map_or(0, |contact| contact.cells().len())),
         };
         let zeros = || vec![0.0; majorant.dofs()];
         let is_carried = Carried::carries(operators);
@@ -72,7 +77,7 @@ impl SolvedSteps {
             force: zeros(),
             change: zeros(),
             before: zeros(),
-            touched: stabiliser.deflation().map(touched),
+            touched: stabiliser.is_of_blocks().then(touched),
             carried: Carried::of(operators),
         }
     }
@@ -101,10 +106,10 @@ impl SolvedSteps {
     }
 }
 
-impl TouchedParts {
+impl Touched {
     /// Lets contact push the cells after a step.
     fn meet(&mut self, step: &Step<'_>, state: &mut State) {
-        let (Some(coupled), Some(contact)) = (&mut self.contact, step.system.contact()) else {
+        let Some(contact) = step.system.contact() else {
             return;
         };
         let meeting = Meeting {
@@ -116,14 +121,19 @@ impl TouchedParts {
             saturation: f64::INFINITY,
             is_staggered: true,
         };
-        self.kept.clone_from(&state.contact);
+        let Some(parts) = &mut self.coupled else {
+            self.pushed.clear();
+            contact.meet(&meeting, &mut AllShown, state, &mut self.pushed);
+            return;
+        };
+        parts.kept.clone_from(&state.contact);
         let coupling = Coupled {
             contact,
             meeting: &meeting,
-            deflation: &self.deflation,
-            kept: &self.kept,
+            deflation: &parts.deflation,
+            kept: &parts.kept,
         };
-        coupled.meet(coupling, state, &mut self.pushed);
+        parts.contact.meet(coupling, state, &mut self.pushed);
     }
 }
 
@@ -186,11 +196,9 @@ impl StepByHand for SolvedSteps {
     }
 
     fn remarks(&self) -> Vec<String> {
-        let coupled = self
-            .touched
-            .as_ref()
-            .and_then(|touched| touched.contact.as_ref());
-        let left = coupled.map_or(0.0, |coupled| coupled.largest_left);
+        let touched = self.touched.as_ref();
+        let coupled = touched.and_then(|touched| touched.coupled.as_ref());
+        let left = coupled.map_or(0.0, |coupled| coupled.contact.largest_left);
         let remark = || {
             format!(
                 "contact of a part that may move as a rigid one was found to {left:.1e} of its impulse in a step at worst; shorter steps settle it"

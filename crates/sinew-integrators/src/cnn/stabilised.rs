@@ -224,9 +224,7 @@ impl Scheme for CnnStabilised {
         if stabiliser.majorant().adds_nothing() {
             return Ok(CentralDifference.program(&physics, dt).into());
         }
-        // Contact is met by programs, or beside sums over parts.
-        let is_open = system.contact().is_none() || stabiliser.spares();
-        let is_carried = is_open && Carried::carries(operators);
+        let is_carried = Carried::carries(operators);
         let made = match program(&stabiliser, &physics, dt).filter(|_| !is_carried) {
             Some(program) => program.into(),
             None => {

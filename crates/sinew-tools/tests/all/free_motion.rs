@@ -189,3 +189,48 @@ fn a_slab_slides_as_a_point_would_at_any_step() {
         }
     }
 }
+
+/// Galileo's relativity beyond the stable step: a block under a smooth plate that presses it answers alike whether what holds it stands still or glides along the plate.
+#[test]
+fn a_pressed_block_on_a_support_that_glides_answers_as_one_that_stands() {
+    let velocity = [0.3, -0.2, 0.0];
+    let mut standing = Block::of([0.06; 3], [3; 3]);
+    (standing.nu, standing.gravity) = (0.3, Some([1.0, 0.0, -2.0]));
+    let gliding = Block {
+        carried_at: velocity,
+        ..standing
+    };
+    let [standing, gliding] =
+        [standing, gliding].map(|block| block.with(vec![plane(0.058, false)]));
+    for share in [1.5, 4.0, 9.0] {
+        let dt = share * standing.stable_step();
+        let mut states = [standing.at_rest(), gliding.at_rest()];
+        let along = states[1].v.iter_mut().zip(velocity.iter().cycle());
+        along.for_each(|(v, along)| *v = *along);
+        for step in 1..=40 {
+            let [stands, glides] = &mut states;
+            standing.run(stands, "cnn-stabilised", dt, 1);
+            gliding.run(glides, "cnn-stabilised", dt, 1);
+            let [expected, found] = [(&standing, &*stands), (&gliding, &*glides)]
+                .map(|(block, state)| block.force(state));
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert!(
+                    (found - expected).abs() < 1e-9,
+                    "{share}, step {step}: {found} {expected}"
+                );
+            }
+        }
+        let [stands, glides] = &states;
+        let moves = stands.v.iter().zip(&glides.v).zip(velocity.iter().cycle());
+        for ((stands, glides), velocity) in moves {
+            assert!(
+                (stands + velocity - glides).abs() < 1e-9,
+                "{share}: {stands} {glides}"
+            );
+        }
+        assert!(
+            standing.force(stands)[2] > 1e-3,
+            "{share}: the plate touches"
+        );
+    }
+}

@@ -95,6 +95,13 @@ impl Basis {
         Ok(basis)
     }
 
+    /// The shape of each mode, and its angular frequency (rad/s).
+    pub(super) fn modes(&self) -> impl Iterator<Item = (&[f64], f64)> {
+        let dofs = self.shapes.len() / self.frequencies.len().max(1);
+        let shapes = self.shapes.chunks_exact(dofs.max(1));
+        shapes.zip(self.frequencies.iter().copied())
+    }
+
     fn keep(&mut self, inverse: Inverse) {
         self.solves = inverse.solves;
         self.factorizations = inverse.factorizations;

@@ -2,6 +2,7 @@
 
 mod basis;
 mod candidate;
+mod carried;
 mod columns;
 mod failure;
 mod inverse;
@@ -20,6 +21,7 @@ use sinew_core::{
 
 pub use self::basis::Vectors;
 use self::basis::{Basis, Choice};
+use self::carried::{Carried, by_mass};
 use self::columns::{add, lift_two, project_two};
 use self::failure::Failure;
 use self::motion::{Mode, Piece, Response};
@@ -69,6 +71,10 @@ use crate::{Frame, Method, OptionDefault, OptionHelp, OptionKind, Scheme, SetUp,
 /// outside them would lead, against the whole; the allowed share is the tolerance, or a tenth for
 /// `modes = N`. A part within that share is dropped.
 ///
+/// # Supports in motion
+/// The body's answer to slow motion of supports is taken whole: what modes lack of it is added to them. So a support feels no force from a body that glides with it, and the
+/// inertia of the whole body where it is shaken slowly, with any number of modes.
+///
 /// # Work
 /// A step projects displacement and velocity to the modes and lifts them back: `sweeps` counts
 /// its 8 n m operations in products with K, rounded up. Set-up reports factorisations and solves;
@@ -88,6 +94,7 @@ pub struct ModalSteps {
     /// Identity of the matrices and loads of the modes.
     basis_of: (Revision, Revision),
     basis: Basis,
+    carried: Carried,
     cases: Vec<LoadCase>,
     breakpoints: Vec<f64>,
     modes: Vec<Mode>,
@@ -198,6 +205,7 @@ impl ModalSteps {
                 ),
             },
         })?;
+        let carried = Carried::of(operators, &basis);
         let damping = operators.damping();
         let modes = basis.frequencies.iter().map(|omega| Mode {
             omega: *omega,
@@ -214,6 +222,7 @@ impl ModalSteps {
             choice,
             basis_of: (operators.revision(), operators.loads_revision()),
             basis,
+            carried,
             breakpoints,
             linear: Vec::new(),
             harmonic: Vec::new(),
@@ -249,25 +258,34 @@ impl ModalSteps {
 
     /// Projects the state to q and p, and checks that they may replace it.
     fn project(&mut self, system: &dyn System, state: &State) -> Result<StepReport, StepError> {
-        let moving = state.u.iter().zip(&state.v).zip(system.mass());
-        for ((u, v), ((from_u, from_v), mass)) in self.u.iter_mut().zip(&mut self.v).zip(moving) {
-            (*u, *v) = (mass * from_u, mass * from_v);
+        let mass = system.mass();
+        let whole = [by_mass(mass, &state.u), by_mass(mass, &state.v)];
+        self.u.copy_from_slice(&state.u);
+        self.v.copy_from_slice(&state.v);
+        self.carried.add(-1.0, state.t(), &mut self.u, &mut self.v);
+        let rest = [by_mass(mass, &self.u), by_mass(mass, &self.v)];
+        for (x, mass) in self
+            .u
+            .iter_mut()
+            .zip(mass)
+            .chain(self.v.iter_mut().zip(mass))
+        {
+            *x *= mass;
         }
-        let (whole_u, whole_v) = (dot(&self.u, &state.u), dot(&self.v, &state.v));
         project_two(
             &self.basis.shapes,
             (&self.u, &self.v),
             (&mut self.q, &mut self.p),
         );
-        let outside = |whole: f64, parts: &[f64]| whole - dot(parts, parts) > 1e-11 * whole;
-        if self.basis.complete || !(outside(whole_u, &self.q) || outside(whole_v, &self.p)) {
+        let outside = |of: usize, parts: &[f64]| rest[of] - dot(parts, parts) > 1e-11 * whole[of];
+        if self.basis.complete || !(outside(0, &self.q) || outside(1, &self.p)) {
             return Ok(StepReport::default());
         }
         let allowed = match self.choice {
             Choice::Modes { .. } => LOST_BY_CHOICE,
             Choice::Tolerance(tolerance) => tolerance.max(ROUNDING),
         };
-        let lost = self.lost(system, state, whole_u);
+        let lost = self.lost(system, state, whole[0]);
         if lost <= allowed {
             return Ok(StepReport {
                 solves: 1,
@@ -298,6 +316,8 @@ impl ModalSteps {
         ] {
             work.copy_from_slice(from);
             add(&self.basis.shapes, parts, -1.0, work);
+            // Supports may have jumped, or their speeds.
+            self.carried.remove(system.mass(), work);
             for (value, mass) in work.iter_mut().zip(system.mass()) {
                 *value *= mass.sqrt();
             }
@@ -569,6 +589,7 @@ impl StepByHand for ModalSteps {
             (&self.q, &self.p),
             (&mut state.u, &mut state.v),
         );
+        self.carried.add(1.0, next, &mut state.u, &mut state.v);
         work.sweeps += self.sweeps;
         Ok(Stepped::at_same_time(work))
     }

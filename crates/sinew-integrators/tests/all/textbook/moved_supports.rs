@@ -227,6 +227,70 @@ fn beyond_the_stable_step_the_stabilised_network_carries_what_supports_carry() {
     );
 }
 
+/// Few modes of a bar that is shaken slowly by its end, or glides with it, along all axes: the support feels the mass times the acceleration, with any number of modes and either kind of vectors.
+#[cfg(feature = "implicit")]
+#[test]
+fn few_modes_carry_what_supports_carry() {
+    let mesh = structured::block([12, 3, 3], [0.2, 0.05, 0.05], Split::Mirrored).unwrap();
+    let (frequency, amplitude) = (0.1, [0.02, -0.01, 0.04]);
+    let omega = 2.0 * PI * frequency;
+    let sine = Course {
+        displacement: amplitude,
+        ramp: Ramp::Sine {
+            frequency,
+            phase: 0.0,
+        },
+    };
+    let glide = [1.5, -0.4, 0.9];
+    let few = Options::new().with_number("modes", 3.0);
+    let tolerant = Options::new().with_number("tolerance", 0.1);
+    let ritz = few.clone().with_number("modes", 6.0);
+    let ritz = ritz.with("vectors", sinew_core::OptionValue::Text("ritz".to_owned()));
+    let mass = DENSITY * 0.2 * 0.05 * 0.05;
+    let inertia = amplitude.map(|size| -mass * omega * omega * size);
+    let shaken = (sine, amplitude.map(|size| omega * size), inertia);
+    let cases = [(Course::at_velocity(glide), glide, [0.0; 3]), shaken];
+    for (course, velocity, size) in cases {
+        for stiffness in [0.0, 2e-3] {
+            let problem = Problem {
+                moves: vec![Moving {
+                    on: face(&mesh, 0, 0.0),
+                    axes: [true; 3],
+                    courses: vec![course.clone()],
+                }],
+                damping: Rayleigh {
+                    mass: 0.0,
+                    stiffness,
+                },
+                ..body(linear(2e5, 0.3))
+            };
+            let model = Model::build(&mesh, &problem).unwrap();
+            for options in [&few, &tolerant, &ritz] {
+                let name = format!("{options:?}");
+                let mut method = Method {
+                    integrator: build("modal", options),
+                    dt: 0.02,
+                    name: name.clone(),
+                };
+                method.integrator.prepare(&model, method.dt).unwrap();
+                let v = velocity.iter().copied().cycle().take(model.dofs());
+                let start = State::new(vec![0.0; model.dofs()], v.collect());
+                let (mut worst, mut last) = (0.0_f64, 0);
+                follow(&mut method, &model, (start, 400), |step, t, forces| {
+                    last = step;
+                    for (axis, size) in size.into_iter().enumerate() {
+                        let found: f64 = forces.iter().map(|force| force[axis]).sum();
+                        let off = (found - size * (omega * t).sin()).abs();
+                        worst = worst.max(off / if size == 0.0 { 1e-5 } else { size.abs() });
+                    }
+                });
+                assert_eq!(last, 400, "{name} refuses");
+                assert!(worst < 0.06, "{name}, {stiffness}, {velocity:?}: {worst:e}");
+            }
+        }
+    }
+}
+
 /// A bar that is stretched at one speed all over, held along its whole length sideways: there is no inertia, whatever the cells.
 #[test]
 fn a_bar_in_tension_pulls_by_its_law_whatever_the_cells() {

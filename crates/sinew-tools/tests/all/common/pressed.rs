@@ -6,7 +6,9 @@ use sinew_core::{
     LinearSystem, LoadTime, Options, Run, StableStep, State, System, Trial, simulate, vectors,
 };
 use sinew_fem::hyperelastic::Parameters;
-use sinew_fem::{Element, Fixed, FromMesh, Law, Model, Problem, Rayleigh, Region, Tissue};
+use sinew_fem::{
+    Course, Element, Fixed, FromMesh, Law, Model, Moving, Problem, Rayleigh, Region, Tissue,
+};
 use sinew_mesh::structured::{Split, block};
 use sinew_tools::{
     Convex, Corner, Motion, Row, Shape, Table, Tool, Tools, TouchedCell, TouchedTriangle,
@@ -31,6 +33,8 @@ pub(crate) struct Block {
     pub(crate) damping: Rayleigh,
     pub(crate) is_held: bool,
     pub(crate) gravity: Option<[f64; 3]>,
+    /// The velocity (m/s) of what holds it.
+    pub(crate) carried_at: [f64; 3],
     /// A law of large deformation in the place of the linear one.
     pub(crate) law: Option<&'static str>,
     pub(crate) element: Element,
@@ -45,6 +49,7 @@ impl Block {
             damping: Rayleigh::default(),
             is_held: true,
             gravity: None,
+            carried_at: [0.0; 3],
             law: None,
             element: Element::P1,
         }
@@ -56,9 +61,15 @@ impl Block {
     }
 
     pub(crate) fn problem(&self) -> Problem {
+        let is_carried = self.carried_at != [0.0; 3];
         let bottom = Fixed {
             on: "bottom".into(),
             axes: [true; 3],
+        };
+        let moving = Moving {
+            on: "bottom".into(),
+            axes: [true; 3],
+            courses: vec![Course::at_velocity(self.carried_at)],
         };
         Problem {
             regions: vec![Region {
@@ -83,10 +94,13 @@ impl Block {
                 from_mesh: FromMesh::default(),
             }],
             damping: self.damping,
-            fixed: if self.is_held {
-                vec![bottom]
-            } else {
-                Vec::new()
+            fixed: match self.is_held && !is_carried {
+                true => vec![bottom],
+                false => Vec::new(),
+            },
+            moves: match is_carried {
+                true => vec![moving],
+                false => Vec::new(),
             },
             gravity: self.gravity,
             ..Problem::default()

@@ -1,0 +1,142 @@
+//! What supports in motion do to a body outside the modes.
+
+use sinew_cnn::equilibrium;
+use sinew_core::vectors::{add_scaled, dot};
+use sinew_core::{Clock, LinearOperators, Ramp};
+
+use super::basis::Basis;
+
+/// What is left of forces, as a share of them, at which a displacement is found.
+const FOUND: f64 = 1e-12;
+
+/// Share of a displacement, squared and by mass, that counts as none.
+const NONE: f64 = 1e-20;
+
+/// The answer of a body to supports in slow motion as far as the modes do not have it: `u = g d - h (d'' + alpha d')` with d the factor of the motion, `K g = -K_p`, by which supports carry the body
+/// without inertia, and `K h = M g`, by which inertia bends it meanwhile. Modes alone end as a jump at the supports, whose forces are then those of strains that nobody sees. It is static correction (Dickens,
+/// Nakagawa and Wittbrodt, Computers & Structures 62, 1997) in two terms of the series by derivatives of loads (Camarda, Haftka and Riley, Computers & Structures 26, 1987).
+#[derive(Debug, Default)]
+pub(super) struct Carried {
+    courses: Vec<Course>,
+    /// alpha (1/s).
+    damping: f64,
+    /// An orthonormal basis of the displacements, by mass (kg^-1/2), one after the other.
+    directions: Vec<f64>,
+}
+
+/// A motion of supports.
+#[derive(Debug)]
+struct Course {
+    ramp: Ramp,
+    /// What modes lack of g (m), for a factor of 1.
+    by_place: Vec<f64>,
+    /// What they lack of h (m s^2).
+    by_acceleration: Vec<f64>,
+}
+
+impl Carried {
+    pub(super) fn of(operators: &LinearOperators, basis: &Basis) -> Self {
+        let mut carried = Self {
+            damping: operators.damping().mass,
+            ..Self::default()
+        };
+        if basis.complete {
+            return carried;
+        }
+        let mass = operators.mass();
+        for (ramp, force) in motions(operators) {
+            let place = equilibrium(operators, &force, FOUND).displacement;
+            let mut inertia: Vec<f64> = place.iter().zip(mass).map(|(x, m)| m * x).collect();
+            for (shape, _) in basis.modes().filter(|(_, omega)| *omega == 0.0) {
+                let part = dot(shape, &inertia);
+                let moved = inertia.iter_mut().zip(shape).zip(mass);
+                moved.for_each(|((force, shape), mass)| *force -= part * mass * shape);
+            }
+            let bent = equilibrium(operators, &inertia, FOUND).displacement;
+            let course = Course {
+                ramp: ramp.clone(),
+                by_place: outside(basis, mass, place),
+                by_acceleration: outside(basis, mass, bent),
+            };
+            carried.add_direction(mass, course.by_place.clone());
+            carried.add_direction(mass, course.by_acceleration.clone());
+            carried.courses.push(course);
+        }
+        carried
+    }
+
+    fn add_direction(&mut self, mass: &[f64], mut direction: Vec<f64>) {
+        let whole = by_mass(mass, &direction);
+        // Twice is enough.
+        self.remove(mass, &mut direction);
+        self.remove(mass, &mut direction);
+        let left = by_mass(mass, &direction);
+        if left > NONE * whole {
+            let size = left.sqrt();
+            let unit = direction.iter().map(|value| value / size);
+            self.directions.extend(unit);
+        }
+    }
+
+    /// Adds so many times this part at the time `t` (s), after what happens then, to displacements (m) and velocities (m/s).
+    pub(super) fn add(&self, times: f64, t: f64, u: &mut [f64], v: &mut [f64]) {
+        let after = t + Clock::ROUNDING * t.abs();
+        for course in &self.courses {
+            let mut d = [0.0; 4];
+            course.ramp.derivatives_after(after, &mut d);
+            let inertia = [2, 3].map(|order| -times * (d[order] + self.damping * d[order - 1]));
+            add_scaled(times * d[0], &course.by_place, u);
+            add_scaled(inertia[0], &course.by_acceleration, u);
+            add_scaled(times * d[1], &course.by_place, v);
+            add_scaled(inertia[1], &course.by_acceleration, v);
+        }
+    }
+
+    /// Takes all that lies along these displacements out of x.
+    pub(super) fn remove(&self, mass: &[f64], x: &mut [f64]) {
+        remove(mass, &self.directions, x);
+    }
+}
+
+/// The forces (N) by which places of supports act, for each ramp of them.
+fn motions(operators: &LinearOperators) -> Vec<(&Ramp, Vec<f64>)> {
+    let mut motions: Vec<(&Ramp, Vec<f64>)> = Vec::new();
+    for load in operators.loads() {
+        let Ramp::Position(of) = &load.ramp else {
+            continue;
+        };
+        let known = motions.iter().position(|(ramp, _)| *ramp == &**of);
+        let at = known.unwrap_or_else(|| {
+            motions.push((&**of, vec![0.0; operators.dofs()]));
+            motions.len() - 1
+        });
+        for (dof, force) in &load.entries {
+            motions[at].1[*dof as usize] += force;
+        }
+    }
+    motions
+}
+
+/// The part of a displacement that lies outside the modes. Their own forces are those that lead to its part inside.
+fn outside(basis: &Basis, mass: &[f64], mut displacement: Vec<f64>) -> Vec<f64> {
+    remove(mass, &basis.shapes, &mut displacement);
+    remove(mass, &basis.shapes, &mut displacement);
+    displacement
+}
+
+/// Takes the parts along columns that are orthonormal by mass out of x.
+fn remove(mass: &[f64], columns: &[f64], x: &mut [f64]) {
+    for column in columns.chunks_exact(x.len().max(1)) {
+        let parts = x.iter().zip(mass).zip(column);
+        let part = parts
+            .map(|((x, mass), along)| mass * x * along)
+            .sum::<f64>();
+        add_scaled(-part, column, x);
+    }
+}
+
+/// `x' M x`.
+pub(super) fn by_mass(mass: &[f64], x: &[f64]) -> f64 {
+    let squares = x.iter().zip(mass).map(|(x, mass)| mass * x * x);
+    squares.sum()
+}
