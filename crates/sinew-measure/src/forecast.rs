@@ -24,6 +24,8 @@ pub struct Forecast {
     pub step_s: f64,
     /// CPU time (s) of a step, that of all threads.
     pub step_cpu_s: f64,
+    /// Steps that were taken to tell: from the first on, or all of them.
+    pub seen: usize,
 }
 
 /// Why there is no forecast: what will also end the run.
@@ -53,8 +55,15 @@ const LEAST_OF_LAWS: f64 = 0.25;
 /// Time (s) by which they end where steps are long.
 const MOST: f64 = 0.5;
 
+/// Time (s) that a run under force laws may take for all of its steps to be taken: their work changes as tissue stiffens or lets go.
+const WHOLE: f64 = 5.0;
+
+/// Share of the steps so far that are taken before the rest is estimated again.
+const AGAIN: usize = 4;
+
 impl Forecast {
-    /// Sets an integrator up and takes some of the scene's first steps with it, for some hundredths of a second or, where steps are long, up to half a second and a step.
+    /// Sets an integrator up and takes some of the scene's first steps with it, for some hundredths of a second or, where steps are long, up to half a second and a step. Under force laws it goes on to the end
+    /// where that is a matter of seconds.
     ///
     /// # Errors
     /// [`ForecastError`].
@@ -80,14 +89,21 @@ impl Forecast {
         };
         let cold = take(COLD.min(run.steps))?;
         let (mut warm, mut next) = (Taken::default(), COLD);
-        let least = match system.as_linear() {
-            Some(_) => LEAST,
-            None => LEAST_OF_LAWS,
+        let (least, whole) = match system.as_linear() {
+            Some(_) => (LEAST, 0.0),
+            None => (LEAST_OF_LAWS, WHOLE),
         };
         loop {
             let left = run.steps - cold.steps - warm.steps;
-            let steps = next.min(left);
-            if steps == 0 || warm.wall >= MOST || (warm.steps >= ENOUGH && warm.wall >= least) {
+            let is_told = warm.wall >= MOST || (warm.steps >= ENOUGH && warm.wall >= least);
+            let of_run = warm.wall * (1.0 + left as f64 / warm.steps.max(1) as f64);
+            let steps = match is_told {
+                true if of_run > whole => 0,
+                true => (warm.steps / AGAIN).max(1),
+                false => next,
+            };
+            let steps = steps.min(left);
+            if steps == 0 {
                 break;
             }
             let taken = take(steps)?;
@@ -113,6 +129,7 @@ impl Forecast {
             setup_s,
             step_s: mean(&|taken| taken.wall),
             step_cpu_s: mean(&|taken| taken.cpu),
+            seen: cold.steps + warm.steps,
         })
     }
 
@@ -138,6 +155,12 @@ impl Forecast {
         }
         let forecast = Self::of(simulation, integrator)?;
         Ok((forecast.run_s() > seconds).then_some(forecast))
+    }
+
+    /// The part of the motion (s) that was looked at; `None` where that is all of it.
+    #[must_use]
+    pub fn seen_s(&self) -> Option<f64> {
+        (self.seen < self.steps).then(|| self.seen as f64 * self.dt)
     }
 
     /// Time (s) of the run by the clock on the wall, set-up included, without what is written.

@@ -19,8 +19,8 @@ fn cube(integrator: &str) -> Simulation {
         .unwrap()
 }
 
-/// Asserts that sweeps and solutions of a run are foretold within a factor of 1.5.
-fn assert_foretold(simulation: &Simulation) {
+/// Asserts that sweeps and solutions of a run are foretold within a factor, 1 where it is looked at whole.
+fn assert_foretold(simulation: &Simulation, within: f64) {
     let mut integrator = simulation.integrator().unwrap();
     let said = Forecast::of(simulation, &mut *integrator).unwrap();
     let mut state = simulation.initial_state().clone();
@@ -29,7 +29,7 @@ fn assert_foretold(simulation: &Simulation) {
     let near = |said: f64, done: u64, what: &str| {
         let done = done as f64;
         assert!(
-            1.5 * said >= done && said <= 1.5 * done,
+            within * said >= done * (1.0 - 1e-12) && said <= within * done * (1.0 + 1e-12),
             "{}: {said} {what}, {done}",
             integrator.id()
         );
@@ -53,13 +53,13 @@ fn sweeps_and_solutions_of_a_run_are_foretold() {
         "generalized-alpha",
         "propagator",
     ] {
-        assert_foretold(&cube(id));
+        assert_foretold(&cube(id), 1.5);
     }
 }
 
-/// The first look at the stiffness, a dozen products, is that of the whole run and not of each few steps.
+/// Products that looks at the stiffness take, and parts that steps are cut into where the ball meets the tissue, are known by taking all steps of a run that takes a second.
 #[test]
-fn steps_that_follow_the_stiffness_are_foretold() {
+fn steps_that_follow_the_stiffness_are_foretold_to_the_sweep() {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/ready/press.toml");
     for values in [
         ["mesh.cube.cells=5", "run.duration=1.0"],
@@ -67,7 +67,7 @@ fn steps_that_follow_the_stiffness_are_foretold() {
         ["mesh.cube.cells=3", "run.duration=0.1"],
     ] {
         let scene = Scene::load_with(&scene, &values).unwrap();
-        assert_foretold(&scene.build().unwrap());
+        assert_foretold(&scene.build().unwrap(), 1.0);
     }
 }
 

@@ -74,16 +74,23 @@ impl Cost {
                 };
                 format!(
                     "time: {} sweeps{solves} for {} s, {} CPU s per simulated second on one thread; {} s by this computer's clock \
-                     in all, with {} s of set-up, as its first steps took here{}",
+                     in all, with {} s of set-up, as {} took here{}",
                     short(forecast.sweeps()),
                     short(self.duration),
                     three(forecast.cpu_s_per_s()),
                     three(forecast.run_s()),
                     three(forecast.setup_s),
-                    if self.is_law {
-                        "; more where tissue gets stiffer later on"
-                    } else {
-                        ""
+                    match forecast.seen_s() {
+                        Some(seen) if self.is_law => format!(
+                            "its first {} s",
+                            short(seen)
+                        ),
+                        Some(_) => "its first steps".to_owned(),
+                        None => "all of its steps".to_owned(),
+                    },
+                    match forecast.seen_s() {
+                        Some(_) if self.is_law => "; more where tissue gets stiffer later on",
+                        _ => "",
                     }
                 )
             }

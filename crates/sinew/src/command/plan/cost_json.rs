@@ -40,6 +40,7 @@ pub(super) fn as_json(cost: &Cost) -> Value {
                 "step_s": forecast.step_s,
                 "cpu_s_per_s": forecast.cpu_s_per_s(),
                 "run_s": forecast.run_s(),
+                "steps_seen": forecast.seen,
             }),
         ),
         Err(reason) => ("time_unknown", json!(reason)),
