@@ -164,7 +164,7 @@ pub enum Cause {
     },
     /// A tetrahedron with negative volume.
     #[error(
-        "tetrahedron {tag} is inverted (volume {volume:.3e} m3); {count} in all; swap two of their nodes or repair the mesh"
+        "tetrahedron {tag} is inverted (volume {volume:.3e} m3), {count} in all; `sinew mesh check --fix orient` turns those that only count corners the other way, and says where a mesh is tangled"
     )]
     Inverted {
         /// Element tag of the first.

@@ -37,6 +37,7 @@ mod cell_type;
 mod check;
 mod duplicates;
 pub mod info;
+mod joints;
 mod linearise;
 mod mesh;
 mod msh;
@@ -49,6 +50,7 @@ mod warning;
 
 pub use cell_type::CellType;
 pub use check::{CheckLimits, EdgeLengths, Extreme, Finding, MeshCheck, Part, SharedFace};
+pub use joints::{JointFinding, Joints, Places};
 pub use linearise::Linearised;
 pub use mesh::{
     CellBlock, CellData, CellIndex, CellNodeData, CellSet, Entity, Mesh, PeriodicLink, PointData,

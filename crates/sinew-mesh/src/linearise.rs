@@ -70,19 +70,12 @@ impl Mesh {
     }
 
     fn farthest_from_straight(&self, block: &CellBlock) -> f64 {
-        let edges = match block.kind {
-            CellType::Line3 => &EDGES[..1],
-            CellType::Triangle6 => &EDGES[..3],
-            CellType::Tetra10 => &EDGES[..],
-            _ => return 0.0,
-        };
-        let corners = block.kind.linear().node_count();
         let point = |node: u32| self.points.get(node as usize).copied();
         let mut farthest = 0.0f64;
         for row in block.cells() {
-            for (&[a, b], &middle) in edges.iter().zip(&row[corners..]) {
+            for (middle, [a, b]) in middle_nodes(block.kind) {
                 let (Some(a), Some(b), Some(middle)) =
-                    (point(row[a]), point(row[b]), point(middle))
+                    (point(row[a]), point(row[b]), point(row[middle]))
                 else {
                     continue;
                 };
@@ -92,6 +85,17 @@ impl Mesh {
         }
         farthest
     }
+}
+
+/// The nodes in the middle of edges of a second-order line, triangle or tetrahedron, as places in a row of nodes, each with the two corners of its edge; none of other kinds.
+pub(crate) fn middle_nodes(kind: CellType) -> impl Iterator<Item = (usize, [usize; 2])> + Clone {
+    let edges = match kind {
+        CellType::Line3 => &EDGES[..1],
+        CellType::Triangle6 => &EDGES[..3],
+        CellType::Tetra10 => &EDGES[..],
+        _ => &[],
+    };
+    (kind.linear().node_count()..).zip(edges.iter().copied())
 }
 
 /// Keeps the first `kept` entries of each row of `width` entries.

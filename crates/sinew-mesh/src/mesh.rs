@@ -213,6 +213,14 @@ impl Mesh {
             .unwrap_or(ordinal)
     }
 
+    /// The corners of all tetrahedra of any order, block by block.
+    pub(crate) fn corners_of_tets(&self) -> Vec<[u32; 4]> {
+        let blocks = self.cells.iter();
+        let tets = blocks.filter(|block| block.kind.is_tetrahedron());
+        let rows = tets.flat_map(CellBlock::cells);
+        rows.map(|row| [row[0], row[1], row[2], row[3]]).collect()
+    }
+
     /// The tag of a cell: its tag in the file, or its index within the mesh plus one where its block has no tags.
     #[must_use]
     pub fn element_tag(&self, cell: CellIndex) -> u64 {

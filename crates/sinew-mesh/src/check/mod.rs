@@ -8,8 +8,8 @@ use std::fmt;
 
 pub(crate) use shape::{TetShape, tet_corners};
 
+use crate::joints::{Joints, Sets, Surfaces, for_each_face};
 use crate::mesh::{CellBlock, CellIndex, Mesh};
-use crate::tet_mesh::OUTWARD_FACES;
 
 /// Number of examples that are kept of each finding.
 const EXAMPLES: usize = 10;
@@ -163,6 +163,8 @@ pub struct MeshCheck {
     pub non_manifold_faces: usize,
     /// The first ten of these faces.
     pub first_non_manifold: Vec<SharedFace>,
+    /// Where the tetrahedra hang together, and where they only seem to. [`Mesh::merge_nodes`] joins parts that touch.
+    pub joints: Joints,
     /// Named groups without cells: dimension, tag, name.
     pub empty_groups: Vec<(u8, i32, String)>,
     /// The edges of the tetrahedra.
@@ -178,7 +180,7 @@ pub struct MeshCheck {
 impl Mesh {
     /// Looks for problems that make a simulation fail or mislead. Changes nothing.
     ///
-    /// Nodes at the same place are not reported, because cuts and contact surfaces consist of them.
+    /// Nodes at the same place within a part are not reported, because cuts and contact surfaces consist of them.
     ///
     /// ```
     /// use sinew_mesh::{TetMesh, structured};
@@ -225,6 +227,24 @@ impl MeshCheck {
         self.problems().is_empty()
     }
 
+    /// What is the matter with tetrahedra numbered the wrong way round.
+    fn winding(&self) -> Option<String> {
+        const FIX: &str = "`sinew mesh check --fix orient` turns them";
+        match (self.inverted.total, self.tets) {
+            (0, _) => None,
+            _ if !self.joints.tangled.is_empty() => {
+                Some(format!("inverted tetrahedra: {}", self.inverted))
+            }
+            (inverted, all) if inverted == all => Some(format!(
+                "inverted tetrahedra: all {all}, the mesh is mirrored or counts corners the other way; {FIX}"
+            )),
+            _ => Some(format!(
+                "inverted tetrahedra: {}, which count corners the other way; {FIX}",
+                self.inverted
+            )),
+        }
+    }
+
     /// The findings that need attention, one sentence each.
     #[must_use]
     pub fn problems(&self) -> Vec<String> {
@@ -237,7 +257,6 @@ impl MeshCheck {
                 problems.push(format!("{what}: {finding}"));
             }
         };
-        add(&self.inverted, "inverted tetrahedra");
         add(&self.flat, "flat tetrahedra");
         add(&self.slivers, "slivers");
         add(&self.repeated_nodes, "cells that name a node twice");
@@ -250,10 +269,16 @@ impl MeshCheck {
                 self.non_manifold_faces
             ));
         }
-        if self.part_count > 1 {
+        problems.extend(self.winding());
+        problems.extend(self.joints.findings().into_iter().map(|(_, words)| words));
+        // Parts of other cells than tetrahedra are none of these joints.
+        let loose = match self.joints.parts == self.part_count {
+            true => self.joints.parts_apart,
+            false => self.part_count,
+        };
+        if loose > 1 {
             problems.push(format!(
-                "loose parts: {}, which share no node and need a support each",
-                self.part_count
+                "loose parts: {loose}, which share no node and need a support each"
             ));
         }
         for (dim, tag, name) in &self.empty_groups {
@@ -401,33 +426,9 @@ fn check_nodes_of_cells(mesh: &Mesh, check: &mut MeshCheck) {
     }
 }
 
-/// Disjoint sets of nodes that can be joined (union-find).
-struct Sets {
-    parent: Vec<u32>,
-}
-
-impl Sets {
-    fn root(&mut self, mut node: u32) -> u32 {
-        while self.parent[node as usize] != node {
-            let above = self.parent[node as usize];
-            // Halve the path for the next search.
-            self.parent[node as usize] = self.parent[above as usize];
-            node = self.parent[node as usize];
-        }
-        node
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b) as usize] = a.min(b);
-    }
-}
-
 fn check_parts(mesh: &Mesh, check: &mut MeshCheck) {
     let nodes = mesh.points.len();
-    let mut sets = Sets {
-        parent: (0u32..).take(nodes).collect(),
-    };
+    let mut sets = Sets::new(nodes);
     let is_inside = |row: &[u32]| row.iter().all(|&node| (node as usize) < nodes);
     let volume_cells =
         || cells_of(mesh, |block| block.kind.dim() == 3).filter(|(_, row)| is_inside(row));
@@ -463,42 +464,35 @@ fn check_parts(mesh: &Mesh, check: &mut MeshCheck) {
 }
 
 fn check_faces(mesh: &Mesh, check: &mut MeshCheck) {
-    let mut faces: Vec<([u32; 3], CellIndex)> = Vec::new();
-    for (at, row) in cells_of(mesh, |block| block.kind.is_tetrahedron()) {
-        for face in OUTWARD_FACES {
-            let mut nodes = face.map(|i| row[i]);
-            nodes.sort_unstable();
-            faces.push((nodes, at));
+    let tets = mesh.corners_of_tets();
+    let rows = cells_of(mesh, |block| block.kind.is_tetrahedron());
+    let cells: Vec<CellIndex> = rows.map(|(at, _)| at).collect();
+    for_each_face(&tets, mesh.points.len(), |nodes, owners| {
+        if owners.len() < 3 {
+            return;
         }
-    }
-    faces.sort_unstable();
-    for shared in faces
-        .chunk_by(|a, b| a.0 == b.0)
-        .filter(|shared| shared.len() > 2)
-    {
         // Copies of a cell are reported separately.
         let mut seen = HashSet::new();
-        let mut cells: Vec<CellIndex> = Vec::new();
-        for &(_, at) in shared {
-            let block = &mesh.cells[at.block];
-            let count = block.kind.node_count();
-            let mut nodes = block.connectivity[at.cell * count..][..4].to_vec();
+        let owners = owners.iter().map(|owner| owner.tet as usize);
+        let different = owners.filter(|tet| {
+            let mut nodes = tets[*tet];
             nodes.sort_unstable();
-            if seen.insert(nodes) {
-                cells.push(at);
-            }
-        }
-        if cells.len() < 3 {
-            continue;
+            seen.insert(nodes)
+        });
+        let different: Vec<usize> = different.collect();
+        if different.len() < 3 {
+            return;
         }
         check.non_manifold_faces += 1;
         if check.first_non_manifold.len() < EXAMPLES {
+            let tags = different.iter().map(|tet| mesh.element_tag(cells[*tet]));
             check.first_non_manifold.push(SharedFace {
-                node_tags: shared[0].0.map(|node| mesh.node_tag(node)),
-                element_tags: cells.iter().map(|&at| mesh.element_tag(at)).collect(),
+                node_tags: nodes.map(|node| mesh.node_tag(node)),
+                element_tags: tags.collect(),
             });
         }
-    }
+    });
+    check.joints = Surfaces::of(&mesh.points, &tets).joints();
 }
 
 pub(crate) fn empty_groups(mesh: &Mesh) -> Vec<(u8, i32, String)> {

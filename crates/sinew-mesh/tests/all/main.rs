@@ -13,6 +13,7 @@ mod check;
 mod common;
 mod files;
 mod groups;
+mod joints;
 mod linearise;
 mod meshes;
 mod msh;

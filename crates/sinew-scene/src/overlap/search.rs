@@ -9,7 +9,6 @@ use super::depth::{Depths, FACES, distance};
 use super::grid::{Bounds, Grid, bounds, include, longest, meet};
 use super::inside::{Placed, SurfacePoint};
 use super::segment::{are_apart, crossing};
-use crate::simulation::part_of_nodes;
 
 /// Share of a body's size, or of its largest displacement where that is more, up to which surfaces touch: single precision rounds places by less.
 const TOUCHES: f64 = 1e-6;
@@ -80,7 +79,7 @@ impl<'a> OverlapSearch<'a> {
         let mut nodes: Vec<u32> = triangles.as_flattened().to_vec();
         nodes.sort_unstable();
         nodes.dedup();
-        let (part_of, parts) = part_of_nodes(mesh);
+        let (part_of, parts) = mesh.part_of_nodes();
         Self {
             size: longest(&bounds(&mesh.points, 0.0)),
             mesh,

@@ -15,7 +15,7 @@ use crate::number::{count, length, short, vector};
 use crate::scene::{
     Body, Cutting, Initial, Lips, LoosePieces, MeshChanges, MeshSource, Quantity, Rotation, Way,
 };
-use crate::simulation::{BodyModel, Probe, SelectedPart, part_of_nodes};
+use crate::simulation::{BodyModel, Probe, SelectedPart};
 
 /// The sections about a body and its probes.
 pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<PlanSection> {
@@ -42,7 +42,7 @@ pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<
 /// What nothing keeps apart: parts of the mesh, and pieces that cuts may take off.
 fn apart(body: &Body, built: &BodyModel) -> Vec<String> {
     const TOLD: &str = "where they are in each other a run warns";
-    let parts = part_of_nodes(&built.mesh).1;
+    let parts = built.mesh.part_of_nodes().1;
     let falls = |cutting: &Cutting| cutting.pieces == LoosePieces::Fall;
     let cutting = body.cutting.as_ref().filter(|cutting| falls(cutting));
     let of_parts = (parts > 1).then(|| format!("{parts} parts: nothing keeps them apart; {TOLD}"));
@@ -59,10 +59,11 @@ fn mesh(body: &Body, built: &BodyModel, report: &ModelReport) -> Vec<String> {
     let mut lines = vec![source(&body.mesh, &body.mesh_changes)];
     lines.extend(changes(&body.mesh_changes));
     lines.push(format!(
-        "{} nodes, {} tetrahedra, {} edges; {} m3, {} kg",
+        "{} nodes, {} tetrahedra, {} edges, in {}; {} m3, {} kg",
         report.nodes,
         report.tets,
         report.edges,
+        count(built.mesh.part_of_nodes().1, "part"),
         short(report.volume),
         short(report.mass)
     ));

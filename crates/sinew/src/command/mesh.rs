@@ -7,8 +7,8 @@ use serde_json::json;
 use sinew_mesh::info::MeshInfo;
 use sinew_mesh::vtu::{VtuEncoding, write_vtu};
 use sinew_mesh::{
-    Extreme, Finding, Mesh, MeshCheck, MshEncoding, MshVersion, WriteMshError, read_msh_file,
-    write_msh,
+    Extreme, Finding, Mesh, MeshCheck, MshEncoding, MshVersion, Places, WriteMshError,
+    read_msh_file, write_msh,
 };
 use sinew_scene::output::{Destination, Voice, complain, say};
 
@@ -87,6 +87,8 @@ pub(crate) enum Fix {
     DropOrphans,
     /// Merge cells with the same nodes.
     MergeDuplicates,
+    /// Merge nodes of different parts where faces of theirs lie on each other; cuts, which lie within a part, stay.
+    MergeNodes,
 }
 
 /// Order of the cells of a written mesh.
@@ -225,6 +227,10 @@ fn check(file: &Path, json: bool, fixes: &[Fix], out: Option<&Path>) -> Result<(
             Fix::Orient => (mesh.orient(), "tetrahedra turned"),
             Fix::DropOrphans => (mesh.drop_orphans(), "nodes dropped"),
             Fix::MergeDuplicates => (mesh.merge_duplicates(), "cells merged into others"),
+            Fix::MergeNodes => (
+                mesh.merge_nodes(),
+                "nodes of parts that touch merged into others",
+            ),
         };
         fixed.push((count, what));
     }
@@ -305,6 +311,7 @@ fn as_json(
 ) -> serde_json::Value {
     let finding =
         |finding: &Finding| json!({ "total": finding.total, "first_tags": finding.first_tags });
+    let places = |places: &Places| json!({ "total": places.total, "first": places.first });
     let extreme = |extreme: &Option<Extreme>| {
         extreme.map(|Extreme { value, element_tag }| json!({ "value": value, "tag": element_tag }))
     };
@@ -339,6 +346,15 @@ fn as_json(
         "outside_volume": finding(&check.outside_volume),
         "part_count": check.part_count,
         "parts": parts,
+        "parts_apart": check.joints.parts_apart,
+        "touching": places(&check.joints.touching),
+        "touching_partly": places(&check.joints.touching_partly),
+        "mergeable_nodes": check.joints.mergeable,
+        "mismatched": places(&check.joints.mismatched),
+        "hanging_nodes": places(&check.joints.hanging),
+        "hinges": places(&check.joints.hinges),
+        "hinged_blocks": check.joints.hinged_blocks,
+        "tangled": places(&check.joints.tangled),
         "non_manifold_faces": check.non_manifold_faces,
         "first_non_manifold": faces,
         "empty_groups": empty,

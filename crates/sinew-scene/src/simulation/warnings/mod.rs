@@ -2,6 +2,7 @@
 
 mod groups;
 mod initial;
+mod joints;
 mod loads;
 mod material;
 mod motions;
@@ -50,6 +51,7 @@ fn of_mesh(body: &Body, built: &BodyModel) -> Vec<Warning> {
     let remarks = built.mesh_warnings.iter().chain(notes);
     let remark = |remark: &String| Warning::new(WarningKind::MeshFile, remark.as_str(), "");
     let mut warnings: Vec<Warning> = remarks.map(remark).collect();
+    warnings.extend(joints::warnings(built));
     warnings.extend(size::warnings(built));
     warnings.extend(groups::warnings(body, built));
     warnings

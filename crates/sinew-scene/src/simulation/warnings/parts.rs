@@ -3,7 +3,6 @@
 use super::{Warning, WarningKind};
 use crate::number::{count, short, vector};
 use crate::simulation::model::BodyModel;
-use crate::simulation::parts::part_of_nodes;
 
 /// Parts that a warning lists one by one.
 const LISTED: usize = 5;
@@ -61,7 +60,7 @@ pub(super) fn free(built: &BodyModel) -> Option<Warning> {
 /// The connected parts of the body, in the order of their lowest nodes.
 fn parts(built: &BodyModel) -> Vec<Part> {
     let mesh = &built.mesh;
-    let (part_of, count) = part_of_nodes(mesh);
+    let (part_of, count) = mesh.part_of_nodes();
     let mut parts: Vec<Part> = Vec::with_capacity(count);
     let pinned = built.model.pinned();
     for (node, (at, part)) in (0u32..).zip(mesh.points.iter().zip(&part_of)) {

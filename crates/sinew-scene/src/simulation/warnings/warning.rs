@@ -71,6 +71,14 @@ impl fmt::Display for Warning {
 pub enum WarningKind {
     /// A remark of the reader of the mesh file.
     MeshFile,
+    /// Parts of the body that touch and do not hold together.
+    TouchingParts,
+    /// Faces of elements that lie on others without being the same.
+    MismatchedFaces,
+    /// Blocks of elements that hang together by single nodes or edges.
+    Hinge,
+    /// Elements that overlap.
+    TangledMesh,
     /// A body larger than any organ.
     LargeBody,
     /// A body lighter or heavier than any tissue of its size.
@@ -127,6 +135,10 @@ impl WarningKind {
     pub fn id(self) -> &'static str {
         match self {
             Self::MeshFile => "mesh-file",
+            Self::TouchingParts => "touching-parts",
+            Self::MismatchedFaces => "mismatched-faces",
+            Self::Hinge => "hinge",
+            Self::TangledMesh => "tangled-mesh",
             Self::LargeBody => "large-body",
             Self::OddDensity => "odd-density",
             Self::UnusedGroups => "unused-groups",

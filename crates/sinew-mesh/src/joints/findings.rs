@@ -1,0 +1,104 @@
+//! What is said of joints.
+
+use std::fmt;
+
+use super::{Joints, Places};
+
+/// Kinds of findings about joints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum JointFinding {
+    /// Parts touch without common nodes.
+    Touching,
+    /// Faces within a part lie on others without being the same.
+    Mismatched,
+    /// Blocks of tetrahedra hang together by single nodes or edges.
+    Hinges,
+    /// Tetrahedra that share a face overlap.
+    Tangled,
+}
+
+impl Joints {
+    /// Whether tetrahedra hang together as they seem to.
+    #[must_use]
+    pub fn is_clean(&self) -> bool {
+        self.findings().is_empty()
+    }
+
+    /// What needs attention, a sentence each, with places and what to do.
+    #[must_use]
+    pub fn findings(&self) -> Vec<(JointFinding, String)> {
+        let mut findings = Vec::new();
+        let mut say = |places: &Places, kind: JointFinding, words: &dyn Fn() -> String| {
+            if !places.is_empty() {
+                findings.push((kind, words()));
+            }
+        };
+        let merge = match self.mergeable {
+            0 => "mesh them as one body (gmsh: `Coherence;`)".to_owned(),
+            nodes => format!(
+                "`sinew mesh check --fix merge-nodes` joins them by {nodes} nodes, or mesh them as one body (gmsh: `Coherence;`)"
+            ),
+        };
+        say(&self.touching, JointFinding::Touching, &|| {
+            format!(
+                "parts that touch and do not hold together: faces of different parts lie on each other without common nodes: {}; {merge}",
+                self.touching
+            )
+        });
+        say(&self.touching_partly, JointFinding::Touching, &|| {
+            format!(
+                "parts that touch and do not hold together: faces of a part lie on faces of another that have other corners: {}; {}",
+                self.touching_partly,
+                if self.touching.is_empty() && self.hanging.is_empty() {
+                    &merge
+                } else {
+                    "mesh them as one body (gmsh: `Coherence;`)"
+                }
+            )
+        });
+        say(&self.mismatched, JointFinding::Mismatched, &|| {
+            let kind = match self.hanging.total {
+                0 => "they are split along different diagonals".to_owned(),
+                nodes => format!("{nodes} nodes hang on faces or edges of others"),
+            };
+            format!(
+                "faces within a part that lie on others without being the same: {}; {kind}, so that tissue gapes there: mesh it anew with faces that match",
+                self.mismatched
+            )
+        });
+        say(&self.hinges, JointFinding::Hinges, &|| {
+            format!(
+                "hinges: {} blocks of tetrahedra hang together by single nodes or edges, without a common face: {}; they turn there without resistance: mesh them as one body, or as parts",
+                self.hinged_blocks, self.hinges
+            )
+        });
+        say(&self.tangled, JointFinding::Tangled, &|| {
+            format!(
+                "tangled mesh: faces of which both tetrahedra are on the same side, so that they overlap: {}; no repair turns them right: mesh it anew",
+                self.tangled
+            )
+        });
+        findings
+    }
+}
+
+impl fmt::Display for Places {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.total)?;
+        let Some([x, y, z]) = self.first.first().map(|place| place.map(rounded)) else {
+            return Ok(());
+        };
+        let first = if self.total > 1 { "first " } else { "" };
+        write!(f, " ({first}at {x}, {y}, {z})")
+    }
+}
+
+/// A coordinate to six digits.
+fn rounded(x: f64) -> f64 {
+    let digits = 10f64.powf(5.0 - x.abs().log10().floor());
+    match digits.is_finite() && digits > 0.0 {
+        true => (x * digits).round() / digits,
+        false => x,
+    }
+}
