@@ -133,7 +133,7 @@ pub enum Cause {
     Law(#[from] crate::hyperelastic::LawError),
     /// A group the mesh does not have.
     #[error(transparent)]
-    UnknownGroup(#[from] sinew_mesh::UnknownGroup),
+    Group(#[from] sinew_mesh::FindGroupError),
     /// A group of the wrong kind.
     #[error("group `{group}` has cells of dimension {dim}, expected {expected}")]
     GroupDimension {

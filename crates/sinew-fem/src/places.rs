@@ -12,7 +12,7 @@ impl On {
     /// The nodes of this part of a mesh, each once, increasing.
     ///
     /// # Errors
-    /// [`Cause::UnknownGroup`] and [`Cause::NodeOutOfRange`].
+    /// [`Cause::Group`] and [`Cause::NodeOutOfRange`].
     pub fn nodes(&self, mesh: &TetMesh) -> Result<Vec<u32>, Cause> {
         let given: &[u32] = match self {
             Self::Group(name) => return Ok(mesh.group_nodes(mesh.group(name)?)),
@@ -31,8 +31,7 @@ impl On {
     pub(crate) fn triangles<'a>(&'a self, mesh: &'a TetMesh) -> Result<Cow<'a, [[u32; 3]]>, Cause> {
         match self {
             Self::Group(name) => {
-                let surface = mesh.group_of_dim(name, 2);
-                let group = surface.or_else(|_| mesh.group(name))?;
+                let group = mesh.group_for(name, 2)?;
                 match &group.members {
                     GroupMembers::Triangles(triangles) => Ok(Cow::Borrowed(triangles)),
                     _ => Err(dimension(group, "a group of triangles (dimension 2)")),

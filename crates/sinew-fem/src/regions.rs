@@ -15,7 +15,7 @@ pub(crate) fn regions(mesh: &TetMesh, problem: &Problem) -> Result<Vec<u32>, Fem
         let item = Item::Region(index);
         let members = match &region.group {
             None => None,
-            Some(name) => match mesh.group(name).map_err(FemError::at(item))? {
+            Some(name) => match mesh.group_for(name, 3).map_err(FemError::at(item))? {
                 Group {
                     members: GroupMembers::Tets(tets),
                     ..

@@ -62,7 +62,8 @@ pub use msh::{
 pub use physical_tags::PhysicalTags;
 pub use selection::{Condition, Selection, SelectionError};
 pub use tet_mesh::{
-    AddGroupError, BoundarySurface, CutBody, CutMesh, Group, GroupMembers, MovedNode, RefineError,
-    Split, SplitFollower, SurfaceError, TetData, TetDataError, TetMesh, TetMeshError, UnknownGroup,
+    AddGroupError, BoundarySurface, CutBody, CutMesh, FindGroupError, Group, GroupMembers,
+    MovedNode, RefineError, Split, SplitFollower, SurfaceError, TetData, TetDataError, TetMesh,
+    TetMeshError,
 };
 pub use warning::{Position, Warning};

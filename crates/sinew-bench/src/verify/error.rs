@@ -10,7 +10,7 @@ use sinew_haptics::{CouplingError, ToolStepError};
 use sinew_integrators::{FactorError, StaticError};
 use sinew_measure::{CaseError, MeasureError};
 use sinew_mesh::structured::StructuredError;
-use sinew_mesh::{MshFileError, TetMeshError, UnknownGroup};
+use sinew_mesh::{FindGroupError, MshFileError, TetMeshError};
 use sinew_sparse::AssemblyError;
 use sinew_tools::{ShapeError, TableError, ToolsError};
 
@@ -31,7 +31,7 @@ pub enum VerifyError {
     Structured(#[from] StructuredError),
     /// A group that a mesh lacks.
     #[error(transparent)]
-    Group(#[from] UnknownGroup),
+    Group(#[from] FindGroupError),
     /// A model.
     #[error(transparent)]
     Model(#[from] FemError),

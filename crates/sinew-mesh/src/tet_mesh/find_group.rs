@@ -2,32 +2,55 @@
 
 use super::{Group, GroupMembers, TetMesh};
 
-/// No group has the name that was asked for.
+/// A name leads to no group, or to several.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("no group{} is named \"{name}\"{}; {}", of_dim(*dim), hint(nearest.as_deref()), listed(known))]
-pub struct UnknownGroup {
-    /// The name that was asked for.
-    pub name: String,
-    /// The dimension that was asked for, if one was.
-    pub dim: Option<u8>,
-    /// Name and dimension of each existing group.
-    pub known: Vec<(String, u8)>,
-    /// The most similar name, if one is similar enough for a suggestion.
-    pub nearest: Option<String>,
+#[non_exhaustive]
+pub enum FindGroupError {
+    /// No group has the name that was asked for.
+    #[error("no group{} is named \"{name}\"{}; {}", of_dim(*dim), hint(nearest.as_deref()), listed(known))]
+    Unknown {
+        /// The name that was asked for.
+        name: String,
+        /// The dimension that was asked for, if one was.
+        dim: Option<u8>,
+        /// Name and dimension of each existing group.
+        known: Vec<(String, u8)>,
+        /// The most similar name, if one is similar enough for a suggestion.
+        nearest: Option<String>,
+    },
+    /// Groups of several dimensions have the name that was asked for.
+    #[error(
+        "groups of dimensions {} are named \"{name}\"; say which, by {{ name = \"{name}\", dim = {} }} in a scene or as {name}:{} elsewhere",
+        dims.iter().map(u8::to_string).collect::<Vec<_>>().join(" and "),
+        dims.first().copied().unwrap_or_default(),
+        dims.first().copied().unwrap_or_default()
+    )]
+    Ambiguous {
+        /// The name that was asked for.
+        name: String,
+        /// The dimensions of the groups that have it, lowest first.
+        dims: Vec<u8>,
+    },
 }
 
 impl TetMesh {
-    /// The group with this name; if several dimensions have one, the one of the highest dimension.
+    /// The group with this name. Where none has it, `"liver:2"` is the group of dimension 2 named `"liver"`.
     ///
     /// # Errors
     ///
-    /// If there is none; the error lists the names and suggests the nearest.
-    pub fn group(&self, name: &str) -> Result<&Group, UnknownGroup> {
-        self.groups
-            .iter()
-            .filter(|group| group.name == name)
-            .max_by_key(|group| group.dim)
-            .ok_or_else(|| self.unknown_group(name, None))
+    /// If there is none (the error lists the names and suggests the nearest), or one in each of several dimensions.
+    pub fn group(&self, name: &str) -> Result<&Group, FindGroupError> {
+        let mut named: Vec<&Group> = self.named(name).collect();
+        named.sort_by_key(|group| group.dim);
+        match (&named[..], with_dim(name)) {
+            ([group], _) => Ok(group),
+            ([], Some((name, dim))) => self.group_of_dim(name, dim),
+            ([], None) => Err(self.unknown_group(name, None)),
+            (several, _) => Err(FindGroupError::Ambiguous {
+                name: name.to_owned(),
+                dims: several.iter().map(|group| group.dim).collect(),
+            }),
+        }
     }
 
     /// The group with this name and dimension.
@@ -35,11 +58,26 @@ impl TetMesh {
     /// # Errors
     ///
     /// If there is none; the error lists the names and suggests the nearest.
-    pub fn group_of_dim(&self, name: &str, dim: u8) -> Result<&Group, UnknownGroup> {
-        self.groups
-            .iter()
-            .find(|group| group.name == name && group.dim == dim)
+    pub fn group_of_dim(&self, name: &str, dim: u8) -> Result<&Group, FindGroupError> {
+        self.named(name)
+            .find(|group| group.dim == dim)
             .ok_or_else(|| self.unknown_group(name, Some(dim)))
+    }
+
+    /// The group with this name for what only groups of one dimension are good for: among several of the name that of this dimension.
+    ///
+    /// # Errors
+    ///
+    /// As for [`TetMesh::group`].
+    pub fn group_for(&self, name: &str, dim: u8) -> Result<&Group, FindGroupError> {
+        match self.named(name).find(|group| group.dim == dim) {
+            Some(group) => Ok(group),
+            None => self.group(name),
+        }
+    }
+
+    fn named(&self, name: &str) -> impl Iterator<Item = &Group> {
+        self.groups.iter().filter(move |group| group.name == name)
     }
 
     /// The nodes of a group's members, each once, ascending.
@@ -56,7 +94,7 @@ impl TetMesh {
         nodes
     }
 
-    fn unknown_group(&self, name: &str, dim: Option<u8>) -> UnknownGroup {
+    fn unknown_group(&self, name: &str, dim: Option<u8>) -> FindGroupError {
         let lower = name.to_lowercase();
         let nearest = self
             .groups
@@ -71,7 +109,7 @@ impl TetMesh {
             .filter(|(similarity, _)| *similarity > 0.75)
             .max_by(|(a, _), (b, _)| a.total_cmp(b))
             .map(|(_, group)| group.name.clone());
-        UnknownGroup {
+        FindGroupError::Unknown {
             name: name.to_owned(),
             dim,
             known: self
@@ -82,6 +120,13 @@ impl TetMesh {
             nearest,
         }
     }
+}
+
+/// A name with the dimension that follows a colon.
+fn with_dim(name: &str) -> Option<(&str, u8)> {
+    let (name, dim) = name.rsplit_once(':')?;
+    let dim = dim.parse().ok().filter(|dim| *dim <= 3)?;
+    (!name.is_empty()).then_some((name, dim))
 }
 
 fn of_dim(dim: Option<u8>) -> String {
@@ -134,10 +179,34 @@ mod tests {
     }
 
     #[test]
-    fn the_highest_dimension_wins_unless_one_is_named() {
+    fn a_name_of_two_dimensions_is_told_apart_by_one() {
         let mesh = mesh();
-        assert_eq!(mesh.group("liver").map(|g| g.dim), Ok(3));
-        assert_eq!(mesh.group_of_dim("liver", 2).map(|g| g.dim), Ok(2));
+        let dim = |group: Result<&Group, FindGroupError>| group.map(|group| group.dim);
+        assert_eq!(dim(mesh.group("liver:3")), Ok(3));
+        assert_eq!(dim(mesh.group("liver:2")), Ok(2));
+        assert_eq!(dim(mesh.group("clamp")), Ok(0));
+        assert_eq!(dim(mesh.group_of_dim("liver", 2)), Ok(2));
+        assert_eq!(dim(mesh.group_for("liver", 2)), Ok(2));
+        assert_eq!(dim(mesh.group_for("clamp", 2)), Ok(0));
+        assert_eq!(
+            mesh.group("liver").expect_err("two").to_string(),
+            r#"groups of dimensions 2 and 3 are named "liver"; say which, by { name = "liver", dim = 2 } in a scene or as liver:2 elsewhere"#
+        );
+        for name in ["liver:1", "clamp:2", "liver:4", ":2", "liver:"] {
+            assert!(
+                matches!(mesh.group(name), Err(FindGroupError::Unknown { .. })),
+                "{name}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_group_whose_own_name_ends_in_a_number_is_found() {
+        let mut mesh = mesh();
+        mesh.groups[2].name = "2:7".to_owned();
+        assert_eq!(mesh.group("2:7").map(|group| group.dim), Ok(0));
+        mesh.groups[2].name = "liver:2".to_owned();
+        assert_eq!(mesh.group("liver:2").map(|group| group.dim), Ok(0));
     }
 
     #[test]

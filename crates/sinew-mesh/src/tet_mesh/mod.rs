@@ -26,7 +26,7 @@ pub use boundary_surface::BoundarySurface;
 pub use cut::{CutBody, CutMesh, MovedNode};
 pub use error::TetMeshError;
 pub use find_data::TetDataError;
-pub use find_group::UnknownGroup;
+pub use find_group::FindGroupError;
 pub use group::{Group, GroupMembers};
 pub use refine::RefineError;
 pub use split_in_place::{Split, SplitFollower};

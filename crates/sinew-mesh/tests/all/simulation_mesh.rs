@@ -125,7 +125,8 @@ fn one_name_in_two_dimensions_stays_two_groups() {
         groups(&mesh),
         [("fat", 3, 7), ("muscle", 3, 9), ("fat", 2, 7)]
     );
-    assert_eq!(mesh.group("fat").map(|g| g.dim), Ok(3));
+    assert!(mesh.group("fat").is_err());
+    assert_eq!(mesh.group("fat:3").map(|g| g.dim), Ok(3));
     assert_eq!(mesh.group_of_dim("fat", 2).map(|g| g.dim), Ok(2));
 }
 

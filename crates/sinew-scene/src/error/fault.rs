@@ -154,7 +154,7 @@ pub enum Fault {
     },
     /// A group of `[[initial]]` that the mesh does not have.
     #[error(transparent)]
-    UnknownGroup(#[from] sinew_mesh::UnknownGroup),
+    Group(#[from] sinew_mesh::FindGroupError),
     /// A part chosen by where it lies that has no members.
     #[error(transparent)]
     Selection(#[from] sinew_mesh::SelectionError),

@@ -1,6 +1,6 @@
 //! The parts of a mesh that a first scene gives a material to, holds and loads.
 
-use sinew_mesh::{Condition, GroupMembers, Selection, TetMesh};
+use sinew_mesh::{Condition, Group, GroupMembers, Selection, TetMesh};
 
 use crate::number::short;
 
@@ -90,18 +90,18 @@ fn named(mesh: &TetMesh, words: &[&str], taken: &[u32]) -> Option<String> {
     let groups = mesh.groups.iter().filter(|group| group.dim < 3);
     let found = groups.filter_map(|group| Some((tells(&group.name)?, group)));
     let fits = found.filter(|(_, group)| {
-        // The name must lead to this group, not to a volume of the same name.
-        let same = mesh
-            .group(&group.name)
-            .is_ok_and(|first| first.dim == group.dim);
         let nodes = mesh.group_nodes(group);
         let free = nodes
             .iter()
             .filter(|node| taken.binary_search(node).is_err());
-        same && nodes.len() < mesh.points.len() && free.count() >= HOLDING
+        nodes.len() < mesh.points.len() && free.count() >= HOLDING
     });
     let best = fits.min_by_key(|(place, _)| *place)?;
-    Some(best.1.name.clone())
+    let Group { name, dim, .. } = best.1;
+    Some(match mesh.group(name) {
+        Ok(_) => name.clone(),
+        Err(_) => format!("{name}:{dim}"),
+    })
 }
 
 fn bottom(mesh: &TetMesh) -> Part {

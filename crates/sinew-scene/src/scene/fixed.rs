@@ -15,6 +15,7 @@ pub(super) const FIXED: TableDescription = TableDescription {
     needs: Needs::Any,
     examples: &[
         "[[fixed]]\ngroup = \"bottom\"\naxes = \"z\"\n",
+        "[[fixed]]\ngroup = { name = \"bottom\", dim = 2 }\n",
         "[[fixed]]\nwhere = { below = { z = 0.001 } }\n",
     ],
 };

@@ -1,6 +1,7 @@
 //! `[[initial]]`: displacement and velocity at t = 0.
 
 use super::field::Field;
+use super::group_name::GroupName;
 use super::selected::{self, Members, Selections, Where};
 use crate::decode::{
     Condition, Key, List, Needs, Optional, Or, Place, Table, TableDescription, Text, Vector,
@@ -80,7 +81,7 @@ const NOT_STATIC: Condition = Condition::without(
     "does not go with `static`, which moves the whole body",
 );
 
-const GROUP: Key<Text, Optional> =
+const GROUP: Key<GroupName, Optional> =
     selected::OPTIONAL_GROUP.only(&[selected::NOT_WHERE, NOT_STATIC]);
 
 const WHERE: Key<Where, Optional> = selected::WHERE.only(&[NOT_STATIC]);

@@ -1,5 +1,6 @@
 //! `[[probe]]`: what is written down of the motion of points and parts.
 
+use super::group_name::GroupName;
 use super::region::taken;
 use super::selected::{self, Members, NOT_WHERE, Selections, Where};
 use crate::decode::{
@@ -98,10 +99,12 @@ const COUNT: Key<Count, Optional> = Key::optional(
 )
 .only(&[Condition::with("to", "needs `to`, the end of the line")]);
 
-const GROUP: Key<Text, Optional> = Key::optional(
+const GROUP: Key<GroupName, Optional> = Key::optional(
     "group",
     "Name of a group of the mesh over which the mean is taken: by area over triangles, by volume over tetrahedra, alike over nodes.",
-    Text::any("the name of a group"),
+    GroupName {
+        expected: "the name of a group, or { name = \"liver\", dim = 2 } where several have it",
+    },
     "see `point`",
 )
 .only(&[NOT_WHERE]);
@@ -148,7 +151,7 @@ fn read(table: &Table<'_>, selections: &mut Selections) -> Result<Vec<ProbePoint
     if let Some(group) = selections.place(table, &WHERE, Members::Nodes)? {
         return one(ProbeAt::Mean(group));
     }
-    if let Some(group) = table.read(&GROUP)? {
+    if let Some(group) = GroupName::optional(table, &GROUP)? {
         return one(ProbeAt::Mean(group));
     }
     let from = table.read(&POINT)?;

@@ -6,12 +6,13 @@ use sinew_fem::hyperelastic::Parameters;
 use sinew_fem::{Element, FromMesh, Law, Region, SpringRule, Tissue};
 
 use super::from_mesh::{self, OrData};
+use super::group_name::GroupName;
 use super::model::{MODEL, MOONEY_RIVLIN, MaterialModel, SOLIDS, SPRINGS_MODEL};
 use super::selected::{Members, NOT_WHERE, OPTIONAL_GROUP, Selections, WHERE_OF_TETRAHEDRA};
 use super::tissue::{self, FIBRES_OF_REGION, MODULI, PRONY, VISCOUS_PART};
 use crate::decode::{
     Condition, Count, Flag, Inner, Key, Needs, Number, Optional, Or, Place, Table,
-    TableDescription, Text, Words,
+    TableDescription, Words,
 };
 use crate::error::{Fault, SceneError};
 
@@ -53,7 +54,7 @@ pub(super) const REGION: TableDescription = TableDescription {
     ],
 };
 
-const GROUP: Key<Text, Optional> = OPTIONAL_GROUP.only(&[NOT_WHERE]);
+const GROUP: Key<GroupName, Optional> = OPTIONAL_GROUP.only(&[NOT_WHERE]);
 
 const DENSITY: Key<OrData<Number>> = Key::required(
     "density",

@@ -3,10 +3,11 @@
 use sinew_mesh::Selection;
 use toml::de::DeValue;
 
+use super::group_name::GroupName;
 use super::place::{PLACE, PLACE_OF_TETRAHEDRA, conditions};
 use crate::decode::value::Misfit;
 use crate::decode::{
-    Condition, Key, Kind, Optional, Place, Shape, Table, TableDescription, Text, Values,
+    Condition, Key, Kind, Optional, Place, Shape, Table, TableDescription, Values,
 };
 use crate::error::SceneError;
 
@@ -48,7 +49,9 @@ pub(super) struct Selections {
     pub(super) places: Vec<Place>,
 }
 
-const EXPECTED_GROUP: Text = Text::any("the name of a group, or where = { .. } in its place");
+const EXPECTED_GROUP: GroupName = GroupName {
+    expected: "the name of a group, { name = \"liver\", dim = 2 } where several have it, or where = { .. } in its place",
+};
 
 /// A group beside `where`.
 pub(super) const NOT_WHERE: Condition = Condition::without(
@@ -57,7 +60,7 @@ pub(super) const NOT_WHERE: Condition = Condition::without(
 );
 
 /// The group of a table that is about a part of the body.
-pub(super) const GROUP: Key<Text> = Key::required(
+pub(super) const GROUP: Key<GroupName> = Key::required(
     "group",
     "Name of a group of the mesh. A cube or a block has `tissue`, `sides`, `top` and `bottom`.",
     EXPECTED_GROUP,
@@ -65,7 +68,7 @@ pub(super) const GROUP: Key<Text> = Key::required(
 .only(&[NOT_WHERE]);
 
 /// The group of a table that may also be about the whole body.
-pub(super) const OPTIONAL_GROUP: Key<Text, Optional> = Key::optional(
+pub(super) const OPTIONAL_GROUP: Key<GroupName, Optional> = Key::optional(
     "group",
     "Name of a group of the mesh. A cube or a block has `tissue`, `sides`, `top` and `bottom`.",
     EXPECTED_GROUP,
@@ -146,12 +149,12 @@ impl Selections {
     pub(super) fn one_of(
         &mut self,
         table: &Table<'_>,
-        (group, place): (&Key<Text>, &Key<Where, Optional>),
+        (group, place): (&Key<GroupName>, &Key<Where, Optional>),
         members: Members,
     ) -> Result<String, SceneError> {
         match self.place(table, place, members)? {
             Some(name) => Ok(name),
-            None => table.read(group),
+            None => GroupName::required(table, group),
         }
     }
 
@@ -159,12 +162,12 @@ impl Selections {
     pub(super) fn at_most_one_of(
         &mut self,
         table: &Table<'_>,
-        (group, place): (&Key<Text, Optional>, &Key<Where, Optional>),
+        (group, place): (&Key<GroupName, Optional>, &Key<Where, Optional>),
         members: Members,
     ) -> Result<Option<String>, SceneError> {
         match self.place(table, place, members)? {
             Some(name) => Ok(Some(name)),
-            None => table.read(group),
+            None => GroupName::optional(table, group),
         }
     }
 

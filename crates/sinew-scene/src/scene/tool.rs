@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 pub use sinew_tools::{Grasp, ToolBody};
 
+use super::group_name::GroupName;
 use super::region::taken;
 use super::tool_body::{self, BODIES};
 use super::tool_shape::{self, PLACES, ROTATIONS, SHAPE, ToolPart, ToolShape};
@@ -198,10 +199,12 @@ pub(super) const FRICTION: Key<Number, Or<f64>> = Key::or(
     0.0,
 );
 
-pub(super) const TOUCHES: Key<Text, Optional> = Key::optional(
+pub(super) const TOUCHES: Key<GroupName, Optional> = Key::optional(
     "touches",
     "What it can touch: the nodes of the body's surface, or those of a group of the mesh.",
-    Text::any("\"surface\" or the name of a group"),
+    GroupName {
+        expected: "\"surface\", the name of a group, or { name = \"liver\", dim = 2 } where several have it",
+    },
     "\"surface\"",
 );
 
@@ -324,7 +327,7 @@ fn read(table: &Table<'_>) -> Result<(Tool, Vec<Place>), SceneError> {
         parts,
         path,
         friction: table.read(&FRICTION)?,
-        touches: table.read(&TOUCHES)?.filter(|name| name != SURFACE),
+        touches: GroupName::optional(table, &TOUCHES)?.filter(|name| name != SURFACE),
         starts_inside: table.read(&STARTS_INSIDE)?,
         grasp: table.table(&GRASP)?.as_ref().map(grasp).transpose()?,
         body: table

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use sinew_core::{Contact, LinearModel, State, System};
-use sinew_mesh::{TetMesh, UnknownGroup};
+use sinew_mesh::{FindGroupError, TetMesh};
 use sinew_tools::Tools;
 
 use super::cut_from::CutFrom;
@@ -120,7 +120,10 @@ impl BodyModel {
 
     /// The cells of the nodes of a group, or of the whole body where no group is named, and the number
     /// of these nodes including held ones.
-    pub(crate) fn cells_of(&self, group: Option<&str>) -> Result<(Vec<u32>, usize), UnknownGroup> {
+    pub(crate) fn cells_of(
+        &self,
+        group: Option<&str>,
+    ) -> Result<(Vec<u32>, usize), FindGroupError> {
         let Some(name) = group else {
             let cells = (0..).take(self.model.nodes().len()).collect();
             return Ok((cells, self.mesh.points.len()));

@@ -90,7 +90,7 @@ fn add(mesh: &mut TetMesh, body: &Body, selected: &Selected) -> Result<SelectedP
 fn rest(mesh: &TetMesh, body: &Body) -> Result<Vec<u32>, Fault> {
     let mut taken = vec![false; mesh.tets.len()];
     for region in &body.problem.regions {
-        let group = region.group.as_deref().map(|name| mesh.group(name));
+        let group = region.group.as_deref().map(|name| mesh.group_for(name, 3));
         if let Some(Ok(group)) = group
             && let GroupMembers::Tets(tets) = &group.members
         {

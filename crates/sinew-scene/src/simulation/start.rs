@@ -16,7 +16,7 @@ pub(super) fn state(body: &Body, places: &Places, built: &BodyModel) -> Result<S
         let place = places.of(&places.initial, index);
         apply(initial, body, built, &mut state).map_err(|fault| {
             let key = match fault {
-                Fault::UnknownGroup(_) => place.part_key(),
+                Fault::Group(_) => place.part_key(),
                 _ => initial.key(),
             };
             place.value_fault(key, fault)

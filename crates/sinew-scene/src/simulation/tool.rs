@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use sinew_core::{Inputs, State, System};
 use sinew_fem::Model;
-use sinew_mesh::{TetMesh, UnknownGroup};
+use sinew_mesh::{FindGroupError, TetMesh};
 use sinew_tools::{
     Convex, Corner, CutFace, Motion, Part, Pose, Row, Shape, ShapeError, Table, Tools, ToolsError,
     TouchedCell,
@@ -213,7 +213,7 @@ pub(super) fn touchable(
     body: &Body,
     index: usize,
     built: &BodyModel,
-) -> Result<(Vec<u32>, Vec<u32>), UnknownGroup> {
+) -> Result<(Vec<u32>, Vec<u32>), FindGroupError> {
     match body.tools.get(index) {
         Some(tool) if !body.is_cut_by(index) => nodes_of(tool, built),
         _ => Ok(Default::default()),
@@ -224,7 +224,7 @@ pub(super) fn touchable(
 pub(super) fn nodes_of(
     tool: &Tool,
     built: &BodyModel,
-) -> Result<(Vec<u32>, Vec<u32>), UnknownGroup> {
+) -> Result<(Vec<u32>, Vec<u32>), FindGroupError> {
     let mesh = &built.mesh;
     let mut nodes = match &tool.touches {
         None => built.surface().as_flattened().to_vec(),

@@ -16,6 +16,7 @@ mod data_of_meshes;
 mod good_scenes;
 mod lips;
 mod load_warnings;
+mod meshes_of_files;
 mod motions;
 mod moving_cuts;
 mod overlaps;

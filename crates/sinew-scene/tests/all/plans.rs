@@ -42,7 +42,7 @@ fn the_papers_cube() {
     insta::assert_snapshot!(anywhere(&papers_cube()), @r#"
     The paper's cube, reproduction scene
     mesh        cube of 10 x 10 x 10 cells, edge 0.2 m, split "kuhn"
-                1331 nodes, 6000 tetrahedra, 7930 edges; 0.008 m3, 8.48 kg
+                1331 nodes, 6000 tetrahedra, 7930 edges, in 1 part; 0.008 m3, 8.48 kg
                 groups `tissue` (6000 tetrahedra), `sides` (800 triangles), `top` (200 triangles),
                   `bottom` (200 triangles)
     regions     `tissue`: 6000 tetrahedra, 1060 kg/m3, springs "lloyd" not calibrated, E = 3500 Pa, nu =
@@ -144,7 +144,7 @@ fn a_block_scaled_and_turned() {
     insta::assert_snapshot!(mesh_lines(&changed).join("\n"), @r#"
     block of 24 x 4 x 4 cells, 300 x 50 x 50, split "kuhn"
     scaled by 0.001, then turned by 90 degrees about [0, 0, 2] through the origin
-    625 nodes, 2304 tetrahedra, 3344 edges; 0.00075 m3, 0.75 kg
+    625 nodes, 2304 tetrahedra, 3344 edges, in 1 part; 0.00075 m3, 0.75 kg
     groups `tissue` (2304 tetrahedra), `sides` (448 triangles), `top` (192 triangles), `bottom` (192 triangles)
     "#);
     let simulation = build(&format!(
@@ -221,7 +221,7 @@ point = [0.05, 0.05, 0.06]
 "#;
     insta::assert_snapshot!(plan(text), @r#"
     mesh        cube of 2 x 2 x 2 cells, edge 0.1 m, split "mirrored"
-                27 nodes, 48 tetrahedra, 98 edges; 0.001 m3, 1 kg
+                27 nodes, 48 tetrahedra, 98 edges, in 1 part; 0.001 m3, 1 kg
                 groups `tissue` (48 tetrahedra), `sides` (32 triangles), `top` (8 triangles), `bottom`
                   (8 triangles)
     regions     whole mesh: 48 tetrahedra, 1000 kg/m3, springs "van-gelder" calibrated, E = 10000 Pa, nu

@@ -355,10 +355,7 @@ fn motions_that_make_no_sense_are_refused() {
     assert_eq!(twice.cause(), &expected);
 
     let unknown = refused(vec![up("lid")]);
-    assert!(
-        matches!(unknown.cause(), Cause::UnknownGroup(_)),
-        "{unknown}"
-    );
+    assert!(matches!(unknown.cause(), Cause::Group(_)), "{unknown}");
     let unnamed = refused(vec![moving("top", Z, [0.0, 1e-3, 1e-3], rise())]);
     assert_eq!(
         unnamed.cause(),

@@ -287,7 +287,7 @@ fn what_cannot_be_asked_is_refused() {
     );
     assert!(matches!(
         model.reaction(0.0, &zero, &zero, &"lid".into()),
-        Err(FieldError::Place(Cause::UnknownGroup(_)))
+        Err(FieldError::Place(Cause::Group(_)))
     ));
     let mut out = vec![[0.0; 3]; nodes];
     for (u, v) in [(&zero[1..], &*zero), (&*zero, &zero[1..])] {

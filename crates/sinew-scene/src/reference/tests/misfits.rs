@@ -58,6 +58,23 @@ pub(super) fn of(shape: &Shape) -> Vec<Value> {
             misfits
         }
         Shape::Table(_) | Shape::Tables(_) => vec![1.into()],
-        Shape::Either(_) => vec![true.into(), "no such word".into()],
+        Shape::Either(forms) => {
+            // Any word is a name, but for a blank one.
+            let texts = forms.iter().filter(|form| {
+                matches!(
+                    form,
+                    Shape::Text {
+                        pattern: Some(_),
+                        ..
+                    }
+                )
+            });
+            let text = if texts.count() > 0 {
+                " "
+            } else {
+                "no such word"
+            };
+            vec![true.into(), text.into()]
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Groups of a mesh file that the scene does not use, and regions without elements.
 
-use sinew_fem::On;
+use sinew_fem::{LoadKind, On};
+use sinew_mesh::Group;
 
 use super::{Warning, WarningKind};
 use crate::scene::{Body, Initial, MeshSource, ProbeAt};
@@ -28,12 +29,29 @@ fn unused(body: &Body, built: &BodyModel) -> Option<Warning> {
     let MeshSource::File(_) = &body.mesh else {
         return None;
     };
-    let used = used(body);
-    let of_file = built.mesh.groups.iter().map(|group| group.name.as_str());
-    let unused = of_file
-        .filter(|name| !used.contains(name) && !BUILT_IN.contains(name))
-        .filter(|name| built.selected.iter().all(|part| part.name != *name));
-    let unused: Vec<String> = unused.map(|name| format!("`{name}`")).collect();
+    let groups = &built.mesh.groups;
+    let used = used(body).into_iter().filter_map(|(name, dim)| {
+        let group = match dim {
+            Some(dim) => built.mesh.group_for(name, dim),
+            None => built.mesh.group(name),
+        };
+        group.ok().map(std::ptr::from_ref)
+    });
+    let used: Vec<*const Group> = used.collect();
+    let unused = groups
+        .iter()
+        .filter(|group| !used.contains(&std::ptr::from_ref(*group)))
+        .filter(|group| !BUILT_IN.contains(&group.name.as_str()))
+        .filter(|group| built.selected.iter().all(|part| part.name != group.name));
+    let unused: Vec<String> = unused
+        .map(|group| {
+            let same = groups.iter().filter(|other| other.name == group.name);
+            match same.count() {
+                1 => format!("`{}`", group.name),
+                _ => format!("`{}` of dimension {}", group.name, group.dim),
+            }
+        })
+        .collect();
     if unused.is_empty() {
         return None;
     }
@@ -45,13 +63,18 @@ fn unused(body: &Body, built: &BodyModel) -> Option<Warning> {
     Some(Warning::new(WarningKind::UnusedGroups, what, "").with(&numbers))
 }
 
-/// The groups that tables of the scene name.
-fn used(body: &Body) -> Vec<&str> {
+/// The groups that tables of the scene name, each with the dimension that is taken among several.
+fn used(body: &Body) -> Vec<(&str, Option<u8>)> {
     let problem = &body.problem;
     let supports = problem.fixed.iter().map(|fixed| &fixed.on);
-    let loads = problem.loads.iter().map(|load| &load.on);
-    let on = supports.chain(loads).filter_map(|on| match on {
-        On::Group(name) => Some(name.as_str()),
+    let on = supports.map(|on| (on, None));
+    let loads = problem.loads.iter();
+    let loads = loads.map(|load| match load.kind {
+        LoadKind::Force(_) => (&load.on, None),
+        _ => (&load.on, Some(2)),
+    });
+    let on = on.chain(loads).filter_map(|(on, dim)| match on {
+        On::Group(name) => Some((name.as_str(), dim)),
         On::Nodes(_) | On::Triangles(_) => None,
     });
     let regions = problem.regions.iter();
@@ -69,6 +92,8 @@ fn used(body: &Body) -> Vec<&str> {
         ProbeAt::Mean(group) => Some(group.as_str()),
         ProbeAt::Point(_) => None,
     });
-    let on = on.chain(regions).chain(motions).chain(tools).chain(initial);
-    on.chain(probes).collect()
+    let of_regions = regions.map(|name| (name, Some(3)));
+    let others = motions.chain(tools).chain(initial).chain(probes);
+    let others = others.map(|name| (name, None));
+    on.chain(of_regions).chain(others).collect()
 }

@@ -139,7 +139,7 @@ fn no_tetrahedra() {
 fn an_inverted_tetrahedron() {
     insta::assert_snapshot!(
         refusal(Some(INVERTED)),
-        @"<folder>/scene.toml:3: [mesh]: tetrahedron 1 is inverted (volume -1.667e-1 m3); 1 in all; swap two of their nodes or repair the mesh"
+        @"<folder>/scene.toml:3: [mesh]: tetrahedron 1 is inverted (volume -1.667e-1 m3), 1 in all; `sinew mesh check --fix orient` turns those that only count corners the other way, and says where a mesh is tangled"
     );
 }
 

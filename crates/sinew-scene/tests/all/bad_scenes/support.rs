@@ -7,7 +7,7 @@ use super::scenes::BODY;
 fn no_group() {
     insta::assert_snapshot!(
         refusal(BODY, "[[fixed]]\ngroup = \"sides\"", "[[fixed]]"),
-        @"scene.toml:11: [[fixed]] 1: `group` is missing: expected the name of a group, or where = { .. } in its place"
+        @r#"scene.toml:11: [[fixed]] 1: `group` is missing: expected the name of a group, { name = "liver", dim = 2 } where several have it, or where = { .. } in its place"#
     );
 }
 
