@@ -421,7 +421,7 @@ impl RunFolder {
         warnings.extend(progress.taken.in_words(simulation, &methods));
         warnings.extend(outrun);
         warnings.extend(simulation.left_by_tools(state));
-        warnings.extend(cuts.as_ref().and_then(|cuts| cuts.left_uncut.clone()));
+        warnings.extend(cuts.iter().flat_map(|cuts| cuts.left.clone()));
         let wall = begun.elapsed().as_secs_f64();
         let summary = Summary {
             simulation,

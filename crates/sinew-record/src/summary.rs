@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use sinew_integrators::Stepper;
-use sinew_scene::{CutTotals, Cutter, Simulation};
+use sinew_scene::{CutTotals, Cutter, RoughStrokes, Simulation};
 
 use crate::made_energy::{THERMAL, has_stored_energy, remedy};
 use crate::progress::{Largest, Progress, Seen};
@@ -51,10 +51,10 @@ pub(crate) struct Summary<'a> {
 #[derive(Debug, Clone)]
 pub(crate) struct CutRecord {
     pub(crate) totals: CutTotals,
-    /// Area at rest (m^2) that strokes left of a body that they came through.
-    uncut: f64,
-    /// That in a sentence.
-    pub(crate) left_uncut: Option<String>,
+    /// What strokes left that their sheets do not show.
+    rough: RoughStrokes,
+    /// That in sentences.
+    pub(crate) left: Vec<String>,
     /// Mass (kg) of the body in the beginning and in the end.
     mass: [f64; 2],
     /// Pieces of the body in the end.
@@ -66,8 +66,8 @@ impl CutRecord {
     pub(crate) fn of(cutter: &Cutter, mass: f64) -> Self {
         Self {
             totals: *cutter.totals(),
-            uncut: cutter.uncut().map_or(0.0, |uncut| uncut.area),
-            left_uncut: cutter.left_uncut(),
+            rough: cutter.rough_strokes(),
+            left: cutter.left_by_strokes(),
             mass: [mass, cutter.mass()],
             pieces: cutter.pieces(),
         }
@@ -78,7 +78,7 @@ impl CutRecord {
             report,
             changes,
             blade_work,
-            uncut: _,
+            rough: _,
         } = self.totals;
         let energy = report.energy_gained;
         json!({
@@ -94,7 +94,9 @@ impl CutRecord {
             "kinetic_energy_gained_J": energy.map(|energy| energy.kinetic),
             "elastic_energy_gained_J": energy.map(|energy| energy.elastic),
             "work_of_the_blade_J": blade_work,
-            "left_uncut_m2": self.uncut,
+            "left_uncut_m2": self.rough.uncut.map_or(0.0, |uncut| uncut.area),
+            "chips": self.rough.chips.map_or(0, |(_, chips)| chips.count),
+            "strokes_that_cut_nothing": self.rough.missed.map_or(0, |(_, missed)| missed.strokes),
             "pieces_at_the_end": self.pieces,
         })
     }

@@ -222,11 +222,8 @@ fn probes_alone(
     let system = simulation.system();
     let outrun = simulation.outrun(integrator, &state);
     let mut left = simulation.left_by_tools(&state);
-    left.extend(
-        cutter
-            .as_ref()
-            .and_then(|cutter| cutter.borrow().left_uncut()),
-    );
+    let cutters = cutter.iter();
+    left.extend(cutters.flat_map(|cutter| cutter.borrow().left_by_strokes()));
     let left = left.iter().map(String::as_str);
     let overlap = overlap.map(|overlap| overlap.to_string());
     let lost = loss.in_words();
