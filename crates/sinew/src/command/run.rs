@@ -262,7 +262,12 @@ fn probes_alone(
                 state.t()
             ))?;
         }
-        for Reaction { by, on, force } in simulation.reactions(&state)? {
+        // Where it diverged there is no motion to hold.
+        let reactions = match report.outcome {
+            Outcome::Diverged { .. } => Vec::new(),
+            _ => simulation.reactions(&state)?,
+        };
+        for Reaction { by, on, force } in reactions {
             let force = force.map(|force| format!("{force:.6e}"));
             voice.say(&format!(
                 "{by} on {on}: reaction = ({}) N at t = {:.6} s",
