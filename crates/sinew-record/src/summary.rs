@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 use sinew_integrators::Stepper;
 use sinew_scene::{CutTotals, Cutter, RoughStrokes, Simulation};
 
+use crate::fast_loads::unseen;
 use crate::made_energy::{THERMAL, has_stored_energy, remedy};
 use crate::progress::{Largest, Progress, Seen};
 use crate::recorder::Schedules;
@@ -139,26 +140,29 @@ pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
     warnings
 }
 
-/// Share of the largest energy beyond which a motion is wrong whose balance has so much too much: at any row, and as a mean over some while loads and supports stay as they are.
+/// Share beyond which a motion is wrong whose balance has so much too much: of what was put in, at any row, and of the largest energy, as a mean over some rows while loads and supports stay as they are.
 const MADE_ENERGY: f64 = 0.1;
 const CREPT_ENERGY: f64 = 0.01;
 
-/// A warning where a motion of large deformation has more energy than it was given. What a method takes is no such sign.
+/// A warning where a motion of large deformation, or one that is saturated, has more energy than it was given. What a method takes is no such sign.
 pub(crate) fn made_energy(simulation: &Simulation, progress: &Progress) -> Option<String> {
-    let [most, made] = progress.balance;
-    let is_known = simulation.system().as_linear().is_none() && !has_stored_energy(simulation);
-    let crept = progress.crept.most;
-    let is_made = made > MADE_ENERGY * most || crept > CREPT_ENERGY * most;
-    let made = if made > MADE_ENERGY * most {
-        made
-    } else {
-        crept
-    };
-    (is_known && is_made && made > THERMAL).then(|| {
-        format!(
-            "the motion has {made:.3e} J more than it was given, of {most:.3e} J at most: its fastest part is wrong; {}",
-            remedy(simulation)
-        )
+    let ([most, made], given) = (progress.balance, progress.taken.given);
+    let saturates = progress.work.saturated > 0;
+    let is_known =
+        (saturates || simulation.system().as_linear().is_none()) && !has_stored_energy(simulation);
+    let (is_made, crept) = (made > MADE_ENERGY * given, progress.crept.most);
+    let has_crept = crept > CREPT_ENERGY * most;
+    let made = if is_made { made } else { crept };
+    (is_known && (is_made || has_crept) && made > THERMAL).then(|| {
+        let share = match made < 100.0 * given {
+            true => format!(", {:.0} %", 100.0 * made / given),
+            false => String::new(),
+        };
+        let told = format!(
+            "the motion has {made:.3e} J more than the {given:.3e} J that it was given{share}: its fastest part is wrong; {}",
+            remedy(simulation, saturates)
+        );
+        unseen(simulation, progress.taken.span).unwrap_or(told)
     })
 }
 
