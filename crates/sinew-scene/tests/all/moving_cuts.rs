@@ -155,3 +155,65 @@ fn chips_that_a_stroke_near_the_surface_cuts_off_are_told_with_place_and_size() 
     assert!(pieces > 2, "{pieces} {said:?}");
     insta::assert_snapshot!(said.join("\n"), @r#"strokes cut off 3 chips of at most 8 tetrahedra, the first by t = 0.0085 s about [0.00625, 0.0269, 0.025] m: there they ran nearer to a surface than the mesh is fine; a finer mesh, or a stroke farther in, leaves none, and pieces = "remove" takes loose ones away"#);
 }
+
+/// Numbers from -1 to 1, by the constants of Knuth's generator MMIX.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        let next = self.0.wrapping_mul(6_364_136_223_846_793_005);
+        self.0 = next.wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(&mut self) -> [f64; 3] {
+        std::array::from_fn(|_| self.next())
+    }
+}
+
+#[test]
+fn full_strokes_that_leave_more_than_two_pieces_say_chips_and_others_do_not() {
+    let along = |a: [f64; 3], b: [f64; 3], factor: f64| -> [f64; 3] {
+        std::array::from_fn(|axis| a[axis] + factor * b[axis])
+    };
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        let [[a, b, c], [d, e, f]] = [a, b];
+        [b * f - c * e, c * d - a * f, a * e - b * d]
+    };
+    let unit = |a: [f64; 3]| {
+        let length = a.iter().map(|x| x * x).sum::<f64>().sqrt();
+        a.map(|x| x / length)
+    };
+    let mut chipped = 0;
+    for seed in 150..200 {
+        let mut random = Random(seed);
+        let normal = unit(random.vector());
+        let across = unit(cross(normal, random.vector()));
+        let ahead = cross(across, normal);
+        let through = along([0.05; 3], random.vector(), 0.06);
+        let ends = |share: f64| {
+            let middle = along(through, ahead, share);
+            let ends = [-0.3, 0.3].map(|half| along(middle, across, half));
+            let ends = ends.as_flattened().iter();
+            ends.map(ToString::to_string).collect::<Vec<_>>().join(",")
+        };
+        let strokes = format!("1,0.001,{}\n1,0.0075,{}\n", ends(-0.2), ends(0.2));
+        let [a, b, c] = random.vector().map(|x| 6.0 * x);
+        let velocity =
+            format!("[\"{a} * (y - 0.05)\", \"{b} * (z - 0.05)\", \"{c} * (x - 0.05)\"]");
+        let scene = cube(
+            &format!(
+                "[[initial]]\nvelocity = {velocity}\n[cutting]\ntable = \"strokes.csv\"\nsnap = {}\n",
+                [0.0, 0.25][seed as usize / 2 % 2]
+            ),
+            "duration = 0.01\nintegrator = \"central-difference\"\ndt = 5e-4\n",
+        );
+        let split = ["kuhn", "mirrored"][seed as usize % 2];
+        let (pieces, said) = cut(&scene.replace("kuhn", split), &strokes);
+        chipped += usize::from(pieces > 2);
+        let has_chips = said.iter().any(|said| said.contains("chip"));
+        assert_eq!(pieces > 2, has_chips, "{seed}: {pieces} {said:?}");
+        assert!(pieces != 2 || said.is_empty(), "{seed}: {said:?}");
+    }
+    assert!(chipped > 3, "{chipped}");
+}
