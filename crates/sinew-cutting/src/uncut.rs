@@ -8,7 +8,7 @@ use crate::vector::{Vector, add, bounds_of, cross, length, mean, scaled, sub};
 const SAME_PLACE: f64 = 1e-6;
 
 /// The part of tetrahedra in chips.
-const CHIP: u32 = NONE - 1;
+pub(crate) const CHIP: u32 = NONE - 1;
 
 /// What a stroke through a body left uncut between the parts to its sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +80,7 @@ impl CuttableBody {
 
     /// The part of each tetrahedron, if all faces between the sides were cut; [`CHIP`] where the blade has touched all of it, and it is not the largest one of a
     /// side that has no other. Chips that stay on the other side make a cut rough, and are no bridges.
-    fn parts(&self) -> Vec<u32> {
+    pub(crate) fn parts(&self) -> Vec<u32> {
         let tets = self.tets.len();
         let mut parts = vec![NONE; tets];
         // Those that may be chips, by side, and whether there is anything else on it.

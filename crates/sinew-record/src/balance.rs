@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use sinew_core::vectors::dot;
 use sinew_core::{
     Acceleration, Contact, ElasticLaw, EnergyBehaviour, Inputs, LinearOperators, LoadTime, Moment,
-    Ramp, State,
+    Needs, Properties, Ramp, State,
 };
 use sinew_fem::Model;
 use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
@@ -18,6 +18,8 @@ use crate::schedule::Schedule;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Energies {
     pub(crate) t: f64,
+    /// Time (s) since the last look.
+    pub(crate) span: f64,
     pub(crate) kinetic: f64,
     pub(crate) elastic: f64,
     /// Work of loads and gravity since the beginning.
@@ -37,7 +39,7 @@ pub(crate) struct Energies {
     pub(crate) remainder: f64,
     /// All that was put in until then: the energy of the start and the work since.
     pub(crate) given: f64,
-    /// Energy that the method took since the beginning, where it is one that does and each step is looked at.
+    /// Energy that the method took since the beginning, where it is one that does, or its clamp did.
     pub(crate) taken: Option<f64>,
 }
 
@@ -98,7 +100,9 @@ pub(crate) struct Balance<'a> {
     nodes: Option<Nodes>,
     /// What the method takes, where that is known.
     form: Option<NumericalDissipation>,
-    /// Whether the method takes energy by itself, and each step is looked at to tell how much.
+    /// Whether the method takes energy by itself.
+    takes_energy: bool,
+    /// Whether each step is looked at to tell how much.
     is_watched: bool,
     /// Whether each step has a row.
     has_rows_of_steps: bool,
@@ -184,14 +188,15 @@ impl<'a> Balance<'a> {
             last: None,
             nodes: None,
             form: None,
+            takes_energy: false,
             is_watched: false,
             has_rows_of_steps: rows.is_every_step(),
         };
         // Beside steps that are sweeps a look at each of them costs too much where rows are rare for that reason.
-        balance.is_watched = !balance.has_memory()
-            && method.is_some_and(|method| {
-                takes_energy(method) && (rows.is_every_step() || !is_program(method))
-            });
+        balance.takes_energy = method.is_some_and(|method| takes_energy(method, simulation));
+        balance.is_watched = balance.takes_energy
+            && !balance.has_memory()
+            && (rows.is_every_step() || method.is_some_and(|method| !is_program(method)));
         // The form is that of one step of free degrees of freedom.
         if !simulation.is_cut()
             && rows.is_every_step()
@@ -230,6 +235,17 @@ impl<'a> Balance<'a> {
     /// Whether each step is looked at, of which a row needs not be due.
     pub(crate) fn looks_at_every_step(&self) -> bool {
         self.is_watched
+    }
+
+    fn sees_steps(&self) -> bool {
+        self.is_watched || self.has_rows_of_steps
+    }
+
+    /// Whether what is missing was taken by the method or its clamp: neither by memory, nor by friction, which only steps tell.
+    fn tells_taken(&self, moment: &Moment<'_>) -> bool {
+        (self.takes_energy || moment.work.saturated > 0)
+            && !self.has_memory()
+            && (self.sees_steps() || !self.has_tools())
     }
 
     /// Goes on after a row that was written by an earlier run.
@@ -295,6 +311,7 @@ impl<'a> Balance<'a> {
             },
         };
         let inputs = moment.inputs;
+        let span = here.t - here.before;
         let nodes = self.nodes(&here, inputs)?;
         let (kinetic, elastic) = self.stored(&here, nodes.as_ref())?;
         let mut taken = 0.0;
@@ -332,6 +349,7 @@ impl<'a> Balance<'a> {
         let by_friction = tools.map_or(0.0, |tools| tools - at_contacts);
         Ok(Energies {
             t,
+            span,
             kinetic,
             elastic,
             loads,
@@ -342,7 +360,9 @@ impl<'a> Balance<'a> {
             method: self.form.map(|_| method),
             remainder,
             given,
-            taken: self.is_watched.then_some(method - remainder - by_friction),
+            taken: self
+                .tells_taken(moment)
+                .then_some(method - remainder - by_friction),
         })
     }
 
@@ -472,7 +492,7 @@ impl<'a> Balance<'a> {
 
     /// The work (J) of tools' forces on the nodes in the step between two rows, where it is asked for.
     fn work_at_contacts(&self, state: &State, last: &LastRow, here: &LastRow) -> f64 {
-        let Some(tools) = self.tools().filter(|_| self.is_watched) else {
+        let Some(tools) = self.tools().filter(|_| self.sees_steps()) else {
             return 0.0;
         };
         let mut forces = vec![0.0; here.u.len()];
@@ -641,13 +661,11 @@ impl<'a> Balance<'a> {
     }
 }
 
-/// Whether a method takes energy by itself from a motion that nothing damps.
-fn takes_energy(method: &dyn Stepper) -> bool {
-    let behaviour = method.properties().energy;
-    matches!(
-        behaviour,
-        EnergyBehaviour::Falls | EnergyBehaviour::NeverRises
-    )
+/// Whether a method takes energy by itself from a motion that nothing damps. What one that solves equations promises holds for linear ones.
+fn takes_energy(method: &dyn Stepper, simulation: &Simulation) -> bool {
+    let Properties { energy, needs, .. } = method.properties();
+    let falls = matches!(energy, EnergyBehaviour::Falls | EnergyBehaviour::NeverRises);
+    falls || (needs == Needs::Tangents && simulation.system().as_linear().is_none())
 }
 
 /// Whether a machine runs its steps.

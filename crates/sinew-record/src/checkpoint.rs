@@ -16,7 +16,7 @@ use crate::request;
 pub(crate) const NAME: &str = "checkpoint.bin";
 
 /// The first line, with the version of what follows.
-const HEAD: &str = "sinew checkpoint 6";
+const HEAD: &str = "sinew checkpoint 7";
 
 /// Bytes of the checksum at its end.
 const CHECKSUM: usize = 32;

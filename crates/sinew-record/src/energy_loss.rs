@@ -2,18 +2,27 @@
 
 use sinew_core::{Moment, RecordError, Recorder, Verdict};
 use sinew_integrators::Stepper;
+use sinew_integrators::explicit::GuardOption;
 use sinew_scene::Simulation;
 
 use crate::balance::Balance;
 use crate::error::RecordRunError;
 use crate::recorder::Schedules;
+use crate::schedule::Schedule;
 use crate::taken_energy::Taken;
 
-/// A recorder that looks at each step of a method that takes energy by itself, and tells how much that was.
+/// Steps of a method that a clamp may brake for each look: a look costs up to three of its steps.
+const STEPS_FOR_A_LOOK: usize = 20;
+
+/// Looks at a run of such a method, where it has as many steps.
+const LOOKS: usize = 100;
+
+/// A recorder that looks at each step of a method that takes energy by itself, or now and then at one with a clamp, and tells how much that was.
 pub struct EnergyLoss<'a> {
     simulation: &'a Simulation,
     /// None where nothing is looked at.
-    balance: Option<Balance<'a>>,
+    looks: Option<(Balance<'a>, Schedule)>,
+    saturates: bool,
     v: Vec<f64>,
     taken: Taken,
 }
@@ -24,9 +33,20 @@ impl<'a> EnergyLoss<'a> {
     pub fn new(simulation: &'a Simulation, method: &dyn Stepper) -> Self {
         let rows = Schedules::of(simulation).energy;
         let balance = Balance::new(simulation, Some(method), rows);
+        let steps = simulation.run().steps;
+        let looks = if balance.looks_at_every_step() {
+            Some((balance, Schedule::at_most(steps, steps)))
+        } else if has_clamp(simulation) {
+            let most = (steps / STEPS_FOR_A_LOOK).max(LOOKS);
+            let rows = Schedule::at_most(most, steps);
+            Some((Balance::new(simulation, Some(method), rows), rows))
+        } else {
+            None
+        };
         Self {
             simulation,
-            balance: balance.looks_at_every_step().then_some(balance),
+            looks,
+            saturates: false,
             v: Vec::new(),
             taken: Taken::default(),
         }
@@ -36,23 +56,26 @@ impl<'a> EnergyLoss<'a> {
     #[must_use]
     pub fn in_words(&self) -> Option<String> {
         let method = format!("`{}`", self.simulation.settings().integrator);
-        self.taken.in_words(self.simulation, &method)
+        self.taken
+            .in_words(self.simulation, &method, self.saturates)
     }
 
     fn look(&mut self, moment: &Moment<'_>) -> Result<(), RecordRunError> {
-        let Some(balance) = &mut self.balance else {
+        let Some((balance, _)) = &mut self.looks else {
             return Ok(());
         };
         self.v.resize(moment.state.u.len(), 0.0);
         moment.velocity(&mut self.v)?;
         self.taken.see(&balance.row(moment, &self.v)?);
+        self.saturates = moment.work.saturated > 0;
         Ok(())
     }
 }
 
 impl Recorder for EnergyLoss<'_> {
     fn next(&mut self, step: usize) -> Option<usize> {
-        self.balance.as_ref().map(|_| step)
+        let (_, schedule) = self.looks.as_ref()?;
+        schedule.next(step)
     }
 
     fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
@@ -63,4 +86,15 @@ impl Recorder for EnergyLoss<'_> {
         })?;
         Ok(Verdict::Continue)
     }
+}
+
+/// Whether velocities of a run may be saturated.
+fn has_clamp(simulation: &Simulation) -> bool {
+    let settings = simulation.settings();
+    let entry = sinew_integrators::entry(&settings.integrator);
+    entry.is_some_and(|entry| match entry.guard {
+        GuardOption::None => false,
+        GuardOption::Any => settings.options.get(GuardOption::KEY).is_some(),
+        GuardOption::OwnOrAuto => true,
+    })
 }

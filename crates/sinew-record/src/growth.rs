@@ -38,7 +38,7 @@ pub struct EnergyGrowth {
     tools: Option<Arc<Tools>>,
     /// Work of tools so far (J).
     work_of_tools: f64,
-    remedy: &'static str,
+    remedy: String,
     grown: Option<String>,
 }
 
@@ -64,7 +64,7 @@ impl EnergyGrowth {
             load_before: Vec::new(),
             tools: simulation.model().tools().cloned(),
             work_of_tools: 0.0,
-            remedy: remedy(simulation),
+            remedy: remedy(simulation, false),
             grown: None,
         }
     }

@@ -43,6 +43,7 @@ mod csv;
 mod cut_words;
 mod energy_loss;
 mod error;
+mod fast_loads;
 mod fields;
 mod folder_size;
 mod frame_writer;

@@ -12,14 +12,31 @@ pub(crate) fn has_stored_energy(simulation: &Simulation) -> bool {
 }
 
 /// What helps where a motion has made energy.
-pub(crate) fn remedy(simulation: &Simulation) -> &'static str {
+pub(crate) fn remedy(simulation: &Simulation, saturates: bool) -> String {
     let settings = simulation.settings();
     let entry = sinew_integrators::entry(&settings.integrator);
-    if settings.dt == TimeStep::Auto {
-        "give a shorter dt in seconds"
-    } else if entry.is_some_and(|entry| entry.substeps) {
-        "take a shorter step, or dt = \"auto\""
+    if saturates || entry.is_some_and(|entry| !entry.substeps) {
+        format!("{} keeps it", keeper(simulation, saturates))
+    } else if settings.dt == TimeStep::Auto {
+        "give a shorter dt in seconds".to_owned()
     } else {
-        "take a shorter step"
+        "take a shorter step, or dt = \"auto\"".to_owned()
+    }
+}
+
+/// A method that keeps energy in a scene, as its keys.
+pub(crate) fn keeper(simulation: &Simulation, saturates: bool) -> &'static str {
+    const NEWMARK: &str = "newmark";
+    let system = simulation.system();
+    let is_met = system.as_linear().is_some() && system.contact().is_none();
+    match sinew_integrators::entry(NEWMARK).filter(|_| is_met) {
+        None if saturates => {
+            "integrator = \"central-difference\" with dt = \"auto\" and without saturation"
+        }
+        None => "integrator = \"central-difference\" with dt = \"auto\"",
+        Some(_) if simulation.settings().integrator == NEWMARK => {
+            "gamma = 0.5 with beta = 0.25, as without these options,"
+        }
+        Some(_) => "integrator = \"newmark\"",
     }
 }

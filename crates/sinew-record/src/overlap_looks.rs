@@ -17,10 +17,19 @@ impl<'a> OverlapLooks<'a> {
     /// Looks at a run of this simulation, or at a stretch of it on the body as cuts left it.
     #[must_use]
     pub fn new(simulation: &'a Simulation) -> Self {
+        Self::with(simulation, Schedules::of(simulation))
+    }
+
+    /// Looks at a session that is repeated, or at a stretch of it, of so many steps of this length (s) on average.
+    #[must_use]
+    pub fn of_steps(simulation: &'a Simulation, steps: usize, dt: f64) -> Self {
+        Self::with(simulation, Schedules::of_steps(simulation, steps, dt))
+    }
+
+    fn with(simulation: &'a Simulation, schedules: Schedules) -> Self {
         let body = simulation.model().body();
-        let fields = Schedules::of(simulation).fields;
         Self {
-            watch: fields.zip(body.map(OverlapWatch::new)),
+            watch: schedules.fields.zip(body.map(OverlapWatch::new)),
         }
     }
 

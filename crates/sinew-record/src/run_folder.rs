@@ -415,13 +415,15 @@ impl RunFolder {
             progress.seen.see_overlap(overlaps.deepest());
         }
         let mut warnings = summary::warnings(&progress.seen);
-        warnings.extend(summary::made_energy(simulation, &progress));
         warnings.extend(summary::driven_by_damping(&progress));
-        let methods = stepping.methods_in_words();
-        warnings.extend(progress.taken.in_words(simulation, &methods));
+        let (methods, saturates) = (stepping.methods_in_words(), progress.work.saturated > 0);
+        let taken = progress.taken.in_words(simulation, &methods, saturates);
+        warnings.extend(summary::made_energy(simulation, &progress));
+        // Where loads turn too fast for either, both say so.
+        warnings.extend(taken.filter(|taken| !warnings.contains(taken)));
         warnings.extend(outrun);
         warnings.extend(simulation.left_by_tools(state));
-        warnings.extend(cuts.as_ref().and_then(|cuts| cuts.left_uncut.clone()));
+        warnings.extend(cuts.iter().flat_map(|cuts| cuts.left.clone()));
         let wall = begun.elapsed().as_secs_f64();
         let summary = Summary {
             simulation,

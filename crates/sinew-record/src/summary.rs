@@ -2,8 +2,9 @@
 
 use serde_json::{Value, json};
 use sinew_integrators::Stepper;
-use sinew_scene::{CutTotals, Cutter, Simulation};
+use sinew_scene::{CutTotals, Cutter, RoughStrokes, Simulation};
 
+use crate::fast_loads::unseen;
 use crate::made_energy::{THERMAL, has_stored_energy, remedy};
 use crate::progress::{Largest, Progress, Seen};
 use crate::recorder::Schedules;
@@ -51,10 +52,10 @@ pub(crate) struct Summary<'a> {
 #[derive(Debug, Clone)]
 pub(crate) struct CutRecord {
     pub(crate) totals: CutTotals,
-    /// Area at rest (m^2) that strokes left of a body that they came through.
-    uncut: f64,
-    /// That in a sentence.
-    pub(crate) left_uncut: Option<String>,
+    /// What strokes left that their sheets do not show.
+    rough: RoughStrokes,
+    /// That in sentences.
+    pub(crate) left: Vec<String>,
     /// Mass (kg) of the body in the beginning and in the end.
     mass: [f64; 2],
     /// Pieces of the body in the end.
@@ -66,8 +67,8 @@ impl CutRecord {
     pub(crate) fn of(cutter: &Cutter, mass: f64) -> Self {
         Self {
             totals: *cutter.totals(),
-            uncut: cutter.uncut().map_or(0.0, |uncut| uncut.area),
-            left_uncut: cutter.left_uncut(),
+            rough: cutter.rough_strokes(),
+            left: cutter.left_by_strokes(),
             mass: [mass, cutter.mass()],
             pieces: cutter.pieces(),
         }
@@ -78,7 +79,7 @@ impl CutRecord {
             report,
             changes,
             blade_work,
-            uncut: _,
+            rough: _,
         } = self.totals;
         let energy = report.energy_gained;
         json!({
@@ -94,7 +95,9 @@ impl CutRecord {
             "kinetic_energy_gained_J": energy.map(|energy| energy.kinetic),
             "elastic_energy_gained_J": energy.map(|energy| energy.elastic),
             "work_of_the_blade_J": blade_work,
-            "left_uncut_m2": self.uncut,
+            "left_uncut_m2": self.rough.uncut.map_or(0.0, |uncut| uncut.area),
+            "chips": self.rough.chips.map_or(0, |(_, chips)| chips.count),
+            "strokes_that_cut_nothing": self.rough.missed.map_or(0, |(_, missed)| missed.strokes),
             "pieces_at_the_end": self.pieces,
         })
     }
@@ -137,26 +140,29 @@ pub(crate) fn warnings(seen: &Seen) -> Vec<String> {
     warnings
 }
 
-/// Share of the largest energy beyond which a motion is wrong whose balance has so much too much: at any row, and as a mean over some while loads and supports stay as they are.
+/// Share beyond which a motion is wrong whose balance has so much too much: of what was put in, at any row, and of the largest energy, as a mean over some rows while loads and supports stay as they are.
 const MADE_ENERGY: f64 = 0.1;
 const CREPT_ENERGY: f64 = 0.01;
 
-/// A warning where a motion of large deformation has more energy than it was given. What a method takes is no such sign.
+/// A warning where a motion of large deformation, or one that is saturated, has more energy than it was given. What a method takes is no such sign.
 pub(crate) fn made_energy(simulation: &Simulation, progress: &Progress) -> Option<String> {
-    let [most, made] = progress.balance;
-    let is_known = simulation.system().as_linear().is_none() && !has_stored_energy(simulation);
-    let crept = progress.crept.most;
-    let is_made = made > MADE_ENERGY * most || crept > CREPT_ENERGY * most;
-    let made = if made > MADE_ENERGY * most {
-        made
-    } else {
-        crept
-    };
-    (is_known && is_made && made > THERMAL).then(|| {
-        format!(
-            "the motion has {made:.3e} J more than it was given, of {most:.3e} J at most: its fastest part is wrong; {}",
-            remedy(simulation)
-        )
+    let ([most, made], given) = (progress.balance, progress.taken.given);
+    let saturates = progress.work.saturated > 0;
+    let is_known =
+        (saturates || simulation.system().as_linear().is_none()) && !has_stored_energy(simulation);
+    let (is_made, crept) = (made > MADE_ENERGY * given, progress.crept.most);
+    let has_crept = crept > CREPT_ENERGY * most;
+    let made = if is_made { made } else { crept };
+    (is_known && (is_made || has_crept) && made > THERMAL).then(|| {
+        let share = match made < 100.0 * given {
+            true => format!(", {:.0} %", 100.0 * made / given),
+            false => String::new(),
+        };
+        let told = format!(
+            "the motion has {made:.3e} J more than the {given:.3e} J that it was given{share}: its fastest part is wrong; {}",
+            remedy(simulation, saturates)
+        );
+        unseen(simulation, progress.taken.span).unwrap_or(told)
     })
 }
 

@@ -69,8 +69,8 @@ pub use scene::{
 pub use simulation::{
     BodyChange, BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint,
     HeldPlace, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe, ProbeNode,
-    Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad, SceneModel, Seen,
-    SelectedPart, Simulation, Stretch, StretchError, ToolFault, UnresolvedLoad, Warning,
+    Reaction, ReactionError, ReactionOf, RefinementError, RefusedLoad, RoughStrokes, SceneModel,
+    Seen, SelectedPart, Simulation, Stretch, StretchError, ToolFault, UnresolvedLoad, Warning,
     WarningKind,
 };
 pub use source::SceneSource;

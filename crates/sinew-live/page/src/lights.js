@@ -20,6 +20,7 @@ export function reasonOf(light, reason, pane) {
       "more energy than anybody put in",
       "stopped",
       `${pane.inverted} elements inside out`,
+      "parts or surfaces of the body are in each other: nothing keeps them apart",
     ],
     [
       "not measured: loads or tools still move",

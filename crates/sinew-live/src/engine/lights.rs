@@ -43,6 +43,8 @@ pub(crate) struct Bounds {
     pub(crate) is_saturated: bool,
     /// Tetrahedra inside out.
     pub(crate) inverted: u32,
+    /// Whether parts or surfaces of the body are in each other.
+    pub(crate) overlaps: bool,
     /// Energy less what was put in (J), not a number where it is not known, and the largest energy or work so far (J).
     pub(crate) balance: f64,
     pub(crate) scale: f64,
@@ -60,6 +62,8 @@ impl Bounds {
             Light::new(Colour::Amber, 2)
         } else if self.inverted > 0 {
             Light::new(Colour::Amber, 5)
+        } else if self.overlaps {
+            Light::new(Colour::Amber, 6)
         } else {
             Light::new(Colour::Green, 1)
         }
@@ -238,6 +242,13 @@ mod tests {
                     ..bounds
                 },
                 "inside out",
+            ),
+            (
+                Bounds {
+                    overlaps: true,
+                    ..bounds
+                },
+                "in each other",
             ),
         ] {
             has_words(0, bounds.light(), expected);

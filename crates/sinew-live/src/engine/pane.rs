@@ -48,6 +48,9 @@ pub(crate) struct Pane {
     /// The body as pages see it; `None` before the first picture.
     shown: Option<Shown>,
     measured: Budget,
+    looked: Budget,
+    /// Whether parts or surfaces of the body were in each other at the last look.
+    overlaps: bool,
     /// Displacement (m) before the last step, behind a cut at its beginning, and half way through it.
     before: Vec<f64>,
     middle: Vec<f64>,
@@ -118,6 +121,8 @@ impl Pane {
             step_facts: StepFacts::default(),
             options: Vec::new(),
             measured: Budget::default(),
+            looked: Budget::of_overlap(),
+            overlaps: false,
             before: vec![0.0; dofs],
             middle: vec![0.0; dofs],
             force: vec![0.0; dofs],
@@ -287,6 +292,7 @@ impl Pane {
         self.stopped = None;
         (self.error, self.lag) = (f64::NAN, 0.0);
         self.measured = Budget::default();
+        (self.looked, self.overlaps) = (Budget::of_overlap(), false);
         self.impulses.fill([0.0; 3]);
         self.led.fill(None);
         (self.span, self.saturated, self.steps) = (0.0, 0, 0);
@@ -494,6 +500,15 @@ impl Pane {
         self.measured.spent_since(begun);
     }
 
+    /// Looks whether its body is in itself.
+    fn look_for_overlap(&mut self) {
+        if self.looked.is_due() {
+            let begun = Instant::now();
+            self.overlaps = self.session.overlap().is_some();
+            self.looked.spent_since(begun);
+        }
+    }
+
     /// Looks whether its body is another one than pages have, which they then have to be shown.
     pub(crate) fn see_body(&mut self, uncut: &Surface) -> bool {
         let Some(body) = body(&self.session) else {
@@ -525,6 +540,7 @@ impl Pane {
         anew: bool,
     ) {
         self.measure();
+        self.look_for_overlap();
         let t = self.session.t();
         let limit = self.limit();
         if let Some(shown) = &mut self.shown {
@@ -624,6 +640,7 @@ impl Pane {
                 stopped: self.stopped.is_some(),
                 is_saturated: self.saturated > 0,
                 inverted: self.shown.as_ref().map_or(0, Shown::inverted),
+                overlaps: self.overlaps,
                 balance: self.energies.balance(),
                 scale: self.energies.scale,
             }

@@ -14,16 +14,35 @@ use crate::protocol::{Field, NONE};
 /// Colours and energies take one part in so many of the time.
 const SHARE: u32 = 5;
 
+/// Looks for overlap do, which may be rare.
+const SHARE_OF_OVERLAP: u32 = 50;
+
 /// A task that is done as often as its share of time allows.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Budget {
+    share: u32,
     last: Option<(Instant, Duration)>,
 }
 
+impl Default for Budget {
+    fn default() -> Self {
+        Self::of(SHARE)
+    }
+}
+
 impl Budget {
+    fn of(share: u32) -> Self {
+        Self { share, last: None }
+    }
+
+    /// That of looks for overlap.
+    pub(super) fn of_overlap() -> Self {
+        Self::of(SHARE_OF_OVERLAP)
+    }
+
     pub(super) fn is_due(&self) -> bool {
         self.last
-            .is_none_or(|(end, cost)| end.elapsed() >= SHARE * cost)
+            .is_none_or(|(end, cost)| end.elapsed() >= self.share * cost)
     }
 
     pub(super) fn spent_since(&mut self, begun: Instant) {

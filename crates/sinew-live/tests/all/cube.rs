@@ -7,7 +7,7 @@ use sinew_live::{Live, LiveError, Settings};
 use tungstenite::Message;
 
 use crate::common::{
-    self, CUBE, Heard, NUMBERS, PANE, POINTS, Page, applied, f64_at, settings, time, u32_at,
+    self, CUBE, Heard, NUMBERS, PANE, POINTS, Page, ROLLED, applied, f64_at, settings, time, u32_at,
 };
 
 const BALL: &str = r#"
@@ -601,4 +601,12 @@ fn a_page_that_comes_late_is_told_of_the_integrators() {
         "of a kind that meets tools"
     );
     assert!(of("modal")["refused"].as_str().unwrap().contains("tools"));
+}
+
+#[test]
+fn a_body_that_is_in_itself_has_a_reservation_on_the_page() {
+    let page = Page::of(settings(ROLLED));
+    let mut client = page.connect();
+    let rolled = client.picture(|picture| u32_at(picture, PANE + 100) & 255 == 6);
+    assert_eq!(u32_at(&rolled, PANE + 96) & 3, 2);
 }

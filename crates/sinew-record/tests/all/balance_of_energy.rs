@@ -449,3 +449,126 @@ fn steps_of_several_parts_leave_little_of_what_damping_takes() {
     );
     assert!(of_parts < 1e-3 + 2.0 * whole, "{of_parts} {whole}");
 }
+
+/// What a run says of energy, in a folder and beside its probes alone.
+fn said_both_ways(text: &str) -> [Vec<String>; 2] {
+    let simulation = crate::common::build(text);
+    let place = tempfile::tempdir().unwrap();
+    let end = run(&place.path().join("out"), &simulation, &mut ());
+    let mut integrator = simulation.integrator().unwrap();
+    simulation.set_up(&mut *integrator).unwrap();
+    let mut loss = EnergyLoss::new(&simulation, &*integrator);
+    let mut state = simulation.initial_state().clone();
+    // A run that ends early says what was seen.
+    let _ = simulate(
+        simulation.system(),
+        &mut *integrator,
+        &mut state,
+        &simulation.run(),
+        &mut loss,
+    );
+    let of_energy = |said: &String| {
+        ["put in", "was given", "balance of energy"]
+            .iter()
+            .any(|words| said.contains(words))
+    };
+    let folder = end.warnings.into_iter().filter(of_energy).collect();
+    [folder, loss.in_words().into_iter().collect()]
+}
+
+/// A slender block of soft tissue that is turned, or thrown around an end that is held.
+fn turned(more: &str) -> String {
+    format!(
+        "[mesh]\nblock = {{ cells = [4, 1, 1], size = [0.1, 0.03, 0.03], split = \"mirrored\" }}\n[[region]]\n\
+         density = 1000.0\nmodel = \"neo-hookean\"\nyoungs_modulus = 20000.0\npoissons_ratio = 0.3\n{more}"
+    )
+}
+
+const THROWN: &str = "[[fixed]]\nwhere = { below = { x = 0.001 } }\n[[initial]]\nvelocity = [0.0, \"60 * x\", 0.0]\n[run]\n\
+                      duration = 0.5\nintegrator = \"newmark\"\n";
+
+#[test]
+fn energy_that_a_clamp_takes_is_told_with_its_share() {
+    let spring = |more: &str| {
+        format!(
+            "[oscillator]\nmass = 0.1\nstiffness = 100.0\ndamping = 0.0\nvelocity = 10.0\n[run]\nduration = 1.0\n\
+             dt = 0.001\n{more}"
+        )
+    };
+    let turning = turned(
+        "[[initial]]\nvelocity = [\"-100 * y\", \"100 * x\", 0.0]\n[run]\nduration = 0.5\nfree_flight = true\n\
+         integrator = \"symplectic-euler\"\ndt = 0.0005\nsaturation = 2.0\n",
+    );
+    for (text, least) in [
+        (spring("integrator = \"cnn\"\nsaturation = 1.0\n"), 75.0),
+        (
+            spring("integrator = \"symplectic-euler\"\nsaturation = 1.0\n"),
+            75.0,
+        ),
+        (turning, 95.0),
+    ] {
+        for said in said_both_ways(&text) {
+            let said = said.into_iter().find(|said| said.contains("put in"));
+            let words = said.clone().unwrap_or_default();
+            assert!(
+                words.contains("whose velocities were saturated"),
+                "{said:?} {text}"
+            );
+            let found = share(said);
+            assert!((least..100.0).contains(&found), "{found} {text}");
+        }
+    }
+    // The clamp has not acted.
+    for said in said_both_ways(&spring(
+        "integrator = \"cnn-symplectic\"\nsaturation = 20.0\n",
+    )) {
+        assert_eq!(said, Vec::<String>::new());
+    }
+}
+
+/// Newmark's method promises the energy of linear tissue only. The warnings name a method that keeps it here, which does.
+#[test]
+fn energy_that_newmark_loses_or_makes_on_thrown_soft_tissue_is_told_with_a_remedy() {
+    for (dt, words) in [
+        ("0.005", "that were put in, 22 %"),
+        ("0.01", "that it was given, 905 %"),
+    ] {
+        let text = turned(&format!("{THROWN}dt = {dt}\n"));
+        let [in_folder, _] = said_both_ways(&text);
+        let said = in_folder.iter().find(|said| said.contains(words));
+        let said = said.unwrap_or_else(|| panic!("{in_folder:?}"));
+        assert!(
+            said.ends_with("integrator = \"central-difference\" with dt = \"auto\" keeps it"),
+            "{said}"
+        );
+    }
+    let kept = turned(&format!("{THROWN}dt = \"auto\"\n").replace("newmark", "central-difference"));
+    assert_eq!(said_both_ways(&kept), [Vec::<String>::new(), Vec::new()]);
+}
+
+/// Work of a load that swings many times a step is summed from row to row, and is no work.
+#[test]
+fn a_load_that_swings_within_a_step_says_that_instead_of_a_share() {
+    let text = |load: &str, method: &str, more: &str| {
+        format!(
+            "[mesh]\ncube = {{ cells = 2, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\n\
+             youngs_modulus = 5000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[[load]]\ngroup = \"top\"\n\
+             force = [0.3, 0.0, 0.0]\nramp = {{ {load} }}\n[run]\nduration = 0.2\nintegrator = \"{method}\"\n{more}"
+        )
+    };
+    let sine = |frequency: f64| format!("sine = {{ frequency = {frequency:?} }}");
+    let rare = "dt = 0.0005\n[output]\nenergy = { every = 0.025 }\n";
+    for (load, method, more) in [
+        (sine(1.234_567e6), "implicit-euler", "dt = 0.001\n"),
+        (sine(1333.0), "generalized-alpha", "dt = 0.00033\n"),
+        (sine(10.0), "central-difference", rare),
+    ] {
+        let [in_folder, _] = said_both_ways(&text(&load, method, more));
+        assert_eq!(in_folder.len(), 1, "{in_folder:?}");
+        assert!(in_folder[0].contains("turns so fast"), "{in_folder:?}");
+    }
+    let followed = text(&sine(2.0), "implicit-euler", "dt = 0.02\n");
+    let [in_folder, alone] = said_both_ways(&followed);
+    assert!(in_folder[0].contains("put in"), "{in_folder:?}");
+    assert_eq!(in_folder, alone);
+}

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, OnceLock};
 
 use sinew_core::{Energy, Inputs, State, System};
-use sinew_cutting::{BladeAct, SavedBodyError, Uncut};
+use sinew_cutting::{BladeAct, SavedBodyError};
 use sinew_fem::{CutModel, CutModelError, CutReport, Problem};
 use sinew_mesh::TetMesh;
 use sinew_tools::{Convex, Tools, ToolsError};
@@ -13,8 +13,9 @@ use super::cut_from::CutFrom;
 use super::cut_plan::CutPlan;
 use super::model::{BodyModel, SceneModel};
 use super::probe::Probe;
+use super::rough_strokes::RoughStrokes;
 use super::{Simulation, tool};
-use crate::number::{length, short};
+use crate::number::length;
 use crate::scene::{Blade, Cutting, LoosePieces, Subject};
 
 /// What was cut since a motion began.
@@ -26,8 +27,8 @@ pub struct CutTotals {
     pub changes: u64,
     /// Work (J) of the blade: the toughness times the area.
     pub blade_work: f64,
-    /// What strokes that were lifted left uncut of a body that they came through.
-    pub uncut: Option<Uncut>,
+    /// What strokes that were lifted left that their sheets do not show.
+    pub rough: RoughStrokes,
 }
 
 impl CutTotals {
@@ -94,12 +95,17 @@ pub struct Cutter {
     probes: Vec<Probe>,
     /// Time (s) up to which the blade was followed; `None` before the first step.
     pub(super) followed: Option<f64>,
+    /// Time (s) of the last sheet that touched the body.
+    swept: f64,
     /// Whether the tool that is the blade was in the tissue when it was followed last.
     is_in: bool,
     /// What tools kept before what is cut at the moment.
     before: Before,
     pub(super) totals: CutTotals,
 }
+
+/// Words before those of rough strokes.
+const HEAD: usize = 15;
 
 impl Simulation {
     /// What cuts its body, which is whole; `None` where the scene has no `[cutting]`. Assembles the body once more.
@@ -118,6 +124,7 @@ impl Simulation {
             problem,
             probes: self.probes.clone(),
             followed: None,
+            swept: 0.0,
             is_in: false,
             before: Before::default(),
             totals: CutTotals::default(),
@@ -243,26 +250,21 @@ impl Cutter {
 
     /// Lifts a blade from outside: its next sheet goes on with no tetrahedron that it left entered in part.
     pub fn lift(&mut self) {
-        let uncut = self.cut.lift();
-        self.totals.uncut = both(self.totals.uncut, uncut);
+        self.totals.rough = self.rough_strokes();
+        self.cut.lift();
     }
 
-    /// What strokes left uncut of a body that they came through, the stroke at hand included where its blade is out of the body.
+    /// What strokes left that their sheets do not show, the stroke at hand included: of that, uncut area only where its blade is out of the body.
     #[must_use]
-    pub fn uncut(&self) -> Option<Uncut> {
-        both(self.totals.uncut, self.cut.body().uncut())
+    pub fn rough_strokes(&self) -> RoughStrokes {
+        let at_hand = RoughStrokes::of(self.cut.body(), self.swept);
+        self.totals.rough.and(at_hand)
     }
 
-    /// A sentence about what strokes left uncut of a body that they came through.
+    /// A sentence about each thing that strokes left: uncut area, chips, no cut at all.
     #[must_use]
-    pub fn left_uncut(&self) -> Option<String> {
-        let Uncut { area, place } = self.uncut()?;
-        let [x, y, z] = place.map(short);
-        Some(format!(
-            "strokes that came through the body left {} m2 of it uncut, about [{x}, {y}, {z}] m: the parts to both sides hang together there until a \
-             further stroke goes through",
-            short(area)
-        ))
+    pub fn left_by_strokes(&self) -> Vec<String> {
+        self.rough_strokes().in_words()
     }
 
     /// All that it needs to go on, as bytes.
@@ -272,9 +274,8 @@ impl Cutter {
             report,
             changes,
             blade_work,
-            uncut,
+            rough,
         } = self.totals;
-        let [x, y, z] = uncut.map_or([f64::NAN; 3], |uncut| uncut.place);
         let energy = report.energy_gained;
         let parts = energy.map_or([f64::NAN; 2], |energy| [energy.kinetic, energy.elastic]);
         let numbers = [
@@ -285,10 +286,7 @@ impl Cutter {
             blade_work,
             parts[0],
             parts[1],
-            uncut.map_or(f64::NAN, |uncut| uncut.area),
-            x,
-            y,
-            z,
+            self.swept,
         ];
         let counts = [
             report.faces,
@@ -305,6 +303,7 @@ impl Cutter {
                 .map(f64::to_le_bytes)
                 .iter()
                 .chain(&counts)
+                .chain(&rough.to_numbers().map(f64::to_le_bytes))
                 .flatten(),
         );
         bytes.extend(self.cut.to_bytes());
@@ -321,30 +320,30 @@ impl Cutter {
         simulation: &Simulation,
     ) -> Result<Option<Simulation>, CuttingError> {
         let other = || CuttingError::from(CutModelError::from(SavedBodyError));
-        let (head, body) = bytes.split_at_checked(18 * 8).ok_or_else(other)?;
+        let (head, body) = bytes
+            .split_at_checked((HEAD + RoughStrokes::WORDS) * 8)
+            .ok_or_else(other)?;
         let words: Vec<[u8; 8]> = head.as_chunks().0.to_vec();
         let number = |place: usize| f64::from_le_bytes(words[place]);
         let count = |place: usize| u64::from_le_bytes(words[place]) as usize;
         self.cut.restore(body)?;
         let (kinetic, elastic) = (number(6), number(7));
         self.followed = Some(number(1)).filter(|t| !t.is_nan());
-        self.is_in = count(17) > 0;
-        let uncut = Uncut {
-            area: number(8),
-            place: [number(9), number(10), number(11)],
-        };
+        self.is_in = count(HEAD - 1) > 0;
+        self.swept = number(8);
+        let rough = std::array::from_fn(|place| number(HEAD + place));
         self.totals = CutTotals {
             changes: u64::from_le_bytes(words[0]),
             blade_work: number(5),
-            uncut: (!uncut.area.is_nan()).then_some(uncut),
+            rough: RoughStrokes::from_numbers(rough),
             report: CutReport {
-                faces: count(12),
+                faces: count(9),
                 area: number(2),
-                new_nodes: count(13),
-                moved_nodes: count(14),
+                new_nodes: count(10),
+                moved_nodes: count(11),
                 mass_gained: number(3),
-                removed_tets: count(15),
-                frozen_tets: count(16),
+                removed_tets: count(12),
+                frozen_tets: count(13),
                 removed_mass: number(4),
                 energy_gained: (!kinetic.is_nan()).then_some(Energy { kinetic, elastic }),
             },
@@ -363,6 +362,9 @@ impl Cutter {
         inputs: &Inputs,
     ) -> Result<(), CuttingError> {
         let report = self.cut.follow(poses, state, inputs)?;
+        if self.cut.body().is_touched() {
+            self.swept = state.t();
+        }
         self.totals.blade_work += self.plan.cutting.toughness * report.area;
         self.totals.report.add(&report);
         Ok(())
@@ -488,14 +490,6 @@ impl Cutter {
             stable_step: OnceLock::new(),
             cutting: before.cutting.clone(),
         })
-    }
-}
-
-/// What two strokes left.
-fn both(one: Option<Uncut>, other: Option<Uncut>) -> Option<Uncut> {
-    match (one, other) {
-        (Some(one), Some(other)) => Some(one.and(other)),
-        (one, other) => one.or(other),
     }
 }
 

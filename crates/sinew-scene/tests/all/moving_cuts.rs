@@ -8,8 +8,8 @@ use sinew_scene::Scene;
 
 const STROKES: &str = "stroke,t_s,ax_m,ay_m,az_m,bx_m,by_m,bz_m\n";
 
-/// Runs a scene whose strokes stand in a table: the pieces, and what was left uncut.
-fn cut(text: &str, strokes: &str) -> (usize, Option<String>) {
+/// Runs a scene whose strokes stand in a table: the pieces, and what is said of the strokes.
+fn cut(text: &str, strokes: &str) -> (usize, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     fs::write(
@@ -21,7 +21,7 @@ fn cut(text: &str, strokes: &str) -> (usize, Option<String>) {
     let mut run = CutRun::new(Scene::load(path).and_then(Scene::build).unwrap());
     run.advance(run.simulation.run().steps);
     let cutter = run.cutter.into_inner();
-    (cutter.pieces(), cutter.left_uncut())
+    (cutter.pieces(), cutter.left_by_strokes())
 }
 
 fn cube(more: &str, run: &str) -> String {
@@ -43,7 +43,7 @@ fn a_stroke_through_a_free_cube_that_deforms_parts_it_by_every_method_with_and_w
                 ),
                 &format!("duration = 0.014\nintegrator = \"{method}\"\ndt = 5e-4\n"),
             );
-            assert_eq!(cut(&scene, strokes), (2, None), "{method} {snap}");
+            assert_eq!(cut(&scene, strokes), (2, Vec::new()), "{method} {snap}");
         }
     }
 }
@@ -63,7 +63,7 @@ fn a_full_stroke_through_a_stretched_strip_leaves_no_bridge() {
         let strokes = format!(
             "1,0.2,{x},-0.005,-0.005,{x},-0.005,0.02\n1,0.48,{x},0.05,-0.005,{x},0.05,0.02\n"
         );
-        assert_eq!(cut(&strip(strain), &strokes), (2, None), "{strain}");
+        assert_eq!(cut(&strip(strain), &strokes), (2, Vec::new()), "{strain}");
     }
 }
 
@@ -77,7 +77,7 @@ fn a_cube_that_flies_through_a_resting_blade_is_parted() {
     let mut run = CutRun::new(build(&scene));
     run.advance(run.simulation.run().steps);
     let cutter = run.cutter.into_inner();
-    assert_eq!((cutter.pieces(), cutter.left_uncut()), (2, None));
+    assert_eq!((cutter.pieces(), cutter.left_by_strokes()), (2, Vec::new()));
     assert!((cutter.totals().report.area - 0.01).abs() < 1e-6);
 }
 
@@ -98,7 +98,11 @@ fn what_a_hand_leaps_over_is_told_with_its_area_and_place() {
         Inputs::none(),
     );
     let now = cut.unwrap().unwrap();
-    assert_eq!(cutter.left_uncut(), None, "it is in the body");
+    assert_eq!(
+        cutter.left_by_strokes(),
+        Vec::<String>::new(),
+        "it is in the body"
+    );
     let cut = cutter.cut(
         [blade(0.03), blade(-0.02)],
         &now,
@@ -108,10 +112,108 @@ fn what_a_hand_leaps_over_is_told_with_its_area_and_place() {
     assert!(cut.unwrap().is_some());
     let said = "strokes that came through the body left 0.005 m2 of it uncut, about [0.05, 0.05, 0.05] m: the parts to both sides hang together \
                 there until a further stroke goes through";
-    assert_eq!(cutter.left_uncut().as_deref(), Some(said));
+    assert_eq!(cutter.left_by_strokes(), [said]);
     cutter.lift();
-    assert_eq!(cutter.left_uncut().as_deref(), Some(said));
+    assert_eq!(cutter.left_by_strokes(), [said]);
     let mut restored = simulation.cutter().unwrap().unwrap();
     restored.restore(&cutter.to_bytes(), &simulation).unwrap();
-    assert_eq!(restored.left_uncut().as_deref(), Some(said));
+    assert_eq!(restored.left_by_strokes(), [said]);
+}
+
+/// A blade that goes down at x through a cube of four cells of 25 mm an edge that moves to the side, and what is said of it.
+fn side_stroke(x: f64, split: &str) -> (usize, Vec<String>) {
+    let scene = cube(
+        "[[initial]]\nvelocity = [0.0, 0.2, 0.0]\n[cutting]\ntable = \"strokes.csv\"\nsnap = 0.0\n",
+        "duration = 0.014\nintegrator = \"central-difference\"\ndt = 5e-4\n",
+    );
+    let scene = scene.replace("kuhn", split);
+    let ends = |z: f64| format!("{x},-0.02,{z},{x},0.12,{z}");
+    let strokes = format!("1,0.001,{}\n1,0.01,{}\n", ends(0.12), ends(-0.02));
+    cut(&scene, &strokes)
+}
+
+#[test]
+fn a_stroke_that_passes_less_than_half_a_cell_under_the_surface_and_cuts_nothing_is_told() {
+    let (pieces, said) = side_stroke(0.003, "kuhn");
+    assert_eq!((pieces, said.len()), (1, 1), "{said:?}");
+    insta::assert_snapshot!(said[0], @"1 stroke cut nothing: by t = 0.0085 s the first one passed 0.003 m under the surface, about [0.0125, 0.0519, 0.05] m, where edges are up to 0.0433 m long; faces are cut by a blade that comes through tetrahedra, so that a finer mesh, or a stroke farther in, cuts");
+    assert_eq!(
+        side_stroke(-0.003, "kuhn"),
+        (1, Vec::new()),
+        "it passed beside"
+    );
+    assert_eq!(
+        side_stroke(0.025, "kuhn"),
+        (2, Vec::new()),
+        "it cut off a layer"
+    );
+}
+
+#[test]
+fn chips_that_a_stroke_near_the_surface_cuts_off_are_told_with_place_and_size() {
+    let (pieces, said) = side_stroke(0.011, "mirrored");
+    assert!(pieces > 2, "{pieces} {said:?}");
+    insta::assert_snapshot!(said.join("\n"), @r#"strokes cut off 3 chips of at most 8 tetrahedra, the first by t = 0.0085 s about [0.00625, 0.0269, 0.025] m: there they ran nearer to a surface than the mesh is fine; a finer mesh, or a stroke farther in, leaves none, and pieces = "remove" takes loose ones away"#);
+}
+
+/// Numbers from -1 to 1, by the constants of Knuth's generator MMIX.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        let next = self.0.wrapping_mul(6_364_136_223_846_793_005);
+        self.0 = next.wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(&mut self) -> [f64; 3] {
+        std::array::from_fn(|_| self.next())
+    }
+}
+
+#[test]
+fn full_strokes_that_leave_more_than_two_pieces_say_chips_and_others_do_not() {
+    let along = |a: [f64; 3], b: [f64; 3], factor: f64| -> [f64; 3] {
+        std::array::from_fn(|axis| a[axis] + factor * b[axis])
+    };
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        let [[a, b, c], [d, e, f]] = [a, b];
+        [b * f - c * e, c * d - a * f, a * e - b * d]
+    };
+    let unit = |a: [f64; 3]| {
+        let length = a.iter().map(|x| x * x).sum::<f64>().sqrt();
+        a.map(|x| x / length)
+    };
+    let mut chipped = 0;
+    for seed in 150..200 {
+        let mut random = Random(seed);
+        let normal = unit(random.vector());
+        let across = unit(cross(normal, random.vector()));
+        let ahead = cross(across, normal);
+        let through = along([0.05; 3], random.vector(), 0.06);
+        let ends = |share: f64| {
+            let middle = along(through, ahead, share);
+            let ends = [-0.3, 0.3].map(|half| along(middle, across, half));
+            let ends = ends.as_flattened().iter();
+            ends.map(ToString::to_string).collect::<Vec<_>>().join(",")
+        };
+        let strokes = format!("1,0.001,{}\n1,0.0075,{}\n", ends(-0.2), ends(0.2));
+        let [a, b, c] = random.vector().map(|x| 6.0 * x);
+        let velocity =
+            format!("[\"{a} * (y - 0.05)\", \"{b} * (z - 0.05)\", \"{c} * (x - 0.05)\"]");
+        let scene = cube(
+            &format!(
+                "[[initial]]\nvelocity = {velocity}\n[cutting]\ntable = \"strokes.csv\"\nsnap = {}\n",
+                [0.0, 0.25][seed as usize / 2 % 2]
+            ),
+            "duration = 0.01\nintegrator = \"central-difference\"\ndt = 5e-4\n",
+        );
+        let split = ["kuhn", "mirrored"][seed as usize % 2];
+        let (pieces, said) = cut(&scene.replace("kuhn", split), &strokes);
+        chipped += usize::from(pieces > 2);
+        let has_chips = said.iter().any(|said| said.contains("chip"));
+        assert_eq!(pieces > 2, has_chips, "{seed}: {pieces} {said:?}");
+        assert!(pieces != 2 || said.is_empty(), "{seed}: {said:?}");
+    }
+    assert!(chipped > 3, "{chipped}");
 }

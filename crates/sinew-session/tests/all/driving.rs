@@ -1,6 +1,6 @@
 //! Sessions: what commands do, and what is refused.
 
-use crate::common::{CUBE, scene, session};
+use crate::common::{CUBE, ROLLED, scene, session};
 use sinew_core::{LinearModel, LinearOperators, Load, Options, Ramp, Run, State, simulate};
 use sinew_session::{Command, Session, SessionStepError};
 
@@ -361,4 +361,14 @@ fn a_cut_that_leaves_nothing_fails_by_name_and_leaves_the_body_before_it() {
     session.command(Command::Reset).unwrap();
     steps(&mut session, 3);
     assert!(session.state().u == before.u);
+}
+
+#[test]
+fn a_session_tells_where_its_body_is_in_itself() {
+    let mut rolled = session(ROLLED);
+    let told = rolled.overlap().unwrap();
+    assert!((0.003..=0.005).contains(&told.depth), "{told}");
+    rolled.step().unwrap();
+    assert_eq!(rolled.overlap().unwrap().t, 0.001);
+    assert_eq!(session(CUBE).overlap(), None);
 }

@@ -222,11 +222,8 @@ fn probes_alone(
     let system = simulation.system();
     let outrun = simulation.outrun(integrator, &state);
     let mut left = simulation.left_by_tools(&state);
-    left.extend(
-        cutter
-            .as_ref()
-            .and_then(|cutter| cutter.borrow().left_uncut()),
-    );
+    let cutters = cutter.iter();
+    left.extend(cutters.flat_map(|cutter| cutter.borrow().left_by_strokes()));
     let left = left.iter().map(String::as_str);
     let overlap = overlap.map(|overlap| overlap.to_string());
     let lost = loss.in_words();
@@ -265,7 +262,12 @@ fn probes_alone(
                 state.t()
             ))?;
         }
-        for Reaction { by, on, force } in simulation.reactions(&state)? {
+        // Where it diverged there is no motion to hold.
+        let reactions = match report.outcome {
+            Outcome::Diverged { .. } => Vec::new(),
+            _ => simulation.reactions(&state)?,
+        };
+        for Reaction { by, on, force } in reactions {
             let force = force.map(|force| format!("{force:.6e}"));
             voice.say(&format!(
                 "{by} on {on}: reaction = ({}) N at t = {:.6} s",

@@ -1,7 +1,7 @@
 //! The program of a scene's integrator in words.
 
 use sinew_cnn::Program;
-use sinew_core::{Batch, BlockMatrix, Inputs, LinearSystem};
+use sinew_core::{Batch, BlockMatrix, Inputs, LinearSystem, SimulateError};
 use sinew_scene::Simulation;
 use sinew_scene::output::say;
 
@@ -12,11 +12,11 @@ use crate::command::Failure;
 pub(super) fn print(simulation: &Simulation, as_json: bool) -> Result<(), Failure> {
     let mut integrator = simulation.integrator()?;
     simulation.set_up(&mut *integrator)?;
-    // The limits of a guard follow from the motion's start, which a batch of no steps shows it. What is
-    // refused leaves the program as it is, and the run will say why.
+    // The limits of a guard follow from the motion's start, which a batch of no steps shows it.
     let mut start = simulation.initial_state().clone();
     let mut no_steps = Batch::new(simulation.system(), Inputs::none(), simulation.dt(), 0);
-    let _ = integrator.run(&mut no_steps, &mut start);
+    let shown = integrator.run(&mut no_steps, &mut start);
+    shown.map_err(SimulateError::Step)?;
     let (id, program) = (integrator.id(), integrator.program());
     let because = integrator.without_program();
     let operators = simulation.system().as_linear().map(LinearSystem::operators);

@@ -240,6 +240,25 @@ fn a_diverging_run_says_so_keeps_what_it_has_and_fails() {
 }
 
 #[test]
+fn a_diverged_run_without_a_folder_ends_with_the_divergence_alone() {
+    let directory = tempfile::tempdir().unwrap();
+    let text = "[mesh]\ncube = { cells = 2, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"neo-hookean\"\nyoungs_modulus = 5000.0\n\
+                poissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[[load]]\ngroup = \"top\"\npressure = 100.0\n[[probe]]\nname = \"top\"\n\
+                point = [0.0, 0.0, 0.1]\n[run]\nduration = 10.0\nintegrator = \"central-difference\"\ndt = 0.05\n";
+    std::fs::write(directory.path().join("cube.toml"), text).unwrap();
+    let said = sinew(directory.path(), &["run", "cube.toml", "--probes", "u.csv"]);
+    let errors = said.err.lines().filter(|line| line.starts_with("error:"));
+    let errors: Vec<&str> = errors.collect();
+    assert_eq!(said.code, Some(1), "{}", said.err);
+    assert!(
+        matches!(errors[..], [error] if error.starts_with("error: the run diverged at t = ")),
+        "{}",
+        said.err
+    );
+    assert!(!said.out.contains("reaction"), "{}", said.out);
+}
+
+#[test]
 fn bad_input_gives_one_error_with_file_and_line_and_writes_nothing() {
     let cases = [
         (

@@ -39,3 +39,41 @@ fn the_probes_of_a_session_that_only_waits_are_those_of_the_run_also_after_cuts(
     assert_eq!(again.lines().count(), 52);
     assert!(ran == again, "{again}");
 }
+
+/// A strip that begins rolled up, so that its ends are in each other.
+const ROLLED: &str = "[mesh]\nblock = { cells = [24, 1, 1], size = [0.24, 0.01, 0.01] }\n[[region]]\ndensity = 1000.0\n\
+    model = \"neo-hookean\"\nyoungs_modulus = 10.0\npoissons_ratio = 0.3\n[[initial]]\ndisplacement = \
+    [\"(0.035 - z) * sin(x / 0.035) - x\", 0.0, \"0.035 - (0.035 - z) * cos(x / 0.035) - z\"]\n[[probe]]\nname = \"end\"\n\
+    point = [0.24, 0.0, 0.0]\n[run]\nfree_flight = true\nduration = 0.05\nintegrator = \"central-difference\"\ndt = 0.001\n";
+
+#[test]
+fn probes_alone_of_a_run_and_of_a_session_tell_that_the_body_is_in_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("rolled.toml"), ROLLED).unwrap();
+    let mut session =
+        Session::new(Scene::load(folder.path().join("rolled.toml")).unwrap()).unwrap();
+    for _ in 0..50 {
+        session.step().unwrap();
+    }
+    fs::write(folder.path().join("a.log"), session.log().to_text()).unwrap();
+    for more in [
+        &["--probes", "ran.csv"][..],
+        &["--replay", "a.log", "--probes", "again.csv"],
+    ] {
+        let said = sinew(folder.path(), &[&["run", "rolled.toml"][..], more].concat());
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        assert!(said.err.contains("is in itself"), "{}", said.err);
+    }
+    fs::write(folder.path().join("split.toml"), SPLIT).unwrap();
+    let said = sinew(folder.path(), &["plan", "split.toml", "--json"]);
+    let plan: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let sections = plan["sections"].as_array().unwrap();
+    let apart = sections
+        .iter()
+        .find(|section| section["heading"] == "apart");
+    assert!(
+        apart.unwrap()["lines"]
+            .to_string()
+            .contains("nothing keeps them apart")
+    );
+}

@@ -1,0 +1,158 @@
+//! What strokes left that ran finer than the mesh.
+
+use sinew_cutting::{Chips, CuttableBody, Missed, Uncut};
+
+use crate::number::{count, short};
+
+/// What strokes left that their sheets do not show, each with the time (s) of the first one that left it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct RoughStrokes {
+    /// What was left uncut of a body that strokes came through.
+    pub uncut: Option<Uncut>,
+    /// Chips that came off beside the pieces that were parted.
+    pub chips: Option<(f64, Chips)>,
+    /// Strokes that entered the body and cut nothing.
+    pub missed: Option<(f64, Missed)>,
+}
+
+impl RoughStrokes {
+    /// Words of their bytes.
+    pub(super) const WORDS: usize = 17;
+
+    /// What the stroke at hand left, the last sheet of which came at a time (s).
+    pub(super) fn of(body: &CuttableBody, t: f64) -> Self {
+        Self {
+            uncut: body.uncut(),
+            chips: body.chips().map(|chips| (t, chips)),
+            missed: body.missed().map(|missed| (t, missed)),
+        }
+    }
+
+    /// Both of two, of which this was the first.
+    pub(super) fn and(self, other: Self) -> Self {
+        fn both<T>(one: Option<T>, other: Option<T>, and: impl FnOnce(T, T) -> T) -> Option<T> {
+            match (one, other) {
+                (Some(one), Some(other)) => Some(and(one, other)),
+                (one, other) => one.or(other),
+            }
+        }
+        Self {
+            uncut: both(self.uncut, other.uncut, Uncut::and),
+            chips: both(self.chips, other.chips, |(t, one), (_, other)| {
+                (t, one.and(other))
+            }),
+            missed: both(self.missed, other.missed, |(t, one), (_, other)| {
+                (t, one.and(other))
+            }),
+        }
+    }
+
+    /// A sentence about each.
+    pub(super) fn in_words(&self) -> Vec<String> {
+        let at = |place: [f64; 3]| {
+            let [x, y, z] = place.map(short);
+            format!("[{x}, {y}, {z}] m")
+        };
+        let uncut = self.uncut.map(|Uncut { area, place }| {
+            format!(
+                "strokes that came through the body left {} m2 of it uncut, about {}: the parts to both sides hang together there until a further stroke goes \
+                 through",
+                short(area),
+                at(place)
+            )
+        });
+        let chips = self.chips.map(|(t, chips)| {
+            format!(
+                "strokes cut off {} of at most {} {}, the first by t = {} s about {}: there they ran nearer to a surface than the mesh is fine; a finer mesh, or a \
+                 stroke farther in, leaves none, and pieces = \"remove\" takes loose ones away",
+                count(chips.count, "chip"),
+                chips.tets,
+                if chips.tets == 1 { "tetrahedron" } else { "tetrahedra" },
+                short(t),
+                at(chips.place)
+            )
+        });
+        let missed = self.missed.map(|(t, missed)| {
+            let ran = match missed.depth {
+                Some(depth) => format!("passed {} m under the surface", short(depth)),
+                None => "entered the body".to_owned(),
+            };
+            format!(
+                "{} cut nothing: by t = {} s the first one {ran}, about {}, where edges are up to {} m long; faces are cut by a blade that comes through \
+                 tetrahedra, so that a finer mesh, or a stroke farther in, cuts",
+                count(missed.strokes, "stroke"),
+                short(t),
+                at(missed.place),
+                short(missed.edge)
+            )
+        });
+        [uncut, chips, missed].into_iter().flatten().collect()
+    }
+
+    /// As numbers; what there is not is not a number.
+    pub(super) fn to_numbers(self) -> [f64; Self::WORDS] {
+        let none = [f64::NAN; 3];
+        let uncut = self.uncut.map(|uncut| (uncut.area, uncut.place));
+        let (area, [x, y, z]) = uncut.unwrap_or((f64::NAN, none));
+        let chips = self.chips.map(|(t, chips)| {
+            let counts = [chips.count, chips.tets].map(|count| count as f64);
+            (t, counts, chips.place)
+        });
+        let (since, [chips, tets], [a, b, c]) = chips.unwrap_or((f64::NAN, [f64::NAN; 2], none));
+        let missed = self.missed.map(|(t, missed)| {
+            let depth = missed.depth.unwrap_or(f64::NAN);
+            (t, [missed.strokes as f64, depth, missed.edge], missed.place)
+        });
+        let (first, [strokes, depth, edge], [d, e, f]) = missed.unwrap_or((f64::NAN, none, none));
+        [
+            area, x, y, z, since, chips, tets, a, b, c, first, strokes, depth, edge, d, e, f,
+        ]
+    }
+
+    /// From such numbers.
+    pub(super) fn from_numbers(numbers: [f64; Self::WORDS]) -> Self {
+        let [
+            area,
+            x,
+            y,
+            z,
+            since,
+            chips,
+            tets,
+            a,
+            b,
+            c,
+            first,
+            strokes,
+            depth,
+            edge,
+            d,
+            e,
+            f,
+        ] = numbers;
+        let is_known = |number: f64| !number.is_nan();
+        Self {
+            uncut: is_known(area).then_some(Uncut {
+                area,
+                place: [x, y, z],
+            }),
+            chips: is_known(since).then_some((
+                since,
+                Chips {
+                    count: chips as usize,
+                    tets: tets as usize,
+                    place: [a, b, c],
+                },
+            )),
+            missed: is_known(first).then_some((
+                first,
+                Missed {
+                    strokes: strokes as usize,
+                    depth: is_known(depth).then_some(depth),
+                    edge,
+                    place: [d, e, f],
+                },
+            )),
+        }
+    }
+}
