@@ -228,22 +228,7 @@ impl<'a> Fields<'a> {
         let mut inverted = 0;
         let body = self.model.with_memory(internal);
         for (number, tet) in body.deformed_tets(&self.u)?.enumerate() {
-            let tag = || mesh.tet_tags[number];
-            let [xx, yy, zz, xy, yz, zx] = tet.strain;
-            // No principal strain is larger than this norm.
-            let norm = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx);
-            if norm > seen.strain.value.powi(2) {
-                let strain = stress::largest_principal(&tet.strain);
-                seen.strain.see(strain, t, tag);
-            }
-            seen.rotation.see(tet.rotation, t, tag);
-            if !tet.is_hyperelastic {
-                if norm > seen.linear_strain.value.powi(2) {
-                    let strain = stress::largest_principal(&tet.strain);
-                    seen.linear_strain.see(strain, t, tag);
-                }
-                seen.linear_rotation.see(tet.rotation, t, tag);
-            }
+            seen.see_tet(t, &tet, || mesh.tet_tags[number]);
             inverted += usize::from(tet.is_inverted);
             tets.inverted.push(u8::from(tet.is_inverted));
             tets.strain.extend(tet.strain.map(|strain| strain as f32));

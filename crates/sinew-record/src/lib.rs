@@ -46,13 +46,13 @@ mod error;
 mod fast_loads;
 mod fields;
 mod folder_size;
+mod frame_looks;
 mod frame_writer;
 mod frames;
 mod growth;
 mod made_energy;
 #[cfg(feature = "implicit")]
 mod modes;
-mod overlap_looks;
 mod pace;
 mod progress;
 mod recorder;
@@ -76,10 +76,10 @@ pub use cut_words::words_of_cuts;
 pub use energy_loss::EnergyLoss;
 pub use error::RecordRunError;
 pub use folder_size::FolderSize;
+pub use frame_looks::{FrameLooks, Looked};
 pub use growth::EnergyGrowth;
 #[cfg(feature = "implicit")]
 pub use modes::{ModesError, NaturalMode, check_modes_folder, natural_modes, write_modes};
-pub use overlap_looks::OverlapLooks;
 pub use pace::Pace;
 pub use request::Request;
 pub use run_end::{Ended, RunEnd};

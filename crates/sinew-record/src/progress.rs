@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use sinew_core::StepReport;
+use sinew_fem::{DeformedTet, stress};
 use sinew_scene::Overlap;
 
 use crate::balance::Sums;
@@ -106,6 +107,23 @@ pub(crate) struct SeenOverlap {
 }
 
 impl Seen {
+    /// Sees the deformation of a tetrahedron at the time `t` (s), but for whether it is inverted.
+    pub(crate) fn see_tet(&mut self, t: f64, tet: &DeformedTet, tag: impl Fn() -> u64 + Copy) {
+        let [xx, yy, zz, xy, yz, zx] = tet.strain;
+        // No principal strain is larger than this norm.
+        let norm = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx);
+        let see = |strain: &mut Largest, rotation: &mut Largest| {
+            if norm > strain.value.powi(2) {
+                strain.see(stress::largest_principal(&tet.strain), t, tag);
+            }
+            rotation.see(tet.rotation, t, tag);
+        };
+        see(&mut self.strain, &mut self.rotation);
+        if !tet.is_hyperelastic {
+            see(&mut self.linear_strain, &mut self.linear_rotation);
+        }
+    }
+
     /// Takes an overlap if it is deeper than that so far.
     pub(crate) fn see_overlap(&mut self, overlap: Option<&Overlap>) {
         let known = self.overlap.as_ref().map_or(0.0, |known| known.depth);

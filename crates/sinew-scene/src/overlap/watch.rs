@@ -31,18 +31,6 @@ pub struct Overlap {
     pub parts: [String; 2],
 }
 
-impl Overlap {
-    /// The deeper one of two.
-    #[must_use]
-    pub fn deeper(one: Option<Self>, other: Option<Self>) -> Option<Self> {
-        match (one, other) {
-            (Some(one), Some(other)) if other.depth > one.depth => Some(other),
-            (None, other) => other,
-            (one, _) => one,
-        }
-    }
-}
-
 impl fmt::Display for Overlap {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [one, other] = &self.parts;

@@ -9,12 +9,11 @@ use sinew_core::{
 use sinew_integrators::Stepper;
 use sinew_measure::Forecast;
 use sinew_record::{
-    Companion, EnergyGrowth, EnergyLoss, OverlapLooks, Request, RunFolder, words_of_cuts,
+    Companion, EnergyGrowth, EnergyLoss, FrameLooks, Looked, Request, RunFolder, words_of_cuts,
 };
 use sinew_scene::output::{Delivery, Destination, Tenant, Voice, complain};
 use sinew_scene::{
-    Overlap, Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Seen, Simulation, Warning,
-    WarningKind,
+    Probe, ProbeCsv, ProbeRows, Quantity, Reaction, Scene, Seen, Simulation, Warning, WarningKind,
 };
 
 mod arguments;
@@ -172,7 +171,7 @@ fn probes_alone(
     let whole = simulation.run();
     let mut onlooker = Onlooker::new(interruption, whole.steps, simulation.settings().duration);
     let mut growth = EnergyGrowth::new(simulation);
-    let mut overlap = None;
+    let mut looked = Looked::default();
     let mut loss = EnergyLoss::new(simulation, integrator);
     // The scene on the body as cuts left it.
     let mut cut: Option<Simulation> = None;
@@ -184,10 +183,10 @@ fn probes_alone(
     let (csv, report, simulation) = loop {
         let now = cut.as_ref().unwrap_or(simulation);
         let mut csv = output.with_rows(ProbeRows::new(now));
-        let mut overlaps = OverlapLooks::new(now);
+        let mut looks = FrameLooks::new(now, std::mem::take(&mut looked));
         let mut recorders = Recorders::new()
             .with_lent(&mut csv)
-            .with_lent(&mut overlaps)
+            .with_lent(&mut looks)
             .with_lent(&mut onlooker);
         if cutter.is_none() {
             recorders = recorders.with_lent(&mut growth).with_lent(&mut loss);
@@ -204,7 +203,7 @@ fn probes_alone(
         let moving = (cutter.as_ref(), integrator, &mut state);
         let stretch = now.stretch(moving, &run, (&mut recorders, seen));
         drop(recorders);
-        overlap = Overlap::deeper(overlap, overlaps.into_deepest());
+        looked = looks.into_looked();
         let stretch = match stretch {
             Ok(stretch) => stretch,
             Err(error) => break (csv, Err(error), now),
@@ -225,12 +224,12 @@ fn probes_alone(
     let cutters = cutter.iter();
     left.extend(cutters.flat_map(|cutter| cutter.borrow().left_by_strokes()));
     let left = left.iter().map(String::as_str);
-    let overlap = overlap.map(|overlap| overlap.to_string());
+    let looked = looked.warnings();
     let lost = loss.in_words();
     for warning in growth
         .in_words()
         .into_iter()
-        .chain(overlap.as_deref())
+        .chain(looked.iter().map(String::as_str))
         .chain(lost.as_deref())
         .chain(outrun.as_deref())
         .chain(left)

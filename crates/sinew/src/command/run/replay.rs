@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use sinew_core::Recorders;
-use sinew_record::{Companion, Ended, OverlapLooks, RecordRunError, Request, RunFolder};
+use sinew_record::{Companion, Ended, FrameLooks, Looked, RecordRunError, Request, RunFolder};
 use sinew_scene::output::{Delivery, Destination, Voice, complain};
-use sinew_scene::{Cutter, Overlap, ProbeCsv, ProbeRows, Scene, WarningKind};
+use sinew_scene::{Cutter, ProbeCsv, ProbeRows, Scene, WarningKind};
 use sinew_session::{FollowError, Log, Replay};
 
 use super::arguments::Arguments;
@@ -49,20 +49,21 @@ pub(super) fn run(
     let recorded_scene = |replay: &Replay| replay.recorded_scene().map_err(RecordRunError::from);
     let mut simulation = recorded_scene(&replay)?;
     let mut csv = ProbeCsv::new(destination.open()?, ProbeRows::new(&simulation))?.without_rows();
-    let (mut steps, mut overlap, course) = (0, None, replay.course());
+    let (mut steps, mut looked, course) = (0, Looked::default(), replay.course());
     let (followed, is_interrupted) = loop {
         // After a change of the body steps are counted anew.
         let mut onlooker = onlooker(&replay, interruption.clone());
         let mut rows = csv.with_rows(ProbeRows::new(&simulation));
-        let mut overlaps = OverlapLooks::of_steps(&simulation, course.steps, course.dt);
+        let instants = (course.steps, course.dt);
+        let mut looks = FrameLooks::of_steps(&simulation, instants, std::mem::take(&mut looked));
         let mut recorders = Recorders::new()
             .with_lent(&mut rows)
-            .with_lent(&mut overlaps)
+            .with_lent(&mut looks)
             .with_lent(&mut onlooker);
         let followed = replay.follow(&simulation, &mut recorders);
         drop(recorders);
         onlooker.finish();
-        overlap = Overlap::deeper(overlap, overlaps.into_deepest());
+        looked = looks.into_looked();
         let followed = match followed {
             Ok(followed) => followed,
             Err(FollowError::Replay(source)) => return Err(failed(source)),
@@ -78,11 +79,10 @@ pub(super) fn run(
         simulation = recorded_scene(&replay)?;
     };
     let session = replay.session();
-    let overlap = overlap.map(|overlap| overlap.to_string());
     let left = session
         .cutter()
         .map_or_else(Vec::new, Cutter::left_by_strokes);
-    for warning in overlap.into_iter().chain(left) {
+    for warning in looked.warnings().into_iter().chain(left) {
         complain(&format!("warning: {warning}"));
     }
     if csv.finish()? == Delivery::Whole {

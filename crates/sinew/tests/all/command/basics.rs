@@ -171,6 +171,9 @@ fn run_ends_with_the_force_of_each_support_and_motion() {
         .filter(|line| line.starts_with("warning: "));
     let warning = warnings.next().unwrap();
     assert!(warning.starts_with("warning: [[region]] 1 has poissons_ratio = 0.45"));
+    // A tenth of the height is much for the linear theory.
+    let warning = warnings.next().unwrap();
+    assert!(warning.contains("a principal strain of 16 %"), "{warning}");
     assert_eq!(warnings.next(), None);
     let force = |begin: &str| -> f64 {
         let line = said.err.lines().find(|line| line.starts_with(begin));
@@ -256,6 +259,42 @@ fn a_diverged_run_without_a_folder_ends_with_the_divergence_alone() {
         said.err
     );
     assert!(!said.out.contains("reaction"), "{}", said.out);
+}
+
+/// Tissue as soft as water under its own weight, and a linear body whose top is moved through its bottom.
+#[test]
+fn a_run_without_a_folder_warns_of_what_one_with_a_folder_warns_of() {
+    let body = |law: &str, tables: &str| {
+        format!(
+            "gravity = [0.0, 0.0, -9.81]\n[mesh]\ncube = {{ cells = 3, edge = 0.1 }}\n[[region]]\ndensity = 1000.0\n{law}\n\
+             [damping]\nmass = 5.0\n[[fixed]]\ngroup = \"bottom\"\n{tables}[run]\nduration = 0.5\ndt = 0.01\n\
+             integrator = \"newmark\"\n[[probe]]\nname = \"p\"\npoint = [0.05, 0.05, 0.05]\n"
+        )
+    };
+    let soft = "model = \"linear\"\nyoungs_modulus = 5.0\npoissons_ratio = 0.3";
+    let firm = "model = \"linear\"\nyoungs_modulus = 1e5\npoissons_ratio = 0.3";
+    let through = "[[move]]\ngroup = \"top\"\ndisplacement = [0.0, 0.0, -0.15]\nramp = { kind = \"sin2\", rise = 0.4 }\n";
+    let directory = tempfile::tempdir().unwrap();
+    for (text, said_of) in [
+        (body(soft, ""), "inside out"),
+        (body(firm, through), "inside out"),
+    ] {
+        std::fs::write(directory.path().join("s.toml"), text).unwrap();
+        let run = |arguments: &[&str]| {
+            let said = sinew(directory.path(), &[&["run", "s.toml"], arguments].concat());
+            assert_eq!(said.code, Some(0), "{}", said.err);
+            let lines = said.err.lines().filter(|line| line.contains("warning:"));
+            lines.map(str::to_owned).collect::<Vec<String>>()
+        };
+        let (in_folder, alone) = (run(&["--out", "r"]), run(&["--probes", "p.csv"]));
+        assert_eq!(alone, in_folder);
+        for words in ["principal strain", said_of] {
+            assert!(
+                alone.iter().any(|line| line.contains(words)),
+                "{words}: {alone:?}"
+            );
+        }
+    }
 }
 
 #[test]
