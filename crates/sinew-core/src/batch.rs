@@ -3,8 +3,8 @@
 use crate::guard::Guarding;
 use crate::system::loads_revision;
 use crate::{
-    Acceleration, Contact, Inertia, Inputs, LoadTime, Meeting, Revision, SetupError, ShowCells,
-    State, StepError, StepReport, SynchroniseError, System, Trial, VelocityTime, Watch,
+    Acceleration, Contact, DampedAt, Inertia, Inputs, LoadTime, Meeting, Revision, SetupError,
+    ShowCells, State, StepError, StepReport, SynchroniseError, System, Trial, VelocityTime, Watch,
 };
 
 /// Steps to take, and the work around each: sizes are checked, the clock is kept, a guard
@@ -50,6 +50,8 @@ pub struct Stepped {
     pub work: StepReport,
     /// The velocity's time.
     pub velocity: VelocityTime,
+    /// Where damping takes velocities.
+    pub damped: DampedAt,
     /// Kind of acceleration that the state keeps.
     pub acceleration: Acceleration,
 }
@@ -61,6 +63,7 @@ impl Stepped {
         Self {
             work,
             velocity: VelocityTime::Same,
+            damped: DampedAt::default(),
             acceleration: Acceleration::None,
         }
     }
@@ -397,6 +400,7 @@ impl<'a> Batch<'a> {
     /// Ends a part, on the clock and for the system; whether it ends a step.
     fn end_part(&mut self, state: &mut State, stepped: Stepped) -> Result<bool, StepError> {
         state.end_step(self.dt, stepped.velocity, stepped.acceleration);
+        state.damped = stepped.damped;
         state.loads = self.loads;
         let accepted = self.system.accept(state, self.inputs, self.dt);
         accepted.map_err(|source| StepError::Refused {

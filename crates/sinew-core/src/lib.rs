@@ -112,7 +112,7 @@ pub use revision::Revision;
 pub use scaling::Scaling;
 pub use simulate::{Outcome, Run, RunReport, SimulateError, simulate, simulate_under};
 pub use sinew_sparse::{AssemblyError, BlockMatrix, Layers, Pattern, clamp_vector, vectors};
-pub use state::{Acceleration, Start, State, StepCut, VelocityTime};
+pub use state::{Acceleration, DampedAt, Start, State, StepCut, VelocityTime};
 pub use state_bytes::StateBytesError;
 pub use static_load::StaticLoad;
 pub use step_error::{SetupError, StepError};

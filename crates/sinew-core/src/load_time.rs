@@ -63,20 +63,29 @@ impl LoadTime<'static> {
     /// methods that take loads as constant over a step. Tables always enter by their mean.
     #[must_use]
     pub fn start_of(t: f64, dt: f64) -> Self {
-        let window = Window::Mean {
-            from: t,
-            to: t + dt,
-        };
-        Self::new(t, window)
+        Self::mean_at(t, t, dt)
+    }
+
+    /// The loads in the middle of a step from `t` (s) to `t + dt`, or their mean over the step.
+    #[must_use]
+    pub fn middle_of(t: f64, dt: f64) -> Self {
+        Self::mean_at(t + 0.5 * dt, t, dt)
     }
 
     /// The loads at the end of a step from `t` (s) to `t + dt`, or their mean over the step.
     #[must_use]
     pub fn end_of(t: f64, dt: f64) -> Self {
-        Self {
-            t: t + dt,
-            ..Self::start_of(t, dt)
-        }
+        Self::mean_at(t + dt, t, dt)
+    }
+
+    /// The loads at `t` (s), or their mean over the time from `from` (s) to `from + dt`.
+    #[must_use]
+    pub fn mean_at(t: f64, from: f64, dt: f64) -> Self {
+        let window = Window::Mean {
+            from,
+            to: from + dt,
+        };
+        Self::new(t, window)
     }
 
     /// The loads at `t + share dt` within a step from `t` (s) to `t + dt`, or the line over the step

@@ -1,6 +1,9 @@
 //! The state of a simulation.
 
+use std::borrow::Cow;
+
 use crate::clock::Clock;
+use crate::load_time::LoadTime;
 use crate::revision::Revision;
 
 /// Displacement and velocity of a system: free degrees of freedom only, node-major (x y z).
@@ -20,6 +23,8 @@ pub struct State {
     pub v: Vec<f64>,
     /// The velocity's time.
     pub velocity: VelocityTime,
+    /// Where damping takes velocities.
+    pub damped: DampedAt,
     /// Acceleration (m/s^2), of the kind given by `acceleration`; work space otherwise.
     pub a: Vec<f64>,
     /// Kind of acceleration in `a`.
@@ -68,6 +73,7 @@ impl Clone for State {
             u,
             v,
             velocity,
+            damped,
             a,
             acceleration,
             internal,
@@ -84,7 +90,8 @@ impl Clone for State {
         self.contact.clone_from(contact);
         self.fastest.clone_from(fastest);
         (self.clock, self.loads, self.start, self.cut) = (*clock, *loads, *start, *cut);
-        (self.velocity, self.acceleration) = (*velocity, *acceleration);
+        (self.velocity, self.damped) = (*velocity, *damped);
+        self.acceleration = *acceleration;
     }
 }
 
@@ -95,6 +102,7 @@ impl PartialEq for State {
             u,
             v,
             velocity,
+            damped,
             a,
             acceleration,
             internal,
@@ -104,10 +112,11 @@ impl PartialEq for State {
             cut,
             fastest,
         } = self;
-        (clock, velocity, acceleration, start, cut)
+        (clock, velocity, damped, acceleration, start, cut)
             == (
                 &other.clock,
                 &other.velocity,
+                &other.damped,
                 &other.acceleration,
                 &other.start,
                 &other.cut,
@@ -127,6 +136,40 @@ pub enum VelocityTime {
     /// The mean over a last step that does not resolve the fastest motions, so that the velocity at any
     /// instant is unknown.
     MeanOverStep,
+}
+
+/// Times for which a method's damping takes velocities where it asks for the forces of a state, in steps.
+///
+/// First-order methods set the way of one step over its time beside that of another; what supports feel of damping is the force of that pair.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DampedAt {
+    /// Of cells, after the velocity's own time: more than 0 where a state keeps the acceleration of the last kick, and damping does not lag whole.
+    pub cells: f64,
+    /// Of supports in motion, after the displacement's time: -1/2 stands for their way over the last step, 1/2 for that over the next.
+    pub supports: f64,
+}
+
+impl DampedAt {
+    /// Damping by the velocities at the end of a step, which are the way over its time.
+    pub const WAY_OF_STEP: Self = Self::supports(-0.5);
+
+    /// Damping of a leapfrog that keeps the acceleration of its last kick, of which it takes this share at the displacement's time.
+    #[must_use]
+    pub const fn centred(share: f64) -> Self {
+        Self {
+            cells: 0.5 * share,
+            supports: 0.0,
+        }
+    }
+
+    /// Damping by the velocity that a state has, and that of supports so many steps after the displacement's time.
+    #[must_use]
+    pub const fn supports(steps: f64) -> Self {
+        Self {
+            cells: 0.0,
+            supports: steps,
+        }
+    }
 }
 
 /// Kind of acceleration that a state keeps.
@@ -164,6 +207,7 @@ impl State {
             u,
             v,
             velocity: VelocityTime::Same,
+            damped: DampedAt::default(),
             a: Vec::new(),
             acceleration: Acceleration::None,
             internal: Vec::new(),
@@ -187,6 +231,37 @@ impl State {
         self.velocity != VelocityTime::Same && self.clock.last_step() == Some(dt)
     }
 
+    /// The displacement (m) and the velocity (m/s) by which damping acts where the method asks for the forces of this state, with the time for which
+    /// it takes place and speed of supports.
+    #[must_use]
+    pub fn damping(&self) -> (Cow<'_, [f64]>, Cow<'_, [f64]>, LoadTime<'static>) {
+        let (u, v) = (Cow::Borrowed(&self.u[..]), Cow::Borrowed(&self.v[..]));
+        let (t, Some(dt)) = (self.t(), self.clock.last_step()) else {
+            return (u, v, LoadTime::at(self.t()));
+        };
+        let DampedAt { cells, supports } = self.damped;
+        let moved = |from: &[f64], by: &[f64], time: f64| -> Cow<'_, [f64]> {
+            let values = from.iter().zip(by);
+            values.map(|(from, by)| from + time * by).collect()
+        };
+        let v = match cells {
+            0.0 => v,
+            _ => moved(&self.v, &self.a, cells * dt),
+        };
+        match supports {
+            0.0 => (u, v, LoadTime::around(t, dt.min(t), dt)),
+            _ => {
+                let back = supports.min(0.0) * dt;
+                let from = t + (supports - 0.5) * dt;
+                let u = match back {
+                    0.0 => u,
+                    _ => moved(&self.u, &self.v, back),
+                };
+                (u, v, LoadTime::mean_at(t + back, from, dt))
+            }
+        }
+    }
+
     /// Ends a step of `dt` (s) that moved `u` and `v` to the same time and keeps no acceleration.
     pub fn advance(&mut self, dt: f64) {
         self.end_step(dt, VelocityTime::Same, Acceleration::None);
@@ -196,6 +271,7 @@ impl State {
     pub fn end_step(&mut self, dt: f64, velocity: VelocityTime, acceleration: Acceleration) {
         self.clock.advance(dt);
         self.velocity = velocity;
+        self.damped = DampedAt::default();
         self.acceleration = acceleration;
     }
 }

@@ -2,10 +2,10 @@
 
 use crate::bytes::{BytesError, Kind, Reader, Writer};
 use crate::system::loads_revision;
-use crate::{Acceleration, Clock, Contact, Start, State, StepCut, System, VelocityTime};
+use crate::{Acceleration, Clock, Contact, DampedAt, Start, State, StepCut, System, VelocityTime};
 
 const KIND: Kind = Kind {
-    name: b"sinew state v5\r\n",
+    name: b"sinew state v6\r\n",
     words: "state",
 };
 
@@ -59,6 +59,8 @@ impl State {
         out.number(base);
         out.number(dt);
         out.count(steps);
+        out.number(self.damped.cells);
+        out.number(self.damped.supports);
         out.number(self.start.map_or(0.0, |start| start.energy));
         // No parts stand for no cut.
         out.count(self.cut.map_or(0, |cut| cut.parts.into()));
@@ -99,6 +101,10 @@ impl State {
         };
         let fingerprint = rest.count()?;
         let (base, dt, steps) = (rest.number()?, rest.number()?, rest.count()?);
+        let damped = DampedAt {
+            cells: rest.number()?,
+            supports: rest.number()?,
+        };
         let energy = rest.number()?;
         let (parts, taken) = (rest.count()?, rest.count()?);
         let (stable_step, damping) = (rest.number()?, rest.number()?);
@@ -150,6 +156,7 @@ impl State {
             u,
             v,
             velocity,
+            damped,
             a,
             acceleration,
             internal,
@@ -178,6 +185,10 @@ mod tests {
         let mut state = State::new(vec![0.1 + 0.2], vec![-1.0 / 3.0]);
         state.a = vec![f64::MIN_POSITIVE];
         state.end_step(1e-3, VelocityTime::MiddleOfStep, Acceleration::Kick);
+        state.damped = DampedAt {
+            cells: 0.3,
+            supports: -0.5,
+        };
         state
     }
 

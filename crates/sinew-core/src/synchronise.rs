@@ -3,7 +3,7 @@
 use crate::evaluation_error::EvaluationError;
 use crate::input::Inputs;
 use crate::load_time::LoadTime;
-use crate::state::{Acceleration, State, VelocityTime};
+use crate::state::{Acceleration, DampedAt, State, VelocityTime};
 use crate::system::System;
 use crate::trial::Trial;
 
@@ -107,6 +107,7 @@ impl State {
         self.velocity_with((system, false), inputs, work)?;
         self.v.copy_from_slice(work);
         self.velocity = VelocityTime::Same;
+        self.damped = DampedAt::default();
         self.acceleration = Acceleration::None;
         Ok(true)
     }

@@ -478,6 +478,7 @@ impl<T: ElementPrecision> Running<'_, '_, T> {
             let stepped = Stepped {
                 work,
                 velocity: program.velocity,
+                damped: program.damped,
                 acceleration,
             };
             written = is_last || exceeded || batch.looks_at_steps();

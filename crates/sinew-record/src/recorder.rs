@@ -187,7 +187,7 @@ impl RunRecorder<'_> {
                 let before = self.balance.last.as_ref().map_or(0.0, |row| t - row.before);
                 let next = self.schedules.energy.next(step + 1);
                 let after = next.map_or(before, |next| (next - step) as f64 * self.simulation.dt());
-                reactions.row(&mut self.line, moment, &self.v, [before, after])?;
+                reactions.row(&mut self.line, moment, [before, after])?;
                 file.push(&self.line)?;
             }
         }

@@ -138,7 +138,6 @@ impl<'a> Reactions<'a> {
         &mut self,
         out: &mut String,
         moment: &Moment<'_>,
-        v: &[f64],
         [before, after]: [f64; 2],
     ) -> Result<(), RecordRunError> {
         let Some(body) = self.simulation.model().body() else {
@@ -146,8 +145,8 @@ impl<'a> Reactions<'a> {
         };
         let (t, u) = (moment.state.t(), &moment.state.u);
         let when = LoadTime::around(t, before, after).under(moment.inputs);
-        let with_memory = body.model.with_memory(&moment.state.internal);
-        with_memory.reactions(when, u, v, &mut self.forces)?;
+        body.model
+            .reactions_in(when, moment.state, &mut self.forces)?;
         body.subtract_contact(moment.state, &mut self.forces);
         body.model.displacements_at(when, u, &mut self.u)?;
         out.clear();

@@ -116,6 +116,7 @@ impl<'a> Interpreter<'a> {
                 Acceleration::None
             };
             state.end_step(part, program.velocity, keeps);
+            state.damped = program.damped;
         }
         state.u.clone_from(&self.registers[Register::U.index()]);
         state.v.clone_from(&self.registers[Register::V.index()]);

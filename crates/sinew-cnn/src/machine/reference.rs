@@ -101,6 +101,7 @@ impl ReferenceMachine {
             let stepped = Stepped {
                 work,
                 velocity: program.velocity,
+                damped: program.damped,
                 acceleration,
             };
             batch.end_step(state, stepped)?;

@@ -1,6 +1,6 @@
 //! Building programs.
 
-use sinew_core::{Acceleration, VelocityTime};
+use sinew_core::{Acceleration, DampedAt, VelocityTime};
 
 use super::{
     Forces, LoadAt, Loads, Physics, Product, Program, Quotient, Register, Source, Sweep, Update,
@@ -16,6 +16,7 @@ impl Program {
             start: Vec::new(),
             step: Vec::new(),
             velocity,
+            damped: DampedAt::default(),
             acceleration: Acceleration::None,
             blocks: None,
             inertia: None,
@@ -44,6 +45,10 @@ impl Program {
     /// `w = u + beta v` is kept, which the neighbours read then.
     pub fn net_force(&mut self, physics: &Physics, u: Register, v: Register, at: LoadAt) -> Sweep {
         let loads = Loads::All { factor: 1.0, at };
+        if at == LoadAt::StartOf {
+            // The mean over the step to come.
+            self.damped = DampedAt::supports(0.5);
+        }
         if !physics.matrices {
             return Sweep {
                 loads,

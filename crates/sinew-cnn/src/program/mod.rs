@@ -13,7 +13,7 @@ mod work;
 
 use std::sync::Arc;
 
-use sinew_core::{Acceleration, Inertia, VelocityTime};
+use sinew_core::{Acceleration, DampedAt, Inertia, VelocityTime};
 
 pub use physics::Physics;
 pub use sweep::{
@@ -55,6 +55,8 @@ pub struct Program {
     pub step: Vec<Sweep>,
     /// Time of V after a step.
     pub velocity: VelocityTime,
+    /// Where damping takes velocities after a step.
+    pub damped: DampedAt,
     /// Kind of acceleration in A after the last step of a batch.
     pub acceleration: Acceleration,
     /// P^-1, one block for each cell, of sweeps with [`Quotient::Blocks`].

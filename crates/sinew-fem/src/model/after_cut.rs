@@ -104,6 +104,7 @@ impl Model {
         }
         cut.clock = state.clock;
         cut.velocity = state.velocity;
+        cut.damped = state.damped;
         cut.internal.clone_from(&state.internal);
         cut.start = state.start;
         cut.cut = state.cut;

@@ -1,6 +1,6 @@
 //! Forces of the supports on a body.
 
-use sinew_core::{LoadTime, Ramp};
+use sinew_core::{LoadTime, Ramp, State};
 
 use super::Model;
 use super::field_error::{FieldError, require_inputs};
@@ -24,7 +24,8 @@ impl Model {
 
     /// Writes the force (N) of the supports on the body at each node of the mesh, at a time (s), with
     /// displacement `u` (m) and velocity `v` (m/s) at that time (see
-    /// [`sinew_core::State::velocity_at_t`]); zero in components that move by themselves.
+    /// [`sinew_core::State::velocity_at_t`]); zero in components that move by themselves. For a state of a run with stiffness damping see
+    /// [`Model::reactions_in`].
     ///
     /// At each held or moved component p it is `M_p (a_p + alpha v_p) + (K u + D v)_p - F_p(t)`: the force
     /// of its prescribed motion, the pull of all other components, less the model's own loads on p, so that all
@@ -47,21 +48,49 @@ impl Model {
         v: &[f64],
         out: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
-        self.reactions_after(Past::RELAXED, when.into(), [u, v], out)
+        let when = when.into();
+        let damped = Damped::at(when, u, v);
+        self.reactions_after((when, Past::RELAXED), u, damped, out)
     }
 
-    pub(super) fn reactions_after(
+    /// Writes the forces (N) of [`Model::reactions`] in a state, with what its memory holds, and with damping as the method that led to it takes
+    /// velocities ([`State::damping`]): those for which the method's own forces on the degrees of freedom balance with the loads and inertia of
+    /// the whole.
+    ///
+    /// # Errors
+    /// Same as [`Model::reactions`].
+    pub fn reactions_in<'a>(
         &self,
-        past: Past<'_>,
-        when: LoadTime<'_>,
-        [u, v]: [&[f64]; 2],
+        when: impl Into<LoadTime<'a>>,
+        state: &State,
+        out: &mut [[f64; 3]],
+    ) -> Result<(), FieldError> {
+        let when = when.into();
+        let past = Past {
+            internal: &state.internal,
+            dt: 0.0,
+        };
+        let (u, v, at) = state.damping();
+        let damped = Damped {
+            when: at.under(when.inputs()),
+            u: &u,
+            v: &v,
+        };
+        self.reactions_after((when, past), &state.u, damped, out)
+    }
+
+    fn reactions_after(
+        &self,
+        at: (LoadTime<'_>, Past<'_>),
+        u: &[f64],
+        damped: Damped<'_>,
         out: &mut [[f64; 3]],
     ) -> Result<(), FieldError> {
         self.require_dofs("the displacement", u)?;
-        self.require_dofs("the velocity", v)?;
+        self.require_dofs("the velocity", damped.v)?;
         self.require_nodes("the output", out)?;
-        let force = self.forces_in_motion((when, past), u, v)?;
-        self.held_forces(when, force, out);
+        let force = self.forces_in_motion(at, u, damped)?;
+        self.held_forces(at.0, force, out);
         Ok(())
     }
 
@@ -111,7 +140,8 @@ impl Model {
         self.require_dofs("the displacement", u)?;
         self.require_dofs("the velocity", v)?;
         let when = when.into();
-        let force_in_motion = self.forces_in_motion((when, Past::RELAXED), u, v)?;
+        let damped = Damped::at(when, u, v);
+        let force_in_motion = self.forces_in_motion((when, Past::RELAXED), u, damped)?;
         let mut sum = [0.0; 3];
         for &node in nodes {
             self.require_node(node)?;
@@ -157,7 +187,7 @@ impl Model {
         self.require_nodes("the output", out)?;
         self.require_held_inputs(when)?;
         let [u, v, a] = motion.map(|field| move |node: u32| field[node as usize]);
-        self.held_forces(when, self.row_forces((when, past), u, v, a), out);
+        self.held_forces(when, self.row_forces((when, past), u, (u, v), a), out);
         Ok(())
     }
 
@@ -171,13 +201,16 @@ impl Model {
         &'a self,
         (when, past): (LoadTime<'a>, Past<'a>),
         u: &'a [f64],
-        v: &'a [f64],
+        damped: Damped<'a>,
     ) -> Result<impl Fn(u32) -> [f64; 3] + 'a, FieldError> {
         self.require_held_inputs(when)?;
         Ok(self.row_forces(
             (when, past),
             self.at_nodes(when, Field::Displacement, Some(u))?,
-            self.at_nodes(centred(when), Field::Velocity, Some(v))?,
+            (
+                self.at_nodes(damped.when, Field::Displacement, Some(damped.u))?,
+                self.at_nodes(damped.when, Field::Velocity, Some(damped.v))?,
+            ),
             self.at_nodes(when, Field::Acceleration, None)?,
         ))
     }
@@ -186,18 +219,18 @@ impl Model {
         self.supports.border(self.parts(), self.held_nodes())
     }
 
-    /// M (a + alpha v) + K u + D v (N) at a held node, D being the damping other than alpha M; less what pressures that follow the
-    /// surface do beyond those on the surface at rest.
+    /// M (a + alpha v) + K u + D v (N) at a held node, D being the damping other than alpha M, with the displacement at which it acts; less what
+    /// pressures that follow the surface do beyond those on the surface at rest.
     fn row_forces(
         &self,
         at: (LoadTime<'_>, Past<'_>),
         u: impl Fn(u32) -> [f64; 3],
-        v: impl Fn(u32) -> [f64; 3],
+        (damped_u, v): (impl Fn(u32) -> [f64; 3], impl Fn(u32) -> [f64; 3]),
         a: impl Fn(u32) -> [f64; 3],
     ) -> impl Fn(u32) -> [f64; 3] {
         let damping = self.operators.damping();
         let (alpha, beta, border) = (damping.mass, damping.stiffness, self.border());
-        let large = self.large_forces(at, beta, &u, &v);
+        let large = self.large_forces(at, beta, &u, (damped_u, &v));
         move |node| {
             let mut force = border.internal_force(node, beta, &u, &v);
             if let Some(large) = &large {
@@ -218,7 +251,7 @@ impl Model {
         (when, past): (LoadTime<'_>, Past<'_>),
         beta: f64,
         u: impl Fn(u32) -> [f64; 3],
-        v: impl Fn(u32) -> [f64; 3],
+        (damped_u, v): (impl Fn(u32) -> [f64; 3], impl Fn(u32) -> [f64; 3]),
     ) -> Option<Vec<[f64; 3]>> {
         let large = self.large.as_ref()?;
         let mut forces = vec![[0.0; 3]; self.mesh.points.len()];
@@ -229,6 +262,7 @@ impl Model {
                 subtract(&mut forces[node as usize], -1.0, &force);
             });
             if beta != 0.0 {
+                fill(&mut scratch.displacement, &damped_u);
                 fill(&mut scratch.change, &v);
                 large.product(scratch, past, Wanted::Viscosity)?;
                 large.at_nodes(scratch, |node, force| {
@@ -275,6 +309,21 @@ impl Model {
             Some(_) => 0.0,
             None => force[axis],
         })
+    }
+}
+
+/// A motion by which damping acts: displacement (m) and velocity (m/s) of the degrees of freedom, and the time for which supports have theirs.
+struct Damped<'a> {
+    when: LoadTime<'a>,
+    u: &'a [f64],
+    v: &'a [f64],
+}
+
+impl<'a> Damped<'a> {
+    /// A motion whose velocity holds at the displacement's time.
+    fn at(when: LoadTime<'a>, u: &'a [f64], v: &'a [f64]) -> Self {
+        let when = centred(when);
+        Self { when, u, v }
     }
 }
 

@@ -7,7 +7,7 @@ use super::deformed::DeformedTet;
 use super::field_error::FieldError;
 use crate::large::Past;
 
-/// A model with the internal variables of a state ([`sinew_core::State::internal`]): its stresses and reactions are those in that state. Asked without,
+/// A model with the internal variables of a state ([`sinew_core::State::internal`]): its stresses are those in that state. Asked without,
 /// a model with memory tells what it comes to when it is held for a long time.
 #[derive(Clone, Copy, Debug)]
 pub struct WithMemory<'m> {
@@ -62,21 +62,6 @@ impl WithMemory<'_> {
         displacement: &'a [[f64; 3]],
     ) -> Result<impl Iterator<Item = DeformedTet> + 'a, FieldError> {
         self.model.deformed_tets_after(self.past, displacement)
-    }
-
-    /// [`Model::reactions`].
-    ///
-    /// # Errors
-    /// Same as there.
-    pub fn reactions<'a>(
-        &self,
-        when: impl Into<LoadTime<'a>>,
-        u: &[f64],
-        v: &[f64],
-        out: &mut [[f64; 3]],
-    ) -> Result<(), FieldError> {
-        self.model
-            .reactions_after(self.past, when.into(), [u, v], out)
     }
 
     /// [`Model::moving_reactions`].

@@ -3,8 +3,8 @@
 use sinew_cnn::{CellBlocks, Deflation, Inverse, Stabiliser};
 use sinew_core::vectors::add_scaled;
 use sinew_core::{
-    Acceleration, AllShown, Contact, Inertia, LinearOperators, LoadTime, Meeting, State, Step,
-    StepError, StepReport, Stepped, System, VelocityTime,
+    Acceleration, AllShown, Contact, DampedAt, Inertia, LinearOperators, LoadTime, Meeting, State,
+    Step, StepError, StepReport, Stepped, System, VelocityTime,
 };
 use std::sync::Arc;
 
@@ -191,6 +191,7 @@ impl StepByHand for SolvedSteps {
         Ok(Stepped {
             work,
             velocity: VelocityTime::MiddleOfStep,
+            damped: DampedAt::centred(1.0 - self.lagging),
             acceleration: Acceleration::Kick,
         })
     }

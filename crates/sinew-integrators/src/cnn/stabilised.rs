@@ -7,8 +7,8 @@ use sinew_cnn::{
     Slowing, Stabiliser, Sweep,
 };
 use sinew_core::{
-    Acceleration, EnergyBehaviour, Fact, Needs, OptionError, OptionValue, Options, Properties,
-    SetupError, StepReport, System, VelocityTime,
+    Acceleration, DampedAt, EnergyBehaviour, Fact, Needs, OptionError, OptionValue, Options,
+    Properties, SetupError, StepReport, System, VelocityTime,
 };
 
 use super::carried::Carried;
@@ -282,7 +282,9 @@ fn program(stabiliser: &Stabiliser, physics: &Physics, dt: f64) -> Option<Progra
     program.acceleration = Acceleration::Kick;
 
     // Only the damping that P does not hold lags in the first half step.
-    let lagging = 1.0 - stabiliser.majorant().damping_share();
+    let centred = stabiliser.majorant().damping_share();
+    let lagging = 1.0 - centred;
+    program.damped = DampedAt::centred(centred);
     let w = program.named("w0");
     let before =
         Sweep::local().then(w.becomes([(u, 1.0), (v, lagging * physics.stiffness_damping)]));

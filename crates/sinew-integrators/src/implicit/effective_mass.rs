@@ -2,8 +2,8 @@
 
 use sinew_core::vectors::add_scaled;
 use sinew_core::{
-    Acceleration, Equations, Fact, LinearSystem, LoadTime, SetupError, State, Step, StepError,
-    StepReport, Stepped, System,
+    Acceleration, ElasticLaw, Equations, EvaluationError, Fact, LinearSystem, LoadTime, SetupError,
+    State, Step, StepError, StepReport, Stepped, System, Trial, Velocities,
 };
 
 use super::factor::{Combination, Factor};
@@ -237,6 +237,7 @@ impl EffectiveMass {
             state.acceleration = Acceleration::Same;
             return Ok(StepReport::ONE_FORCE);
         }
+        let mut work = StepReport::default();
         if let Some(last) = state.clock.last_step() {
             let [_, before] = ends(t - last, last);
             let jumped = match step.system.equations() {
@@ -251,6 +252,8 @@ impl EffectiveMass {
                     law.external_force(load, &state.u, &mut self.a);
                     law.external_force(before, &state.u, &mut self.v);
                     add_scaled(-1.0, &self.v, &mut self.a);
+                    let drag = self.add_change_of_drag(step, state, [before, load]);
+                    work.sweeps += drag.map_err(|source| StepError::Refused { t, source })?;
                     true
                 }
             };
@@ -260,6 +263,26 @@ impl EffectiveMass {
                 }
             }
         }
-        Ok(StepReport::default())
+        Ok(work)
+    }
+
+    /// Adds to the change of the loads that of stiffness damping by the motion of supports, which matrices have among their loads and force laws have
+    /// not; the sweeps that it took.
+    fn add_change_of_drag(
+        &mut self,
+        step: &Step<'_>,
+        state: &State,
+        [before, after]: [LoadTime<'_>; 2],
+    ) -> Result<u64, EvaluationError> {
+        let law = step.system.as_elastic();
+        let drags = |law: &&dyn ElasticLaw| law.supports_move() && law.damping().stiffness != 0.0;
+        let Some(law) = law.filter(drags) else {
+            return Ok(0);
+        };
+        for (when, sign) in [(before, 1.0), (after, -1.0)] {
+            law.viscous_force(&Trial::of(state, when), Velocities::Supports, &mut self.v)?;
+            add_scaled(sign, &self.v, &mut self.a);
+        }
+        Ok(2)
     }
 }

@@ -1,8 +1,8 @@
 //! `implicit-euler`: both halves from the new state.
 
 use sinew_core::{
-    EnergyBehaviour, LoadTime, Needs, OptionError, Options, Properties, SetupError, State, Step,
-    StepError, Stepped, System,
+    DampedAt, EnergyBehaviour, LoadTime, Needs, OptionError, Options, Properties, SetupError,
+    State, Step, StepError, Stepped, System,
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, OneAcceleration, Sought};
@@ -89,7 +89,7 @@ impl OneAcceleration for ImplicitEuler {
         let loads = [LoadTime::start_of(t, dt), LoadTime::end_of(t, dt)];
         let sought = Sought {
             viscosity: ViscousPlace {
-                load: LoadTime::within(t, dt, 0.5),
+                load: LoadTime::middle_of(t, dt),
                 before: 0.5 * dt,
             },
             ..Sought::at_end(self.coefficients(dt), loads)
@@ -99,6 +99,9 @@ impl OneAcceleration for ImplicitEuler {
             *v += dt * a;
             *u += dt * *v;
         }
-        Ok(Stepped::at_same_time(work))
+        Ok(Stepped {
+            damped: DampedAt::WAY_OF_STEP,
+            ..Stepped::at_same_time(work)
+        })
     }
 }

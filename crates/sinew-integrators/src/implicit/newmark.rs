@@ -1,8 +1,8 @@
 //! `newmark`: Newmark's family.
 
 use sinew_core::{
-    Acceleration, EnergyBehaviour, LoadTime, Needs, OptionError, Options, Properties, SetupError,
-    StableStep, State, Step, StepError, Stepped, System,
+    Acceleration, DampedAt, EnergyBehaviour, LoadTime, Needs, OptionError, Options, Properties,
+    SetupError, StableStep, State, Step, StepError, Stepped, System,
 };
 
 use super::effective_mass::{EffectiveMass, ImplicitSteps, OneAcceleration, Sought};
@@ -184,6 +184,7 @@ impl OneAcceleration for Newmark {
         }
         Ok(Stepped {
             acceleration: Acceleration::Same,
+            damped: DampedAt::supports(0.5 - gamma),
             ..Stepped::at_same_time(work)
         })
     }

@@ -172,6 +172,41 @@ fn a_base_pushes_with_the_whole_mass_whatever_its_way() {
     }
 }
 
+/// A body that its base carries without strain feels none of its damping, and neither does the base, whatever a method sets beside whose speed.
+#[test]
+fn damping_adds_nothing_to_the_push_of_a_base() {
+    let (acceleration, edge, end) = (4.0, 0.02, 0.08_f64);
+    let expected = 1000.0 * edge * edge * edge * acceleration;
+    let way = |t: f64| 0.5 * acceleration * t * t;
+    let times: Vec<f64> = (0..43).map(|row| f64::from(row) * 0.002).collect();
+    let values: Vec<f64> = times.iter().map(|t| way(*t)).collect();
+    for model in ["linear", "neo-hookean"] {
+        for method in [
+            "\"implicit-euler\"",
+            "\"cnn-energy\"\nkind = \"ie\"\nsweeps = 60",
+        ] {
+            for rows in ["", "[output]\nenergy = { every = 0.01 }\n"] {
+                let text = format!(
+                    "[mesh]\ncube = {{ cells = 2, edge = {edge}, split = \"kuhn\" }}\n[[region]]\ndensity = 1000.0\nmodel = \"{model}\"\n\
+                     youngs_modulus = 2e5\npoissons_ratio = 0.3\n[damping]\nstiffness = 0.002\n[[move]]\ngroup = \"bottom\"\n\
+                     displacement = [1.0, 0.0, 0.0]\nramp = {{ kind = \"table\", times = {times:?}, values = {values:?} }}\n\
+                     [run]\nduration = {end}\nintegrator = {method}\ndt = 0.002\n{rows}"
+                );
+                let place = tempfile::tempdir().unwrap();
+                let path = place.path().join("out");
+                run(&path, &crate::common::build(&text), &mut ());
+                let reactions = table(&path.join("reactions.csv"));
+                let push = &reactions["move_1_bottom_f_x_N"];
+                // It is jerked at first.
+                for push in &push[push.len() / 2..] {
+                    let off = push / expected - 1.0;
+                    assert!(off.abs() < 0.02, "{model}, {method}, {rows}: {push} N");
+                }
+            }
+        }
+    }
+}
+
 /// Dashpots between a part that is moved and the rest take energy too.
 #[test]
 fn dashpots_at_moved_supports_are_in_it() {

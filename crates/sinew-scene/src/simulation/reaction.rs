@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use sinew_core::{EvaluationError, Inputs, LoadTime, State};
+use sinew_core::{LoadTime, State};
 use sinew_fem::{FieldError, On};
 
 use super::Simulation;
@@ -55,9 +55,6 @@ impl fmt::Display for ReactionOf {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReactionError {
-    /// A system that refuses the state.
-    #[error(transparent)]
-    State(#[from] EvaluationError),
     /// A state of another system.
     #[error(transparent)]
     Field(#[from] FieldError),
@@ -116,18 +113,15 @@ impl Simulation {
     /// the mean over a step on both sides.
     ///
     /// # Errors
-    /// [`ReactionError`] when the state is that of another system or the system refuses it.
+    /// [`ReactionError`] when the state is that of another system.
     pub fn reactions(&self, state: &State) -> Result<Vec<Reaction>, ReactionError> {
         let Some(built) = self.model().body() else {
             return Ok(Vec::new());
         };
-        let mut v = vec![0.0; state.u.len()];
-        state.velocity_at_t(self.system(), Inputs::none(), &mut v)?;
         let mut forces = vec![[0.0; 3]; built.mesh.points.len()];
-        let body = built.model.with_memory(&state.internal);
         let (t, dt) = (state.t(), state.clock.last_step().unwrap_or(0.0));
         let when = LoadTime::around(t, dt.min(t), dt);
-        body.reactions(when, &state.u, &v, &mut forces)?;
+        built.model.reactions_in(when, state, &mut forces)?;
         built.subtract_contact(state, &mut forces);
         let parts = self.held_parts()?.into_iter();
         Ok(parts

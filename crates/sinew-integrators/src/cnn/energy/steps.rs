@@ -2,8 +2,8 @@
 
 use sinew_core::vectors::{add_scaled, dot, dot_of_difference, scale, weighted_dot};
 use sinew_core::{
-    Acceleration, Contact, ElasticLaw, EvaluationError, Fact, LoadTime, Needs, State, Step,
-    StepError, StepReport, Stepped, System, Velocities,
+    Acceleration, Contact, DampedAt, ElasticLaw, EvaluationError, Fact, LoadTime, Needs, State,
+    Step, StepError, StepReport, Stepped, System, Velocities,
 };
 
 use super::certificate::Certificate;
@@ -40,6 +40,8 @@ pub struct EnergySteps {
     /// Velocity at the end of the step (m/s), and acceleration at its start (m/s^2).
     v: Vec<f64>,
     a: Vec<f64>,
+    /// The time at which that acceleration has the motion of supports in its stiffness damping: of one that the state kept, that of the end of the last step.
+    damped_at: LoadTime<'static>,
     certificate: Certificate,
 }
 
@@ -85,6 +87,7 @@ impl EnergySteps {
             drag: zeros(),
             v: zeros(),
             a: zeros(),
+            damped_at: LoadTime::at(0.0),
             certificate: before.map_or_else(Certificate::default, |before| before.certificate),
         }
     }
@@ -131,6 +134,7 @@ impl EnergySteps {
             && let Some(last) = state.clock.last_step()
         {
             let [_, before] = ends(t - last, last);
+            self.damped_at = before;
             let before = before.under(step.inputs);
             step.system.external_force(before, &state.u, &mut self.pull);
             let change = self.load_before.iter().zip(&self.pull).zip(masses);
@@ -141,6 +145,7 @@ impl EnergySteps {
             return Ok(StepReport::default());
         }
         let [load, _] = ends(t, step.dt);
+        self.damped_at = load;
         let law = law_at(law, step, load, 0.0, state);
         self.start.u.copy_from_slice(&state.u);
         let evaluated = self.start.evaluate(&law);
@@ -174,7 +179,7 @@ impl EnergySteps {
         for ((middle, u), v) in values {
             *middle = u + half * v;
         }
-        let mut when = LoadTime::at(state.t() + half).under(step.inputs);
+        let mut when = LoadTime::middle_of(state.t(), step.dt).under(step.inputs);
         work.sweeps += 1;
         if self
             .descent
@@ -183,7 +188,7 @@ impl EnergySteps {
         {
             // Too far for the law.
             middle.copy_from_slice(&state.u);
-            when = LoadTime::at(state.t()).under(step.inputs);
+            when = LoadTime::start_of(state.t(), step.dt).under(step.inputs);
             work.sweeps += 1;
             self.descent.take_viscosity(&law.damped_at(when, middle))?;
         }
@@ -218,9 +223,8 @@ impl EnergySteps {
             Kind::Trapezoidal => {
                 if law.is_damped() {
                     // That of the start of the step, which its acceleration has lost already: in the step it is held half way.
-                    let [start, _] = ends(state.t(), dt).map(|when| when.under(step.inputs));
                     let at_start = Law {
-                        load: start,
+                        load: self.damped_at.under(step.inputs),
                         ..*law
                     };
                     at_start.damping_force(&state.u, &state.v, &mut self.damped)?;
@@ -455,12 +459,13 @@ impl EnergySteps {
         if let Some(touched) = &self.touched {
             state.contact.clone_from(&touched.shown().contact);
         }
-        let acceleration = match self.kind {
-            Kind::ImplicitEuler => Acceleration::None,
-            Kind::Trapezoidal => Acceleration::Same,
+        let (acceleration, damped) = match self.kind {
+            Kind::ImplicitEuler => (Acceleration::None, DampedAt::WAY_OF_STEP),
+            Kind::Trapezoidal => (Acceleration::Same, DampedAt::default()),
         };
         Ok(Stepped {
             acceleration,
+            damped,
             ..Stepped::at_same_time(work)
         })
     }

@@ -13,9 +13,9 @@ use std::sync::Arc;
 use sinew_cnn::Physics;
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    Acceleration, BlockMatrix, Damping, ElementStiffness, Fact, Layers, LinearOperators, LoadTime,
-    Needs, OperatorError, OptionError, Options, Pattern, Properties, SetupError, StableStep, State,
-    Step, StepError, StepReport, Stepped, System, VelocityTime,
+    Acceleration, BlockMatrix, DampedAt, Damping, ElementStiffness, Fact, Layers, LinearOperators,
+    LoadTime, Needs, OperatorError, OptionError, Options, Pattern, Properties, SetupError,
+    StableStep, State, Step, StepError, StepReport, Stepped, System, VelocityTime,
 };
 
 use sinew_sparse::AssemblyError;
@@ -244,6 +244,7 @@ impl StepByHand for PatchedSteps {
                 ..StepReport::ONE_FORCE
             },
             velocity: VelocityTime::MiddleOfStep,
+            damped: DampedAt::default(),
             acceleration: Acceleration::Kick,
         })
     }

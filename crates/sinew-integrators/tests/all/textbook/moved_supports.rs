@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use sinew_core::spectrum::Spectrum;
 use sinew_core::{
-    Inputs, Integrator, LinearSystem, LoadTime, Options, Ramp, SetupError, StableStep, State,
+    Integrator, LinearSystem, LoadTime, OptionValue, Options, Ramp, SetupError, StableStep, State,
     System,
 };
 use sinew_fem::hyperelastic::Parameters;
@@ -14,7 +14,7 @@ use sinew_mesh::TetMesh;
 use sinew_mesh::structured::{self, Split};
 
 use crate::common::tissue::{DENSITY, body, held, linear};
-use crate::common::{build, largest};
+use crate::common::{build, largest, relative_error};
 
 const YOUNGS_MODULUS: f64 = 5000.0;
 
@@ -76,7 +76,6 @@ fn follow(
 ) {
     let dt = method.dt;
     let mut forces = vec![[0.0; 3]; model.mesh().points.len()];
-    let mut v = vec![0.0; model.dofs()];
     for step in 0..=steps {
         if step > 0 {
             match method.integrator.step(model, &mut state, dt) {
@@ -86,11 +85,16 @@ fn follow(
             }
         }
         let t = state.t();
-        state.velocity_at_t(model, Inputs::none(), &mut v).unwrap();
-        let when = LoadTime::around(t, dt.min(t), dt);
-        model.reactions(when, &state.u, &v, &mut forces).unwrap();
+        reactions(model, &state, &mut forces);
         see(step, t, &forces);
     }
+}
+
+/// The forces (N) of supports in a state.
+fn reactions(model: &Model, state: &State, forces: &mut [[f64; 3]]) {
+    let (t, dt) = (state.t(), state.clock.last_step().unwrap_or(0.0));
+    let when = LoadTime::around(t, dt.min(t), dt);
+    model.reactions_in(when, state, forces).unwrap();
 }
 
 /// The nodes of a mesh at one end of an axis.
@@ -245,7 +249,7 @@ fn few_modes_carry_what_supports_carry() {
     let few = Options::new().with_number("modes", 3.0);
     let tolerant = Options::new().with_number("tolerance", 0.1);
     let ritz = few.clone().with_number("modes", 6.0);
-    let ritz = ritz.with("vectors", sinew_core::OptionValue::Text("ritz".to_owned()));
+    let ritz = ritz.with("vectors", OptionValue::Text("ritz".to_owned()));
     let mass = DENSITY * 0.2 * 0.05 * 0.05;
     let inertia = amplitude.map(|size| -mass * omega * omega * size);
     let shaken = (sine, amplitude.map(|size| omega * size), inertia);
@@ -428,6 +432,163 @@ fn a_shaken_block_is_pushed_by_its_mass_times_the_acceleration() {
                     method.name
                 );
             }
+        }
+    }
+}
+
+/// A small block on a table that gains speed along x, with damping that is stiff beside its inertia, held back from the start on as far as it hangs behind; with
+/// the model at small strain, and the table's acceleration (m/s^2).
+fn damped_block(law: fn(f64) -> Law) -> (Model, Model, State, impl Fn(f64) -> f64) {
+    let mesh = structured::cube(2, 0.02, Split::Mirrored).unwrap();
+    let (amplitude, rise, modulus) = (0.05, 0.4, 2e5);
+    let acceleration =
+        move |t: f64| amplitude * PI * PI / (2.0 * rise * rise) * (PI * t / rise).cos();
+    let model = |law| {
+        let problem = Problem {
+            moves: vec![Moving {
+                on: face(&mesh, 2, 0.0),
+                axes: [true; 3],
+                courses: vec![Course {
+                    displacement: [amplitude, 0.0, 0.0],
+                    ramp: Ramp::Sin2 { rise },
+                }],
+            }],
+            damping: Rayleigh {
+                mass: 0.0,
+                stiffness: 2e-3,
+            },
+            ..body(law)
+        };
+        Model::build(&mesh, &problem).unwrap()
+    };
+    let small = model(linear(modulus, 0.3));
+    let along = [acceleration(0.0), 0.0, 0.0].into_iter().cycle();
+    let behind: Vec<f64> = along.zip(small.mass()).map(|(a, mass)| -a * mass).collect();
+    let u = static_solution(&small, &behind).unwrap();
+    let start = State::new(u, vec![0.0; small.dofs()]);
+    (model(law(modulus)), small, start, acceleration)
+}
+
+/// Damping acts on no motion that all nodes share, so whatever a method sets beside whose speed, the forces add up to mass times acceleration.
+#[test]
+fn a_shaken_block_with_damping_is_pushed_by_its_mass_times_the_acceleration() {
+    let laws: [fn(f64) -> Law; 2] = [|modulus| linear(modulus, 0.3), neo_hookean];
+    for law in laws {
+        let (model, small, start, acceleration) = damped_block(law);
+        let mass: f64 = model.node_masses().iter().sum();
+        for mut method in methods(&model, &small, 2e-3) {
+            let steps = (0.03 / method.dt).round() as usize;
+            let mut worst = 0.0_f64;
+            follow(
+                &mut method,
+                &model,
+                (start.clone(), steps),
+                |_, t, forces| {
+                    if t > 0.015 {
+                        let push: f64 = forces.iter().map(|force| force[0]).sum();
+                        worst = worst.max((push / (mass * acceleration(t)) - 1.0).abs());
+                    }
+                },
+            );
+            assert!(worst < 0.01, "{}, {}: {worst:e}", method.name, law(1.0));
+        }
+    }
+}
+
+fn neo_hookean(modulus: f64) -> Law {
+    Law::Hyperelastic {
+        id: "neo-hookean",
+        parameters: Parameters::new(modulus, 0.3),
+    }
+}
+
+/// Newton's second law for the motion that a first-order method makes, to its last digits: a table pushes with the force that changes the momentum of the nodes which move by
+/// themselves in the step that takes the forces of a state, the next one or the last, and with what its own nodes need.
+#[test]
+fn a_damped_block_is_pushed_by_what_its_methods_own_step_gains_of_momentum() {
+    let converged = Options::new().with_number("sweeps", 400.0);
+    let converged = converged.with("kind", OptionValue::Text("ie".to_owned()));
+    let methods = [
+        ("forward-euler", Options::new(), true),
+        ("symplectic-euler", Options::new(), true),
+        ("cnn", Options::new(), true),
+        ("cnn-symplectic", Options::new(), true),
+        ("central-difference", Options::new(), true),
+        ("implicit-euler", Options::new(), false),
+        ("cnn-energy", converged, false),
+    ];
+    let laws: [fn(f64) -> Law; 2] = [|modulus| linear(modulus, 0.3), neo_hookean];
+    for law in laws {
+        let (model, small, start, acceleration) = damped_block(law);
+        let of_free: f64 = model.mass().iter().sum::<f64>() / 3.0;
+        let of_table = model.node_masses().iter().sum::<f64>() - of_free;
+        for (id, options, is_next) in &methods {
+            let mut integrator = build(id, options);
+            let dt = match integrator.stable_step(&small) {
+                Ok(StableStep::UpTo(limit)) => limit / 2.0,
+                _ => 2e-3,
+            };
+            let mut state = start.clone();
+            let mut forces = vec![[0.0; 3]; model.node_masses().len()];
+            let (mut pushes, mut momenta) = (Vec::new(), Vec::new());
+            for _ in 0..12 {
+                integrator.step(&model, &mut state, dt).unwrap();
+                reactions(&model, &state, &mut forces);
+                let push: f64 = forces.iter().map(|force| force[0]).sum();
+                pushes.push(push - of_table * acceleration(state.t()));
+                let along = state.v.iter().zip(model.mass()).step_by(3);
+                momenta.push(along.map(|(v, mass)| mass * v).sum::<f64>());
+            }
+            let gains = momenta.windows(2).map(|ends| (ends[1] - ends[0]) / dt);
+            let first = usize::from(!is_next);
+            let off = gains.zip(&pushes[first..]).map(|(gain, push)| gain - push);
+            let off = off.fold(0.0_f64, |most, off| most.max(off.abs()));
+            let off = off / (of_free * acceleration(0.0));
+            assert!(off < 1e-6, "`{id}`, {}: {off:e}", law(1.0));
+        }
+    }
+}
+
+/// At small strain every law is the linear one, also where a damped body is jerked: a support's change of speed reaches it whole, on steps and between them.
+#[test]
+fn jerks_of_a_support_reach_a_damped_body_by_every_law_as_by_the_linear_one() {
+    let mesh = structured::cube(2, 0.1, Split::Mirrored).unwrap();
+    let soft = linear(YOUNGS_MODULUS, 0.3);
+    let problem = |law, positions: &[[f64; 3]]| Problem {
+        moves: vec![Moving {
+            on: face(&mesh, 2, 0.0),
+            axes: [true; 3],
+            courses: Course::along(&[0.0, 0.004, 0.0091, 0.0133], positions),
+        }],
+        damping: Rayleigh {
+            mass: 0.0,
+            stiffness: 2e-3,
+        },
+        ..body(law)
+    };
+    let way = [[0.0; 3], [0.0; 3], [1e-7, 0.0, 2e-7], [0.0, 1e-7, 2e-7]];
+    let small = Model::build(&mesh, &problem(soft, &way)).unwrap();
+    for id in ["neo-hookean", "stvk", "corotational"] {
+        let large = Model::build(&mesh, &problem(hyperelastic(id, 0.3), &way)).unwrap();
+        for mut method in methods(&large, &small, 2e-3) {
+            let dt = method.dt;
+            let steps = (0.02 / dt).round() as usize;
+            let end = |integrator: &mut dyn Integrator, model: &Model| {
+                let mut state = State::at_rest(model.dofs());
+                for _ in 0..steps {
+                    integrator.step(model, &mut state, dt).unwrap();
+                }
+                state
+            };
+            let found = end(&mut *method.integrator, &large);
+            let mut same = methods(&small, &small, 2e-3);
+            let same = same.iter_mut().find(|other| other.name == method.name);
+            let expected = end(&mut *same.unwrap().integrator, &small);
+            let off = [
+                relative_error(&[found.u], &[expected.u]),
+                relative_error(&[found.v], &[expected.v]),
+            ];
+            assert!(largest(&off) < 1e-4, "{}, {id}: {off:?}", method.name);
         }
     }
 }
