@@ -223,22 +223,19 @@ fn probes_alone(
     let mut left = simulation.left_by_tools(&state);
     let cutters = cutter.iter();
     left.extend(cutters.flat_map(|cutter| cutter.borrow().left_by_strokes()));
-    let left = left.iter().map(String::as_str);
-    let looked = looked.warnings();
-    let lost = loss.in_words();
-    for warning in growth
+    // Where the reader of the motion closed its pipe, nobody wants a summary.
+    let is_wanted = report.is_err() || csv.finish()? == Delivery::Whole;
+    let of_motion = looked.warnings().into_iter().chain(loss.in_words());
+    let of_motion = growth
         .in_words()
+        .map(str::to_owned)
         .into_iter()
-        .chain(looked.iter().map(String::as_str))
-        .chain(lost.as_deref())
-        .chain(outrun.as_deref())
-        .chain(left)
-    {
+        .chain(of_motion);
+    for warning in of_motion.chain(outrun).chain(left).filter(|_| is_wanted) {
         complain(&format!("warning: {warning}"));
     }
     let report = report?;
-    // Where the reader of the motion closed its pipe, nobody wants a summary.
-    if csv.finish()? == Delivery::Whole {
+    if is_wanted {
         voice.say(&summary(simulation, &report))?;
         if let Some(cutter) = &cutter {
             let cutter = cutter.borrow();

@@ -59,21 +59,9 @@ pub(super) fn of(shape: &Shape) -> Vec<Value> {
         }
         Shape::Table(_) | Shape::Tables(_) => vec![1.into()],
         Shape::Either(forms) => {
-            // Any word is a name, but for a blank one.
-            let texts = forms.iter().filter(|form| {
-                matches!(
-                    form,
-                    Shape::Text {
-                        pattern: Some(_),
-                        ..
-                    }
-                )
-            });
-            let text = if texts.count() > 0 {
-                " "
-            } else {
-                "no such word"
-            };
+            // Where a table says more about a name, any word is a name but a blank one.
+            let is_name = matches!(&forms[..], [Shape::Text { .. }, Shape::Table(_)]);
+            let text = if is_name { " " } else { "no such word" };
             vec![true.into(), text.into()]
         }
     }
