@@ -58,9 +58,10 @@ pub use msh::{
     write_msh, write_msh41_ascii,
 };
 pub use physical_tags::PhysicalTags;
-pub use selection::{Condition, Selection, SelectionError};
+pub use selection::{Condition, DataValues, Selection, SelectionError};
 pub use tet_mesh::{
-    AddGroupError, BoundarySurface, CutBody, CutMesh, Group, GroupMembers, MovedNode, RefineError,
-    Split, SplitFollower, SurfaceError, TetData, TetDataError, TetMesh, TetMeshError, UnknownGroup,
+    AddGroupError, BoundarySurface, CutBody, CutMesh, Group, GroupMembers, MovedNode, NodeData,
+    RefineError, Split, SplitFollower, SurfaceError, TetData, TetDataError, TetMesh, TetMeshError,
+    UnknownGroup,
 };
 pub use warning::{Position, Warning};

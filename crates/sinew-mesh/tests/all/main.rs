@@ -18,6 +18,7 @@ mod meshes;
 mod msh;
 mod refine;
 mod selection;
+mod selection_by_data;
 mod simulation_mesh;
 mod structured;
 
