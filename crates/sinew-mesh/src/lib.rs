@@ -36,11 +36,13 @@
 mod cell_type;
 mod check;
 mod duplicates;
+mod file;
 pub mod info;
 mod linearise;
 mod mesh;
 mod msh;
 mod physical_tags;
+mod reading;
 mod selection;
 pub mod structured;
 mod tet_mesh;
@@ -49,15 +51,14 @@ mod warning;
 
 pub use cell_type::CellType;
 pub use check::{CheckLimits, EdgeLengths, Extreme, Finding, MeshCheck, Part, SharedFace};
+pub use file::{MeshFileError, read_msh_file};
 pub use linearise::Linearised;
 pub use mesh::{
     CellBlock, CellData, CellIndex, CellNodeData, CellSet, Entity, Mesh, PeriodicLink, PointData,
 };
-pub use msh::{
-    MshEncoding, MshError, MshFileError, MshVersion, WriteMshError, read_msh, read_msh_file,
-    write_msh, write_msh41_ascii,
-};
+pub use msh::{MshEncoding, MshVersion, WriteMshError, read_msh, write_msh, write_msh41_ascii};
 pub use physical_tags::PhysicalTags;
+pub use reading::MeshError;
 pub use selection::{Condition, DataValues, Selection, SelectionError};
 pub use tet_mesh::{
     AddGroupError, BoundarySurface, CutBody, CutMesh, Group, GroupMembers, MovedNode, NodeData,
