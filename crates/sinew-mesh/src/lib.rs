@@ -1,4 +1,5 @@
-//! Tetrahedral meshes with named groups: gmsh .msh in and out, .vtu out, checks and repairs, structured generators.
+//! Tetrahedral meshes with named groups: .msh, .vtu, .vtk, .mesh and .inp in, .msh and .vtu out, checks and repairs, structured
+//! generators.
 //!
 //! A file is read into a [`Mesh`]: all its cells, tags, groups and warnings, arranged as meshio arranges them.
 //! [`Mesh::check`] finds what makes a simulation fail, [`info::MeshInfo`] sums a mesh up, [`write_msh`] and
@@ -13,7 +14,7 @@
 //! let mut file = Vec::new();
 //! write_msh41_ascii(&cube.to_mesh(), &mut file)?;
 //!
-//! // Reading takes bytes; `read_msh_file` takes a path.
+//! // Reading takes bytes; `read_mesh_file` takes a path, whose extension tells the format.
 //! let mesh = read_msh(&file)?;
 //! for warning in &mesh.warnings {
 //!     eprintln!("{warning}");
@@ -38,6 +39,7 @@ mod check;
 mod duplicates;
 mod file;
 pub mod info;
+mod label_groups;
 mod linearise;
 mod mesh;
 mod msh;
@@ -46,12 +48,14 @@ mod reading;
 mod selection;
 pub mod structured;
 mod tet_mesh;
+mod unstructured;
 pub mod vtu;
 mod warning;
 
 pub use cell_type::CellType;
 pub use check::{CheckLimits, EdgeLengths, Extreme, Finding, MeshCheck, Part, SharedFace};
-pub use file::{MeshFileError, read_msh_file};
+pub use file::{MeshFileError, MeshFormat, read_mesh, read_mesh_file, read_msh_file};
+pub use label_groups::{LabelError, LabelGroup};
 pub use linearise::Linearised;
 pub use mesh::{
     CellBlock, CellData, CellIndex, CellNodeData, CellSet, Entity, Mesh, PeriodicLink, PointData,

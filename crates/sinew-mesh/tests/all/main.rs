@@ -12,6 +12,7 @@ mod boundary;
 mod check;
 mod common;
 mod files;
+mod formats;
 mod groups;
 mod linearise;
 mod meshes;

@@ -2,6 +2,7 @@
 
 use sinew_mesh::{CellData, CellNodeData, Mesh, MeshError, PeriodicLink, PointData, read_msh};
 
+pub(crate) mod damage;
 pub(crate) mod encode;
 
 /// Two tetrahedra in two regions that share the face 20 30 40; a surface group on one face; sparse, unordered tags; node
