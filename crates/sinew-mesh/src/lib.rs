@@ -49,6 +49,7 @@ mod selection;
 pub mod structured;
 mod tet_mesh;
 mod unstructured;
+mod vtk;
 pub mod vtu;
 mod warning;
 
@@ -69,4 +70,5 @@ pub use tet_mesh::{
     RefineError, Split, SplitFollower, SurfaceError, TetData, TetDataError, TetMesh, TetMeshError,
     UnknownGroup,
 };
+pub use vtk::read_vtk;
 pub use warning::{Position, Warning};

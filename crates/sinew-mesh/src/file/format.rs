@@ -10,6 +10,8 @@ pub enum MeshFormat {
     Msh,
     /// VTK's `.vtu`: XML with an unstructured grid.
     Vtu,
+    /// VTK's older `.vtk`: an unstructured grid as text or bytes.
+    Vtk,
 }
 
 impl MeshFormat {
@@ -20,6 +22,7 @@ impl MeshFormat {
         Some(match extension.as_str() {
             "msh" => MeshFormat::Msh,
             "vtu" => MeshFormat::Vtu,
+            "vtk" => MeshFormat::Vtk,
             _ => return None,
         })
     }

@@ -13,6 +13,7 @@ use std::path::Path;
 use crate::mesh::Mesh;
 use crate::msh::read_msh;
 use crate::reading::MeshError;
+use crate::vtk::read_vtk;
 use crate::vtu::read_vtu;
 
 /// Reads the bytes of a mesh file of a format.
@@ -26,6 +27,7 @@ pub fn read_mesh(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
     match format {
         MeshFormat::Msh => read_msh(bytes),
         MeshFormat::Vtu => read_vtu(bytes),
+        MeshFormat::Vtk => read_vtk(bytes),
     }
 }
 

@@ -22,6 +22,10 @@ fn points_cells_and_data_are_the_same_from_every_encoding_of_vtk() {
         "vtk-base64-zlib.vtu",
         "meshio-ascii.vtu",
         "meshio-zlib.vtu",
+        "vtk-4.2-text.vtk",
+        "vtk-4.2-bytes.vtk",
+        "vtk-5.1-text.vtk",
+        "vtk-5.1-bytes.vtk",
     ] {
         let mesh = fixture(name);
         assert_eq!(mesh.points, POINTS, "{name}");

@@ -5,6 +5,7 @@
 mod by_hand;
 mod grids;
 mod mutation;
+mod vtk;
 mod vtu;
 
 use std::path::PathBuf;
