@@ -34,6 +34,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod abaqus;
 mod cell_type;
 mod check;
 mod duplicates;
@@ -53,6 +54,7 @@ mod vtk;
 pub mod vtu;
 mod warning;
 
+pub use abaqus::read_abaqus;
 pub use cell_type::CellType;
 pub use check::{CheckLimits, EdgeLengths, Extreme, Finding, MeshCheck, Part, SharedFace};
 pub use file::{MeshFileError, MeshFormat, read_mesh, read_mesh_file, read_msh_file};

@@ -12,6 +12,8 @@ pub enum MeshFormat {
     Vtu,
     /// VTK's older `.vtk`: an unstructured grid as text or bytes.
     Vtk,
+    /// Input of Abaqus, `.inp`.
+    Abaqus,
 }
 
 impl MeshFormat {
@@ -23,6 +25,7 @@ impl MeshFormat {
             "msh" => MeshFormat::Msh,
             "vtu" => MeshFormat::Vtu,
             "vtk" => MeshFormat::Vtk,
+            "inp" => MeshFormat::Abaqus,
             _ => return None,
         })
     }

@@ -10,6 +10,7 @@ pub use format::MeshFormat;
 use std::fs;
 use std::path::Path;
 
+use crate::abaqus::read_abaqus;
 use crate::mesh::Mesh;
 use crate::msh::read_msh;
 use crate::reading::MeshError;
@@ -28,6 +29,7 @@ pub fn read_mesh(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
         MeshFormat::Msh => read_msh(bytes),
         MeshFormat::Vtu => read_vtu(bytes),
         MeshFormat::Vtk => read_vtk(bytes),
+        MeshFormat::Abaqus => read_abaqus(bytes),
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! The files under `data/formats` are one small mesh as VTK 9.7 and meshio 5.3.5 write it in each encoding.
 
+mod abaqus;
 mod by_hand;
 mod grids;
 mod mutation;
