@@ -42,6 +42,7 @@ mod file;
 pub mod info;
 mod label_groups;
 mod linearise;
+mod medit;
 mod mesh;
 mod msh;
 mod physical_tags;
@@ -60,6 +61,7 @@ pub use check::{CheckLimits, EdgeLengths, Extreme, Finding, MeshCheck, Part, Sha
 pub use file::{MeshFileError, MeshFormat, read_mesh, read_mesh_file, read_msh_file};
 pub use label_groups::{LabelError, LabelGroup};
 pub use linearise::Linearised;
+pub use medit::read_medit;
 pub use mesh::{
     CellBlock, CellData, CellIndex, CellNodeData, CellSet, Entity, Mesh, PeriodicLink, PointData,
 };

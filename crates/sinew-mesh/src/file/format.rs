@@ -12,6 +12,8 @@ pub enum MeshFormat {
     Vtu,
     /// VTK's older `.vtk`: an unstructured grid as text or bytes.
     Vtk,
+    /// Medit's `.mesh` as text.
+    Medit,
     /// Input of Abaqus, `.inp`.
     Abaqus,
 }
@@ -25,6 +27,7 @@ impl MeshFormat {
             "msh" => MeshFormat::Msh,
             "vtu" => MeshFormat::Vtu,
             "vtk" => MeshFormat::Vtk,
+            "mesh" => MeshFormat::Medit,
             "inp" => MeshFormat::Abaqus,
             _ => return None,
         })

@@ -11,6 +11,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::abaqus::read_abaqus;
+use crate::medit::read_medit;
 use crate::mesh::Mesh;
 use crate::msh::read_msh;
 use crate::reading::MeshError;
@@ -29,6 +30,7 @@ pub fn read_mesh(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
         MeshFormat::Msh => read_msh(bytes),
         MeshFormat::Vtu => read_vtu(bytes),
         MeshFormat::Vtk => read_vtk(bytes),
+        MeshFormat::Medit => read_medit(bytes),
         MeshFormat::Abaqus => read_abaqus(bytes),
     }
 }

@@ -5,6 +5,8 @@
 mod abaqus;
 mod by_hand;
 mod grids;
+mod labels;
+mod medit;
 mod mutation;
 mod vtk;
 mod vtu;
