@@ -1,4 +1,5 @@
-//! Tetrahedral meshes with named groups: gmsh .msh in and out, .vtu out, checks and repairs, structured generators.
+//! Tetrahedral meshes with named groups: .msh, .vtu, .vtk, .mesh and .inp in, .msh and .vtu out, checks and repairs, structured
+//! generators.
 //!
 //! A file is read into a [`Mesh`]: all its cells, tags, groups and warnings, arranged as meshio arranges them.
 //! [`Mesh::check`] finds what makes a simulation fail, [`info::MeshInfo`] sums a mesh up, [`write_msh`] and
@@ -13,7 +14,7 @@
 //! let mut file = Vec::new();
 //! write_msh41_ascii(&cube.to_mesh(), &mut file)?;
 //!
-//! // Reading takes bytes; `read_msh_file` takes a path.
+//! // Reading takes bytes; `read_mesh_file` takes a path, whose extension tells the format.
 //! let mesh = read_msh(&file)?;
 //! for warning in &mesh.warnings {
 //!     eprintln!("{warning}");
@@ -33,37 +34,47 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod abaqus;
 mod cell_type;
 mod check;
 mod duplicates;
+mod file;
 pub mod info;
 mod joints;
+mod label_groups;
 mod linearise;
+mod medit;
 mod mesh;
 mod msh;
 mod physical_tags;
+mod reading;
 mod selection;
 pub mod structured;
 mod tet_mesh;
+mod unstructured;
+mod vtk;
 pub mod vtu;
 mod warning;
 
+pub use abaqus::read_abaqus;
 pub use cell_type::CellType;
 pub use check::{CheckLimits, EdgeLengths, Extreme, Finding, MeshCheck, Part, SharedFace};
 pub use joints::{JointFinding, Joints, Places};
+pub use file::{MeshFileError, MeshFormat, read_mesh, read_mesh_file, read_msh_file};
+pub use label_groups::{LabelError, LabelGroup};
 pub use linearise::Linearised;
+pub use medit::read_medit;
 pub use mesh::{
     CellBlock, CellData, CellIndex, CellNodeData, CellSet, Entity, Mesh, PeriodicLink, PointData,
 };
-pub use msh::{
-    MshEncoding, MshError, MshFileError, MshVersion, WriteMshError, read_msh, read_msh_file,
-    write_msh, write_msh41_ascii,
-};
+pub use msh::{MshEncoding, MshVersion, WriteMshError, read_msh, write_msh, write_msh41_ascii};
 pub use physical_tags::PhysicalTags;
-pub use selection::{Condition, Selection, SelectionError};
+pub use reading::MeshError;
+pub use selection::{Condition, DataValues, Selection, SelectionError};
 pub use tet_mesh::{
     AddGroupError, BoundarySurface, CutBody, CutMesh, FindGroupError, Group, GroupMembers,
-    MovedNode, RefineError, Split, SplitFollower, SurfaceError, TetData, TetDataError, TetMesh,
-    TetMeshError,
+    MovedNode, NodeData, RefineError, Split, SplitFollower, SurfaceError, TetData, TetDataError,
+    TetMesh, TetMeshError,
 };
+pub use vtk::read_vtk;
 pub use warning::{Position, Warning};

@@ -125,6 +125,7 @@ pub fn block(cells: [usize; 3], size: [f64; 3], split: Split) -> Result<TetMesh,
         tets,
         groups,
         data: Vec::new(),
+        node_data: Vec::new(),
         notes: Vec::new(),
     })
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use sinew_core::{EvaluationError, OptionError, SetupError, StepError};
 use sinew_fem::{FemError, Model, Problem, Rayleigh};
 use sinew_mesh::structured::{Split, StructuredError, cube};
-use sinew_mesh::{GroupMembers, MshFileError, TetMesh, TetMeshError, read_msh_file};
+use sinew_mesh::{GroupMembers, MeshFileError, TetMesh, TetMeshError, read_msh_file};
 
 use crate::pressed;
 
@@ -23,7 +23,7 @@ pub(super) struct Body {
 pub enum KernelBenchError {
     /// A mesh file that cannot be read.
     #[error(transparent)]
-    File(#[from] MshFileError),
+    File(#[from] MeshFileError),
     /// A mesh without tetrahedra.
     #[error(transparent)]
     Mesh(#[from] TetMeshError),

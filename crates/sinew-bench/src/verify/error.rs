@@ -10,7 +10,7 @@ use sinew_haptics::{CouplingError, ToolStepError};
 use sinew_integrators::{FactorError, StaticError};
 use sinew_measure::{CaseError, MeasureError};
 use sinew_mesh::structured::StructuredError;
-use sinew_mesh::{FindGroupError, MshFileError, TetMeshError};
+use sinew_mesh::{FindGroupError, MeshFileError, TetMeshError};
 use sinew_sparse::AssemblyError;
 use sinew_tools::{ShapeError, TableError, ToolsError};
 
@@ -22,7 +22,7 @@ use crate::tissue::TissueError;
 pub enum VerifyError {
     /// A mesh file.
     #[error(transparent)]
-    File(#[from] MshFileError),
+    File(#[from] MeshFileError),
     /// A file without the tetrahedra that are needed.
     #[error(transparent)]
     Mesh(#[from] TetMeshError),

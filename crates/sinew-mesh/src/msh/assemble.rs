@@ -6,16 +6,16 @@ use super::assemble_data;
 use super::contents::{Contents, Tables};
 use super::elements::{BlockPlace, ElementSection, RawGroups};
 use super::entities::Entities;
-use super::fault::Fault;
 use super::nodes::RawNodes;
 use super::physical_names::{NamesWithoutDim, PhysicalNames};
-use super::remarks::Remarks;
-use super::tag_index::TagIndex;
 use super::tag_list::{TagList, Tags};
 use crate::cell_type::CellType;
 use crate::check::empty_groups;
 use crate::mesh::{CellBlock, Entity, Mesh};
 use crate::physical_tags::PhysicalTags;
+use crate::reading::fault::Fault;
+use crate::reading::remarks::Remarks;
+use crate::reading::tag_index::TagIndex;
 
 pub(super) fn mesh(contents: Contents, bytes: &[u8], remarks: &mut Remarks) -> Result<Mesh, Fault> {
     if contents.nodes.tags.is_empty() {

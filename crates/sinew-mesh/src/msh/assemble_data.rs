@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use super::data::{Holder, RawData};
-use super::fault::Fault;
-use super::remarks::Remarks;
-use super::tag_index::TagIndex;
 use crate::cell_type::CellType;
 use crate::mesh::{CellBlock, CellData, CellIndex, CellNodeData, Mesh, PointData};
+use crate::reading::fault::Fault;
+use crate::reading::remarks::Remarks;
+use crate::reading::tag_index::TagIndex;
 
 pub(super) fn add(
     sections: Vec<RawData>,

@@ -1,12 +1,12 @@
 //! `$NodeData`, `$ElementData` and `$ElementNodeData`: values under tags.
 
-use super::cursor::{Cursor, LONGEST, Token, quoted};
-use super::fault::Fault;
 use super::framing::count_line;
 use super::header::{Encoding, Format};
-use super::number;
-use super::remarks::Remarks;
 use super::source::{Binary, Bytes, Record, SizeWidth, Source, TagKind, Text};
+use crate::reading::cursor::{Cursor, LONGEST, Token, quoted};
+use crate::reading::fault::Fault;
+use crate::reading::number;
+use crate::reading::remarks::Remarks;
 
 /// The holders of the values of a section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

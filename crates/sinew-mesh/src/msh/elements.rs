@@ -1,18 +1,18 @@
 //! `$Elements`: node tags of cells, by type.
 
-use super::cursor::Cursor;
-use super::fault::Fault;
 use super::framing::count_line;
 use super::header::{Format, Version, with_source};
 use super::nodes::{Header, entity_of_block};
 use super::places::{Layout, RowPlaces};
-use super::remarks::Remarks;
 use super::rows_of_lines::read_row;
 use super::source::{Record, Source, TagKind, Text};
 use super::tag_list::TagList;
 use crate::cell_type::CellType;
 use crate::mesh::Entity;
 use crate::physical_tags::PhysicalTags;
+use crate::reading::cursor::Cursor;
+use crate::reading::fault::Fault;
+use crate::reading::remarks::Remarks;
 
 /// One `$Elements` section.
 #[derive(Debug, Default)]

@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use super::fault::Fault;
 use super::header::Version;
-use super::remarks::Remarks;
 use super::source::{Record, Source};
 use crate::mesh::Entity;
+use crate::reading::fault::Fault;
+use crate::reading::remarks::Remarks;
 
 /// The physical tags, as signed in the file, of each entity.
 pub(super) type Entities = HashMap<Entity, Vec<i32>>;

@@ -1,9 +1,9 @@
 //! The lines of text around the rows of a section.
 
-use super::cursor::{Cursor, quoted};
-use super::fault::Fault;
-use super::number;
-use super::remarks::Remarks;
+use crate::reading::cursor::{Cursor, quoted};
+use crate::reading::fault::Fault;
+use crate::reading::number;
+use crate::reading::remarks::Remarks;
 
 /// A count that stands on a line of its own, as text even in binary files.
 pub(super) fn count_line(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, Fault> {

@@ -1,11 +1,11 @@
 //! The kind of file: the `$MeshFormat` section, and other formats that are mistaken for .msh.
 
-use super::cursor::{Cursor, quoted};
-use super::fault::Fault;
 use super::framing::end_section;
-use super::number;
-use super::remarks::Remarks;
 use super::source::{Binary, ByteOrder, SizeWidth};
+use crate::reading::cursor::{Cursor, quoted};
+use crate::reading::fault::Fault;
+use crate::reading::number;
+use crate::reading::remarks::Remarks;
 
 /// The section's name.
 pub(super) const NAME: &str = "MeshFormat";

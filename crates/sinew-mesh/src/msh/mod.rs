@@ -1,6 +1,6 @@
 //! gmsh's .msh format: reading versions 1 and 2.0 to 4.1, writing 2.2 and 4.1, as text and as bytes.
 //!
-//! The reader walks over the bytes once. [`cursor`] knows offsets, [`source`] turns bytes into numbers, `section` finds
+//! The reader walks over the bytes once. A cursor knows offsets, [`source`] turns bytes into numbers, `section` finds
 //! sections, and one module for each section decodes its rows per format version into raw tables that still hold the
 //! file's tags. [`assemble`] then turns tags into indices, when all sections are known, in whatever order they came.
 //!
@@ -50,39 +50,30 @@
 mod assemble;
 mod assemble_data;
 mod contents;
-mod cursor;
 mod data;
 mod elements;
 mod entities;
-mod error;
-mod fault;
-mod file;
 mod framing;
 mod header;
 mod msh1;
 mod nodes;
-mod number;
-mod other_formats;
 mod periodic;
 mod physical_names;
 mod places;
-mod remarks;
 mod rows_of_lines;
 mod section;
 mod source;
-mod tag_index;
 mod tag_list;
 mod write;
 
-pub use error::MshError;
-pub use file::{MshFileError, read_msh_file};
 pub use write::{MshEncoding, MshVersion, WriteMshError, write_msh, write_msh41_ascii};
 
 use crate::mesh::Mesh;
-use cursor::Cursor;
-use fault::Fault;
+use crate::reading::MeshError;
+use crate::reading::cursor::Cursor;
+use crate::reading::fault::Fault;
+use crate::reading::remarks::Remarks;
 use header::Version;
-use remarks::Remarks;
 
 /// Reads the bytes of a .msh file: version 1 as text, 2.0, 2.1, 2.2, 4.0 or 4.1 as text or as bytes of either order.
 ///
@@ -103,7 +94,7 @@ use remarks::Remarks;
 ///     "line 6 (byte 50): $Nodes, node 1: the z coordinate is \"zero\"; expected a number"
 /// );
 /// ```
-pub fn read_msh(bytes: &[u8]) -> Result<Mesh, MshError> {
+pub fn read_msh(bytes: &[u8]) -> Result<Mesh, MeshError> {
     let mut reading = Reading::of(bytes, Version::V40);
     if let Err(fault) = &reading.outcome
         && reading.remarks.version_is_open
@@ -132,7 +123,7 @@ impl Reading {
         Reading { outcome, remarks }
     }
 
-    fn finish(self, bytes: &[u8]) -> Result<Mesh, MshError> {
+    fn finish(self, bytes: &[u8]) -> Result<Mesh, MeshError> {
         let lines = self.remarks.lines();
         match self.outcome {
             Ok(mesh) => Ok(Mesh {

@@ -4,12 +4,12 @@
 //! types are those of later versions, and a physical tag of 0 means no group.
 
 use super::contents::{Contents, Tables};
-use super::cursor::Cursor;
 use super::elements;
-use super::fault::Fault;
 use super::framing::end_line;
 use super::nodes;
-use super::remarks::Remarks;
+use crate::reading::cursor::Cursor;
+use crate::reading::fault::Fault;
+use crate::reading::remarks::Remarks;
 
 /// Whether a section belongs to version 1. `NOE` is another spelling of `NOD`, which gmsh reads and some programs write.
 pub(super) fn is_section(name: &str) -> bool {

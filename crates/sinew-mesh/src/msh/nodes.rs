@@ -1,15 +1,15 @@
 //! `$Nodes` and `$ParametricNodes`: coordinates under tags.
 
-use super::cursor::Cursor;
-use super::fault::Fault;
 use super::framing::count_line;
 use super::header::{Format, Version, with_source};
 use super::physical_names::dimension;
 use super::places::{Layout, RowPlaces};
-use super::remarks::Remarks;
 use super::rows_of_lines::read_row;
 use super::source::{Record, Source, TagKind, Text};
 use crate::mesh::Entity;
+use crate::reading::cursor::Cursor;
+use crate::reading::fault::Fault;
+use crate::reading::remarks::Remarks;
 
 /// Node rows in file order, duplicates included.
 #[derive(Debug, Default)]

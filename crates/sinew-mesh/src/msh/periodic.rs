@@ -1,11 +1,11 @@
 //! `$Periodic` and `$GhostElements`.
 
-use super::cursor::Cursor;
-use super::fault::Fault;
 use super::header::{Encoding, Format, Version, with_source};
 use super::physical_names::dimension;
 use super::source::{Record, Source, TagKind, Text};
 use crate::mesh::PeriodicLink;
+use crate::reading::cursor::Cursor;
+use crate::reading::fault::Fault;
 
 /// `$Periodic` without its last line.
 pub(super) fn read(cursor: &mut Cursor<'_>, format: Format) -> Result<Vec<PeriodicLink>, Fault> {

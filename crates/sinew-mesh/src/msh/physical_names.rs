@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::cursor::{Cursor, LONGEST, Token, quoted};
-use super::fault::Fault;
 use super::header::Version;
-use super::number;
-use super::remarks::Remarks;
 use super::source::{Record, Source, Text};
+use crate::reading::cursor::{Cursor, LONGEST, Token, quoted};
+use crate::reading::fault::Fault;
+use crate::reading::number;
+use crate::reading::remarks::Remarks;
 
 /// Names by dimension and tag.
 pub(super) type PhysicalNames = BTreeMap<(u8, i32), String>;

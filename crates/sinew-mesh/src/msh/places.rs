@@ -1,6 +1,6 @@
 //! The places of a table's rows in the file, stored without a number for each row.
 
-use super::cursor::Cursor;
+use crate::reading::cursor::Cursor;
 
 /// The places of rows that follow each other in a table, kept as runs of equally laid out rows.
 #[derive(Debug, Default)]

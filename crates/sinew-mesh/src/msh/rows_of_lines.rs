@@ -1,7 +1,7 @@
 //! Text of versions 1 and 2, which by custom has one row per line and which gmsh reads as a stream of numbers.
 
-use super::cursor::Cursor;
-use super::fault::Fault;
+use crate::reading::cursor::Cursor;
+use crate::reading::fault::Fault;
 
 /// Reads row `number` (from 1) of `total`.
 ///

@@ -1,18 +1,18 @@
 //! Finds the sections of a file and hands each to its decoder.
 
 use super::contents::Contents;
-use super::cursor::{Cursor, LONGEST, quoted};
 use super::data::{self, Holder};
 use super::elements::{self, ElementSection};
 use super::entities;
-use super::fault::Fault;
 use super::framing::{count_line, end_section};
 use super::header::{self, Encoding, Format, Version, with_source};
 use super::msh1;
 use super::nodes::{self, RawNodes};
 use super::periodic;
 use super::physical_names::{self, Names};
-use super::remarks::Remarks;
+use crate::reading::cursor::{Cursor, LONGEST, quoted};
+use crate::reading::fault::Fault;
+use crate::reading::remarks::Remarks;
 
 /// The kind of file, as far as its sections have shown it.
 #[derive(Clone, Copy)]

@@ -3,11 +3,11 @@
 //! A decoder names the kind of each number, and the source knows how that kind is encoded. So the text and the binary
 //! form of a version share one decoder. Each long table has a method of its own, which the two sources implement differently.
 
-use super::cursor::{Cursor, Token};
-use super::fault::Fault;
-use super::number;
 use super::places::Layout;
 use super::tag_list::TagList;
+use crate::reading::cursor::{Cursor, Token};
+use crate::reading::fault::Fault;
+use crate::reading::number;
 
 /// The numbers of one section, in order.
 pub(super) trait Source {

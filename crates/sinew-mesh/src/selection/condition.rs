@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::data::{DataValues, write_words};
+
 /// A condition on the place of a node at rest. Lengths are in the mesh's unit (metres in a scene).
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -46,6 +48,14 @@ pub enum Condition {
     },
     /// One of these nodes, by their tags in the mesh file.
     Tags(Vec<u64>),
+    /// A value of the mesh's data. Nodes are asked for data at nodes first, and belong to tetrahedra with such a value else;
+    /// tetrahedra and triangles of the boundary are asked for data of tetrahedra first, and have such values at all nodes else.
+    Data {
+        /// Name of the data.
+        name: String,
+        /// The values.
+        values: DataValues,
+    },
 }
 
 impl Condition {
@@ -103,6 +113,7 @@ impl fmt::Display for Condition {
                 let tags: Vec<String> = tags.iter().map(u64::to_string).collect();
                 write!(f, "tagged {}", tags.join(", "))
             }
+            Self::Data { name, values } => write_words(f, name, values),
         }
     }
 }

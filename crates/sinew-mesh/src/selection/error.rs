@@ -1,5 +1,7 @@
 //! Selections that hit nothing.
 
+use super::{Condition, DataValues};
+
 /// A selection without members.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -35,4 +37,60 @@ pub enum SelectionError {
         /// The tag.
         tag: u64,
     },
+    /// No data have the name.
+    #[error(
+        "no data at nodes or of tetrahedra are named \"{name}\"; {}",
+        listed(known)
+    )]
+    UnknownData {
+        /// The name that was asked for.
+        name: String,
+        /// The names that there are.
+        known: Vec<String>,
+    },
+    /// Several have it.
+    #[error(
+        "{} data are named \"{name}\" (time steps {steps:?}): keep one of them, or give each a name of its own", steps.len()
+    )]
+    SeveralData {
+        /// The name that was asked for.
+        name: String,
+        /// The time step of each.
+        steps: Vec<i32>,
+    },
+    /// The data have several numbers for each node or tetrahedron.
+    #[error(
+        "the data \"{name}\" have {components} numbers for each holder; a condition is on one number each"
+    )]
+    NotOneNumber {
+        /// Name of the data.
+        name: String,
+        /// Numbers for each node or tetrahedron.
+        components: usize,
+    },
+    /// No value of the data is one of those that are asked for.
+    #[error("no {holder} is {}; of the values {known}", words(name, values))]
+    NoValue {
+        /// What has values: node or tetrahedron.
+        holder: &'static str,
+        /// Name of the data.
+        name: String,
+        /// The values that were asked for.
+        values: DataValues,
+        /// The values that there are, in words.
+        known: String,
+    },
+}
+
+fn words(name: &str, values: &DataValues) -> String {
+    let (name, values) = (name.to_owned(), values.clone());
+    Condition::Data { name, values }.to_string()
+}
+
+fn listed(known: &[String]) -> String {
+    if known.is_empty() {
+        return "the mesh has none".to_owned();
+    }
+    let names: Vec<String> = known.iter().map(|name| format!("\"{name}\"")).collect();
+    format!("there are {}", names.join(", "))
 }

@@ -1,10 +1,11 @@
 //! The nodes, triangles and tetrahedra that a selection hits.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
+use super::data::{self, First, Met};
 use super::{Condition, Selection, SelectionError};
 use crate::TetMesh;
-use crate::tet_mesh::{cross, dot, sub};
+use crate::tet_mesh::{OUTWARD_FACES, cross, dot, sub};
 
 /// Share of the longest edge of the bounding box by which bounds are moved outward.
 const ROUNDING: f64 = 1e-9;
@@ -16,7 +17,18 @@ impl Selection {
     ///
     /// [`SelectionError`] when there are none, or a tag is unknown.
     pub fn nodes(&self, mesh: &TetMesh) -> Result<Vec<u32>, SelectionError> {
-        let met = self.met_by(mesh, &self.boundary_if_it_matters(mesh))?;
+        let boundary = self.boundary_if_it_matters(mesh);
+        let mut met = self.met_by(mesh, &boundary, First::Nodes)?;
+        if let Some(of_tets) = self.met_tets(mesh, First::Nodes)? {
+            let mut is_corner = vec![false; met.len()];
+            let tets = mesh.tets.iter().zip(of_tets).filter(|(_, met)| *met);
+            for node in tets.flat_map(|(tet, _)| tet) {
+                is_corner[*node as usize] = true;
+            }
+            met.iter_mut()
+                .zip(is_corner)
+                .for_each(|(met, is_corner)| *met &= is_corner);
+        }
         let nodes = (0u32..).zip(met).filter(|(_, met)| *met);
         let nodes: Vec<u32> = nodes.map(|(node, _)| node).collect();
         if nodes.is_empty() {
@@ -32,13 +44,22 @@ impl Selection {
     /// [`SelectionError`] when there are none, or a tag is unknown.
     pub fn triangles(&self, mesh: &TetMesh) -> Result<Vec<[u32; 3]>, SelectionError> {
         let boundary = mesh.boundary(None);
-        let met = self.met_by(mesh, &boundary)?;
+        let met = self.met_by(mesh, &boundary, First::Tets)?;
+        let of_tets = self.met_tets(mesh, First::Tets)?;
+        let faces_of_tets: Option<HashSet<[u32; 3]>> = of_tets.map(|of_tets| {
+            let tets = mesh.tets.iter().zip(of_tets).filter(|(_, met)| *met);
+            tets.flat_map(|(tet, _)| OUTWARD_FACES.map(|face| sorted(face.map(|i| tet[i]))))
+                .collect()
+        });
         let faces = self.facings().collect::<Vec<_>>();
         let selected = boundary.into_iter().filter(|triangle| {
             let looks = faces
                 .iter()
                 .all(|(normal, angle)| looks_along(mesh, triangle, *normal, *angle));
-            looks && triangle.iter().all(|node| met[*node as usize])
+            let is_face = faces_of_tets
+                .as_ref()
+                .is_none_or(|faces| faces.contains(&sorted(*triangle)));
+            looks && is_face && triangle.iter().all(|node| met[*node as usize])
         });
         let triangles: Vec<[u32; 3]> = selected.collect();
         if triangles.is_empty() {
@@ -53,9 +74,15 @@ impl Selection {
     ///
     /// [`SelectionError`] when there are none, or a tag is unknown.
     pub fn tets(&self, mesh: &TetMesh) -> Result<Vec<u32>, SelectionError> {
-        let met = self.met_by(mesh, &self.boundary_if_it_matters(mesh))?;
+        let met = self.met_by(mesh, &self.boundary_if_it_matters(mesh), First::Tets)?;
+        let of_tets = self.met_tets(mesh, First::Tets)?;
         let tets = (0u32..).zip(&mesh.tets);
-        let inside = tets.filter(|(_, tet)| tet.iter().all(|node| met[*node as usize]));
+        let inside = tets.filter(|(number, tet)| {
+            let has_value = of_tets
+                .as_ref()
+                .is_none_or(|of_tets| of_tets[*number as usize]);
+            has_value && tet.iter().all(|node| met[*node as usize])
+        });
         let tets: Vec<u32> = inside.map(|(tet, _)| tet).collect();
         if tets.is_empty() {
             return Err(self.no_cell(mesh, &met, "tetrahedron"));
@@ -79,8 +106,13 @@ impl Selection {
         }
     }
 
-    /// Whether each node meets all conditions.
-    fn met_by(&self, mesh: &TetMesh, boundary: &[[u32; 3]]) -> Result<Vec<bool>, SelectionError> {
+    /// Whether each node meets all conditions but those on data of tetrahedra.
+    fn met_by(
+        &self,
+        mesh: &TetMesh,
+        boundary: &[[u32; 3]],
+        first: First,
+    ) -> Result<Vec<bool>, SelectionError> {
         let (low, high) = mesh.bounding_box();
         let extent = (0..3)
             .map(|axis| high[axis] - low[axis])
@@ -88,12 +120,35 @@ impl Selection {
         let slack = ROUNDING * extent;
         let mut met = vec![true; mesh.points.len()];
         for condition in self.conditions() {
-            let holds = holds_at(condition, mesh, boundary, slack)?;
+            let holds = match condition {
+                Condition::Data { name, values } => match data::met(mesh, (name, values), first)? {
+                    Met::Nodes(met) => met,
+                    Met::Tets(_) => continue,
+                },
+                _ => holds_at(condition, mesh, boundary, slack)?,
+            };
             for (met, holds) in met.iter_mut().zip(holds) {
                 *met &= holds;
             }
         }
         Ok(met)
+    }
+
+    /// Whether each tetrahedron meets all conditions on data of tetrahedra, if there are any.
+    fn met_tets(&self, mesh: &TetMesh, first: First) -> Result<Option<Vec<bool>>, SelectionError> {
+        let mut all: Option<Vec<bool>> = None;
+        for condition in self.conditions() {
+            let Condition::Data { name, values } = condition else {
+                continue;
+            };
+            if let Met::Tets(met) = data::met(mesh, (name, values), first)? {
+                all = Some(match all {
+                    None => met,
+                    Some(all) => all.into_iter().zip(met).map(|(a, b)| a && b).collect(),
+                });
+            }
+        }
+        Ok(all)
     }
 
     fn nothing(&self, mesh: &TetMesh, wanted: &'static str) -> SelectionError {
@@ -176,8 +231,15 @@ fn holds_at(
                 holds[*node] = true;
             }
         }
+        // Asked for beforehand.
+        Condition::Data { .. } => {}
     }
     Ok(holds)
+}
+
+fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
+    triangle.sort_unstable();
+    triangle
 }
 
 /// Whether the normal of a triangle, which is turned outward, is within an angle (degrees) of a direction.

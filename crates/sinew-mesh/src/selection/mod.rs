@@ -1,15 +1,18 @@
-//! Parts of a mesh chosen by where they lie, for meshes that lack a group.
+//! Parts of a mesh chosen by where they lie or by the values of data, for meshes that lack a group.
 
 mod condition;
+mod data;
 mod error;
 mod members;
 
 pub use condition::Condition;
+pub use data::DataValues;
 pub use error::SelectionError;
 
 use std::fmt;
 
-/// Conditions on the nodes of a mesh, all of which must hold. A triangle or tetrahedron is selected if all its nodes are.
+/// Conditions on the nodes of a mesh, all of which must hold. A triangle or tetrahedron is selected if all its nodes are. Conditions on
+/// data of tetrahedra are met by tetrahedra themselves, by their triangles of the boundary and by their nodes.
 ///
 /// Bounds are met by what lies on them, up to rounding: they are moved outward by 1e-9 of the longest edge of the mesh's
 /// bounding box.

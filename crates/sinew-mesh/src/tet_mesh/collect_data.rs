@@ -1,8 +1,8 @@
-//! Data of cells as data of tetrahedra, and back.
+//! Data of cells as data of tetrahedra, and back; data of points as data of nodes.
 
 use std::collections::HashSet;
 
-use super::TetData;
+use super::{NodeData, TetData};
 use crate::cell_type::CellType;
 use crate::mesh::{CellData, Mesh};
 
@@ -22,6 +22,24 @@ impl Mesh {
             }
         }
         all
+    }
+}
+
+impl Mesh {
+    /// The values of this mesh's point data at the points that are kept. Data without a value at any of them are left out.
+    pub(super) fn data_at_nodes(&self, is_kept: impl Fn(usize) -> bool) -> Vec<NodeData> {
+        let at_nodes = self.point_data.iter().map(|data| {
+            let rows = data.values.chunks_exact(data.components.max(1)).enumerate();
+            let kept = rows.filter(|(point, _)| is_kept(*point));
+            NodeData {
+                name: data.name.clone(),
+                step: data.step,
+                components: data.components,
+                values: kept.flat_map(|(_, row)| row).copied().collect(),
+            }
+        });
+        let has_any = |data: &NodeData| data.values.iter().any(|value| !value.is_nan());
+        at_nodes.filter(has_any).collect()
     }
 }
 

@@ -94,6 +94,17 @@ impl TetMesh {
                     .iter()
                     .map(|data| data.without(body.is_removed))
                     .collect(),
+                node_data: {
+                    let origins = || {
+                        nodes
+                            .iter()
+                            .map(|node| body.origins[*node as usize] as usize)
+                    };
+                    self.node_data
+                        .iter()
+                        .map(|data| data.at(origins()))
+                        .collect()
+                },
                 notes: self.notes.clone(),
             },
             origins: origins.collect(),

@@ -18,7 +18,7 @@ impl Mesh {
     /// * Nodes at the same place stay separate: cuts and contact surfaces have them.
     /// * A group without a name is called `"dim:tag"`. Groups of one dimension with the same name become one.
     /// * Flat and inverted tetrahedra are kept as they are.
-    /// * Cell data that some tetrahedron has stay, those of the parts of a partitioned file put together; data at nodes do not.
+    /// * Cell data that some tetrahedron has stay, those of the parts of a partitioned file put together, and data at nodes.
     ///
     /// [`TetMesh::notes`] tells which of these happened.
     ///
@@ -57,6 +57,7 @@ impl Mesh {
                 .collect(),
             tet_tags: tets.tags,
             data: self.data_in_tets(&tets.copies),
+            node_data: self.data_at_nodes(kept),
             groups,
             notes,
         })

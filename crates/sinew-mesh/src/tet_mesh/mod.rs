@@ -12,6 +12,7 @@ mod find_data;
 mod find_group;
 mod from_mesh;
 mod group;
+mod node_data;
 mod overlap;
 mod placement;
 mod refine;
@@ -28,6 +29,7 @@ pub use error::TetMeshError;
 pub use find_data::TetDataError;
 pub use find_group::FindGroupError;
 pub use group::{Group, GroupMembers};
+pub use node_data::NodeData;
 pub use refine::RefineError;
 pub use split_in_place::{Split, SplitFollower};
 pub(crate) use surface::OUTWARD_FACES;
@@ -59,6 +61,8 @@ pub struct TetMesh {
     pub groups: Vec<Group>,
     /// Values in the tetrahedra.
     pub data: Vec<TetData>,
+    /// Values at the nodes.
+    pub node_data: Vec<NodeData>,
     /// Notes for the user, one sentence each, on what was merged or dropped on the way from the file.
     pub notes: Vec<String>,
 }
@@ -100,6 +104,7 @@ impl TetMesh {
             tets,
             groups: Vec::new(),
             data: Vec::new(),
+            node_data: Vec::new(),
             notes: Vec::new(),
         })
     }

@@ -55,7 +55,8 @@ impl TetMesh {
     /// [`Split::Kuhn`](crate::structured::Split::Kuhn) becomes the one with twice as many cells.
     ///
     /// Old nodes come first and keep their tags; tetrahedra are numbered anew, the eight of tetrahedron `t` being `8 t..8 t + 8`.
-    /// The eight have the data of the one. All groups stay: tetrahedra become eight, triangles four, lines two. Triangles and lines whose edges are none of the
+    /// The eight have the data of the one, and new nodes the mean of those at the ends of their edge, or none where these are different
+    /// labels. All groups stay: tetrahedra become eight, triangles four, lines two. Triangles and lines whose edges are none of the
     /// tetrahedra stay as they are, which [`TetMesh::notes`] tells. Curved surfaces stay as flat as they were.
     ///
     /// # Errors
@@ -104,6 +105,10 @@ impl TetMesh {
             tets,
             groups,
             data: self.data.iter().map(TetData::refined).collect(),
+            node_data: {
+                let data = self.node_data.iter();
+                data.map(|data| data.refined(&midpoints.edges)).collect()
+            },
             notes,
         })
     }

@@ -124,6 +124,9 @@ impl TetMesh {
             self.points.push(body.points[node]);
             let copies = (node - follower.nodes) as u64;
             self.node_tags.push(follower.last_tag + 1 + copies);
+            for data in &mut self.node_data {
+                data.copy(body.origins[node] as usize);
+            }
             for group in &mut self.groups {
                 if let GroupMembers::Nodes(nodes) = &mut group.members
                     && nodes.binary_search(&body.origins[node]).is_ok()
@@ -159,6 +162,9 @@ impl TetMesh {
     pub fn reserve(&mut self, nodes: usize) {
         self.points.reserve(nodes);
         self.node_tags.reserve(nodes);
+        for data in &mut self.node_data {
+            data.values.reserve(nodes * data.components);
+        }
         for group in &mut self.groups {
             if let GroupMembers::Nodes(members) = &mut group.members {
                 members.reserve(nodes);

@@ -6,14 +6,14 @@ use super::collect_data::in_blocks;
 use super::collect_groups::unnamed;
 use super::{Group, GroupMembers, TetMesh};
 use crate::cell_type::CellType;
-use crate::mesh::{CellBlock, Entity, Mesh};
+use crate::mesh::{CellBlock, Entity, Mesh, PointData};
 use crate::physical_tags::PhysicalTags;
 
 impl TetMesh {
     /// This mesh as cell blocks, ready to be written to a file.
     ///
     /// There is one block, and one geometrical entity, for each combination of groups that occurs; within a block the
-    /// order is kept. Data are cell data. Reading the written file back gives this mesh again, except that cells move when the
+    /// order is kept. Data are cell data and point data. Reading the written file back gives this mesh again, except that cells move when the
     /// groups are not stored one after another.
     #[must_use]
     pub fn to_mesh(&self) -> Mesh {
@@ -28,6 +28,14 @@ impl TetMesh {
         let data = self.data.iter();
         let cell_data = data.map(|data| in_blocks(data, &lower, &tets_of_blocks));
 
+        let point_data = self.node_data.iter().map(|data| PointData {
+            name: data.name.clone(),
+            step: data.step,
+            time: 0.0,
+            components: data.components,
+            values: data.values.clone(),
+        });
+
         let on_first_volume = Entity { dim: 3, tag: 1 };
         let names = self
             .groups
@@ -40,6 +48,7 @@ impl TetMesh {
             cells,
             physical_names: names.map(|g| ((g.dim, g.tag), g.name.clone())).collect(),
             cell_data: cell_data.collect(),
+            point_data: point_data.collect(),
             ..Mesh::default()
         }
     }

@@ -1,4 +1,4 @@
-//! VTK's XML files, for ParaView and pyvista: `.vtu` for a mesh with data, `.pvd` for a series of them.
+//! VTK's XML files, as ParaView and pyvista have them: `.vtu` for a mesh with data, read and written, `.pvd` for a series of them.
 //!
 //! ```
 //! use sinew_mesh::vtu::{Array, Grid, VtuEncoding, write_pvd, write_vtu_grid};
@@ -24,6 +24,7 @@ mod grid;
 mod of_mesh;
 mod out;
 mod read;
+mod reading;
 mod series;
 mod write;
 
@@ -32,5 +33,6 @@ pub use grid::{Array, Grid, Values};
 pub use of_mesh::write_vtu;
 pub use out::VtuEncoding;
 pub use read::{ReadVtuError, read_appended_array};
+pub use reading::read_vtu;
 pub use series::write_pvd;
 pub use write::write_vtu_grid;

@@ -5,7 +5,7 @@ use std::io::Write;
 use super::error::WriteVtuError;
 use super::grid::Grid;
 use super::out::{Numbers, Out, VtuEncoding};
-use crate::cell_type::CellType;
+use crate::unstructured::vtk_cell_type;
 
 /// Writes points, cells and data as .vtu. Equal grids give equal bytes.
 ///
@@ -122,34 +122,11 @@ fn check_length(what: &str, found: usize, expected: usize) -> Result<(), WriteVt
     })
 }
 
-/// VTK's number for a type of cell (vtkCellType.h).
-fn vtk_cell_type(kind: CellType) -> Option<u8> {
-    Some(match kind {
-        CellType::Vertex => 1,
-        CellType::Line => 3,
-        CellType::Triangle => 5,
-        CellType::Quad => 9,
-        CellType::Tetra => 10,
-        CellType::Hexahedron => 12,
-        CellType::Wedge => 13,
-        CellType::Pyramid => 14,
-        CellType::Line3 => 21,
-        CellType::Triangle6 => 22,
-        CellType::Quad8 => 23,
-        CellType::Tetra10 => 24,
-        CellType::Hexahedron20 => 25,
-        CellType::Wedge15 => 26,
-        CellType::Pyramid13 => 27,
-        CellType::Quad9 => 28,
-        CellType::Hexahedron27 => 29,
-        _ => return None,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::grid::Array;
     use super::*;
+    use crate::cell_type::CellType;
 
     #[test]
     fn whole_numbers_are_written_as_such() {

@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::common::{TWICE_22, with};
-use sinew_mesh::{MshFileError, read_msh_file};
+use sinew_mesh::{MeshFileError, read_msh_file};
 
 #[test]
 fn a_file_is_read_and_errors_name_it() {
@@ -33,7 +33,7 @@ fn paths_that_are_no_files_are_refused() {
     let dir = tempfile::tempdir().expect("a directory for the test");
     let missing = dir.path().join("missing.msh");
     let error = read_msh_file(&missing).expect_err("it is missing");
-    assert!(matches!(error, MshFileError::Io { .. }), "{error}");
+    assert!(matches!(error, MeshFileError::Io { .. }), "{error}");
     assert!(
         error
             .to_string()
@@ -75,5 +75,8 @@ fn a_device_or_a_loop_of_links_does_not_hang() {
     let dir = tempfile::tempdir().expect("a directory for the test");
     let link = dir.path().join("loop.msh");
     std::os::unix::fs::symlink(&link, &link).expect("links can be made");
-    assert!(matches!(read_msh_file(&link), Err(MshFileError::Io { .. })));
+    assert!(matches!(
+        read_msh_file(&link),
+        Err(MeshFileError::Io { .. })
+    ));
 }

@@ -12,6 +12,7 @@ mod boundary;
 mod check;
 mod common;
 mod files;
+mod formats;
 mod groups;
 mod joints;
 mod linearise;
@@ -19,6 +20,7 @@ mod meshes;
 mod msh;
 mod refine;
 mod selection;
+mod selection_by_data;
 mod simulation_mesh;
 mod structured;
 

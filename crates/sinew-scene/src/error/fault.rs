@@ -130,7 +130,7 @@ pub enum Fault {
     Integrator(#[from] sinew_core::OptionError),
     /// A mesh file that cannot be read.
     #[error(transparent)]
-    MeshFile(#[from] sinew_mesh::MshFileError),
+    MeshFile(#[from] sinew_mesh::MeshFileError),
     /// A table over time that cannot be used.
     #[error(transparent)]
     MotionTable(#[from] crate::simulation::MotionTableError),

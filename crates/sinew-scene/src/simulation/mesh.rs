@@ -28,7 +28,7 @@ pub(super) fn of_body(body: &Body, places: &Places) -> Result<MeshAndWarnings, S
         MeshSource::File(written) => {
             let fault = |fault| place.value_fault("file", fault);
             let path = place.scene().resolve(written);
-            let mut mesh = sinew_mesh::read_msh_file(path).map_err(|error| fault(error.into()))?;
+            let mut mesh = sinew_mesh::read_mesh_file(path).map_err(|error| fault(error.into()))?;
             let warnings = mesh.warnings.iter().map(ToString::to_string).collect();
             let note = linearised(&mut mesh, changes);
             let mut tets = mesh.to_tet_mesh().map_err(|error| fault(error.into()))?;

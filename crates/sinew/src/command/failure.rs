@@ -10,7 +10,7 @@ use sinew_core::{OptionError, SimulateError};
 use sinew_measure::advice::AdviceError;
 use sinew_measure::convergence::ConvergeError;
 use sinew_mesh::vtu::WriteVtuError;
-use sinew_mesh::{CellType, MshFileError, RefineError, TetMeshError, WriteMshError};
+use sinew_mesh::{CellType, MeshFileError, RefineError, TetMeshError, WriteMshError};
 use sinew_record::{CompareError, Ended, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
 use sinew_scene::{CuttingError, ReactionError, RefusedLoad, SceneError, StretchError, Warning};
@@ -117,7 +117,7 @@ pub(crate) enum Failure {
     },
     /// A mesh file that cannot be read.
     #[error(transparent)]
-    Mesh(#[from] MshFileError),
+    Mesh(#[from] MeshFileError),
     /// A mesh that is not a body of tetrahedra.
     #[error("{}: {source}", mesh.display())]
     Tetrahedra {

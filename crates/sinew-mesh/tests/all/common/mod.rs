@@ -1,7 +1,8 @@
 //! Small .msh files written by hand, and shorthands for the tests.
 
-use sinew_mesh::{CellData, CellNodeData, Mesh, MshError, PeriodicLink, PointData, read_msh};
+use sinew_mesh::{CellData, CellNodeData, Mesh, MeshError, PeriodicLink, PointData, read_msh};
 
+pub(crate) mod damage;
 pub(crate) mod encode;
 
 /// Two tetrahedra in two regions that share the face 20 30 40; a surface group on one face; sparse, unordered tags; node
@@ -137,7 +138,7 @@ pub(crate) fn full_mesh() -> Mesh {
 }
 
 /// Reads a file that must be refused.
-pub(crate) fn refusal(bytes: &[u8]) -> MshError {
+pub(crate) fn refusal(bytes: &[u8]) -> MeshError {
     match read_msh(bytes) {
         Err(error) => error,
         Ok(mesh) => panic!("accepted: {mesh:?}"),

@@ -40,11 +40,19 @@ fn refusal_of_named(name: &str, contents: &str) -> String {
 #[test]
 fn a_format_that_meshio_converts() {
     insta::assert_snapshot!(
-        refusal_of_named("liver.vtk", "vtk DataFile Version 4.2\n"),
+        refusal_of_named("liver.mdpa", "Begin ModelPartData\n"),
         @r#"
-    <folder>/scene.toml:3: [mesh]: <folder>/liver.vtk:1 (byte 0): the file starts with "vtk DataFile Version 4.2\n"; expected a gmsh .msh file, starting with $MeshFormat or, in version 1, $NOD
-    help: `meshio convert <folder>/liver.vtk <folder>/liver.msh --output-format gmsh22` (pip install meshio) writes a .msh file
+    <folder>/scene.toml:3: [mesh]: <folder>/liver.mdpa:1 (byte 0): the file starts with "Begin ModelPartData\n"; expected a gmsh .msh file, starting with $MeshFormat or, in version 1, $NOD
+    help: `meshio convert <folder>/liver.mdpa <folder>/liver.msh --output-format gmsh22` (pip install meshio) writes a .msh file
     "#
+    );
+}
+
+#[test]
+fn a_file_of_vtk_with_a_damaged_head() {
+    insta::assert_snapshot!(
+        refusal_of_named("liver.vtk", "vtk DataFile Version 4.2\n"),
+        @r#"<folder>/scene.toml:3: [mesh]: <folder>/liver.vtk:1 (byte 0): the file starts with "vtk DataFile Version 4.2"; expected a .vtk file of VTK, starting with # vtk DataFile Version"#
     );
 }
 

@@ -2,11 +2,11 @@
 
 use super::fault::Fault;
 
-/// Greatest length of a token or line. Longer ones belong to no .msh file, and messages that quote them stay short.
-pub(super) const LONGEST: usize = 4096;
+/// Greatest length of a token or line. Longer ones belong to no mesh file, and messages that quote them stay short.
+pub(crate) const LONGEST: usize = 4096;
 
 #[derive(Clone)]
-pub(super) struct Cursor<'a> {
+pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
     offset: usize,
     /// Offset behind the last line break that was passed.
@@ -15,13 +15,13 @@ pub(super) struct Cursor<'a> {
 
 /// A run of bytes without blanks.
 #[derive(Clone, Copy)]
-pub(super) struct Token<'a> {
-    pub(super) text: &'a [u8],
-    pub(super) offset: usize,
+pub(crate) struct Token<'a> {
+    pub(crate) text: &'a [u8],
+    pub(crate) offset: usize,
 }
 
 impl<'a> Cursor<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Cursor<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Cursor<'a> {
         const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
         let offset = if bytes.starts_with(BYTE_ORDER_MARK) {
             BYTE_ORDER_MARK.len()
@@ -36,7 +36,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// A cursor at an offset.
-    pub(super) fn at(bytes: &'a [u8], offset: usize) -> Cursor<'a> {
+    pub(crate) fn at(bytes: &'a [u8], offset: usize) -> Cursor<'a> {
         Cursor {
             bytes,
             offset: offset.min(bytes.len()),
@@ -44,31 +44,31 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    pub(super) fn offset(&self) -> usize {
+    pub(crate) fn offset(&self) -> usize {
         self.offset
     }
 
-    pub(super) fn rest(&self) -> &'a [u8] {
+    pub(crate) fn rest(&self) -> &'a [u8] {
         self.bytes.get(self.offset..).unwrap_or_default()
     }
 
     /// Number of bytes in the whole file.
-    pub(super) fn file_length(&self) -> usize {
+    pub(crate) fn file_length(&self) -> usize {
         self.bytes.len()
     }
 
     /// Whether a line break was passed since an earlier offset.
-    pub(super) fn has_passed_line_break_since(&self, offset: usize) -> bool {
+    pub(crate) fn has_passed_line_break_since(&self, offset: usize) -> bool {
         self.line_start > offset
     }
 
-    pub(super) fn is_at_end(&self) -> bool {
+    pub(crate) fn is_at_end(&self) -> bool {
         self.rest().is_empty()
     }
 
     /// Moves over blanks and line breaks. Returns whether there was a line break.
     #[inline]
-    pub(super) fn skip_blanks(&mut self) -> bool {
+    pub(crate) fn skip_blanks(&mut self) -> bool {
         let mut passed_line_break = false;
         while let Some(&byte) = self.bytes.get(self.offset) {
             if !is_blank(byte) {
@@ -84,7 +84,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Moves over a word that more words follow on the same line; without them it stays where it is.
-    pub(super) fn begins_with_word(&mut self, word: &[u8]) -> bool {
+    pub(crate) fn begins_with_word(&mut self, word: &[u8]) -> bool {
         let after = self.rest().strip_prefix(word);
         let Some([next, ..]) = after else {
             return false;
@@ -99,7 +99,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Whether nothing but blanks is left on this line.
-    pub(super) fn is_at_line_end(&self) -> bool {
+    pub(crate) fn is_at_line_end(&self) -> bool {
         let next = self
             .rest()
             .iter()
@@ -109,7 +109,7 @@ impl<'a> Cursor<'a> {
 
     /// The next token, on this line or a later one; `what` names it for the message.
     #[inline]
-    pub(super) fn token(&mut self, what: &str) -> Result<Token<'a>, Fault> {
+    pub(crate) fn token(&mut self, what: &str) -> Result<Token<'a>, Fault> {
         self.skip_blanks();
         let offset = self.offset;
         let rest = self.rest();
@@ -132,7 +132,7 @@ impl<'a> Cursor<'a> {
 
     /// The next token, if it is a number of at most 19 decimal digits. Otherwise nothing is taken but blanks.
     #[inline]
-    pub(super) fn plain_number(&mut self) -> Option<u64> {
+    pub(crate) fn plain_number(&mut self) -> Option<u64> {
         self.skip_blanks();
         let rest = self.rest();
         let (value, length) = match rest.first_chunk() {
@@ -150,7 +150,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// The rest of this line without its line break and surrounding blanks; moves to the next line.
-    pub(super) fn line(&mut self) -> &'a [u8] {
+    pub(crate) fn line(&mut self) -> &'a [u8] {
         let rest = self.rest();
         let length = rest
             .iter()
@@ -162,7 +162,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Moves past the end of this line, on which only blanks may stand before it.
-    pub(super) fn line_end(&mut self, after: &str) -> Result<(), Fault> {
+    pub(crate) fn line_end(&mut self, after: &str) -> Result<(), Fault> {
         let offset = self.offset;
         match self.line() {
             [] => Ok(()),
@@ -176,7 +176,7 @@ impl<'a> Cursor<'a> {
 
     /// The next `length` bytes, or nothing if the file has fewer left.
     #[inline]
-    pub(super) fn take(&mut self, length: usize) -> Option<&'a [u8]> {
+    pub(crate) fn take(&mut self, length: usize) -> Option<&'a [u8]> {
         let taken = self.rest().get(..length)?;
         self.offset += length;
         Some(taken)
@@ -225,7 +225,7 @@ fn is_blank(byte: u8) -> bool {
 }
 
 /// Bytes of the file as a message can show them: short, printable, in quotes.
-pub(super) fn quoted(bytes: &[u8]) -> String {
+pub(crate) fn quoted(bytes: &[u8]) -> String {
     const SHOWN: usize = 40;
     let text = String::from_utf8_lossy(bytes.get(..SHOWN).unwrap_or(bytes));
     let more = if bytes.len() > SHOWN { "..." } else { "" };

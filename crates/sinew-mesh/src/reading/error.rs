@@ -1,19 +1,19 @@
-//! Errors in the bytes of a .msh file.
+//! Errors in the bytes of a mesh file.
 
 use crate::warning::Position;
 
-/// The bytes are not a .msh file that can be read.
+/// The bytes are not a mesh file of their format that can be read.
 ///
 /// The message is `place in the file: section, block, row: what is wrong; expected ...`.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum MshError {
+pub enum MeshError {
     /// The contents break the format or contradict themselves.
     #[error("{at}: {}{problem}; expected {expected}", before_problem(place))]
     Malformed {
         /// Place in the file.
         at: Position,
-        /// Section, block and row, e.g. `$Elements, block 2, element 17`; empty outside sections.
+        /// Section, block and row, e.g. `$Elements, block 2, element 17` or `CellData, array "labels"`; empty outside of them.
         place: String,
         /// The problem.
         problem: String,
@@ -34,17 +34,17 @@ pub enum MshError {
     },
 }
 
-impl MshError {
+impl MeshError {
     /// Place of the error in the file.
     #[must_use]
     pub fn position(&self) -> Position {
         match self {
-            MshError::Malformed { at, .. } | MshError::Unsupported { at, .. } => *at,
+            MeshError::Malformed { at, .. } | MeshError::Unsupported { at, .. } => *at,
         }
     }
 
     /// The message for a named file: `file.msh:57 (byte 2310): ...`.
-    pub(super) fn message_for(&self, file: &str) -> String {
+    pub(crate) fn message_for(&self, file: &str) -> String {
         let at = self.position();
         let message = self.to_string();
         let without_position = message.strip_prefix(&at.to_string()).unwrap_or(&message);

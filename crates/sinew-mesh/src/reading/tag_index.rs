@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 /// Index of nodes or elements by tag.
-pub(super) struct TagIndex {
+pub(crate) struct TagIndex {
     lookup: Lookup,
     least: u64,
     greatest: u64,
@@ -19,7 +19,7 @@ enum Lookup {
 
 impl TagIndex {
     /// An index of the tags if they are consecutive, otherwise one that has none of them yet.
-    pub(super) fn of_range(tags: &[u64]) -> TagIndex {
+    pub(crate) fn of_range(tags: &[u64]) -> TagIndex {
         let least = tags.iter().min().copied().unwrap_or(0);
         let greatest = tags.iter().max().copied().unwrap_or(0);
         let span = greatest - least;
@@ -43,17 +43,17 @@ impl TagIndex {
     }
 
     /// Whether the index is complete.
-    pub(super) fn is_complete(&self) -> bool {
+    pub(crate) fn is_complete(&self) -> bool {
         matches!(self.lookup, Lookup::Consecutive)
     }
 
     /// The least and the greatest tag.
-    pub(super) fn range(&self) -> (u64, u64) {
+    pub(crate) fn range(&self) -> (u64, u64) {
         (self.least, self.greatest)
     }
 
     #[inline]
-    pub(super) fn get(&self, tag: u64) -> Option<u32> {
+    pub(crate) fn get(&self, tag: u64) -> Option<u32> {
         match &self.lookup {
             Lookup::Consecutive if tag > self.greatest => None,
             Lookup::Consecutive => u32::try_from(tag.checked_sub(self.least)?).ok(),
@@ -66,7 +66,7 @@ impl TagIndex {
     }
 
     /// The tag must be in the range the index was made for.
-    pub(super) fn insert(&mut self, tag: u64, index: u32) {
+    pub(crate) fn insert(&mut self, tag: u64, index: u32) {
         match &mut self.lookup {
             Lookup::Consecutive => {}
             Lookup::Map(map) => {

@@ -1,11 +1,11 @@
 //! An error on its way up. Every level that it passes adds its own place to it.
 
-use super::error::MshError;
+use super::error::MeshError;
 use crate::warning::Position;
 
 /// An error as the decoders report it. Boxed, because it is returned from the innermost loops.
 #[derive(Debug)]
-pub(super) struct Fault(Box<Details>);
+pub(crate) struct Fault(Box<Details>);
 
 #[derive(Debug)]
 struct Details {
@@ -19,7 +19,7 @@ struct Details {
 }
 
 impl Fault {
-    pub(super) fn new(
+    pub(crate) fn new(
         offset: usize,
         problem: impl Into<String>,
         expected: impl Into<String>,
@@ -35,7 +35,7 @@ impl Fault {
     }
 
     /// An error of data that end too early. The place of the record will add how many were declared.
-    pub(super) fn shortage(
+    pub(crate) fn shortage(
         offset: usize,
         problem: impl Into<String>,
         expected: impl Into<String>,
@@ -46,7 +46,7 @@ impl Fault {
     }
 
     /// An error of a file that may be valid, but that this reader cannot read.
-    pub(super) fn unsupported(
+    pub(crate) fn unsupported(
         offset: usize,
         problem: impl Into<String>,
         advice: impl Into<String>,
@@ -56,17 +56,17 @@ impl Fault {
         fault
     }
 
-    pub(super) fn offset(&self) -> usize {
+    pub(crate) fn offset(&self) -> usize {
         self.0.offset
     }
 
-    pub(super) fn inside(mut self, place: impl Into<String>) -> Fault {
+    pub(crate) fn inside(mut self, place: impl Into<String>) -> Fault {
         self.0.places.push(place.into());
         self
     }
 
     /// `number` counts from 1.
-    pub(super) fn in_record(self, record: &str, number: u64, of: u64) -> Fault {
+    pub(crate) fn in_record(self, record: &str, number: u64, of: u64) -> Fault {
         if self.0.is_shortage {
             self.inside(format!("{record} {number} of {of}"))
         } else {
@@ -74,21 +74,21 @@ impl Fault {
         }
     }
 
-    pub(super) fn into_error(self, bytes: &[u8], lines: Lines) -> MshError {
+    pub(crate) fn into_error(self, bytes: &[u8], lines: Lines) -> MeshError {
         let details = *self.0;
         let at = position(bytes, details.offset, lines);
         let mut places = details.places;
         places.reverse();
         let place = places.join(", ");
         if details.is_unsupported {
-            MshError::Unsupported {
+            MeshError::Unsupported {
                 at,
                 place,
                 problem: details.problem,
                 advice: details.expected,
             }
         } else {
-            MshError::Malformed {
+            MeshError::Malformed {
                 at,
                 place,
                 problem: details.problem,
@@ -100,7 +100,7 @@ impl Fault {
 
 /// Whether places in a file are given by line.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) enum Lines {
+pub(crate) enum Lines {
     #[default]
     Count,
     /// The file is binary.

@@ -1,10 +1,10 @@
-//! Numbers as .msh files spell them.
+//! Numbers as text.
 
 use super::cursor::{Token, quoted};
 use super::fault::Fault;
 
 /// A count or tag: decimal digits only, so that `-1`, `3.5` and numbers beyond 64 bits are refused, not misread.
-pub(super) fn unsigned(token: Token<'_>, what: &str) -> Result<u64, Fault> {
+pub(crate) fn unsigned(token: Token<'_>, what: &str) -> Result<u64, Fault> {
     let digits = token.text;
     let value = digits.iter().try_fold(0u64, |value, byte| {
         let digit = byte.is_ascii_digit().then(|| u64::from(byte - b'0'))?;
@@ -21,15 +21,25 @@ pub(super) fn unsigned(token: Token<'_>, what: &str) -> Result<u64, Fault> {
 }
 
 /// A signed number of 32 bits.
-pub(super) fn signed(token: Token<'_>, what: &str) -> Result<i32, Fault> {
+pub(crate) fn signed(token: Token<'_>, what: &str) -> Result<i32, Fault> {
     std::str::from_utf8(token.text)
         .ok()
         .and_then(|text| text.parse().ok())
         .ok_or_else(|| wrong(token, what, "a whole number of at most 32 bits"))
 }
 
+/// A signed number of 64 bits; a larger one becomes the largest.
+pub(crate) fn signed_long(token: Token<'_>, what: &str) -> Result<i64, Fault> {
+    let text = str::from_utf8(token.text).ok();
+    let number = text.and_then(|text| {
+        let unsigned = || text.parse::<u64>().ok().map(|_| i64::MAX);
+        text.parse().ok().or_else(unsigned)
+    });
+    number.ok_or_else(|| wrong(token, what, "a whole number of at most 64 bits"))
+}
+
 /// A floating-point number; may be infinite or not a number.
-pub(super) fn double(token: Token<'_>, what: &str) -> Result<f64, Fault> {
+pub(crate) fn double(token: Token<'_>, what: &str) -> Result<f64, Fault> {
     std::str::from_utf8(token.text)
         .ok()
         .and_then(|text| text.parse().ok())
@@ -49,7 +59,7 @@ pub(super) fn double(token: Token<'_>, what: &str) -> Result<f64, Fault> {
 }
 
 /// The number inside `np.float64(...)` or a similar wrapper.
-pub(super) fn inside_repr(text: &[u8]) -> Option<&[u8]> {
+pub(crate) fn inside_repr(text: &[u8]) -> Option<&[u8]> {
     let call = text.strip_prefix(b"np.")?.strip_suffix(b")")?;
     ["float64(", "float32(", "int64(", "int32("]
         .iter()

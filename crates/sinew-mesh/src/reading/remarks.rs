@@ -7,32 +7,42 @@ use crate::warning::{Position, Warning};
 const KEPT: usize = 100;
 
 #[derive(Debug, Default)]
-pub(super) struct Remarks {
+pub(crate) struct Remarks {
     kept: Vec<(Option<usize>, String)>,
     dropped: usize,
     lines: Lines,
     /// The file's version is a bare 4, whose meaning had to be assumed.
-    pub(super) version_is_open: bool,
+    pub(crate) version_is_open: bool,
 }
 
 impl Remarks {
     /// Gives places by byte only from now on, because the file is binary.
-    pub(super) fn lines_mean_nothing(&mut self) {
+    pub(crate) fn lines_mean_nothing(&mut self) {
         self.lines = Lines::DoNot;
     }
 
     /// Whether places are given by line, as far as the file has been read.
-    pub(super) fn lines(&self) -> Lines {
+    pub(crate) fn lines(&self) -> Lines {
         self.lines
     }
 
     /// Adds a remark about one place of the file.
-    pub(super) fn at(&mut self, offset: usize, message: impl Into<String>) {
+    pub(crate) fn at(&mut self, offset: usize, message: impl Into<String>) {
         self.add(Some(offset), message.into());
     }
 
+    /// Adds a remark if no line break closes the last line of a text, which may have been cut inside a number then.
+    pub(crate) fn open_end(&mut self, bytes: &[u8]) {
+        if bytes.last().is_some_and(|byte| !byte.is_ascii_whitespace()) {
+            self.at(
+                bytes.len(),
+                "the file ends without a line break: its last line may have been cut",
+            );
+        }
+    }
+
     /// Adds a remark about the file as a whole.
-    pub(super) fn general(&mut self, message: impl Into<String>) {
+    pub(crate) fn general(&mut self, message: impl Into<String>) {
         self.add(None, message.into());
     }
 
@@ -44,7 +54,7 @@ impl Remarks {
         }
     }
 
-    pub(super) fn into_warnings(self, bytes: &[u8]) -> Vec<Warning> {
+    pub(crate) fn into_warnings(self, bytes: &[u8]) -> Vec<Warning> {
         let mut offsets: Vec<usize> = self.kept.iter().filter_map(|(offset, _)| *offset).collect();
         offsets.sort_unstable();
         let mut positions = positions(bytes, &offsets);

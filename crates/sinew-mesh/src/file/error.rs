@@ -1,0 +1,51 @@
+//! Reasons why a mesh file cannot be read.
+
+use std::io;
+use std::path::PathBuf;
+
+use super::other_formats;
+use crate::reading::MeshError;
+
+/// A mesh file cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshFileError {
+    /// The file does not exist or cannot be read.
+    #[error("{}: cannot be read: {error}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's error.
+        error: io::Error,
+    },
+    /// The path is a directory, pipe, device or socket.
+    #[error("{}: is {what}; expected a file", path.display())]
+    NotAFile {
+        /// The path.
+        path: PathBuf,
+        /// The kind of thing that it is.
+        what: &'static str,
+    },
+    /// The contents are wrong.
+    #[error("{}", error.message_for(&path.display().to_string()))]
+    Contents {
+        /// The file.
+        path: PathBuf,
+        /// The problem and its place.
+        error: Box<MeshError>,
+    },
+}
+
+impl MeshFileError {
+    /// Advice on what to do, if there is any: the command that converts a file whose name tells another format.
+    #[must_use]
+    pub fn advice(&self) -> Option<String> {
+        match self {
+            // A file of another format is refused at its first byte.
+            MeshFileError::Contents { path, error } if error.position().byte == 0 => {
+                other_formats::advice(path)
+            }
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Conditions on the data of a mesh: which nodes and which tetrahedra meet them.
+
+use std::collections::BTreeSet;
+use std::fmt;
+
+use super::SelectionError;
+use crate::TetMesh;
+
+/// Values of data that are chosen.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DataValues {
+    /// One of these values exactly, as labels have.
+    Equal(Vec<f64>),
+    /// From the first value to the second, both among them.
+    Between([f64; 2]),
+}
+
+impl DataValues {
+    fn has(&self, value: f64) -> bool {
+        match self {
+            Self::Equal(values) => values.contains(&value),
+            Self::Between([low, high]) => (*low..=*high).contains(&value),
+        }
+    }
+}
+
+/// The words of a condition on data.
+pub(super) fn write_words(
+    f: &mut fmt::Formatter<'_>,
+    name: &str,
+    values: &DataValues,
+) -> fmt::Result {
+    match values {
+        DataValues::Equal(values) => {
+            let values: Vec<String> = values.iter().map(f64::to_string).collect();
+            write!(f, "with {name} = {}", values.join(" or "))
+        }
+        DataValues::Between([low, high]) => write!(f, "with {low} <= {name} <= {high}"),
+    }
+}
+
+/// The data of a name that a mesh has, of whichever holder is asked for first.
+#[derive(Clone, Copy)]
+pub(super) enum First {
+    Nodes,
+    Tets,
+}
+
+/// Those that meet a condition.
+pub(super) enum Met {
+    /// Whether each node does.
+    Nodes(Vec<bool>),
+    /// Whether each tetrahedron does.
+    Tets(Vec<bool>),
+}
+
+/// The nodes or tetrahedra at which data have one of some values.
+///
+/// # Errors
+///
+/// If there are no such data, several or some with more than one number for each holder, or no holder has such a value.
+pub(super) fn met(
+    mesh: &TetMesh,
+    (name, values): (&str, &DataValues),
+    first: First,
+) -> Result<Met, SelectionError> {
+    let at_nodes = mesh.node_data.iter();
+    let at_nodes = at_nodes.map(|data| (&data.name, data.step, data.components, &data.values));
+    let in_tets = mesh.data.iter();
+    let in_tets = in_tets.map(|data| (&data.name, data.step, data.components, &data.values));
+    let at_nodes: Vec<_> = at_nodes.filter(|(given, ..)| *given == name).collect();
+    let in_tets: Vec<_> = in_tets.filter(|(given, ..)| *given == name).collect();
+    let of_nodes = match first {
+        First::Nodes => !at_nodes.is_empty(),
+        First::Tets => in_tets.is_empty(),
+    };
+    let (found, holder) = match of_nodes {
+        true => (at_nodes, "node"),
+        false => (in_tets, "tetrahedron"),
+    };
+    let numbers = match found[..] {
+        [(_, _, 1, numbers)] => numbers,
+        [(_, _, components, _)] => {
+            let name = name.to_owned();
+            return Err(SelectionError::NotOneNumber { name, components });
+        }
+        [] => return Err(unknown(mesh, name)),
+        _ => {
+            return Err(SelectionError::SeveralData {
+                name: name.to_owned(),
+                steps: found.iter().map(|(_, step, ..)| *step).collect(),
+            });
+        }
+    };
+    let met: Vec<bool> = numbers.iter().map(|number| values.has(*number)).collect();
+    if !met.contains(&true) {
+        return Err(SelectionError::NoValue {
+            holder,
+            name: name.to_owned(),
+            values: values.clone(),
+            known: in_words(numbers),
+        });
+    }
+    Ok(match of_nodes {
+        true => Met::Nodes(met),
+        false => Met::Tets(met),
+    })
+}
+
+fn unknown(mesh: &TetMesh, name: &str) -> SelectionError {
+    let at_nodes = mesh.node_data.iter().map(|data| data.name.clone());
+    let in_tets = mesh.data.iter().map(|data| data.name.clone());
+    let known: BTreeSet<String> = at_nodes.chain(in_tets).collect();
+    SelectionError::UnknownData {
+        name: name.to_owned(),
+        known: known.into_iter().collect(),
+    }
+}
+
+/// The values that there are: all of a few, or the least and the greatest.
+fn in_words(numbers: &[f64]) -> String {
+    const SHOWN: usize = 12;
+    let mut different: Vec<f64> = Vec::new();
+    let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for &number in numbers.iter().filter(|number| !number.is_nan()) {
+        (least, greatest) = (least.min(number), greatest.max(number));
+        if different.len() <= SHOWN && !different.contains(&number) {
+            different.push(number);
+        }
+    }
+    if different.len() > SHOWN {
+        return format!("they reach from {least} to {greatest}");
+    }
+    different.sort_by(f64::total_cmp);
+    let listed: Vec<String> = different.iter().map(f64::to_string).collect();
+    format!("there are {}", listed.join(", "))
+}
