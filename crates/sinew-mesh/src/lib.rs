@@ -37,6 +37,7 @@
 mod abaqus;
 mod cell_type;
 mod check;
+mod data_range;
 mod duplicates;
 mod file;
 pub mod info;
@@ -59,8 +60,8 @@ mod warning;
 pub use abaqus::read_abaqus;
 pub use cell_type::CellType;
 pub use check::{CheckLimits, EdgeLengths, Extreme, Finding, MeshCheck, Part, SharedFace};
-pub use joints::{JointFinding, Joints, Places};
 pub use file::{MeshFileError, MeshFormat, read_mesh, read_mesh_file, read_msh_file};
+pub use joints::{JointFinding, Joints, Places};
 pub use label_groups::{LabelError, LabelGroup};
 pub use linearise::Linearised;
 pub use medit::read_medit;
