@@ -35,7 +35,7 @@ pub(super) type Corners = [[f64; 3]; 3];
 
 /// Pairs (face, other) of faces that turn their outsides to each other, of which some point of the first lies on the other.
 pub(super) fn pairs(faces: &[Corners]) -> Vec<[usize; 2]> {
-    let lengths = faces.iter().map(|face| longest_edge(face));
+    let lengths = faces.iter().map(longest_edge);
     let edge = lengths.clone().fold(0.0, f64::max);
     let mean = lengths.sum::<f64>() / faces.len().max(1) as f64;
     if !(edge > 0.0 && edge.is_finite()) {
