@@ -160,7 +160,7 @@ impl Forecast {
     /// The part of the motion (s) that was looked at; `None` where that is all of it.
     #[must_use]
     pub fn seen_s(&self) -> Option<f64> {
-        (self.seen < self.steps).then(|| self.seen as f64 * self.dt)
+        (self.seen < self.steps).then_some(self.seen as f64 * self.dt)
     }
 
     /// Time (s) of the run by the clock on the wall, set-up included, without what is written.
