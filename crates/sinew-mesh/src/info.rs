@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use crate::check::{TetShape, tet_corners};
+pub use crate::data_range::DataRange;
 use crate::mesh::Mesh;
 
 /// Summary of a mesh. [`MeshInfo::to_json`] gives the fields under their names.
@@ -30,8 +31,25 @@ pub struct MeshInfo {
     pub tets_inverted: usize,
     /// Number of flat tetrahedra, whose volume is at most 1e-9 of the cube of the longest edge.
     pub tets_degenerate: usize,
+    /// The data, in the order of points, cells and nodes of cells.
+    pub data: Vec<DataInfo>,
     /// Warnings of the reader.
     pub warnings: Vec<String>,
+}
+
+/// Data of a mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DataInfo {
+    /// What has values: `points`, `cells` or `nodes of cells`.
+    pub of: &'static str,
+    /// Name.
+    pub name: String,
+    /// Number of the time step.
+    pub step: i32,
+    /// Numbers for each holder.
+    pub components: usize,
+    /// The values, of all components.
+    pub range: DataRange,
 }
 
 /// A physical group.
@@ -63,6 +81,7 @@ impl MeshInfo {
             duplicate_3d_cells: mesh.duplicate_cells(3).iter().map(|d| d.pairs.len()).sum(),
             tets_inverted: 0,
             tets_degenerate: 0,
+            data: data(mesh),
             warnings: mesh.warnings.iter().map(ToString::to_string).collect(),
         };
         let mut is_in_3d_cell = vec![false; mesh.points.len()];
@@ -129,6 +148,17 @@ impl MeshInfo {
         field(&mut json, "duplicate_3d_cells", self.duplicate_3d_cells);
         field(&mut json, "tets_inverted", self.tets_inverted);
         field(&mut json, "tets_degenerate", self.tets_degenerate);
+        let data = self.data.iter().map(|data| {
+            let DataInfo { of, name, step, components, range } = data;
+            let (name, least, greatest) = (text(name), number(range.least), number(range.greatest));
+            let different = range.different.map_or_else(|| "null".to_owned(), |count| count.to_string());
+            format!(
+                "{{\"of\":\"{of}\",\"name\":{name},\"step\":{step},\"components\":{components},\"least\":{least},\"greatest\":{greatest},\
+                 \"is_whole\":{},\"different\":{different},\"missing\":{}}}",
+                range.is_whole, range.missing
+            )
+        });
+        field(&mut json, "data", list(data));
         field(
             &mut json,
             "warnings",
@@ -151,6 +181,31 @@ fn bounding_box(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
         }
     }
     bbox
+}
+
+fn data(mesh: &Mesh) -> Vec<DataInfo> {
+    let points = mesh.point_data.iter().map(|data| DataInfo {
+        of: "points",
+        name: data.name.clone(),
+        step: data.step,
+        components: data.components,
+        range: DataRange::of(data.values.iter().copied()),
+    });
+    let cells = mesh.cell_data.iter().map(|data| DataInfo {
+        of: "cells",
+        name: data.name.clone(),
+        step: data.step,
+        components: data.components,
+        range: DataRange::of(data.blocks.iter().flatten().copied()),
+    });
+    let nodes = mesh.cell_node_data.iter().map(|data| DataInfo {
+        of: "nodes of cells",
+        name: data.name.clone(),
+        step: data.step,
+        components: data.components,
+        range: DataRange::of(data.blocks.iter().flatten().copied()),
+    });
+    points.chain(cells).chain(nodes).collect()
 }
 
 fn groups(mesh: &Mesh) -> Vec<GroupInfo> {

@@ -37,6 +37,7 @@
 mod abaqus;
 mod cell_type;
 mod check;
+mod data_range;
 mod duplicates;
 mod file;
 pub mod info;

@@ -56,7 +56,7 @@ pub mod prelude {
     };
     pub use sinew_integrators::Stepper;
     pub use sinew_mesh::structured::{self, Split};
-    pub use sinew_mesh::{TetMesh, read_msh_file};
+    pub use sinew_mesh::{TetMesh, read_mesh_file, read_msh_file};
     pub use sinew_scene::Scene;
 }
 

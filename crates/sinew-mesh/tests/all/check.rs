@@ -270,7 +270,7 @@ fn coincident_nodes_are_no_finding() {
 fn a_summary_is_json() {
     let mesh = read(TWO_REGIONS_41);
     let info = MeshInfo::of(&mesh);
-    insta::assert_snapshot!(info.to_json(), @r#"{"num_points":6,"bbox":[[0.0,0.0,0.0],[5.0,5.0,5.0]],"cells":{"tetra":2,"triangle":1},"physical":[{"dim":2,"tag":7,"name":"skin","cells":{"triangle":1}},{"dim":3,"tag":7,"name":"fat","cells":{"tetra":2}},{"dim":3,"tag":9,"name":"muscle","cells":{"tetra":1}}],"tet_volume":0.5,"first_cells":[[1,2,3],[1,3,2,0],[3,2,0,4]],"points_not_in_3d_cells":1,"duplicate_3d_cells":0,"tets_inverted":0,"tets_degenerate":0,"warnings":[]}"#);
+    insta::assert_snapshot!(info.to_json(), @r#"{"num_points":6,"bbox":[[0.0,0.0,0.0],[5.0,5.0,5.0]],"cells":{"tetra":2,"triangle":1},"physical":[{"dim":2,"tag":7,"name":"skin","cells":{"triangle":1}},{"dim":3,"tag":7,"name":"fat","cells":{"tetra":2}},{"dim":3,"tag":9,"name":"muscle","cells":{"tetra":1}}],"tet_volume":0.5,"first_cells":[[1,2,3],[1,3,2,0],[3,2,0,4]],"points_not_in_3d_cells":1,"duplicate_3d_cells":0,"tets_inverted":0,"tets_degenerate":0,"data":[],"warnings":[]}"#);
     let info = MeshInfo::of(&read(TWICE_22));
     assert_eq!(info.duplicate_3d_cells, 1);
     assert_eq!(info.warnings.len(), 1);

@@ -10,7 +10,7 @@ use sinew_core::{OptionError, SimulateError};
 use sinew_measure::advice::AdviceError;
 use sinew_measure::convergence::ConvergeError;
 use sinew_mesh::vtu::WriteVtuError;
-use sinew_mesh::{CellType, MeshFileError, RefineError, TetMeshError, WriteMshError};
+use sinew_mesh::{CellType, LabelError, MeshFileError, RefineError, TetMeshError, WriteMshError};
 use sinew_record::{CompareError, Ended, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
 use sinew_scene::{CuttingError, ReactionError, RefusedLoad, SceneError, StretchError, Warning};
@@ -145,6 +145,14 @@ pub(crate) enum Failure {
     MeshFormat {
         /// The path.
         path: PathBuf,
+    },
+    /// Data of which no groups can be made.
+    #[error("{}: {source}", path.display())]
+    Labels {
+        /// The mesh file.
+        path: PathBuf,
+        /// The reason.
+        source: LabelError,
     },
     /// A mesh that cannot be refined.
     #[error("{}: {source}", path.display())]
@@ -323,6 +331,7 @@ impl Failure {
             | Self::Exists { .. }
             | Self::NotReady { .. }
             | Self::MeshFormat { .. }
+            | Self::Labels { .. }
             | Self::Refine { .. }
             | Self::WriteMsh { .. }
             | Self::WriteVtu { .. }

@@ -1,5 +1,8 @@
 //! `sinew mesh info | check | convert | refine`.
 
+mod data;
+mod labels;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
@@ -7,7 +10,7 @@ use serde_json::json;
 use sinew_mesh::info::MeshInfo;
 use sinew_mesh::vtu::{VtuEncoding, write_vtu};
 use sinew_mesh::{
-    Extreme, Finding, Mesh, MeshCheck, MshEncoding, MshVersion, WriteMshError, read_msh_file,
+    Extreme, Finding, Mesh, MeshCheck, MshEncoding, MshVersion, WriteMshError, read_mesh_file,
     write_msh,
 };
 use sinew_scene::output::{Destination, Voice, complain, say};
@@ -17,9 +20,9 @@ use super::Failure;
 /// Commands for mesh files.
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    /// Summarise a gmsh file.
+    /// Summarise a mesh file: .msh, .vtu, .vtk, .mesh of Medit or .inp of Abaqus.
     Info {
-        /// The .msh file.
+        /// The mesh file.
         file: PathBuf,
         /// Print one JSON object.
         #[arg(long)]
@@ -27,7 +30,7 @@ pub(crate) enum Command {
     },
     /// Look for defects that make a simulation fail or mislead; exit code 1 if there are any.
     Check {
-        /// The .msh file.
+        /// The mesh file, of a format that info reads.
         file: PathBuf,
         /// Print one JSON object.
         #[arg(long)]
@@ -39,20 +42,24 @@ pub(crate) enum Command {
         #[arg(long, value_name = "OUT", requires = "fix")]
         out: Option<PathBuf>,
     },
-    /// Write a gmsh file in another version, encoding or format. The extension of OUTPUT, .msh or
+    /// Write a mesh file in another version, encoding or format. The extension of OUTPUT, .msh or
     /// .vtu, selects the format; a device, a pipe or - for standard output gets .msh.
     Convert {
-        /// The .msh file.
+        /// The mesh file: .msh, .vtu, .vtk, .mesh of Medit or .inp of Abaqus.
         input: PathBuf,
         /// The file to write.
         output: PathBuf,
+        /// Make a group of each value of data that have one whole number for each cell: cells with the value 2 of `labels` become
+        /// the group `labels_2`. May be given several times.
+        #[arg(long, value_name = "NAME")]
+        groups_from: Vec<String>,
         #[command(flatten)]
         style: Style,
     },
     /// Write a mesh with each tetrahedron cut into eight, all groups kept: whether a mesh is fine enough
     /// shows where its answer is compared with that of the finer one. Formats are those of convert.
     Refine {
-        /// The .msh file.
+        /// The mesh file, of a format that convert reads.
         input: PathBuf,
         /// The file to write.
         output: PathBuf,
@@ -119,8 +126,9 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         Command::Convert {
             input,
             output,
+            groups_from,
             style,
-        } => convert(input, output, *style),
+        } => convert(input, output, groups_from, *style),
         Command::Refine {
             input,
             output,
@@ -130,7 +138,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
 }
 
 fn read(file: &Path) -> Result<Mesh, Failure> {
-    Ok(read_msh_file(file)?)
+    Ok(read_mesh_file(file)?)
 }
 
 /// Reads a mesh in the order of cells that was asked for.
@@ -178,6 +186,9 @@ fn info(file: &Path, json: bool) -> Result<(), Failure> {
             "group    `{name}` (dimension {dim}, tag {tag}): {}",
             cells.join(", ")
         ))?;
+    }
+    for line in data::lines(&info.data) {
+        say(&line)?;
     }
     for (count, what) in [
         (
@@ -237,8 +248,11 @@ fn check(file: &Path, json: bool, fixes: &[Fix], out: Option<&Path>) -> Result<(
         let _ = destination.write(&bytes)?;
     }
     let check = mesh.check();
+    let data = MeshInfo::of(&mesh).data;
     if json {
-        say(&as_json(&check, &fixed, written).to_string())?;
+        let mut findings = as_json(&check, &fixed, written);
+        findings["data"] = data::as_json(&data);
+        say(&findings.to_string())?;
     } else {
         for (count, what) in &fixed {
             voice.say(&format!("fixed    {count} {what}"))?;
@@ -247,6 +261,9 @@ fn check(file: &Path, json: bool, fixes: &[Fix], out: Option<&Path>) -> Result<(
             voice.say(&format!("written  {}", path.display()))?;
         }
         report(&check, voice)?;
+        for line in data::lines(&data) {
+            voice.say(&line)?;
+        }
     }
     if check.is_clean() {
         Ok(())
@@ -354,13 +371,19 @@ fn as_json(
     })
 }
 
-fn convert(input: &Path, output: &Path, style: Style) -> Result<(), Failure> {
+fn convert(
+    input: &Path,
+    output: &Path,
+    groups_from: &[String],
+    style: Style,
+) -> Result<(), Failure> {
     let output = MeshOutput::new(input, output, style)?;
-    let mesh = read_in(input, style)?;
+    let mut mesh = read_in(input, style)?;
     for warning in &mesh.warnings {
         complain(&format!("warning: {}: {warning}", input.display()));
     }
-    output.write(&mesh, "")
+    let facts = labels::into_groups(&mut mesh, input, groups_from)?;
+    output.write(&mesh, &facts)
 }
 
 fn refine(input: &Path, output: &Path, style: Style) -> Result<(), Failure> {

@@ -5,7 +5,7 @@ mod scene_file;
 
 use std::path::{Component, Path, PathBuf};
 
-use sinew_mesh::read_msh_file;
+use sinew_mesh::read_mesh_file;
 use sinew_scene::propose;
 
 use scene_file::{new_file, written};
@@ -16,7 +16,7 @@ use super::Failure;
 #[derive(clap::Args)]
 #[command(group = clap::ArgGroup::new("what").args(["mesh", "list", "ready"]).required(true))]
 pub(crate) struct Arguments {
-    /// The mesh file to write a first scene for: its groups with their sizes, its unit as far as its extent tells, and a
+    /// The mesh file to write a first scene for: its groups with their sizes, its data with their ranges, its unit as far as its extent tells, and a
     /// material, a support and a load as proposals; it runs as it is
     mesh: Option<PathBuf>,
     /// List the ready scenes
@@ -60,7 +60,7 @@ fn first(mesh: &Path, out: &Path) -> Result<(), Failure> {
         return Err(Failure::SceneForMesh { path });
     }
     let destination = new_file(out, &[mesh.to_owned()])?;
-    let text = propose(read_msh_file(mesh)?, &seen_from(out, mesh));
+    let text = propose(read_mesh_file(mesh)?, &seen_from(out, mesh));
     let text = text.map_err(|source| Failure::Tetrahedra {
         mesh: mesh.to_owned(),
         source,

@@ -34,6 +34,7 @@ fn info_as_json_has_every_field() {
         [
             "bbox",
             "cells",
+            "data",
             "duplicate_3d_cells",
             "first_cells",
             "num_points",
@@ -206,8 +207,8 @@ fn what_is_no_mesh_is_refused_with_one_message() {
 #[test]
 fn a_file_of_another_format_is_refused_with_the_command_that_converts_it() {
     let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("liver.vtu");
-    std::fs::write(&path, "<?xml version=\"1.0\"?>\n").unwrap();
+    let path = directory.path().join("liver.med");
+    std::fs::write(&path, "\x7fHDF\n").unwrap();
     for command in ["info", "check"] {
         let output = mesh(&[command, path.to_str().unwrap()]);
         assert_eq!(output.status.code(), Some(2));
@@ -220,6 +221,62 @@ fn a_file_of_another_format_is_refused_with_the_command_that_converts_it() {
         );
         assert_eq!(said.lines().nth(1), Some(help.as_str()), "{said}");
     }
+}
+
+/// A labelled tetrahedron and its neighbour, with a vector at points.
+const LABELLED: &str = "# vtk DataFile Version 4.2\nliver\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n\
+                        0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\nCELLS 2 10\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 2\n10\n10\n\
+                        CELL_DATA 2\nSCALARS labels int\nLOOKUP_TABLE default\n3 -1\n\
+                        POINT_DATA 5\nVECTORS u double\n0 0 0 0 0 0 0 0 0.5 0 0 0 0 0 0\n";
+
+#[test]
+fn labels_of_a_vtk_file_become_groups_and_data_are_listed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    std::fs::write(path("liver.vtk"), LABELLED).unwrap();
+    for out in ["liver.msh", "liver.vtu"] {
+        let done = mesh(&[
+            "convert",
+            &path("liver.vtk"),
+            &path(out),
+            "--groups-from",
+            "labels",
+        ]);
+        assert_eq!(done.status.code(), Some(0));
+        let said = String::from_utf8(done.stdout).unwrap();
+        let facts = "groups of `labels`: `labels_-1` (1 cells of dimension 3), `labels_3` (1 cells of dimension 3); ";
+        assert!(said.contains(facts), "{said}");
+        let info = String::from_utf8(mesh(&["info", &path(out)]).stdout).unwrap();
+        for line in [
+            "group    `labels_3` (dimension 3, tag 3): 1 tetra",
+            "data     `u` (points, 3 numbers each): from 0.000000e0 to 5.000000e-1",
+            "data     `labels` (cells): whole numbers from -1 to 3, 2 different",
+        ] {
+            assert!(info.lines().any(|other| other == line), "{info}");
+        }
+        let check = mesh(&["check", &path(out)]);
+        let said = String::from_utf8(check.stdout).unwrap();
+        assert!(
+            said.contains("data     `labels` (cells): whole numbers"),
+            "{said}"
+        );
+        let check = json(&mesh(&["check", &path(out), "--json"]));
+        assert_eq!(check["data"][1]["different"], 2, "{check}");
+    }
+    let refused = mesh(&[
+        "convert",
+        &path("liver.vtk"),
+        &path("no.msh"),
+        "--groups-from",
+        "label",
+    ]);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(
+        said.contains("no data of cells are named \"label\"; there are \"labels\""),
+        "{said}"
+    );
+    assert!(!Path::new(&path("no.msh")).exists());
 }
 
 #[test]
