@@ -29,7 +29,7 @@ pub(super) struct OrData<V>(pub(super) V);
 
 const DATA: TableDescription = TableDescription {
     name: "data",
-    meaning: "Data of the mesh file that give each tetrahedron a value of its own: an `$ElementData` section of a gmsh file, by its name. \
+    meaning: "Data of the mesh file that give each tetrahedron a value of its own: an `$ElementData` section of a gmsh file, or cell data of a .vtu or .vtk file, by their name. \
               Every tetrahedron of the region needs one. The tetrahedra of a finer mesh have that of the one they are a part of.",
     keys: &[&NAME],
     needs: Needs::Any,
@@ -38,7 +38,7 @@ const DATA: TableDescription = TableDescription {
 
 const NAME: Key<Text> = Key::required(
     "data",
-    "The name of the data, which is the first string tag of the section; in gmsh the name of the view. Data with several time steps are \
+    "The name of the data; of a section of a gmsh file it is the first string tag, in gmsh the name of the view. Data with several time steps are \
      refused.",
     Text::any("the name of data in the mesh file"),
 );

@@ -65,7 +65,7 @@ const MOST_CELLS_IN_ALL: usize = MOST_CELLS * MOST_CELLS * MOST_CELLS;
 
 pub(super) const MESH: TableDescription = TableDescription {
     name: "mesh",
-    meaning: "The shape of the body: a mesh of tetrahedra from a file of gmsh, or a cube or a block made here. What a scene \
+    meaning: "The shape of the body: a mesh of tetrahedra from a file, or a cube or a block made here. What a scene \
               says besides is in the metres and axes of the body, after `scale` and `rotate`. \
               Parts that share no node, and surfaces of one part, are kept apart by nothing: a run warns where one is in another.",
     keys: &[&FILE, &CUBE, &BLOCK, &SCALE, &ROTATE, &ORDER],
@@ -79,7 +79,8 @@ pub(super) const MESH: TableDescription = TableDescription {
 
 pub(super) const FILE: Key<Text> = Key::required(
     "file",
-    "Mesh file of gmsh (.msh), its path relative to the scene's folder.",
+    "Mesh file, its path relative to the scene's folder: .msh of gmsh, .vtu and .vtk of VTK, .mesh of Medit, .inp of Abaqus. What each gives as \
+     groups and data stands in `sinew mesh info`.",
     Text::any("the path of a mesh, seen from the scene"),
 );
 

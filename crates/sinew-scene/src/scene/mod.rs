@@ -15,6 +15,7 @@ mod motion;
 mod oscillator;
 mod output;
 mod place;
+mod place_data;
 mod probe;
 mod ramp;
 mod region;

@@ -1,10 +1,11 @@
-//! The conditions of `where`: places in the body at rest.
+//! The conditions of `where`: places in the body at rest, and data of its mesh.
 
 use std::ops::Bound;
 
 use sinew_mesh::Condition as On;
 use toml::de::DeValue;
 
+use super::place_data::{self, DATA};
 use crate::decode::value::{Misfit, integer, list};
 use crate::decode::{
     Condition, Inner, Key, Kind, List, Needs, Number, Optional, Shape, Table, TableDescription,
@@ -12,7 +13,7 @@ use crate::decode::{
 };
 use crate::error::{Fault, SceneError};
 
-const MEANING: &str = "A place in the body at rest. Where there are several keys, all of them must hold. A triangle or a \
+const MEANING: &str = "A place in the body at rest, or a part of it by data of its mesh. Where there are several keys, all of them must hold. A triangle or a \
                        tetrahedron is chosen if all its nodes are. `sinew plan` prints how many were found; to find none is an error.";
 
 /// The places of nodes and of triangles.
@@ -20,7 +21,7 @@ pub(super) const PLACE: TableDescription = TableDescription {
     name: "place",
     meaning: MEANING,
     keys: &[
-        &BELOW, &ABOVE, &BOX, &SPHERE, &CYLINDER, &PLANE, &FACE, &NODES,
+        &BELOW, &ABOVE, &BOX, &SPHERE, &CYLINDER, &PLANE, &FACE, &NODES, &DATA,
     ],
     needs: Needs::Some,
     examples: &[
@@ -32,6 +33,7 @@ pub(super) const PLACE: TableDescription = TableDescription {
         "{ plane = { point = [0.0, 0.0, 0.2], normal = [0, 0, 1], within = 1e-6 } }",
         "{ above = { z = 0.1 }, face = { normal = [0, 0, 1], angle = 20 } }",
         "{ nodes = [4, 40, 65] }",
+        "{ data = { name = \"labels\", equals = 2 } }",
     ],
 };
 
@@ -47,6 +49,7 @@ pub(super) const PLACE_OF_TETRAHEDRA: TableDescription = TableDescription {
         &PLANE,
         &FACE_OF_TETRAHEDRA,
         &NODES,
+        &DATA,
     ],
     examples: &[
         "{ below = { z = 0.1 } }",
@@ -56,6 +59,7 @@ pub(super) const PLACE_OF_TETRAHEDRA: TableDescription = TableDescription {
         "{ cylinder = { axis_from = [0.1, 0.1, 0.0], axis_to = [0.1, 0.1, 0.2], radius = 0.06 } }",
         "{ plane = { point = [0.0, 0.0, 0.1], normal = [1, 0, 1], within = 0.05 } }",
         "{ nodes = [4, 40, 65, 71] }",
+        "{ data = { name = \"labels\", equals = [2, 3] } }",
     ],
     ..PLACE
 };
@@ -295,6 +299,9 @@ pub(super) fn conditions(place: &Table<'_>) -> Result<Vec<On>, SceneError> {
     }
     if let Some(tags) = place.read(&NODES)? {
         conditions.push(On::Tags(tags));
+    }
+    if let Some(data) = place.table(&DATA)? {
+        conditions.push(place_data::condition(&data)?);
     }
     Ok(conditions)
 }

@@ -75,7 +75,7 @@ pub(super) const OPTIONAL_GROUP: Key<Text, Optional> = Key::optional(
 /// A place that stands for a group of nodes or of triangles.
 pub(super) const WHERE: Key<Where, Optional> = Key::optional(
     "where",
-    "The part of the body by where it lies, in place of a group.",
+    "The part of the body by where it lies or by data of the mesh, in place of a group.",
     Where {
         expected: "conditions such as { below = { z = 0.01 } }",
         place: &PLACE,
@@ -87,7 +87,7 @@ pub(super) const WHERE: Key<Where, Optional> = Key::optional(
 /// A place that stands for a group of tetrahedra.
 pub(super) const WHERE_OF_TETRAHEDRA: Key<Where, Optional> = Key::optional(
     "where",
-    "The part of the body by where it lies, in place of a group; `\"rest\"` is all that no other region has.",
+    "The part of the body by where it lies or by data of the mesh, in place of a group; `\"rest\"` is all that no other region has.",
     Where {
         expected: "conditions such as { below = { z = 0.01 } }, or \"rest\"",
         place: &PLACE_OF_TETRAHEDRA,

@@ -14,6 +14,7 @@ mod common;
 mod cuts;
 mod data_of_meshes;
 mod good_scenes;
+mod labelled_meshes;
 mod lips;
 mod load_warnings;
 mod motions;
