@@ -23,32 +23,38 @@ const SHARE: f64 = 0.02;
 /// Acceleration of free fall (m/s^2).
 const FREE_FALL: f64 = 9.81;
 
-/// A force downwards (N) on the loaded part, with one digit.
-pub(super) fn proposed(mesh: &TetMesh, parts: &Parts) -> f64 {
+/// A force downwards (N) on the loaded part, with one digit. `stiffness` names data that are proposed as Young's modulus.
+pub(super) fn proposed(mesh: &TetMesh, parts: &Parts, stiffness: Option<&str>) -> f64 {
     let volume: f64 = mesh.signed_volumes().iter().sum();
     let tenth_of_weight = 0.1 * FREE_FALL * DENSITY * volume;
     let (low, high) = mesh.bounding_box();
     let extent = (0..3)
         .map(|axis| high[axis] - low[axis])
         .fold(0.0, f64::max);
-    let softness = displacement(mesh, parts, tenth_of_weight);
+    let softness = displacement(mesh, parts, stiffness, tenth_of_weight);
     let force = softness.map_or(tenth_of_weight, |u| tenth_of_weight * (SHARE * extent / u));
     format!("{force:.0e}").parse().unwrap_or(force)
 }
 
 /// The largest component of displacement (m) at rest under a force (N); `None` where it is not found.
-fn displacement(mesh: &TetMesh, parts: &Parts, force: f64) -> Option<f64> {
+fn displacement(mesh: &TetMesh, parts: &Parts, stiffness: Option<&str>, force: f64) -> Option<f64> {
     let problem = Problem {
         regions: vec![Region {
             group: None,
             density: DENSITY,
             law: Law::Linear {
-                youngs_modulus: YOUNGS_MODULUS,
+                youngs_modulus: match stiffness {
+                    Some(_) => 1.0,
+                    None => YOUNGS_MODULUS,
+                },
                 poissons_ratio: POISSONS_RATIO,
             },
             element: Element::P1,
             tissue: Tissue::default(),
-            from_mesh: FromMesh::default(),
+            from_mesh: FromMesh {
+                youngs_modulus: stiffness.map(str::to_owned),
+                ..FromMesh::default()
+            },
         }],
         fixed: vec![Fixed {
             on: On::Nodes(parts.held.nodes(mesh)),

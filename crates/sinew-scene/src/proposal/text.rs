@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use sinew_mesh::{Group, GroupMembers, TetMesh};
 
+use super::data;
 use super::file::MeshFile;
 use super::force::{self, DENSITY, POISSONS_RATIO, YOUNGS_MODULUS};
 use super::parts::{Part, Parts};
@@ -18,7 +19,7 @@ pub(super) fn scene(mesh: &TetMesh, file: &MeshFile<'_>, parts: &Parts) -> Strin
     let mut text = heading(mesh, file.unit.name);
     put(&mut text, &format!("title = {}\n", quoted(&title)));
     put(&mut text, &mesh_table(file));
-    put(&mut text, &region_tables(parts));
+    put(&mut text, &region_tables(mesh, parts));
     put(
         &mut text,
         &format!("[damping]\n{}", row("mass = 10.0", "1/s")),
@@ -64,6 +65,7 @@ fn heading(mesh: &TetMesh, unit: &str) -> String {
     for group in &mesh.groups {
         let _ = writeln!(text, "#   {}: {}", group.name, size(mesh, group));
     }
+    text.push_str(&data::heading(mesh));
     text
 }
 
@@ -101,14 +103,21 @@ fn mesh_table(file: &MeshFile<'_>) -> String {
     table
 }
 
-fn region_tables(parts: &Parts) -> String {
+fn region_tables(mesh: &TetMesh, parts: &Parts) -> String {
+    let stiffness = match data::stiffness(mesh) {
+        Some(stiffness) => row(
+            &format!("youngs_modulus = {{ data = {} }}", quoted(&stiffness.name)),
+            &format!("proposed by its name: are these Pa, {}?", stiffness.reach),
+        ),
+        None => row(&format!("youngs_modulus = {YOUNGS_MODULUS:?}"), "Pa"),
+    };
     let material = [
         row(
             &format!("density = {DENSITY:?}"),
             "kg/m3; the whole material is a proposal",
         ),
         "model = \"linear\"\n".to_owned(),
-        row(&format!("youngs_modulus = {YOUNGS_MODULUS:?}"), "Pa"),
+        stiffness,
         format!("poissons_ratio = {POISSONS_RATIO:?}\n"),
     ];
     let material = material.concat();
@@ -129,8 +138,10 @@ fn region_tables(parts: &Parts) -> String {
 }
 
 fn load_table(mesh: &TetMesh, parts: &Parts) -> String {
+    let stiffness = data::stiffness(mesh).map(|stiffness| stiffness.name);
+    let force = force::proposed(mesh, parts, stiffness.as_deref());
     let force = row(
-        &format!("force = [0.0, 0.0, {:?}]", -force::proposed(mesh, parts)),
+        &format!("force = [0.0, 0.0, {:?}]", -force),
         "N in all, which moves the body by some 2 % of its length",
     );
     let head = row("[[load]]", "proposed: change it");
@@ -170,6 +181,6 @@ fn part(part: &Part) -> String {
 }
 
 /// A text as TOML has it.
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use sinew_mesh::structured::{Split, block};
 use sinew_mesh::vtu::{VtuEncoding, write_vtu};
 use sinew_mesh::{GroupMembers, NodeData, TetData};
-use sinew_scene::{Scene, SceneError, Simulation};
+use sinew_scene::{Scene, SceneError, Simulation, propose};
 
 /// Writes a bar of two layers as a .vtu file without groups: labels 1 and 2, a stiffness, and the height at nodes.
 fn write_bar(folder: &Path) {
@@ -104,4 +104,26 @@ fn data_that_choose_nothing_are_told_at_their_line() {
         let said = said(from, to);
         assert!(said.contains(expected), "{said}");
     }
+}
+
+#[test]
+fn a_first_scene_lists_data_and_proposes_a_stiffness_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    write_bar(folder.path());
+    let mesh = sinew_mesh::read_mesh_file(folder.path().join("bar.vtu")).unwrap();
+    let text = propose(mesh, Path::new("bar.vtu")).unwrap();
+    for line in [
+        "# Its data:",
+        "#   labels (tetrahedra): whole numbers from 1 to 2, 2 different",
+        "#   Young's modulus (tetrahedra): from 2.000000e3 to 8.000500e3",
+        "#   height (nodes): from 0.000000e0 to 2.000000e-1",
+        "# where = { data = { name = \"labels\", equals = 1 } } chooses a part by its label.",
+        "youngs_modulus = { data = \"Young's modulus\" } # proposed by its name: are these Pa, from 2000 to 8000?",
+    ] {
+        assert!(text.lines().any(|other| other == line), "{line}\n{text}");
+    }
+    fs::write(folder.path().join("bar.toml"), &text).unwrap();
+    Scene::load(folder.path().join("bar.toml"))
+        .and_then(Scene::build)
+        .unwrap();
 }
