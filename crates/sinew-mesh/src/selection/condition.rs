@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::data::{DataValues, write_words};
+use super::data_values::{DataValues, WithData};
 
 /// A condition on the place of a node at rest. Lengths are in the mesh's unit (metres in a scene).
 #[derive(Debug, Clone, PartialEq)]
@@ -113,7 +113,7 @@ impl fmt::Display for Condition {
                 let tags: Vec<String> = tags.iter().map(u64::to_string).collect();
                 write!(f, "tagged {}", tags.join(", "))
             }
-            Self::Data { name, values } => write_words(f, name, values),
+            Self::Data { name, values } => WithData(name, values).fmt(f),
         }
     }
 }

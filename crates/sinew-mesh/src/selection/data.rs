@@ -1,43 +1,10 @@
 //! Conditions on the data of a mesh: which nodes and which tetrahedra meet them.
 
 use std::collections::BTreeSet;
-use std::fmt;
 
-use super::SelectionError;
+use super::data_values::DataValues;
+use super::error::SelectionError;
 use crate::TetMesh;
-
-/// Values of data that are chosen.
-#[derive(Debug, Clone, PartialEq)]
-pub enum DataValues {
-    /// One of these values exactly, as labels have.
-    Equal(Vec<f64>),
-    /// From the first value to the second, both among them.
-    Between([f64; 2]),
-}
-
-impl DataValues {
-    fn has(&self, value: f64) -> bool {
-        match self {
-            Self::Equal(values) => values.contains(&value),
-            Self::Between([low, high]) => (*low..=*high).contains(&value),
-        }
-    }
-}
-
-/// The words of a condition on data.
-pub(super) fn write_words(
-    f: &mut fmt::Formatter<'_>,
-    name: &str,
-    values: &DataValues,
-) -> fmt::Result {
-    match values {
-        DataValues::Equal(values) => {
-            let values: Vec<String> = values.iter().map(f64::to_string).collect();
-            write!(f, "with {name} = {}", values.join(" or "))
-        }
-        DataValues::Between([low, high]) => write!(f, "with {low} <= {name} <= {high}"),
-    }
-}
 
 /// The data of a name that a mesh has, of whichever holder is asked for first.
 #[derive(Clone, Copy)]

@@ -1,6 +1,6 @@
 //! Selections that hit nothing.
 
-use super::{Condition, DataValues};
+use super::data_values::{DataValues, WithData};
 
 /// A selection without members.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -69,7 +69,7 @@ pub enum SelectionError {
         components: usize,
     },
     /// No value of the data is one of those that are asked for.
-    #[error("no {holder} is {}; of the values {known}", words(name, values))]
+    #[error("no {holder} is {}; of the values {known}", WithData(name, values))]
     NoValue {
         /// What has values: node or tetrahedron.
         holder: &'static str,
@@ -80,11 +80,6 @@ pub enum SelectionError {
         /// The values that there are, in words.
         known: String,
     },
-}
-
-fn words(name: &str, values: &DataValues) -> String {
-    let (name, values) = (name.to_owned(), values.clone());
-    Condition::Data { name, values }.to_string()
 }
 
 fn listed(known: &[String]) -> String {

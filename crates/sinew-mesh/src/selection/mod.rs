@@ -2,11 +2,12 @@
 
 mod condition;
 mod data;
+mod data_values;
 mod error;
 mod members;
 
 pub use condition::Condition;
-pub use data::DataValues;
+pub use data_values::DataValues;
 pub use error::SelectionError;
 
 use std::fmt;

@@ -1,7 +1,6 @@
 //! Arrays of data: `SCALARS`, `VECTORS`, `FIELD` and their like.
 
-use super::dataset::times;
-use super::numbers::{Numbers, ValueType};
+use super::numbers::{Numbers, ValueType, times};
 use crate::reading::cursor::Cursor;
 use crate::reading::fault::Fault;
 use crate::reading::number;

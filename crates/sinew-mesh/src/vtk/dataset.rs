@@ -1,7 +1,7 @@
 //! The grid: points, cells, their types, and what stands between them.
 
 use super::attributes::{self, Holder};
-use super::numbers::{Numbers, ValueType};
+use super::numbers::{Numbers, ValueType, times};
 use crate::mesh::Mesh;
 use crate::reading::cursor::{Cursor, quoted};
 use crate::reading::fault::Fault;
@@ -237,13 +237,6 @@ fn once<T>(place: &mut Option<T>, value: T, offset: usize) -> Result<(), Fault> 
         None => Ok(()),
         Some(_) => Err(Fault::new(offset, "it occurs again", "one grid in a file")),
     }
-}
-
-pub(super) fn times(count: u64, components: u64, offset: usize) -> Result<u64, Fault> {
-    count.checked_mul(components).ok_or_else(|| {
-        let problem = format!("{components} numbers for each of {count} are too many");
-        Fault::new(offset, problem, "fewer than 2^64")
-    })
 }
 
 impl Dataset {

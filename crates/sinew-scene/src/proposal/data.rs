@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use sinew_mesh::TetMesh;
 use sinew_mesh::info::DataRange;
 
-use super::text::quoted;
+use super::quoted::quoted;
 use crate::number::short;
 
 /// Names of data that are a stiffness, in small letters and without signs between words.

@@ -4,6 +4,7 @@ mod data;
 mod file;
 mod force;
 mod parts;
+mod quoted;
 mod text;
 mod unit;
 

@@ -8,6 +8,7 @@ use super::data;
 use super::file::MeshFile;
 use super::force::{self, DENSITY, POISSONS_RATIO, YOUNGS_MODULUS};
 use super::parts::{Part, Parts};
+use super::quoted::quoted;
 use crate::number::short;
 
 /// Tetrahedra beyond which a factor takes minutes, and explicit steps are proposed.
@@ -178,9 +179,4 @@ fn part(part: &Part) -> String {
         Part::Below(z) => row(&format!("where = {{ below = {{ z = {z:?} }} }}"), "m"),
         Part::Above(z) => row(&format!("where = {{ above = {{ z = {z:?} }} }}"), "m"),
     }
-}
-
-/// A text as TOML has it.
-pub(super) fn quoted(text: &str) -> String {
-    toml::Value::String(text.to_owned()).to_string()
 }

@@ -39,7 +39,7 @@ fn no_condition() {
 fn an_unknown_condition() {
     insta::assert_snapshot!(refusal(PLACED, FLOOR, "where = { blow = { z = 0.0 } }"), @"
     scene.toml:16: [[fixed]] 1 where: unknown key `blow`; did you mean `below`?
-    help: the keys here are `below`, `above`, `box`, `sphere`, `cylinder`, `plane`, `face`, `nodes`
+    help: the keys here are `below`, `above`, `box`, `sphere`, `cylinder`, `plane`, `face`, `nodes`, `data`
     ");
 }
 
