@@ -1,8 +1,7 @@
 //! What is said of joints.
 
-use std::fmt;
-
-use super::{Joints, Places};
+use super::Joints;
+use super::places::Places;
 
 /// Kinds of findings about joints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,25 +79,5 @@ impl Joints {
             )
         });
         findings
-    }
-}
-
-impl fmt::Display for Places {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.total)?;
-        let Some([x, y, z]) = self.first.first().map(|place| place.map(rounded)) else {
-            return Ok(());
-        };
-        let first = if self.total > 1 { "first " } else { "" };
-        write!(f, " ({first}at {x}, {y}, {z})")
-    }
-}
-
-/// A coordinate to six digits.
-fn rounded(x: f64) -> f64 {
-    let digits = 10f64.powf(5.0 - x.abs().log10().floor());
-    match digits.is_finite() && digits > 0.0 {
-        true => (x * digits).round() / digits,
-        false => x,
     }
 }

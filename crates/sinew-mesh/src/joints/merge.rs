@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use super::{Contacts, Sets, Surfaces};
+use super::sets::Sets;
+use super::surfaces::{Contacts, Surfaces};
 use crate::linearise::middle_nodes;
 use crate::mesh::Mesh;
 

@@ -5,52 +5,23 @@ mod findings;
 mod lying;
 mod merge;
 mod place;
+mod places;
 mod sets;
+mod surfaces;
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 pub use findings::JointFinding;
+pub use places::Places;
 
-pub(crate) use faces::{Owner, for_each_face, is_sound};
+pub(crate) use faces::for_each_face;
 pub(crate) use sets::Sets;
+pub(crate) use surfaces::Surfaces;
 
-use crate::check::TetShape;
 use crate::tet_mesh::TetMesh;
+use faces::is_sound;
 use lying::is_within;
-use place::same_places;
-
-/// Number of examples that are kept of each finding.
-const EXAMPLES: usize = 10;
-
-/// Distance of places that are one but for rounding, as a share of the width of the mesh.
-const ROUNDING: f64 = 1e-9;
-
-/// Volume of a flat tetrahedron, as a share of the cube of its longest edge.
-const FLAT: f64 = 1e-12;
-
-/// Number of places, and the first ten.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Places {
-    /// Number of places.
-    pub total: usize,
-    /// The first ten, in the unit of the mesh.
-    pub first: Vec<[f64; 3]>,
-}
-
-impl Places {
-    fn add(&mut self, place: [f64; 3]) {
-        self.total += 1;
-        if self.first.len() < EXAMPLES {
-            self.first.push(place);
-        }
-    }
-
-    /// Whether there is none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.total == 0
-    }
-}
+use surfaces::{middle, parts};
 
 /// Where the tetrahedra of a mesh hang together, and where they only seem to. Parts share no node with each other.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -114,111 +85,7 @@ impl TetMesh {
     }
 }
 
-/// The tetrahedra of a mesh with the faces that bound them.
-pub(crate) struct Surfaces<'a> {
-    points: &'a [[f64; 3]],
-    tets: &'a [[u32; 4]],
-    /// Parts of nodes, and blocks of tetrahedra with common faces.
-    parts: Sets,
-    blocks: Sets,
-    /// Faces of one tetrahedron, counter-clockwise from outside, with it.
-    boundary: Vec<([u32; 3], u32)>,
-    tangled: Places,
-    /// For each node of the boundary, the first one at its place.
-    same: Vec<u32>,
-}
-
-/// How faces of the boundary lie on each other.
-pub(crate) struct Contacts {
-    /// Pairs of faces with the same places and other nodes.
-    matched: Vec<[usize; 2]>,
-    /// Pairs (face, other) of which the first lies on the other otherwise.
-    lying: Vec<[usize; 2]>,
-}
-
-impl<'a> Surfaces<'a> {
-    pub(crate) fn of(points: &'a [[f64; 3]], tets: &'a [[u32; 4]]) -> Self {
-        let mut blocks = Sets::new(tets.len());
-        let signs: Vec<i8> = tets.iter().map(|tet| orientation(points, tet)).collect();
-        let sign = |tet: u32| signs[tet as usize];
-        let (mut boundary, mut tangled) = (Vec::new(), Places::default());
-        for_each_face(tets, points.len(), |face, owners| {
-            if let [owner] = owners {
-                let mut corners = owner.face(tets);
-                if sign(owner.tet) < 0 {
-                    corners.swap(1, 2);
-                }
-                boundary.push((corners, owner.tet));
-            }
-            for pair in owners.windows(2) {
-                blocks.join(pair[0].tet, pair[1].tet);
-            }
-            if let [a, b] = owners {
-                let side = |owner: &Owner| sign(owner.tet) * parity(owner.face(tets));
-                if side(a) * side(b) > 0 {
-                    tangled.add(middle(points, face));
-                }
-            }
-        });
-        let mut on_boundary = vec![false; points.len()];
-        for node in boundary.iter().flat_map(|(face, _)| face) {
-            on_boundary[*node as usize] = true;
-        }
-        let rounding = ROUNDING * width(points, &on_boundary);
-        let same = match rounding > 0.0 && rounding.is_finite() {
-            true => same_places(points, &on_boundary, rounding),
-            false => (0u32..).take(points.len()).collect(),
-        };
-        Self {
-            points,
-            tets,
-            parts: parts(points, tets),
-            blocks,
-            boundary,
-            tangled,
-            same,
-        }
-    }
-
-    fn place(&self, node: u32) -> u32 {
-        self.same[node as usize]
-    }
-
-    fn corners(&self, face: usize) -> lying::Corners {
-        self.boundary[face].0.map(|node| self.points[node as usize])
-    }
-
-    pub(crate) fn contacts(&self) -> Contacts {
-        let mut at_places: HashMap<[u32; 3], Vec<usize>> = HashMap::new();
-        for (face, (nodes, _)) in self.boundary.iter().enumerate() {
-            let mut key = nodes.map(|node| self.place(node));
-            key.sort_unstable();
-            at_places.entry(key).or_default().push(face);
-        }
-        let mut is_matched = vec![false; self.boundary.len()];
-        let mut matched = Vec::new();
-        for faces in at_places.values().filter(|faces| faces.len() > 1) {
-            for pair in faces.windows(2) {
-                matched.push([pair[0], pair[1]]);
-            }
-            faces.iter().for_each(|face| is_matched[*face] = true);
-        }
-        matched.sort_unstable();
-        let others: Vec<usize> = (0..self.boundary.len())
-            .filter(|face| !is_matched[*face])
-            .collect();
-        let corners: Vec<_> = others.iter().map(|face| self.corners(*face)).collect();
-        let lying = lying::pairs(&corners).into_iter();
-        Contacts {
-            matched,
-            lying: lying.map(|pair| pair.map(|face| others[face])).collect(),
-        }
-    }
-
-    fn part(&mut self, face: usize) -> u32 {
-        self.parts.root(self.boundary[face].0[0])
-    }
-
+impl Surfaces<'_> {
     pub(crate) fn joints(mut self) -> Joints {
         let contacts = self.contacts();
         let mut joints = Joints {
@@ -304,51 +171,4 @@ impl<'a> Surfaces<'a> {
             joints.hinges.add(*point);
         }
     }
-}
-
-/// Nodes that tetrahedra connect.
-fn parts(points: &[[f64; 3]], tets: &[[u32; 4]]) -> Sets {
-    let mut parts = Sets::new(points.len());
-    for tet in tets.iter().filter(|tet| is_sound(tet, points.len())) {
-        for pair in tet.windows(2) {
-            parts.join(pair[0], pair[1]);
-        }
-    }
-    parts
-}
-
-/// 1 for a tetrahedron the right way round, -1 for one the wrong way round, 0 for a flat one and what is none.
-fn orientation(points: &[[f64; 3]], tet: &[u32; 4]) -> i8 {
-    if !is_sound(tet, points.len()) {
-        return 0;
-    }
-    let shape = TetShape::of(tet.map(|node| points[node as usize]));
-    match shape.is_flat(FLAT) {
-        true => 0,
-        false if shape.volume > 0.0 => 1,
-        false => -1,
-    }
-}
-
-/// 1 where three numbers are in ascending order but for a rotation, else -1.
-fn parity([a, b, c]: [u32; 3]) -> i8 {
-    let inversions = u8::from(a > b) + u8::from(b > c) + u8::from(a > c);
-    if inversions % 2 == 0 { 1 } else { -1 }
-}
-
-fn middle(points: &[[f64; 3]], face: [u32; 3]) -> [f64; 3] {
-    let corners = face.map(|node| points[node as usize]);
-    [0, 1, 2].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0)
-}
-
-/// The longest side of the box about some points.
-fn width(points: &[[f64; 3]], wanted: &[bool]) -> f64 {
-    let of_axis = |axis: usize| {
-        let wanted = points.iter().zip(wanted).filter(|(_, is)| **is);
-        let (low, high) = wanted.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (p, _)| {
-            (low.min(p[axis]), high.max(p[axis]))
-        });
-        high - low
-    };
-    [0, 1, 2].map(of_axis).into_iter().fold(0.0, f64::max)
 }
