@@ -1,6 +1,6 @@
 //! Loads grouped by their ramps.
 
-use sinew_core::{LinearOperators, Ramp};
+use sinew_core::{LinearOperators, Load, Ramp};
 
 /// Loads with one ramp, added up.
 #[derive(Clone, Debug)]
@@ -14,8 +14,21 @@ pub(crate) struct LoadCase {
 impl LoadCase {
     /// The loads of a system, those with equal ramps added up.
     pub(crate) fn of(operators: &LinearOperators) -> Vec<Self> {
+        Self::of_loads(operators, operators.loads().iter())
+    }
+
+    /// Those by which places of supports act.
+    pub(crate) fn of_places(operators: &LinearOperators) -> Vec<Self> {
+        let is_place = |load: &&Load| matches!(load.ramp, Ramp::Position(_));
+        Self::of_loads(operators, operators.loads().iter().filter(is_place))
+    }
+
+    fn of_loads<'a>(
+        operators: &LinearOperators,
+        loads: impl Iterator<Item = &'a Load>,
+    ) -> Vec<Self> {
         let mut cases: Vec<Self> = Vec::new();
-        for load in operators.loads() {
+        for load in loads {
             let at = cases
                 .iter()
                 .position(|case| &case.ramp == load.ramp.course());

@@ -35,6 +35,7 @@
 //! ```
 
 mod abaqus;
+mod bounds;
 mod cell_type;
 mod check;
 mod data_range;

@@ -213,6 +213,18 @@ impl Mesh {
             .unwrap_or(ordinal)
     }
 
+    /// Gives points and cells tags from 1 on, in their order, and cells no groups.
+    pub(crate) fn number_from_one(&mut self) {
+        self.node_tags = (1..).take(self.points.len()).collect();
+        let mut next_tag = 1;
+        for block in &mut self.cells {
+            let end = next_tag + block.len() as u64;
+            block.element_tags = (next_tag..end).collect();
+            next_tag = end;
+            block.physical = PhysicalTags::uniform(&[], block.len());
+        }
+    }
+
     /// The corners of all tetrahedra of any order, block by block.
     pub(crate) fn corners_of_tets(&self) -> Vec<[u32; 4]> {
         let blocks = self.cells.iter();

@@ -1,4 +1,4 @@
-//! What the tests of several crates share: bodies at random, and matrices written out in full. Only
+//! What the tests of several crates share: bodies at random, matrices written out in full, and scenes. Only
 //! tests depend on it.
 
 #![allow(
@@ -9,3 +9,4 @@
 
 pub mod body;
 pub mod dense;
+pub mod scenes;

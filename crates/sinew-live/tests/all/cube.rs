@@ -4,10 +4,11 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use sinew_live::{Live, LiveError, Settings};
+use sinew_testkit::scenes::ROLLED;
 use tungstenite::Message;
 
 use crate::common::{
-    self, CUBE, Heard, NUMBERS, PANE, POINTS, Page, ROLLED, applied, f64_at, settings, time, u32_at,
+    self, CUBE, Heard, NUMBERS, PANE, POINTS, Page, applied, f64_at, settings, time, u32_at,
 };
 
 const BALL: &str = r#"

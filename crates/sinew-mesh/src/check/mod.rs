@@ -8,7 +8,8 @@ use std::fmt;
 
 pub(crate) use shape::{TetShape, tet_corners};
 
-use crate::joints::{Joints, Sets, Surfaces, for_each_face};
+use crate::bounds::Bounds;
+use crate::joints::{Joints, Sets, Surfaces};
 use crate::mesh::{CellBlock, CellIndex, Mesh};
 
 /// Number of examples that are kept of each finding.
@@ -467,13 +468,11 @@ fn check_faces(mesh: &Mesh, check: &mut MeshCheck) {
     let tets = mesh.corners_of_tets();
     let rows = cells_of(mesh, |block| block.kind.is_tetrahedron());
     let cells: Vec<CellIndex> = rows.map(|(at, _)| at).collect();
-    for_each_face(&tets, mesh.points.len(), |nodes, owners| {
-        if owners.len() < 3 {
-            return;
-        }
+    let mut surfaces = Surfaces::of(&mesh.points, &tets);
+    for (nodes, owners) in std::mem::take(&mut surfaces.crowded) {
         // Copies of a cell are reported separately.
         let mut seen = HashSet::new();
-        let owners = owners.iter().map(|owner| owner.tet as usize);
+        let owners = owners.into_iter().map(|tet| tet as usize);
         let different = owners.filter(|tet| {
             let mut nodes = tets[*tet];
             nodes.sort_unstable();
@@ -481,7 +480,7 @@ fn check_faces(mesh: &Mesh, check: &mut MeshCheck) {
         });
         let different: Vec<usize> = different.collect();
         if different.len() < 3 {
-            return;
+            continue;
         }
         check.non_manifold_faces += 1;
         if check.first_non_manifold.len() < EXAMPLES {
@@ -491,8 +490,8 @@ fn check_faces(mesh: &Mesh, check: &mut MeshCheck) {
                 element_tags: tags.collect(),
             });
         }
-    });
-    check.joints = Surfaces::of(&mesh.points, &tets).joints();
+    }
+    check.joints = surfaces.joints();
 }
 
 pub(crate) fn empty_groups(mesh: &Mesh) -> Vec<(u8, i32, String)> {
@@ -515,40 +514,11 @@ fn unit_guess(mesh: &Mesh, limits: &CheckLimits) -> Option<String> {
         let points = row.iter().filter_map(|&n| mesh.points.get(n as usize));
         points.for_each(|&point| bounds.add(point));
     }
-    let width = bounds.widths().into_iter().fold(0.0, f64::max);
+    let width = bounds.longest_side();
     (width > limits.widest_in_metres).then(|| {
         format!(
             "the mesh is {width:.4} wide, more than tissue is in metres: probably millimetres, which `scale = 0.001` in the \
              scene's [mesh] turns into metres (`scale = 0.01` if they are centimetres)"
         )
     })
-}
-
-/// The least and the greatest coordinates of points.
-struct Bounds {
-    low: [f64; 3],
-    high: [f64; 3],
-}
-
-impl Default for Bounds {
-    fn default() -> Bounds {
-        Bounds {
-            low: [f64::INFINITY; 3],
-            high: [f64::NEG_INFINITY; 3],
-        }
-    }
-}
-
-impl Bounds {
-    fn add(&mut self, point: [f64; 3]) {
-        for ((low, high), x) in self.low.iter_mut().zip(&mut self.high).zip(point) {
-            *low = low.min(x);
-            *high = high.max(x);
-        }
-    }
-
-    /// Widths along x, y and z; 0 where no point was added.
-    fn widths(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis| (self.high[axis] - self.low[axis]).max(0.0))
-    }
 }

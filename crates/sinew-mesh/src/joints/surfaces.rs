@@ -7,6 +7,7 @@ use super::lying;
 use super::place::same_places;
 use super::places::Places;
 use super::sets::Sets;
+use crate::bounds::Bounds;
 use crate::check::TetShape;
 
 /// Distance of places that are one but for rounding, as a share of the width of the mesh.
@@ -25,6 +26,8 @@ pub(crate) struct Surfaces<'a> {
     /// Faces of one tetrahedron, counter-clockwise from outside, with it.
     pub(super) boundary: Vec<([u32; 3], u32)>,
     pub(super) tangled: Places,
+    /// Faces of more than two tetrahedra, their nodes in ascending order, with these.
+    pub(crate) crowded: Vec<([u32; 3], Vec<u32>)>,
     /// For each node of the boundary, the first one at its place.
     pub(super) same: Vec<u32>,
 }
@@ -42,7 +45,8 @@ impl<'a> Surfaces<'a> {
         let mut blocks = Sets::new(tets.len());
         let signs: Vec<i8> = tets.iter().map(|tet| orientation(points, tet)).collect();
         let sign = |tet: u32| signs[tet as usize];
-        let (mut boundary, mut tangled) = (Vec::new(), Places::default());
+        let (mut boundary, mut crowded) = (Vec::new(), Vec::new());
+        let mut tangled = Places::default();
         for_each_face(tets, points.len(), |face, owners| {
             if let [owner] = owners {
                 let mut corners = owner.face(tets);
@@ -50,6 +54,10 @@ impl<'a> Surfaces<'a> {
                     corners.swap(1, 2);
                 }
                 boundary.push((corners, owner.tet));
+            }
+            if owners.len() > 2 {
+                let tets = owners.iter().map(|owner| owner.tet);
+                crowded.push((face, tets.collect()));
             }
             for pair in owners.windows(2) {
                 blocks.join(pair[0].tet, pair[1].tet);
@@ -65,7 +73,10 @@ impl<'a> Surfaces<'a> {
         for node in boundary.iter().flat_map(|(face, _)| face) {
             on_boundary[*node as usize] = true;
         }
-        let rounding = ROUNDING * width(points, &on_boundary);
+        let mut bounds = Bounds::default();
+        let on_surface = points.iter().zip(&on_boundary).filter(|(_, is)| **is);
+        on_surface.for_each(|(point, _)| bounds.add(*point));
+        let rounding = ROUNDING * bounds.longest_side();
         let same = match rounding > 0.0 && rounding.is_finite() {
             true => same_places(points, &on_boundary, rounding),
             false => (0u32..).take(points.len()).collect(),
@@ -77,6 +88,7 @@ impl<'a> Surfaces<'a> {
             blocks,
             boundary,
             tangled,
+            crowded,
             same,
         }
     }
@@ -154,16 +166,4 @@ fn parity([a, b, c]: [u32; 3]) -> i8 {
 pub(super) fn middle(points: &[[f64; 3]], face: [u32; 3]) -> [f64; 3] {
     let corners = face.map(|node| points[node as usize]);
     [0, 1, 2].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0)
-}
-
-/// The longest side of the box about some points.
-fn width(points: &[[f64; 3]], wanted: &[bool]) -> f64 {
-    let of_axis = |axis: usize| {
-        let wanted = points.iter().zip(wanted).filter(|(_, is)| **is);
-        let (low, high) = wanted.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (p, _)| {
-            (low.min(p[axis]), high.max(p[axis]))
-        });
-        high - low
-    };
-    [0, 1, 2].map(of_axis).into_iter().fold(0.0, f64::max)
 }

@@ -22,7 +22,6 @@
 use crate::cell_type::CellType;
 use crate::label_groups::LabelError;
 use crate::mesh::{CellBlock, CellData, Mesh, PointData};
-use crate::physical_tags::PhysicalTags;
 use crate::reading::MeshError;
 use crate::reading::cursor::{Cursor, Token, quoted};
 use crate::reading::fault::{Fault, Lines};
@@ -265,14 +264,7 @@ impl Reader<'_> {
             return Err(Fault::new(self.words.cursor.offset(), problem, "Vertices"));
         }
         let mut mesh = std::mem::take(&mut self.mesh);
-        mesh.node_tags = (1..).take(mesh.points.len()).collect();
-        let mut next_tag = 1;
-        for block in &mut mesh.cells {
-            let end = next_tag + block.len() as u64;
-            block.element_tags = (next_tag..end).collect();
-            next_tag = end;
-            block.physical = PhysicalTags::uniform(&[], block.len());
-        }
+        mesh.number_from_one();
         let labels = self.cell_references.iter().map(|block| {
             let labels = block.iter();
             labels

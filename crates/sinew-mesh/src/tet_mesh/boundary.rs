@@ -1,9 +1,7 @@
 //! The boundary of a mesh or of a part of it.
 
-use std::collections::HashMap;
-
-use super::surface::{OUTWARD_FACES, sorted};
 use super::{Group, GroupMembers, TetMesh};
+use crate::joints::for_each_face;
 
 impl TetMesh {
     /// The triangles that bound all tetrahedra, or those of a volume group: the faces of exactly one of them.
@@ -22,36 +20,26 @@ impl TetMesh {
     /// ```
     #[must_use]
     pub fn boundary(&self, group: Option<&Group>) -> Vec<[u32; 3]> {
-        let mut is_inside = vec![group.is_none(); self.tets.len()];
-        if let Some(GroupMembers::Tets(tets)) = group.map(|group| &group.members) {
-            for &tet in tets {
-                is_inside[tet as usize] = true;
-            }
-        }
-        let tets = self.tets.iter().zip(is_inside).enumerate();
-        let faces = || {
-            let tets = tets.clone();
-            let tets = tets.filter(|(_, (nodes, is_inside))| *is_inside && has_four_nodes(nodes));
-            tets.flat_map(|(tet, (nodes, _))| {
-                let faces = OUTWARD_FACES.map(|face| face.map(|i| nodes[i]));
-                faces
-                    .into_iter()
-                    .zip(nodes)
-                    .map(move |(face, &opposite)| (face, tet, opposite))
-            })
+        let tets: Vec<u32> = match group.map(|group| &group.members) {
+            None => (0..).take(self.tets.len()).collect(),
+            Some(GroupMembers::Tets(tets)) => tets.clone(),
+            Some(_) => Vec::new(),
         };
-        let mut tets_at: HashMap<[u32; 3], u32> = HashMap::new();
-        for (face, ..) in faces() {
-            *tets_at.entry(sorted(face)).or_default() += 1;
-        }
-        faces()
-            .filter(|(face, ..)| tets_at.get(&sorted(*face)) == Some(&1))
-            .map(|(face, tet, opposite)| self.turned_outward(face, tet, opposite))
+        let nodes: Vec<[u32; 4]> = tets.iter().map(|tet| self.tets[*tet as usize]).collect();
+        let mut outer = Vec::new();
+        for_each_face(&nodes, self.points.len(), |_, owners| {
+            if let [owner] = owners {
+                outer.push(*owner);
+            }
+        });
+        outer.sort_unstable();
+        outer
+            .into_iter()
+            .map(|owner| {
+                let opposite = nodes[owner.tet as usize][usize::from(owner.opposite)];
+                let tet = tets[owner.tet as usize] as usize;
+                self.turned_outward(owner.face(&nodes), tet, opposite)
+            })
             .collect()
     }
-}
-
-fn has_four_nodes(tet: &[u32; 4]) -> bool {
-    let [a, b, c, d] = tet;
-    a != b && a != c && a != d && b != c && b != d && c != d
 }

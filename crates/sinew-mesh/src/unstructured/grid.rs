@@ -3,7 +3,6 @@
 use super::cells::Cells;
 use super::labels;
 use crate::mesh::{CellBlock, CellData, Mesh, PointData};
-use crate::physical_tags::PhysicalTags;
 use crate::reading::fault::Fault;
 use crate::reading::remarks::Remarks;
 
@@ -69,18 +68,11 @@ impl GridBuilder {
             ));
         }
         let mut mesh = Mesh {
-            node_tags: (1..).take(self.points.len()).collect(),
             points: self.points,
             cells: self.blocks,
             ..Mesh::default()
         };
-        let mut next_tag = 1;
-        for block in &mut mesh.cells {
-            let end = next_tag + block.len() as u64;
-            block.element_tags = (next_tag..end).collect();
-            next_tag = end;
-            block.physical = PhysicalTags::uniform(&[], block.len());
-        }
+        mesh.number_from_one();
         for field in self.point_fields {
             mesh.point_data.push(PointData {
                 values: checked(field.values, &field.name, field.is_integer, remarks),

@@ -20,11 +20,12 @@ use crate::simulation::{BodyModel, Probe, SelectedPart};
 /// The sections about a body and its probes.
 pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<PlanSection> {
     let report = built.model.report();
+    let (_, parts) = built.mesh.part_of_nodes();
     let regions = body.problem.regions.iter().zip(&report.regions);
     let regions = regions.flat_map(|(region, facts)| material(region, facts));
     let initial = body.initial.iter().map(|initial| start(initial, built));
     vec![
-        PlanSection::new("mesh", mesh(body, built, report)),
+        PlanSection::new("mesh", mesh(body, built, (report, parts))),
         PlanSection::new("where", built.selected.iter().map(selected).collect()),
         PlanSection::new("regions", regions.collect()),
         PlanSection::new("damping", vec![damping(body, report)]),
@@ -32,7 +33,7 @@ pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<
         PlanSection::new("moves", moves(body, built)),
         PlanSection::new("tools", tools::lines(body, built)),
         PlanSection::new("cutting", cutting::lines(body, built)),
-        PlanSection::new("apart", apart(body, built)),
+        PlanSection::new("apart", apart(body, parts)),
         PlanSection::new("loads", loads(body, report)),
         PlanSection::new("initial", initial.collect()),
         PlanSection::new("probes", probes.iter().map(probe).collect()),
@@ -40,9 +41,8 @@ pub(super) fn sections(body: &Body, built: &BodyModel, probes: &[Probe]) -> Vec<
 }
 
 /// What nothing keeps apart: parts of the mesh, and pieces that cuts may take off.
-fn apart(body: &Body, built: &BodyModel) -> Vec<String> {
+fn apart(body: &Body, parts: usize) -> Vec<String> {
     const TOLD: &str = "where they are in each other a run warns";
-    let parts = built.mesh.part_of_nodes().1;
     let falls = |cutting: &Cutting| cutting.pieces == LoosePieces::Fall;
     let cutting = body.cutting.as_ref().filter(|cutting| falls(cutting));
     let of_parts = (parts > 1).then(|| format!("{parts} parts: nothing keeps them apart; {TOLD}"));
@@ -55,7 +55,7 @@ fn apart(body: &Body, built: &BodyModel) -> Vec<String> {
     of_parts.into_iter().chain(of_pieces).collect()
 }
 
-fn mesh(body: &Body, built: &BodyModel, report: &ModelReport) -> Vec<String> {
+fn mesh(body: &Body, built: &BodyModel, (report, parts): (&ModelReport, usize)) -> Vec<String> {
     let mut lines = vec![source(&body.mesh, &body.mesh_changes)];
     lines.extend(changes(&body.mesh_changes));
     lines.push(format!(
@@ -63,7 +63,7 @@ fn mesh(body: &Body, built: &BodyModel, report: &ModelReport) -> Vec<String> {
         report.nodes,
         report.tets,
         report.edges,
-        count(built.mesh.part_of_nodes().1, "part"),
+        count(parts, "part"),
         short(report.volume),
         short(report.mass)
     ));

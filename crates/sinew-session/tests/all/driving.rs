@@ -1,8 +1,9 @@
 //! Sessions: what commands do, and what is refused.
 
-use crate::common::{CUBE, ROLLED, scene, session};
+use crate::common::{CUBE, scene, session};
 use sinew_core::{LinearModel, LinearOperators, Load, Options, Ramp, Run, State, simulate};
 use sinew_session::{Command, Session, SessionStepError};
+use sinew_testkit::scenes::ROLLED;
 
 fn steps(session: &mut Session, count: usize) {
     for _ in 0..count {

@@ -5,6 +5,7 @@ use sinew_core::vectors::{add_scaled, dot};
 use sinew_core::{Clock, LinearOperators, Ramp};
 
 use super::basis::Basis;
+use crate::load_case::LoadCase;
 
 /// What is left of forces, as a share of them, at which a displacement is found.
 const FOUND: f64 = 1e-12;
@@ -44,7 +45,7 @@ impl Carried {
             return carried;
         }
         let mass = operators.mass();
-        for (ramp, force) in motions(operators) {
+        for LoadCase { ramp, force } in LoadCase::of_places(operators) {
             let place = equilibrium(operators, &force, FOUND).displacement;
             let mut inertia: Vec<f64> = place.iter().zip(mass).map(|(x, m)| m * x).collect();
             for (shape, _) in basis.modes().filter(|(_, omega)| *omega == 0.0) {
@@ -54,7 +55,7 @@ impl Carried {
             }
             let bent = equilibrium(operators, &inertia, FOUND).displacement;
             let course = Course {
-                ramp: ramp.clone(),
+                ramp,
                 by_place: outside(basis, mass, place),
                 by_acceleration: outside(basis, mass, bent),
             };
@@ -96,25 +97,6 @@ impl Carried {
     pub(super) fn remove(&self, mass: &[f64], x: &mut [f64]) {
         remove(mass, &self.directions, x);
     }
-}
-
-/// The forces (N) by which places of supports act, for each ramp of them.
-fn motions(operators: &LinearOperators) -> Vec<(&Ramp, Vec<f64>)> {
-    let mut motions: Vec<(&Ramp, Vec<f64>)> = Vec::new();
-    for load in operators.loads() {
-        let Ramp::Position(of) = &load.ramp else {
-            continue;
-        };
-        let known = motions.iter().position(|(ramp, _)| *ramp == &**of);
-        let at = known.unwrap_or_else(|| {
-            motions.push((&**of, vec![0.0; operators.dofs()]));
-            motions.len() - 1
-        });
-        for (dof, force) in &load.entries {
-            motions[at].1[*dof as usize] += force;
-        }
-    }
-    motions
 }
 
 /// The part of a displacement that lies outside the modes. Their own forces are those that lead to its part inside.

@@ -5,6 +5,7 @@ use std::fs;
 use crate::common::sinew;
 use sinew_scene::Scene;
 use sinew_session::{Command, Session};
+use sinew_testkit::scenes::ROLLED;
 
 /// A block under its weight, which a blade splits within .025 s.
 const SPLIT: &str = "gravity = [3.0, 0.0, -5.0]\n[mesh]\ncube = { cells = 3, edge = 0.1 }\n[[region]]\ndensity = 1000.0\n\
@@ -40,16 +41,11 @@ fn the_probes_of_a_session_that_only_waits_are_those_of_the_run_also_after_cuts(
     assert!(ran == again, "{again}");
 }
 
-/// A strip that begins rolled up, so that its ends are in each other.
-const ROLLED: &str = "[mesh]\nblock = { cells = [24, 1, 1], size = [0.24, 0.01, 0.01] }\n[[region]]\ndensity = 1000.0\n\
-    model = \"neo-hookean\"\nyoungs_modulus = 10.0\npoissons_ratio = 0.3\n[[initial]]\ndisplacement = \
-    [\"(0.035 - z) * sin(x / 0.035) - x\", 0.0, \"0.035 - (0.035 - z) * cos(x / 0.035) - z\"]\n[[probe]]\nname = \"end\"\n\
-    point = [0.24, 0.0, 0.0]\n[run]\nfree_flight = true\nduration = 0.05\nintegrator = \"central-difference\"\ndt = 0.001\n";
-
 #[test]
 fn probes_alone_of_a_run_and_of_a_session_tell_that_the_body_is_in_itself() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("rolled.toml"), ROLLED).unwrap();
+    let probe = "[[probe]]\nname = \"end\"\npoint = [0.24, 0.0, 0.0]\n";
+    fs::write(folder.path().join("rolled.toml"), [ROLLED, probe].concat()).unwrap();
     let mut session =
         Session::new(Scene::load(folder.path().join("rolled.toml")).unwrap()).unwrap();
     for _ in 0..50 {
