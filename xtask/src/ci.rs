@@ -77,6 +77,7 @@ const STEPS: &[Step] = &[
         "xtask bench --hands --quick --out target/ci-hands",
     ),
     cargo("live page in Chromium", "xtask live-test"),
+    cargo("loss of power", "xtask power-loss"),
     cargo("commands of the README", "xtask readme"),
     cargo(
         "installation",

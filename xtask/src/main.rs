@@ -14,6 +14,8 @@ mod live_test;
 mod memory;
 mod meshes;
 mod native;
+mod power_loss;
+mod program;
 mod progress;
 mod python;
 mod readme;
@@ -60,6 +62,8 @@ enum Chore {
     Laws,
     /// Try the live page in Chromium without a window: a hand, fingers, a blade, strangers, speed; skipped where there is no Chromium.
     LiveTest(live_test::Arguments),
+    /// Lose the power under runs on a disk of their own and go on with them; skipped where none can be mounted. Needs root, ext4 and perl.
+    PowerLoss(power_loss::Arguments),
     /// Bring the README's table and pictures up to the last bench and the last hard bench.
     Docs,
     /// Write the reference and the JSON schema of scenes into docs.
@@ -85,6 +89,7 @@ fn main() -> ExitCode {
         Chore::Compare => compare::run(),
         Chore::Laws => laws::run(),
         Chore::LiveTest(arguments) => live_test::run(&arguments),
+        Chore::PowerLoss(arguments) => power_loss::run(&arguments),
         Chore::Docs => docs::run(),
         Chore::Reference => reference::run(),
         Chore::Readme => readme::run(),

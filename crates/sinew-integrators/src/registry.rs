@@ -143,14 +143,21 @@ impl Entry {
 }
 
 /// Options with the largest number of threads that is asked for, or else the options' own, or else as many as help. Methods whose
-/// steps no machine takes have none, and refuse one that is asked for.
+/// steps no machine takes have one thread: they take it, and "auto", as asked for, and refuse more.
 #[must_use]
 pub fn with_threads(id: &str, options: &Options, threads: Option<&OptionValue>) -> Options {
     const KEY: &str = "threads";
     let mut options = options.clone();
+    let has_threads = entry(id).is_none_or(|entry| entry.programs);
+    let is_one = |threads: &OptionValue| match threads {
+        OptionValue::Number(count) => *count == 1.0,
+        OptionValue::Text(text) => text == "auto",
+        _ => false,
+    };
     match threads {
+        Some(threads) if !has_threads && is_one(threads) => {}
         Some(threads) => options.insert(KEY, threads.clone()),
-        None if options.get(KEY).is_none() && entry(id).is_some_and(|entry| entry.programs) => {
+        None if options.get(KEY).is_none() && has_threads => {
             options.insert(KEY, OptionValue::Text("auto".to_owned()));
         }
         None => {}

@@ -197,8 +197,7 @@ impl<T: Precision> Layout<T> {
         let Rows::General(sell) = &mut self.stiffness else {
             return false;
         };
-        sell.take_rows(operators.stiffness(), &self.numbering, cells);
-        true
+        sell.take_rows(operators.stiffness(), &self.numbering, cells)
     }
 }
 

@@ -8,11 +8,10 @@ use sinew_core::{
 };
 use sinew_fem::Model;
 use sinew_integrators::{NumericalDissipation, StepEnd, Stepper};
-use sinew_scene::{SceneModel, Simulation};
+use sinew_scene::{SceneModel, Schedule, Simulation};
 use sinew_tools::Tools;
 
 use crate::error::RecordRunError;
-use crate::schedule::Schedule;
 
 /// Energies (J) of a run at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]

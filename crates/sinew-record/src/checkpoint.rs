@@ -9,6 +9,7 @@ use sinew_scene::{Cutter, Simulation};
 
 use crate::balance::LastRow;
 use crate::error::RecordRunError;
+use crate::frames::frame_name;
 use crate::progress::Progress;
 use crate::request;
 
@@ -16,7 +17,7 @@ use crate::request;
 pub(crate) const NAME: &str = "checkpoint.bin";
 
 /// The first line, with the version of what follows.
-const HEAD: &str = "sinew checkpoint 7";
+const HEAD: &str = "sinew checkpoint 8";
 
 /// Bytes of the checksum at its end.
 const CHECKSUM: usize = 32;
@@ -62,7 +63,7 @@ impl Checkpoint {
         Ok(folder.write(NAME, &bytes)?)
     }
 
-    /// The last checkpoint in a folder; `None` where there is none yet.
+    /// The last checkpoint in a folder, whose frames are as they were; `None` where there is none yet.
     pub(crate) fn read(
         folder: &OwnedFolder,
         simulation: &Simulation,
@@ -83,8 +84,11 @@ impl Checkpoint {
             return Err(damaged());
         }
         let mut lines = bytes.splitn(4, |byte| *byte == b'\n').skip(1);
-        let progress = serde_json::from_slice(lines.next().unwrap_or_default())
+        let progress: Progress = serde_json::from_slice(lines.next().unwrap_or_default())
             .map_err(|error| unusable(folder, &error))?;
+        for (frame, seal) in progress.seals.frames.iter().enumerate() {
+            seal.check_whole(folder, &frame_name(frame))?;
+        }
         let sizes = str::from_utf8(lines.next().unwrap_or_default()).map_err(|_| damaged())?;
         let sizes: Result<Vec<usize>, _> = sizes.split(' ').map(str::parse).collect();
         let [cuts, size, counts @ ..] = &sizes.map_err(|_| damaged())?[..] else {

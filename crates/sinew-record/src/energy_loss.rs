@@ -3,12 +3,11 @@
 use sinew_core::{Moment, RecordError, Recorder, Verdict};
 use sinew_integrators::Stepper;
 use sinew_integrators::explicit::GuardOption;
-use sinew_scene::Simulation;
+use sinew_scene::{Schedule, Simulation};
 
 use crate::balance::Balance;
 use crate::error::RecordRunError;
 use crate::recorder::Schedules;
-use crate::schedule::Schedule;
 use crate::taken_energy::Taken;
 
 /// Steps of a method that a clamp may brake for each look: a look costs up to three of its steps.

@@ -61,6 +61,34 @@ pub enum RecordRunError {
         /// The reason.
         reason: String,
     },
+    /// A file of the folder that is not as the run left it.
+    #[error("{} is not as the run wrote it: {reason}; run the scene again, with --again into this folder", path.display())]
+    Altered {
+        /// The file.
+        path: PathBuf,
+        /// The difference.
+        reason: String,
+    },
+    /// A run that was not completed and can be gone on with.
+    #[error("{} holds a run that was not completed: `sinew resume {}` goes on with it; to throw it away, use `sinew run --again`", folder.display(), folder.display())]
+    Resumable {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// More results than a folder is meant to hold.
+    #[error(
+        "the scene asks for {asked} {what}, and a folder holds {most} at most: make `{key}` in [output] rarer"
+    )]
+    TooMuch {
+        /// Their number.
+        asked: usize,
+        /// What is asked for.
+        what: &'static str,
+        /// The most that a folder holds.
+        most: usize,
+        /// The key of the scene that asks for them.
+        key: &'static str,
+    },
     /// An input that changed since the run began.
     #[error("{} is not the file with which the run began: its content changed; run the scene again into a new folder", path.display())]
     OtherInput {

@@ -11,6 +11,7 @@ use crate::contact_fields::ContactFields;
 use crate::error::RecordRunError;
 use crate::frames::{self, frame_name};
 use crate::progress::Seen;
+use crate::seal::Seal;
 
 /// The motion of the degrees of freedom at an instant, as a frame shows it.
 #[derive(Debug, Default)]
@@ -141,7 +142,7 @@ impl<'a> Fields<'a> {
         surface: &BoundarySurface,
         snapshot: &Snapshot,
         seen: &mut Seen,
-    ) -> Result<(), RecordRunError> {
+    ) -> Result<Seal, RecordRunError> {
         let Snapshot {
             frame,
             t,

@@ -2,12 +2,11 @@
 
 use sinew_core::{Moment, RecordError, Recorder, State, Verdict};
 use sinew_fem::Model;
-use sinew_scene::{OverlapWatch, Simulation};
+use sinew_scene::{OverlapWatch, Schedule, Simulation};
 
 use crate::error::RecordRunError;
 use crate::progress::Seen;
 use crate::recorder::Schedules;
-use crate::schedule::Schedule;
 use crate::summary;
 
 /// Extremes of a motion as frames would show them: what warns is the same as in a run with a folder.

@@ -12,6 +12,7 @@ use sinew_scene::output::OwnedFolder;
 use crate::error::RecordRunError;
 use crate::fields::{Fields, Snapshot};
 use crate::progress::Seen;
+use crate::seal::Seal;
 
 /// Snapshots in use: one that is written, and one that is taken meanwhile.
 const SNAPSHOTS: usize = 2;
@@ -22,6 +23,8 @@ pub(crate) struct SeenInFrames {
     pub(crate) seen: Seen,
     /// Displacements (m) of the surface where one of them was largest so far.
     pub(crate) largest: Vec<f64>,
+    /// Seals of the frames, from the first one of the run on.
+    pub(crate) seals: Vec<Seal>,
 }
 
 /// Makes fields of snapshots and writes them, on a thread of its own, so that the run need not wait for them. Frames are
@@ -48,9 +51,15 @@ pub(crate) struct FrameJob<'a> {
 impl FrameJob<'_> {
     fn write(&mut self, snapshot: &Snapshot) -> Result<(), RecordRunError> {
         let mut guard = lock(self.seen);
-        let SeenInFrames { seen, largest } = &mut *guard;
-        self.fields
+        let SeenInFrames {
+            seen,
+            largest,
+            seals,
+        } = &mut *guard;
+        let seal = self
+            .fields
             .write(self.folder, self.surface, snapshot, seen)?;
+        seals.push(seal);
         let displacements = self.fields.displacements();
         self.overlaps.look(snapshot.t, displacements);
         seen.see_overlap(self.overlaps.deepest());

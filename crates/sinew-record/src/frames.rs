@@ -6,6 +6,7 @@ use sinew_mesh::vtu::{Grid, VtuEncoding, WriteVtuError, write_pvd, write_vtu_gri
 use sinew_scene::output::OwnedFolder;
 
 use crate::error::RecordRunError;
+use crate::seal::{Seal, Sealing};
 
 /// The file that lists the frames with their times.
 pub(crate) const SERIES: &str = "fields.pvd";
@@ -26,23 +27,27 @@ pub(crate) fn write_series(folder: &OwnedFolder, times: &[f64]) -> Result<(), Re
     Ok(folder.write_lightly(SERIES, |mut file| write_pvd(&frames, &mut file))?)
 }
 
-/// Writes a grid under a name of the folder.
+/// Writes a grid under a name of the folder, and seals the file.
 pub(crate) fn write(
     folder: &OwnedFolder,
     name: &str,
     grid: &Grid<'_>,
     encoding: VtuEncoding,
-) -> Result<(), RecordRunError> {
+) -> Result<Seal, RecordRunError> {
     let mut refused = None;
-    let written = folder.write_lightly(name, |mut file| {
-        write_vtu_grid(grid, encoding, &mut file).map_err(|error| {
+    let mut seal = Seal::default();
+    let written = folder.write_lightly(name, |file| {
+        let mut file = Sealing::new(file);
+        let written = write_vtu_grid(grid, encoding, &mut file);
+        seal = file.seal();
+        written.map_err(|error| {
             let message = error.to_string();
             refused = Some(error);
             io::Error::other(message)
         })
     });
     match refused {
-        Some(WriteVtuError::Io(_)) | None => Ok(written?),
+        Some(WriteVtuError::Io(_)) | None => Ok(written.map(|()| seal)?),
         Some(error) => Err(error.into()),
     }
 }

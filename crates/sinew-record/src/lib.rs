@@ -61,7 +61,7 @@ mod report;
 mod request;
 mod run_end;
 mod run_folder;
-mod schedule;
+mod seal;
 mod stepping;
 mod stretch;
 mod summary;

@@ -190,6 +190,7 @@ pub fn write_modes(
         let times: Vec<f64> = (1..=modes.len()).map(|number| number as f64).collect();
         frames::write_series(&folder, &times)?;
     }
+    folder.finish(true)?;
     Ok(())
 }
 
@@ -223,7 +224,8 @@ fn write_shape(
         &frames::frame_name(number),
         &grid,
         VtuEncoding::RawAppended,
-    )
+    )?;
+    Ok(())
 }
 
 #[cfg(test)]

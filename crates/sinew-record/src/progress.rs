@@ -6,6 +6,7 @@ use sinew_fem::{DeformedTet, stress};
 use sinew_scene::Overlap;
 
 use crate::balance::Sums;
+use crate::seal::Seal;
 use crate::taken_energy::Taken;
 use crate::tool_rows::Received;
 
@@ -17,7 +18,7 @@ pub(crate) struct Progress {
     /// Frames of fields written.
     pub(crate) frames: usize,
     pub(crate) work: Work,
-    pub(crate) lengths: Lengths,
+    pub(crate) seals: Seals,
     pub(crate) energy: Sums,
     pub(crate) seen: Seen,
     /// Kinetic energy (J), the largest and the last.
@@ -69,13 +70,15 @@ impl Crept {
     }
 }
 
-/// Bytes of the files that grow.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Lengths {
-    pub(crate) probes: u64,
-    pub(crate) energy: u64,
-    pub(crate) reactions: u64,
-    pub(crate) tools: u64,
+/// Seals of the files that a run has written.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Seals {
+    pub(crate) probes: Seal,
+    pub(crate) energy: Seal,
+    pub(crate) reactions: Seal,
+    pub(crate) tools: Seal,
+    /// Of each frame of fields.
+    pub(crate) frames: Vec<Seal>,
 }
 
 /// Extremes of the motion, seen at the instants of the fields.

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::time::Instant;
 
 use sinew_core::{Moment, RecordError, Recorder, StepReport, Verdict};
-use sinew_scene::output::{GrowingFile, OwnedFolder};
-use sinew_scene::{Cutter, Instants, ProbeRows, Simulation};
+use sinew_scene::output::OwnedFolder;
+use sinew_scene::{Cutter, Instants, ProbeRows, Schedule, Simulation};
 
 use crate::balance::Balance;
 use crate::checkpoint::Checkpoint;
@@ -13,8 +13,8 @@ use crate::companion::Companion;
 use crate::error::RecordRunError;
 use crate::frame_writer::{FrameWriter, SeenInFrames};
 use crate::pace::Pace;
-use crate::progress::{Lengths, Progress};
-use crate::schedule::Schedule;
+use crate::progress::{Progress, Seals};
+use crate::seal::SealedTable;
 use crate::tables::{self, Reactions};
 use crate::tool_rows::{self, ToolRows};
 
@@ -55,7 +55,12 @@ impl Schedules {
         let body = simulation.model().body();
         Self {
             steps,
-            probes: asked(output.probes),
+            probes: Schedule::of_probes(
+                output.probes,
+                ProbeRows::new(simulation).columns().len(),
+                MOST_ROWS,
+                (steps, dt),
+            ),
             energy: asked(energy),
             fields: body.map(|_| Schedule::at(output.fields, steps, dt)),
         }
@@ -64,54 +69,57 @@ impl Schedules {
 
 /// The files that grow.
 pub(crate) struct Tables {
-    probes: GrowingFile,
-    energy: GrowingFile,
-    reactions: Option<GrowingFile>,
-    tools: Option<GrowingFile>,
+    probes: SealedTable,
+    energy: SealedTable,
+    reactions: Option<SealedTable>,
+    tools: Option<SealedTable>,
 }
 
 impl Tables {
     /// Opens them, cut off after what an earlier run had written at its checkpoint.
     pub(crate) fn open(
         folder: &OwnedFolder,
-        lengths: Lengths,
+        seals: &Seals,
         balance: &Balance<'_>,
         reactions: Option<&Reactions<'_>>,
         tools: Option<&ToolRows<'_>>,
         simulation: &Simulation,
     ) -> Result<Self, RecordRunError> {
-        let open = |name: &str, length: u64, head: &dyn Fn() -> String| {
-            let mut file = folder.append(name, length)?;
-            if length == 0 {
-                file.push(&head())?;
-            }
-            Ok::<GrowingFile, RecordRunError>(file)
-        };
         Ok(Self {
-            probes: open(tables::PROBES, lengths.probes, &|| {
+            probes: SealedTable::open(folder, tables::PROBES, &seals.probes, || {
                 tables::probes_head(simulation)
             })?,
-            energy: open(tables::ENERGY, lengths.energy, &|| {
+            energy: SealedTable::open(folder, tables::ENERGY, &seals.energy, || {
                 tables::energy_head(balance)
             })?,
             reactions: reactions
-                .map(|reactions| open(tables::REACTIONS, lengths.reactions, &|| reactions.head()))
+                .map(|rows| {
+                    SealedTable::open(folder, tables::REACTIONS, &seals.reactions, || rows.head())
+                })
                 .transpose()?,
             tools: tools
-                .map(|tools| open(tool_rows::NAME, lengths.tools, &|| tools.head()))
+                .map(|rows| {
+                    SealedTable::open(folder, tool_rows::NAME, &seals.tools, || rows.head())
+                })
                 .transpose()?,
         })
     }
 
-    pub(crate) fn secure(&mut self) -> Result<Lengths, RecordRunError> {
-        let reactions = self.reactions.as_mut().map(GrowingFile::secure);
-        let tools = self.tools.as_mut().map(GrowingFile::secure);
-        Ok(Lengths {
-            probes: self.probes.secure()?,
-            energy: self.energy.secure()?,
-            reactions: reactions.transpose()?.unwrap_or(0),
-            tools: tools.transpose()?.unwrap_or(0),
-        })
+    /// Makes sure that the disk has them, and seals them.
+    pub(crate) fn secure(
+        &mut self,
+        folder: &OwnedFolder,
+        seals: &mut Seals,
+    ) -> Result<(), RecordRunError> {
+        seals.probes = self.probes.secure(folder)?;
+        seals.energy = self.energy.secure(folder)?;
+        if let Some(table) = &mut self.reactions {
+            seals.reactions = table.secure(folder)?;
+        }
+        if let Some(table) = &mut self.tools {
+            seals.tools = table.secure(folder)?;
+        }
+        Ok(())
     }
 }
 
@@ -246,13 +254,18 @@ impl RunRecorder<'_> {
     /// Completes what is being written; then how far the run is, and the displacements (m) of the surface where one of
     /// them was largest.
     pub(crate) fn settle(&mut self) -> Result<(Progress, Vec<f64>), RecordRunError> {
-        self.progress.lengths = self.tables.secure()?;
+        self.tables.secure(self.folder, &mut self.progress.seals)?;
         self.progress.energy = self.balance.sums;
         let Some(frames) = &mut self.frames else {
             return Ok((self.progress.clone(), Vec::new()));
         };
-        let SeenInFrames { seen, largest } = frames.settle()?.clone();
+        let SeenInFrames {
+            seen,
+            largest,
+            seals,
+        } = frames.settle()?.clone();
         self.progress.seen = seen;
+        self.progress.seals.frames = seals;
         Ok((self.progress.clone(), largest))
     }
 
@@ -261,6 +274,8 @@ impl RunRecorder<'_> {
         let (mut progress, largest) = self.settle()?;
         let row = self.balance.last.clone().unwrap_or_default();
         progress.work.add(moment.work);
+        // What the checkpoint counts on is there before it is.
+        self.folder.secure()?;
         let moving = (self.simulation, self.cutter, moment.state);
         Checkpoint::write(self.folder, &progress, moving, &row, &largest)?;
         self.saved = Instant::now();
@@ -312,7 +327,7 @@ impl Recorder for RunRecorder<'_> {
         if self.schedules.probes.is_due(step) {
             let row = self.probes.of_watched(t, u);
             let written = self.tables.probes.push(row);
-            written.map_err(|error| failed(t, error.into()))?;
+            written.map_err(|error| failed(t, error))?;
         }
         Ok(Verdict::Continue)
     }

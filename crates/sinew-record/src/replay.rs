@@ -19,7 +19,7 @@ use crate::stepping::Stepping;
 use crate::summary::CutRecord;
 
 /// The log in the folder.
-const LOG: &str = "session.log";
+pub(crate) const LOG: &str = "session.log";
 
 impl RunFolder {
     /// Repeats a session by its log and leaves in a folder at `path` what a run leaves there: the motion since the last reset, whose steps are counted from
@@ -37,6 +37,7 @@ impl RunFolder {
         let course = replay.course();
         let mut simulation = replay.recorded_scene()?;
         let schedules = Schedules::of_steps(&simulation, course.steps, course.dt);
+        Self::check(path, simulation.scene(), None, request.again)?;
         let mut record = Record::of(simulation.scene(), request)?;
         record.log = Some(LOG.to_owned());
         let folder = Self::claim(path, &simulation, record, &schedules, &[LOG])?;

@@ -20,6 +20,9 @@ use curves::plot;
 
 pub(crate) const NAME: &str = "report.html";
 
+/// Most probes whose curves are drawn.
+const MOST_DRAWN: usize = 24;
+
 /// The page. It says nothing of the computer, so that it is the same wherever the run was taken.
 pub(crate) fn page(
     summary: &Summary<'_>,
@@ -54,7 +57,8 @@ pub(crate) fn page(
     };
     if let Some(probes) = read(tables::PROBES)? {
         page.section("probes", "Probes");
-        let drawn = simulation.probes().iter().map(|probe| {
+        let shown = simulation.probes().iter().take(MOST_DRAWN);
+        let drawn = shown.map(|probe| {
             let (letter, label, unit) = match probe.quantity {
                 Quantity::Displacement => ("u", "displacement [m]", "m"),
                 Quantity::Velocity => ("v", "velocity [m/s]", "m_per_s"),
@@ -73,10 +77,15 @@ pub(crate) fn page(
             plot.svg()
         });
         beside::figures(&mut page, &drawn.collect::<Vec<_>>());
-        if simulation.probes().is_empty() {
-            page.paragraph(
+        match simulation.probes().len() {
+            0 => page.paragraph(
                 "The scene has none: a table `[[probe]]` with `name` and `point` makes one.",
-            );
+            ),
+            count if count > MOST_DRAWN => page.paragraph(&format!(
+                "The first {MOST_DRAWN} of {count}: all are in {}.",
+                tables::PROBES
+            )),
+            _ => {}
         }
     }
     if let Some(energy) = read(tables::ENERGY)? {

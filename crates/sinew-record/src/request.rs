@@ -27,6 +27,8 @@ pub struct Request {
     pub warnings: Vec<String>,
     /// Values that were set in the scene, which holds them already: they are kept for people.
     pub values: Vec<String>,
+    /// Whether a run in the folder that could be gone on with is thrown away.
+    pub again: bool,
 }
 
 /// A request with the scene and its inputs, as a folder keeps it.

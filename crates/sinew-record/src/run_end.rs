@@ -1,6 +1,7 @@
 //! How a run ended.
 
 use sinew_scene::CutTotals;
+use sinew_scene::output::Replaced;
 
 use crate::stepping::Stepping;
 
@@ -31,6 +32,8 @@ pub struct RunEnd {
     pub remarks: Vec<String>,
     /// What the motion warns of, one sentence each.
     pub warnings: Vec<String>,
+    /// What became of the results that the folder held before.
+    pub replaced: Replaced,
 }
 
 /// How a run ended.

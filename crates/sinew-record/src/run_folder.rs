@@ -9,7 +9,7 @@ use std::time::Instant;
 use sinew_core::{State, StepReport};
 use sinew_integrators::Stepper;
 use sinew_mesh::BoundarySurface;
-use sinew_scene::output::{OutputError, OwnedFolder, Tenant};
+use sinew_scene::output::{OwnedFolder, Replaced, Tenant};
 use sinew_scene::{Cutter, OverlapWatch, ProbeRows, Scene, Simulation};
 
 use crate::balance::{Balance, LastRow};
@@ -22,6 +22,7 @@ use crate::frames;
 use crate::pace::Pace;
 use crate::progress::Progress;
 use crate::recorder::{RunRecorder, Schedules, Tables};
+use crate::replay;
 use crate::report;
 use crate::request::{self, Record, Request};
 use crate::run_end::{Ended, RunEnd};
@@ -34,6 +35,12 @@ use crate::tool_rows::{self, ToolRows};
 
 /// The kind of result, in manifests and messages.
 const KIND: &str = "run";
+
+/// Most frames of a folder: more are a mistake, and their list alone would be long.
+const MOST_FRAMES: usize = 100_000;
+
+/// Most numbers of its table of probes, about two gigabytes.
+const MOST_NUMBERS: usize = 100_000_000;
 
 /// The folder of a run, open: nobody else writes into it.
 #[derive(Debug)]
@@ -99,23 +106,41 @@ impl RunFolder {
     /// nothing.
     ///
     /// # Errors
-    /// [`OutputError`] for a folder that holds other things, what is to be read among them, or cannot be written.
-    pub fn check(path: &Path, scene: &Scene, log: Option<&Path>) -> Result<Tenant, OutputError> {
+    /// [`RecordRunError::Output`] for a folder that holds other things, what is to be read among them, or cannot be written, and
+    /// [`RecordRunError::Resumable`] for one whose run can be gone on with, unless it is to be run `again`.
+    pub fn check(
+        path: &Path,
+        scene: &Scene,
+        log: Option<&Path>,
+        again: bool,
+    ) -> Result<Tenant, RecordRunError> {
         let mut inputs = scene.input_files();
         inputs.extend(log.map(Path::to_owned));
-        OwnedFolder::check(path, KIND, &inputs)
+        let tenant = OwnedFolder::check(path, KIND, &inputs)?;
+        let holds = |name: &str| path.join(name).try_exists().unwrap_or(true);
+        // A session that was not recorded to its end may have its commands nowhere else.
+        let is_resumable =
+            tenant == Tenant::Unfinished && (holds(checkpoint::NAME) || holds(replay::LOG));
+        match is_resumable && !again {
+            true => Err(RecordRunError::Resumable {
+                folder: path.to_owned(),
+            }),
+            false => Ok(tenant),
+        }
     }
 
-    /// Makes the folder of a new run; an earlier run's files in it are removed.
+    /// Makes the folder of a new run. The results of an earlier run in it are kept beside it, under its name with `.old`, until the new ones are complete.
     ///
     /// # Errors
-    /// [`RecordRunError`] for a folder that may not be used, and for inputs that cannot be read any more.
+    /// [`RecordRunError`] for a folder that may not be used, as [`RunFolder::check`] says, for more frames than a folder holds, and for inputs that cannot be
+    /// read any more.
     pub fn create(
         path: &Path,
         simulation: &Simulation,
         request: &Request,
     ) -> Result<Self, RecordRunError> {
         let scene = simulation.scene();
+        Self::check(path, scene, None, request.again)?;
         let record = Record::of(scene, request)?;
         Self::claim(path, simulation, record, &Schedules::of(simulation), &[])
     }
@@ -129,6 +154,22 @@ impl RunFolder {
         others: &[&str],
     ) -> Result<Self, RecordRunError> {
         let scene = simulation.scene();
+        let frames = schedules.fields.map_or(0, |fields| fields.count());
+        let columns = ProbeRows::new(simulation).columns().len();
+        let numbers = schedules.probes.count().saturating_mul(columns);
+        for (what, key, asked, most) in [
+            ("frames of fields", "fields", frames, MOST_FRAMES),
+            ("numbers in probes.csv", "probes", numbers, MOST_NUMBERS),
+        ] {
+            if asked > most {
+                return Err(RecordRunError::TooMuch {
+                    asked,
+                    what,
+                    most,
+                    key,
+                });
+            }
+        }
         let mut names: Vec<String> = [
             request::NAME,
             request::SCENE,
@@ -147,9 +188,9 @@ impl RunFolder {
         if ToolRows::of(simulation).is_some() {
             names.push(tool_rows::NAME.to_owned());
         }
-        if let Some(fields) = schedules.fields {
+        if schedules.fields.is_some() {
             names.extend([frames::SERIES, surface::NAME].map(str::to_owned));
-            names.extend((0..fields.count()).map(frames::frame_name));
+            names.extend((0..frames).map(frames::frame_name));
         }
         let folder = OwnedFolder::claim(path, KIND, &scene.input_files(), &names)?;
         record.write(&folder, scene)?;
@@ -308,7 +349,7 @@ impl RunFolder {
         let tools = ToolRows::of(simulation);
         let tables = Tables::open(
             &self.folder,
-            progress.lengths,
+            &progress.seals,
             &balance,
             reactions.as_ref(),
             tools.as_ref(),
@@ -319,6 +360,7 @@ impl RunFolder {
         let seen = Mutex::new(SeenInFrames {
             seen: progress.seen.clone(),
             largest,
+            seals: progress.seals.frames.clone(),
         });
         let before = progress.steps;
         let (driven, progress, largest, times) = thread::scope(|scope| {
@@ -442,13 +484,19 @@ impl RunFolder {
             warnings: &warnings,
             cuts: cuts.as_ref(),
         };
+        for (frame, seal) in progress.seals.frames.iter().enumerate() {
+            seal.check_length(&self.folder, &frames::frame_name(frame))?;
+        }
         let page = report::page(&summary, surface.as_ref(), &largest, &self.folder)?;
         self.folder.write(report::NAME, page.as_bytes())?;
+        self.folder.secure()?;
         self.folder
             .write(summary::NAME, summary.to_json().as_bytes())?;
         // Whoever finds no checkpoint beside a summary knows that the run has come to its end.
+        let mut replaced = Replaced::Whole;
         if !matches!(ended, Ended::Interrupted { .. }) {
             self.folder.remove(checkpoint::NAME)?;
+            replaced = self.folder.finish(ended == Ended::Finished)?;
         }
         let (own, steps, seen, work) = (
             steps,
@@ -469,6 +517,7 @@ impl RunFolder {
             cuts: cuts.map(|cuts| (cuts.totals, cuts.pieces)),
             remarks,
             warnings,
+            replaced,
         })
     }
 

@@ -52,5 +52,6 @@ pub(crate) fn write(
             .map(|(name, inside)| Array::of_flags(name, &inside[..]))
             .collect(),
     };
-    frames::write(folder, NAME, &grid, VtuEncoding::RawAppended)
+    frames::write(folder, NAME, &grid, VtuEncoding::RawAppended)?;
+    Ok(())
 }

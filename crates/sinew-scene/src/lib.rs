@@ -47,6 +47,7 @@ mod probe_rows;
 mod proposal;
 mod reference;
 mod scene;
+mod schedule;
 mod simulation;
 mod source;
 
@@ -66,6 +67,7 @@ pub use scene::{
     Rotation, RunSettings, Scene, Selected, StartsInside, Subject, TimeStep, Tool, ToolBody,
     ToolPart, ToolPath, ToolShape, ToolStart, Way,
 };
+pub use schedule::Schedule;
 pub use simulation::{
     BodyChange, BodyModel, CutFrom, CutTotals, Cutter, CuttingError, DrivenLoadError, Footprint,
     HeldPlace, LoadRemedy, MotionTableError, MotionTableFault, NearestNode, Probe, ProbeNode,

@@ -1,8 +1,10 @@
 //! Values that a command line sets in a scene.
 
-use toml_edit::{DocumentMut, Item, TableLike, Value};
+use toml_edit::{ArrayOfTables, DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
+use crate::decode::{Shape, TableDescription};
 use crate::nearest::nearest;
+use crate::scene::DOCUMENT;
 use crate::source::SceneSource;
 
 /// A reason for which a value cannot be set in a scene.
@@ -66,8 +68,8 @@ fn did_you_mean(nearest: &Option<String>) -> String {
 
 impl SceneSource {
     /// The scene with other values: `KEY=VALUE` each, the key's parts parted by dots, tables of a list by their numbers
-    /// from 1 on. A value is TOML, or else a string. A key that its table does not have is added to it; all else of the
-    /// text stays as it is.
+    /// from 1 on. A value is TOML, or else a string. A key that its table does not have is added to it, and so is a table of scenes, at the end of its list where
+    /// it is one; all else of the text stays as it is.
     ///
     /// ```
     /// use sinew_scene::SceneSource;
@@ -108,15 +110,16 @@ impl SceneSource {
             }
             let value = value.parse().unwrap_or_else(|_| Value::from(value));
             let parts: Vec<&str> = path.split('.').collect();
-            set(document.as_table_mut(), path, &parts, value)?;
+            let within = Some(&DOCUMENT);
+            set((document.as_table_mut(), within), path, &parts, value)?;
         }
         Ok(Self::new(self.path(), document.to_string()))
     }
 }
 
-/// Sets the value at the parts of a path that are left, within this table.
+/// Sets the value at the parts of a path that are left, within this table, as far as it is described.
 fn set(
-    table: &mut dyn TableLike,
+    (table, description): (&mut dyn TableLike, Option<&'static TableDescription>),
     path: &str,
     parts: &[&str],
     mut value: Value,
@@ -140,19 +143,35 @@ fn set(
         }
         [part, rest @ ..] => (*part, rest),
     };
+    let described = description.and_then(|within| tables_of(within, part));
     if !table.contains_key(part) {
-        let names: Vec<String> = table.iter().map(|(name, _)| name.to_owned()).collect();
-        let nearest = nearest(part, names.iter().map(String::as_str));
-        return Err(OverrideError::Missing {
-            path: path.to_owned(),
-            missing: part.to_owned(),
-            nearest: nearest.map(str::to_owned),
-        });
+        let new = match described {
+            Some(Inner { is_list: true, .. }) => Some(Item::ArrayOfTables(ArrayOfTables::new())),
+            Some(Inner { .. }) if is_top(description) => Some(Item::Table(Table::new())),
+            Some(Inner { .. }) => Some(Item::Value(InlineTable::new().into())),
+            None => None,
+        };
+        let Some(new) = new else {
+            let known = description.map_or(&[][..], |within| within.keys);
+            let names: Vec<String> = table.iter().map(|(name, _)| name.to_owned()).collect();
+            let known = known.iter().map(|key| key.name());
+            let nearest = nearest(part, names.iter().map(String::as_str).chain(known));
+            return Err(OverrideError::Missing {
+                path: path.to_owned(),
+                missing: part.to_owned(),
+                nearest: nearest.map(str::to_owned),
+            });
+        };
+        table.insert(part, new);
     }
+    let inner = described.map(|inner| inner.of);
     match table.get_mut(part) {
         Some(Item::ArrayOfTables(tables)) => {
             let count = tables.len();
             let number = rest.first().and_then(|number| number.parse::<usize>().ok());
+            if number == Some(count + 1) && rest.len() > 1 {
+                tables.push(Table::new());
+            }
             let found = number.and_then(|number| tables.get_mut(number.checked_sub(1)?));
             let found = found.ok_or_else(|| OverrideError::Number {
                 path: path.to_owned(),
@@ -166,14 +185,40 @@ fn set(
                     found: "a table",
                     expected: "a value",
                 }),
-                rest => set(found, path, rest, value),
+                rest => set((found, inner), path, rest, value),
             }
         }
-        Some(Item::Table(table)) => set(table, path, rest, value),
-        Some(Item::Value(Value::InlineTable(table))) => set(table, path, rest, value),
+        Some(Item::Table(table)) => set((table, inner), path, rest, value),
+        Some(Item::Value(Value::InlineTable(table))) => set((table, inner), path, rest, value),
         Some(other) => Err(kind(part, other, "a table")),
         None => Ok(()),
     }
+}
+
+/// A table, or the tables of a list, that a key of a scene holds.
+#[derive(Clone, Copy)]
+struct Inner {
+    of: &'static TableDescription,
+    is_list: bool,
+}
+
+/// What a key of a described table holds, where that is a table or a list of tables.
+fn tables_of(within: &'static TableDescription, part: &str) -> Option<Inner> {
+    fn of_shape(shape: &Shape) -> Option<Inner> {
+        match shape {
+            Shape::Table(of) => Some(Inner { of, is_list: false }),
+            Shape::Tables(of) => Some(Inner { of, is_list: true }),
+            Shape::Either(shapes) => shapes.iter().find_map(of_shape),
+            _ => None,
+        }
+    }
+    let key = within.keys.iter().find(|key| key.name() == part)?;
+    of_shape(&key.describe().shape)
+}
+
+/// Whether a table is the whole scene.
+fn is_top(description: Option<&'static TableDescription>) -> bool {
+    description.is_some_and(|description| description.name == DOCUMENT.name)
 }
 
 fn kind_of(item: &Item) -> &'static str {
@@ -214,6 +259,26 @@ mod tests {
                 "dt = 0.1\ntolerance = 0.01\n",
             ),
             (
+                "output.fields.frames=5",
+                "dt = 0.1\n",
+                "dt = 0.1\n\n[output]\nfields = { frames = 5 }\n",
+            ),
+            (
+                "damping.mass=1",
+                "dt = 0.1\n",
+                "dt = 0.1\n\n[damping]\nmass = 1\n",
+            ),
+            (
+                "load.1.group=top",
+                "dt = 0.1\n",
+                "dt = 0.1\n\n[[load]]\ngroup = \"top\"\n",
+            ),
+            (
+                "region.3.density=1",
+                "density = 2 # kg/m3\n",
+                "density = 2 # kg/m3\n\n[[region]]\ndensity = 1\n",
+            ),
+            (
                 "gravity=[0, 0, -9.81]",
                 "[mesh]",
                 "gravity = [0, 0, -9.81]\n[mesh]",
@@ -235,7 +300,12 @@ mod tests {
                 "region.density=1",
                 "the scene has 2 of `region`, counted from 1",
             ),
-            ("region.3.density=1", "the scene has 2 of `region`"),
+            ("region.4.density=1", "the scene has 2 of `region`"),
+            ("load.2.group=top", "the scene has 0 of `load`"),
+            (
+                "dampin.mass=1",
+                "the scene has no `dampin`; did you mean `damping`?",
+            ),
             ("region.0.density=1", "the scene has 2 of `region`"),
             ("title.a=1", "`title` is a value, expected a table"),
             ("run=1", "`run` is a table, expected a value"),

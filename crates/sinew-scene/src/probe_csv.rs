@@ -1,13 +1,16 @@
 //! The motion of probes as a CSV file.
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{self, ErrorKind, Read, Write};
+use std::path::Path;
 
 use sinew_core::{Moment, RecordError, Recorder, Verdict};
 
 use crate::output::{Delivery, Output, OutputError};
-use crate::probe_rows::ProbeRows;
+use crate::probe_rows::{BEGIN, ProbeRows};
+use crate::schedule::Schedule;
 
-/// Writes what probes write down after every step, in the columns of [`ProbeRows`]. Numbers are written so that reading
+/// Writes what probes write down after the steps of a [`Schedule`], in the columns of [`ProbeRows`]. Numbers are written so that reading
 /// them gives the same bits.
 ///
 /// A file has a temporary name until [`ProbeCsv::finish`], so that a file under its final name is
@@ -16,6 +19,9 @@ use crate::probe_rows::ProbeRows;
 #[derive(Debug)]
 pub struct ProbeCsv<'a> {
     rows: ProbeRows<'a>,
+    schedule: Schedule,
+    /// Steps whose watched displacements have come, the initial state among them.
+    watched: usize,
     output: Output,
 }
 
@@ -24,18 +30,51 @@ impl<'a> ProbeCsv<'a> {
     ///
     /// # Errors
     /// [`OutputError::Failed`].
-    pub fn new(mut output: Output, rows: ProbeRows<'a>) -> Result<Self, OutputError> {
+    pub fn new(
+        mut output: Output,
+        rows: ProbeRows<'a>,
+        schedule: Schedule,
+    ) -> Result<Self, OutputError> {
         match writeln!(output, "{}", rows.columns().join(",")) {
-            Ok(()) => Ok(Self { rows, output }),
+            Ok(()) => Ok(Self {
+                rows,
+                schedule,
+                watched: 0,
+                output,
+            }),
             Err(source) => Err(output.failed(source)),
+        }
+    }
+
+    /// Whether a file begins as such tables do.
+    ///
+    /// # Errors
+    /// The system's reason for which it cannot be read.
+    pub fn is_table(path: &Path) -> io::Result<bool> {
+        let mut begin = [0; BEGIN.len()];
+        let mut file = File::open(path)?;
+        match file.read_exact(&mut begin) {
+            Ok(()) => Ok(begin == *BEGIN.as_bytes()),
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => Ok(false),
+            Err(error) => Err(error),
         }
     }
 
     /// Goes on with the rows of another body, whose probes are the same.
     #[must_use]
     pub fn with_rows<'b>(self, rows: ProbeRows<'b>) -> ProbeCsv<'b> {
-        let output = self.output;
-        ProbeCsv { rows, output }
+        let Self {
+            schedule,
+            watched,
+            output,
+            ..
+        } = self;
+        ProbeCsv {
+            rows,
+            schedule,
+            watched,
+            output,
+        }
     }
 
     /// Its output without its rows, from which [`ProbeCsv::with_rows`] goes on.
@@ -67,7 +106,8 @@ fn write(output: &mut Output, t: f64, row: &str) -> Result<Verdict, RecordError>
 
 impl Recorder for ProbeCsv<'_> {
     fn next(&mut self, step: usize) -> Option<usize> {
-        self.rows.need_moments().then_some(step)
+        let next = self.schedule.next(step);
+        next.filter(|_| self.rows.need_moments())
     }
 
     fn record(&mut self, moment: &Moment<'_>) -> Result<Verdict, RecordError> {
@@ -85,7 +125,12 @@ impl Recorder for ProbeCsv<'_> {
     }
 
     fn watched(&mut self, t: f64, moving: &[f64]) -> Result<Verdict, RecordError> {
-        write(&mut self.output, t, self.rows.of_watched(t, moving))
+        let step = self.watched;
+        self.watched += 1;
+        match self.schedule.is_due(step) {
+            true => write(&mut self.output, t, self.rows.of_watched(t, moving)),
+            false => Ok(Verdict::Continue),
+        }
     }
 }
 
@@ -101,9 +146,9 @@ mod tests {
     use crate::scene::Quantity;
     use crate::simulation::{Probe, ProbeNode};
 
-    fn csv<'a>(path: &std::path::Path, probes: &'a [Probe]) -> ProbeCsv<'a> {
+    fn csv<'a>(path: &Path, probes: &'a [Probe]) -> ProbeCsv<'a> {
         let output = Destination::new(path, &[]).unwrap().open().unwrap();
-        ProbeCsv::new(output, ProbeRows::of(probes, None)).unwrap()
+        ProbeCsv::new(output, ProbeRows::of(probes, None), Schedule::at_most(3, 3)).unwrap()
     }
 
     fn probes() -> Vec<Probe> {
@@ -155,6 +200,7 @@ mod tests {
         csv.watched(2.0, &MOVING).unwrap();
         assert!(!path.exists(), "unfinished files have another name");
         assert_eq!(csv.finish().unwrap(), Delivery::Whole);
+        assert!(ProbeCsv::is_table(&path).unwrap());
         assert_eq!(
             fs::read_to_string(&path).unwrap(),
             "t_s,tip_u_x_m,tip_u_y_m,tip_u_z_m,mass_u_m,mean_u_x_m,mean_u_y_m,mean_u_z_m\n\
@@ -173,6 +219,7 @@ mod tests {
         csv.watched(0.0, &MOVING).unwrap();
         drop(csv);
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert!(!ProbeCsv::is_table(&path).unwrap());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }

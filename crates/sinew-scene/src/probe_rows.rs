@@ -8,6 +8,9 @@ use sinew_fem::{FieldError, Model, stress};
 use crate::scene::Quantity;
 use crate::simulation::{Probe, ProbeNode, Simulation};
 
+/// The first column's name: the time.
+pub(crate) const BEGIN: &str = "t_s";
+
 /// A reason for which a row cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -54,7 +57,7 @@ impl<'a> ProbeRows<'a> {
     /// `<probe>_s_von_mises_Pa`.
     #[must_use]
     pub fn columns(&self) -> Vec<String> {
-        let mut columns = vec!["t_s".to_owned()];
+        let mut columns = vec![BEGIN.to_owned()];
         for probe in self.probes {
             let name = &probe.name;
             let (letter, unit) = match probe.quantity {

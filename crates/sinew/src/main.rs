@@ -42,8 +42,8 @@ enum Command {
     /// Inspect, check, convert and refine mesh files.
     #[command(subcommand)]
     Mesh(command::mesh::Command),
-    /// List the integrators and their options.
-    Integrators,
+    /// List the integrators, or describe one with its options.
+    Integrators(command::integrators::Arguments),
     /// List the tables and keys of a scene, or print a JSON schema of scenes for editors.
     SceneReference(command::scene_reference::Arguments),
 }
@@ -65,7 +65,7 @@ fn main() -> ExitCode {
         Command::Live(arguments) => command::live::run(&arguments),
         Command::New(arguments) => command::new::run(&arguments),
         Command::Mesh(arguments) => command::mesh::run(&arguments),
-        Command::Integrators => command::integrators::run(),
+        Command::Integrators(arguments) => command::integrators::run(&arguments),
         Command::SceneReference(arguments) => command::scene_reference::run(&arguments),
     };
     match outcome {

@@ -11,8 +11,7 @@ mod served;
 mod speed;
 mod strangers;
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::PathBuf;
 
 use sinew_bench::output::say;
 use tempfile::TempDir;
@@ -20,7 +19,7 @@ use tempfile::TempDir;
 use self::bench::Bench;
 use self::chromium::Chromium;
 use crate::failure::Failure;
-use crate::repository::root;
+use crate::program;
 
 /// What is tried.
 #[derive(clap::Args)]
@@ -49,7 +48,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let sinew = match &arguments.sinew {
         Some(sinew) => sinew.clone(),
-        None => build()?,
+        None => program::build()?,
     };
     let folder = TempDir::new().map_err(Failure::chore)?;
     let bench = Bench {
@@ -81,20 +80,4 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     hand::random_input(&bench, seconds)?;
     say("live-test: all that was asked for holds")?;
     Ok(())
-}
-
-fn build() -> Result<PathBuf, Failure> {
-    let status = Command::new(env!("CARGO"))
-        .args(["build", "--release", "--quiet", "-psinew"])
-        .current_dir(root())
-        .status()
-        .map_err(Failure::chore)?;
-    match status.success() {
-        true => Ok(target(&root()).join("release/sinew")),
-        false => Err(Failure::Chore(format!("building sinew: {status}"))),
-    }
-}
-
-fn target(root: &Path) -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from)
 }

@@ -90,7 +90,7 @@ const connection = new Connection({
   trusted_ended: ({ reason }) => say(reason),
   saved: (event) => {
     last.saved = event;
-    say(`Saved in ${event.folder}. Repeat it with: ${event.replay}${event.note ? ` ${event.note}` : ""}`, event.note ? 60000 : 15000);
+    say(`Saved in ${event.folder}. Repeat it with: ${event.replay}`, 15000);
   },
   closed: () => {
     connected = false;

@@ -1,8 +1,8 @@
 //! A moment that is saved.
 
-use std::path::Path;
+use std::ffi::OsString;
+use std::path::{Component, Path, PathBuf};
 
-use sinew_scene::SceneSource;
 use sinew_scene::output::{OutputError, OutputFolder};
 
 use super::pane::Pane;
@@ -21,20 +21,46 @@ pub(crate) enum SaveError {
     /// Too many folders.
     #[error("{MOST} moments are saved here already")]
     Full,
+    /// A file of the scene that cannot be read.
+    #[error("{}, which the scene reads: {source}", path.display())]
+    Input {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        source: std::io::Error,
+    },
     /// The folder that this program works in is gone.
     #[error("no folder to save in: {0}")]
     Folder(#[from] std::io::Error),
 }
 
-/// Writes the scene, and state and commands of each pane, into a new folder of the current one.
+/// Writes the scene with all that it reads, and state and commands of each pane, into a new folder of the current one. The files lie to each other as they
+/// do where the scene is, so that the scene finds them.
 pub(crate) fn save(scene: &SceneValues, panes: &[Pane]) -> Result<Event, SaveError> {
     let here = std::env::current_dir()?;
     let mut names = (1..=MOST).map(|number| here.join(format!("live-{number}")));
     let path = names.find(|path| path.symlink_metadata().is_err());
     let path = path.ok_or(SaveError::Full)?;
-    let folder = OutputFolder::new(&path, &scene.scene.input_files());
+    let files = scene.scene.input_files();
+    let folder = OutputFolder::new(&path, &files);
+    let places = places(&files);
+    let mut inputs = Vec::new();
+    for (file, place) in files.iter().zip(&places).skip(1) {
+        match std::fs::read(file) {
+            Ok(content) => inputs.push((place, content)),
+            Err(source) => {
+                let path = file.clone();
+                return Err(SaveError::Input { path, source });
+            }
+        }
+    }
+    for (place, content) in inputs {
+        folder.write(place, &content)?;
+    }
     let text = scene.scene.source().text();
-    let copy = folder.write("scene.toml", text.as_bytes())?;
+    let own = places.first().and_then(|own| own.rsplit_once('/'));
+    let own = own.map_or(String::new(), |(above, _)| format!("{above}/"));
+    let copy = folder.write(&format!("{own}scene.toml"), text.as_bytes())?;
     let mut logs = Vec::new();
     for (number, pane) in (1..).zip(panes) {
         folder.write(&format!("state-{number}.bin"), &pane.state_bytes())?;
@@ -44,51 +70,49 @@ pub(crate) fn save(scene: &SceneValues, panes: &[Pane]) -> Result<Event, SaveErr
         )?);
     }
     let log = logs.first().map(|log| word(&log.display().to_string()));
-    let own = own_file(scene);
-    let note = match &own {
-        None => beside_others(scene, &copy),
-        Some(_) => None,
-    };
     Ok(Event::Saved {
         folder: path.display().to_string(),
         replay: format!(
             "sinew run {} --replay {}",
-            own.unwrap_or_else(|| word(&copy.display().to_string())),
+            word(&copy.display().to_string()),
             log.unwrap_or_default()
         ),
-        note,
     })
 }
 
-/// The scene as words of a command: its own file, beside which its meshes and tables lie, with the values that are set in it; `None` where the file has changed
-/// since.
-fn own_file(scene: &SceneValues) -> Option<String> {
-    let source = scene.scene.source();
-    let own = std::fs::read_to_string(source.path());
-    let own = own.map(|text| SceneSource::new(source.path(), text).with_values(&scene.values));
-    if !matches!(own, Ok(Ok(own)) if own.text() == source.text()) {
-        return None;
-    }
-    let mut words = word(&source.path().display().to_string());
-    for value in &scene.values {
-        words.push_str(" --set ");
-        words.push_str(&word(value));
-    }
-    Some(words)
+/// The places of files in a folder, with `/` between the parts of each, in which they lie to each other as they do now: from the folder on that is above all of them.
+fn places(files: &[PathBuf]) -> Vec<String> {
+    let whole: Vec<Vec<OsString>> = files.iter().map(|file| parts(file)).collect();
+    let folders = whole
+        .iter()
+        .map(|parts| &parts[..parts.len().saturating_sub(1)]);
+    let shared = folders.reduce(|one, other| {
+        let same = one.iter().zip(other).take_while(|(a, b)| a == b).count();
+        &one[..same]
+    });
+    let shared = shared.map_or(0, <[OsString]>::len);
+    let below = |parts: &Vec<OsString>| {
+        let names = parts[shared..].iter();
+        let names = names.map(|name| name.to_string_lossy());
+        names.collect::<Vec<_>>().join("/")
+    };
+    whole.iter().map(below).collect()
 }
 
-/// Where the copy of a scene that reads other files finds them: its text, by whose hash the log knows it, names them as seen from the folder of its own file.
-fn beside_others(scene: &SceneValues, copy: &Path) -> Option<String> {
-    let files = scene.scene.input_files();
-    let [own, _, ..] = files.as_slice() else {
-        return None;
-    };
-    let folder = own.parent().filter(|folder| *folder != Path::new(""));
-    Some(format!(
-        "The scene's file has changed since, and its copy names other files as seen from {}: copy {} there first, and give that.",
-        folder.unwrap_or(Path::new(".")).display(),
-        copy.display()
-    ))
+/// The parts of a path from the root on, without `.` and `..`.
+fn parts(path: &Path) -> Vec<OsString> {
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let mut parts = Vec::new();
+    for part in whole.components() {
+        match part {
+            Component::Normal(name) => parts.push(name.to_owned()),
+            Component::ParentDir => {
+                parts.pop();
+            }
+            _ => {}
+        }
+    }
+    parts
 }
 
 /// A word as a shell takes it.
@@ -103,6 +127,29 @@ fn word(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_lie_to_each_other_as_they_did() {
+        let of = |files: &[&str]| {
+            let files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
+            places(&files)
+        };
+        assert_eq!(of(&["/a/scenes/press.toml"]), ["press.toml"]);
+        assert_eq!(
+            of(&["/a/scenes/press.toml", "/a/scenes/t.csv"]),
+            ["press.toml", "t.csv"]
+        );
+        let beside = [
+            "scenes/press.toml",
+            "scenes/../meshes/m.msh",
+            "scenes/t.csv",
+        ];
+        assert_eq!(
+            of(&beside),
+            ["scenes/press.toml", "meshes/m.msh", "scenes/t.csv"]
+        );
+        assert_eq!(of(&["/a/b/s.toml", "/c/m.msh"]), ["a/b/s.toml", "c/m.msh"]);
+    }
 
     #[test]
     fn words_with_other_letters_are_quoted_for_the_shell() {

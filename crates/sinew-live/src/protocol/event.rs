@@ -58,8 +58,6 @@ pub(crate) enum Event {
         folder: String,
         /// The command that repeats the session.
         replay: String,
-        /// What is to be done before, where it does not work as it stands.
-        note: Option<String>,
     },
 }
 

@@ -1,22 +1,29 @@
 //! Differences of fields.
 
+use std::borrow::Cow;
 use std::path::Path;
 
-use sinew_core::vectors::norm;
-use sinew_mesh::vtu::read_appended_array;
+use sinew_mesh::Mesh;
+use sinew_mesh::vtu::read_vtu;
 
-use super::outcome::{CompareError, Comparison, Difference, damaged, read, relative};
+use super::outcome::{CompareError, Comparison, Difference, damaged, length, read, relative};
 use super::places;
 use crate::csv::SAME_TIME;
 use crate::frames::SERIES;
 
-/// Fields that are compared, with their units.
-const FIELDS: [(&str, &str); 2] = [("displacement", "m"), ("velocity", "m/s")];
+/// Units of arrays; others are plain numbers.
+const UNITS: [(&str, &str); 8] = [
+    ("displacement", "m"),
+    ("velocity", "m/s"),
+    ("acceleration", "m/s^2"),
+    ("contact_force", "N"),
+    ("contact_pressure", "Pa"),
+    ("von_mises", "Pa"),
+    ("stress", "Pa"),
+    ("step_limit", "s"),
+];
 
-/// The points of the body at rest.
-const POINTS: &str = "Points";
-
-/// Compares the frames at equal times.
+/// Compares the frames at equal times: their points and cells, and every array.
 pub(super) fn compare(
     comparison: &mut Comparison,
     one: &Path,
@@ -30,68 +37,197 @@ pub(super) fn compare(
         return Ok(());
     }
     let (frames, others) = (series(one)?, series(other)?);
-    let mut found = FIELDS.map(|_| (0.0_f64, 0.0, 0, 0.0_f64));
+    let mut found = Found::default();
     let mut alone = 0;
-    let mut compared_points = false;
     for (t, file) in &frames {
         let same = |(time, _): &&(f64, String)| (time - t).abs() <= SAME_TIME * t.abs();
         let Some((_, counterpart)) = others.iter().find(same) else {
             alone += 1;
             continue;
         };
-        let (path, counterpart) = (one.join(file), other.join(counterpart));
-        let (bytes, others) = (read(&path)?, read(&counterpart)?);
-        if !compared_points {
-            compared_points = true;
-            let points = [(&path, &bytes), (&counterpart, &others)];
-            let [one, other] = points.map(|(path, bytes)| vectors(path, bytes, POINTS));
-            let (one, other) = (one?, other?);
-            if one.len() == other.len() {
-                comparison
-                    .differences
-                    .extend(places::apart("fields", &one, &other));
-            }
+        let (frame, other) = (mesh(&one.join(file))?, mesh(&other.join(counterpart))?);
+        if frame.points.len() != other.points.len() {
+            let (a, b) = (frame.points.len(), other.points.len());
+            let reason = format!("fields: {a} and {b} nodes are not those of the same mesh");
+            comparison.left_out.push(reason);
+            return Ok(());
         }
-        for ((name, _), (largest, at, node, size)) in FIELDS.iter().zip(&mut found) {
-            let (field, others) = (
-                vectors(&path, &bytes, name)?,
-                vectors(&counterpart, &others, name)?,
-            );
-            if field.len() != others.len() {
-                let (a, b) = (field.len(), others.len());
-                let reason = format!("fields: {a} and {b} nodes are not those of the same mesh");
-                comparison.left_out.push(reason);
-                return Ok(());
-            }
-            for (number, (a, b)) in field.iter().zip(&others).enumerate() {
-                let difference = norm(&[a[0] - b[0], a[1] - b[1], a[2] - b[2]]);
-                *size = size.max(norm(a));
-                if difference > *largest || difference.is_nan() {
-                    (*largest, *at, *node) = (difference, *t, number);
-                }
-            }
-        }
+        found.see(*t, &frame, &other);
     }
     if alone > 0 {
         comparison.left_out.push(format!(
             "fields: {alone} frames of the first have none of the second at their time"
         ));
     }
-    if alone < frames.len() {
-        let differences = FIELDS.iter().zip(found);
-        comparison.differences.extend(differences.map(
-            |((name, unit), (largest, t, node, size))| Difference {
-                of: "fields",
-                what: (*name).to_owned(),
-                unit: (*unit).to_owned(),
-                largest,
-                relative: relative(largest, size),
-                t,
-                node: Some(node),
-            },
-        ));
-    }
+    found.tell(comparison);
     Ok(())
+}
+
+/// Differences of the frames that were seen.
+#[derive(Default)]
+struct Found {
+    /// Where a point at rest was farthest from its counterpart.
+    points: Option<Difference>,
+    /// The first frame whose cells differ, in how many of them.
+    cells: Option<Difference>,
+    arrays: Vec<OfArray>,
+    /// Names of arrays that one has and the other has not, or has with other components.
+    alone: Vec<String>,
+}
+
+/// The largest difference of an array.
+struct OfArray {
+    name: String,
+    of_points: bool,
+    largest: f64,
+    t: f64,
+    holder: usize,
+    /// The largest value in the first result.
+    size: f64,
+}
+
+/// An array of points or cells.
+struct View<'a> {
+    name: &'a str,
+    of_points: bool,
+    components: usize,
+    values: Cow<'a, [f64]>,
+}
+
+impl Found {
+    /// Compares two frames with as many points at the time `t` (s).
+    fn see(&mut self, t: f64, frame: &Mesh, other: &Mesh) {
+        let is_farther = |found: &Difference, known: &Option<Difference>| {
+            known
+                .as_ref()
+                .is_none_or(|known| found.largest > known.largest)
+        };
+        let apart = places::apart("fields", 0.0, &frame.points, &other.points);
+        if let Some(apart) = apart.filter(|apart| is_farther(apart, &self.points)) {
+            self.points = Some(Difference { t, ..apart });
+        }
+        if self.cells.is_none() {
+            self.cells = other_cells(frame, other).map(|cells| Difference { t, ..cells });
+        }
+        let (arrays, others) = (arrays(frame), arrays(other));
+        let fits = |a: &View<'_>, b: &View<'_>| {
+            (a.name, a.of_points, a.components) == (b.name, b.of_points, b.components)
+        };
+        for (some, counterparts) in [(&arrays, &others), (&others, &arrays)] {
+            let alone = some
+                .iter()
+                .filter(|a| !counterparts.iter().any(|b| fits(a, b)));
+            for View { name, .. } in alone {
+                if !self.alone.iter().any(|known| known == name) {
+                    self.alone.push((*name).to_owned());
+                }
+            }
+        }
+        for array in &arrays {
+            if let Some(counterpart) = others.iter().find(|other| fits(array, other)) {
+                self.see_array(t, array, &counterpart.values);
+            }
+        }
+    }
+
+    fn see_array(&mut self, t: f64, array: &View<'_>, others: &[f64]) {
+        let (name, of_points, components) = (array.name, array.of_points, array.components);
+        let known = self
+            .arrays
+            .iter()
+            .position(|known| known.name == name && known.of_points == of_points);
+        let place = known.unwrap_or_else(|| {
+            self.arrays.push(OfArray {
+                name: name.to_owned(),
+                of_points,
+                largest: 0.0,
+                t,
+                holder: 0,
+                size: 0.0,
+            });
+            self.arrays.len() - 1
+        });
+        let found = &mut self.arrays[place];
+        let rows = array.values.chunks(components.max(1));
+        for (holder, (a, b)) in rows.zip(others.chunks(components.max(1))).enumerate() {
+            // Neither do values that are the same and infinite, or missing in both.
+            let is_same = |a: f64, b: f64| a == b || (a.is_nan() && b.is_nan());
+            let apart = a.iter().zip(b);
+            let apart = apart.map(|(a, b)| if is_same(*a, *b) { 0.0 } else { a - b });
+            let difference = length(apart);
+            let size = length(a.iter().copied());
+            if size.is_finite() {
+                found.size = found.size.max(size);
+            }
+            if difference > found.largest || difference.is_nan() {
+                (found.largest, found.t, found.holder) = (difference, t, holder);
+            }
+        }
+    }
+
+    fn tell(self, comparison: &mut Comparison) {
+        let all = &mut comparison.differences;
+        all.extend(self.points);
+        all.extend(self.cells);
+        all.extend(self.arrays.into_iter().map(|found| {
+            let unit = UNITS.iter().find(|(name, _)| *name == found.name);
+            Difference {
+                of: "fields",
+                unit: unit.map_or("", |(_, unit)| unit).to_owned(),
+                largest: found.largest,
+                relative: relative(found.largest, found.size),
+                t: found.t,
+                node: found.of_points.then_some(found.holder),
+                what: found.name,
+            }
+        }));
+        let alone = self.alone.into_iter();
+        let alone = alone.map(|name| {
+            format!("fields: `{name}` is in one of them only, or has other components")
+        });
+        comparison.left_out.extend(alone);
+    }
+}
+
+/// The share of cells that are others; `None` where all are the same.
+fn other_cells(frame: &Mesh, other: &Mesh) -> Option<Difference> {
+    let cells = |mesh: &'_ Mesh| {
+        let cells = mesh.cells.iter();
+        let cells = cells.flat_map(|block| block.cells().map(|nodes| (block.kind, nodes.to_vec())));
+        cells.collect::<Vec<_>>()
+    };
+    let (some, others) = (cells(frame), cells(other));
+    let most = some.len().max(others.len());
+    let same = some.iter().zip(&others).filter(|(a, b)| a == b).count();
+    (same < most).then(|| Difference {
+        of: "fields",
+        what: "cells".to_owned(),
+        unit: String::new(),
+        largest: (most - same) as f64,
+        relative: (most - same) as f64 / most as f64,
+        t: 0.0,
+        node: None,
+    })
+}
+
+/// All arrays of a frame.
+fn arrays(frame: &Mesh) -> Vec<View<'_>> {
+    let of_points = frame.point_data.iter().map(|data| View {
+        name: &data.name,
+        of_points: true,
+        components: data.components,
+        values: Cow::Borrowed(&data.values),
+    });
+    let of_cells = frame.cell_data.iter().map(|data| View {
+        name: &data.name,
+        of_points: false,
+        components: data.components,
+        values: match &data.blocks[..] {
+            [values] => Cow::Borrowed(values),
+            blocks => Cow::Owned(blocks.concat()),
+        },
+    });
+    of_points.chain(of_cells).collect()
 }
 
 /// Times (s) and files of the frames of a result.
@@ -108,11 +244,9 @@ fn series(folder: &Path) -> Result<Vec<(f64, String)>, CompareError> {
     Ok(frames)
 }
 
-/// A field of vectors of a frame.
-fn vectors(path: &Path, bytes: &[u8], name: &str) -> Result<Vec<[f64; 3]>, CompareError> {
-    let numbers =
-        read_appended_array(bytes, name).map_err(|error| damaged(path, error.to_string()))?;
-    Ok(numbers.as_chunks::<3>().0.to_vec())
+/// A frame, read as a whole.
+fn mesh(path: &Path) -> Result<Mesh, CompareError> {
+    read_vtu(&read(path)?).map_err(|error| damaged(path, error.to_string()))
 }
 
 /// The value of an attribute of a tag.

@@ -74,6 +74,18 @@ impl Comparison {
     }
 }
 
+/// The length of a vector of any number of components, above 0 also where their squares are not.
+pub(super) fn length(components: impl IntoIterator<Item = f64> + Clone) -> f64 {
+    let squares = components.clone().into_iter().map(|x| x * x);
+    let length = squares.sum::<f64>().sqrt();
+    match length == 0.0 {
+        true => components
+            .into_iter()
+            .fold(0.0, |most, x| x.abs().max(most)),
+        false => length,
+    }
+}
+
 /// A difference over the size of what differs.
 pub(super) fn relative(difference: f64, size: f64) -> f64 {
     match difference == 0.0 {

@@ -1,8 +1,6 @@
 //! Differences of where things are: the places of probes, and the nodes of the body at rest.
 
-use sinew_core::vectors::norm;
-
-use super::outcome::{Comparison, Difference};
+use super::outcome::{Comparison, Difference, length};
 use crate::tables::PROBES;
 
 /// Distance over the size of the coordinates within which two places are the same.
@@ -24,7 +22,7 @@ pub(super) fn probes(comparison: &mut Comparison, one: &str, other: &str) {
         match point(place).zip(point(counterpart)) {
             Some((a, b)) => comparison
                 .differences
-                .extend(apart(PROBES, &[a], &[b]).map(|found| Difference {
+                .extend(apart(PROBES, SAME, &[a], &[b]).map(|found| Difference {
                     what: format!("place of {name}"),
                     node: None,
                     ..found
@@ -55,16 +53,21 @@ fn point(place: &str) -> Option<[f64; 3]> {
     numbers.ok()?.try_into().ok()
 }
 
-/// The largest distance of points (m) from their counterparts; `None` where they are the same.
-pub(super) fn apart(of: &'static str, one: &[[f64; 3]], other: &[[f64; 3]]) -> Option<Difference> {
+/// The largest distance of points (m) from their counterparts; `None` where it is within this share of their coordinates.
+pub(super) fn apart(
+    of: &'static str,
+    same: f64,
+    one: &[[f64; 3]],
+    other: &[[f64; 3]],
+) -> Option<Difference> {
     let coordinates = one.iter().chain(other).flatten();
     let size = coordinates.fold(0.0_f64, |most, x| most.max(x.abs()));
     let distances = one.iter().zip(other);
-    let distances = distances.map(|(a, b)| norm(&[a[0] - b[0], a[1] - b[1], a[2] - b[2]]));
+    let distances = distances.map(|(a, b)| length([0, 1, 2].map(|axis| a[axis] - b[axis])));
     let largest = distances
         .enumerate()
         .max_by(|(_, a), (_, b)| a.total_cmp(b));
-    let (node, largest) = largest.filter(|(_, distance)| *distance > SAME * size)?;
+    let (node, largest) = largest.filter(|(_, distance)| *distance > same * size)?;
     Some(Difference {
         of,
         what: "points at rest".to_owned(),

@@ -61,6 +61,7 @@ fn run(path: &Path, text: &str, companion: &mut dyn Companion) -> RunEnd {
         threads: Some("1".to_owned()),
         warnings: vec!["beware".to_owned()],
         values: vec!["run.dt=0.002".to_owned()],
+        again: true,
     };
     let folder = RunFolder::create(path, &simulation, &request).unwrap();
     let mut integrator = simulation.integrator().unwrap();

@@ -4,10 +4,10 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::error::OutputError;
-use super::identity::Input;
+use super::identity::{Input, standard_output_is_file};
 use super::stream::Stream;
-use super::target::Target;
-use super::whole_file::WholeFile;
+use super::target::{Target, folder_of};
+use super::whole_file::{WholeFile, remove_left_behind};
 
 /// A path that was checked and may be written.
 ///
@@ -82,6 +82,16 @@ impl Destination {
         !matches!(self.target, Target::File(_))
     }
 
+    /// Whether what is written stays in a file, and does not pass through a pipe or a device.
+    #[must_use]
+    pub fn is_kept(&self) -> bool {
+        match &self.target {
+            Target::File(_) => true,
+            Target::StandardOutput => standard_output_is_file(),
+            Target::Stream => std::fs::metadata(&self.path).is_ok_and(|found| found.is_file()),
+        }
+    }
+
     /// Whether both outputs go to the same file, so that the second would replace the first.
     pub(super) fn is_same_file(&self, other: &Self) -> bool {
         self.target.is_same_file(&other.target)
@@ -95,7 +105,10 @@ impl Destination {
         let sink = match &self.target {
             Target::StandardOutput => Ok(Sink::stream(Stream::standard_output())),
             Target::Stream => Stream::open(&self.path).map(Sink::stream),
-            Target::File(path) => WholeFile::create(path).map(Sink::Whole),
+            Target::File(path) => {
+                remove_left_behind(folder_of(path));
+                WholeFile::create(path).map(Sink::Whole)
+            }
         };
         match sink {
             Ok(sink) => Ok(Output {

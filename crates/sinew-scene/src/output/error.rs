@@ -1,7 +1,7 @@
 //! Errors of outputs.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why an output was refused, or failed while it was written. Every message names the path.
 #[derive(Debug, thiserror::Error)]
@@ -73,6 +73,36 @@ pub enum OutputError {
         /// The folder of the other result.
         holder: PathBuf,
     },
+    /// A complete result that cannot be kept beside its folder: something else has that name.
+    #[error("cannot write into {}: its results would be kept as {} until new ones are complete, and that is there already; rename it, or name a new folder", path.display(), kept.display())]
+    NoRoomAside {
+        /// The path.
+        path: PathBuf,
+        /// The name under which the results would be kept.
+        kept: PathBuf,
+    },
+    /// A complete result that the system does not rename.
+    #[error("cannot write into {}: its results cannot be kept as {} until new ones are complete: {source}; name a new folder", path.display(), kept.display())]
+    NotSetAside {
+        /// The path.
+        path: PathBuf,
+        /// The name under which the results would be kept.
+        kept: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The current folder, whose results cannot be set aside.
+    #[error("cannot write into {}: it holds earlier results and is the current folder, which cannot be renamed; go to the folder above, or name a new folder", path.display())]
+    CurrentFolder {
+        /// The path.
+        path: PathBuf,
+    },
+    /// A folder that is another one than when the run began.
+    #[error("writing into {} failed: the folder was removed or replaced by others while the run went on; run again", path.display())]
+    Gone {
+        /// The path.
+        path: PathBuf,
+    },
     /// A folder without an earlier result.
     #[error("there is no {kind} in {} to go on with; name the folder that `--out` named", path.display())]
     NoResult {
@@ -139,7 +169,17 @@ impl OutputError {
     /// Whether the path was refused, so that another path helps; otherwise writing failed.
     #[must_use]
     pub fn is_refusal(&self) -> bool {
-        !matches!(self, Self::Failed { .. })
+        !matches!(self, Self::Failed { .. } | Self::Gone { .. })
+    }
+
+    pub(super) fn not_opened(path: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        Self::NotOpened { path, source }
+    }
+
+    pub(super) fn failed(path: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        Self::Failed { path, source }
     }
 }
 

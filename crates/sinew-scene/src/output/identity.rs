@@ -20,6 +20,11 @@ impl Identity {
         Self::from_metadata(&metadata, path)
     }
 
+    /// Identity of an open file or folder with this path.
+    pub(super) fn of_open(file: &File, path: &Path) -> Option<Self> {
+        Self::from_metadata(&file.metadata().ok()?, path)
+    }
+
     #[cfg(unix)]
     fn from_metadata(metadata: &Metadata, _path: &Path) -> Option<Self> {
         use std::os::unix::fs::MetadataExt;
@@ -35,20 +40,37 @@ impl Identity {
     /// may use the same one.
     #[cfg(unix)]
     pub(super) fn of_standard_output() -> Option<Self> {
-        use std::os::fd::AsFd;
         use std::os::unix::fs::FileTypeExt;
-        let descriptor = std::io::stdout().as_fd().try_clone_to_owned().ok()?;
-        let metadata = File::from(descriptor).metadata().ok()?;
-        if metadata.file_type().is_char_device() {
+        let file = standard_output()?;
+        if file.metadata().ok()?.file_type().is_char_device() {
             return None;
         }
-        Self::from_metadata(&metadata, Path::new("-"))
+        Self::of_open(&file, Path::new("-"))
     }
 
     #[cfg(not(unix))]
     pub(super) fn of_standard_output() -> Option<Self> {
         None
     }
+}
+
+#[cfg(unix)]
+fn standard_output() -> Option<File> {
+    use std::os::fd::AsFd;
+    let descriptor = std::io::stdout().as_fd().try_clone_to_owned();
+    descriptor.ok().map(File::from)
+}
+
+/// Whether standard output goes to a file, as far as the system tells.
+#[cfg(unix)]
+pub(super) fn standard_output_is_file() -> bool {
+    let metadata = standard_output().and_then(|file| file.metadata().ok());
+    metadata.is_some_and(|found| found.is_file())
+}
+
+#[cfg(not(unix))]
+pub(super) fn standard_output_is_file() -> bool {
+    false
 }
 
 /// A file that a run reads.

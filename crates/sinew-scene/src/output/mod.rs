@@ -8,9 +8,12 @@
 mod destination;
 mod error;
 mod folder;
+mod growing_file;
 mod identity;
 mod lines;
 mod lock_holder;
+mod manifest;
+mod owned_files;
 mod owned_folder;
 mod stream;
 mod target;
@@ -20,8 +23,9 @@ mod whole_file;
 pub use destination::{Delivery, Destination, Output};
 pub use error::OutputError;
 pub use folder::OutputFolder;
+pub use growing_file::GrowingFile;
 pub use lines::{WIDTH, hanging};
-pub use owned_folder::{GrowingFile, OwnedFolder, Tenant};
+pub use owned_folder::{OwnedFolder, Replaced, Tenant};
 pub use voice::{Voice, complain, say};
 
 #[cfg(test)]

@@ -1,28 +1,34 @@
 //! Folders that belong to one result.
 
+use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
-use std::io::{self, BufWriter, ErrorKind, Seek, SeekFrom, Write};
-use std::path::{Component, Path, PathBuf};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 use super::error::OutputError;
 use super::folder::OutputFolder;
-use super::identity::Input;
+use super::identity::{Identity, Input};
 use super::lock_holder::lock_holder;
-use super::target::Target;
-use super::whole_file::{WholeFile, is_left_behind, is_temporary};
-
-/// The file that says whose a folder is and what was written into it.
-const MANIFEST: &str = "manifest.json";
+use super::manifest::{MANIFEST, Manifest, State};
+use super::target::folder_of;
+use super::whole_file::{is_left_behind, is_temporary, sync_folder};
 
 /// A folder that holds one result and nothing else, so that a later result of the same kind may replace it without
-/// taking anything that is not its own. A manifest in it says what kind of result it is and which files belong to it.
+/// taking anything that is not its own. A manifest in it says what kind of result it is, whether it is complete and which files belong to it.
+///
+/// A complete result is not lost to one that begins: it is kept beside the folder, under the folder's name with `.old`, until [`OwnedFolder::finish`].
 ///
 /// While it is open no other process opens it.
 #[derive(Debug)]
 pub struct OwnedFolder {
     path: PathBuf,
     kind: &'static str,
-    inputs: Vec<Input>,
+    pub(super) inputs: Vec<Input>,
+    /// The folder that was locked, which another may replace under its path.
+    pub(super) identity: Option<Identity>,
+    /// Files that the disk may not have yet.
+    pub(super) light: Mutex<Vec<PathBuf>>,
     /// Holds the lock.
     _lock: File,
 }
@@ -32,8 +38,19 @@ pub struct OwnedFolder {
 pub enum Tenant {
     /// Nothing.
     Nobody,
-    /// An earlier result of the same kind, which will be replaced.
+    /// A complete result of the same kind, which is kept until the new one is complete.
     Earlier,
+    /// A result of the same kind that was not completed, which will be removed.
+    Unfinished,
+}
+
+/// What became of the result that was kept while a new one was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Replaced {
+    /// There was none, or it is gone.
+    Whole,
+    /// It is still in this folder.
+    KeptIn(PathBuf),
 }
 
 impl OwnedFolder {
@@ -52,7 +69,11 @@ impl OwnedFolder {
         if path.is_dir() {
             Self::lock(path, kind, &[])?;
         }
-        Self::check_content(path, kind, inputs)
+        let tenant = Self::check_content(path, kind, inputs)?;
+        if tenant == Tenant::Earlier {
+            kept_beside(path, kind)?;
+        }
+        Ok(tenant)
     }
 
     /// As [`OwnedFolder::check`], also for the process that writes into the folder.
@@ -81,7 +102,7 @@ impl OwnedFolder {
         }
         let entries = match entries(path, "") {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Tenant::Nobody),
-            entries => entries.map_err(|source| not_opened(path, source))?,
+            entries => entries.map_err(|source| OutputError::not_opened(path, source))?,
         };
         let entries: Vec<String> = entries
             .into_iter()
@@ -100,34 +121,31 @@ impl OwnedFolder {
         if manifest.kind != kind {
             return Err(foreign(vec![MANIFEST.to_owned()]));
         }
-        let is_own = |name: &String| {
-            let file = || manifest.files.contains(name) || name == MANIFEST;
-            let folder = format!("{name}/");
-            let holds_own = || manifest.files.iter().any(|own| own.starts_with(&folder));
-            match path.join(name).symlink_metadata() {
-                Ok(metadata) if metadata.is_dir() => holds_own(),
-                Ok(metadata) if metadata.is_file() => file(),
-                _ => false,
-            }
-        };
+        let own = manifest.names();
         let mut others: Vec<String> = Vec::new();
-        for name in &entries {
-            if !is_own(name) {
-                others.push(name.clone());
-            } else if path.join(name).is_dir() {
-                let within = entries_of_folder(path, name)?;
-                let foreign = |name: &String| !is_own(name) && !is_temporary(name);
-                others.extend(within.into_iter().filter(foreign));
+        let mut waiting = entries;
+        while let Some(name) = waiting.pop() {
+            let found = path.join(&name).symlink_metadata();
+            match found.map(|found| found.file_type()) {
+                Ok(found) if found.is_dir() && own.folders.contains(&*name) => {
+                    waiting.extend(entries_of_folder(path, &name)?);
+                }
+                Ok(found) if found.is_file() && own.files.contains(&*name) => {}
+                Ok(found) if found.is_file() && name == MANIFEST => {}
+                _ if is_temporary(&name) => {}
+                _ => others.push(name),
             }
         }
-        match others.is_empty() {
-            true => Ok(Tenant::Earlier),
-            false => Err(foreign(others)),
+        others.sort_unstable();
+        match (others.is_empty(), manifest.state) {
+            (false, _) => Err(foreign(others)),
+            (true, State::Unfinished) => Ok(Tenant::Unfinished),
+            (true, _) => Ok(Tenant::Earlier),
         }
     }
 
-    /// Makes the folder if need be, removes an earlier result of the same kind and writes down that files of these names
-    /// (with `/` between folders) will belong to the new one.
+    /// Makes the folder if need be and writes down that files of these names (with `/` between folders) will belong to the new result. A complete result of
+    /// the same kind is set aside until [`OwnedFolder::finish`], what is left of an incomplete one is removed.
     ///
     /// # Errors
     /// As [`OwnedFolder::check`], and [`OutputError::Busy`] while another process writes into it.
@@ -138,27 +156,32 @@ impl OwnedFolder {
         names: &[String],
     ) -> Result<Self, OutputError> {
         Self::check(path, kind, inputs)?;
-        fs::create_dir_all(path).map_err(|source| not_opened(path, source))?;
-        let folder = Self::lock(path, kind, inputs)?;
+        let make = || fs::create_dir_all(path);
+        make().map_err(|source| OutputError::not_opened(path, source))?;
+        let mut folder = Self::lock(path, kind, inputs)?;
         // Once more, now that nobody else writes into it.
-        Self::check_content(path, kind, inputs)?;
-        if let Some(earlier) = Manifest::read(path)? {
-            for name in &earlier.files {
-                folder.remove(name)?;
-            }
-            for name in &earlier.files {
-                if let Some((within, _)) = name.rsplit_once('/') {
-                    // Where it holds something or is gone it stays as it is.
-                    let _ = fs::remove_dir(path.join(within));
+        match Self::check_content(path, kind, inputs)? {
+            Tenant::Nobody => {}
+            Tenant::Unfinished => folder.clear()?,
+            Tenant::Earlier => {
+                let kept = folder.set_aside()?;
+                make().map_err(|source| OutputError::not_opened(path, source))?;
+                if let Ok(old) = fs::metadata(kept) {
+                    // As far as we may.
+                    let _ = fs::set_permissions(path, old.permissions());
                 }
+                folder = Self::lock(path, kind, inputs)?;
             }
         }
         folder.clear_left_behind()?;
         let manifest = Manifest {
             kind: kind.to_owned(),
+            state: State::Unfinished,
             files: names.to_vec(),
         };
         folder.write(MANIFEST, manifest.to_json().as_bytes())?;
+        let parent = folder_of(path);
+        sync_folder(parent).map_err(|source| OutputError::failed(parent, source))?;
         Ok(folder)
     }
 
@@ -167,21 +190,81 @@ impl OwnedFolder {
     /// # Errors
     /// [`OutputError::NoResult`] where there is none, and [`OutputError::Busy`].
     pub fn reopen(path: &Path, kind: &'static str) -> Result<Self, OutputError> {
-        let none = || OutputError::NoResult {
-            path: path.to_owned(),
-            kind,
-        };
-        let manifest = Manifest::read(path)?.ok_or_else(none)?;
-        if manifest.kind != kind {
-            return Err(none());
+        let manifest = Manifest::read(path)?.filter(|manifest| manifest.kind == kind);
+        if manifest.is_none() {
+            let path = path.to_owned();
+            return Err(OutputError::NoResult { path, kind });
         }
         let folder = Self::lock(path, kind, &[])?;
         folder.clear_left_behind()?;
         Ok(folder)
     }
 
+    /// Completes the result, of which the disk then has all, and removes the one that was kept beside it; one that is no success leaves that where it is.
+    ///
+    /// # Errors
+    /// [`OutputError`].
+    pub fn finish(&self, is_success: bool) -> Result<Replaced, OutputError> {
+        self.secure()?;
+        let kept = kept_path(&self.path);
+        let is_kept = is_set_aside(&kept, self.kind)?;
+        if is_kept && !is_success {
+            return Ok(Replaced::KeptIn(kept));
+        }
+        self.write_state(State::Finished)?;
+        match is_kept {
+            true => remove_set_aside(&kept, self.kind),
+            false => Ok(Replaced::Whole),
+        }
+    }
+
+    /// Moves the folder, which holds a complete result, to where such are kept.
+    fn set_aside(&self) -> Result<PathBuf, OutputError> {
+        let kept = kept_beside(&self.path, self.kind)?;
+        if kept.exists() {
+            // One whose successor was completed, but for its removal.
+            remove_set_aside(&kept, self.kind)?;
+        }
+        self.write_state(State::SetAside)?;
+        let real = self.path.canonicalize();
+        match real.and_then(|real| fs::rename(real, &kept)) {
+            Ok(()) => Ok(kept),
+            Err(source) => Err(OutputError::NotSetAside {
+                path: self.path.clone(),
+                kept,
+                source,
+            }),
+        }
+    }
+
+    fn write_state(&self, state: State) -> Result<(), OutputError> {
+        let path = || self.path.clone();
+        let manifest =
+            Manifest::read(&self.path)?.ok_or_else(|| OutputError::Gone { path: path() })?;
+        let manifest = Manifest { state, ..manifest };
+        self.write(MANIFEST, manifest.to_json().as_bytes())
+    }
+
+    /// Removes all files of the result, the manifest last, and folders in it that are empty then.
+    fn clear(&self) -> Result<(), OutputError> {
+        let Some(manifest) = Manifest::read(&self.path)? else {
+            return Ok(());
+        };
+        for name in &manifest.files {
+            self.remove(name)?;
+        }
+        let mut folders: Vec<&str> = manifest.names().folders.into_iter().collect();
+        folders.sort_unstable();
+        // Those within others first.
+        for folder in folders.into_iter().rev() {
+            // One that holds something or is gone stays as it is.
+            let _ = fs::remove_dir(self.path.join(folder));
+        }
+        self.remove(MANIFEST)
+    }
+
     fn lock(path: &Path, kind: &'static str, inputs: &[PathBuf]) -> Result<Self, OutputError> {
-        let lock = File::open(path).map_err(|source| not_opened(path, source))?;
+        let lock = File::open(path).map_err(|source| OutputError::not_opened(path, source))?;
         match lock.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
@@ -196,6 +279,8 @@ impl OwnedFolder {
             path: path.to_owned(),
             kind,
             inputs: Input::all(inputs),
+            identity: Identity::of_open(&lock, path),
+            light: Mutex::default(),
             _lock: lock,
         })
     }
@@ -206,121 +291,14 @@ impl OwnedFolder {
         &self.path
     }
 
-    /// The kind of result that it holds.
-    #[must_use]
-    pub fn kind(&self) -> &'static str {
-        self.kind
-    }
-
-    /// The content of a file; `None` where there is none.
-    ///
-    /// # Errors
-    /// [`OutputError::NotOpened`].
-    pub fn read(&self, name: &str) -> Result<Option<Vec<u8>>, OutputError> {
-        let path = self.path.join(name);
-        match fs::read(&path) {
-            Ok(content) => Ok(Some(content)),
-            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-            Err(source) => Err(not_opened(&path, source)),
-        }
-    }
-
-    /// Writes a file as a whole and makes sure that the disk has it.
-    ///
-    /// # Errors
-    /// [`OutputError`]; a file that was there is then as it was.
-    pub fn write(&self, name: &str, content: &[u8]) -> Result<(), OutputError> {
-        let path = self.target(name)?;
-        let write = |path: &Path| {
-            let mut file = WholeFile::create(path)?;
-            file.write_all(content)?;
-            file.finish()
-        };
-        write(&path).map_err(|source| failed(&path, source))
-    }
-
-    /// Writes a file as a whole, which the disk gets when the system pleases: for many files that a checkpoint covers.
-    ///
-    /// # Errors
-    /// [`OutputError`]; a file that was there is then as it was.
-    pub fn write_lightly(
-        &self,
-        name: &str,
-        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> Result<(), OutputError> {
-        let path = self.target(name)?;
-        let write = |path: &Path| {
-            let mut file = WholeFile::create(path)?;
-            fill(&mut file)?;
-            file.finish_lightly()
-        };
-        write(&path).map_err(|source| failed(&path, source))
-    }
-
-    /// Opens a file that grows, cut off after its first `length` bytes; new where `length` is 0.
-    ///
-    /// # Errors
-    /// [`OutputError`], also for a file that is shorter.
-    pub fn append(&self, name: &str, length: u64) -> Result<GrowingFile, OutputError> {
-        let path = self.target(name)?;
-        let open = |path: &Path| {
-            let mut options = File::options();
-            let file = options
-                .write(true)
-                .create(true)
-                .truncate(false)
-                .open(path)?;
-            let found = file.metadata()?.len();
-            if found < length {
-                let reason = format!("it has {found} bytes of at least {length}");
-                return Err(io::Error::new(ErrorKind::UnexpectedEof, reason));
-            }
-            file.set_len(length)?;
-            Ok(file)
-        };
-        let mut file = open(&path).map_err(|source| not_opened(&path, source))?;
-        file.seek(SeekFrom::End(0))
-            .map_err(|source| not_opened(&path, source))?;
-        Ok(GrowingFile {
-            path,
-            length,
-            file: BufWriter::new(file),
-        })
-    }
-
-    /// Removes a file, if it is there.
-    ///
-    /// # Errors
-    /// [`OutputError::Failed`].
-    pub fn remove(&self, name: &str) -> Result<(), OutputError> {
-        let path = self.path.join(name);
-        match fs::remove_file(&path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
-            removed => removed.map_err(|source| failed(&path, source)),
-        }
-    }
-
-    /// The path of a file that may be written: in a folder that exists, and no input of the run.
-    fn target(&self, name: &str) -> Result<PathBuf, OutputError> {
-        let path = self.path.join(name);
-        if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder).map_err(|source| not_opened(folder, source))?;
-        }
-        match Target::find(&path, &self.inputs)? {
-            Target::File(path) => Ok(path),
-            Target::StandardOutput | Target::Stream => Err(OutputError::Unsuitable {
-                path,
-                kind: "no file",
-            }),
-        }
-    }
-
     /// Removes temporary files of processes that are gone.
     fn clear_left_behind(&self) -> Result<(), OutputError> {
-        let entries = entries(&self.path, "").map_err(|source| not_opened(&self.path, source))?;
+        let entries = entries(&self.path, "");
+        let entries = entries.map_err(|source| OutputError::not_opened(&self.path, source))?;
         let mut names = Vec::new();
         for name in entries {
-            if self.path.join(&name).is_dir() {
+            let found = self.path.join(&name).symlink_metadata();
+            if found.is_ok_and(|found| found.is_dir()) {
                 names.extend(entries_of_folder(&self.path, &name)?);
             } else {
                 names.push(name);
@@ -333,43 +311,54 @@ impl OwnedFolder {
     }
 }
 
-/// A file that grows line by line. What was written is there after a kill, as far as it was flushed.
-#[derive(Debug)]
-pub struct GrowingFile {
-    path: PathBuf,
-    length: u64,
-    file: BufWriter<File>,
+/// The path at which a complete result is kept while the folder at `path` gets another.
+fn kept_path(path: &Path) -> PathBuf {
+    let real = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let mut name: OsString = real.file_name().unwrap_or_default().to_owned();
+    name.push(".old");
+    real.with_file_name(name)
 }
 
-impl GrowingFile {
-    /// Adds to its end.
-    ///
-    /// # Errors
-    /// [`OutputError::Failed`].
-    pub fn push(&mut self, content: &str) -> Result<(), OutputError> {
-        let written = self.file.write_all(content.as_bytes());
-        written.map_err(|source| failed(&self.path, source))?;
-        self.length += content.len() as u64;
-        Ok(())
+/// That path, where nothing stands that is not ours.
+fn kept_beside(path: &Path, kind: &str) -> Result<PathBuf, OutputError> {
+    let kept = kept_path(path);
+    let (here, real) = (std::env::current_dir(), path.canonicalize());
+    if here.is_ok_and(|here| real.is_ok_and(|real| here.starts_with(real))) {
+        let path = path.to_owned();
+        return Err(OutputError::CurrentFolder { path });
     }
+    if kept.symlink_metadata().is_ok() && !is_set_aside(&kept, kind)? {
+        let path = path.to_owned();
+        return Err(OutputError::NoRoomAside { path, kept });
+    }
+    Ok(kept)
+}
 
-    /// Makes sure that the disk has all of it, and gives its length in bytes.
-    ///
-    /// # Errors
-    /// [`OutputError::Failed`].
-    pub fn secure(&mut self) -> Result<u64, OutputError> {
-        let secured = self
-            .file
-            .flush()
-            .and_then(|()| self.file.get_ref().sync_data());
-        secured.map_err(|source| failed(&self.path, source))?;
-        Ok(self.length)
+/// Whether a folder holds a result that was set aside.
+fn is_set_aside(folder: &Path, kind: &str) -> Result<bool, OutputError> {
+    let is_folder = folder.symlink_metadata().is_ok_and(|found| found.is_dir());
+    if !is_folder {
+        return Ok(false);
     }
+    let manifest = Manifest::read(folder)?;
+    Ok(manifest.is_some_and(|found| found.kind == kind && found.state == State::SetAside))
+}
+
+/// Removes a result that was set aside. What others put into its folder stays there.
+fn remove_set_aside(kept: &Path, kind: &'static str) -> Result<Replaced, OutputError> {
+    let folder = OwnedFolder::lock(kept, kind, &[])?;
+    folder.clear()?;
+    let removed = fs::remove_dir(kept);
+    Ok(match removed {
+        Ok(()) => Replaced::Whole,
+        Err(_) => Replaced::KeptIn(kept.to_owned()),
+    })
 }
 
 /// The nearest folder above a path that holds a result.
 fn holder_of(path: &Path) -> Result<Option<PathBuf>, OutputError> {
-    let absolute = std::path::absolute(path).map_err(|source| not_opened(path, source))?;
+    let absolute = std::path::absolute(path);
+    let absolute = absolute.map_err(|source| OutputError::not_opened(path, source))?;
     // What lies at the end of links counts, as far as it exists.
     let nearest = absolute.ancestors().find_map(|above| {
         let found = above.canonicalize().ok()?;
@@ -386,54 +375,6 @@ fn holder_of(path: &Path) -> Result<Option<PathBuf>, OutputError> {
     Ok(None)
 }
 
-/// Kind and files of a result.
-struct Manifest {
-    kind: String,
-    files: Vec<String>,
-}
-
-impl Manifest {
-    /// The manifest in a folder; `None` where there is none, or another program's.
-    fn read(folder: &Path) -> Result<Option<Self>, OutputError> {
-        let path = folder.join(MANIFEST);
-        let text = match fs::read(&path) {
-            Ok(text) => text,
-            Err(error)
-                if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) =>
-            {
-                return Ok(None);
-            }
-            Err(source) => return Err(not_opened(&path, source)),
-        };
-        let Ok(json) = serde_json::from_slice::<serde_json::Value>(&text) else {
-            return Ok(None);
-        };
-        let kind = json["sinew"].as_str();
-        let files = json["files"].as_array();
-        let files = files.and_then(|files| {
-            let names = files.iter().map(|name| name.as_str().map(str::to_owned));
-            names.collect::<Option<Vec<String>>>()
-        });
-        // A name that leads out of the folder was not written by us.
-        let stays = |name: &String| {
-            let plain = |part: Component<'_>| matches!(part, Component::Normal(_));
-            !name.is_empty() && Path::new(name).components().all(plain)
-        };
-        Ok(match (kind, files) {
-            (Some(kind), Some(files)) if files.iter().all(stays) => Some(Self {
-                kind: kind.to_owned(),
-                files,
-            }),
-            _ => None,
-        })
-    }
-
-    fn to_json(&self) -> String {
-        let json = serde_json::json!({ "sinew": self.kind, "files": self.files });
-        format!("{json:#}\n")
-    }
-}
-
 /// Names of the entries of a folder in it, with `prefix` before each, in order.
 fn entries(folder: &Path, prefix: &str) -> io::Result<Vec<String>> {
     let mut names = Vec::new();
@@ -446,21 +387,5 @@ fn entries(folder: &Path, prefix: &str) -> io::Result<Vec<String>> {
 
 fn entries_of_folder(path: &Path, name: &str) -> Result<Vec<String>, OutputError> {
     let folder = path.join(name);
-    let found =
-        entries(&folder, &format!("{name}/")).map_err(|source| not_opened(&folder, source))?;
-    Ok(found)
-}
-
-fn not_opened(path: &Path, source: io::Error) -> OutputError {
-    OutputError::NotOpened {
-        path: path.to_owned(),
-        source,
-    }
-}
-
-fn failed(path: &Path, source: io::Error) -> OutputError {
-    OutputError::Failed {
-        path: path.to_owned(),
-        source,
-    }
+    entries(&folder, &format!("{name}/")).map_err(|source| OutputError::not_opened(&folder, source))
 }

@@ -31,9 +31,11 @@ impl WholeFile {
         Ok(started)
     }
 
-    /// Completes the file, makes sure that the disk has it and gives it its name, replacing one of that name.
+    /// Completes the file and gives it its name, replacing one of that name; then the disk has it under that name.
     pub(super) fn finish(self) -> io::Result<()> {
-        self.complete(File::sync_all)
+        let folder = folder_of(&self.path).to_owned();
+        self.complete(File::sync_all)?;
+        sync_folder(&folder)
     }
 
     /// As [`WholeFile::finish`], but the disk gets it when the system pleases.
@@ -79,6 +81,29 @@ impl Drop for WholeFile {
     }
 }
 
+/// Makes sure that the disk has the names in a folder: without that a file that was renamed may have its former name after a loss of power.
+#[cfg(unix)]
+pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
+    match File::open(folder).and_then(|folder| folder.sync_all()) {
+        // Some file systems have nothing to do there, and some folders may be written but not listed.
+        Err(error)
+            if matches!(
+                error.kind(),
+                ErrorKind::InvalidInput | ErrorKind::PermissionDenied
+            ) =>
+        {
+            Ok(())
+        }
+        synced => synced,
+    }
+}
+
+/// Folders are no files here, and their names are kept by the system.
+#[cfg(not(unix))]
+pub(super) fn sync_folder(_: &Path) -> io::Result<()> {
+    Ok(())
+}
+
 /// The process of a temporary file with this name in a folder (with `/` after its own folders).
 fn process_of(name: &str) -> Option<u32> {
     let name = name.rsplit('/').next().unwrap_or(name);
@@ -101,6 +126,22 @@ pub(super) fn is_left_behind(name: &str) -> bool {
     })
 }
 
+/// Removes temporary files that processes left in a folder which are gone, as far as that can be told and done.
+pub(super) fn remove_left_behind(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return;
+    };
+    for entry in entries.flatten() {
+        let is_left = is_left_behind(&entry.file_name().to_string_lossy());
+        let is_file = entry.file_type().is_ok_and(|found| found.is_file());
+        // A process of another computer, which shares the folder, holds the lock.
+        let is_free = || File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok());
+        if is_left && is_file && is_free() {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
 /// Creates a file in the same folder, so that renaming never copies, under a name that no other writer
 /// uses and that is short however long the final name is.
 fn temporary_in(folder: &Path) -> io::Result<(PathBuf, File)> {
@@ -111,7 +152,12 @@ fn temporary_in(folder: &Path) -> io::Result<(PathBuf, File)> {
         match File::create_new(&path) {
             // Left behind by a killed process with the same id.
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-            created => return created.map(|file| (path, file)),
+            created => {
+                let file = created?;
+                // Held as long as it is open, so that others see that it is written; where there are no locks the process's number tells it.
+                let _ = file.try_lock();
+                return Ok((path, file));
+            }
         }
     }
 }

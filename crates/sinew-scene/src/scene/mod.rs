@@ -224,6 +224,14 @@ impl Scene {
         &self.subject
     }
 
+    /// Whether a tool (0-based) cuts its body or takes parts of it away, so that it touches nothing.
+    pub(crate) fn is_cut_by(&self, tool: usize) -> bool {
+        match &self.subject {
+            Subject::Body(body) => body.is_cut_by(tool),
+            Subject::Oscillator(_) => false,
+        }
+    }
+
     /// Duration, integrator and steps.
     #[must_use]
     pub fn settings(&self) -> &RunSettings {

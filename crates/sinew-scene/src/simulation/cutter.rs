@@ -264,7 +264,14 @@ impl Cutter {
     /// A sentence about each thing that strokes left: uncut area, chips, no cut at all.
     #[must_use]
     pub fn left_by_strokes(&self) -> Vec<String> {
-        self.rough_strokes().in_words()
+        let rough = self.rough_strokes();
+        let mut left = rough.in_words();
+        let cutting = &self.plan.cutting;
+        let has_cutter = cutting.blade != Blade::None || cutting.remove.is_some();
+        if has_cutter && self.totals.changes == 0 && rough.missed.is_none() {
+            left.push("nothing was cut: what [cutting] names never met the body".to_owned());
+        }
+        left
     }
 
     /// All that it needs to go on, as bytes.

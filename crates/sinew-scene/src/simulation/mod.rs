@@ -191,7 +191,10 @@ impl Simulation {
     pub fn left_by_tools(&self, state: &State) -> Vec<String> {
         let size = self.system().extent().unwrap_or(0.0);
         let tools = self.model().contact();
-        let mut said = tools.map_or_else(Vec::new, |tools| tool_end::sentences(tools, size, state));
+        let cuts = |tool: usize| self.scene().is_cut_by(tool);
+        let mut said = tools.map_or_else(Vec::new, |tools| {
+            tool_end::sentences(tools, size, state, cuts)
+        });
         said.extend(
             self.model()
                 .body()

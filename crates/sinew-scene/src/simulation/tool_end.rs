@@ -14,8 +14,13 @@ const CONVERGED: f64 = 1e-2;
 /// Depth, over the body's size, at which contacts that act on each other are left unsaid.
 const LEFT_BY_ITERATION: f64 = 1e-6;
 
-/// Sentences about tools of a body of this size (m), up to a state.
-pub(super) fn sentences(tools: &Tools, size: f64, state: &State) -> Vec<String> {
+/// Sentences about tools of a body of this size (m), up to a state. One that cuts touches nothing.
+pub(super) fn sentences(
+    tools: &Tools,
+    size: f64,
+    state: &State,
+    cuts: impl Fn(usize) -> bool,
+) -> Vec<String> {
     let mut said = Vec::new();
     for (index, tool) in tools.tools().iter().enumerate() {
         let name = &tool.name;
@@ -25,6 +30,8 @@ pub(super) fn sentences(tools: &Tools, size: f64, state: &State) -> Vec<String> 
             largest_residual,
             seized,
             rival,
+            impulse,
+            angular_impulse,
             ..
         } = tools.report(state, index);
         let unsaid = match tools.links(index) {
@@ -52,6 +59,15 @@ pub(super) fn sentences(tools: &Tools, size: f64, state: &State) -> Vec<String> 
             said.push(format!(
                 "tool `{name}` would have seized a node that tool `{}` had hold of, and did not",
                 tools.tools()[rival].name
+            ));
+        }
+        let has_pushed = impulse
+            .iter()
+            .chain(&angular_impulse)
+            .any(|part| *part != 0.0);
+        if tool.grasp.is_none() && !cuts(index) && !has_pushed && depth == 0.0 {
+            said.push(format!(
+                "tool `{name}` never met the body: it pushed no node"
             ));
         }
         if let Some(grasp) = tool.grasp

@@ -139,7 +139,10 @@ fn a_stroke_that_passes_less_than_half_a_cell_under_the_surface_and_cuts_nothing
     insta::assert_snapshot!(said[0], @"1 stroke cut nothing: by t = 0.0085 s the first one passed 0.003 m under the surface, about [0.0125, 0.0519, 0.05] m, where edges are up to 0.0433 m long; faces are cut by a blade that comes through tetrahedra, so that a finer mesh, or a stroke farther in, cuts");
     assert_eq!(
         side_stroke(-0.003, "kuhn"),
-        (1, Vec::new()),
+        (
+            1,
+            vec!["nothing was cut: what [cutting] names never met the body".to_owned()]
+        ),
         "it passed beside"
     );
     assert_eq!(

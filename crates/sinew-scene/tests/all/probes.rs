@@ -19,7 +19,12 @@ fn run(text: &str) -> BTreeMap<String, Vec<f64>> {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("probes.csv");
     let output = Destination::new(&path, &[]).unwrap().open().unwrap();
-    let mut csv = ProbeCsv::new(output, ProbeRows::new(&simulation)).unwrap();
+    let mut csv = ProbeCsv::new(
+        output,
+        ProbeRows::new(&simulation),
+        sinew_scene::Schedule::at_most(usize::MAX, simulation.run().steps),
+    )
+    .unwrap();
     let mut method = simulation.integrator().unwrap();
     let mut state = simulation.initial_state().clone();
     let settings = simulation.run();

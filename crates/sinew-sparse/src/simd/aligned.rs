@@ -19,11 +19,12 @@ pub struct Aligned<T> {
 }
 
 impl<T: Copy> Aligned<T> {
-    /// So many of this value.
+    /// So many of this value. As with vectors of the standard library, more than any memory holds is a panic.
     #[must_use]
     pub fn filled(value: T, count: usize) -> Self {
         const { assert!(align_of::<T>() <= 64, "values that fit a line") };
-        let lines = (count * size_of::<T>()).div_ceil(size_of::<Line>());
+        let bytes = count.saturating_mul(size_of::<T>());
+        let lines = bytes.div_ceil(size_of::<Line>());
         let mut lines = vec![Line([MaybeUninit::uninit(); 64]); lines];
         let first = lines.as_mut_ptr().cast::<T>();
         for place in 0..count {
@@ -97,6 +98,13 @@ impl<T> std::fmt::Debug for Aligned<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    #[should_panic(expected = "capacity overflow")]
+    fn more_values_than_any_memory_holds_are_no_small_array() {
+        // Their bytes are 8 more than all that can be counted.
+        let _ = Aligned::filled(1.0_f64, usize::MAX / 8 + 2);
+    }
 
     #[test]
     fn values_stay_what_they_are_and_begin_at_a_line() {

@@ -12,6 +12,7 @@ use super::Failure;
 use super::interruption::Interruption;
 use super::ruled;
 use super::run::run_for_comparison;
+use super::share_of::share_of;
 
 /// Two results and the difference that they may have.
 #[derive(clap::Args)]
@@ -137,8 +138,8 @@ fn as_json(comparison: &Comparison) -> serde_json::Value {
 }
 
 fn share(text: &str) -> Result<f64, &'static str> {
-    match text.parse::<f64>() {
-        Ok(share) if share.is_finite() && share >= 0.0 => Ok(share),
-        _ => Err("expected a finite share, 0 or above, such as 1e-6"),
+    match share_of(text) {
+        Some(share) if share.is_finite() && share >= 0.0 => Ok(share),
+        _ => Err("expected a finite share, 0 or above, such as 1e-6 or 1%"),
     }
 }

@@ -13,7 +13,9 @@ use sinew_mesh::vtu::WriteVtuError;
 use sinew_mesh::{CellType, LabelError, MeshFileError, RefineError, TetMeshError, WriteMshError};
 use sinew_record::{CompareError, Ended, RecordRunError};
 use sinew_scene::output::{OutputError, complain};
-use sinew_scene::{CuttingError, ReactionError, RefusedLoad, SceneError, StretchError, Warning};
+use sinew_scene::{
+    CuttingError, ReactionError, RefusedLoad, SceneError, Simulation, StretchError, Warning,
+};
 #[cfg(feature = "live")]
 use sinew_session::JournalError;
 use sinew_session::{LogError, ReplayError};
@@ -126,8 +128,8 @@ pub(crate) enum Failure {
         /// The reason.
         source: TetMeshError,
     },
-    /// A file that is there already and may have been changed by hand.
-    #[error("{} exists and stays as it is; name another file with --out", path.display())]
+    /// A file that is there already and holds something else.
+    #[error("{} exists, holds something else and stays as it is; name another file, or write over it with --force", path.display())]
     Exists {
         /// The file.
         path: PathBuf,
@@ -197,14 +199,14 @@ pub(crate) enum Failure {
     #[error("no reactions: {0}")]
     Reactions(#[from] ReactionError),
     /// A run that diverged.
-    #[error(
-        "the run diverged at t = {t:.6} s, first at {place}; `sinew plan` names the stable step"
-    )]
+    #[error("the run diverged at t = {t:.6} s, first at {place}{remedy}")]
     Diverged {
         /// Time (s).
         t: f64,
         /// The degree of freedom in the system's words.
         place: String,
+        /// What is known of the reason.
+        remedy: String,
     },
     /// A run that ended because a law refused a state, or a step found no equilibrium.
     #[error("the run ended at t = {t:.6} s: {reason}")]
@@ -294,10 +296,18 @@ impl From<StretchError> for Failure {
 
 impl Failure {
     /// An error where a run did not come to its end; `remedy` is said after an interruption.
-    pub(crate) fn of_end(ended: Ended, remedy: impl FnOnce() -> String) -> Result<(), Self> {
+    pub(crate) fn of_end(
+        ended: Ended,
+        simulation: &Simulation,
+        remedy: impl FnOnce() -> String,
+    ) -> Result<(), Self> {
         match ended {
             Ended::Finished => Ok(()),
-            Ended::Diverged { t, place } => Err(Self::Diverged { t, place }),
+            Ended::Diverged { t, place } => Err(Self::Diverged {
+                t,
+                place,
+                remedy: simulation.after_divergence(),
+            }),
             Ended::Refused { t, reason } => Err(Self::Refused { t, reason }),
             Ended::Interrupted { t } => Err(Self::Interrupted {
                 t,
@@ -349,6 +359,9 @@ impl Failure {
                 | RecordRunError::Checkpoint { .. }
                 | RecordRunError::Unusable { .. }
                 | RecordRunError::OtherInput { .. }
+                | RecordRunError::Resumable { .. }
+                | RecordRunError::TooMuch { .. }
+                | RecordRunError::Altered { .. }
                 | RecordRunError::Replay { .. }
                 | RecordRunError::NoInput { .. },
             ) => REFUSED,
@@ -426,14 +439,12 @@ fn plural(count: usize, what: &str) -> String {
 /// Bytes of a mark beyond which an excerpt would fill the terminal.
 const LONGEST_MARK: usize = 400;
 
-/// The marked text at fault and the hint.
+/// The text at fault, marked, and the hint.
 fn excerpt(error: &SceneError) -> Option<String> {
     let span = error.span().filter(|span| span.len() <= LONGEST_MARK)?;
-    let (path, label) = (
-        error.path().display().to_string(),
-        error.fault().to_string(),
-    );
-    let mark = AnnotationKind::Primary.span(span).label(label);
+    // The line above says what is wrong.
+    let path = error.path().display().to_string();
+    let mark = AnnotationKind::Primary.span(span);
     let snippet = Snippet::source(error.source_text())
         .path(path)
         .annotation(mark);

@@ -1,9 +1,19 @@
 //! `sinew integrators`.
 
+use clap::builder::PossibleValuesParser;
 use sinew_core::Options;
-use sinew_scene::output::say;
+use sinew_integrators::{Entry, OptionHelp};
+use sinew_scene::output::{hanging, say};
 
 use super::Failure;
+
+/// The integrator to describe.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The integrator to describe, with its options; all of them in a line each where none is named
+    #[arg(value_parser = PossibleValuesParser::new(sinew_integrators::ids()))]
+    name: Option<String>,
+}
 
 /// Which one to take, before what each is.
 const WHICH: &str = "\
@@ -16,25 +26,47 @@ Which one do I take?
   not sure                            sinew plan SCENE --tolerance 1e-2 measures it on the scene itself
 ";
 
-pub(crate) fn run() -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let entries = sinew_integrators::entries();
+    let named = arguments.name.as_ref();
+    if let Some(entry) = entries
+        .iter()
+        .find(|entry| Some(entry.id) == named.map(String::as_str))
+    {
+        return describe(entry);
+    }
     say(WHICH)?;
-    for entry in sinew_integrators::entries() {
-        say(&format!("{:20} {}", entry.id, entry.summary))?;
-        if let Ok(integrator) = entry.build(&Options::new()) {
-            let properties = integrator.properties();
-            for words in [
-                properties.other_damping.describe(),
-                properties.changing_loads.describe(),
-            ] {
-                say(&format!("{:20}   {words}", ""))?;
-            }
+    for entry in &entries {
+        say(&hanging(&format!("{:20} ", entry.id), entry.summary, 0))?;
+    }
+    Ok(say(
+        "\n`sinew integrators NAME` describes one, with its options",
+    )?)
+}
+
+/// Says all of an integrator: what it is, its damping and loads, and its options, its own first.
+fn describe(entry: &Entry) -> Result<(), Failure> {
+    say(&format!("{}: {}", entry.id, entry.summary))?;
+    if let Ok(integrator) = entry.build(&Options::new()) {
+        let properties = integrator.properties();
+        for words in [
+            properties.other_damping.describe(),
+            properties.changing_loads.describe(),
+        ] {
+            say(&hanging("  ", &words, 0))?;
         }
-        for option in entry.all_options() {
-            say(&format!(
-                "{:20}   {}: {}; takes {}; default {}",
-                "", option.key, option.help, option.expected, option.default
-            ))?;
-        }
+    }
+    say("options, keys of [run]:")?;
+    for option in entry.all_options() {
+        let OptionHelp {
+            key,
+            help,
+            expected,
+            default,
+            ..
+        } = option;
+        let words = format!("{help}; takes {expected}; default {default}");
+        say(&hanging(&format!("  {key:18} "), &words, 0))?;
     }
     Ok(())
 }

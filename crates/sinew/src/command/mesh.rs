@@ -16,6 +16,7 @@ use sinew_mesh::{
 use sinew_scene::output::{Destination, Voice, complain, say};
 
 use super::Failure;
+use super::own_file::Force;
 
 /// Commands for mesh files.
 #[derive(Subcommand)]
@@ -41,6 +42,8 @@ pub(crate) enum Command {
         /// The file for the repaired mesh, - for standard output [default: FILE with .fixed.msh]
         #[arg(long, value_name = "OUT", requires = "fix")]
         out: Option<PathBuf>,
+        #[command(flatten)]
+        force: Force,
     },
     /// Write a mesh file in another version, encoding or format. The extension of OUTPUT, .msh or
     /// .vtu, selects the format; a device, a pipe or - for standard output gets .msh.
@@ -55,6 +58,8 @@ pub(crate) enum Command {
         groups_from: Vec<String>,
         #[command(flatten)]
         style: Style,
+        #[command(flatten)]
+        force: Force,
     },
     /// Write a mesh with each tetrahedron cut into eight, all groups kept: whether a mesh is fine enough
     /// shows where its answer is compared with that of the finer one. Formats are those of convert.
@@ -65,6 +70,8 @@ pub(crate) enum Command {
         output: PathBuf,
         #[command(flatten)]
         style: Style,
+        #[command(flatten)]
+        force: Force,
     },
 }
 
@@ -124,18 +131,21 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
             json,
             fix,
             out,
-        } => check(file, *json, fix, out.as_deref()),
+            force,
+        } => check(file, *json, fix, (out.as_deref(), *force)),
         Command::Convert {
             input,
             output,
             groups_from,
             style,
-        } => convert(input, output, groups_from, *style),
+            force,
+        } => convert(input, (output, *force), groups_from, *style),
         Command::Refine {
             input,
             output,
             style,
-        } => refine(input, output, *style),
+            force,
+        } => refine(input, (output, *force), *style),
     }
 }
 
@@ -216,7 +226,12 @@ fn info(file: &Path, json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-fn check(file: &Path, json: bool, fixes: &[Fix], out: Option<&Path>) -> Result<(), Failure> {
+fn check(
+    file: &Path,
+    json: bool,
+    fixes: &[Fix],
+    (out, force): (Option<&Path>, Force),
+) -> Result<(), Failure> {
     let default = file.with_extension("fixed.msh");
     let path = out.unwrap_or(&default);
     let destination = match fixes {
@@ -251,7 +266,7 @@ fn check(file: &Path, json: bool, fixes: &[Fix], out: Option<&Path>) -> Result<(
         write_msh(&mesh, MshVersion::V41, MshEncoding::Text, &mut bytes)
             .map_err(|source| cannot_write_msh(path, source))?;
         // A reader that closed its pipe is no error, and the findings are still reported.
-        let _ = destination.write(&bytes)?;
+        let _ = force.write(destination, &bytes)?;
     }
     let check = mesh.check();
     let data = MeshInfo::of(&mesh).data;
@@ -389,7 +404,7 @@ fn as_json(
 
 fn convert(
     input: &Path,
-    output: &Path,
+    output: (&Path, Force),
     groups_from: &[String],
     style: Style,
 ) -> Result<(), Failure> {
@@ -402,7 +417,7 @@ fn convert(
     output.write(&mesh, &facts)
 }
 
-fn refine(input: &Path, output: &Path, style: Style) -> Result<(), Failure> {
+fn refine(input: &Path, output: (&Path, Force), style: Style) -> Result<(), Failure> {
     let output = MeshOutput::new(input, output, style)?;
     let mesh = read_in(input, style)?;
     let coarse = mesh.to_tet_mesh().map_err(|source| Failure::Tetrahedra {
@@ -431,12 +446,13 @@ fn refine(input: &Path, output: &Path, style: Style) -> Result<(), Failure> {
 struct MeshOutput<'a> {
     path: &'a Path,
     destination: Destination,
+    force: Force,
     is_vtu: bool,
     style: Style,
 }
 
 impl<'a> MeshOutput<'a> {
-    fn new(input: &Path, path: &'a Path, style: Style) -> Result<Self, Failure> {
+    fn new(input: &Path, (path, force): (&'a Path, Force), style: Style) -> Result<Self, Failure> {
         let destination = Destination::new(path, &[input.to_owned()])?;
         let extension = path.extension().and_then(|extension| extension.to_str());
         let is_vtu = match extension.map(str::to_ascii_lowercase).as_deref() {
@@ -453,6 +469,7 @@ impl<'a> MeshOutput<'a> {
         Ok(Self {
             path,
             destination,
+            force,
             is_vtu,
             style,
         })
@@ -463,6 +480,7 @@ impl<'a> MeshOutput<'a> {
         let Self {
             path,
             destination,
+            force,
             is_vtu,
             style,
         } = self;
@@ -492,7 +510,7 @@ impl<'a> MeshOutput<'a> {
         }
         let voice = Voice::apart_from(&destination);
         // A reader that closed its pipe is no error.
-        let _ = destination.write(&bytes)?;
+        let _ = force.write(destination, &bytes)?;
         voice.say(&format!("{}: {facts}{} bytes", path.display(), bytes.len()))?;
         Ok(())
     }

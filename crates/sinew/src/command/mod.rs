@@ -12,11 +12,13 @@ pub(crate) mod mesh;
 pub(crate) mod modes;
 pub(crate) mod new;
 mod onlooker;
+mod own_file;
 pub(crate) mod plan;
 pub(crate) mod resume;
 mod ruled;
 pub(crate) mod run;
 pub(crate) mod scene_reference;
 mod scene_with;
+mod share_of;
 
 pub(crate) use failure::Failure;

@@ -6,11 +6,13 @@ mod scene_file;
 use std::path::{Component, Path, PathBuf};
 
 use sinew_mesh::read_mesh_file;
+use sinew_scene::output::Destination;
 use sinew_scene::propose;
 
-use scene_file::{new_file, written};
+use scene_file::written;
 
 use super::Failure;
+use super::own_file::Force;
 
 /// The scene to write.
 #[derive(clap::Args)]
@@ -25,10 +27,12 @@ pub(crate) struct Arguments {
     /// Write a ready scene and, beside it, its mesh
     #[arg(long, value_name = "NAME")]
     ready: Option<String>,
-    /// The scene file to write, which must not exist, or - for standard output [default: the name of the mesh or of the
-    /// ready scene with .toml, in the current folder]
+    /// The scene file to write, or - for standard output [default: the name of the mesh or of the ready scene with
+    /// .toml, in the current folder]
     #[arg(long, value_name = "FILE", conflicts_with = "list")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    force: Force,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -37,10 +41,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => named_after(stem),
     };
     if let Some(mesh) = &arguments.mesh {
-        return first(mesh, &out(mesh));
+        return first(mesh, &out(mesh), arguments.force);
     }
     if let Some(name) = &arguments.ready {
-        return ready::write(name, &out(Path::new(name)));
+        return ready::write(name, &out(Path::new(name)), arguments.force);
     }
     ready::list()
 }
@@ -53,19 +57,19 @@ fn named_after(path: &Path) -> PathBuf {
 }
 
 /// Writes a first scene for a mesh.
-fn first(mesh: &Path, out: &Path) -> Result<(), Failure> {
+fn first(mesh: &Path, out: &Path, force: Force) -> Result<(), Failure> {
     let extension = mesh.extension().unwrap_or_default();
     if extension.eq_ignore_ascii_case("toml") {
         let path = mesh.to_owned();
         return Err(Failure::SceneForMesh { path });
     }
-    let destination = new_file(out, &[mesh.to_owned()])?;
+    let destination = Destination::new(out, &[mesh.to_owned()])?;
     let text = propose(read_mesh_file(mesh)?, &seen_from(out, mesh));
     let text = text.map_err(|source| Failure::Tetrahedra {
         mesh: mesh.to_owned(),
         source,
     })?;
-    written(destination, &text)
+    written(destination, &text, force)
 }
 
 /// The path of a mesh as seen from the folder of a scene: relative where the folder is known, else absolute.

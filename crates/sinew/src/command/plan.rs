@@ -19,6 +19,7 @@ use sinew_scene::output::say;
 
 use super::Failure;
 use super::scene_with::Values;
+use super::share_of::share_of;
 use cost::Cost;
 
 /// A scene, and the error or the cost that its run may have.
@@ -117,23 +118,31 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Err(Failure::Gaps { gaps: advice.gaps })
 }
 
-fn tolerance(text: &str) -> Result<f64, QuestionError> {
-    number(text, check_tolerance)
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value = share_of(text).ok_or_else(|| not_a_number("1e-2 or 1%"))?;
+    checked(value, check_tolerance)
 }
 
-fn budget(text: &str) -> Result<f64, QuestionError> {
+fn budget(text: &str) -> Result<f64, String> {
     number(text, check_budget)
 }
 
-fn pilot_seconds(text: &str) -> Result<f64, QuestionError> {
+fn pilot_seconds(text: &str) -> Result<f64, String> {
     number(text, check_pilot_seconds)
 }
 
-/// Reads and checks a number. Text that is not a number is refused like a number that does not fit.
-fn number(
-    text: &str,
-    check: impl Fn(f64) -> Result<(), QuestionError>,
-) -> Result<f64, QuestionError> {
-    let value = text.parse().unwrap_or(f64::NAN);
-    check(value).map(|()| value)
+/// Reads and checks a number.
+fn number(text: &str, check: impl Fn(f64) -> Result<(), QuestionError>) -> Result<f64, String> {
+    let value = text.parse().map_err(|_| not_a_number("10"))?;
+    checked(value, check)
+}
+
+fn checked(value: f64, check: impl Fn(f64) -> Result<(), QuestionError>) -> Result<f64, String> {
+    check(value)
+        .map(|()| value)
+        .map_err(|error| error.to_string())
+}
+
+fn not_a_number(example: &str) -> String {
+    format!("expected a number, such as {example}")
 }

@@ -36,13 +36,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scene = arguments.values.load(&arguments.scene)?;
     let destination = match &arguments.out {
         Some(folder) => {
-            check_folder(folder, &scene, arguments.replay.as_deref())?;
+            check_folder(folder, &scene, arguments.replay.as_deref(), arguments.again)?;
             None
         }
         None => {
             let mut inputs = scene.input_files();
             inputs.extend(arguments.replay.clone());
-            Some(Destination::new(&arguments.probes, &inputs)?)
+            let destination = Destination::new(&arguments.probes, &inputs)?;
+            arguments.force.check(&destination, || {
+                ProbeCsv::is_table(&arguments.probes).unwrap_or(false)
+            })?;
+            Some(destination)
         }
     };
     if let Some(log) = &arguments.replay {
@@ -81,6 +85,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 threads: arguments.threads.as_ref().map(in_words),
                 warnings: warnings.iter().map(ToString::to_string).collect(),
                 values: arguments.values.assignments(),
+                again: arguments.again,
             };
             let folder = RunFolder::create(path, &simulation, &request)?;
             in_folder(path, &folder, &simulation, &mut *integrator, interruption)
@@ -100,12 +105,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Checks that a run of a scene, or a replay by a log, may write into a folder, and says where it replaces an earlier one.
-pub(crate) fn check_folder(path: &Path, scene: &Scene, log: Option<&Path>) -> Result<(), Failure> {
-    if RunFolder::check(path, scene, log)? == Tenant::Earlier {
-        let path = path.display();
-        complain(&format!(
-            "{path}: the results of an earlier run in it will be replaced"
-        ));
+pub(crate) fn check_folder(
+    path: &Path,
+    scene: &Scene,
+    log: Option<&Path>,
+    again: bool,
+) -> Result<(), Failure> {
+    let shown = path.display();
+    match RunFolder::check(path, scene, log, again)? {
+        Tenant::Nobody => {}
+        Tenant::Earlier => complain(&format!(
+            "{shown}: the results of an earlier run in it are kept beside it, with .old, until the new ones are complete"
+        )),
+        Tenant::Unfinished => complain(&format!(
+            "{shown}: what a run that was not completed left in it will be removed"
+        )),
     }
     Ok(())
 }
@@ -126,7 +140,7 @@ pub(crate) fn in_folder(
     for line in summary_of(simulation, &end, path) {
         complain(&line);
     }
-    Failure::of_end(end.ended, || {
+    Failure::of_end(end.ended, simulation, || {
         format!("; `sinew resume {}` goes on", path.display())
     })
 }
@@ -152,7 +166,7 @@ pub(crate) fn run_for_comparison(
     let mut onlooker = Onlooker::new(interruption, simulation.run().steps, duration);
     let end = folder.run(&simulation, &mut *integrator, &mut onlooker);
     onlooker.finish();
-    Failure::of_end(end?.ended, String::new)
+    Failure::of_end(end?.ended, &simulation, String::new)
 }
 
 /// Runs a simulation and writes the motion of its probes alone.
@@ -166,9 +180,12 @@ fn probes_alone(
     let voice = Voice::apart_from(&destination);
     simulation.set_up(integrator)?;
     let cutter = simulation.cutter()?.map(RefCell::new);
-    let mut output = ProbeCsv::new(destination.open()?, ProbeRows::new(simulation))?.without_rows();
-    let mut state = simulation.initial_state().clone();
+    let rows = ProbeRows::new(simulation);
     let whole = simulation.run();
+    let steps = (whole.steps, simulation.dt());
+    let schedule = words::schedule(simulation, &rows, steps, destination.is_kept());
+    let mut output = ProbeCsv::new(destination.open()?, rows, schedule)?.without_rows();
+    let mut state = simulation.initial_state().clone();
     let mut onlooker = Onlooker::new(interruption, whole.steps, simulation.settings().duration);
     let mut growth = EnergyGrowth::new(simulation);
     let mut looked = Looked::default();
@@ -279,6 +296,7 @@ fn probes_alone(
         Outcome::Diverged { t, dof } => Err(Failure::Diverged {
             t,
             place: system.cell_name(dof),
+            remedy: simulation.after_divergence(),
         }),
         Outcome::Stopped if onlooker.is_interrupted() => Err(Failure::Interrupted {
             t: state.t(),

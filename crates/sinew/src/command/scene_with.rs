@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
-use sinew_scene::Scene;
+use sinew_integrators::explicit::Substeps;
 #[cfg(feature = "live")]
 use sinew_scene::SceneSource;
+use sinew_scene::output::complain;
+use sinew_scene::{Scene, TimeStep};
 
 use super::Failure;
 
@@ -36,7 +38,27 @@ impl Values {
     /// Reads a scene with them.
     pub(crate) fn load(&self, path: &Path) -> Result<Scene, Failure> {
         self.check()?;
-        Ok(Scene::load_with(path, &self.assignments())?)
+        let scene = Scene::load_with(path, &self.assignments())?;
+        self.say_of_parts(&scene);
+        Ok(scene)
+    }
+
+    /// Says what a step of the command line takes away from a scene with dt = "auto".
+    fn say_of_parts(&self, scene: &Scene) {
+        let is_auto = |scene: &Scene| scene.settings().dt == TimeStep::Auto;
+        let key = |set: &String| key_of("--set", set);
+        let sets_step = self.assignments().iter().any(|set| key(set) == "run.dt");
+        let keeps_parts = scene.settings().options.get(Substeps::KEY).is_some();
+        if !sets_step || is_auto(scene) || keeps_parts {
+            return;
+        }
+        // Without the command line's values it may not be a whole scene.
+        if Scene::load(scene.source().path()).is_ok_and(|own| is_auto(&own)) {
+            complain(&format!(
+                "dt = \"auto\" of the scene is replaced by a step that is not cut where a body of large deformation stiffens; with --set run.{}=auto it is",
+                Substeps::KEY
+            ));
+        }
     }
 
     /// Reads a scene that stands in no file with them.

@@ -27,6 +27,9 @@ fn points_cells_and_data_are_the_same_from_every_encoding_of_vtk() {
         "vtk-5.1-text.vtk",
         "vtk-5.1-bytes.vtk",
     ] {
+        if name.contains("zlib") && !cfg!(feature = "compress") {
+            continue;
+        }
         let mesh = fixture(name);
         assert_eq!(mesh.points, POINTS, "{name}");
         assert_eq!(mesh.node_tags, [1, 2, 3, 4, 5], "{name}");
@@ -60,6 +63,7 @@ fn points_cells_and_data_are_the_same_from_every_encoding_of_vtk() {
     }
 }
 
+#[cfg(feature = "compress")]
 #[test]
 fn numbers_compressed_by_lz4_are_refused_with_what_to_do() {
     let error = sinew_mesh::read_mesh_file(super::path("vtk-raw-lz4.vtu")).unwrap_err();
@@ -71,7 +75,7 @@ fn numbers_compressed_by_lz4_are_refused_with_what_to_do() {
 
 #[test]
 fn data_of_cells_and_points_come_into_the_mesh_of_a_simulation() {
-    let tissue = fixture("vtk-raw-zlib-big.vtu").to_tet_mesh().unwrap();
+    let tissue = fixture("vtk-raw.vtu").to_tet_mesh().unwrap();
     assert_eq!(tissue.data("labels").unwrap().values, [1.0, 2.0]);
     assert_eq!(tissue.data("young").unwrap().values, [1000.0, 2500.5]);
     assert_eq!(tissue.node_data[0].values, [1.0, 1.0, 2.0, 2.0, 3.0]);

@@ -1,5 +1,6 @@
 //! Warnings before a run.
 
+mod acts;
 mod groups;
 mod initial;
 mod joints;
@@ -34,6 +35,7 @@ impl Simulation {
             warnings.extend(material::weak_laws(body));
             warnings.extend(initial::held(body, built));
             warnings.extend(motions::warnings(body, built));
+            warnings.extend(acts::warnings(body, built));
             warnings.extend(tools::warnings(self, built));
         }
         warnings.extend(step::unstable(self));
@@ -52,7 +54,7 @@ fn of_mesh(body: &Body, built: &BodyModel) -> Vec<Warning> {
     let remark = |remark: &String| Warning::new(WarningKind::MeshFile, remark.as_str(), "");
     let mut warnings: Vec<Warning> = remarks.map(remark).collect();
     warnings.extend(joints::warnings(built));
-    warnings.extend(size::warnings(built));
+    warnings.extend(size::warnings(body, built));
     warnings.extend(groups::warnings(body, built));
     warnings
 }

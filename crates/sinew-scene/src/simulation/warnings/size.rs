@@ -2,6 +2,7 @@
 
 use super::{Warning, WarningKind};
 use crate::number::short;
+use crate::scene::Body;
 use crate::simulation::model::BodyModel;
 
 /// Longest edge of a bounding box (m) beyond which a body is no organ of any animal that is operated on.
@@ -10,7 +11,7 @@ const LARGEST: f64 = 5.0;
 /// Densities (kg/m^3) between which materials of bodies and tools lie: inflated lungs have some 250, gold 19,300.
 const DENSITIES: [f64; 2] = [50.0, 25_000.0];
 
-pub(super) fn warnings(built: &BodyModel) -> Vec<Warning> {
+pub(super) fn warnings(body: &Body, built: &BodyModel) -> Vec<Warning> {
     let (low, high) = built.mesh.bounding_box();
     let extent = (0..3)
         .map(|axis| high[axis] - low[axis])
@@ -24,7 +25,12 @@ pub(super) fn warnings(built: &BodyModel) -> Vec<Warning> {
             short(extent),
             short(report.mass)
         );
-        let mend = "for a mesh in millimetres write scale = 0.001 in [mesh]";
+        let mend = match body.mesh_changes.scale {
+            None => "for a mesh in millimetres write scale = 0.001 in [mesh]".to_owned(),
+            Some(scale) => format!(
+                "with scale = {scale} in [mesh], which is the length of the file\'s unit in m: 0.001 for millimetres"
+            ),
+        };
         let numbers = [("extent_m", extent), ("mass_kg", report.mass)];
         warnings.push(Warning::new(WarningKind::LargeBody, what, mend).with(&numbers));
     }

@@ -17,11 +17,7 @@ pub(super) fn warnings(simulation: &Simulation, built: &BodyModel) -> Vec<Warnin
     let mut warnings = Vec::new();
     for (index, tool) in tools.tools().iter().enumerate() {
         let name = &tool.name;
-        let cuts = match simulation.scene().subject() {
-            Subject::Body(body) => body.is_cut_by(index),
-            Subject::Oscillator(_) => false,
-        };
-        if cuts {
+        if simulation.scene().is_cut_by(index) {
             // It touches nothing.
             continue;
         }

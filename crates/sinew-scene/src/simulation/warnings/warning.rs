@@ -99,6 +99,12 @@ pub enum WarningKind {
     MotionJumps,
     /// A load on components that are moved.
     LoadOnMoved,
+    /// A body on which nothing acts.
+    NothingActs,
+    /// A body that may be cut and that nothing cuts.
+    NothingCuts,
+    /// A load beyond all that tissue of its stiffness bears.
+    LargeLoad,
     /// A tool in which nodes are at t = 0.
     ToolInside,
     /// A tool that passes through nodes which it does not meet.
@@ -149,6 +155,9 @@ impl WarningKind {
             Self::HeldInitial => "held-initial",
             Self::MotionJumps => "motion-jumps",
             Self::LoadOnMoved => "load-on-moved",
+            Self::NothingActs => "nothing-acts",
+            Self::NothingCuts => "nothing-cuts",
+            Self::LargeLoad => "large-load",
             Self::ToolInside => "tool-inside",
             Self::UnmetNodes => "unmet-nodes",
             Self::SmallTool => "small-tool",

@@ -25,7 +25,12 @@ pub(crate) fn build(text: &str) -> Simulation {
 pub(crate) fn run(simulation: &Simulation, folder: &Path) -> (State, String) {
     let path = folder.join("probes.csv");
     let output = Destination::new(&path, &[]).unwrap().open().unwrap();
-    let mut csv = ProbeCsv::new(output, ProbeRows::new(simulation)).unwrap();
+    let mut csv = ProbeCsv::new(
+        output,
+        ProbeRows::new(simulation),
+        sinew_scene::Schedule::at_most(usize::MAX, simulation.run().steps),
+    )
+    .unwrap();
     let mut state = simulation.initial_state().clone();
     let mut integrator = simulation.integrator().unwrap();
     simulate(

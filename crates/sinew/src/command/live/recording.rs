@@ -26,7 +26,7 @@ impl Recording {
         second.push("-second");
         let folders = [path.to_owned(), PathBuf::from(second)];
         for folder in &folders {
-            check_folder(folder, scene, None)?;
+            check_folder(folder, scene, None, false)?;
         }
         Ok(Self { folders })
     }
@@ -118,6 +118,7 @@ fn record(
         threads: None,
         warnings: warnings_of(&replay),
         values,
+        again: false,
     };
     match in_folder(path, &mut replay, &request, interruption.clone())? {
         Ended::Finished => {}

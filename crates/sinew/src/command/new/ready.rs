@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use sinew_scene::output::say;
+use sinew_scene::output::{Destination, say};
 use sinew_scene::{Scene, SceneSource};
 
-use super::scene_file::{new_file, written};
+use super::scene_file::written;
 use crate::command::Failure;
+use crate::command::own_file::{Force, holds};
 
 /// A ready scene, with what it reads.
 struct Ready {
@@ -142,7 +143,7 @@ pub(super) fn list() -> Result<(), Failure> {
 }
 
 /// Writes a scene to `out`, and what it reads beside it.
-pub(super) fn write(name: &str, out: &Path) -> Result<(), Failure> {
+pub(super) fn write(name: &str, out: &Path, force: Force) -> Result<(), Failure> {
     let ready = READY.iter().find(|ready| ready.name == name);
     let Some(Ready { scene, file, .. }) = ready else {
         return Err(Failure::NotReady {
@@ -150,14 +151,16 @@ pub(super) fn write(name: &str, out: &Path) -> Result<(), Failure> {
             known: READY.iter().map(|ready| ready.name).collect(),
         });
     };
-    let destination = new_file(out, &[])?;
+    let scene = scene.replace(MESHES, "");
+    let destination = Destination::new(out, &[])?;
+    force.check(&destination, || holds(out, scene.as_bytes()))?;
     if let Some((name, bytes)) = file {
         let beside = out.with_file_name(name);
         // One that is there already may be used by other scenes, and stays.
-        if std::fs::read(&beside).ok().as_deref() != Some(*bytes) {
+        if !holds(&beside, bytes) {
             // A reader that closed its pipe is no error.
-            let _ = new_file(&beside, &[])?.write(bytes)?;
+            let _ = force.write(Destination::new(&beside, &[])?, bytes)?;
         }
     }
-    written(destination, &scene.replace(MESHES, ""))
+    written(destination, &scene, force)
 }

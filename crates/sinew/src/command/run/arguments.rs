@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use sinew_core::OptionValue;
 
+use crate::command::own_file::Force;
 use crate::command::scene_with::Values;
 
 /// A scene and the destination of what the run gives.
@@ -11,14 +12,19 @@ use crate::command::scene_with::Values;
 pub(crate) struct Arguments {
     /// The scene file.
     pub(super) scene: PathBuf,
-    /// The folder for fields, tables, summary and report: a new one, or that of an earlier run, which
-    /// is replaced
+    /// The folder for fields, tables, summary and report: a new one, or that of an earlier run, whose
+    /// results are kept beside it as DIR.old until the new ones are complete
     #[arg(long, value_name = "DIR", conflicts_with = "probes")]
     pub(super) out: Option<PathBuf>,
-    /// The CSV file for the motion of the probes: a new file, a writable file that the run does not
-    /// read, a device or a pipe, or - for standard output
+    /// Throw away a run in DIR that was not completed and that `sinew resume` could go on with
+    #[arg(long, requires = "out")]
+    pub(super) again: bool,
+    /// The CSV file for the motion of the probes: a new file or an earlier table of probes, a device or a
+    /// pipe, or - for standard output
     #[arg(long, value_name = "FILE", default_value = "-")]
     pub(super) probes: PathBuf,
+    #[command(flatten)]
+    pub(super) force: Force,
     /// The largest number of threads for methods that machines run, or auto for one a processor: fewer
     /// where they do not pay, and the same bits for every number [default: that of the scene, or auto]
     #[arg(long, value_name = "N|auto", value_parser = threads)]

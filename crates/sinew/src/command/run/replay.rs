@@ -9,7 +9,7 @@ use sinew_scene::{Cutter, ProbeCsv, ProbeRows, Scene, WarningKind};
 use sinew_session::{FollowError, Log, Replay};
 
 use super::arguments::Arguments;
-use super::words::summary_of;
+use super::words::{schedule, summary_of};
 use crate::command::Failure;
 use crate::command::interruption::Interruption;
 use crate::command::onlooker::Onlooker;
@@ -41,15 +41,20 @@ pub(super) fn run(
             threads: None,
             warnings,
             values: arguments.values.assignments(),
+            again: arguments.again,
         };
         let ended = in_folder(path, &mut replay, &request, interruption)?;
-        return Failure::of_end(ended, no_remedy);
+        return Failure::of_end(ended, replay.session().simulation(), no_remedy);
     };
     let voice = Voice::apart_from(&destination);
     let recorded_scene = |replay: &Replay| replay.recorded_scene().map_err(RecordRunError::from);
     let mut simulation = recorded_scene(&replay)?;
-    let mut csv = ProbeCsv::new(destination.open()?, ProbeRows::new(&simulation))?.without_rows();
-    let (mut steps, mut looked, course) = (0, Looked::default(), replay.course());
+    let course = replay.course();
+    let rows = ProbeRows::new(&simulation);
+    let steps = (course.steps, course.dt);
+    let schedule = schedule(&simulation, &rows, steps, destination.is_kept());
+    let mut csv = ProbeCsv::new(destination.open()?, rows, schedule)?.without_rows();
+    let (mut steps, mut looked) = (0, Looked::default());
     let (followed, is_interrupted) = loop {
         // After a change of the body steps are counted anew.
         let mut onlooker = onlooker(&replay, interruption.clone());
@@ -99,7 +104,11 @@ pub(super) fn run(
         }
     }
     match followed.diverged {
-        Some((t, place)) => Err(Failure::Diverged { t, place }),
+        Some((t, place)) => Err(Failure::Diverged {
+            t,
+            place,
+            remedy: simulation.after_divergence(),
+        }),
         None if followed.is_stopped && is_interrupted => Err(Failure::Interrupted {
             t: session.t(),
             remedy: no_remedy(),

@@ -4,7 +4,33 @@ use std::path::Path;
 
 use sinew_core::RunReport;
 use sinew_record::{RunEnd, words_of_cuts};
-use sinew_scene::Simulation;
+use sinew_scene::output::{Replaced, complain};
+use sinew_scene::{ProbeRows, Schedule, Simulation};
+
+/// Most rows of a table of probes, where the scene does not ask for more.
+const MOST_ROWS: usize = 100_000;
+
+/// The steps after which probes are written down, which is said where they are not all. A table that is kept has no more rows than can be read.
+pub(super) fn schedule(
+    simulation: &Simulation,
+    rows: &ProbeRows<'_>,
+    steps: (usize, f64),
+    is_kept: bool,
+) -> Schedule {
+    let asked = simulation.scene().output().probes;
+    if asked.is_none() && !is_kept {
+        // Nothing stays of a pipe, whose reader takes what it wants.
+        return Schedule::at_most(usize::MAX, steps.0);
+    }
+    let schedule = Schedule::of_probes(asked, rows.columns().len(), MOST_ROWS, steps);
+    if asked.is_none() && !schedule.is_every_step() {
+        complain(&format!(
+            "probes: a row after every {:.1} steps on average; `probes` in [output] sets other instants",
+            schedule.spacing()
+        ));
+    }
+    schedule
+}
 
 /// What no run knows of itself.
 const ERROR_NOT_KNOWN: &str =
@@ -22,7 +48,7 @@ fn retaken(times: u64) -> Option<String> {
     ))
 }
 
-/// At most sixteen lines about a run.
+/// At most seventeen lines about a run.
 pub(super) fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> Vec<String> {
     let (steps, wall) = end.own;
     let own = steps as f64 * end.stepping.dt();
@@ -65,6 +91,13 @@ pub(super) fn summary_of(simulation: &Simulation, end: &RunEnd, path: &Path) -> 
         "{}: report.html, fields.pvd for ParaView, tables, summary.json",
         path.display()
     ));
+    if let Replaced::KeptIn(kept) = &end.replaced {
+        lines.push(format!(
+            "{}: the results that {} held before",
+            kept.display(),
+            path.display()
+        ));
+    }
     lines
 }
 

@@ -393,13 +393,26 @@ fn every_integrator_is_listed() {
     }
     let advice: Vec<&str> = said.out.lines().take(8).collect();
     assert_eq!((advice[0], advice[7]), ("Which one do I take?", ""));
-    let guards = said.out.matches("saturation: guard").count();
-    assert_eq!(guards, 6, "{}", said.out);
-    let orders = said
-        .out
-        .matches("with stiffness damping or dashpots: order")
-        .count();
-    assert_eq!(orders, 12, "{}", said.out);
+    assert!(said.out.lines().count() < 40, "{}", said.out);
+    let each = sinew::integrators::ids().into_iter().map(|id| {
+        let said = sinew(directory.path(), &["integrators", id]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        assert!(said.out.starts_with(&format!("{id}: ")), "{}", said.out);
+        said.out
+    });
+    let all = each.collect::<Vec<_>>().concat();
+    let words = all.split_whitespace().collect::<Vec<_>>().join(" ");
+    let guards = words.matches("saturation guard").count();
+    assert_eq!(guards, 6, "{all}");
+    let orders = words.matches("with stiffness damping or dashpots: order");
+    assert_eq!(orders.count(), 12, "{all}");
     let refused = "with stiffness damping: exact; with dashpots: refused";
-    assert!(said.out.contains(refused), "{}", said.out);
+    assert!(words.contains(refused), "{all}");
+    let said = sinew(directory.path(), &["integrators", "newmrk"]);
+    assert_eq!(said.code, Some(2));
+    assert!(
+        said.err.contains("a similar value exists: 'newmark'"),
+        "{}",
+        said.err
+    );
 }

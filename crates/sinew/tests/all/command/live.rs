@@ -87,7 +87,11 @@ impl Folder {
     }
 
     fn live(&self, arguments: &[&str]) -> Served {
-        let mut command = self.sinew(&["live", "ball.toml"]);
+        self.live_of("ball.toml", arguments)
+    }
+
+    fn live_of(&self, scene: &str, arguments: &[&str]) -> Served {
+        let mut command = self.sinew(&["live", scene]);
         command.args(arguments).stdin(Stdio::null());
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
@@ -315,6 +319,46 @@ fn values_of_the_command_line_and_of_the_page_belong_to_what_is_recorded_and_sav
             "{text}"
         );
     }
+}
+
+#[test]
+fn a_saved_moment_has_all_that_its_scene_reads() {
+    let folder = Folder::new();
+    fs::create_dir_all(folder.path("mine/scenes")).unwrap();
+    fs::create_dir(folder.path("mine/meshes")).unwrap();
+    let beam = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../meshes/beam.msh");
+    fs::copy(beam, folder.path("mine/meshes/beam.msh")).unwrap();
+    fs::write(
+        folder.path("mine/scenes/push.csv"),
+        "t_s,x_m,y_m,z_m\n0,0,0,0.5\n9,0,0,0.5\n",
+    )
+    .unwrap();
+    let scene = "[mesh]\nfile = \"../meshes/beam.msh\"\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
+                 youngs_modulus = 5000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"clamped\"\n[[tool]]\n\
+                 name = \"ball\"\nshape = { sphere = { radius = 0.02 } }\ntable = \"push.csv\"\n[run]\nduration = 1.0\n\
+                 integrator = \"cnn-stabilised\"\ndt = 0.001\n";
+    fs::write(folder.path("mine/scenes/push.toml"), scene).unwrap();
+    let served = folder.live_of("mine/scenes/push.toml", &[]);
+    let events = served.say(1, r#""do":"save""#);
+    let (code, said) = served.interrupt();
+    assert_eq!(code, Some(0), "{said}");
+    // Elsewhere, without the files that it came from.
+    fs::remove_dir_all(folder.path("mine")).unwrap();
+    let saved = events
+        .iter()
+        .find(|event| event["event"] == "saved")
+        .unwrap();
+    let replay = saved["replay"].as_str().unwrap();
+    let arguments: Vec<&str> = replay.split(' ').skip(1).collect();
+    let (code, said) = folder.says(&arguments);
+    assert_eq!(code, Some(0), "{replay}: {said}");
+    let (code, said) = folder.says(&[
+        "run",
+        "live-1/scenes/scene.toml",
+        "--set",
+        "run.duration=0.01",
+    ]);
+    assert_eq!(code, Some(0), "{said}");
 }
 
 #[test]

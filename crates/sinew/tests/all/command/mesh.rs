@@ -164,7 +164,15 @@ fn convert_and_back_keeps_the_mesh() {
         let arguments = [&["convert", organ, &out][..], options].concat();
         assert_eq!(mesh(&arguments).status.code(), Some(0), "{name}");
         let back = path("back.msh");
-        let arguments = ["convert", &out, &back, "--version", "4.1", "--ascii"];
+        let arguments = [
+            "convert",
+            &out,
+            &back,
+            "--force",
+            "--version",
+            "4.1",
+            "--ascii",
+        ];
         assert_eq!(mesh(&arguments).status.code(), Some(0), "{name}");
         let back = read_msh_file(&back).unwrap();
         assert!(back.points == first.points, "{name}: points");
@@ -172,6 +180,21 @@ fn convert_and_back_keeps_the_mesh() {
         assert_eq!(back.physical_names, first.physical_names, "{name}");
         assert!(cells(&back) == cells(&first), "{name}: cells");
     }
+    // What was converted before may be converted again, and stays where it is not the same.
+    let again = |options: &[&str]| {
+        let done = mesh(&[&["convert", organ, &path("a.msh")][..], options].concat());
+        (done.status.code(), String::from_utf8(done.stderr).unwrap())
+    };
+    let before = std::fs::read(path("a.msh")).unwrap();
+    assert_eq!(again(&["--binary"]).0, Some(0));
+    let (code, said) = again(&["--ascii"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("a.msh exists, holds something else and stays as it is"),
+        "{said}"
+    );
+    assert!(std::fs::read(path("a.msh")).unwrap() == before);
+    assert_eq!(again(&["--ascii", "--force"]).0, Some(0));
     let vtu = path("d.vtu");
     assert_eq!(mesh(&["convert", organ, &vtu]).status.code(), Some(0));
     let vtu = std::fs::read(vtu).unwrap();
@@ -473,6 +496,7 @@ fn cells_of_second_order_are_refined_by_their_corners_as_the_refusal_says() {
             command,
             &path("second.msh"),
             &path("out.msh"),
+            "--force",
             "--order",
             "linear",
         ]);

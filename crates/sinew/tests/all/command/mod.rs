@@ -15,4 +15,5 @@ mod results;
 mod run_folders;
 #[cfg(feature = "implicit")]
 mod scene_reference;
+mod silence;
 mod warnings;

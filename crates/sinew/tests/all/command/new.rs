@@ -27,12 +27,18 @@ fn a_first_scene_runs_as_it_is_and_is_never_replaced() {
     let said = sinew(folder.path(), &["new", &mesh("beam.msh")]);
     assert_eq!(said.code, Some(2));
     assert!(
-        said.err.contains("beam.toml exists and stays"),
+        said.err
+            .contains("beam.toml exists, holds something else and stays"),
         "{}",
         said.err
     );
     let kept = fs::read_to_string(folder.path().join("beam.toml")).unwrap();
     assert_eq!(kept, "mine");
+    let said = sinew(folder.path(), &["new", &mesh("beam.msh"), "--force"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    // What it would write is there already.
+    let said = sinew(folder.path(), &["new", &mesh("beam.msh")]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
 }
 
 #[test]
@@ -108,7 +114,8 @@ fn a_mesh_that_differs_is_not_replaced_by_that_of_a_ready_scene() {
     let said = sinew(folder.path(), &["new", "--ready", "beam"]);
     assert_eq!(said.code, Some(2), "{}", said.out);
     assert!(
-        said.err.contains("beam.msh exists and stays"),
+        said.err
+            .contains("beam.msh exists, holds something else and stays"),
         "{}",
         said.err
     );

@@ -163,12 +163,19 @@ fn what_no_budget_buys_is_an_answer_too() {
 fn a_question_without_an_answer_is_refused_with_what_to_ask() {
     let tolerance = "expected a fraction above 0 and below 1, such as 1e-2";
     let budget = "expected finite CPU seconds per simulated second above 0";
-    let cases: [(&[&str], &str); 9] = [
+    let cases: [(&[&str], &str); 10] = [
         (&["--tolerance", "0"], tolerance),
         (&["--tolerance", "-1e-2"], tolerance),
         (&["--tolerance", "1"], tolerance),
         (&["--tolerance", "nan"], tolerance),
-        (&["--tolerance", "small"], tolerance),
+        (
+            &["--tolerance", "small"],
+            "expected a number, such as 1e-2 or 1%",
+        ),
+        (
+            &["--tolerance", "150%"],
+            "a tolerance of 1.5: expected a fraction",
+        ),
         (&["--tolerance", "1e-2", "--budget", "0"], budget),
         (&["--tolerance", "1e-2", "--budget", "-1"], budget),
         (&["--tolerance", "1e-2", "--budget", "inf"], budget),

@@ -93,7 +93,7 @@ fn values_that_do_not_fit_are_one_error() {
             "the scene has no `regoin`; did you mean `region`?",
         ),
         (
-            "region.2.density=1",
+            "region.3.density=1",
             "the scene has 1 of `region`, counted from 1",
         ),
         ("region.1.density=-1", "density = -1: expected"),

@@ -244,7 +244,7 @@ fn a_folder_that_holds_other_things_is_left_alone() {
     let (code, said) = folder.says(&run("out"));
     assert_eq!(code, Some(0), "{said}");
     assert!(
-        said.contains("out: the results of an earlier run in it will be replaced"),
+        said.contains("out: the results of an earlier run in it are kept beside it"),
         "{said}"
     );
     refused(
@@ -327,4 +327,353 @@ fn a_second_run_into_a_folder_names_the_folder_and_the_first() {
     assert_eq!(code, Some(2), "{said}");
     let expected = format!("cannot write into out: another run writes into it (process {process})");
     assert!(said.contains(&expected), "{said}");
+}
+
+/// Starts a run into `out` and kills it when it has left a checkpoint.
+fn killed(folder: &Folder) {
+    let mut run = folder.start(&["run", "long.toml", "--out", "out"]);
+    folder.wait_for("out/checkpoint.bin");
+    run.kill().unwrap();
+    run.wait().unwrap();
+}
+
+#[test]
+fn results_stay_until_those_in_their_place_are_complete() {
+    let folder = Folder::new();
+    assert_eq!(
+        folder.says(&["run", "short.toml", "--out", "out"]).0,
+        Some(0)
+    );
+    fs::write(folder.path("copy.toml"), "").unwrap();
+    let before = contents(&folder.path("out"));
+    killed(&folder);
+    // Nothing of them but the word that says so is another.
+    let mut kept = contents(&folder.path("out.old"));
+    let (now, then) = (kept.remove("manifest.json"), before.get("manifest.json"));
+    assert_ne!(now.as_ref(), then);
+    let mut before = before.clone();
+    before.remove("manifest.json");
+    assert!(kept == before);
+    // What can be gone on with is not thrown away unasked.
+    let unfinished = contents(&folder.path("out"));
+    let (code, said) = folder.says(&["run", "short.toml", "--out", "out"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("`sinew resume out` goes on with it"),
+        "{said}"
+    );
+    assert!(unfinished == contents(&folder.path("out")));
+    let (code, said) = folder.says(&["resume", "out"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(!folder.path("out.old").exists());
+    assert_eq!(
+        folder.says(&["run", "long.toml", "--out", "whole"]).0,
+        Some(0)
+    );
+    assert_same(&folder.path("whole"), &folder.path("out"));
+
+    // Killed twice, run again and thrown away: the first results are still there, until the end.
+    killed(&folder);
+    let (code, said) = folder.says(&["run", "short.toml", "--out", "out", "--again"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(
+        said.contains("was not completed left in it will be removed"),
+        "{said}"
+    );
+    assert!(!folder.path("out.old").exists());
+    assert!(!folder.path("out/checkpoint.bin").exists());
+}
+
+#[test]
+fn results_are_kept_by_nothing_that_is_not_ours() {
+    let folder = Folder::new();
+    let run = ["run", "short.toml", "--out", "out"];
+    assert_eq!(folder.says(&run).0, Some(0));
+    // A folder of the user's, even one that holds results, is neither used nor removed.
+    assert_eq!(
+        folder.says(&["run", "short.toml", "--out", "out.old"]).0,
+        Some(0)
+    );
+    let (code, said) = folder.says(&run);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("out.old until new ones are complete, and that is there already"),
+        "{said}"
+    );
+    fs::rename(folder.path("out.old"), folder.path("mine")).unwrap();
+    // A run that fails leaves the results that it was to replace.
+    let diverges = LONG
+        .replace("160.0", "0.5")
+        .replace("dt = 0.001", "dt = 0.02");
+    fs::write(folder.path("diverges.toml"), diverges).unwrap();
+    let (code, said) = folder.says(&["run", "diverges.toml", "--out", "out"]);
+    assert_eq!(code, Some(1), "{said}");
+    assert!(
+        said.contains("out.old: the results that out held before"),
+        "{said}"
+    );
+    let summary = |name: &str| fs::read_to_string(folder.path(name).join("summary.json")).unwrap();
+    assert!(summary("out.old").contains("\"outcome\": \"finished\""));
+    assert!(summary("out").contains("\"outcome\": \"diverged\""));
+    assert_eq!(folder.says(&run).0, Some(0));
+    assert!(!folder.path("out.old").exists());
+    // From within, the folder cannot be set aside.
+    let mut command = Command::cargo_bin("sinew").unwrap();
+    command.current_dir(folder.path("out"));
+    let Output { status, stderr, .. } = command
+        .args(["run", "../short.toml", "--out", "."])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&stderr).into_owned();
+    assert_eq!(status.code(), Some(2), "{said}");
+    assert!(said.contains("is the current folder"), "{said}");
+}
+
+#[test]
+fn a_folder_that_goes_while_a_run_writes_is_an_error() {
+    let folder = Folder::new();
+    for replaced in [false, true] {
+        let run = {
+            let mut command = folder.sinew(&["run", "long.toml", "--out", "out"]);
+            command.stdout(Stdio::null()).stderr(Stdio::piped());
+            command.spawn().unwrap()
+        };
+        folder.wait_for("out/checkpoint.bin");
+        // By one name at a time: the run writes into it meanwhile.
+        fs::rename(folder.path("out"), folder.path("gone")).unwrap();
+        if replaced {
+            fs::create_dir(folder.path("out")).unwrap();
+        }
+        let ended = run.wait_with_output().unwrap();
+        let said = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert_eq!(ended.status.code(), Some(1), "{said}");
+        assert!(
+            said.contains("the folder was removed or replaced by others while the run went on"),
+            "{said}"
+        );
+        assert!(!said.contains("report.html"), "{said}");
+        if replaced {
+            assert_eq!(fs::read_dir(folder.path("out")).unwrap().count(), 0);
+            fs::remove_dir(folder.path("out")).unwrap();
+        }
+        assert!(!folder.path("out").exists());
+        fs::remove_dir_all(folder.path("gone")).unwrap();
+    }
+}
+
+#[test]
+fn what_others_did_to_files_that_a_run_goes_on_from_is_said() {
+    let folder = Folder::new();
+    killed(&folder);
+    let changes: [(&str, &dyn Fn(&mut Vec<u8>), &str); 4] = [
+        (
+            "fields/frame-00000.vtu",
+            &|bytes| bytes.truncate(bytes.len() / 2),
+            "bytes and had",
+        ),
+        (
+            "fields/frame-00000.vtu",
+            &|bytes| *bytes.last_mut().unwrap() ^= 1,
+            "its content is another",
+        ),
+        (
+            "probes.csv",
+            &|bytes| bytes[20] ^= 1,
+            "its content is another",
+        ),
+        (
+            "energy.csv",
+            &|bytes| bytes.truncate(3),
+            "3 bytes are left of",
+        ),
+    ];
+    for (name, change, expected) in changes {
+        let path = folder.path("out").join(name);
+        let before = fs::read(&path).unwrap();
+        let mut bytes = before.clone();
+        change(&mut bytes);
+        fs::write(&path, &bytes).unwrap();
+        let (code, said) = folder.says(&["resume", "out"]);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(said.contains(name) && said.contains(expected), "{said}");
+        assert!(said.contains("run the scene again, with --again"), "{said}");
+        assert!(fs::read(&path).unwrap() == bytes, "{name} was touched");
+        fs::write(&path, before).unwrap();
+    }
+    fs::rename(
+        folder.path("out/fields/frame-00000.vtu"),
+        folder.path("frame"),
+    )
+    .unwrap();
+    let (code, said) = folder.says(&["resume", "out"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("it is gone"), "{said}");
+    fs::rename(
+        folder.path("frame"),
+        folder.path("out/fields/frame-00000.vtu"),
+    )
+    .unwrap();
+    let (code, said) = folder.says(&["resume", "out"]);
+    assert_eq!(code, Some(0), "{said}");
+}
+
+#[test]
+#[cfg(unix)]
+fn no_link_in_a_folder_leads_out_of_it() {
+    use std::os::unix::fs::symlink;
+    let folder = Folder::new();
+    fs::create_dir(folder.path("private")).unwrap();
+    fs::write(folder.path("private/id_rsa"), "secret").unwrap();
+    let secret = || fs::read_to_string(folder.path("private/id_rsa")).unwrap();
+    // The manifest of somebody else's folder names a file behind a link.
+    for names in ["fields/x/link/id_rsa", "link/id_rsa", "id_rsa"] {
+        let evil = folder.path("evil");
+        fs::create_dir_all(evil.join("fields/x")).unwrap();
+        symlink(folder.path("private"), evil.join("fields/x/link")).unwrap();
+        symlink(folder.path("private"), evil.join("link")).unwrap();
+        symlink(folder.path("private/id_rsa"), evil.join("id_rsa")).unwrap();
+        for state in ["finished", "unfinished", "set aside"] {
+            let manifest =
+                format!("{{\"sinew\": \"run\", \"state\": \"{state}\", \"files\": [\"{names}\"]}}");
+            fs::write(evil.join("manifest.json"), manifest).unwrap();
+            let (code, said) = folder.says(&["run", "short.toml", "--out", "evil"]);
+            assert_eq!(code, Some(2), "{said}");
+            assert_eq!(secret(), "secret");
+        }
+        fs::remove_dir_all(evil).unwrap();
+    }
+    // What a run goes on with is no link, and no other name of a file elsewhere.
+    killed(&folder);
+    for name in [
+        "probes.csv",
+        "fields/frame-00000.vtu",
+        "fields",
+        "summary.json",
+        "checkpoint.bin",
+    ] {
+        let path = folder.path("out").join(name);
+        let aside = folder.path("aside");
+        let is_there = path.exists();
+        if is_there {
+            fs::rename(&path, &aside).unwrap();
+        } else {
+            fs::write(&aside, "mine").unwrap();
+        }
+        symlink(&aside, &path).unwrap();
+        let (code, said) = folder.says(&["resume", "out"]);
+        assert_eq!(code, Some(2), "{name}: {said}");
+        assert!(said.contains(name), "{said}");
+        fs::remove_file(&path).unwrap();
+        if is_there {
+            fs::rename(&aside, &path).unwrap();
+        } else {
+            assert_eq!(fs::read_to_string(&aside).unwrap(), "mine");
+        }
+    }
+    fs::hard_link(folder.path("out/probes.csv"), folder.path("elsewhere.csv")).unwrap();
+    let before = fs::read(folder.path("elsewhere.csv")).unwrap();
+    let (code, said) = folder.says(&["resume", "out"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("a hard link"), "{said}");
+    assert!(fs::read(folder.path("elsewhere.csv")).unwrap() == before);
+}
+
+#[test]
+fn more_frames_than_a_folder_holds_are_refused_before_anything_is_written() {
+    let folder = Folder::new();
+    let by_time = LONG.replace("fields = { frames = 40 }", "fields = { every = 1.0 }");
+    fs::write(folder.path("by-time.toml"), by_time).unwrap();
+    for every in ["1.6e-5", "1.6e-7"] {
+        let arguments = [
+            "run",
+            "by-time.toml",
+            "--out",
+            "out",
+            "--set",
+            "run.dt=1e-8",
+            "--set",
+        ];
+        let frames = format!("output.fields.every={every}");
+        let (code, said) = folder.says(&[&arguments[..], &[&frames]].concat());
+        assert_eq!(code, Some(2), "{said}");
+        assert!(
+            said.contains("frames of fields, and a folder holds 100000"),
+            "{said}"
+        );
+        assert!(!folder.path("out").exists());
+    }
+    let by_time = LONG.replace("[output]\n", "[output]\nprobes = { every = 1e-7 }\n");
+    fs::write(folder.path("rows.toml"), by_time).unwrap();
+    let (code, said) = folder.says(&["run", "rows.toml", "--out", "out", "--set", "run.dt=1e-7"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("asks for 6400000004 numbers in probes.csv"),
+        "{said}"
+    );
+    // Where nothing is asked for, rows are rarer, and that is said.
+    let arguments = [
+        "run",
+        "short.toml",
+        "--probes",
+        "probes.csv",
+        "--set",
+        "run.dt=1e-6",
+    ];
+    let (code, said) = folder.says(&arguments);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(
+        said.contains("probes: a row after every 5.0 steps"),
+        "{said}"
+    );
+    let rows = fs::read_to_string(folder.path("probes.csv")).unwrap();
+    assert_eq!(rows.lines().count(), 1 + 100_001);
+    assert!(rows.lines().last().unwrap().starts_with("0.5,"));
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn the_next_run_takes_away_what_a_killed_one_left_beside_its_table() {
+    let folder = Folder::new();
+    let arguments = [
+        "run",
+        "long.toml",
+        "--set",
+        "run.duration=1e6",
+        "--probes",
+        "probes.csv",
+    ];
+    let hidden = || {
+        let entries = fs::read_dir(folder.0.path()).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        names
+            .filter(|name| name.starts_with(".sinew-"))
+            .collect::<Vec<_>>()
+    };
+    let begin = |count: usize| {
+        let run = folder.start(&arguments);
+        let since = Instant::now();
+        while hidden().len() < count {
+            assert!(
+                since.elapsed() < Duration::from_secs(60),
+                "no table is written"
+            );
+            sleep(Duration::from_millis(2));
+        }
+        run
+    };
+    let mut killed = begin(1);
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    let left = hidden();
+    let mut living = begin(1);
+    while hidden() == left {
+        sleep(Duration::from_millis(2));
+    }
+    assert_eq!(hidden().len(), 1, "what was left is gone");
+    // One that is being written stays.
+    let (code, said) = folder.says(&["run", "short.toml", "--probes", "other.csv"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(hidden().len(), 1);
+    living.kill().unwrap();
+    living.wait().unwrap();
 }

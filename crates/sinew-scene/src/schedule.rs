@@ -1,10 +1,16 @@
 //! The steps of a run after which something is written.
 
-use sinew_scene::Instants;
+use crate::scene::Instants;
+
+/// Most numbers of a table, where the scene does not ask for more.
+const MOST_NUMBERS: usize = 5_000_000;
+
+/// Rows that a table of very many columns has.
+const FEWEST_ROWS: usize = 16;
 
 /// Evenly spaced steps of a run, the first and the last among them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Schedule {
+pub struct Schedule {
     /// Steps of the run.
     steps: usize,
     /// Steps between two of them, not a whole number where that does not divide the run.
@@ -13,7 +19,8 @@ pub(crate) struct Schedule {
 
 impl Schedule {
     /// Every step, or as many as there is room for.
-    pub(crate) fn at_most(most: usize, steps: usize) -> Self {
+    #[must_use]
+    pub fn at_most(most: usize, steps: usize) -> Self {
         Self {
             steps,
             spacing: (steps as f64 / most as f64).max(1.0),
@@ -21,7 +28,8 @@ impl Schedule {
     }
 
     /// The steps nearest to these instants of a run in steps of `dt` (s).
-    pub(crate) fn at(instants: Instants, steps: usize, dt: f64) -> Self {
+    #[must_use]
+    pub fn at(instants: Instants, steps: usize, dt: f64) -> Self {
         let spacing = match instants {
             Instants::Every(seconds) => seconds / dt,
             Instants::Frames(intervals) => steps as f64 / intervals as f64,
@@ -32,8 +40,27 @@ impl Schedule {
         }
     }
 
+    /// The steps of rows of probes: at the instants that the scene asks for, else every step as far as `most` rows, and a table of readable length, have room
+    /// for them.
+    #[must_use]
+    pub fn of_probes(
+        asked: Option<Instants>,
+        columns: usize,
+        most: usize,
+        (steps, dt): (usize, f64),
+    ) -> Self {
+        match asked {
+            Some(instants) => Self::at(instants, steps, dt),
+            None => Self::at_most(
+                most.min(MOST_NUMBERS / columns.max(1)).max(FEWEST_ROWS),
+                steps,
+            ),
+        }
+    }
+
     /// The first of them from a step on.
-    pub(crate) fn next(&self, from: usize) -> Option<usize> {
+    #[must_use]
+    pub fn next(&self, from: usize) -> Option<usize> {
         if from > self.steps {
             return None;
         }
@@ -43,16 +70,21 @@ impl Schedule {
         found.map(|step| step.min(self.steps))
     }
 
-    pub(crate) fn is_due(&self, step: usize) -> bool {
+    /// Whether a step is one of them.
+    #[must_use]
+    pub fn is_due(&self, step: usize) -> bool {
         self.next(step) == Some(step)
     }
 
-    pub(crate) fn is_every_step(&self) -> bool {
+    /// Whether all steps are among them.
+    #[must_use]
+    pub fn is_every_step(&self) -> bool {
         self.spacing == 1.0
     }
 
     /// Their number.
-    pub(crate) fn count(&self) -> usize {
+    #[must_use]
+    pub fn count(&self) -> usize {
         // The end is one more where the spacing does not meet it.
         let last = (self.steps as f64 / self.spacing) as usize;
         let met = (last as f64 * self.spacing).round() as usize >= self.steps;
@@ -60,7 +92,8 @@ impl Schedule {
     }
 
     /// Steps between two of them, on average.
-    pub(crate) fn spacing(&self) -> f64 {
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
         self.spacing
     }
 }
@@ -92,5 +125,16 @@ mod tests {
         assert_eq!(every(1e-9, 3), [0, 1, 2, 3]);
         assert_eq!(all(Schedule::at_most(10, 4)), [0, 1, 2, 3, 4]);
         assert_eq!(all(Schedule::at_most(2, 5)), [0, 3, 5]);
+    }
+
+    #[test]
+    fn a_table_of_many_columns_has_fewer_rows() {
+        let rows = |columns| Schedule::of_probes(None, columns, 10_000, (1_000_000, 1e-6)).count();
+        assert_eq!(rows(4), 10_001);
+        assert_eq!(rows(5_000), 1001);
+        assert_eq!(rows(300_001), 17);
+        let asked = Some(Instants::Frames(50_000));
+        let rows = Schedule::of_probes(asked, 5_000, 10_000, (1_000_000, 1e-6));
+        assert_eq!(rows.count(), 50_001);
     }
 }
