@@ -11,6 +11,7 @@ use crate::failure::Failure;
 use crate::repository::root;
 
 mod needs;
+mod notices;
 mod programs;
 mod trial;
 
@@ -29,6 +30,9 @@ const CONTENT: [&str; 8] = [
     "scenes",
 ];
 
+/// The licences of all that the command links.
+const NOTICES: &str = "THIRD-PARTY-LICENSES.txt";
+
 const README: &str = include_str!("dist/README.md");
 
 /// The target of the archive.
@@ -39,7 +43,7 @@ pub(crate) struct Arguments {
     target: Option<String>,
 }
 
-/// Builds the command, packs it with scenes, meshes, documents and licences into `target/dist`, then unpacks the archive in
+/// Builds the command, packs it with scenes, meshes, documents and licences with those of all that it links into `target/dist`, then unpacks the archive in
 /// a temporary folder and runs a scene there.
 ///
 /// # Errors
@@ -53,6 +57,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = dist.join(&name);
     let needs = needs::of(&program, target)?;
     gather(&folder, &program, &readme(target, &needs))?;
+    let (notices, packages) = notices::of(target, flags(target).is_some())?;
+    fs::write(folder.join(NOTICES), notices).map_err(Failure::chore)?;
     let archive = pack(&dist, &name)?;
     if target == host {
         trial::run(&archive, &name)?;
@@ -61,7 +67,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let bytes = fs::metadata(&archive).map_err(Failure::chore)?.len();
     Ok(say(&format!(
-        "{}: {:.1} MB; {needs}",
+        "{}: {:.1} MB with the licences of {packages} packages; {needs}",
         archive.display(),
         bytes as f64 * 1e-6
     ))?)

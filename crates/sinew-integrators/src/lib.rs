@@ -37,8 +37,8 @@ pub use explicit_method::Explicit;
 pub use frame::Frame;
 #[cfg(feature = "implicit")]
 pub use implicit::{
-    Combination, Factor, FactorError, Matrices, NewtonError, NewtonSettings, StaticError,
-    static_solution, static_solution_under,
+    Combination, Factor, FactorError, Matrices, Memory, NewtonError, NewtonSettings, Solver,
+    StaticError, static_estimate, static_solution, static_solution_under,
 };
 pub use machine_options::MACHINE_OPTIONS;
 pub use method::{ConservedEnergy, Method};

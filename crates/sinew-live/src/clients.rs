@@ -86,6 +86,11 @@ impl Clients {
         self.lock().clients.retain(|client| client.id != id);
     }
 
+    /// Whether a client is still here.
+    pub(crate) fn is_here(&self, id: u32) -> bool {
+        self.lock().find(id).is_some()
+    }
+
     /// Forgets all of them, so that their connections end.
     pub(crate) fn dismiss(&self) {
         self.lock().clients.clear();

@@ -48,6 +48,14 @@ pub enum LiveError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// An order that was still being carried out when the session was to end.
+    #[error(
+        "what a page asked for was still being set up {seconds} s after the session was to end: it ended without that"
+    )]
+    Busy {
+        /// Time (s) that it was given.
+        seconds: u64,
+    },
     /// No random numbers for the address of the page.
     #[error("the system gives no random numbers for the page's address: {0}")]
     Random(getrandom::Error),
@@ -65,6 +73,9 @@ impl LiveError {
     /// Whether what was asked for cannot be used, as opposed to a failure of this computer.
     #[must_use]
     pub fn is_refusal(&self) -> bool {
-        !matches!(self, Self::Random(_) | Self::Serve(_) | Self::Simulation)
+        !matches!(
+            self,
+            Self::Random(_) | Self::Serve(_) | Self::Simulation | Self::Busy { .. }
+        )
     }
 }

@@ -52,6 +52,13 @@ pub(crate) struct Waiting {
 }
 
 impl Waiting {
+    /// Forgets what some clients asked for.
+    pub(crate) fn forget(&mut self, is_gone: impl Fn(u32) -> bool) {
+        self.poses.retain(|pose| !is_gone(pose.client));
+        self.orders.retain(|order| !is_gone(order.client));
+        self.entered.retain(|client| !is_gone(*client));
+    }
+
     /// The place of an order of the same client for the same step or option, behind which nothing but steps and options wait.
     fn idle_beside(&self, request: &Request<Order>) -> Option<usize> {
         let wanted = setting(&request.what)?;
@@ -112,6 +119,12 @@ impl Inbox {
         let mut waiting = self.lock();
         waiting.entered.push(client);
         self.wake(waiting);
+    }
+
+    /// Forgets what a client asked for that has gone.
+    pub(crate) fn leave(&self, client: u32) {
+        let mut waiting = self.lock();
+        waiting.forget(|other| other == client);
     }
 
     /// Wakes the simulation, for a page gave a credit.
@@ -238,6 +251,25 @@ mod tests {
             dt(1, 0.25),
         ];
         assert_eq!(orders, expected);
+    }
+
+    #[test]
+    fn a_client_that_goes_leaves_no_order() {
+        let (inbox, mut taken) = (Inbox::default(), Waiting::default());
+        for client in [1, 2, 1] {
+            inbox.enter(client);
+            inbox.pose(Request {
+                client,
+                ..pose(0, client)
+            });
+            assert!(inbox.order(Request::of(client, 1, Order::Step)));
+        }
+        inbox.leave(1);
+        inbox.take(&mut taken, Duration::ZERO);
+        let all = taken.orders.iter().map(|order| order.client);
+        let all = all.chain(taken.poses.iter().map(|pose| pose.client));
+        let all: Vec<u32> = all.chain(taken.entered.iter().copied()).collect();
+        assert_eq!(all, [2, 2, 2]);
     }
 
     #[test]

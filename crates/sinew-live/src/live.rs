@@ -6,7 +6,7 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::pin::pin;
 use std::sync::Arc;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use futures_util::future::{Either, select};
 use sinew_fem::{Law, LoadKind};
@@ -22,11 +22,14 @@ use crate::pane_choice::PaneChoice;
 use crate::picture::{Colours, Surface};
 use crate::protocol::{HandFacts, Hertz, LoadFacts, Scenery};
 use crate::scene_values::SceneValues;
-use crate::server::{Guests, Shared, Stay, Token, router};
+use crate::server::{Guests, Shared, Standing, Token, router};
 use crate::tool_facts::tools_of;
 
 /// Time between two looks at whether the page shall end.
 const LOOK: Duration = Duration::from_millis(50);
+
+/// Time that the simulation has to end: it does so between steps and orders, and to set up a method may take minutes.
+const PATIENCE: Duration = Duration::from_secs(3);
 
 /// Three loads of a scene, along x, y and z, by which a hand pulls at a place.
 #[derive(Clone, Debug, PartialEq)]
@@ -192,7 +195,7 @@ impl Live {
                 .map_err(LiveError::Serve)?
         };
         let router = router(Arc::clone(&shared), token);
-        let service = router.into_make_service_with_connect_info::<Stay>();
+        let service = router.into_make_service_with_connect_info::<Standing>();
         let outcome = runtime.block_on(async {
             let server = pin!(axum::serve(Guests::of(listener), service).into_future());
             let end = pin!(async {
@@ -210,10 +213,18 @@ impl Live {
             }
         });
         shared.inbox.end();
-        let ended = simulated.join();
         runtime.shutdown_background();
+        let asked = Instant::now();
+        while !simulated.is_finished() {
+            if asked.elapsed() > PATIENCE {
+                return Err(LiveError::Busy {
+                    seconds: PATIENCE.as_secs(),
+                });
+            }
+            thread::sleep(LOOK);
+        }
         outcome.map_err(LiveError::Serve)?;
-        ended.map_err(|_| LiveError::Simulation)
+        simulated.join().map_err(|_| LiveError::Simulation)
     }
 }
 

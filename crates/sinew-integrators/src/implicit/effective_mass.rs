@@ -6,7 +6,7 @@ use sinew_core::{
     State, Step, StepError, StepReport, Stepped, System, Trial, Velocities,
 };
 
-use super::factor::{Combination, Factor};
+use super::factor::{self, Combination, Factor};
 use super::newton::{NewtonSettings, NewtonSteps, Unknown, ViscousPlace};
 use crate::scheme::{Scheme, SetUp, StepByHand};
 
@@ -51,7 +51,7 @@ impl<M: OneAcceleration> ImplicitSteps<M> {
         dt: f64,
         before: Option<Self>,
     ) -> Result<SetUp<Self>, SetupError> {
-        let known = before.map(|steps| steps.effective.solver.into_factor());
+        let known = before.and_then(|steps| steps.effective.solver.into_factor());
         let (solver, factorizations) = match system.as_linear() {
             Some(linear) => {
                 let [d, k] = method.coefficients(dt);
@@ -64,6 +64,7 @@ impl<M: OneAcceleration> ImplicitSteps<M> {
         };
         let zeros = || vec![0.0; system.dofs()];
         let effective = EffectiveMass {
+            integrator: M::ID,
             solver,
             u: zeros(),
             v: zeros(),
@@ -96,7 +97,7 @@ impl<M: OneAcceleration> StepByHand for ImplicitSteps<M> {
 
     fn remarks(&self) -> Vec<String> {
         match &self.effective.solver {
-            Solver::Once(_) => Vec::new(),
+            Solver::Once(factor) => factor.remark().into_iter().collect(),
             Solver::Newton(newton) => newton.remarks(),
         }
     }
@@ -104,8 +105,8 @@ impl<M: OneAcceleration> StepByHand for ImplicitSteps<M> {
 
 /// The way to the acceleration.
 enum Solver {
-    /// The factor of `M + d D + k K`, kept.
-    Once(Box<Factor>),
+    /// For `M + d D + k K`, whose factor is kept.
+    Once(Box<factor::Solver>),
     /// Newton's method with a factor for each iteration.
     Newton(Box<NewtonSteps>),
 }
@@ -120,20 +121,20 @@ impl Solver {
         let operators = system.operators();
         let combination = Combination::of_step(operators.damping(), d, k);
         let factor = match known.filter(|factor| factor.fits(operators)) {
-            Some(factor) => Ok(factor),
-            None => Factor::analyse(operators),
+            Some(factor) => Ok(factor.into()),
+            None => factor::Solver::analyse(operators),
         };
-        let factorised = factor.and_then(|mut factor| {
-            factor.factorise(operators, combination)?;
-            Ok(Self::Once(Box::new(factor)))
+        let prepared = factor.and_then(|mut solver| {
+            solver.prepare(operators, combination)?;
+            Ok(Self::Once(Box::new(solver)))
         });
-        factorised.map_err(|error| error.at_set_up(integrator))
+        prepared.map_err(|error| error.at_set_up(integrator))
     }
 
-    fn into_factor(self) -> Factor {
+    fn into_factor(self) -> Option<Factor> {
         match self {
-            Self::Once(factor) => *factor,
-            Self::Newton(steps) => steps.into_factor(),
+            Self::Once(solver) => solver.into_factor(),
+            Self::Newton(steps) => Some(steps.into_factor()),
         }
     }
 }
@@ -141,6 +142,8 @@ impl Solver {
 /// The effective mass `M + d D + k K` as a factor or by Newton's method, with the vectors of
 /// `(M + d D + k K) a = F(t) - K u* - D v*` or its nonlinear form.
 pub struct EffectiveMass {
+    /// Id of the method.
+    integrator: &'static str,
     solver: Solver,
     /// Predicted displacement u*.
     pub(super) u: Vec<f64>,
@@ -201,7 +204,12 @@ impl EffectiveMass {
                 let point = [&self.u[..], &self.v, &[]];
                 step.net_force(sought.loads[1], step.dt, point, &mut self.a)?;
                 shape(&mut self.a, &mut self.v);
-                factor.solve(&mut self.a);
+                let solved = factor.solve(&mut self.a);
+                solved.map_err(|error| StepError::Inaccurate {
+                    integrator: self.integrator,
+                    t: state.t(),
+                    reason: error.to_string(),
+                })?;
                 Ok(ONE_SOLVE)
             }
             Solver::Newton(newton) => {

@@ -1,96 +1,76 @@
-//! Sparse Cholesky factors of combinations of M, D and K, and dense eigenproblems. The only user of
+//! Solvers of combinations of M, D and K: sparse Cholesky factors, and where these are larger than the memory that is left conjugate gradients. The only user of
 //! faer, with its own files beside it.
 
+mod aggregates;
 mod cell_order;
+mod cholesky;
+mod gradients;
 mod matrices;
+mod memory;
 mod panels;
+mod solver;
 mod structure;
 #[cfg(test)]
 mod tests;
+mod two_grid;
 
 use std::sync::Arc;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
-use faer::perm::PermRef;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
-};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{MatRef, Par, Side, Spec};
 use sinew_core::{Layers, Pattern};
+use sinew_sparse::ordering::Elimination;
 
 use self::cell_order::cell_order;
+use self::cholesky::Cholesky;
+pub(crate) use self::cholesky::symmetric_eigen;
 pub use self::matrices::{Combination, Matrices};
-use self::panels::Panels;
-use self::structure::{buffer, lower_triangle, of_faer};
+pub use self::memory::Memory;
+pub use self::solver::Solver;
 use super::factor_error::FactorError;
 
 /// The sparse Cholesky factor of a [`Combination`], with its analysis and buffers kept for the next one on the same pattern.
 ///
 /// Cells are eliminated by nested dissection or by approximate minimum degree, whichever takes fewer operations.
+#[derive(Debug)]
 pub struct Factor {
     pattern: Arc<Pattern>,
     layers: Layers,
-    /// Degrees of freedom in the order of elimination.
-    forward: Vec<usize>,
-    symbolic: SymbolicCholesky<usize>,
-    panels: Panels,
-    column_start: Vec<usize>,
-    row_index: Vec<usize>,
-    entries: Vec<f64>,
-    values: Vec<f64>,
-    /// Work space of the numeric factorisation.
-    scratch: MemBuffer,
-    /// The right-hand side in the order of elimination, and as many numbers for products.
-    sorted: Vec<f64>,
-    products: Vec<f64>,
+    cholesky: Cholesky,
 }
 
-impl std::fmt::Debug for Factor {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Factor")
-            .field("entries", &self.entries.len())
-            .field("values", &self.values.len())
-            .finish_non_exhaustive()
-    }
-}
+/// Bytes of a factor for each byte of its blocks: work space, and zeros within panels.
+const BESIDE: f64 = 1.3;
 
 impl Factor {
     /// Orders and analyses the pattern of the matrices.
     ///
     /// # Errors
-    /// [`FactorError`] when there is no memory for it.
+    /// [`FactorError::Memory`] where the factor takes more than this computer has left, before it is taken.
     pub fn analyse<'m>(matrices: impl Into<Matrices<'m>>) -> Result<Self, FactorError> {
-        let stiffness = matrices.into().stiffness;
-        let (pattern, layers) = (Arc::clone(stiffness.pattern()), stiffness.layers());
-        let (forward, inverse) = dof_order(&cell_order(&pattern)?, layers);
-        let (column_start, row_index) = lower_triangle(&pattern, layers);
-        let n = stiffness.dofs();
-        let structure = SymbolicSparseColMatRef::new_checked(n, n, &column_start, None, &row_index);
-        let symbolic = factorize_symbolic_cholesky(
-            structure,
-            Side::Lower,
-            SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, n)),
-            CholeskySymbolicParams::default(),
-        )
-        .map_err(of_faer)?;
-        let numeric = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
-        let scratch = buffer(numeric)?;
+        let matrices = matrices.into();
+        let elimination = cell_order(matrices.shape().0)?;
+        Self::with(matrices, &elimination, Memory::left())
+    }
+
+    fn with(
+        matrices: Matrices<'_>,
+        elimination: &Elimination,
+        memory: Memory,
+    ) -> Result<Self, FactorError> {
+        let (pattern, layers) = matrices.shape();
+        memory.check(bytes(elimination, layers))?;
         Ok(Self {
-            values: vec![0.0; symbolic.len_val()],
-            entries: vec![0.0; row_index.len()],
-            sorted: vec![0.0; n],
-            products: vec![0.0; n],
-            panels: Panels::of(&symbolic),
-            forward,
-            pattern,
+            pattern: Arc::clone(pattern),
             layers,
-            symbolic,
-            column_start,
-            row_index,
-            scratch,
+            cholesky: Cholesky::analyse(matrices, &elimination.order)?,
         })
+    }
+
+    /// Memory (bytes) that a factor on this pattern takes, about.
+    ///
+    /// # Errors
+    /// [`FactorError`] when there is no memory for the analysis.
+    pub fn bytes_on(pattern: &Pattern, layers: Layers) -> Result<u64, FactorError> {
+        Ok(bytes(&cell_order(pattern)?, layers))
     }
 
     /// Whether the analysis holds for these matrices.
@@ -103,7 +83,7 @@ impl Factor {
     /// Numbers that the factor holds, zeros inside its panels included.
     #[must_use]
     pub fn stored(&self) -> usize {
-        self.values.len()
+        self.cholesky.stored()
     }
 
     /// Factorises a combination of the matrices.
@@ -115,60 +95,7 @@ impl Factor {
         matrices: impl Into<Matrices<'m>>,
         combination: Combination,
     ) -> Result<(), FactorError> {
-        self.fill(matrices.into(), combination);
-        let n = self.column_start.len() - 1;
-        let matrix = SparseColMatRef::new(
-            SymbolicSparseColMatRef::new_checked(n, n, &self.column_start, None, &self.row_index),
-            &self.entries,
-        );
-        self.symbolic
-            .factorize_numeric_llt(
-                &mut self.values,
-                matrix,
-                Side::Lower,
-                LltRegularization::default(),
-                Par::Seq,
-                MemStack::new(&mut self.scratch),
-                Spec::default(),
-            )
-            .map(|_| ())
-            .map_err(|_| FactorError::NotPositiveDefinite)
-    }
-
-    /// Entries of the lower triangle, column by column: by symmetry, column j is row j.
-    fn fill(&mut self, matrices: Matrices<'_>, combination: Combination) {
-        let layers = self.layers.count();
-        let mut entries = self.entries.iter_mut();
-        for cell in 0..self.pattern.cells() {
-            for layer in 0..layers {
-                let diagonal = cell * layers + layer;
-                let mut extra_row = matrices.extra.map(|extra| extra.row_blocks(cell));
-                for (other, block) in matrices.stiffness.row_blocks(cell) {
-                    let extra_block = extra_row.as_mut().and_then(Iterator::next);
-                    for other_layer in 0..layers {
-                        let dof = other * layers + other_layer;
-                        if dof < diagonal {
-                            continue;
-                        }
-                        let at = layer * layers + other_layer;
-                        let mut value = combination.stiffness * block[at];
-                        if let Some((_, extra_block)) = extra_block {
-                            value += combination.extra * extra_block[at];
-                        }
-                        if dof == diagonal {
-                            value += combination.mass * matrices.mass[dof];
-                            if value == 0.0 {
-                                // A held component: no force, no displacement.
-                                value = 1.0;
-                            }
-                        }
-                        if let Some(entry) = entries.next() {
-                            *entry = value;
-                        }
-                    }
-                }
-            }
-        }
+        self.cholesky.factorise(matrices.into(), combination)
     }
 
     /// Replaces `right_hand_side` by the solution. Allocates nothing.
@@ -176,42 +103,12 @@ impl Factor {
     /// # Panics
     /// Where it is shorter than the matrix.
     pub fn solve(&mut self, right_hand_side: &mut [f64]) {
-        for (sorted, dof) in self.sorted.iter_mut().zip(&self.forward) {
-            *sorted = right_hand_side[*dof];
-        }
-        self.panels
-            .solve(&self.values, &mut self.sorted, &mut self.products);
-        for (sorted, dof) in self.sorted.iter().zip(&self.forward) {
-            right_hand_side[*dof] = *sorted;
-        }
+        self.cholesky.solve(right_hand_side);
     }
 }
 
-/// Eigenvalues in increasing order and eigenvectors of a dense symmetric matrix, both column by
-/// column; only its lower triangle is read.
-pub(crate) fn symmetric_eigen(
-    matrix: &[f64],
-    n: usize,
-) -> Result<(Vec<f64>, Vec<f64>), FactorError> {
-    if n == 0 {
-        return Ok((Vec::new(), Vec::new()));
-    }
-    let eigen = MatRef::from_column_major_slice(matrix, n, n)
-        .self_adjoint_eigen(Side::Lower)
-        .map_err(|_| FactorError::Eigenproblem)?;
-    let values = (0..n).map(|i| eigen.S()[i]).collect();
-    let vectors = (0..n).flat_map(|j| (0..n).map(move |i| (i, j)));
-    Ok((values, vectors.map(|(i, j)| eigen.U()[(i, j)]).collect()))
-}
-
-/// The degrees of freedom of cells in an order of elimination, and the place of each in it.
-fn dof_order(cells: &[u32], layers: Layers) -> (Vec<usize>, Vec<usize>) {
-    let layers = layers.count();
-    let dofs = cells.iter().map(|cell| *cell as usize * layers);
-    let forward: Vec<usize> = dofs.flat_map(|dof| dof..dof + layers).collect();
-    let mut inverse = vec![0; forward.len()];
-    for (place, dof) in forward.iter().enumerate() {
-        inverse[*dof] = place;
-    }
-    (forward, inverse)
+/// Memory (bytes) of a factor whose cells are eliminated like this.
+fn bytes(elimination: &Elimination, layers: Layers) -> u64 {
+    let numbers = elimination.blocks() as f64 * layers.block_len() as f64;
+    (BESIDE * numbers * size_of::<f64>() as f64) as u64
 }

@@ -12,6 +12,22 @@ pub enum FactorError {
     /// The factor or its work space does not fit into memory.
     #[error("not enough memory")]
     OutOfMemory,
+    /// A factor that takes more memory than is left.
+    #[error(
+        "it takes about {needed} MB and {left} MB of memory are left; a coarser mesh or an explicit method takes less, and memory = {needed} in [run] tries it"
+    )]
+    Memory {
+        /// What it takes (MB).
+        needed: u64,
+        /// What is left (MB).
+        left: u64,
+    },
+    /// Conjugate gradients that did not come to the solution.
+    #[error("conjugate gradients did not come to a solution in {iterations} iterations")]
+    NotConverged {
+        /// Iterations taken.
+        iterations: u32,
+    },
     /// The factor has more entries than can be counted.
     #[error("it is too large")]
     TooLarge,

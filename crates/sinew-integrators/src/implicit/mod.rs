@@ -10,11 +10,11 @@ mod newmark;
 mod newton;
 mod static_solution;
 
-pub use factor::{Combination, Factor, Matrices};
+pub use factor::{Combination, Factor, Matrices, Memory, Solver};
 pub use factor_error::FactorError;
 pub use generalized_alpha::GeneralizedAlpha;
 pub use implicit_euler::ImplicitEuler;
 pub use modal::{Modal, ModalSteps, Vectors};
 pub use newmark::Newmark;
 pub use newton::{NewtonError, NewtonSettings};
-pub use static_solution::{StaticError, static_solution, static_solution_under};
+pub use static_solution::{StaticError, static_estimate, static_solution, static_solution_under};

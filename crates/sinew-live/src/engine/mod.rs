@@ -466,6 +466,7 @@ impl Engine {
     /// Does what pages ask for, but not for longer than pictures may wait; whether nothing is left.
     fn obey(&mut self, waiting: &mut Waiting, shared: &Shared) -> bool {
         let begun = Instant::now();
+        waiting.forget(|client| !shared.clients.is_here(client));
         for client in waiting.entered.drain(..) {
             shared.clients.tell(client, &self.settings());
         }

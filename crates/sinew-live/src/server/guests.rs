@@ -1,15 +1,17 @@
 //! Connections to the server: not too many, and none that says nothing for long.
 
+use std::collections::VecDeque;
 use std::io::{self, ErrorKind};
 use std::net::SocketAddr;
 use std::pin::Pin;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 use std::task::{Context, Poll, ready};
 use std::time::Duration;
 
 use axum::extract::connect_info::Connected;
 use axum::serve::{IncomingStream, Listener};
+use futures_util::task::AtomicWaker;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::time::{Instant, Sleep, sleep_until};
@@ -20,13 +22,29 @@ const MOST: usize = 64;
 /// Time after which a connection ends that is no page's, and took no answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
+/// Most connections at once that have not named the secret of the page's address. One more lets the oldest of them go, so that those who know it are always served.
+const MOST_STRANGERS: usize = 16;
+
+/// Time that a connection has to name the secret.
+const PATIENCE_WITH_STRANGERS: Duration = Duration::from_secs(3);
+
 /// A listener whose connections are counted and timed, so that idle ones leave room for pages.
 #[derive(Debug)]
 pub(crate) struct Guests {
     listener: TcpListener,
     open: Arc<AtomicUsize>,
+    /// Those that have not named the secret, the oldest first.
+    strangers: VecDeque<Standing>,
+    limits: Limits,
+}
+
+/// Numbers of connections and their times.
+#[derive(Clone, Copy, Debug)]
+struct Limits {
     most: usize,
+    strangers: usize,
     patience: Duration,
+    with_strangers: Duration,
 }
 
 impl Guests {
@@ -34,9 +52,25 @@ impl Guests {
         Self {
             listener,
             open: Arc::default(),
-            most: MOST,
-            patience: PATIENCE,
+            strangers: VecDeque::new(),
+            limits: Limits {
+                most: MOST,
+                strangers: MOST_STRANGERS,
+                patience: PATIENCE,
+                with_strangers: PATIENCE_WITH_STRANGERS,
+            },
         }
+    }
+
+    /// Takes a newcomer in, and lets the oldest stranger go where there are too many.
+    fn receive(&mut self, standing: &Standing) {
+        self.strangers.retain(Standing::is_stranger);
+        if self.strangers.len() >= self.limits.strangers
+            && let Some(oldest) = self.strangers.pop_front()
+        {
+            oldest.dismiss();
+        }
+        self.strangers.push_back(standing.clone());
     }
 }
 
@@ -48,10 +82,12 @@ impl Listener for Guests {
         loop {
             let (stream, address) = Listener::accept(&mut self.listener).await;
             let seat = Seat::take(&self.open);
-            if self.open.load(Ordering::Relaxed) <= self.most {
+            if self.open.load(Ordering::Relaxed) <= self.limits.most {
                 // Else a picture waits for word of the one before, which may come a draw later. A connection that is gone shows that soon enough.
                 let _ = stream.set_nodelay(true);
-                return (Guest::new(stream, seat, self.patience), address);
+                let guest = Guest::new(stream, seat, self.limits);
+                self.receive(&guest.standing);
+                return (guest, address);
             }
         }
     }
@@ -78,54 +114,95 @@ impl Drop for Seat {
     }
 }
 
-/// Lets a connection stay that is a page's.
+/// The standing of a connection: a stranger, one that has named the secret, a page, or one that is to go.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Stay(Arc<AtomicBool>);
+pub(crate) struct Standing(Arc<Inner>);
 
-impl Stay {
-    /// From now on it may be silent as long as it likes.
-    pub(crate) fn allow(&self) {
-        self.0.store(true, Ordering::Relaxed);
+#[derive(Debug, Default)]
+struct Inner {
+    rank: AtomicU8,
+    /// Whoever waits for the connection.
+    waker: AtomicWaker,
+}
+
+const STRANGER: u8 = 0;
+const KNOWN: u8 = 1;
+const PAGE: u8 = 2;
+const DISMISSED: u8 = 3;
+
+impl Standing {
+    /// It has named the secret.
+    pub(crate) fn know(&self) {
+        let _ = self.raise(STRANGER, KNOWN);
     }
 
-    fn is_allowed(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+    /// It is a page, which may be silent as long as it likes.
+    pub(crate) fn stay(&self) {
+        let _ = self.raise(KNOWN, PAGE);
+    }
+
+    fn dismiss(&self) {
+        if self.raise(STRANGER, DISMISSED) {
+            self.0.waker.wake();
+        }
+    }
+
+    /// Goes from one rank to another; whether it was there.
+    fn raise(&self, from: u8, to: u8) -> bool {
+        let raised = self
+            .0
+            .rank
+            .compare_exchange(from, to, Ordering::AcqRel, Ordering::Acquire);
+        raised.is_ok()
+    }
+
+    fn rank(&self) -> u8 {
+        self.0.rank.load(Ordering::Acquire)
+    }
+
+    /// Whether it lives and has not named the secret.
+    fn is_stranger(&self) -> bool {
+        // Its connection has the other half.
+        Arc::strong_count(&self.0) > 1 && self.rank() == STRANGER
     }
 }
 
-impl Connected<IncomingStream<'_, Guests>> for Stay {
+impl Connected<IncomingStream<'_, Guests>> for Standing {
     fn connect_info(stream: IncomingStream<'_, Guests>) -> Self {
-        stream.io().stay.clone()
+        stream.io().standing.clone()
     }
 }
 
-/// A connection, which fails when it waits for longer than the patience: counted from its beginning, and anew from each answer that it took a part of.
+/// A connection, which fails when it waits for longer than the patience: that with strangers from its beginning on, that with others anew from each answer that it
+/// took a part of.
 #[derive(Debug)]
 pub(crate) struct Guest {
     stream: TcpStream,
-    stay: Stay,
+    standing: Standing,
     patience: Duration,
     end: Pin<Box<Sleep>>,
     _seat: Seat,
 }
 
 impl Guest {
-    fn new(stream: TcpStream, seat: Seat, patience: Duration) -> Self {
+    fn new(stream: TcpStream, seat: Seat, limits: Limits) -> Self {
         Self {
             stream,
-            stay: Stay::default(),
-            patience,
-            end: Box::pin(sleep_until(Instant::now() + patience)),
+            standing: Standing::default(),
+            patience: limits.patience,
+            end: Box::pin(sleep_until(Instant::now() + limits.with_strangers)),
             _seat: seat,
         }
     }
 
-    /// An error where it has waited too long, instead of waiting on.
+    /// An error where it has waited too long, or is to go, instead of waiting on.
     fn waits<T>(&mut self, context: &mut Context<'_>) -> Poll<io::Result<T>> {
-        if self.stay.is_allowed() {
-            return Poll::Pending;
+        self.standing.0.waker.register(context.waker());
+        match self.standing.rank() {
+            PAGE => return Poll::Pending,
+            DISMISSED => {}
+            _ => ready!(self.end.as_mut().poll(context)),
         }
-        ready!(self.end.as_mut().poll(context));
         Poll::Ready(Err(ErrorKind::TimedOut.into()))
     }
 
@@ -137,8 +214,10 @@ impl Guest {
         if written.is_pending() {
             return self.waits(context);
         }
-        let end = Instant::now() + self.patience;
-        self.end.as_mut().reset(end);
+        if self.standing.rank() != STRANGER {
+            let end = Instant::now() + self.patience;
+            self.end.as_mut().reset(end);
+        }
         written
     }
 }
@@ -151,6 +230,10 @@ impl AsyncRead for Guest {
     ) -> Poll<io::Result<()>> {
         match Pin::new(&mut self.stream).poll_read(context, buffer) {
             Poll::Pending => self.waits(context),
+            // One that asks without an end is a stranger for no longer than one that is silent.
+            _ if self.standing.rank() == STRANGER && self.end.deadline() <= Instant::now() => {
+                Poll::Ready(Err(ErrorKind::TimedOut.into()))
+            }
             read => read,
         }
     }
@@ -207,9 +290,14 @@ mod tests {
             let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
             let address = listener.local_addr().unwrap();
             let patience = Duration::from_millis(200);
-            let guests = Guests {
+            let limits = Limits {
                 most,
+                strangers: most,
                 patience,
+                with_strangers: patience,
+            };
+            let guests = Guests {
+                limits,
                 ..Guests::of(listener)
             };
             test(guests, address).await
@@ -224,7 +312,8 @@ mod tests {
             let mut page = TcpStream::connect(address).await.unwrap();
             let (mut own, _) = guests.accept().await;
             assert!(own.stream.nodelay().unwrap());
-            own.stay.allow();
+            own.standing.know();
+            own.standing.stay();
             let mut byte = [0];
             let ended = idle.read(&mut byte).await.unwrap_err();
             assert_eq!(ended.kind(), ErrorKind::TimedOut);
@@ -244,7 +333,9 @@ mod tests {
             }
             let mut inside = Vec::new();
             for _ in 0..3 {
-                inside.push(guests.accept().await);
+                let (guest, _) = guests.accept().await;
+                guest.standing.know();
+                inside.push(guest);
             }
             let soon = Duration::from_millis(100);
             assert!(timeout(soon, guests.accept()).await.is_err());
@@ -253,6 +344,57 @@ mod tests {
             inside.pop();
             outside.push(TcpStream::connect(address).await.unwrap());
             assert!(timeout(soon, guests.accept()).await.is_ok());
+        });
+    }
+
+    #[test]
+    fn the_oldest_stranger_makes_room_for_a_newcomer() {
+        with_guests(2, async |mut guests, address| {
+            guests.limits.most = 64;
+            let mut outside = Vec::new();
+            let mut inside = Vec::new();
+            for known in [false, true, false, false] {
+                outside.push(TcpStream::connect(address).await.unwrap());
+                let (guest, _) = guests.accept().await;
+                if known {
+                    guest.standing.know();
+                }
+                inside.push(guest);
+            }
+            let mut byte = [0];
+            let soon = Duration::from_millis(50);
+            for (place, goes) in [(0, true), (1, false), (2, false), (3, false)] {
+                let read = timeout(soon, inside[place].read(&mut byte)).await;
+                assert_eq!(matches!(read, Ok(Err(_))), goes, "{place}");
+            }
+        });
+    }
+
+    #[test]
+    fn answers_do_not_prolong_the_time_of_a_stranger() {
+        with_guests(2, async |mut guests, address| {
+            let mut talker = TcpStream::connect(address).await.unwrap();
+            let (mut own, _) = guests.accept().await;
+            let mut known = TcpStream::connect(address).await.unwrap();
+            let (mut page, _) = guests.accept().await;
+            page.standing.know();
+            let (mut byte, begun) = ([0], Instant::now());
+            let mut ended = false;
+            while begun.elapsed() < Duration::from_millis(600) {
+                // One that was let go takes nothing.
+                let _ = talker.write_all(b"x").await;
+                known.write_all(b"x").await.unwrap();
+                ended |= own.read(&mut byte).await.is_err();
+                let _ = own.write_all(b"y").await;
+                page.read_exact(&mut byte).await.unwrap();
+                page.write_all(b"y").await.unwrap();
+                tokio::time::sleep(Duration::from_millis(20)).await;
+                assert!(begun.elapsed() > Duration::from_millis(150) || !ended);
+                if ended {
+                    break;
+                }
+            }
+            assert!(ended);
         });
     }
 }

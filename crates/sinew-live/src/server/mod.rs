@@ -8,7 +8,7 @@ mod shared;
 mod socket;
 mod token;
 
-pub(crate) use guests::{Guests, Stay};
+pub(crate) use guests::{Guests, Standing};
 pub(crate) use routes::router;
 pub(crate) use shared::Shared;
 pub(crate) use token::Token;

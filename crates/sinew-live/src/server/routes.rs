@@ -11,13 +11,16 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 
-use super::guests::Stay;
+use super::guests::Standing;
 use super::shared::Shared;
 use super::token::Token;
 use super::{assets, guard, socket};
 
 /// Longest message of a page (bytes): commands take some hundred.
 const LONGEST_MESSAGE: usize = 16 * 1024;
+
+/// Most bytes that wait for a page which does not read: a picture of a large body and its topology, and not the answers to pings without an end.
+const MOST_UNREAD: usize = 64 << 20;
 
 /// What the page may load, and nobody may frame it.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; \
@@ -39,23 +42,37 @@ pub(crate) fn router(shared: Arc<Shared>, token: Token) -> Router {
         .with_state(Door { shared, token })
 }
 
-async fn page(State(door): State<Door>, Path(token): Path<String>, headers: HeaderMap) -> Response {
-    asset(&door, &token, "", &headers)
+async fn page(
+    State(door): State<Door>,
+    Path(token): Path<String>,
+    ConnectInfo(standing): ConnectInfo<Standing>,
+    headers: HeaderMap,
+) -> Response {
+    asset((&door, &token, &standing), "", &headers)
 }
 
 async fn file(
     State(door): State<Door>,
     Path((token, name)): Path<(String, String)>,
+    ConnectInfo(standing): ConnectInfo<Standing>,
     headers: HeaderMap,
 ) -> Response {
-    asset(&door, &token, &name, &headers)
+    asset((&door, &token, &standing), &name, &headers)
 }
 
-fn asset(door: &Door, token: &str, name: &str, headers: &HeaderMap) -> Response {
+fn asset(
+    (door, token, standing): (&Door, &str, &Standing),
+    name: &str,
+    headers: &HeaderMap,
+) -> Response {
     if !guard::is_for_this_computer(headers) {
         return refusal(StatusCode::FORBIDDEN);
     }
-    match assets::find(name).filter(|_| door.token.is(token)) {
+    if !door.token.is(token) {
+        return refusal(StatusCode::NOT_FOUND);
+    }
+    standing.know();
+    match assets::find(name) {
         None => refusal(StatusCode::NOT_FOUND),
         Some(asset) => (
             [
@@ -74,7 +91,7 @@ fn asset(door: &Door, token: &str, name: &str, headers: &HeaderMap) -> Response 
 async fn connect(
     State(door): State<Door>,
     Path(token): Path<String>,
-    ConnectInfo(stay): ConnectInfo<Stay>,
+    ConnectInfo(standing): ConnectInfo<Standing>,
     headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Response {
@@ -84,10 +101,12 @@ async fn connect(
     if !door.token.is(&token) {
         return refusal(StatusCode::NOT_FOUND);
     }
+    standing.know();
     upgrade
         .max_message_size(LONGEST_MESSAGE)
         .max_frame_size(LONGEST_MESSAGE)
-        .on_upgrade(async move |stream| socket::talk(stream, door.shared, stay).await)
+        .max_write_buffer_size(MOST_UNREAD)
+        .on_upgrade(async move |stream| socket::talk(stream, door.shared, standing).await)
 }
 
 fn refusal(status: StatusCode) -> Response {

@@ -10,7 +10,7 @@ use futures_util::{SinkExt, StreamExt};
 use tokio::sync::mpsc::Receiver;
 use tokio::time::timeout;
 
-use super::guests::Stay;
+use super::guests::Standing;
 use super::shared::Shared;
 use crate::clients::MOST_CLIENTS;
 use crate::inbox::{Place, Request};
@@ -23,7 +23,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
 /// Talks to a page until it goes, breaks the protocol, or reads nothing while messages pile up.
-pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>, stay: Stay) {
+pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>, standing: Standing) {
     let Some((id, messages)) = shared.clients.enter() else {
         let reason = format!(
             "{MOST_CLIENTS} pages are open, which is the most: close one, and load this one again"
@@ -34,7 +34,7 @@ pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>, stay: Stay)
             .await;
         return;
     };
-    stay.allow();
+    standing.stay();
     let greeting = Event::Scenery(Box::new(shared.scenery())).to_text();
     if stream.send(Message::Text(greeting.into())).await.is_ok() {
         // Those who came before it was known have been told.
@@ -45,6 +45,7 @@ pub(crate) async fn talk(mut stream: WebSocket, shared: Arc<Shared>, stay: Stay)
         exchange(stream, &shared, id, messages).await;
     }
     shared.clients.leave(id);
+    shared.inbox.leave(id);
 }
 
 /// Passes messages on in both directions, neither of which waits for the other, until one of them ends.

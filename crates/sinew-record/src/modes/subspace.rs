@@ -2,7 +2,7 @@
 
 use sinew_core::vectors::{add_scaled, dot, noise, norm, scale};
 use sinew_core::{EvaluationError, LinearOperators, OperatorError};
-use sinew_integrators::{Combination, Factor, FactorError};
+use sinew_integrators::{Combination, FactorError, Solver};
 
 use super::jacobi::eigen;
 
@@ -98,25 +98,25 @@ fn about(
     let free = root.iter().filter(|root| **root > 0.0).count();
     let count = count.min(free);
     let size = (2 * count).max(count + 8).min(free);
-    let mut factor = Factor::analyse(operators)?;
+    let mut solver = Solver::analyse(operators)?;
     let combination = Combination {
         mass: shift,
         stiffness: 1.0,
         extra: 0.0,
     };
-    factor.factorise(operators, combination)?;
+    solver.prepare(operators, combination)?;
     // R (K + shift M)^-1 R with the root R of the masses, 0 where a component is held.
-    let mut inverse = |x: &[f64]| -> Vec<f64> {
+    let mut inverse = |x: &Vec<f64>| -> Result<Vec<f64>, FactorError> {
         let mut y: Vec<f64> = x.iter().zip(root).map(|(x, root)| x * root).collect();
-        factor.solve(&mut y);
+        solver.solve(&mut y)?;
         y.iter_mut().zip(root).for_each(|(y, root)| *y *= root);
-        y
+        Ok(y)
     };
     let mut vectors = started(size, root);
     let mut found = 0;
     for _ in 0..MOST_ROUNDS {
         orthonormalise(&mut vectors);
-        let images: Vec<Vec<f64>> = vectors.iter().map(|x| inverse(x)).collect();
+        let images: Vec<Vec<f64>> = vectors.iter().map(&mut inverse).collect::<Result<_, _>>()?;
         let mut matrix = vec![0.0; size * size];
         for i in 0..size {
             for j in 0..=i {

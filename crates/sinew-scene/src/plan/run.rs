@@ -15,6 +15,7 @@ pub(super) fn section(simulation: &Simulation) -> PlanSection {
         integrator: id,
         dt: asked,
         options,
+        memory: _,
         free_flight: _,
     } = simulation.settings();
     let dt = &simulation.dt();

@@ -84,7 +84,7 @@ fn at_rest(model: &Model) -> Option<Vec<f64>> {
             force[dof as usize] += value;
         }
     }
-    sinew_integrators::static_solution(model, &force).ok()
+    sinew_integrators::static_estimate(model.operators(), &force).ok()
 }
 
 #[cfg(not(feature = "implicit"))]

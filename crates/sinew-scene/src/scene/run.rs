@@ -9,7 +9,8 @@ use toml::de::DeValue;
 use super::keys::AT_THE_TOP;
 use crate::decode::value::{Misfit, finite};
 use crate::decode::{
-    Count, Flag, Key, Kind, Needs, Number, Or, Place, Shape, Table, TableDescription, Text, Values,
+    Count, Flag, Key, Kind, Needs, Number, Optional, Or, Place, Shape, Table, TableDescription,
+    Text, Values,
 };
 use crate::error::{Fault, SceneError};
 
@@ -25,6 +26,8 @@ pub struct RunSettings {
     pub integrator: String,
     /// The step as the scene asks for it.
     pub dt: TimeStep,
+    /// The most memory (MB) that factors may take; what the computer has left where none is given.
+    pub memory: Option<f64>,
     /// Whether it is meant that nothing holds the body or a part of it.
     pub free_flight: bool,
     /// The integrator's own options.
@@ -45,11 +48,11 @@ pub enum TimeStep {
 pub(crate) const RUN: TableDescription = TableDescription {
     name: "run",
     meaning: "How long is simulated, by which method and in which steps. Further keys are options of the integrator.",
-    keys: &[&DURATION, &SAMPLES, &INTEGRATOR, &DT, &FREE_FLIGHT],
+    keys: &[&DURATION, &SAMPLES, &INTEGRATOR, &DT, &MEMORY, &FREE_FLIGHT],
     needs: Needs::Any,
     examples: &[
         "[run]\nduration = 1.0\nintegrator = \"central-difference\"\ndt = \"auto\"\n",
-        "[run]\nduration = 2.0\nsamples = 100\nintegrator = \"propagator\"\nkind = \"two-step\"\ntolerance = 1e-6\ndt = 0.02\nfree_flight = true\n",
+        "[run]\nduration = 2.0\nsamples = 100\nintegrator = \"propagator\"\nkind = \"two-step\"\ntolerance = 1e-6\ndt = 0.02\nmemory = 4000.0\nfree_flight = true\n",
     ],
 };
 
@@ -84,6 +87,15 @@ const DT: Key<Step> = Key::required(
 )
 .unit("s");
 
+const MEMORY: Key<Number, Optional> = Key::optional(
+    "memory",
+    "The most memory that the factors of implicit methods, states at rest and modes may take. Where a factor takes more, it is refused before it is taken, or, on tissue \
+     of a linear law, conjugate gradients take its place.",
+    Number::above_zero("a finite number of MB above 0"),
+    "nine tenths of what the computer has left",
+)
+.unit("MB");
+
 const FREE_FLIGHT: Key<Flag, Or<bool>> = Key::or(
     "free_flight",
     "Whether it is meant that nothing holds the body or a part of it; there is no warning then.",
@@ -104,6 +116,7 @@ impl RunSettings {
             samples,
             integrator,
             dt: table.read(&DT)?,
+            memory: table.read(&MEMORY)?,
             free_flight: table.read(&FREE_FLIGHT)?,
             options,
         })

@@ -75,6 +75,7 @@ fn the_papers_oscillator() {
             samples: 50,
             integrator: "cnn".into(),
             dt: TimeStep::Given(0.02),
+            memory: None,
             free_flight: false,
             options: Options::new().with_number("saturation", 4.0),
         }

@@ -1,7 +1,7 @@
 //! Files that are kept up to date with a session.
 
 use std::fs::{File, OpenOptions};
-use std::io::{self, Seek, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use super::Log;
@@ -15,6 +15,8 @@ pub struct Journal {
     file: File,
     /// Commands in the file; `None` as long as nothing stands in it.
     entries: Option<usize>,
+    /// Bytes of the file that are whole lines.
+    length: u64,
     /// Whether something could not be written, so that the file may end within a line.
     has_failed: bool,
     text: String,
@@ -64,6 +66,7 @@ impl Journal {
                 path,
                 file,
                 entries: None,
+                length: 0,
                 has_failed: false,
                 text: String::new(),
             }),
@@ -83,38 +86,35 @@ impl Journal {
     /// # Errors
     /// [`JournalError`].
     pub fn begin_anew(&mut self) -> Result<(), JournalError> {
-        (self.entries, self.has_failed) = (None, false);
+        (self.entries, self.length, self.has_failed) = (None, 0, false);
         let emptied = self.file.set_len(0).and_then(|()| self.file.rewind());
         emptied.map_err(|source| self.error(source))
     }
 
-    /// Adds the commands that are new in a log, up to the last step: poses after it may give way to later ones. After an error nothing more is added before
-    /// [`Journal::finish`].
+    /// Adds the commands that are new in a log, up to the last step: poses after it may give way to later ones. What could not be written is tried again, and is
+    /// told the first time.
     ///
     /// # Errors
     /// [`JournalError`].
     pub fn keep_up(&mut self, log: &Log) -> Result<(), JournalError> {
-        if self.has_failed {
-            return Ok(());
-        }
         let settled = log
             .entries()
             .partition_point(|entry| entry.step < log.steps());
         if settled == 0 {
             return Ok(());
         }
-        self.add(log, settled)
+        let is_known = self.has_failed;
+        self.add(log, settled).or_else(|error| match is_known {
+            true => Ok(()),
+            false => Err(error),
+        })
     }
 
-    /// Adds all that is new in the log of a session that has ended, and its end. After an error the whole log is written once more.
+    /// Adds all that is new in the log of a session that has ended, and its end.
     ///
     /// # Errors
     /// [`JournalError`] where the file does not hold the whole log.
     pub fn finish(mut self, log: &Log) -> Result<(), JournalError> {
-        if self.has_failed {
-            let written = rewrite(&mut self.file, &log.to_text());
-            return written.map_err(|source| self.error(source));
-        }
         self.add(log, log.entries().len())?;
         let written = self.file.write_all(end(log).as_bytes());
         written.map_err(|source| self.error(source))
@@ -130,10 +130,21 @@ impl Journal {
         for entry in log.entries().get(first..until).unwrap_or_default() {
             push_entry(&mut self.text, entry);
         }
-        self.entries = Some(first.max(until));
-        let written = self.file.write_all(self.text.as_bytes());
+        let written = self.append();
         self.has_failed = written.is_err();
-        written.map_err(|source| self.error(source))
+        written.map_err(|source| self.error(source))?;
+        self.entries = Some(first.max(until));
+        self.length += self.text.len() as u64;
+        Ok(())
+    }
+
+    /// Writes the text behind what stands whole in the file. A part of a line that a full disk left is written over.
+    fn append(&mut self) -> io::Result<()> {
+        if self.has_failed {
+            self.file.set_len(self.length)?;
+            self.file.seek(SeekFrom::Start(self.length))?;
+        }
+        self.file.write_all(self.text.as_bytes())
     }
 
     fn error(&self, source: io::Error) -> JournalError {
@@ -159,13 +170,6 @@ fn open(path: &Path) -> io::Result<Option<File>> {
     options.open(path).map(Some)
 }
 
-/// Writes a text over what stands in a file. What stands there already is its beginning, so that one that cannot be written to its end loses nothing.
-fn rewrite(file: &mut File, text: &str) -> io::Result<()> {
-    file.rewind()?;
-    file.write_all(text.as_bytes())?;
-    file.set_len(text.len() as u64)
-}
-
 #[cfg(test)]
 mod tests {
     use sinew_scene::{Scene, SceneSource};
@@ -178,7 +182,7 @@ mod tests {
         [run]\nduration = 1.0\nintegrator = \"central-difference\"\ndt = 0.01\n";
 
     #[test]
-    fn a_journal_that_could_not_be_kept_up_holds_all_in_the_end() {
+    fn a_journal_that_could_not_be_kept_up_catches_up_as_soon_as_it_can() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("s.log");
         let scene = Scene::parse(SceneSource::new("spring.toml", SPRING)).unwrap();
@@ -195,9 +199,15 @@ mod tests {
         let writable = std::mem::replace(&mut journal.file, File::open(&path).unwrap());
         assert!(!drive(&mut journal, 0.004).0, "it is told");
         assert!(drive(&mut journal, 0.003).0, "it is told once");
-        journal.file = writable;
-        let (_, log) = drive(&mut journal, 0.002);
         assert_eq!(Log::read(&path).unwrap().entries().len(), 1);
+        // A part of a line got through.
+        journal.file = writable;
+        journal.file.write_all(b"dt 0.0").unwrap();
+        let (is_kept, log) = drive(&mut journal, 0.002);
+        assert!(is_kept);
+        let kept = Log::read(&path).unwrap();
+        assert_eq!(kept.entries(), &log.entries()[..kept.entries().len()]);
+        assert_eq!(kept.entries().len(), 4);
         journal.finish(&log).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), log.to_text());
     }

@@ -80,7 +80,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     // Nobody gave a command yet.
     said.inspect_err(|_| recording.iter().for_each(Recording::remove_journals))?;
     complain("open this address in a browser on this computer; Ctrl-C ends");
-    let session = live.run(|| interruption.is_asked_for())?;
+    let session = live
+        .run(|| interruption.is_asked_for())
+        .inspect_err(|_| recording.iter().for_each(Recording::name_journals))?;
     interruption.is_followed();
     complain(&format!("the session ended at t = {:.6} s", session.t));
     match recording {

@@ -9,6 +9,7 @@ use sinew_scene::output::complain;
 use super::Failure;
 use super::interruption::Interruption;
 use super::run::{in_folder, integrator, threads};
+use super::scene_with::limit_memory;
 
 /// The folder of a run.
 #[derive(clap::Args)]
@@ -24,6 +25,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         complain("the run in it has come to its end: there is nothing to go on with");
         return Ok(());
     }
+    limit_memory(&scene);
     let mut simulation = scene.build()?;
     simulation.end_at_duration();
     let asked: Option<OptionValue> = folder.threads().and_then(|text| threads(text).ok());

@@ -27,6 +27,7 @@ use self::words::{summary, summary_of};
 use super::Failure;
 use super::interruption::Interruption;
 use super::onlooker::Onlooker;
+use super::scene_with::limit_memory;
 
 /// Predicted time (s) of a run beyond which its user is warned.
 pub(crate) const LONG: f64 = 60.0;
@@ -151,7 +152,9 @@ pub(crate) fn run_for_comparison(
     folder: &Path,
     interruption: Interruption,
 ) -> Result<(), Failure> {
-    let mut simulation = Scene::load(scene)?.build()?;
+    let loaded = Scene::load(scene)?;
+    limit_memory(&loaded);
+    let mut simulation = loaded.build()?;
     if let Some(refused) = simulation.refused_load() {
         return Err(refused.into());
     }

@@ -40,6 +40,7 @@ impl Values {
         self.check()?;
         let scene = Scene::load_with(path, &self.assignments())?;
         self.say_of_parts(&scene);
+        limit_memory(&scene);
         Ok(scene)
     }
 
@@ -65,7 +66,9 @@ impl Values {
     #[cfg(feature = "live")]
     pub(crate) fn apply(&self, source: &SceneSource) -> Result<Scene, Failure> {
         self.check()?;
-        Ok(Scene::parse_with(source, &self.assignments())?)
+        let scene = Scene::parse_with(source, &self.assignments())?;
+        limit_memory(&scene);
+        Ok(scene)
     }
 
     /// Refuses two values for one key.
@@ -89,6 +92,19 @@ impl Values {
         }
         Ok(())
     }
+}
+
+/// Lets factors take as much memory as a scene says.
+pub(super) fn limit_memory(scene: &Scene) {
+    #[cfg(feature = "implicit")]
+    sinew_integrators::Memory::set_left(
+        scene
+            .settings()
+            .memory
+            .map(|megabytes| sinew_integrators::Memory::of((1e6 * megabytes) as u64)),
+    );
+    #[cfg(not(feature = "implicit"))]
+    let _ = scene;
 }
 
 /// The key of the scene that an option sets.

@@ -15,14 +15,14 @@ const FEW: usize = 500;
 /// The cells by nested dissection or by approximate minimum degree, whichever takes fewer operations to factorise.
 ///
 /// Both work on the graph of cells, which is three times smaller each way than that of degrees of freedom.
-pub(super) fn cell_order(pattern: &Pattern) -> Result<Vec<u32>, FactorError> {
+pub(super) fn cell_order(pattern: &Pattern) -> Result<Elimination, FactorError> {
     let by_degree = Elimination::of(pattern, &minimum_degree(pattern)?);
     if pattern.cells() < FEW {
-        return Ok(by_degree.order);
+        return Ok(by_degree);
     }
     let dissected = Elimination::of(pattern, &nested_dissection(pattern));
     let fewer = dissected.products() < by_degree.products();
-    Ok(if fewer { dissected } else { by_degree }.order)
+    Ok(if fewer { dissected } else { by_degree })
 }
 
 /// Approximate minimum degree order (Amestoy, Davis and Duff, SIAM J. Matrix Anal. Appl. 17, 1996).

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use sinew_core::vectors::{noise, norm};
+use sinew_core::vectors::{add_scaled, noise, norm};
 use sinew_core::{BlockMatrix, Damping, Layers, LinearOperators, Pattern};
 use sinew_sparse::ordering::{Elimination, nested_dissection};
 
 use super::cell_order::{cell_order, minimum_degree};
-use super::{Combination, Factor};
+use super::{Combination, Factor, Memory, Solver};
+use crate::implicit::factor_error::FactorError;
 
 /// The boxes of a cubic grid of nodes.
 fn boxes(side: u32) -> impl Iterator<Item = [u32; 8]> {
@@ -114,7 +115,42 @@ fn dissection_fills_a_cube_less_than_minimum_degree_and_the_better_one_is_taken(
             dissected < share * by_degree,
             "{side}: {dissected} {by_degree}"
         );
-        let taken = fill(&cell_order(&pattern).unwrap());
+        let taken = fill(&cell_order(&pattern).unwrap().order);
         assert!(taken <= 1.05 * by_degree.min(dissected), "{side}: {taken}");
     }
+}
+
+#[test]
+fn conjugate_gradients_take_the_place_of_a_factor_that_is_too_large() {
+    for layers in [Layers::One, Layers::Three] {
+        let operators = operators(12, layers);
+        for combination in [
+            Combination::STATIC,
+            Combination::of_step(operators.damping(), 0.01, 1e-4),
+        ] {
+            let n = operators.dofs();
+            let force: Vec<f64> = (0..n).map(|dof| (dof as f64).sin()).collect();
+            let mut solutions = [Memory::of(u64::MAX - 1), Memory::of(1000)].map(|memory| {
+                let mut solver = Solver::analyse_within(&operators, memory).unwrap();
+                solver.prepare(&operators, combination).unwrap();
+                let mut solution = force.clone();
+                solver.solve(&mut solution).unwrap();
+                (solution, solver)
+            });
+            assert!(solutions[0].1.remark().is_none());
+            let remark = solutions[1].1.remark().unwrap();
+            assert!(remark.contains("by conjugate gradients"), "{remark}");
+            let [(direct, _), (iterated, _)] = &mut solutions;
+            let size = norm(direct);
+            add_scaled(-1.0, direct, iterated);
+            let error = norm(iterated) / size;
+            assert!(error < 1e-10, "{error}");
+        }
+    }
+    let operators = operators(4, Layers::Three);
+    let refused = Memory::of(1000).check(1_000_000).unwrap_err();
+    assert_eq!(refused, FactorError::Memory { needed: 1, left: 0 });
+    let bytes = Factor::bytes_on(operators.stiffness().pattern(), Layers::Three).unwrap();
+    let stored = 8 * Factor::analyse(&operators).unwrap().stored() as u64;
+    assert!((stored..2 * stored).contains(&bytes), "{bytes} {stored}");
 }

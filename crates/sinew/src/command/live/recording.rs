@@ -57,6 +57,15 @@ impl Recording {
             .for_each(|folder| remove(&log_beside(folder)));
     }
 
+    /// Says where the commands of a session are that ended without them.
+    pub(super) fn name_journals(&self) {
+        for beside in self.folders.iter().map(|folder| log_beside(folder)) {
+            if std::fs::metadata(&beside).is_ok_and(|found| found.len() > 0) {
+                complain(&where_commands_are(&beside, true));
+            }
+        }
+    }
+
     /// Repeats the session of each pane into its folder, which holds its log from then on. What fails leaves the log beside its folder.
     pub(super) fn write(
         self,

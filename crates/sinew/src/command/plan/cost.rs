@@ -15,6 +15,8 @@ const LARGE_TO_FACTORISE: usize = 60_000;
 pub(super) struct Cost {
     /// Memory as mesh and supports told it, for a body.
     pub(super) footprint: Option<Footprint>,
+    /// Memory (bytes) of the factor of an implicit method, if there is one.
+    pub(super) factor: Option<u64>,
     /// Work and time, or why they are not known.
     pub(super) forecast: Result<Forecast, String>,
     /// Files of a run with `--out`.
@@ -46,6 +48,7 @@ impl Cost {
         };
         Self {
             footprint,
+            factor: factor_of(simulation).filter(|_| factorises),
             forecast,
             folder: FolderSize::of(simulation),
             duration: settings.duration,
@@ -58,10 +61,23 @@ impl Cost {
         let mut lines = Vec::new();
         lines.extend(self.footprint.map(|footprint| {
             format!(
-                "memory: about {} MB, {} MB of them for matrices, factors apart; told from the mesh, before anything was built",
+                "memory: about {} MB, {} MB of them for matrices{}; told from the mesh, before anything was built",
                 three(footprint.bytes as f64 / 1e6),
-                three(footprint.matrix_bytes as f64 / 1e6)
+                three(footprint.matrix_bytes as f64 / 1e6),
+                if self.factor.is_some() { ", the factor apart" } else { "" }
             )
+        }));
+        lines.extend(self.factor.map(|bytes| {
+            let megabytes = three(bytes as f64 / 1e6);
+            match (factor_fits(bytes), self.is_law) {
+                (true, _) => format!("factor: about {megabytes} MB"),
+                (false, true) => format!(
+                    "factor: about {megabytes} MB, more than there is: a run is refused; an explicit method needs none, and memory in [run] sets another limit"
+                ),
+                (false, false) => format!(
+                    "factor: about {megabytes} MB, more than there is: conjugate gradients take its place; memory in [run] sets another limit"
+                ),
+            }
         }));
         lines.push(match &self.forecast {
             Ok(forecast) => {
@@ -140,6 +156,32 @@ pub(super) fn check_memory(footprint: &Footprint) -> Result<(), Failure> {
         }),
         _ => Ok(()),
     }
+}
+
+/// Memory (bytes) of a factor on the pattern of a simulation's matrices.
+#[cfg(feature = "implicit")]
+fn factor_of(simulation: &Simulation) -> Option<u64> {
+    let system = simulation.system();
+    let pattern = match system.as_linear() {
+        Some(linear) => linear.operators().stiffness().pattern(),
+        None => system.as_elastic()?.pattern(),
+    };
+    sinew_integrators::Factor::bytes_on(pattern, system.layers()).ok()
+}
+
+#[cfg(not(feature = "implicit"))]
+fn factor_of(_: &Simulation) -> Option<u64> {
+    None
+}
+
+#[cfg(feature = "implicit")]
+fn factor_fits(bytes: u64) -> bool {
+    sinew_integrators::Memory::left().holds(bytes)
+}
+
+#[cfg(not(feature = "implicit"))]
+fn factor_fits(_: u64) -> bool {
+    true
 }
 
 /// Memory (bytes) that the system says it has left, where it says so.

@@ -20,6 +20,9 @@ pub(super) fn as_json(cost: &Cost) -> Value {
         });
         fields.insert("memory".to_owned(), memory);
     }
+    if let Some(bytes) = cost.factor {
+        fields.insert("factor_bytes".to_owned(), json!(bytes));
+    }
     let folder = json!({
         "frames": cost.folder.frames,
         "frame_bytes": cost.folder.frame_bytes,
