@@ -160,11 +160,14 @@ fn elements_may_stand_before_nodes_and_names_last() {
 
 #[test]
 fn unknown_sections_are_skipped_and_listed() {
-    let extra = "$Comments\nmade by hand\n$Nodes inside\n$EndComments\n";
+    let extra = "$Parametrizations\n0 1\n$EndParametrizations\n$Comments\nmade by hand\n$Nodes inside\n$EndComments\n";
     let unknown = "$Attributes\n1\n$EndNodes\n$EndAttributes\n";
     let text = format!("{extra}{TWO_REGIONS_41}{unknown}");
     let mesh = read(&text);
-    assert_eq!(mesh.skipped_sections, ["Comments", "Attributes"]);
+    assert_eq!(
+        mesh.skipped_sections,
+        ["Parametrizations", "Comments", "Attributes"]
+    );
     assert_eq!(
         only_warning(&mesh),
         format!(
