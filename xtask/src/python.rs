@@ -109,10 +109,10 @@ fn install(program: &str, packages: &Packages, folder: &Path) -> Result<(), Fail
     let installed = pip(&["install", "--quiet", "--disable-pip-version-check"])
         .args(["--only-binary", ":all:"])
         .args(packages.names)
-        .arg(if packages.beside_libraries {
-            "--prefix"
-        } else {
-            "--target"
+        .args(match packages.beside_libraries {
+            // What Python has already may lack its programs on the PATH.
+            true => &["--ignore-installed", "--prefix"][..],
+            false => &["--target"],
         })
         .arg(&partial)
         .output()
