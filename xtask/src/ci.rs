@@ -10,7 +10,7 @@ use sinew_bench::output::say;
 use self::cost::{Cost, Stopwatch};
 use crate::failure::Failure;
 use crate::repository::root;
-use crate::{compare, memory, rules};
+use crate::{compare, memory, rules, to_a_scene};
 
 /// Seed of the random cases of properties: a change fails for what it did, and not for new luck. `cargo test` alone
 /// draws new cases each time.
@@ -85,6 +85,7 @@ const STEPS: &[Step] = &[
     ),
     cargo("archive, tried elsewhere", "xtask dist"),
     own("comparison with meshio and pyvista", compare_if_possible),
+    own("files of others become scenes", to_a_scene_if_possible),
 ];
 
 const fn cargo(name: &'static str, arguments: &'static str) -> Step {
@@ -196,6 +197,14 @@ fn watch_memory_if_possible() -> Result<(), Failure> {
 fn compare_if_possible() -> Result<(), Failure> {
     match unless_missing(compare::python())? {
         Ok(python) => compare::run_with(&python),
+        Err(reason) => Ok(say(&format!("== SKIPPED: {reason}"))?),
+    }
+}
+
+/// Tries the way from surfaces, images and meshes of others to scenes, where there are Python and pip.
+fn to_a_scene_if_possible() -> Result<(), Failure> {
+    match unless_missing(to_a_scene::python())? {
+        Ok(python) => to_a_scene::run_with(&python),
         Err(reason) => Ok(say(&format!("== SKIPPED: {reason}"))?),
     }
 }

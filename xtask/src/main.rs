@@ -1,5 +1,5 @@
 //! Repository chores:
-//! `cargo xtask bench | verify | native | memory | reproduce | meshes | compare | laws | live-test | docs | reference | readme | dist | rules | ci`.
+//! `cargo xtask bench | verify | native | memory | reproduce | meshes | compare | laws | live-test | docs | reference | readme | to-a-scene | dist | rules | ci`.
 
 mod bench;
 mod beside;
@@ -23,6 +23,7 @@ mod reference;
 mod repository;
 mod reproduce;
 mod rules;
+mod to_a_scene;
 mod verify;
 
 use std::process::ExitCode;
@@ -70,6 +71,9 @@ enum Chore {
     Reference,
     /// Run the commands of the README as they are written there; part of `ci`.
     Readme,
+    /// Run the commands of docs/to-a-scene.md and those that errors name for files of other programs; pip installs what they need into
+    /// target/. Part of `ci`.
+    ToAScene,
     /// Pack the command with scenes, meshes and documents into an archive for computers without Rust, and try it elsewhere.
     Dist(dist::Arguments),
     /// Check the rules of ARCHITECTURE.md that a machine can check; part of `ci`.
@@ -93,6 +97,7 @@ fn main() -> ExitCode {
         Chore::Docs => docs::run(),
         Chore::Reference => reference::run(),
         Chore::Readme => readme::run(),
+        Chore::ToAScene => to_a_scene::run(),
         Chore::Dist(arguments) => dist::run(&arguments),
         Chore::Rules => ci::check_rules(),
         Chore::Ci(arguments) => ci::run(&arguments),

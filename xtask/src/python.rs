@@ -29,6 +29,7 @@ pub(crate) struct Packages {
 pub(crate) struct Python {
     program: &'static str,
     packages: PathBuf,
+    programs: PathBuf,
 }
 
 impl Python {
@@ -56,8 +57,14 @@ impl Python {
             .flatten();
         Ok(Self {
             program,
+            programs: folder.join("bin"),
             packages: inside.unwrap_or(folder),
         })
+    }
+
+    /// The folder of programs that packages bring.
+    pub(crate) fn programs(&self) -> PathBuf {
+        self.programs.clone()
     }
 
     /// A command that runs this Python on one thread.
@@ -102,10 +109,10 @@ fn install(program: &str, packages: &Packages, folder: &Path) -> Result<(), Fail
     let installed = pip(&["install", "--quiet", "--disable-pip-version-check"])
         .args(["--only-binary", ":all:"])
         .args(packages.names)
-        .arg(if packages.beside_libraries {
-            "--prefix"
-        } else {
-            "--target"
+        .args(match packages.beside_libraries {
+            // What Python has already may lack its programs on the PATH.
+            true => &["--ignore-installed", "--prefix"][..],
+            false => &["--target"],
         })
         .arg(&partial)
         .output()

@@ -35,6 +35,7 @@
 //! ```
 
 mod abaqus;
+mod advice;
 mod bounds;
 mod cell_type;
 mod check;
@@ -61,7 +62,10 @@ mod warning;
 pub use abaqus::read_abaqus;
 pub use cell_type::CellType;
 pub use check::{CheckLimits, EdgeLengths, Extreme, Finding, MeshCheck, Part, SharedFace};
-pub use file::{MeshFileError, MeshFormat, read_mesh, read_mesh_file, read_msh_file};
+pub use file::{
+    MeshFileError, MeshFormat, NotAMesh, converted_extensions, read_mesh, read_mesh_file,
+    read_msh_file,
+};
 pub use joints::{JointFinding, Joints, Places};
 pub use label_groups::{LabelError, LabelGroup};
 pub use linearise::Linearised;

@@ -4,6 +4,7 @@ use super::elements::{Kind, kind_of};
 use super::instance::Instance;
 use super::lines::{Data, Keyword, Line, Reader, coordinate, label, unquoted};
 use super::part::{Elements, Member, Part, Surface, SurfaceRow};
+use crate::advice::meshio_command;
 use crate::reading::cursor::{Token, quoted};
 use crate::reading::fault::Fault;
 use crate::reading::remarks::Remarks;
@@ -99,7 +100,8 @@ fn no_keyword(data: Data<'_>) -> Fault {
     let first = data.fields().next().map_or(&b""[..], |field| field.text);
     if is_number(first) {
         let problem = "the file looks like one of AVS UCD, which also ends in .inp";
-        let advice = "named .avs, `meshio convert FILE.avs FILE.msh --output-format gmsh22` (pip install meshio) writes a .msh file";
+        let command = meshio_command("FILE.avs".as_ref());
+        let advice = format!("named .avs, {command} (pip install meshio) writes a .msh file");
         return Fault::unsupported(0, problem, advice);
     }
     Fault::new(

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::not_a_mesh::NotAMesh;
 use super::other_formats;
 use crate::reading::MeshError;
 
@@ -26,6 +27,14 @@ pub enum MeshFileError {
         /// The kind of thing that it is.
         what: &'static str,
     },
+    /// The file holds something else than a mesh of tetrahedra.
+    #[error("{}: is {kind}; expected a mesh of tetrahedra, such as .msh, .vtu, .vtk, .mesh or .inp", path.display())]
+    NotAMesh {
+        /// The file.
+        path: PathBuf,
+        /// The kind of file that it is.
+        kind: NotAMesh,
+    },
     /// The contents are wrong.
     #[error("{}", error.message_for(&path.display().to_string()))]
     Contents {
@@ -37,10 +46,11 @@ pub enum MeshFileError {
 }
 
 impl MeshFileError {
-    /// Advice on what to do, if there is any: the command that converts a file whose name tells another format.
+    /// Advice on what to do, if there is any: the way from a file of another kind or format to one that is read.
     #[must_use]
     pub fn advice(&self) -> Option<String> {
         match self {
+            MeshFileError::NotAMesh { kind, .. } => Some(kind.advice()),
             // A file of another format is refused at its first byte.
             MeshFileError::Contents { path, error } if error.position().byte == 0 => {
                 other_formats::advice(path)

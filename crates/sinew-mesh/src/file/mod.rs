@@ -2,10 +2,13 @@
 
 mod error;
 mod format;
+mod not_a_mesh;
 mod other_formats;
 
 pub use error::MeshFileError;
 pub use format::MeshFormat;
+pub use not_a_mesh::NotAMesh;
+pub use other_formats::converted_extensions;
 
 use std::fs;
 use std::path::Path;
@@ -44,10 +47,17 @@ pub fn read_mesh(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
 /// line where there is one: `file.msh:57 (byte 2310): ...`.
 pub fn read_mesh_file(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
     let path = path.as_ref();
-    read_file_as(path, |bytes| match MeshFormat::of_path(path) {
-        Some(format) if !bytes.trim_ascii_start().starts_with(b"$") => format,
-        _ => MeshFormat::Msh,
-    })
+    let bytes = bytes_of(path)?;
+    let is_of_gmsh = bytes.trim_ascii_start().starts_with(b"$");
+    let kind = NotAMesh::of(path, &bytes).filter(|_| !is_of_gmsh);
+    if let Some(kind) = kind {
+        return Err(MeshFileError::NotAMesh {
+            path: path.to_owned(),
+            kind,
+        });
+    }
+    let format = MeshFormat::of_path(path).filter(|_| !is_of_gmsh);
+    read_as(path, &bytes, format.unwrap_or(MeshFormat::Msh))
 }
 
 /// Reads a .msh file, whatever its name; see [`read_msh`].
@@ -56,10 +66,18 @@ pub fn read_mesh_file(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
 ///
 /// As [`read_mesh_file`].
 pub fn read_msh_file(path: impl AsRef<Path>) -> Result<Mesh, MeshFileError> {
-    read_file_as(path.as_ref(), |_| MeshFormat::Msh)
+    let path = path.as_ref();
+    read_as(path, &bytes_of(path)?, MeshFormat::Msh)
 }
 
-fn read_file_as(path: &Path, format: impl Fn(&[u8]) -> MeshFormat) -> Result<Mesh, MeshFileError> {
+fn read_as(path: &Path, bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshFileError> {
+    read_mesh(bytes, format).map_err(|error| MeshFileError::Contents {
+        path: path.to_owned(),
+        error: Box::new(error),
+    })
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>, MeshFileError> {
     let io_error = |error| MeshFileError::Io {
         path: path.to_owned(),
         error,
@@ -76,9 +94,5 @@ fn read_file_as(path: &Path, format: impl Fn(&[u8]) -> MeshFormat) -> Result<Mes
             },
         });
     }
-    let bytes = fs::read(path).map_err(io_error)?;
-    read_mesh(&bytes, format(&bytes)).map_err(|error| MeshFileError::Contents {
-        path: path.to_owned(),
-        error: Box::new(error),
-    })
+    fs::read(path).map_err(io_error)
 }

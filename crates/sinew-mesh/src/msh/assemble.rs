@@ -9,6 +9,7 @@ use super::entities::Entities;
 use super::nodes::RawNodes;
 use super::physical_names::{NamesWithoutDim, PhysicalNames};
 use super::tag_list::{TagList, Tags};
+use crate::bounds::Bounds;
 use crate::cell_type::CellType;
 use crate::check::empty_groups;
 use crate::mesh::{CellBlock, Entity, Mesh};
@@ -158,22 +159,50 @@ fn drop_repeated(
     keep_first(&mut nodes.tags, is_repeated);
     keep_first(&mut nodes.points, is_repeated);
     keep_first(&mut nodes.entities, is_repeated);
+    let rounding = ROUNDING * extent(&nodes.points);
+    let mut apart = Vec::new();
     for &(row, tag, point) in &repeated {
         let first = index.get(tag).and_then(|i| nodes.points.get(i as usize));
-        if first != Some(&point) {
+        let distance = first.map_or(f64::INFINITY, |first| distance(*first, point));
+        if distance > rounding {
             let problem = format!("node tag {tag} occurs again, with other coordinates");
             return Err(Fault::new(offset(row), problem, "each tag once").inside(tables.nodes));
         }
+        if distance > 0.0 {
+            apart.push((tag, distance));
+        }
     }
     if let Some(&(row, tag, _)) = repeated.first() {
-        let count = repeated.len();
+        let by_rounding = match apart.as_slice() {
+            [] => String::new(),
+            [(tag, distance), ..] => format!(
+                "; {} of them differ from it by rounding (first: tag {tag}, by {distance:.1e}), and its coordinates count",
+                apart.len()
+            ),
+        };
         let message = format!(
-            "{}: rows that repeat an earlier node and were merged with it: {count} (first: tag {tag})",
-            tables.nodes
+            "{}: rows that repeat an earlier node and were merged with it: {} (first: tag {tag}){by_rounding}",
+            tables.nodes,
+            repeated.len()
         );
         remarks.at(offset(row), message);
     }
     Ok(())
+}
+
+/// The part of a mesh's extent by which rounding may take the places of one node apart.
+const ROUNDING: f64 = 1e-9;
+
+/// The longest side of the box about points.
+fn extent(points: &[[f64; 3]]) -> f64 {
+    let mut bounds = Bounds::default();
+    points.iter().for_each(|&point| bounds.add(point));
+    bounds.longest_side()
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
+    squares.sum::<f64>().sqrt()
 }
 
 fn keep_first<T>(rows: &mut Vec<T>, is_repeated: &[bool]) {

@@ -65,9 +65,9 @@ pub(super) fn read(
     };
     match format.encoding {
         Encoding::Text => {
-            let mut source = Text::accepting_reprs(cursor);
+            let mut source = Text::new(cursor);
             read_rows(&mut source, rows, TagKind::Size, &mut data)?;
-            if let Some(offset) = source.first_repr() {
+            if let Some(offset) = source.first_of_numpy() {
                 remarks.at(
                     offset,
                     "numbers are written as np.float64(...), as meshio does with NumPy 2; they were read as meant",
@@ -128,7 +128,7 @@ fn without_quotes(line: &[u8], offset: usize, remarks: &mut Remarks) -> String {
 
 /// The real tags, of which the first is the time.
 fn read_times(cursor: &mut Cursor<'_>) -> Result<f64, Fault> {
-    let mut source = Text::accepting_reprs(cursor);
+    let mut source = Text::new(cursor);
     let what = "the number of real tags";
     let count = source.size(what)?;
     source.room_for(count, what, Record::default().and_doubles(1))?;

@@ -79,10 +79,29 @@ pub(super) fn refuse_other_formats(bytes: &[u8]) -> Result<(), Fault> {
         [] => refuse("the file has only blanks"),
         [0x1f, 0x8b, ..] => refuse("the file is compressed with gzip"),
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => refuse("the file is UTF-16 text"),
-        [b'(', ..] => refuse("the file looks like an Ansys Fluent mesh"),
+        [b'(', ..] => Err(of_fluent(text)),
         [b'$', ..] => Ok(()),
         _ => refuse(&format!("the file starts with {}", quoted(text))),
     }
+}
+
+/// The refusal of a file of Fluent, the format that meshio takes for names that end in .msh.
+fn of_fluent(text: &[u8]) -> Fault {
+    let line = Cursor::new(text).line();
+    let is_of_meshio = line.windows(6).any(|word| word == b"meshio");
+    let (problem, advice) = if is_of_meshio {
+        (
+            "the file is a Fluent (ANSYS) mesh, which meshio writes where a name ends in .msh",
+            "write it again with `--output-format gmsh22`, in Python file_format=\"gmsh22\"; this file holds no groups, and `meshio convert \
+             --input-format ansys FILE.msh FILE.vtu` turns it into one that is read",
+        )
+    } else {
+        (
+            "the file is a Fluent (ANSYS) mesh, which only has faces of cells",
+            "export the mesh in a format that is read, such as .inp of Abaqus, from the program that made it",
+        )
+    };
+    Fault::unsupported(0, problem, advice)
 }
 
 /// Reads the rest of the `$MeshFormat` section. `bare_four` is the meaning of version `4` in a binary file, whose data

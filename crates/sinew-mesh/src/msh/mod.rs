@@ -13,7 +13,7 @@
 //! | version `2` or `2.0` | as 2.2; names of groups may lack the dimension, and get those of the cells with their tag |
 //! | version `4` | 4.0 if the first line of `$Nodes` has two numbers, 4.1 if four; in binary files, what can be read |
 //! | totals or tag ranges in a version 4 header disagree with the blocks | believes the blocks, warns |
-//! | a node row occurs twice | the same coordinates: warns, keeps one; others: refuses |
+//! | a node row occurs twice | the same coordinates, or apart by 1e-9 of the mesh's extent: warns, keeps the first; others: refuses |
 //! | `$Nodes` or `$Elements` occurs again | rows seen before merge if identical, else refuses; new rows are added |
 //! | an element tag occurs twice in one section | keeps both, warns |
 //! | the same volume cell is written once per physical group | keeps all, warns with the count |
@@ -25,7 +25,7 @@
 //! | `$MeshFormat` occurs again (gmsh appends data so) | accepts it if it is the same, else refuses |
 //! | a data row for a tag that the mesh does not have | skips the row, warns |
 //! | points or cells without a data row | NaN, warns |
-//! | data rows spelled `np.float64(0.5)` (meshio with NumPy 2) | reads the number, warns |
+//! | numbers spelled `np.float64(0.5)`, or with another name (meshio with NumPy 2) | reads the number; in data rows, warns |
 //! | data for a small part of the mesh whose rest would take many times the file's size | refuses |
 //! | data rows counting from 1 for elements counting from 0 (meshio's 4.0) | row 1 is for element 0, warns |
 //! | no cell has a group, but there is a data field `gmsh:physical` (meshio's 4.0) | the field gives the groups, warns |
@@ -37,6 +37,8 @@
 //! | Fortran exponents (`1D-3`), `nan`, `inf`, `1e999` | refuses |
 //! | a name that is not UTF-8 | replaces the bad bytes, warns |
 //! | a name with quotes inside | takes the text between the first and the last quote |
+//! | a name with blanks before or behind it | leaves them out, so that groups match |
+//! | a name that follows its tag without a blank (`3 1"liver"`) | reads both |
 //! | a UTF-8 byte order mark | skips it |
 //! | `$MeshFormat` and the version on one line (SOFA's files) | reads it |
 

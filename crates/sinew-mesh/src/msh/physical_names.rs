@@ -53,7 +53,7 @@ fn read_row(
             token.offset,
         )?)
     };
-    let tag_token = cursor.token("the tag")?;
+    let tag_token = number_before_name(cursor, "the tag")?;
     let tag = number::signed(tag_token, "the tag")?;
     if tag < 0 {
         return Err(Fault::new(
@@ -99,12 +99,30 @@ fn read_row(
 /// Whether a name follows the first number of this row, rather than a second number.
 fn is_tag_and_name(cursor: &Cursor<'_>) -> bool {
     let mut ahead = cursor.clone();
-    let is_number = ahead.token("the tag").is_ok();
+    let is_number = number_before_name(&mut ahead, "the tag").is_ok();
     ahead.skip_blanks();
     is_number && ahead.rest().starts_with(b"\"")
 }
 
-/// The text between the first and the last quote of this line.
+/// The next token, which ends before a name that follows it without a blank.
+fn number_before_name<'a>(cursor: &mut Cursor<'a>, what: &str) -> Result<Token<'a>, Fault> {
+    let mut ahead = cursor.clone();
+    let token = ahead.token(what)?;
+    let length = token.text.iter().position(|&byte| byte == b'"');
+    match length.filter(|&length| length > 0) {
+        None => {
+            *cursor = ahead;
+            Ok(token)
+        }
+        Some(length) => {
+            cursor.skip_blanks();
+            let text = cursor.take(length).unwrap_or_default();
+            Ok(Token { text, ..token })
+        }
+    }
+}
+
+/// The text between the first and the last quote of this line, without blanks around it.
 fn quoted_text<'a>(cursor: &mut Cursor<'a>) -> Result<Token<'a>, Fault> {
     let before = cursor.offset();
     let rest = cursor.rest();
@@ -125,10 +143,13 @@ fn quoted_text<'a>(cursor: &mut Cursor<'a>) -> Result<Token<'a>, Fault> {
     let name = line.get(first + 1..last);
     let leading = rest.iter().position(is_quote).unwrap_or(0);
     match name {
-        Some(name) if first == 0 && name.len() <= LONGEST => Ok(Token {
-            text: name,
-            offset: before + leading + 1,
-        }),
+        Some(name) if first == 0 && name.len() <= LONGEST => {
+            let blanks = name.len() - name.trim_ascii_start().len();
+            Ok(Token {
+                text: name.trim_ascii(),
+                offset: before + leading + 1 + blanks,
+            })
+        }
         Some(name) if first == 0 => {
             let problem = format!("the name has {} bytes", name.len());
             Err(Fault::new(before, problem, format!("at most {LONGEST}")))

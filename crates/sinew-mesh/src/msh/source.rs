@@ -172,38 +172,29 @@ impl Record {
 /// Numbers written as text, separated by blanks or line breaks.
 pub(super) struct Text<'c, 'a> {
     cursor: &'c mut Cursor<'a>,
-    reprs: Reprs,
-}
-
-/// Treatment of numbers that are spelled as Python shows those of NumPy 2: `np.float64(0.5)`.
-enum Reprs {
-    Refuse,
-    /// They are read. Holds the offset of the first one, once there is one.
-    Accept(Option<usize>),
+    first_of_numpy: Option<usize>,
 }
 
 impl<'c, 'a> Text<'c, 'a> {
     pub(super) fn new(cursor: &'c mut Cursor<'a>) -> Text<'c, 'a> {
         Text {
             cursor,
-            reprs: Reprs::Refuse,
+            first_of_numpy: None,
         }
     }
 
-    /// Text in which numbers may also be spelled `np.float64(0.5)`.
-    pub(super) fn accepting_reprs(cursor: &'c mut Cursor<'a>) -> Text<'c, 'a> {
-        Text {
-            cursor,
-            reprs: Reprs::Accept(None),
-        }
+    /// The offset of the first number that is spelled as Python shows those of NumPy 2, if there is one: `np.float64(0.5)`.
+    pub(super) fn first_of_numpy(&self) -> Option<usize> {
+        self.first_of_numpy
     }
 
-    /// The offset of the first number that is spelled as Python shows it, if there is one.
-    pub(super) fn first_repr(&self) -> Option<usize> {
-        match self.reprs {
-            Reprs::Accept(first) => first,
-            Reprs::Refuse => None,
+    #[inline]
+    fn token(&mut self, what: &str) -> Result<Token<'a>, Fault> {
+        let token = self.cursor.token(what)?;
+        if token.text.starts_with(number::NUMPY) {
+            self.first_of_numpy.get_or_insert(token.offset);
         }
+        Ok(token)
     }
 }
 
@@ -223,32 +214,25 @@ impl Source for Text<'_, '_> {
             }
             *self.cursor = start;
         }
-        number::signed(self.cursor.token(what)?, what)
+        number::signed(self.token(what)?, what)
     }
 
     #[inline]
     fn size(&mut self, what: &str) -> Result<u64, Fault> {
         match self.cursor.plain_number() {
             Some(number) => Ok(number),
-            None => number::unsigned(self.cursor.token(what)?, what),
+            None => number::unsigned(self.token(what)?, what),
         }
     }
 
     #[inline]
     fn double(&mut self, what: &str) -> Result<f64, Fault> {
-        let token = self.cursor.token(what)?;
-        if let Reprs::Accept(first) = &mut self.reprs
-            && let Some(text) = number::inside_repr(token.text)
-        {
-            first.get_or_insert(token.offset);
-            return number::double(Token { text, ..token }, what);
-        }
-        number::double(token, what)
+        number::double(self.token(what)?, what)
     }
 
     #[inline]
     fn finite(&mut self, what: &str) -> Result<f64, Fault> {
-        let token = self.cursor.token(what)?;
+        let token = self.token(what)?;
         match number::double(token, what)? {
             value if value.is_finite() => Ok(value),
             value => Err(not_finite(token.offset, what, value)),

@@ -1,11 +1,11 @@
-//! Numbers as text.
+//! Numbers as text, also as Python shows those of NumPy 2: `np.float64(0.5)`.
 
 use super::cursor::{Token, quoted};
 use super::fault::Fault;
 
 /// A count or tag: decimal digits only, so that `-1`, `3.5` and numbers beyond 64 bits are refused, not misread.
 pub(crate) fn unsigned(token: Token<'_>, what: &str) -> Result<u64, Fault> {
-    let digits = token.text;
+    let digits = without_numpy(token.text);
     let value = digits.iter().try_fold(0u64, |value, byte| {
         let digit = byte.is_ascii_digit().then(|| u64::from(byte - b'0'))?;
         value.checked_mul(10)?.checked_add(digit)
@@ -22,16 +22,14 @@ pub(crate) fn unsigned(token: Token<'_>, what: &str) -> Result<u64, Fault> {
 
 /// A signed number of 32 bits.
 pub(crate) fn signed(token: Token<'_>, what: &str) -> Result<i32, Fault> {
-    std::str::from_utf8(token.text)
-        .ok()
+    text_of(token)
         .and_then(|text| text.parse().ok())
         .ok_or_else(|| wrong(token, what, "a whole number of at most 32 bits"))
 }
 
 /// A signed number of 64 bits; a larger one becomes the largest.
 pub(crate) fn signed_long(token: Token<'_>, what: &str) -> Result<i64, Fault> {
-    let text = str::from_utf8(token.text).ok();
-    let number = text.and_then(|text| {
+    let number = text_of(token).and_then(|text| {
         let unsigned = || text.parse::<u64>().ok().map(|_| i64::MAX);
         text.parse().ok().or_else(unsigned)
     });
@@ -40,8 +38,7 @@ pub(crate) fn signed_long(token: Token<'_>, what: &str) -> Result<i64, Fault> {
 
 /// A floating-point number; may be infinite or not a number.
 pub(crate) fn double(token: Token<'_>, what: &str) -> Result<f64, Fault> {
-    std::str::from_utf8(token.text)
-        .ok()
+    text_of(token)
         .and_then(|text| text.parse().ok())
         .ok_or_else(|| {
             let is_fortran = token.text.iter().any(|byte| matches!(byte, b'd' | b'D'))
@@ -58,12 +55,24 @@ pub(crate) fn double(token: Token<'_>, what: &str) -> Result<f64, Fault> {
         })
 }
 
-/// The number inside `np.float64(...)` or a similar wrapper.
-pub(crate) fn inside_repr(text: &[u8]) -> Option<&[u8]> {
-    let call = text.strip_prefix(b"np.")?.strip_suffix(b")")?;
-    ["float64(", "float32(", "int64(", "int32("]
-        .iter()
-        .find_map(|name| call.strip_prefix(name.as_bytes()))
+/// The start of a number as Python shows those of NumPy 2.
+pub(crate) const NUMPY: &[u8] = b"np.";
+
+fn text_of(token: Token<'_>) -> Option<&str> {
+    std::str::from_utf8(without_numpy(token.text)).ok()
+}
+
+/// The text inside `np.NAME(...)`, or the whole text where it is no such call.
+#[inline]
+fn without_numpy(text: &[u8]) -> &[u8] {
+    let inside = || {
+        let call = text.strip_prefix(NUMPY)?.strip_suffix(b")")?;
+        let open = call.iter().position(|&byte| byte == b'(')?;
+        let (name, inside) = call.split_at_checked(open)?;
+        let is_name = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+        (!name.is_empty() && name.iter().all(is_name)).then(|| inside.get(1..))?
+    };
+    inside().unwrap_or(text)
 }
 
 fn wrong(token: Token<'_>, what: &str, expected: &str) -> Fault {
@@ -107,6 +116,38 @@ mod tests {
         }
         assert!(double(token("-0"), "x").is_ok_and(f64::is_sign_negative));
         for spelling in ["", ".", "1D-3", "1,5", "0x10", "1e", "--1", "1_000", "1f"] {
+            assert!(double(token(spelling), "x").is_err(), "{spelling}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_any_type_of_numpy_are_read() {
+        for name in [
+            "float64",
+            "float32",
+            "float16",
+            "longdouble",
+            "uint8",
+            "int_",
+        ] {
+            let spelling = format!("np.{name}(-2)");
+            assert_eq!(double(token(&spelling), "x").ok(), Some(-2.0), "{spelling}");
+            assert_eq!(signed(token(&spelling), "n").ok(), Some(-2), "{spelling}");
+            assert_eq!(signed_long(token(&spelling), "n").ok(), Some(-2));
+            assert!(unsigned(token(&spelling), "n").is_err(), "{spelling}");
+        }
+        assert_eq!(unsigned(token("np.uint64(7)"), "n").ok(), Some(7));
+        assert!(double(token("np.float64(nan)"), "x").is_ok_and(f64::is_nan));
+        for spelling in [
+            "np.float64(1",
+            "np.float641)",
+            "np.(1)",
+            "np.float64()",
+            "np.a(np.b(1))",
+            "np.a.b(1)",
+            "float64(1)",
+            "np.float64(1)2",
+        ] {
             assert!(double(token(spelling), "x").is_err(), "{spelling}");
         }
     }

@@ -1,5 +1,8 @@
 //! Reasons why a mesh cannot be simulated.
 
+use std::path::Path;
+
+use crate::advice::{PAGE, on_surface, quoted};
 use crate::cell_type::CellType;
 
 /// A mesh cannot be simulated.
@@ -11,6 +14,8 @@ pub enum TetMeshError {
     NoTetrahedra {
         /// The cells that there are, as text.
         found: String,
+        /// Whether there are cells of a surface.
+        is_surface: bool,
     },
     /// There are cells of a type that cannot be simulated yet.
     #[error(
@@ -45,8 +50,64 @@ pub enum TetMeshError {
     },
 }
 
+impl TetMeshError {
+    /// Advice on the way to tetrahedra, if there is one; `file` is the mesh file.
+    #[must_use]
+    pub fn advice(&self, file: &Path) -> Option<String> {
+        use CellType::{Hexahedron, Pyramid, Quad, Wedge};
+        match self {
+            TetMeshError::NoTetrahedra {
+                is_surface: true, ..
+            } => Some(on_surface()),
+            TetMeshError::UnsupportedCells { kind, .. }
+                if matches!(kind.linear(), Quad | Hexahedron | Wedge | Pyramid) =>
+            {
+                Some(format!(
+                    "`sinew mesh convert {} whole.vtu && python3 -c \"import pyvista; \
+                     pyvista.read('whole.vtu').triangulate().save('tets.vtu')\"` (pip install pyvista) splits them into tetrahedra; {PAGE} \
+                     does so with groups of surfaces",
+                    quoted(file)
+                ))
+            }
+            _ => None,
+        }
+    }
+}
+
 fn up_to(nodes: usize) -> String {
     nodes
         .checked_sub(1)
         .map_or_else(String::new, |last| format!(" (0..={last})"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hexahedra_wedges_and_pyramids_come_with_the_command_that_splits_them() {
+        let advice = |kind| {
+            let error = TetMeshError::UnsupportedCells {
+                kind,
+                count: 1,
+                element_tag: 1,
+            };
+            error.advice(Path::new("my liver.msh"))
+        };
+        for kind in [
+            CellType::Hexahedron,
+            CellType::Wedge15,
+            CellType::Pyramid,
+            CellType::Quad,
+        ] {
+            let said = advice(kind).unwrap_or_default();
+            assert!(
+                said.starts_with("`sinew mesh convert 'my liver.msh' whole.vtu && python3"),
+                "{said}"
+            );
+        }
+        for kind in [CellType::Tetra10, CellType::Triangle6, CellType::Line3] {
+            assert_eq!(advice(kind), None, "{kind}");
+        }
+    }
 }

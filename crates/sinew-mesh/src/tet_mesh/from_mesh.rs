@@ -34,6 +34,10 @@ impl Mesh {
         if tets.nodes.is_empty() {
             return Err(TetMeshError::NoTetrahedra {
                 found: cell_counts(self),
+                is_surface: self
+                    .cells
+                    .iter()
+                    .any(|block| block.kind.dim() == 2 && !block.is_empty()),
             });
         }
         refuse_unsupported_cells(self, is_in_a_group)?;

@@ -85,6 +85,7 @@ impl TetMesh {
         if tets.is_empty() {
             return Err(TetMeshError::NoTetrahedra {
                 found: "no cells".to_owned(),
+                is_surface: false,
             });
         }
         for (tag, tet) in (1..).zip(&tets) {

@@ -1,5 +1,7 @@
 //! Hints at what to do about a fault.
 
+use std::path::Path;
+
 use sinew_core::OptionError;
 use sinew_mesh::{CellType, TetMeshError};
 
@@ -31,6 +33,7 @@ pub(super) fn following_from(fault: &Fault) -> Option<String> {
                     .to_owned(),
             )
         }
+        Fault::Tetrahedra(error) => error.advice(Path::new("FILE")),
         Fault::Tool(ToolFault::Inside { .. }) => Some(
             "move it away, or say starts_inside = \"push\": the first step pushes the tissue out"
                 .to_owned(),

@@ -2,7 +2,7 @@
 
 use std::env::var_os;
 use std::io::{self, IsTerminal, stderr};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
@@ -411,14 +411,9 @@ impl Failure {
             complain(&format!("help: {advice}"));
         }
         if let Self::Tetrahedra { mesh, source } = self
-            && let TetMeshError::UnsupportedCells { kind, .. } = source
-            && kind.linear() == CellType::Tetra
+            && let Some(advice) = way_to_tetrahedra(mesh, source)
         {
-            let mesh = mesh.display();
-            complain(&format!(
-                "help: `sinew mesh convert {mesh} OUTPUT --order linear` takes cells by their corners; in a scene, \
-                 `order = \"linear\"` in [mesh] does"
-            ));
+            complain(&format!("help: {advice}"));
         }
         if let Self::Scene(error) = self
             && let Some(report) = excerpt(error)
@@ -426,6 +421,20 @@ impl Failure {
             complain(&report);
         }
         ExitCode::from(self.exit_code())
+    }
+}
+
+/// Advice on the way from a mesh to one of tetrahedra with four nodes.
+fn way_to_tetrahedra(mesh: &Path, error: &TetMeshError) -> Option<String> {
+    match error {
+        TetMeshError::UnsupportedCells { kind, .. } if kind.linear() == CellType::Tetra => {
+            let mesh = mesh.display();
+            Some(format!(
+                "`sinew mesh convert {mesh} OUTPUT --order linear` takes cells by their corners; in a scene, `order = \"linear\"` \
+                 in [mesh] does"
+            ))
+        }
+        error => error.advice(mesh),
     }
 }
 

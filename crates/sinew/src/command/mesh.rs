@@ -484,6 +484,9 @@ impl<'a> MeshOutput<'a> {
             is_vtu,
             style,
         } = self;
+        if !is_vtu && style.version == Version::V22 {
+            warn_of_copies(path, mesh);
+        }
         let mut bytes = Vec::new();
         if is_vtu {
             let encoding = if style.ascii {
@@ -513,6 +516,24 @@ impl<'a> MeshOutput<'a> {
         let _ = force.write(destination, &bytes)?;
         voice.say(&format!("{}: {facts}{} bytes", path.display(), bytes.len()))?;
         Ok(())
+    }
+}
+
+/// Warns of cells in several groups, of which version 2.2 has a copy for each of them.
+fn warn_of_copies(path: &Path, mesh: &Mesh) {
+    let groups = mesh
+        .cells
+        .iter()
+        .flat_map(|block| (0..block.len()).map(|cell| block.physical.of(cell).len()));
+    let (cells, rows) = groups
+        .filter(|&groups| groups > 1)
+        .fold((0, 0), |(cells, rows), groups| (cells + 1, rows + groups));
+    if cells > 0 {
+        complain(&format!(
+            "warning: {}: {cells} cells are in several groups and written {rows} times, once for each group, as version 2.2 \
+             knows one group a cell; a program that does not merge them has such cells twice, and --version 4.1 writes each once",
+            path.display()
+        ));
     }
 }
 

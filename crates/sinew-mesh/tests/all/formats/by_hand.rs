@@ -1,6 +1,8 @@
 //! The mesh of the files under `data/formats`, stated by hand.
 
-use super::{cell_data, fixture, point_data, rows};
+use sinew_mesh::MeshFormat;
+
+use super::{cell_data, fixture, point_data, read, rows};
 
 const POINTS: [[f64; 3]; 5] = [
     [0.0, 0.0, 0.0],
@@ -79,4 +81,57 @@ fn data_of_cells_and_points_come_into_the_mesh_of_a_simulation() {
     assert_eq!(tissue.data("labels").unwrap().values, [1.0, 2.0]);
     assert_eq!(tissue.data("young").unwrap().values, [1000.0, 2500.5]);
     assert_eq!(tissue.node_data[0].values, [1.0, 1.0, 2.0, 2.0, 3.0]);
+}
+
+#[test]
+fn numbers_as_numpy_shows_them_are_read_in_every_text_format() {
+    for (name, spellings) in [
+        (
+            "vtk-4.2-text.vtk",
+            [
+                ("2500.5", "np.float64(2500.5)"),
+                ("CELL_TYPES 3", "CELL_TYPES np.int64(3)"),
+            ],
+        ),
+        (
+            "vtk-5.1-text.vtk",
+            [
+                ("2500.5", "np.float32(2500.5)"),
+                ("CELL_DATA 3", "CELL_DATA np.int64(3)"),
+            ],
+        ),
+        (
+            "vtk-ascii.vtu",
+            [
+                ("1000 2500.5", "1000 np.longdouble(2500.5)"),
+                ("1000 np", "np.uint16(1000) np"),
+            ],
+        ),
+        (
+            "meshio.mesh",
+            [
+                ("\n1 2 3 4 1", "\n1 np.int32(2) 3 4 np.uint8(1)"),
+                ("Vertices\n5", "Vertices\nnp.int64(5)"),
+            ],
+        ),
+        (
+            "flat.inp",
+            [
+                ("5, 1.0, 1.0, 1.0", "5, np.float64(1.0), 1.0, 1.0"),
+                ("2, 2, 3, 4, 5", "2, np.int64(2), 3, 4, 5"),
+            ],
+        ),
+    ] {
+        let mut text = std::fs::read_to_string(super::path(name)).unwrap();
+        for (from, to) in spellings {
+            text = crate::common::with(&text, from, to);
+        }
+        let format = MeshFormat::of_path(name.as_ref()).unwrap();
+        // Places in warnings are others.
+        let [read, plain] = [read(&text, format), fixture(name)].map(|mut mesh| {
+            mesh.warnings.clear();
+            mesh
+        });
+        assert_eq!(read, plain, "{name}");
+    }
 }

@@ -1,6 +1,6 @@
 //! Valid files: what is read, what is warned about.
 
-use crate::common::{TWICE_22, TWO_REGIONS_41, messages, only_warning, place, read, with};
+use crate::common::{TWICE_22, TWO_REGIONS_41, messages, only_warning, place, read, refusal, with};
 use sinew_mesh::{CellSet, CellType, Entity, Mesh};
 
 /// The mesh without its warnings, to compare two files that differ in what they are warned about.
@@ -160,11 +160,14 @@ fn elements_may_stand_before_nodes_and_names_last() {
 
 #[test]
 fn unknown_sections_are_skipped_and_listed() {
-    let extra = "$Comments\nmade by hand\n$Nodes inside\n$EndComments\n";
+    let extra = "$Parametrizations\n0 1\n$EndParametrizations\n$Comments\nmade by hand\n$Nodes inside\n$EndComments\n";
     let unknown = "$Attributes\n1\n$EndNodes\n$EndAttributes\n";
     let text = format!("{extra}{TWO_REGIONS_41}{unknown}");
     let mesh = read(&text);
-    assert_eq!(mesh.skipped_sections, ["Comments", "Attributes"]);
+    assert_eq!(
+        mesh.skipped_sections,
+        ["Parametrizations", "Comments", "Attributes"]
+    );
     assert_eq!(
         only_warning(&mesh),
         format!(
@@ -242,6 +245,37 @@ fn identical_node_rows_merge() {
 }
 
 #[test]
+fn a_node_that_comes_again_apart_by_rounding_is_merged_and_farther_apart_refused() {
+    // The mesh is 5 wide: 4e-9 is within 1e-9 of that, 6e-9 is not.
+    let again = |x: &str| {
+        with(
+            TWO_REGIONS_41,
+            "\n5 5 5\n",
+            &format!("\n5 5 5\n2 8 0 1\n20\n{x} 0 0\n"),
+        )
+    };
+    let again = |x: &str| with(&again(x), "$Nodes\n3 6 7 50", "$Nodes\n4 7 7 50");
+    let text = again("1.000000004");
+    let mesh = read(&text);
+    let plain = read(TWO_REGIONS_41);
+    assert_eq!(mesh.points, plain.points);
+    assert_eq!(mesh.cells, plain.cells);
+    let row = place(&text, "20\n1.0");
+    let message = "$Nodes: rows that repeat an earlier node and were merged with it: 1 (first: tag 20); 1 of them differ from it by \
+                   rounding (first: tag 20, by 4.0e-9), and its coordinates count";
+    assert!(
+        messages(&mesh).contains(&format!("{row}: {message}")),
+        "{:?}",
+        mesh.warnings
+    );
+    let refused = refusal(again("1.000000006").as_bytes()).to_string();
+    assert!(
+        refused.contains("node tag 20 occurs again, with other coordinates"),
+        "{refused}"
+    );
+}
+
+#[test]
 fn repeated_sections_merge_what_is_identical_and_add_the_rest() {
     let more = "$Nodes\n2\n4 0 0 1\n5 1 1 1\n$EndNodes\n$Elements\n2\n1 2 2 1 5 1 3 2\n9 4 2 1 6 2 3 4 5\n$EndElements\n";
     let mesh = read(&format!("{TWICE_22}{more}"));
@@ -295,6 +329,27 @@ fn repeated_element_tags_are_kept_and_reported() {
     let mesh = read(&text);
     assert_eq!(mesh.cells[2].element_tags, [100]);
     insta::assert_snapshot!(messages(&mesh).join("\n"), @"$Elements: elements with the tag of another: 1 (first: tag 100); all are kept");
+}
+
+#[test]
+fn names_padded_or_joined_to_their_tag_are_those_of_plain_files() {
+    let plain = read(TWO_REGIONS_41);
+    for (from, to) in [
+        ("3 7 \"fat\"", "3 7\"fat\""),
+        ("3 7 \"fat\"", "3 7 \"fat  \""),
+        ("3 7 \"fat\"", "3 7\"\t fat \"  "),
+    ] {
+        let mesh = read(&with(TWO_REGIONS_41, from, to));
+        assert_eq!(mesh, plain, "{to}");
+    }
+    let version_20 = |row: &str| {
+        let text = with(TWICE_22, "2.2 0 8", "2.0 0 8");
+        with(&text, "3 2 \"stiff part\"", row)
+    };
+    let expected = read(&version_20("3 2 \"stiff part\""));
+    for row in ["2\"stiff part\"", "3 2\"stiff part \""] {
+        assert_eq!(read(&version_20(row)), expected, "{row}");
+    }
 }
 
 #[test]
@@ -433,11 +488,17 @@ mod data {
                 .message
                 .starts_with("numbers are written as np.float64")
         );
-        let text = with(TWO_REGIONS_41, "\n1 0 0\n", "\nnp.float64(1) 0 0\n");
-        assert!(
-            sinew_mesh::read_msh(text.as_bytes()).is_err(),
-            "coordinates are not spelled so"
+        let text = with(TWO_REGIONS_41, "\n1 0 0\n", "\nnp.float32(1) 0 0\n");
+        let text = with(&text, "\n5 5 5\n", "\n5 np.longdouble(5) 5\n");
+        let text = with(
+            &text,
+            "\n1 10 30 20\n",
+            "\n1 np.int64(10) np.uint8(30) 20\n",
         );
+        let mesh = read(&text);
+        let plain = read(TWO_REGIONS_41);
+        assert_eq!(mesh.points, plain.points);
+        assert_eq!(mesh.cells, plain.cells);
     }
 
     #[test]

@@ -57,12 +57,28 @@ fn a_file_of_vtk_with_a_damaged_head() {
 }
 
 #[test]
-fn a_surface() {
+fn a_surface_and_an_image() {
     insta::assert_snapshot!(refusal_of_named("skin.stl", "solid skin\n"), @r#"
-    <folder>/scene.toml:3: [mesh]: <folder>/skin.stl:1 (byte 0): the file starts with "solid skin\n"; expected a gmsh .msh file, starting with $MeshFormat or, in version 1, $NOD
-    help: a .stl file holds a surface without tetrahedra; a mesh generator such as gmsh, fTetWild or TetGen fills it with them
+    <folder>/scene.toml:3: [mesh]: <folder>/skin.stl: is a surface (STL); expected a mesh of tetrahedra, such as .msh, .vtu, .vtk, .mesh or .inp
+    help: gmsh fills a surface with tetrahedra and names its parts; https://github.com/sinew-sim/sinew/blob/main/docs/to-a-scene.md has the commands
+    "#);
+    insta::assert_snapshot!(refusal_of_named("liver.nii.gz", "\x1f"), @r#"
+    <folder>/scene.toml:3: [mesh]: <folder>/liver.nii.gz: is an image of voxels (NIfTI); expected a mesh of tetrahedra, such as .msh, .vtu, .vtk, .mesh or .inp
+    help: an image of labels becomes a mesh with a tissue for each label by SimpleITK, pyvista and pytetwild; https://github.com/sinew-sim/sinew/blob/main/docs/to-a-scene.md has the commands
     "#);
 }
+
+#[test]
+fn hexahedra() {
+    insta::assert_snapshot!(refusal(Some(HEXAHEDRON)), @r#"
+    <folder>/scene.toml:3: [mesh]: the mesh has 1 hexahedron cells (the first has tag 1); only 4-node tetrahedra, with 3-node triangles, 2-node lines and vertices as groups, can be simulated so far
+    help: `sinew mesh convert FILE whole.vtu && python3 -c "import pyvista; pyvista.read('whole.vtu').triangulate().save('tets.vtu')"` (pip install pyvista) splits them into tetrahedra; https://github.com/sinew-sim/sinew/blob/main/docs/to-a-scene.md does so with groups of surfaces
+    "#);
+}
+
+/// A cube of edge 1.
+const HEXAHEDRON: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n\
+5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n$EndNodes\n$Elements\n1\n1 5 2 1 1 1 2 3 4 5 6 7 8\n$EndElements\n";
 
 #[test]
 fn a_gmsh_file_under_another_name_is_read_as_one() {
@@ -140,7 +156,10 @@ fn a_node_that_is_no_number() {
 fn no_tetrahedra() {
     insta::assert_snapshot!(
         refusal(Some(ONE_TRIANGLE)),
-        @"<folder>/scene.toml:3: [mesh]: the mesh has no tetrahedra (it has 1 triangle); a simulation needs 4-node tetrahedra"
+        @r#"
+    <folder>/scene.toml:3: [mesh]: the mesh has no tetrahedra (it has 1 triangle); a simulation needs 4-node tetrahedra
+    help: gmsh fills a surface with tetrahedra and names its parts; https://github.com/sinew-sim/sinew/blob/main/docs/to-a-scene.md has the commands
+    "#
     );
 }
 

@@ -238,7 +238,7 @@ fn a_file_of_another_format_is_refused_with_the_command_that_converts_it() {
         let said = String::from_utf8(output.stderr).unwrap();
         let converted = directory.path().join("liver.msh");
         let help = format!(
-            "help: `meshio convert {} {} --output-format gmsh22` (pip install meshio) writes a .msh file",
+            "help: `meshio convert {} {} --output-format gmsh22` (pip install \"meshio[all]\") writes a .msh file",
             path.display(),
             converted.display()
         );
@@ -510,4 +510,37 @@ fn cells_of_second_order_are_refined_by_their_corners_as_the_refusal_says() {
         let expected = if command == "refine" { (8, 10) } else { (1, 4) };
         assert_eq!((mesh.tets.len(), mesh.points.len()), expected);
     }
+}
+
+/// A tetrahedron in two groups and one in a single one.
+const IN_TWO_GROUPS: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 2\n1 0 0 0 1 1 1 2 1 2 0\n\
+                             2 0 0 0 1 1 1 1 1 0\n$EndEntities\n$Nodes\n1 5 1 5\n3 1 0 5\n1\n2\n3\n4\n5\n0 0 0\n1 0 0\n\
+                             0 1 0\n0 0 1\n1 1 1\n$EndNodes\n$Elements\n2 2 1 2\n3 1 4 1\n1 1 2 3 4\n3 2 4 1\n\
+                             2 2 3 4 5\n$EndElements\n";
+
+#[test]
+fn copies_of_cells_in_version_22_are_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    std::fs::write(path("a.msh"), IN_TWO_GROUPS).unwrap();
+    let said = |arguments: &[&str]| {
+        let output = mesh(arguments);
+        assert_eq!(output.status.code(), Some(0));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let warning = format!(
+        "warning: {}: 1 cells are in several groups and written 2 times, once for each group, as version 2.2 knows one group a \
+         cell; a program that does not merge them has such cells twice, and --version 4.1 writes each once\n",
+        path("b.msh")
+    );
+    let from = path("a.msh");
+    assert_eq!(
+        said(&["convert", &from, &path("b.msh"), "--version", "2.2"]),
+        warning
+    );
+    assert_eq!(said(&["convert", &from, &path("c.msh")]), "");
+    assert_eq!(
+        said(&["convert", &from, &path("c.vtu"), "--version", "2.2"]),
+        ""
+    );
 }

@@ -5,6 +5,7 @@ mod converge;
 #[cfg(all(unix, feature = "live"))]
 mod live;
 mod mesh;
+mod mesh_refusals;
 mod new;
 #[cfg(unix)]
 mod outputs;
