@@ -30,9 +30,6 @@ const CONTENT: [&str; 8] = [
     "scenes",
 ];
 
-/// The licences of all that the command links.
-const NOTICES: &str = "THIRD-PARTY-LICENSES.txt";
-
 const README: &str = include_str!("dist/README.md");
 
 /// The target of the archive.
@@ -58,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let needs = needs::of(&program, target)?;
     gather(&folder, &program, &readme(target, &needs))?;
     let (notices, packages) = notices::of(target, flags(target).is_some())?;
-    fs::write(folder.join(NOTICES), notices).map_err(Failure::chore)?;
+    fs::write(folder.join(notices::NAME), notices).map_err(Failure::chore)?;
     let archive = pack(&dist, &name)?;
     if target == host {
         trial::run(&archive, &name)?;

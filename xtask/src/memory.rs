@@ -49,45 +49,77 @@ fn succeeds(command: &mut Command) -> bool {
     command.output().is_ok_and(|output| output.status.success())
 }
 
-/// Runs the tests of sweeps under valgrind.
+/// Tests of the whole workspace by the beginnings of their names, with the source of their program: the machines, which move bodies by the force loops of
+/// `sinew-fem`, and their threads.
+const OF_WORKSPACE: (&str, [&str; 2]) = (
+    "crates/sinew-machines/tests/all/main.rs",
+    ["elements::kernels_", "threads::templates_"],
+);
+
+/// Runs the tests of sweeps, and of machines and their threads, under valgrind.
 pub(crate) fn under_valgrind() -> Result<(), Failure> {
     for (program, filter) in PROGRAMS {
-        let build = Command::new(env!("CARGO"))
-            .args(TESTS)
-            .args(program)
-            .args(["--no-run", "--message-format=json"])
-            .current_dir(root())
-            .output()
-            .map_err(Failure::chore)?;
-        if !build.status.success() {
-            let said = String::from_utf8_lossy(&build.stderr).into_owned();
-            return Err(Failure::Chore(said));
-        }
-        for binary in binaries(&String::from_utf8_lossy(&build.stdout)) {
-            say(&format!("== valgrind {} {filter}", binary.display()))?;
-            let mut valgrind = Command::new("valgrind");
-            // Small bodies, as under Miri; no AVX-512, which it reports as missing by itself.
-            valgrind
-                .env("SINEW_SMALL_TESTS", "1")
-                .args(["--quiet", "--error-exitcode=1", "--leak-check=no"])
-                .arg(&binary)
-                .args(["--test-threads=1", filter])
-                .current_dir(root());
-            let status = valgrind.status().map_err(Failure::chore)?;
-            if !status.success() {
-                return Err(Failure::Chore(format!("valgrind: {status}")));
-            }
+        let built = built(&[&TESTS[..], program].concat())?;
+        watch(&binaries(&built, ""), filter)?;
+    }
+    let (source, filters) = OF_WORKSPACE;
+    // As the step of all tests builds it.
+    let built = built(&["test", "--workspace"])?;
+    let binaries = binaries(&built, source);
+    if binaries.is_empty() {
+        return Err(Failure::Chore(format!("no program of {source}")));
+    }
+    filters
+        .into_iter()
+        .try_for_each(|filter| watch(&binaries, filter))
+}
+
+/// Builds test programs; cargo's messages.
+fn built(arguments: &[&str]) -> Result<String, Failure> {
+    let build = Command::new(env!("CARGO"))
+        .args(arguments)
+        .args(["--no-run", "--message-format=json"])
+        .current_dir(root())
+        .output()
+        .map_err(Failure::chore)?;
+    match build.status.success() {
+        true => Ok(String::from_utf8_lossy(&build.stdout).into_owned()),
+        false => Err(Failure::Chore(
+            String::from_utf8_lossy(&build.stderr).into_owned(),
+        )),
+    }
+}
+
+/// Runs the tests of programs that have this in their names under valgrind.
+fn watch(binaries: &[PathBuf], filter: &str) -> Result<(), Failure> {
+    for binary in binaries {
+        say(&format!("== valgrind {} {filter}", binary.display()))?;
+        let mut valgrind = Command::new("valgrind");
+        // Small bodies, as under Miri; no AVX-512, which it reports as missing by itself.
+        valgrind
+            .env("SINEW_SMALL_TESTS", "1")
+            .args(["--quiet", "--error-exitcode=1", "--leak-check=no"])
+            .arg(binary)
+            .args(["--test-threads=1", filter])
+            .current_dir(root());
+        let status = valgrind.status().map_err(Failure::chore)?;
+        if !status.success() {
+            return Err(Failure::Chore(format!("valgrind: {status}")));
         }
     }
     Ok(())
 }
 
-/// The programs that a build made, of cargo's messages.
-fn binaries(messages: &str) -> Vec<PathBuf> {
+/// The programs that a build made of sources whose paths end like this, of cargo's messages.
+fn binaries(messages: &str, source: &str) -> Vec<PathBuf> {
     let messages = messages
         .lines()
         .filter_map(|line| serde_json::from_str(line).ok());
-    let executable = |message: serde_json::Value| Some(message["executable"].as_str()?.into());
+    let executable = |message: serde_json::Value| {
+        let of = message["target"]["src_path"].as_str().unwrap_or_default();
+        let executable = message["executable"].as_str()?;
+        of.ends_with(source).then(|| executable.into())
+    };
     messages.filter_map(executable).collect()
 }
 
@@ -119,7 +151,9 @@ mod tests {
     #[test]
     fn programs_are_found_among_messages() {
         let messages = "{\"reason\":\"a\",\"executable\":null}\nno JSON\n\
-                        {\"reason\":\"b\",\"executable\":\"/x/sweeps\"}\n";
-        assert_eq!(binaries(messages), [PathBuf::from("/x/sweeps")]);
+                        {\"reason\":\"b\",\"target\":{\"src_path\":\"/c/a.rs\"},\"executable\":\"/x/sweeps\"}\n";
+        assert_eq!(binaries(messages, ""), [PathBuf::from("/x/sweeps")]);
+        assert_eq!(binaries(messages, "c/a.rs").len(), 1);
+        assert!(binaries(messages, "c/b.rs").is_empty());
     }
 }

@@ -12,14 +12,11 @@ use crate::companion::Companion;
 use crate::error::RecordRunError;
 use crate::progress::Progress;
 use crate::recorder::Schedules;
-use crate::request::{Record, Request};
+use crate::request::{LOG, Record, Request};
 use crate::run_end::{Ended, RunEnd};
 use crate::run_folder::{Beginning, End, RunFolder};
 use crate::stepping::Stepping;
 use crate::summary::CutRecord;
-
-/// The log in the folder.
-pub(crate) const LOG: &str = "session.log";
 
 impl RunFolder {
     /// Repeats a session by its log and leaves in a folder at `path` what a run leaves there: the motion since the last reset, whose steps are counted from

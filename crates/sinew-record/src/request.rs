@@ -15,6 +15,9 @@ pub(crate) const NAME: &str = "run.json";
 /// The text of the scene.
 pub(crate) const SCENE: &str = "scene.toml";
 
+/// The log of a session that was repeated.
+pub(crate) const LOG: &str = "session.log";
+
 /// Version of the files in a folder.
 const VERSION: u32 = 1;
 

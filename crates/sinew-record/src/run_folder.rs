@@ -22,7 +22,6 @@ use crate::frames;
 use crate::pace::Pace;
 use crate::progress::Progress;
 use crate::recorder::{RunRecorder, Schedules, Tables};
-use crate::replay;
 use crate::report;
 use crate::request::{self, Record, Request};
 use crate::run_end::{Ended, RunEnd};
@@ -120,7 +119,7 @@ impl RunFolder {
         let holds = |name: &str| path.join(name).try_exists().unwrap_or(true);
         // A session that was not recorded to its end may have its commands nowhere else.
         let is_resumable =
-            tenant == Tenant::Unfinished && (holds(checkpoint::NAME) || holds(replay::LOG));
+            tenant == Tenant::Unfinished && (holds(checkpoint::NAME) || holds(request::LOG));
         match is_resumable && !again {
             true => Err(RecordRunError::Resumable {
                 folder: path.to_owned(),

@@ -51,11 +51,10 @@ mod schedule;
 mod simulation;
 mod source;
 
-pub use error::{Fault, NoStableStep, SceneError, StableStepError};
+pub use error::{Fault, NoStableStep, OverrideError, SceneError, StableStepError};
 pub use formula::{Formula, FormulaError};
 pub use options_json::options_json;
 pub use overlap::{Overlap, OverlapWatch};
-pub use overrides::OverrideError;
 pub use plan::{Plan, PlanSection};
 pub use probe_csv::ProbeCsv;
 pub use probe_rows::{ProbeRowError, ProbeRows};

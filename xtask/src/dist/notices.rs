@@ -14,6 +14,9 @@ use crate::repository::root;
 /// Beginnings of the names of files in which licences and notices stand.
 const FILES: [&str; 5] = ["license", "licence", "copying", "copyright", "notice"];
 
+/// Their file in the archive.
+pub(super) const NAME: &str = "THIRD-PARTY-LICENSES.txt";
+
 /// The C library, where it is part of the command.
 const LIBC: &str = "the GNU C library, linked statically: LGPL-2.1-or-later, https://www.gnu.org/software/libc; the sources of sinew build the command with any \
                     other version of it\n";

@@ -31,7 +31,12 @@ fn try_in(folder: &Path, archive: &Path, name: &str) -> Result<(), Failure> {
             .current_dir(folder),
     )?;
     let place = folder.join(name);
-    for file in ["README.md", "LICENSE-MIT", "LICENSE-APACHE", super::NOTICES] {
+    for file in [
+        "README.md",
+        "LICENSE-MIT",
+        "LICENSE-APACHE",
+        super::notices::NAME,
+    ] {
         if !place.join(file).is_file() {
             return Err(Failure::Chore(format!("the archive has no {file}")));
         }

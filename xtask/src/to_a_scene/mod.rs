@@ -11,8 +11,8 @@ use sinew_bench::output::say;
 
 use self::page::{Block, Page};
 use self::place::Place;
-use crate::dist::finish;
 use crate::failure::Failure;
+use crate::program;
 use crate::python::{Packages, Python};
 use crate::repository::root;
 
@@ -43,11 +43,7 @@ pub(crate) fn python() -> Result<Python, Failure> {
 pub(crate) fn run_with(python: &Python) -> Result<(), Failure> {
     let text = fs::read_to_string(root().join("docs/to-a-scene.md")).map_err(Failure::chore)?;
     let page = Page::of(&text).map_err(Failure::Chore)?;
-    finish(
-        std::process::Command::new(env!("CARGO"))
-            .args(["build", "--release", "--quiet", "-p", "sinew"])
-            .current_dir(root()),
-    )?;
+    program::build()?;
     let place = Place::new(python)?;
     place.script("page_inputs.py", sinew_mesh::converted_extensions())?;
     for block in &page.blocks {

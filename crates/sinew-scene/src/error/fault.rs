@@ -1,9 +1,9 @@
 //! The kinds of mistakes in a scene.
 
 use super::no_step::NoStableStep;
+use super::override_error::OverrideError;
 use super::words::{did_you_mean, quoted, quoted_or_none, shortened};
 use crate::formula::FormulaError;
-use crate::overrides::OverrideError;
 
 /// Steps of a run, at most: whole numbers beyond are not told apart.
 pub(crate) const MOST_STEPS: f64 = 1.0 / f64::EPSILON;

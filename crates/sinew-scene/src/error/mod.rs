@@ -3,6 +3,7 @@
 mod fault;
 mod hint;
 mod no_step;
+mod override_error;
 mod words;
 
 use std::fmt;
@@ -13,6 +14,7 @@ use std::sync::Arc;
 pub use fault::Fault;
 pub(crate) use fault::MOST_STEPS;
 pub use no_step::{NoStableStep, StableStepError};
+pub use override_error::OverrideError;
 pub(crate) use words::shortened;
 
 use crate::source::SceneSource;

@@ -7,6 +7,7 @@ pub(crate) mod integrators;
 mod interruption;
 #[cfg(feature = "live")]
 pub(crate) mod live;
+mod memory_left;
 pub(crate) mod mesh;
 #[cfg(feature = "implicit")]
 pub(crate) mod modes;

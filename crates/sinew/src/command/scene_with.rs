@@ -9,6 +9,8 @@ use sinew_scene::output::complain;
 use sinew_scene::{Scene, TimeStep};
 
 use super::Failure;
+#[cfg(feature = "implicit")]
+use super::memory_left::memory_left;
 
 /// Values that the command line sets in a scene.
 #[derive(clap::Args)]
@@ -94,18 +96,23 @@ impl Values {
     }
 }
 
-/// Lets factors take as much memory as a scene says.
+/// Share of the memory left that a factor may take.
+#[cfg(feature = "implicit")]
+const SHARE: f64 = 0.9;
+
+/// Lets factors take as much memory as a scene says, or nine tenths of what is left.
+#[cfg(feature = "implicit")]
 pub(super) fn limit_memory(scene: &Scene) {
-    #[cfg(feature = "implicit")]
-    sinew_integrators::Memory::set_left(
-        scene
-            .settings()
-            .memory
-            .map(|megabytes| sinew_integrators::Memory::of((1e6 * megabytes) as u64)),
-    );
-    #[cfg(not(feature = "implicit"))]
-    let _ = scene;
+    use sinew_integrators::Memory;
+    let asked = scene.settings().memory.map(|megabytes| 1e6 * megabytes);
+    let left = || Some(SHARE * memory_left()? as f64);
+    let bytes = asked.or_else(left);
+    Memory::set_left(bytes.map(|bytes| Memory::of(bytes as u64)));
 }
+
+/// Without implicit methods there are no factors.
+#[cfg(not(feature = "implicit"))]
+pub(super) fn limit_memory(_: &Scene) {}
 
 /// The key of the scene that an option sets.
 fn key_of(option: &str, value: &str) -> String {

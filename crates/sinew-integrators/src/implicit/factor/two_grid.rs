@@ -23,6 +23,8 @@ const MOST_GROUPS: usize = 8000;
 pub(super) struct TwoGrid {
     group_of: Vec<u32>,
     coarse: BlockMatrix,
+    /// Masses of the coarse problem, which has none of its own.
+    no_mass: Vec<f64>,
     factor: Cholesky,
     /// Inverses of the blocks on the diagonal.
     inverses: Vec<f64>,
@@ -48,7 +50,7 @@ impl TwoGrid {
         let coarse = Pattern::from_elements(groups, pairs).map_err(|_| FactorError::TooLarge)?;
         let coarse = BlockMatrix::zeros(Arc::new(coarse), matrix.layers());
         let order = cell_order(coarse.pattern())?.order;
-        let factor = Cholesky::analyse(of(&coarse), &order)?;
+        let factor = Cholesky::analyse(of(&coarse, &[]), &order)?;
         let layers = matrix.layers().count();
         Ok(Self {
             group_of,
@@ -56,6 +58,7 @@ impl TwoGrid {
             inverses: vec![0.0; cells * layers * layers],
             residual: vec![0.0; cells * layers],
             coarse_vector: vec![0.0; groups * layers],
+            no_mass: vec![0.0; groups * layers],
             coarse,
         })
     }
@@ -77,7 +80,8 @@ impl TwoGrid {
                 }
             }
         }
-        self.factor.factorise(of(&self.coarse), Combination::STATIC)
+        let coarse = of(&self.coarse, &self.no_mass);
+        self.factor.factorise(coarse, Combination::STATIC)
     }
 
     /// `x = B b` with the preconditioner B.
@@ -139,9 +143,9 @@ impl TwoGrid {
     }
 }
 
-fn of(matrix: &BlockMatrix) -> Matrices<'_> {
+fn of<'a>(matrix: &'a BlockMatrix, mass: &'a [f64]) -> Matrices<'a> {
     Matrices {
-        mass: &[],
+        mass,
         stiffness: matrix,
         extra: None,
     }

@@ -6,6 +6,7 @@ use sinew_record::FolderSize;
 use sinew_scene::{Footprint, Simulation, Warning};
 
 use crate::command::Failure;
+use crate::command::memory_left::memory_left;
 use crate::command::run::LONG;
 
 /// Degrees of freedom from which on no matrix is factorised for a plan.
@@ -48,7 +49,7 @@ impl Cost {
         };
         Self {
             footprint,
-            factor: factor_of(simulation).filter(|_| factorises),
+            factor: factorises.then(|| factor_of(simulation)).flatten(),
             forecast,
             folder: FolderSize::of(simulation),
             duration: settings.duration,
@@ -149,7 +150,7 @@ impl Cost {
 
 /// Refuses what does not fit the memory that this computer has left, before it is built.
 pub(super) fn check_memory(footprint: &Footprint) -> Result<(), Failure> {
-    match available() {
+    match memory_left() {
         Some(available) if footprint.bytes as u64 > available => Err(Failure::Memory {
             needed: footprint.bytes as u64 / 1_000_000,
             available: available / 1_000_000,
@@ -182,14 +183,4 @@ fn factor_fits(bytes: u64) -> bool {
 #[cfg(not(feature = "implicit"))]
 fn factor_fits(_: u64) -> bool {
     true
-}
-
-/// Memory (bytes) that the system says it has left, where it says so.
-fn available() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text
-        .lines()
-        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let kilobytes: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
-    Some(1024 * kilobytes)
 }

@@ -2,6 +2,8 @@
 
 mod basics;
 mod converge;
+#[cfg(feature = "implicit")]
+mod factor_memory;
 #[cfg(all(unix, feature = "live"))]
 mod live;
 mod mesh;
