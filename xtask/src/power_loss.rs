@@ -52,6 +52,10 @@ impl Disk {
         quietly("mkfs.ext4", &["-q", "-F", &image_name])?;
         let disk = Self { image, place };
         disk.mount()?;
+        // Whoever may mount may still not be let to do this.
+        disk.lose_power()?;
+        disk.unmount()?;
+        disk.mount()?;
         Ok(disk)
     }
 

@@ -18,6 +18,7 @@ impl LoadCase {
     }
 
     /// Those by which places of supports act.
+    #[cfg(feature = "implicit")]
     pub(crate) fn of_places(operators: &LinearOperators) -> Vec<Self> {
         let is_place = |load: &&Load| matches!(load.ramp, Ramp::Position(_));
         Self::of_loads(operators, operators.loads().iter().filter(is_place))

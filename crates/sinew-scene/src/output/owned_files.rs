@@ -9,7 +9,7 @@ use super::error::OutputError;
 use super::growing_file::GrowingFile;
 use super::identity::Identity;
 use super::owned_folder::OwnedFolder;
-use super::target::Target;
+use super::target::{Target, folder_of};
 use super::whole_file::{WholeFile, sync_folder};
 
 impl OwnedFolder {
@@ -53,7 +53,8 @@ impl OwnedFolder {
         write(&path).map_err(|source| OutputError::failed(&path, source))
     }
 
-    /// Writes a file as a whole, which the disk surely has after [`OwnedFolder::secure`]: for many files that a checkpoint covers.
+    /// Writes a file as a whole, whose name the disk surely has after [`OwnedFolder::secure`]: for many files that a checkpoint covers. The disk has its content before
+    /// that; whoever writes beside a run does not keep it waiting.
     ///
     /// # Errors
     /// [`OutputError`]; a file that was there is then as it was.
@@ -69,29 +70,21 @@ impl OwnedFolder {
             file.finish_lightly()
         };
         write(&path).map_err(|source| OutputError::failed(&path, source))?;
-        let mut light = self.light.lock().unwrap_or_else(PoisonError::into_inner);
-        light.push(path);
+        let mut unnamed = self.unnamed.lock().unwrap_or_else(PoisonError::into_inner);
+        unnamed.insert(folder_of(&path).to_owned());
         Ok(())
     }
 
-    /// Makes sure that the disk has all that was written lightly, under its names.
+    /// Makes sure that the disk has the names of all that was written lightly.
     ///
     /// # Errors
-    /// [`OutputError`], also where one of the files is gone.
+    /// [`OutputError`].
     pub fn secure(&self) -> Result<(), OutputError> {
         self.check_identity()?;
-        let mut light = self.light.lock().unwrap_or_else(PoisonError::into_inner);
-        let paths = std::mem::take(&mut *light);
-        drop(light);
-        let mut folders = vec![self.path().to_owned()];
-        for path in &paths {
-            let synced = File::open(path).and_then(|file| file.sync_all());
-            synced.map_err(|source| OutputError::failed(path, source))?;
-            let folder = path.parent().unwrap_or(self.path());
-            if !folders.iter().any(|known| known == folder) {
-                folders.push(folder.to_owned());
-            }
-        }
+        let mut unnamed = self.unnamed.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut folders = std::mem::take(&mut *unnamed);
+        drop(unnamed);
+        folders.insert(self.path().to_owned());
         folders.iter().try_for_each(|folder| {
             sync_folder(folder).map_err(|source| OutputError::failed(folder, source))
         })

@@ -1,5 +1,6 @@
 //! Folders that belong to one result.
 
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind};
@@ -27,8 +28,8 @@ pub struct OwnedFolder {
     pub(super) inputs: Vec<Input>,
     /// The folder that was locked, which another may replace under its path.
     pub(super) identity: Option<Identity>,
-    /// Files that the disk may not have yet.
-    pub(super) light: Mutex<Vec<PathBuf>>,
+    /// Folders in it with names that the disk may not have yet.
+    pub(super) unnamed: Mutex<BTreeSet<PathBuf>>,
     /// Holds the lock.
     _lock: File,
 }
@@ -280,7 +281,7 @@ impl OwnedFolder {
             kind,
             inputs: Input::all(inputs),
             identity: Identity::of_open(&lock, path),
-            light: Mutex::default(),
+            unnamed: Mutex::default(),
             _lock: lock,
         })
     }

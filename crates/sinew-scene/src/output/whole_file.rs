@@ -34,20 +34,20 @@ impl WholeFile {
     /// Completes the file and gives it its name, replacing one of that name; then the disk has it under that name.
     pub(super) fn finish(self) -> io::Result<()> {
         let folder = folder_of(&self.path).to_owned();
-        self.complete(File::sync_all)?;
+        self.complete()?;
         sync_folder(&folder)
     }
 
-    /// As [`WholeFile::finish`], but the disk gets it when the system pleases.
+    /// As [`WholeFile::finish`], but the disk gets the name when the system pleases.
     pub(super) fn finish_lightly(self) -> io::Result<()> {
-        self.complete(|_| Ok(()))
+        self.complete()
     }
 
-    fn complete(mut self, secure: impl FnOnce(&File) -> io::Result<()>) -> io::Result<()> {
+    fn complete(mut self) -> io::Result<()> {
         if let Some(file) = self.file.take() {
             let written = file.into_inner().map_err(io::IntoInnerError::into_error);
             let named = written
-                .and_then(|file| secure(&file))
+                .and_then(|file| file.sync_all())
                 .and_then(|()| fs::rename(&self.temporary, &self.path));
             if named.is_err() {
                 // The first error is reported; usually there is nothing left to remove.

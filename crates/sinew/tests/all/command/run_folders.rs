@@ -465,25 +465,26 @@ fn a_folder_that_goes_while_a_run_writes_is_an_error() {
 fn what_others_did_to_files_that_a_run_goes_on_from_is_said() {
     let folder = Folder::new();
     killed(&folder);
-    let changes: [(&str, &dyn Fn(&mut Vec<u8>), &str); 4] = [
+    type Change = fn(&mut Vec<u8>);
+    let changes: [(&str, Change, &str); 4] = [
         (
             "fields/frame-00000.vtu",
-            &|bytes| bytes.truncate(bytes.len() / 2),
+            |bytes| bytes.truncate(bytes.len() / 2),
             "bytes and had",
         ),
         (
             "fields/frame-00000.vtu",
-            &|bytes| *bytes.last_mut().unwrap() ^= 1,
+            |bytes| *bytes.last_mut().unwrap() ^= 1,
             "its content is another",
         ),
         (
             "probes.csv",
-            &|bytes| bytes[20] ^= 1,
+            |bytes| bytes[20] ^= 1,
             "its content is another",
         ),
         (
             "energy.csv",
-            &|bytes| bytes.truncate(3),
+            |bytes| bytes.truncate(3),
             "3 bytes are left of",
         ),
     ];
