@@ -77,7 +77,7 @@ pub enum RecordRunError {
     },
     /// More results than a folder is meant to hold.
     #[error(
-        "the scene asks for {asked} {what}, and a folder holds {most} at most: make `{key}` in [output] rarer"
+        "the scene asks for {asked} {what}, and {most} are the most: make `{key}` in [output] rarer"
     )]
     TooMuch {
         /// Their number.

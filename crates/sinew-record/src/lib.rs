@@ -83,5 +83,5 @@ pub use modes::{ModesError, NaturalMode, check_modes_folder, natural_modes, writ
 pub use pace::Pace;
 pub use request::Request;
 pub use run_end::{Ended, RunEnd};
-pub use run_folder::RunFolder;
+pub use run_folder::{MOST_NUMBERS, RunFolder};
 pub use stepping::Stepping;

@@ -38,8 +38,8 @@ const KIND: &str = "run";
 /// Most frames of a folder: more are a mistake, and their list alone would be long.
 const MOST_FRAMES: usize = 100_000;
 
-/// Most numbers of its table of probes, about two gigabytes.
-const MOST_NUMBERS: usize = 100_000_000;
+/// Most numbers of a table, about two gigabytes.
+pub const MOST_NUMBERS: usize = 100_000_000;
 
 /// The folder of a run, open: nobody else writes into it.
 #[derive(Debug)]
@@ -102,7 +102,7 @@ pub(crate) struct End<'a> {
 
 impl RunFolder {
     /// Checks, before long work, that a run of this scene, or a replay of its session by a file with the log, may write into a folder at `path`. Changes
-    /// nothing.
+    /// nothing but what [`RunFolder::settle`] completes.
     ///
     /// # Errors
     /// [`RecordRunError::Output`] for a folder that holds other things, what is to be read among them, or cannot be written, and
@@ -115,6 +115,7 @@ impl RunFolder {
     ) -> Result<Tenant, RecordRunError> {
         let mut inputs = scene.input_files();
         inputs.extend(log.map(Path::to_owned));
+        Self::settle(path)?;
         let tenant = OwnedFolder::check(path, KIND, &inputs)?;
         let holds = |name: &str| path.join(name).try_exists().unwrap_or(true);
         // A session that was not recorded to its end may have its commands nowhere else.
@@ -126,6 +127,29 @@ impl RunFolder {
             }),
             false => Ok(tenant),
         }
+    }
+
+    /// Completes a folder whose run came to its end when it was killed before it said so; whether there is one.
+    ///
+    /// # Errors
+    /// [`RecordRunError::Output`].
+    pub fn settle(path: &Path) -> Result<bool, RecordRunError> {
+        let Ok(folder) = OwnedFolder::reopen(path, KIND) else {
+            return Ok(false);
+        };
+        let summary = folder.read(summary::NAME)?;
+        let summary: Option<serde_json::Value> =
+            summary.and_then(|summary| serde_json::from_slice(&summary).ok());
+        let Some(summary) = summary.filter(|_| matches!(folder.read(checkpoint::NAME), Ok(None)))
+        else {
+            return Ok(false);
+        };
+        if folder.is_unfinished()? {
+            folder.finish(summary["outcome"] == "finished")?;
+        } else {
+            folder.forget_kept()?;
+        }
+        Ok(true)
     }
 
     /// Makes the folder of a new run. The results of an earlier run in it are kept beside it, under its name with `.old`, until the new ones are complete.
@@ -156,9 +180,17 @@ impl RunFolder {
         let frames = schedules.fields.map_or(0, |fields| fields.count());
         let columns = ProbeRows::new(simulation).columns().len();
         let numbers = schedules.probes.count().saturating_mul(columns);
+        let supports = simulation.held_parts()?.len();
+        let energies = schedules.energy.count().saturating_mul(8 + 6 * supports);
         for (what, key, asked, most) in [
             ("frames of fields", "fields", frames, MOST_FRAMES),
             ("numbers in probes.csv", "probes", numbers, MOST_NUMBERS),
+            (
+                "numbers in tables of energy and reactions",
+                "energy",
+                energies,
+                MOST_NUMBERS,
+            ),
         ] {
             if asked > most {
                 return Err(RecordRunError::TooMuch {

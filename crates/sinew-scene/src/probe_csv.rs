@@ -1,13 +1,13 @@
 //! The motion of probes as a CSV file.
 
 use std::fs::File;
-use std::io::{self, ErrorKind, Read, Write};
+use std::io::{self, BufRead, BufReader, Write};
 use std::path::Path;
 
 use sinew_core::{Moment, RecordError, Recorder, Verdict};
 
 use crate::output::{Delivery, Output, OutputError};
-use crate::probe_rows::{BEGIN, ProbeRows};
+use crate::probe_rows::{BEGIN, ProbeRows, is_column};
 use crate::schedule::Schedule;
 
 /// Writes what probes write down after the steps of a [`Schedule`], in the columns of [`ProbeRows`]. Numbers are written so that reading
@@ -46,18 +46,38 @@ impl<'a> ProbeCsv<'a> {
         }
     }
 
-    /// Whether a file begins as such tables do.
+    /// Whether a file is such a table, or that of a run's folder, and nothing else.
     ///
     /// # Errors
     /// The system's reason for which it cannot be read.
     pub fn is_table(path: &Path) -> io::Result<bool> {
-        let mut begin = [0; BEGIN.len()];
-        let mut file = File::open(path)?;
-        match file.read_exact(&mut begin) {
-            Ok(()) => Ok(begin == *BEGIN.as_bytes()),
-            Err(error) if error.kind() == ErrorKind::UnexpectedEof => Ok(false),
-            Err(error) => Err(error),
+        let mut lines = BufReader::new(File::open(path)?).split(b'\n');
+        let mut columns = 0;
+        let mut rows = 0;
+        while let Some(line) = lines.next().transpose()? {
+            let Ok(line) = std::str::from_utf8(&line) else {
+                return Ok(false);
+            };
+            if columns == 0 {
+                if line.starts_with("# ") {
+                    continue;
+                }
+                let mut names = line.split(',');
+                if names.next() != Some(BEGIN) || !names.all(is_column) {
+                    return Ok(false);
+                }
+                columns = line.split(',').count();
+                continue;
+            }
+            let numbers = line.split(',');
+            let is_row = numbers.clone().count() == columns
+                && numbers.clone().all(|number| number.parse::<f64>().is_ok());
+            if !is_row {
+                return Ok(false);
+            }
+            rows += 1;
         }
+        Ok(rows > 0)
     }
 
     /// Goes on with the rows of another body, whose probes are the same.
@@ -201,6 +221,28 @@ mod tests {
         assert!(!path.exists(), "unfinished files have another name");
         assert_eq!(csv.finish().unwrap(), Delivery::Whole);
         assert!(ProbeCsv::is_table(&path).unwrap());
+        let own = fs::read_to_string(&path).unwrap();
+        for other in [
+            "t_s\n",
+            "t_s",
+            "t_s,x_m,y_m,z_m\n0.0,1.0,2.0,3.0\n",
+            "t_s,kinetic_J\n0.0,1.0\n",
+            "t_s,factor\n0.0,1.0\n",
+            &format!("{own}# mine\n"),
+            &format!("{own}1.0,2.0\n"),
+            &own.replace("tip_u_x_m", "mine"),
+        ] {
+            let foreign = folder.path().join("other.csv");
+            fs::write(&foreign, other).unwrap();
+            assert!(!ProbeCsv::is_table(&foreign).unwrap(), "{other}");
+        }
+        fs::write(
+            folder.path().join("other.csv"),
+            format!("# tip: node 1\n{own}"),
+        )
+        .unwrap();
+        assert!(ProbeCsv::is_table(&folder.path().join("other.csv")).unwrap());
+        fs::remove_file(folder.path().join("other.csv")).unwrap();
         assert_eq!(
             fs::read_to_string(&path).unwrap(),
             "t_s,tip_u_x_m,tip_u_y_m,tip_u_z_m,mass_u_m,mean_u_x_m,mean_u_y_m,mean_u_z_m\n\

@@ -11,6 +11,27 @@ use crate::simulation::{Probe, ProbeNode, Simulation};
 /// The first column's name: the time.
 pub(crate) const BEGIN: &str = "t_s";
 
+/// Whether a name is one of a probe's column.
+pub(crate) fn is_column(name: &str) -> bool {
+    const AXES: [&str; 6] = ["x", "y", "z", "xx", "yy", "zz"];
+    let of = |letter: &str, unit: &str| {
+        let Some(rest) = name.strip_suffix(unit) else {
+            return false;
+        };
+        let Some((probe, part)) = rest.rsplit_once(letter) else {
+            return false;
+        };
+        let part = part.trim_matches('_');
+        let is_part = AXES.contains(&part) || ["", "xy", "yz", "zx", "von_mises"].contains(&part);
+        !probe.is_empty() && is_part
+    };
+    of("_u_", "_m")
+        || of("_u", "_m")
+        || of("_v_", "_m_per_s")
+        || of("_v", "_m_per_s")
+        || of("_s_", "_Pa")
+}
+
 /// A reason for which a row cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

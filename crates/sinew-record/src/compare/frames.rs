@@ -11,6 +11,9 @@ use super::places;
 use crate::csv::SAME_TIME;
 use crate::frames::SERIES;
 
+/// The end of a frame's file.
+const END: &[u8] = b"</VTKFile>";
+
 /// Units of arrays; others are plain numbers.
 const UNITS: [(&str, &str); 8] = [
     ("displacement", "m"),
@@ -45,7 +48,7 @@ pub(super) fn compare(
             alone += 1;
             continue;
         };
-        let (frame, other) = (mesh(&one.join(file))?, mesh(&other.join(counterpart))?);
+        let (frame, other) = (mesh(one, file)?, mesh(other, counterpart)?);
         if frame.points.len() != other.points.len() {
             let (a, b) = (frame.points.len(), other.points.len());
             let reason = format!("fields: {a} and {b} nodes are not those of the same mesh");
@@ -233,7 +236,7 @@ fn arrays(frame: &Mesh) -> Vec<View<'_>> {
 /// Times (s) and files of the frames of a result.
 fn series(folder: &Path) -> Result<Vec<(f64, String)>, CompareError> {
     let path = folder.join(SERIES);
-    let text = String::from_utf8_lossy(&read(&path)?).into_owned();
+    let text = String::from_utf8_lossy(&read(folder, SERIES)?).into_owned();
     let mut frames = Vec::new();
     for line in text.lines().filter(|line| line.starts_with("<DataSet")) {
         let frame = attribute(line, "timestep").and_then(|t| t.parse().ok());
@@ -245,8 +248,12 @@ fn series(folder: &Path) -> Result<Vec<(f64, String)>, CompareError> {
 }
 
 /// A frame, read as a whole.
-fn mesh(path: &Path) -> Result<Mesh, CompareError> {
-    read_vtu(&read(path)?).map_err(|error| damaged(path, error.to_string()))
+fn mesh(folder: &Path, name: &str) -> Result<Mesh, CompareError> {
+    let (path, bytes) = (folder.join(name), read(folder, name)?);
+    if !bytes.trim_ascii_end().ends_with(END) {
+        return Err(damaged(&path, "it does not end as a frame does"));
+    }
+    read_vtu(&bytes).map_err(|error| damaged(&path, error.to_string()))
 }
 
 /// The value of an attribute of a tag.

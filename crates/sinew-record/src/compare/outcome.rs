@@ -1,6 +1,6 @@
 //! What a comparison finds, and why there is none.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// The largest difference between two results in one quantity.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,11 +94,22 @@ pub(super) fn relative(difference: f64, size: f64) -> f64 {
     }
 }
 
-pub(super) fn read(path: &Path) -> Result<Vec<u8>, CompareError> {
-    std::fs::read(path).map_err(|source| CompareError::Unreadable {
+/// A file of a result. No link leads to it, and its name not out of the folder: others may have made it.
+pub(super) fn read(folder: &Path, name: &str) -> Result<Vec<u8>, CompareError> {
+    let unreadable = |path: &Path, source| CompareError::Unreadable {
         path: path.to_owned(),
         source,
-    })
+    };
+    let mut path = folder.to_owned();
+    for part in Path::new(name).components() {
+        path.push(part);
+        let found = path.symlink_metadata();
+        let found = found.map_err(|source| unreadable(&path, source))?;
+        if !matches!(part, Component::Normal(_)) || found.is_symlink() {
+            return Err(damaged(&path, "it leads out of the folder"));
+        }
+    }
+    std::fs::read(&path).map_err(|source| unreadable(&path, source))
 }
 
 pub(super) fn damaged(path: &Path, reason: impl Into<String>) -> CompareError {

@@ -24,8 +24,7 @@ pub(super) fn compare(
     one: &Path,
     other: &Path,
 ) -> Result<(), CompareError> {
-    let (one, other) = (one.join(name), other.join(name));
-    match (one.exists(), other.exists()) {
+    match (one.join(name).exists(), other.join(name).exists()) {
         (true, true) => {}
         (false, false) => return Ok(()),
         _ => {
@@ -34,11 +33,11 @@ pub(super) fn compare(
         }
     }
     if name == PROBES {
-        let (one, other) = (read(&one)?, read(&other)?);
+        let (one, other) = (read(one, name)?, read(other, name)?);
         let texts = [&one, &other].map(|bytes| String::from_utf8_lossy(bytes));
         places::probes(comparison, &texts[0], &texts[1]);
     }
-    let (one, other) = (table(&one)?, table(&other)?);
+    let (one, other) = (table(one, name)?, table(other, name)?);
     let quantities = quantities(&one, &other);
     let alone = |a: &Table, b: &Table| {
         a.names
@@ -123,7 +122,8 @@ fn quantities(one: &Table, other: &Table) -> Vec<Quantity> {
     quantities
 }
 
-fn table(path: &Path) -> Result<Table, CompareError> {
-    let content = read(path)?;
-    Table::parse(&String::from_utf8_lossy(&content)).map_err(|reason| damaged(path, reason))
+fn table(folder: &Path, name: &str) -> Result<Table, CompareError> {
+    let content = read(folder, name)?;
+    let table = Table::parse(&String::from_utf8_lossy(&content));
+    table.map_err(|reason| damaged(&folder.join(name), reason))
 }

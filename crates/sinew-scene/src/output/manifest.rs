@@ -15,6 +15,8 @@ pub(super) const MANIFEST: &str = "manifest.json";
 pub(super) struct Manifest {
     pub(super) kind: String,
     pub(super) state: State,
+    /// The name of the folder that it was in before it was set aside.
+    pub(super) aside_of: Option<String>,
     /// Names of its files, with `/` after their folders.
     pub(super) files: Vec<String>,
 }
@@ -73,6 +75,7 @@ impl Manifest {
         let state = json["state"].as_str().unwrap_or(State::Finished.name());
         files.iter().all(stays).then_some(Self {
             kind: json["sinew"].as_str()?.to_owned(),
+            aside_of: json["aside_of"].as_str().map(str::to_owned),
             state: State::ALL.into_iter().find(|known| known.name() == state)?,
             files,
         })
@@ -80,7 +83,11 @@ impl Manifest {
 
     pub(super) fn to_json(&self) -> String {
         let state = self.state.name();
-        let json = serde_json::json!({ "sinew": self.kind, "state": state, "files": self.files });
+        let mut json =
+            serde_json::json!({ "sinew": self.kind, "state": state, "files": self.files });
+        if let Some(name) = &self.aside_of {
+            json["aside_of"] = name.as_str().into();
+        }
         format!("{json:#}\n")
     }
 

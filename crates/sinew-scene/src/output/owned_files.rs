@@ -50,7 +50,15 @@ impl OwnedFolder {
             file.write_all(content)?;
             file.finish()
         };
-        write(&path).map_err(|source| OutputError::failed(&path, source))
+        write(&path).map_err(|source| self.failed(&path, source))
+    }
+
+    /// A failure to write, which may be that of a folder that has gone.
+    fn failed(&self, path: &Path, source: io::Error) -> OutputError {
+        match self.check_identity() {
+            Err(gone) => gone,
+            Ok(()) => OutputError::failed(path, source),
+        }
     }
 
     /// Writes a file as a whole, whose name the disk surely has after [`OwnedFolder::secure`]: for many files that a checkpoint covers. The disk has its content before
@@ -69,7 +77,7 @@ impl OwnedFolder {
             fill(&mut file)?;
             file.finish_lightly()
         };
-        write(&path).map_err(|source| OutputError::failed(&path, source))?;
+        write(&path).map_err(|source| self.failed(&path, source))?;
         let mut unnamed = self.unnamed.lock().unwrap_or_else(PoisonError::into_inner);
         unnamed.insert(folder_of(&path).to_owned());
         Ok(())
@@ -136,8 +144,7 @@ impl OwnedFolder {
         let path = self.inside(name)?;
         if let Some((folder, _)) = name.rsplit_once('/') {
             let folder = self.path().join(folder);
-            fs::create_dir_all(&folder)
-                .map_err(|source| OutputError::not_opened(&folder, source))?;
+            fs::create_dir_all(&folder).map_err(|source| self.failed(&folder, source))?;
         }
         match Target::find(&path, &self.inputs)? {
             Target::File(path) => Ok(path),

@@ -165,11 +165,15 @@ impl OwnedFolder {
             Tenant::Nobody => {}
             Tenant::Unfinished => folder.clear()?,
             Tenant::Earlier => {
+                // At the end of links, which then lead there again.
+                let real = path.canonicalize();
+                let real = real.map_err(|source| OutputError::not_opened(path, source))?;
                 let kept = folder.set_aside()?;
-                make().map_err(|source| OutputError::not_opened(path, source))?;
+                let made = fs::create_dir(&real);
+                made.map_err(|source| OutputError::not_opened(path, source))?;
                 if let Ok(old) = fs::metadata(kept) {
                     // As far as we may.
-                    let _ = fs::set_permissions(path, old.permissions());
+                    let _ = fs::set_permissions(&real, old.permissions());
                 }
                 folder = Self::lock(path, kind, inputs)?;
             }
@@ -178,6 +182,7 @@ impl OwnedFolder {
         let manifest = Manifest {
             kind: kind.to_owned(),
             state: State::Unfinished,
+            aside_of: None,
             files: names.to_vec(),
         };
         folder.write(MANIFEST, manifest.to_json().as_bytes())?;
@@ -212,11 +217,32 @@ impl OwnedFolder {
         if is_kept && !is_success {
             return Ok(Replaced::KeptIn(kept));
         }
-        self.write_state(State::Finished)?;
+        self.write_state(State::Finished, None)?;
         match is_kept {
             true => remove_set_aside(&kept, self.kind),
             false => Ok(Replaced::Whole),
         }
+    }
+
+    /// Whether it is not known to hold a complete result.
+    ///
+    /// # Errors
+    /// [`OutputError`].
+    pub fn is_unfinished(&self) -> Result<bool, OutputError> {
+        let manifest = Manifest::read(&self.path)?;
+        Ok(manifest.is_none_or(|manifest| manifest.state == State::Unfinished))
+    }
+
+    /// Removes what is still kept of the result that this one, which is complete, took the place of.
+    ///
+    /// # Errors
+    /// [`OutputError`].
+    pub fn forget_kept(&self) -> Result<(), OutputError> {
+        let kept = kept_path(&self.path);
+        if is_set_aside(&kept, self.kind)? {
+            remove_set_aside(&kept, self.kind)?;
+        }
+        Ok(())
     }
 
     /// Moves the folder, which holds a complete result, to where such are kept.
@@ -226,23 +252,30 @@ impl OwnedFolder {
             // One whose successor was completed, but for its removal.
             remove_set_aside(&kept, self.kind)?;
         }
-        self.write_state(State::SetAside)?;
+        self.write_state(State::SetAside, own_name(&self.path))?;
         let real = self.path.canonicalize();
         match real.and_then(|real| fs::rename(real, &kept)) {
             Ok(()) => Ok(kept),
-            Err(source) => Err(OutputError::NotSetAside {
-                path: self.path.clone(),
-                kept,
-                source,
-            }),
+            Err(source) => {
+                self.write_state(State::Finished, None)?;
+                Err(OutputError::NotSetAside {
+                    path: self.path.clone(),
+                    kept,
+                    source,
+                })
+            }
         }
     }
 
-    fn write_state(&self, state: State) -> Result<(), OutputError> {
+    fn write_state(&self, state: State, aside_of: Option<String>) -> Result<(), OutputError> {
         let path = || self.path.clone();
         let manifest =
             Manifest::read(&self.path)?.ok_or_else(|| OutputError::Gone { path: path() })?;
-        let manifest = Manifest { state, ..manifest };
+        let manifest = Manifest {
+            state,
+            aside_of,
+            ..manifest
+        };
         self.write(MANIFEST, manifest.to_json().as_bytes())
     }
 
@@ -251,6 +284,7 @@ impl OwnedFolder {
         let Some(manifest) = Manifest::read(&self.path)? else {
             return Ok(());
         };
+        self.clear_left_behind()?;
         for name in &manifest.files {
             self.remove(name)?;
         }
@@ -312,11 +346,14 @@ impl OwnedFolder {
     }
 }
 
+/// The end of the name of a folder whose result is kept.
+const ASIDE: &str = ".old";
+
 /// The path at which a complete result is kept while the folder at `path` gets another.
 fn kept_path(path: &Path) -> PathBuf {
     let real = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let mut name: OsString = real.file_name().unwrap_or_default().to_owned();
-    name.push(".old");
+    name.push(ASIDE);
     real.with_file_name(name)
 }
 
@@ -342,7 +379,22 @@ fn is_set_aside(folder: &Path, kind: &str) -> Result<bool, OutputError> {
         return Ok(false);
     }
     let manifest = Manifest::read(folder)?;
-    Ok(manifest.is_some_and(|found| found.kind == kind && found.state == State::SetAside))
+    let own = own_name(folder);
+    let is_own = |of: &String| {
+        own.as_ref()
+            .is_some_and(|own| *own == format!("{of}{ASIDE}"))
+    };
+    Ok(manifest.is_some_and(|found| {
+        found.kind == kind
+            && found.state == State::SetAside
+            && found.aside_of.as_ref().is_some_and(is_own)
+    }))
+}
+
+/// The name of a folder at the end of all links.
+fn own_name(folder: &Path) -> Option<String> {
+    let real = folder.canonicalize().ok()?;
+    Some(real.file_name()?.to_string_lossy().into_owned())
 }
 
 /// Removes a result that was set aside. What others put into its folder stays there.

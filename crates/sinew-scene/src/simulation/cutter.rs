@@ -269,7 +269,10 @@ impl Cutter {
         let cutting = &self.plan.cutting;
         let has_cutter = cutting.blade != Blade::None || cutting.remove.is_some();
         if has_cutter && self.totals.changes == 0 && rough.missed.is_none() {
-            left.push("nothing was cut: what [cutting] names never met the body".to_owned());
+            left.push(
+                "nothing was cut: what [cutting] names met no face and no middle of a tetrahedron"
+                    .to_owned(),
+            );
         }
         left
     }

@@ -67,7 +67,7 @@ pub(super) fn sentences(
             .any(|part| *part != 0.0);
         if tool.grasp.is_none() && !cuts(index) && !has_pushed && depth == 0.0 {
             said.push(format!(
-                "tool `{name}` never met the body: it pushed no node"
+                "tool `{name}` pushed no node: it never met the body, or lay between its nodes"
             ));
         }
         if let Some(grasp) = tool.grasp

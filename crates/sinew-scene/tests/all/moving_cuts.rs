@@ -141,7 +141,10 @@ fn a_stroke_that_passes_less_than_half_a_cell_under_the_surface_and_cuts_nothing
         side_stroke(-0.003, "kuhn"),
         (
             1,
-            vec!["nothing was cut: what [cutting] names never met the body".to_owned()]
+            vec![
+                "nothing was cut: what [cutting] names met no face and no middle of a tetrahedron"
+                    .to_owned()
+            ]
         ),
         "it passed beside"
     );

@@ -20,8 +20,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let interruption = Interruption::listen().map_err(Failure::Signals)?;
+    let is_settled = RunFolder::settle(&arguments.folder)?;
     let (folder, scene) = RunFolder::reopen(&arguments.folder)?;
-    if folder.is_finished()? {
+    if is_settled || folder.is_finished()? {
         complain("the run in it has come to its end: there is nothing to go on with");
         return Ok(());
     }

@@ -186,7 +186,7 @@ fn probes_alone(
     let rows = ProbeRows::new(simulation);
     let whole = simulation.run();
     let steps = (whole.steps, simulation.dt());
-    let schedule = words::schedule(simulation, &rows, steps, destination.is_kept());
+    let schedule = words::schedule(simulation, &rows, steps, destination.is_kept())?;
     let mut output = ProbeCsv::new(destination.open()?, rows, schedule)?.without_rows();
     let mut state = simulation.initial_state().clone();
     let mut onlooker = Onlooker::new(interruption, whole.steps, simulation.settings().duration);

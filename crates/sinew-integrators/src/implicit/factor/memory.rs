@@ -43,7 +43,7 @@ impl Memory {
     pub(super) fn check(self, bytes: u64) -> Result<(), FactorError> {
         match self.0 {
             Some(most) if bytes > most => Err(FactorError::Memory {
-                needed: bytes / 1_000_000,
+                needed: bytes.div_ceil(1_000_000),
                 left: most / 1_000_000,
             }),
             _ => Ok(()),

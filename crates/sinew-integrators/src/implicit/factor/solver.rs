@@ -128,7 +128,7 @@ impl Solver {
         };
         let (solves, iterations) = gradients.counts();
         let mean = iterations as f64 / solves.max(1) as f64;
-        let megabytes = *instead_of as f64 / 1e6;
+        let megabytes = (*instead_of as f64 / 1e6).ceil();
         Some(format!(
             "equations were solved by conjugate gradients, in {mean:.0} iterations on average: a factor would take about {megabytes:.0} MB, more than there is"
         ))

@@ -24,7 +24,11 @@ pub(super) fn warnings(body: &Body, built: &BodyModel) -> Vec<Warning> {
 fn idle(body: &Body) -> Option<Warning> {
     let problem = &body.problem;
     let has_weight = problem.gravity.is_some_and(|gravity| norm(&gravity) > 0.0);
-    let is_idle = problem.loads.is_empty()
+    let acts = |kind: &LoadKind| match kind {
+        LoadKind::Traction(vector) | LoadKind::Force(vector) => norm(vector) > 0.0,
+        LoadKind::Pressure(pressure) | LoadKind::FollowingPressure(pressure) => *pressure != 0.0,
+    };
+    let is_idle = !problem.loads.iter().any(|load| acts(&load.kind))
         && !has_weight
         && body.motions.is_empty()
         && body.tools.is_empty()

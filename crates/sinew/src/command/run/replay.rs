@@ -52,7 +52,7 @@ pub(super) fn run(
     let course = replay.course();
     let rows = ProbeRows::new(&simulation);
     let steps = (course.steps, course.dt);
-    let schedule = schedule(&simulation, &rows, steps, destination.is_kept());
+    let schedule = schedule(&simulation, &rows, steps, destination.is_kept())?;
     let mut csv = ProbeCsv::new(destination.open()?, rows, schedule)?.without_rows();
     let (mut steps, mut looked) = (0, Looked::default());
     let (followed, is_interrupted) = loop {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use sinew_core::RunReport;
-use sinew_record::{RunEnd, words_of_cuts};
+use sinew_record::{MOST_NUMBERS, RecordRunError, RunEnd, words_of_cuts};
 use sinew_scene::output::{Replaced, complain};
 use sinew_scene::{ProbeRows, Schedule, Simulation};
 
@@ -16,20 +16,30 @@ pub(super) fn schedule(
     rows: &ProbeRows<'_>,
     steps: (usize, f64),
     is_kept: bool,
-) -> Schedule {
+) -> Result<Schedule, RecordRunError> {
     let asked = simulation.scene().output().probes;
     if asked.is_none() && !is_kept {
         // Nothing stays of a pipe, whose reader takes what it wants.
-        return Schedule::at_most(usize::MAX, steps.0);
+        return Ok(Schedule::at_most(usize::MAX, steps.0));
     }
-    let schedule = Schedule::of_probes(asked, rows.columns().len(), MOST_ROWS, steps);
+    let columns = rows.columns().len();
+    let schedule = Schedule::of_probes(asked, columns, MOST_ROWS, steps);
+    let numbers = schedule.count().saturating_mul(columns);
+    if is_kept && numbers > MOST_NUMBERS {
+        return Err(RecordRunError::TooMuch {
+            asked: numbers,
+            what: "numbers in the table of probes",
+            most: MOST_NUMBERS,
+            key: "probes",
+        });
+    }
     if asked.is_none() && !schedule.is_every_step() {
         complain(&format!(
             "probes: a row after every {:.1} steps on average; `probes` in [output] sets other instants",
             schedule.spacing()
         ));
     }
-    schedule
+    Ok(schedule)
 }
 
 /// What no run knows of itself.

@@ -430,6 +430,66 @@ fn results_are_kept_by_nothing_that_is_not_ours() {
 }
 
 #[test]
+fn results_at_the_end_of_a_link_are_set_aside_there() {
+    let folder = Folder::new();
+    let run = |out: &str| folder.says(&["run", "short.toml", "--out", out]);
+    assert_eq!(run("out").0, Some(0));
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("out", folder.path("link")).unwrap();
+    for out in ["link", "link/", "out/.", "./out//"] {
+        let (code, said) = run(out);
+        assert_eq!(code, Some(0), "{out}: {said}");
+        assert!(folder.path("out/summary.json").exists() && !folder.path("out.old").exists());
+    }
+    assert!(folder.path("link").is_symlink());
+}
+
+#[test]
+fn a_run_that_was_killed_when_all_was_written_is_complete() {
+    let folder = Folder::new();
+    let run = ["run", "short.toml", "--out", "out"];
+    assert_eq!(folder.says(&run).0, Some(0));
+    let manifest = folder.path("out/manifest.json");
+    let unfinished = fs::read_to_string(&manifest)
+        .unwrap()
+        .replace("finished", "unfinished");
+    // What it took the place of is still there, half removed.
+    killed_over(&folder);
+    fs::remove_dir_all(folder.path("out")).unwrap();
+    fs::create_dir(folder.path("out")).unwrap();
+    assert_eq!(
+        folder.says(&["run", "short.toml", "--out", "whole"]).0,
+        Some(0)
+    );
+    fs::remove_dir(folder.path("out")).unwrap();
+    fs::rename(folder.path("whole"), folder.path("out")).unwrap();
+    fs::write(&manifest, unfinished).unwrap();
+    fs::remove_file(folder.path("out.old/energy.csv")).unwrap();
+    fs::write(folder.path("out.old/.sinew-999999999-1.tmp"), "x").unwrap();
+    let (code, said) = folder.says(&["resume", "out"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("has come to its end"), "{said}");
+    assert!(!folder.path("out.old").exists());
+    let (code, said) = folder.says(&run);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("are kept beside it"), "{said}");
+    // One that was set aside and is called otherwise now is the user's.
+    killed_over(&folder);
+    fs::rename(folder.path("out.old"), folder.path("keep.old")).unwrap();
+    let run = ["run", "short.toml", "--out", "keep"];
+    for code in [0, 2] {
+        assert_eq!(folder.says(&run).0, Some(code));
+        assert!(folder.path("keep.old/summary.json").exists());
+    }
+}
+
+/// A run into `out`, which holds results, that is killed in its course.
+fn killed_over(folder: &Folder) {
+    killed(folder);
+    assert!(folder.path("out.old/summary.json").exists());
+}
+
+#[test]
 fn a_folder_that_goes_while_a_run_writes_is_an_error() {
     let folder = Folder::new();
     for replaced in [false, true] {
@@ -598,7 +658,7 @@ fn more_frames_than_a_folder_holds_are_refused_before_anything_is_written() {
         let (code, said) = folder.says(&[&arguments[..], &[&frames]].concat());
         assert_eq!(code, Some(2), "{said}");
         assert!(
-            said.contains("frames of fields, and a folder holds 100000"),
+            said.contains("frames of fields, and 100000 are the most"),
             "{said}"
         );
         assert!(!folder.path("out").exists());
@@ -609,6 +669,24 @@ fn more_frames_than_a_folder_holds_are_refused_before_anything_is_written() {
     assert_eq!(code, Some(2), "{said}");
     assert!(
         said.contains("asks for 6400000004 numbers in probes.csv"),
+        "{said}"
+    );
+    let (code, said) = folder.says(&[
+        "run",
+        "rows.toml",
+        "--probes",
+        "p.csv",
+        "--set",
+        "run.dt=1e-7",
+    ]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("numbers in the table of probes"), "{said}");
+    let energy = LONG.replace("[output]\n", "[output]\nenergy = { every = 1e-7 }\n");
+    fs::write(folder.path("energy.toml"), energy).unwrap();
+    let (code, said) = folder.says(&["run", "energy.toml", "--out", "out", "--set", "run.dt=1e-7"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("numbers in tables of energy and reactions"),
         "{said}"
     );
     // Where nothing is asked for, rows are rarer, and that is said.

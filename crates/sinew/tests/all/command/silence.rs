@@ -74,7 +74,7 @@ fn tools_blades_and_burners_that_meet_no_body_are_named() {
              velocity = [0.0, 0.0, -0.1]\n{RUN}"
         )
     };
-    let never = "tool `ball` never met the body";
+    let never = "tool `ball` pushed no node";
     let said = run(&tool("[0.05, 0.05, 0.3]"), &[]);
     assert!(said.contains(never), "{said}");
     let said = run(&tool("[0.05, 0.05, 0.121]"), &[]);
@@ -86,7 +86,7 @@ fn tools_blades_and_burners_that_meet_no_body_are_named() {
         )
     };
     let scene = format!("{WEIGHT}{BODY}[cutting]\ntable = \"blade.csv\"\n{RUN}");
-    let uncut = "nothing was cut: what [cutting] names never met the body";
+    let uncut = "nothing was cut: what [cutting] names met no face";
     let said = run(&scene, &[("blade.csv", &blade(0.3))]);
     assert!(said.contains(uncut), "{said}");
     let said = run(&scene, &[("blade.csv", &blade(0.05))]);
