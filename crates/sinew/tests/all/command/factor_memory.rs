@@ -1,45 +1,25 @@
 //! Factors that take more memory than they may.
 
 use std::fs;
-use std::process::{Command, Output};
 
-use assert_cmd::cargo::CommandCargoExt;
+use crate::common::{Said, sinew};
 
 const SCENE: &str = "gravity = [0.0, 0.0, -9.81]\n[mesh]\ncube = { cells = 6, edge = 0.1 }\n[[region]]\ndensity = 1000.0\n\
                      model = \"linear\"\nyoungs_modulus = 5000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n[[probe]]\n\
                      name = \"top\"\npoint = [0.05, 0.05, 0.1]\n[run]\nduration = 0.1\nintegrator = \"newmark\"\ndt = 0.01\n";
 
-struct Said {
-    code: Option<i32>,
-    out: String,
-    err: String,
-}
-
 fn says(arguments: &[&str]) -> Said {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
-    let mut command = Command::cargo_bin("sinew").unwrap();
     let (verb, rest) = arguments.split_first().unwrap();
-    command
-        .current_dir(folder.path())
-        .args([*verb, "scene.toml"])
-        .args(rest);
-    let Output {
-        status,
-        stdout,
-        stderr,
-    } = command.output().unwrap();
-    Said {
-        code: status.code(),
+    let said = sinew(folder.path(), &[&[*verb, "scene.toml"], rest].concat());
+    match *verb {
         // Lines of a plan are broken anywhere.
-        out: match *verb {
-            "plan" => String::from_utf8_lossy(&stdout)
-                .split_whitespace()
-                .collect::<Vec<_>>()
-                .join(" "),
-            _ => String::from_utf8(stdout).unwrap(),
+        "plan" => Said {
+            out: said.out.split_whitespace().collect::<Vec<_>>().join(" "),
+            ..said
         },
-        err: String::from_utf8(stderr).unwrap(),
+        _ => said,
     }
 }
 

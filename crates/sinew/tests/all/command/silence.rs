@@ -1,9 +1,8 @@
 //! What does nothing, or asks for what no tissue bears, is said.
 
 use std::fs;
-use std::process::{Command, Output};
 
-use assert_cmd::cargo::CommandCargoExt;
+use crate::common::sinew;
 
 const BODY: &str = "[mesh]\ncube = { cells = 2, edge = 0.1 }\n[[region]]\ndensity = 1000.0\nmodel = \"linear\"\n\
                     youngs_modulus = 5000.0\npoissons_ratio = 0.3\n[[fixed]]\ngroup = \"bottom\"\n";
@@ -19,19 +18,9 @@ fn says(scene: &str, files: &[(&str, &str)], arguments: &[&str]) -> (Option<i32>
     for (name, content) in files {
         fs::write(folder.path().join(name), content).unwrap();
     }
-    let mut command = Command::cargo_bin("sinew").unwrap();
     let (verb, rest) = arguments.split_first().unwrap();
-    command
-        .current_dir(folder.path())
-        .args([*verb, "scene.toml"])
-        .args(rest);
-    let Output {
-        status,
-        stderr,
-        stdout,
-    } = command.output().unwrap();
-    let all = [stderr, stdout].map(|said| String::from_utf8_lossy(&said).into_owned());
-    (status.code(), all.concat())
+    let said = sinew(folder.path(), &[&[*verb, "scene.toml"], rest].concat());
+    (said.code, said.err + &said.out)
 }
 
 /// A run and what it says without its table.
