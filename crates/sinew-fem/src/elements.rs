@@ -8,6 +8,18 @@ use crate::cells::Cells;
 /// are zero. `whole` has all its nodes, row-major and node-major.
 pub(crate) fn moving_part(whole: &[f64], nodes: &[u32], cells: &Cells, out: &mut ElementStiffness) {
     let columns = 3 * nodes.len();
+    let free_cell = |node: &u32| {
+        let cell = cells.of_node(*node)?;
+        let first = 3 * cell as usize;
+        (cells.pinned[first..first + 3] == [false; 3]).then_some(cell)
+    };
+    out.cells.clear();
+    out.matrix.clear();
+    out.cells.extend(nodes.iter().map_while(free_cell));
+    if out.cells.len() == nodes.len() {
+        out.matrix.extend_from_slice(whole);
+        return;
+    }
     let moving: Vec<(usize, u32)> = nodes
         .iter()
         .enumerate()
@@ -23,7 +35,6 @@ pub(crate) fn moving_part(whole: &[f64], nodes: &[u32], cells: &Cells, out: &mut
         .collect();
     out.cells.clear();
     out.cells.extend(moving.iter().map(|(_, cell)| *cell));
-    out.matrix.clear();
     for &(row, row_held) in &rows {
         out.matrix.extend(rows.iter().map(|&(column, held)| {
             if row_held || held {

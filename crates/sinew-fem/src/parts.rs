@@ -106,6 +106,24 @@ impl<'a> Parts<'a> {
         }
     }
 
+    /// Writes the rows and columns of a part's stiffness of those nodes that are cells; held components are zero.
+    pub(crate) fn moving(&self, number: usize, cells: &Cells, out: &mut ElementStiffness) {
+        if let Part::Tet(tet) = self.part(number) {
+            moving_part(&self.of_tet(tet), &self.mesh.tets[tet], cells, out);
+            return;
+        }
+        let mut whole = WholePart::default();
+        self.whole(number, &mut whole);
+        whole.moving(cells, out);
+    }
+
+    /// The stiffness of a tetrahedron by its own strain; zero where it is flat.
+    fn of_tet(&self, tet: usize) -> [f64; 144] {
+        let material = &self.materials[self.region_of[tet] as usize];
+        let matrix = material.stiffness(self.mesh, tet);
+        matrix.unwrap_or([0.0; 144])
+    }
+
     /// Writes the stiffness of a part between all its nodes, held ones included; zero where a tetrahedron is flat.
     pub(crate) fn whole(&self, number: usize, out: &mut WholePart) {
         let part = self.part(number);
@@ -124,12 +142,10 @@ impl<'a> Parts<'a> {
                 (material.averaged_over_patch(self.mesh, members), 1.0)
             }
             (Part::Tet(tet), _) => {
-                let nodes = &self.mesh.tets[tet];
-                let matrix = material(tet).stiffness(self.mesh, tet);
                 average.nodes.clear();
-                average.nodes.extend(nodes);
+                average.nodes.extend(&self.mesh.tets[tet]);
                 stiffness.clear();
-                stiffness.extend(matrix.unwrap_or([0.0; 144]));
+                stiffness.extend(self.of_tet(tet));
                 return;
             }
             (Part::Edge(_) | Part::Patch(_), None) => ([0.0; 2], 0.0),

@@ -53,7 +53,7 @@ const LEAST: f64 = 0.03;
 const LEAST_OF_LAWS: f64 = 0.25;
 
 /// Time (s) by which they end where steps are long.
-const MOST: f64 = 0.5;
+const MOST: f64 = 0.25;
 
 /// Time (s) that a run under force laws may take for all of its steps to be taken: their work changes as tissue stiffens or lets go.
 const WHOLE: f64 = 5.0;
@@ -62,7 +62,7 @@ const WHOLE: f64 = 5.0;
 const AGAIN: usize = 4;
 
 impl Forecast {
-    /// Sets an integrator up and takes some of the scene's first steps with it, for some hundredths of a second or, where steps are long, up to half a second and a step. Under force laws it goes on to the end
+    /// Sets an integrator up and takes some of the scene's first steps with it, for some hundredths of a second or, where steps are long, up to a quarter of a second and a step. Under force laws it goes on to the end
     /// where that is a matter of seconds.
     ///
     /// # Errors

@@ -1,7 +1,6 @@
 //! Natural frequencies and mode shapes of a scene.
 
-mod jacobi;
-mod subspace;
+mod lobpcg;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,8 +16,8 @@ use sinew_scene::output::{OwnedFolder, Tenant};
 
 use crate::error::RecordRunError;
 use crate::frames;
-pub use subspace::ModesError;
-use subspace::lowest;
+pub use lobpcg::ModesError;
+use lobpcg::lowest;
 
 /// The kind of result, in manifests and messages.
 const KIND: &str = "modes";

@@ -10,7 +10,6 @@ use super::{Model, free_parts};
 use crate::large::fill;
 use crate::material::Material;
 use crate::motion::Field;
-use crate::parts::WholePart;
 use crate::tetra;
 
 impl System for Model {
@@ -182,8 +181,6 @@ impl Elements for Model {
     }
 
     fn stiffness(&self, element: usize, out: &mut ElementStiffness) {
-        let mut whole = WholePart::default();
-        self.parts().whole(element, &mut whole);
-        whole.moving(&self.body.cells, out);
+        self.parts().moving(element, &self.body.cells, out);
     }
 }

@@ -38,9 +38,13 @@ pub(crate) fn for_each_face(
             })
         })
     };
+    // Three faces of a tetrahedron have its smallest node, the fourth begins with the next.
     let mut starts = vec![0usize; nodes + 1];
-    for (face, _) in faces() {
-        starts[face[0] as usize + 1] += 1;
+    for tet in tets.iter().filter(|tet| is_sound(tet, nodes)) {
+        let mut tet = *tet;
+        tet.sort_unstable();
+        starts[tet[0] as usize + 1] += 3;
+        starts[tet[1] as usize + 1] += 1;
     }
     for node in 0..nodes {
         starts[node + 1] += starts[node];

@@ -148,18 +148,36 @@ impl TetMesh {
     /// Each edge of the tetrahedra once, lower node first, in ascending order.
     #[must_use]
     pub fn edges(&self) -> Vec<[u32; 2]> {
-        let mut edges = Vec::with_capacity(6 * self.tets.len());
-        for tet in &self.tets {
-            for (i, j) in EDGES {
-                let (a, b) = (tet[i].min(tet[j]), tet[i].max(tet[j]));
-                // A collapsed tetrahedron may name a node twice.
-                if a != b {
-                    edges.push([a, b]);
-                }
-            }
+        let pairs = || {
+            let of_tet = |tet: &[u32; 4]| {
+                let tet = *tet;
+                EDGES.map(|(i, j)| [tet[i].min(tet[j]), tet[i].max(tet[j])])
+            };
+            // A collapsed tetrahedron may name a node twice.
+            let pairs = self.tets.iter().flat_map(of_tet);
+            pairs.filter(|[low, high]| low != high)
+        };
+        // Sorted by lower nodes by counting, which takes time in proportion to their number.
+        let mut ends = vec![0usize; self.points.len()];
+        pairs().for_each(|[low, _]| ends[low as usize] += 1);
+        let mut sum = 0;
+        for end in &mut ends {
+            sum += std::mem::replace(end, sum);
         }
-        edges.sort_unstable();
-        edges.dedup();
+        let mut higher = vec![0; sum];
+        for [low, high] in pairs() {
+            let end = &mut ends[low as usize];
+            higher[*end] = high;
+            *end += 1;
+        }
+        let (mut edges, mut start) = (Vec::with_capacity(sum / 4), 0);
+        for (low, end) in (0u32..).zip(ends) {
+            let of_node = &mut higher[start..end];
+            of_node.sort_unstable();
+            let same = of_node.chunk_by(|a, b| a == b);
+            edges.extend(same.map(|same| [low, same[0]]));
+            start = end;
+        }
         edges
     }
 

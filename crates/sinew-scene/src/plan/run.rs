@@ -81,7 +81,7 @@ pub(super) fn section(simulation: &Simulation) -> PlanSection {
 const STANDS_OUT: f64 = 0.5;
 
 /// Elements of which the median is taken: of more each nth.
-const SAMPLE: usize = 20_000;
+const SAMPLE: usize = 5_000;
 
 /// A sentence about the element that sets the step, if one does.
 fn stiffest_element(simulation: &Simulation) -> Option<String> {
@@ -101,10 +101,11 @@ fn stiffest_element(simulation: &Simulation) -> Option<String> {
     sample.sort_by(f64::total_cmp);
     let median = *sample.get(sample.len() / 2)?;
     let limit = STANDS_OUT * median;
+    let inverse_mass: Vec<f64> = mass.iter().map(|mass| 1.0 / mass).collect();
     let (mut shortest, mut worst, mut below) = (f64::INFINITY, 0, 0_usize);
     for element in 0..elements.count() {
         elements.stiffness(element, &mut stiffness);
-        if step(stiffness.omega_squared_bound(mass)) >= limit {
+        if step(stiffness.omega_squared_bound(&inverse_mass)) >= limit {
             continue;
         }
         let own = step(stiffness.omega_squared(mass));

@@ -5,10 +5,9 @@ use std::sync::{Arc, OnceLock};
 use sinew_fem::{Cause, Course, CutModel, CutModelError, FemError, Item, Model, Moving, On};
 
 use super::cut_plan::CutPlan;
-use super::mesh::MeshAndWarnings;
+use super::meshed::SelectedMesh;
 use super::model::BodyModel;
 use super::motion_table::{MotionTable, read_strokes};
-use super::selected;
 use crate::error::{Fault, SceneError};
 use crate::scene::keys::GRAVITY;
 use crate::scene::{Blade, Body, MeshSource, Motion, Places, Way};
@@ -16,14 +15,18 @@ use crate::scene::{Blade, Body, MeshSource, Motion, Places, Way};
 /// Assembles the matrices.
 pub(super) fn build(
     body: &Body,
-    (mut mesh, mesh_warnings): MeshAndWarnings,
+    selected: SelectedMesh,
     places: &Places,
 ) -> Result<BodyModel, SceneError> {
     let mut problem = body.problem.clone();
     for (index, motion) in body.motions.iter().enumerate() {
         problem.moves.push(moving(motion, places, index)?);
     }
-    let selected = selected::add_to(&mut mesh, body, places)?;
+    let SelectedMesh {
+        mut mesh,
+        warnings: mesh_warnings,
+        selected,
+    } = selected;
     if problem
         .regions
         .iter()

@@ -3,9 +3,7 @@
 use sinew_fem::{Law, On};
 use sinew_mesh::TetMesh;
 
-use super::{mesh, selected};
-use crate::error::SceneError;
-use crate::scene::{Body, Scene, Subject};
+use crate::scene::Body;
 
 /// Counts of a body and the memory it needs, from its mesh and its supports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,7 +22,7 @@ pub struct Footprint {
 }
 
 impl Footprint {
-    fn of(body: &Body, mesh: &TetMesh) -> Self {
+    pub(super) fn of(body: &Body, mesh: &TetMesh) -> Self {
         const BLOCK: usize = 9 * size_of::<f64>();
         let (nodes, tets) = (mesh.points.len(), mesh.tets.len());
         let held = held(body, mesh);
@@ -83,20 +81,3 @@ fn held(body: &Body, mesh: &TetMesh) -> Vec<bool> {
 
 /// Vectors that a run keeps: state, its start, registers, forces.
 const VECTORS: usize = 10;
-
-impl Scene {
-    /// Reads the mesh, and only that, for the memory that the scene will need; `None` for an oscillator.
-    ///
-    /// # Errors
-    /// [`SceneError`] for a mesh that cannot be read or made, and for places where it has nothing.
-    pub fn footprint(&self) -> Result<Option<Footprint>, SceneError> {
-        match self.subject() {
-            Subject::Body(body) => {
-                let (mut mesh, _) = mesh::of_body(body, self.places())?;
-                selected::add_to(&mut mesh, body, self.places())?;
-                Ok(Some(Footprint::of(body, &mesh)))
-            }
-            Subject::Oscillator(_) => Ok(None),
-        }
-    }
-}

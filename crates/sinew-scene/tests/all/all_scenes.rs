@@ -19,7 +19,8 @@ fn all_are_built_plans_fit_a_terminal_and_memory_is_foretold_from_the_mesh() {
     for path in scenes {
         let scene = Scene::load(&path).unwrap();
         assert_ne!(scene.title(), "", "{}", path.display());
-        let footprint = scene.footprint().unwrap();
+        let scene = scene.read_mesh().unwrap();
+        let footprint = scene.footprint();
         let simulation = scene.build().unwrap_or_else(|error| panic!("{error}"));
         assert!(simulation.system().dofs() > 0);
         // Groups that a mesh has beyond what a scene needs are no mistake of the scene.

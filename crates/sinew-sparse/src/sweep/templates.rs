@@ -237,13 +237,23 @@ impl<T: Real> Lattice<T> {
     }
 }
 
+/// A sum of entries with weights from 0 to 1 that no symmetry of a row shares: plain sums of rows of K are all 0.
+fn fingerprint<'a>(entries: impl Iterator<Item = &'a f64>) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let weights = (1..).map(|number| (f64::from(number) * GOLDEN).fract());
+    entries
+        .zip(weights)
+        .map(|(entry, weight)| weight * entry)
+        .sum()
+}
+
 /// The templates of all rows, and which is whose.
 fn find(matrix: &BlockMatrix, units: &Units, grid: &Grid) -> Option<(Vec<Template>, Vec<u32>)> {
     let cells = matrix.pattern().cells();
     let layers = matrix.layers().count();
     let mut templates: Vec<Template> = Vec::new();
     let mut of_cell = Vec::with_capacity(cells);
-    // Templates by their offsets and a sum of their entries, which rounding may move to the next number.
+    // Templates by their offsets and a fingerprint of their entries, which rounding may move to the next number.
     let mut known: HashMap<(Vec<i32>, i64), Vec<u32>> = HashMap::new();
     let mut row: Vec<(i32, &[f64], f64)> = Vec::new();
     let mut key = (Vec::new(), 0);
@@ -258,7 +268,7 @@ fn find(matrix: &BlockMatrix, units: &Units, grid: &Grid) -> Option<(Vec<Templat
         }
         row.sort_unstable_by_key(|(offset, ..)| *offset);
         let same = same(row.iter().flat_map(|(_, block, _)| block.iter()));
-        let sum: f64 = row.iter().flat_map(|(_, block, _)| block.iter()).sum();
+        let sum = fingerprint(row.iter().flat_map(|(_, block, _)| block.iter()));
         let entries = row.len() * layers * layers;
         let width = 4.0 * same * entries as f64;
         let step = if width > 0.0 {

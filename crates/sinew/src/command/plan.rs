@@ -66,8 +66,8 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let scene = arguments.values.load(&arguments.scene)?;
-    let footprint = scene.footprint()?;
+    let scene = arguments.values.load(&arguments.scene)?.read_mesh()?;
+    let footprint = scene.footprint();
     if let Some(footprint) = &footprint {
         cost::check_memory(footprint)?;
     }

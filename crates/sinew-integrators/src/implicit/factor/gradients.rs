@@ -131,6 +131,13 @@ impl Gradients {
         })
     }
 
+    /// Replaces a residual by the preconditioned one.
+    pub(super) fn precondition(&mut self, residual: &mut [f64]) {
+        self.preconditioner
+            .apply(&self.matrix, residual, &mut self.preconditioned);
+        residual.copy_from_slice(&self.preconditioned);
+    }
+
     /// Solutions so far, and the iterations that they took.
     pub(super) fn counts(&self) -> (u64, u64) {
         (self.solves, self.iterations)

@@ -116,6 +116,24 @@ impl Solver {
         }
     }
 
+    /// Replaces `residual` by an approximate solution: the exact one of a factor, or a cycle of the preconditioner of conjugate
+    /// gradients. Allocates nothing.
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
+    ///
+    /// # Panics
+    /// Where it is shorter than the matrix.
+    pub fn precondition(&mut self, residual: &mut [f64]) -> Result<(), FactorError> {
+        match &mut self.0 {
+            Kind::Factor(_) => self.solve(residual),
+            Kind::Gradients { gradients, .. } => {
+                gradients.precondition(residual);
+                Ok(())
+            }
+        }
+    }
+
     /// A sentence about how equations are solved, where that is not by a factor.
     #[must_use]
     pub fn remark(&self) -> Option<String> {
