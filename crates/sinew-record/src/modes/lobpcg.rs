@@ -225,8 +225,7 @@ impl Basis {
                 change(x, -share, Some(other));
             }
             let left = norm(x);
-            // False for NaN too.
-            if !(left > DEPENDENT) {
+            if left <= DEPENDENT || left.is_nan() {
                 return false;
             }
             change(x, left.recip(), None);
